@@ -1,0 +1,169 @@
+#include "oracle/ray_scene.h"
+
+namespace sightline {
+namespace {
+
+constexpr std::uint64_t kManyTriangles = 4'000'000;  // from here on memory matters more than speed
+
+Vec3d normalOf(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+}
+
+RTCScene newScene(RTCDevice device, bool compact) {
+  RTCScene scene = rtcNewScene(device);
+  const int flags = RTC_SCENE_FLAG_ROBUST | (compact ? RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_NONE);
+  rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(flags));
+  return scene;
+}
+
+void setRays(const RayScene::Batch& rays, std::uint32_t count, RTCRayHit16& packet) {
+  for (std::uint32_t i = 0; i < RayScene::kBatch; ++i) {
+    const FloatRay& ray = rays[i < count ? i : 0];
+    packet.ray.org_x[i] = ray.origin.x;
+    packet.ray.org_y[i] = ray.origin.y;
+    packet.ray.org_z[i] = ray.origin.z;
+    packet.ray.dir_x[i] = ray.direction.x;
+    packet.ray.dir_y[i] = ray.direction.y;
+    packet.ray.dir_z[i] = ray.direction.z;
+    packet.ray.tnear[i] = 0.0f;
+    packet.ray.tfar[i] = ray.length;
+    packet.ray.time[i] = 0.0f;
+    packet.ray.mask[i] = 0xffffffffu;
+    packet.ray.id[i] = i;
+    packet.ray.flags[i] = 0;
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+}  // namespace
+
+// Embree hands it to the filter: where see-through hits go.
+struct RayScene::CollectContext {
+  RTCIntersectContext base;
+  std::vector<RayHit>* hits;
+};
+
+RayScene::RayScene(const SceneView& scene) {
+  // One thread: Embree's parallel builder may order triangles differently, and with them ties.
+  device_ = rtcNewDevice("threads=1");
+  const bool compact = scene.indices.size() / 3 > kManyTriangles;
+  opaque_ = newScene(device_, compact);
+  see_through_ = newScene(device_, compact);
+  gather(scene);
+  for (Group& group : groups_) {
+    attach(group);
+  }
+  rtcCommitScene(opaque_);
+  rtcCommitScene(see_through_);
+}
+
+RayScene::~RayScene() {
+  for (Group& group : groups_) {
+    if (group.geometry != nullptr) {
+      rtcReleaseGeometry(group.geometry);
+    }
+  }
+  rtcReleaseScene(opaque_);
+  rtcReleaseScene(see_through_);
+  rtcReleaseDevice(device_);
+}
+
+// Copies what can be hit: triangles with finite corners and an area.
+void RayScene::gather(const SceneView& scene) {
+  positions_.assign(scene.positions.begin(), scene.positions.end());
+  positions_.push_back({});
+  for (std::uint32_t i = 0; i < groups_.size(); ++i) {
+    groups_[i].owner = this;
+    groups_[i].opaque = (i & 1u) != 0;
+    groups_[i].double_sided = (i & 2u) != 0;
+  }
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    const Material& material = scene.materialOf(object);
+    Group& group = groups_[(material.opaque() ? 1u : 0u) + (material.double_sided ? 2u : 0u)];
+    const std::span<const std::uint32_t> indices = scene.indicesOf(object);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      const Vec3f &a = scene.positions[indices[i]], &b = scene.positions[indices[i + 1]],
+                  &c = scene.positions[indices[i + 2]];
+      if (isFinite(a) && isFinite(b) && isFinite(c) && normalOf(a, b, c) != Vec3d{}) {
+        group.indices.insert(group.indices.end(), {indices[i], indices[i + 1], indices[i + 2]});
+        group.object_of_prim.push_back(o);
+      }
+    }
+  }
+}
+
+void RayScene::attach(Group& group) {
+  if (group.object_of_prim.empty()) {
+    return;
+  }
+  group.geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(group.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions_.data(),
+                             0, sizeof(Vec3f), positions_.size() - 1);
+  rtcSetSharedGeometryBuffer(group.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, group.indices.data(),
+                             0, 3 * sizeof(std::uint32_t), group.object_of_prim.size());
+  rtcSetGeometryUserData(group.geometry, &group);
+  if (!group.opaque || !group.double_sided) {
+    rtcSetGeometryIntersectFilterFunction(group.geometry, &RayScene::filter);
+  }
+  rtcCommitGeometry(group.geometry);
+  group.geometry_id = rtcAttachGeometry(group.opaque ? opaque_ : see_through_, group.geometry);
+  has_see_through_ = has_see_through_ || !group.opaque;
+}
+
+bool RayScene::meetsBack(const Group& group, std::uint32_t prim, const Vec3d& direction) const {
+  const std::uint32_t* index = group.indices.data() + 3 * static_cast<std::size_t>(prim);
+  return dot(normalOf(positions_[index[0]], positions_[index[1]], positions_[index[2]]), direction) >= 0.0;
+}
+
+// Refuses backs of single-sided triangles; of see-through triangles, notes the hit and lets the ray go on.
+void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
+  const Group& group = *static_cast<const Group*>(arguments->geometryUserPtr);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] != -1) {
+      continue;
+    }
+    const std::uint32_t prim = RTCHitN_primID(arguments->hit, n, i);
+    const Vec3d direction(RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
+                          RTCRayN_dir_z(arguments->ray, n, i));
+    const bool back = !group.double_sided && group.owner->meetsBack(group, prim, direction);
+    if (back || !group.opaque) {
+      arguments->valid[i] = 0;
+    }
+    if (!back && !group.opaque) {
+      auto* context = reinterpret_cast<CollectContext*>(arguments->context);
+      context->hits->push_back({RTCRayN_id(arguments->ray, n, i), ObjectId(group.object_of_prim[prim]),
+                                RTCRayN_tfar(arguments->ray, n, i)});
+    }
+  }
+}
+
+void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std::vector<RayHit>& hits) const {
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[kBatch];
+  setRays(rays, count, packet);
+  for (std::uint32_t i = 0; i < kBatch; ++i) {
+    valid[i] = i < count ? -1 : 0;
+  }
+  CollectContext context{};
+  rtcInitIntersectContext(&context.base);
+  context.base.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  context.hits = &hits;
+  rtcIntersect16(valid, opaque_, &context.base, &packet);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const Group& group : groups_) {
+      if (packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID && group.opaque &&
+          packet.hit.geomID[i] == group.geometry_id) {
+        hits.push_back({i, ObjectId(group.object_of_prim[packet.hit.primID[i]]), packet.ray.tfar[i]});
+      }
+    }
+    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  if (has_see_through_) {
+    rtcIntersect16(valid, see_through_, &context.base, &packet);  // up to the opaque hit: tfar
+  }
+}
+
+}  // namespace sightline

@@ -1,0 +1,70 @@
+#pragma once
+
+// The triangles of a scene in Embree's structures: opaque ones, which stop rays, and see-through ones, which
+// do not.
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "oracle/view_rays.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+// Single precision, as Embree traces it.
+struct FloatRay {
+  Vec3f origin, direction;
+  float length = 0.0f;  // parameter of its end
+
+  Vec3d at(float t) const { return Vec3d(origin) + Vec3d(direction) * static_cast<double>(t); }
+};
+
+struct RayHit {
+  std::uint32_t ray = 0;  // of the batch
+  ObjectId object;
+  float t = 0.0f;  // parameter along the ray
+};
+
+class RayScene {
+ public:
+  static constexpr std::uint32_t kBatch = 16;
+  using Batch = std::array<FloatRay, kBatch>;
+
+  explicit RayScene(const SceneView& scene);
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  // All surfaces that the first `count` rays show, in no fixed order, an object perhaps several times: the
+  // first opaque triangle of each and the see-through ones before it. Backs of single-sided triangles are not
+  // there.
+  void trace(const Batch& rays, std::uint32_t count, bool coherent, std::vector<RayHit>& hits) const;
+
+ private:
+  // One Embree geometry: the triangles that are alike in opacity and sidedness.
+  struct Group {
+    const RayScene* owner = nullptr;
+    bool opaque = false, double_sided = false;
+    std::vector<std::uint32_t> indices;         // three a triangle
+    std::vector<std::uint32_t> object_of_prim;  // one a triangle
+    RTCGeometry geometry = nullptr;
+    unsigned geometry_id = RTC_INVALID_GEOMETRY_ID;
+  };
+  struct CollectContext;
+
+  void gather(const SceneView& scene);
+  void attach(Group& group);
+  bool meetsBack(const Group& group, std::uint32_t prim, const Vec3d& direction) const;
+  static void filter(const RTCFilterFunctionNArguments* arguments);
+
+  std::vector<Vec3f> positions_;  // padded by one: Embree reads 16 bytes each
+  std::array<Group, 4> groups_;
+  RTCDevice device_ = nullptr;
+  RTCScene opaque_ = nullptr, see_through_ = nullptr;
+  bool has_see_through_ = false;
+};
+
+}  // namespace sightline
