@@ -1,0 +1,58 @@
+# The front door. Everything below needs nothing before it on a fresh Debian 12: missing packages are installed first.
+
+PRESET ?= release
+JOBS ?= $(shell nproc)
+TIDY ?= src scenes oracle tools
+BUILD := build/$(PRESET)
+
+# Ninja for a new build folder, whatever an existing one was made with otherwise. In CI, warnings are errors.
+configure = if command -v ninja > /dev/null && [ -z "$$CMAKE_GENERATOR" ]; then export CMAKE_GENERATOR=Ninja; fi; \
+	cmake --preset $(PRESET) --log-level=WARNING $(if $(CI),-D SIGHTLINE_WERROR=ON)
+build = cmake --build $(BUILD) --parallel $(JOBS)
+cpp_files = find include src scenes oracle tools bench fuzz tests examples -name '*.h' -o -name '*.cpp'
+
+.PHONY: help demo test bench format format-check tidy setup
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make demo                   walk the built-in city and building; opens the way to the reports"
+	@echo "make demo SCENE=path.glb    walk your own scene (CAMERA=path.json: along your own path)"
+	@echo "make test                   build, then run all tests"
+	@echo "make bench                  build, then run the benchmarks (SHORT=1: briefly)"
+	@echo "make format                 lay out all C++ files as .clang-format says (format-check: only look)"
+	@echo "make tidy                   clang-tidy over the library and the tool (TIDY=src: over that folder)"
+	@echo "PRESET=dev|release|sanitize and JOBS=N hold for all of them. Packages that are missing get installed."
+
+setup:
+	@scripts/setup
+
+demo: setup
+	@$(configure)
+	@$(build) --target sightline_tool
+	@SHORT="$(SHORT)" CAMERA="$(CAMERA)" scripts/demo $(BUILD)/bin/sightline "$(SCENE)"
+
+# ctest comes last: its closing lines are the result.
+test: setup
+	@$(configure)
+	@$(build)
+	@ctest --preset $(PRESET) --parallel $(JOBS)
+
+bench: setup
+	@$(configure)
+	@$(build)
+	@SHORT="$(SHORT)" scripts/bench $(BUILD)
+
+format:
+	@scripts/setup --checks
+	@$(cpp_files) | xargs clang-format -i
+
+format-check:
+	@scripts/setup --checks
+	@$(cpp_files) | xargs clang-format --dry-run -Werror
+	@echo "format: as .clang-format says"
+
+tidy:
+	@scripts/setup --checks
+	@$(configure)
+	@{ find $(TIDY) -name '*.cpp' | sort | xargs -P $(JOBS) -n 1 clang-tidy --quiet -p $(BUILD); } 2> /dev/null
+	@echo "tidy: nothing to say"

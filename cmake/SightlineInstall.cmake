@@ -1,0 +1,20 @@
+# cmake --install: sightline::runtime, its headers, and the package that find_package(sightline) reads.
+# The other libraries serve the tool and are not installed.
+
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
+
+install(TARGETS sightline_runtime EXPORT sightlineTargets COMPONENT runtime
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)
+foreach(room base math geometry scene hierarchy occluders occlusion culling)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline/${room}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT runtime FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(EXPORT sightlineTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT runtime)
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightlineConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/sightlineConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/sightlineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/sightlineConfig.cmake ${PROJECT_BINARY_DIR}/sightlineConfigVersion.cmake
+  DESTINATION ${package_dir} COMPONENT runtime)

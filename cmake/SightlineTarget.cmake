@@ -1,0 +1,39 @@
+# One place for what every target of the project has in common.
+#
+# sightline_library(NAME GLOB... )  a static library target sightline_NAME with the alias sightline::NAME.
+# sightline_options(TARGET)         language level, warnings, floating-point contract, sanitizers.
+
+find_program(SIGHTLINE_CCACHE ccache)
+mark_as_advanced(SIGHTLINE_CCACHE)
+if(SIGHTLINE_CCACHE AND PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${SIGHTLINE_CCACHE})
+endif()
+
+set(SIGHTLINE_SANITIZE_FLAGS "")
+if(SIGHTLINE_SANITIZE)
+  set(SIGHTLINE_SANITIZE_FLAGS -fsanitize=address,undefined)
+endif()
+
+function(sightline_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  # The same bits everywhere: no contraction to fused multiply-add, no fast-math.
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)
+  if(SIGHTLINE_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(SIGHTLINE_SANITIZE)
+    # GCC's warnings about uninitialised values are unreliable in instrumented code.
+    target_compile_options(${target} PRIVATE ${SIGHTLINE_SANITIZE_FLAGS} -fno-sanitize-recover=all
+      -fno-omit-frame-pointer -UNDEBUG -Wno-maybe-uninitialized)
+    target_link_options(${target} PRIVATE ${SIGHTLINE_SANITIZE_FLAGS})
+  endif()
+endfunction()
+
+function(sightline_library name)
+  file(GLOB sources CONFIGURE_DEPENDS ${ARGN})
+  add_library(sightline_${name} STATIC ${sources})
+  add_library(sightline::${name} ALIAS sightline_${name})
+  set_target_properties(sightline_${name} PROPERTIES EXPORT_NAME ${name})
+  sightline_options(sightline_${name})
+endfunction()

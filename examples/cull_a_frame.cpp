@@ -1,0 +1,51 @@
+// Culls one frame of a scene made by hand: a wall, four crates behind it, one crate beside it.
+
+#include <cstdio>
+
+#include "sightline/culling/culler.h"
+
+using namespace sightline;
+
+static void addBox(Scene& scene, const Vec3f& low, const Vec3f& high) {
+  const auto first_corner = static_cast<std::uint32_t>(scene.positions.size());
+  for (int i = 0; i < 8; ++i) {
+    scene.positions.push_back({(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z});
+  }
+  Object box;
+  box.first_index = static_cast<std::uint32_t>(scene.indices.size());
+  box.index_count = 36;
+  box.material = MaterialId(0u);
+  scene.objects.push_back(box);
+  for (std::uint32_t corner : {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                               2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6}) {
+    scene.indices.push_back(first_corner + corner);
+  }
+}
+
+int main() {
+  Scene scene;
+  scene.materials.push_back({"stone"});
+  addBox(scene, {-8, 0, -11}, {8, 6, -10});  // object 0, the wall
+  for (float x : {-6.0f, -2.0f, 2.0f, 6.0f, 16.5f}) {
+    addBox(scene, {x, 0, -21}, {x + 1, 1, -20});  // objects 1 to 5, the crates
+  }
+  updateBounds(scene);
+  std::vector<Box> bounds;
+  for (const Object& object : scene.objects) {
+    bounds.push_back(object.bounds);
+  }
+
+  // Once a scene: a hierarchy over the objects, and what can hide them.
+  const Hierarchy hierarchy = buildHierarchy(bounds, {});
+  const OccluderSet occluders = findOccluders(scene.view());
+  Culler culler(hierarchy, bounds, occluders);
+
+  // Every frame: from a view to the objects that may be seen.
+  View view;
+  view.eye = {0, 1.7, 0};
+  setOrientation(view, /*forward=*/{0, 0, -1}, /*up_hint=*/{0, 1, 0});
+  culler.cull(view);
+  for (ObjectId id : culler.visible()) {
+    std::printf("visible: %u\n", id.value);
+  }
+}

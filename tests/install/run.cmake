@@ -1,0 +1,32 @@
+# Installs the runtime under a fresh prefix, builds the consumer against it, runs it.
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "${command}\n${output}\nended with ${result}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component runtime)
+
+# The package alone is looked at: neither a package registry nor the build folder may help.
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${WORK}/consumer -G ${GENERATOR}
+  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS}
+  -D CMAKE_PREFIX_PATH=${WORK}/prefix -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+  -D EXAMPLE=${SOURCE}/examples/cull_a_frame.cpp)
+run(${CMAKE_COMMAND} --build ${WORK}/consumer)
+run(${WORK}/consumer/consumer)
+if(NOT output STREQUAL "visible: 0\nvisible: 5\n")
+  message(FATAL_ERROR "the consumer printed:\n${output}")
+endif()
+
+# The tool's own libraries stay at home.
+foreach(room io render)
+  if(EXISTS ${WORK}/prefix/include/sightline/${room})
+    message(FATAL_ERROR "headers of ${room} were installed with the runtime")
+  endif()
+endforeach()

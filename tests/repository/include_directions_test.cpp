@@ -1,0 +1,169 @@
+// The layers of the code: each room includes only rooms below it. See docs/architecture.md.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/repository/source_tree.h"
+
+namespace sightline::repository {
+namespace {
+
+// From the bottom to the top.
+constexpr std::array<std::string_view, 10> kRooms{"base",      "math",      "geometry", "scene", "hierarchy",
+                                                  "occluders", "occlusion", "culling",  "io",    "render"};
+constexpr std::size_t kRuntimeRooms = 8;  // the first of them make sightline::runtime
+
+std::optional<std::size_t> levelOf(std::string_view room) {
+  const auto* found = std::find(kRooms.begin(), kRooms.end(), room);
+  if (found == kRooms.end()) {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(found - kRooms.begin());
+}
+
+bool startsWith(const std::string& text, std::string_view prefix) {
+  return text.rfind(prefix, 0) == 0;
+}
+
+// What stands between `prefix` and the next slash, when `path` begins so.
+std::optional<std::string> roomAfter(const std::string& path, std::string_view prefix) {
+  const std::size_t slash = path.find('/', prefix.size());
+  if (!startsWith(path, prefix) || slash == std::string::npos) {
+    return std::nullopt;
+  }
+  return path.substr(prefix.size(), slash - prefix.size());
+}
+
+struct RoomFile {
+  std::string file;
+  std::string room;
+  bool is_public = false;  // in include/
+};
+
+// The C++ files of include/ and src/.
+std::vector<RoomFile> roomFiles() {
+  std::vector<RoomFile> files;
+  for (const std::string& file : projectFiles()) {
+    const std::string extension = std::filesystem::path(file).extension();
+    if (extension != ".h" && extension != ".cpp") {
+      continue;
+    }
+    if (const auto room = roomAfter(file, "include/sightline/")) {
+      files.push_back({file, *room, true});
+    } else if (const auto source_room = roomAfter(file, "src/")) {
+      files.push_back({file, *source_room, false});
+    }
+  }
+  return files;
+}
+
+std::string where(const Include& include) {
+  return include.file + ":" + std::to_string(include.line) + " includes " + include.target + ": ";
+}
+
+bool standardHeader(const Include& include) {
+  return !include.quoted && include.target.find_first_of("/.") == std::string::npos;
+}
+
+// The room whose header a line includes: "sightline/ROOM/x.h" is public, "ROOM/x.h" and, within a room, "x.h"
+// are private, in src/. Nothing for anything else and for what is not there.
+std::optional<std::string> includedRoom(const RoomFile& from, const Include& include) {
+  namespace fs = std::filesystem;
+  if (!include.quoted || include.target.find("..") != std::string::npos) {
+    return std::nullopt;
+  }
+  if (fs::exists(sourceRoot() / "include" / include.target)) {
+    return roomAfter(include.target, "sightline/");
+  }
+  if (fs::exists(sourceRoot() / fs::path(from.file).parent_path() / include.target)) {
+    return from.room;
+  }
+  return fs::exists(sourceRoot() / "src" / include.target) ? roomAfter(include.target, "") : std::nullopt;
+}
+
+TEST(IncludeDirections, EveryFileLiesInAKnownRoom) {
+  const std::vector<RoomFile> files = roomFiles();
+  ASSERT_GT(files.size(), 20u) << "the sources were not found";
+  for (const RoomFile& file : files) {
+    EXPECT_TRUE(levelOf(file.room)) << file.file << ": the room '" << file.room
+                                    << "' has no place in the layers";
+  }
+}
+
+TEST(IncludeDirections, ARoomIncludesOnlyItselfAndRoomsBelow) {
+  for (const RoomFile& file : roomFiles()) {
+    for (const Include& include : includesOf(file.file)) {
+      if (!include.quoted) {
+        EXPECT_FALSE(startsWith(include.target, "sightline/"))
+            << where(include) << "our own headers stand in quotes";
+        continue;
+      }
+      const auto room = includedRoom(file, include);
+      ASSERT_TRUE(room && levelOf(*room))
+          << where(include) << "not a header of the library; others stand in angle brackets";
+      EXPECT_LE(levelOf(*room), levelOf(file.room)) << where(include) << *room << " lies above " << file.room;
+    }
+  }
+}
+
+TEST(IncludeDirections, TheLibraryKnowsNeitherScenesNorToolsNorTests) {
+  for (const RoomFile& file : roomFiles()) {
+    for (const Include& include : includesOf(file.file)) {
+      for (const char* outside :
+           {"oracle/", "scenes/", "tools/", "tests/", "bench/", "viewer/", "examples/"}) {
+        EXPECT_FALSE(startsWith(include.target, outside))
+            << where(include) << "the library knows nothing of it";
+      }
+    }
+  }
+}
+
+TEST(IncludeDirections, TheRuntimeUsesTheStandardLibraryAndHighwayAlone) {
+  for (const RoomFile& file : roomFiles()) {
+    if (levelOf(file.room).value_or(kRooms.size()) >= kRuntimeRooms) {
+      continue;
+    }
+    for (const Include& include : includesOf(file.file)) {
+      if (!include.quoted) {
+        EXPECT_TRUE(standardHeader(include) || startsWith(include.target, "hwy/"))
+            << where(include) << "third party";
+      }
+    }
+  }
+}
+
+TEST(IncludeDirections, PublicHeadersNameNoOtherLibrary) {
+  for (const RoomFile& file : roomFiles()) {
+    for (const Include& include : includesOf(file.file)) {
+      if (file.is_public && !include.quoted) {
+        EXPECT_TRUE(standardHeader(include))
+            << where(include) << "a caller would need that library's headers";
+      }
+    }
+  }
+}
+
+// It judges the culler, so it may share the scene with it and nothing else.
+TEST(IncludeDirections, TheOracleKnowsOnlyTheScene) {
+  for (const std::string& file : projectFiles()) {
+    if (!startsWith(file, "oracle/") || file == "oracle/CMakeLists.txt") {
+      continue;
+    }
+    for (const Include& include : includesOf(file)) {
+      if (const auto room = roomAfter(include.target, "sightline/")) {
+        EXPECT_TRUE(*room == "base" || *room == "math" || *room == "scene")
+            << where(include) << "not independent";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline::repository

@@ -1,0 +1,94 @@
+// What the repository promises its readers: nothing unfinished, nothing huge, and documents that are true.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/repository/source_tree.h"
+
+namespace sightline::repository {
+namespace {
+
+std::vector<std::string> documents() {
+  std::vector<std::string> files;
+  for (const std::string& file : projectFiles()) {
+    if (std::filesystem::path(file).extension() == ".md") {
+      files.push_back(file);
+    }
+  }
+  return files;
+}
+
+std::vector<std::smatch> allMatches(const std::string& text, const std::regex& pattern) {
+  return {std::sregex_iterator(text.begin(), text.end(), pattern), std::sregex_iterator()};
+}
+
+TEST(Repository, NoFileHoldsAMarkOfUnfinishedWork) {
+  // Written apart, so that this file holds none.
+  const std::vector<std::string> marks{std::string("TO") + "DO", std::string("FIX") + "ME"};
+  for (const std::string& file : projectFiles()) {
+    const std::string text = contentOf(file);
+    for (const std::string& mark : marks) {
+      EXPECT_EQ(text.find(mark), std::string::npos) << file << " holds " << mark;
+    }
+  }
+}
+
+TEST(Repository, NoFileIsLargerThanTwoMebibytes) {
+  for (const std::string& file : projectFiles()) {
+    EXPECT_LE(std::filesystem::file_size(sourceRoot() / file), 2u << 20) << file;
+  }
+}
+
+TEST(Repository, EveryMakeCommandInTheDocumentsIsATarget) {
+  std::set<std::string> targets;
+  const std::string makefile = contentOf("Makefile");
+  for (const std::smatch& match : allMatches(makefile, std::regex(R"((?:^|\n)([a-z][a-z-]*):)"))) {
+    targets.insert(match[1]);
+  }
+  ASSERT_TRUE(targets.contains("demo") && targets.contains("test"));
+  // In `code`, or at the beginning of a line of a code block.
+  const std::regex command(R"((?:`|\n)(?:\$ )?make ([a-z][a-z-]*))");
+  for (const std::string& file : documents()) {
+    const std::string text = contentOf(file);
+    for (const std::smatch& match : allMatches(text, command)) {
+      EXPECT_TRUE(targets.contains(match[1]))
+          << file << " says make " << match[1] << ", the Makefile has no such target";
+    }
+  }
+}
+
+TEST(Repository, EveryLinkInTheDocumentsLeadsToAFile) {
+  const std::regex link(R"(\]\(([^)#\s]+)[^)]*\))");
+  for (const std::string& file : documents()) {
+    const std::string text = contentOf(file);
+    for (const std::smatch& match : allMatches(text, link)) {
+      const std::string target = match[1];
+      if (target.find("://") != std::string::npos || target.rfind("mailto:", 0) == 0) {
+        continue;
+      }
+      const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+      EXPECT_TRUE(std::filesystem::exists(sourceRoot() / folder / target)) << file << " links to " << target;
+    }
+  }
+}
+
+TEST(Repository, TheReadmesCodeIsPartOfTheExampleThatIsCompiled) {
+  const std::string readme = contentOf("README.md");
+  const std::string fence = "```cpp\n";
+  const std::size_t begin = readme.find(fence);
+  ASSERT_NE(begin, std::string::npos) << "README.md shows no C++";
+  const std::size_t end = readme.find("```", begin + fence.size());
+  ASSERT_NE(end, std::string::npos);
+  const std::string code = readme.substr(begin + fence.size(), end - begin - fence.size());
+  EXPECT_NE(contentOf("examples/cull_a_frame.cpp").find(code), std::string::npos)
+      << "these lines are not in examples/cull_a_frame.cpp as they stand:\n"
+      << code;
+}
+
+}  // namespace
+}  // namespace sightline::repository
