@@ -1,0 +1,43 @@
+#pragma once
+
+// What a plan view shows: the scene from above, every object coloured by its state in one frame of culling,
+// with the camera's frustum and the occluders that hid things.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "sightline/base/ids.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+
+enum class ObjectState : std::uint8_t {
+  kOutside,  // outside the frustum
+  kHidden,   // inside it, culled
+  kKept,     // inside it, drawn
+};
+
+// sRGB. Told apart by colour-blind people by lightness too. Reports use them in the legend.
+using PlanColor = std::array<std::uint8_t, 3>;
+inline constexpr PlanColor kPlanOutside{214, 214, 210};
+inline constexpr PlanColor kPlanHidden{214, 96, 77};
+inline constexpr PlanColor kPlanKept{112, 184, 92};
+inline constexpr PlanColor kPlanOccluder{20, 60, 190};
+inline constexpr PlanColor kPlanCamera{24, 24, 24};
+inline constexpr PlanColor kPlanBackground{250, 250, 248};
+
+// Right is +x, up is -z. All coordinates in scene space.
+struct PlanView {
+  View camera;                  // its eye is in the middle; its frustum is outlined
+  double radius = 50.0;         // metres from the eye to each border of the square picture
+  std::uint32_t size_px = 900;  // width and height, 1 to 16384
+  double cut_height = std::numeric_limits<double>::infinity();  // what is above (y) is cut away; inf: nothing
+  std::span<const ObjectState> states;                          // one an object of the scene
+  const OccluderSet* occluders = nullptr;
+  std::span<const OccluderId> occluders_used;  // of *occluders; drawn on top of everything
+};
+
+}  // namespace sightline

@@ -1,0 +1,187 @@
+#include "sightline/render/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "gl_context.h"
+#include "plan_painter.h"
+#include "read_pixels.h"
+#include "scene_buffers.h"
+#include "scene_programs.h"
+#include "shaders.h"
+
+namespace sightline {
+namespace {
+
+constexpr std::array<float, 4> kBlack{0.0f, 0.0f, 0.0f, 1.0f};
+
+// The sky fills the picture before anything else is drawn.
+struct Sky {
+  GLuint program = 0, vertex_array = 0;
+  GLint forward = -1, right = -1, up = -1;
+};
+
+Result<Sky> makeSky() {
+  const Result<GLuint> program = makeProgram("sky", shaders::kSkyVertex, shaders::kSkyFragment);
+  if (!program) {
+    return program.error();
+  }
+  Sky sky{.program = *program};
+  sky.forward = glGetUniformLocation(sky.program, "forward");
+  sky.right = glGetUniformLocation(sky.program, "right");
+  sky.up = glGetUniformLocation(sky.program, "up");
+  glGenVertexArrays(1, &sky.vertex_array);
+  return sky;
+}
+
+void drawSky(const Sky& sky, const View& view) {
+  // Orthographic rays are parallel; a mild gradient all the same.
+  const double half_height = view.orthographic ? 0.3 : view.tan_half_fovy;
+  const Vec3f forward(view.forward);
+  const Vec3f right(view.right * (half_height * view.aspect));
+  const Vec3f up(view.up * half_height);
+  glUseProgram(sky.program);
+  glUniform3f(sky.forward, forward.x, forward.y, forward.z);
+  glUniform3f(sky.right, right.x, right.y, right.z);
+  glUniform3f(sky.up, up.x, up.y, up.z);
+  glBindVertexArray(sky.vertex_array);
+  glDisable(GL_DEPTH_TEST);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+}
+
+// Half of the haze at 1.5 times the scene's diagonal, but never nearer than 60 metres.
+float hazeOf(const Box& bounds) {
+  const double diagonal = bounds.wellFormed() ? length(Vec3d(bounds.max) - Vec3d(bounds.min)) : 0.0;
+  const double half_distance = std::max(1.5 * diagonal, 60.0);
+  return static_cast<float>(1.0 / (half_distance * half_distance));
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  explicit Impl(GlContext c) : context(std::move(c)) {}
+  Status prepare(const SceneView& scene, std::uint32_t width, std::uint32_t height);
+  void drawScene(const View& view) const;
+  DrawStats timedDraw(const View& view, std::span<const ObjectId> objects);
+
+  GlContext context;
+  SceneBuffers buffers;
+  SceneProgram solid, alpha_tested;
+  Sky sky;
+  PlanPainter plan_painter;
+  Framebuffer picture;
+  Box bounds;
+  float haze = 0.0f;
+};
+
+Status Renderer::Impl::prepare(const SceneView& scene, std::uint32_t width, std::uint32_t height) {
+  const GlContext::Current current(context);
+  Result<Framebuffer> framebuffer = makeFramebuffer(width, height);
+  if (!framebuffer) {
+    return framebuffer.error();
+  }
+  Result<SceneProgram> solid_program = makeSceneProgram("solid", shaders::kSceneFragment);
+  Result<SceneProgram> alpha_program = makeSceneProgram("alpha-tested", shaders::kAlphaTestedFragment);
+  Result<Sky> new_sky = makeSky();
+  Result<PlanPainter> painter = PlanPainter::create();
+  Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene);
+  for (const Error* error :
+       {solid_program ? nullptr : &solid_program.error(), alpha_program ? nullptr : &alpha_program.error(),
+        new_sky ? nullptr : &new_sky.error(), painter ? nullptr : &painter.error(),
+        scene_buffers ? nullptr : &scene_buffers.error()}) {
+    if (error) {
+      return *error;
+    }
+  }
+  picture = *framebuffer;
+  solid = *solid_program;
+  alpha_tested = *alpha_program;
+  sky = *new_sky;
+  plan_painter = *painter;
+  buffers = std::move(*scene_buffers);
+  bounds = sceneBounds(scene);
+  haze = hazeOf(bounds);
+  return Success{};
+}
+
+void Renderer::Impl::drawScene(const View& view) const {
+  const float view_haze = view.orthographic ? 0.0f : haze;
+  beginPicture(picture.id, picture.width, picture.height, kBlack);
+  drawSky(sky, view);
+  buffers.bind();
+  useProgram(solid, view, view_haze);
+  buffers.drawPass(Pass::kOpaque);
+  buffers.drawPass(Pass::kOpaqueDoubleSided);
+  useProgram(alpha_tested, view, view_haze);
+  buffers.drawPass(Pass::kAlphaTested);
+  buffers.drawPass(Pass::kAlphaTestedDoubleSided);
+  useProgram(solid, view, view_haze);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+  buffers.drawPass(Pass::kBlended);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+}
+
+DrawStats Renderer::Impl::timedDraw(const View& view, std::span<const ObjectId> objects) {
+  using Clock = std::chrono::steady_clock;
+  glFinish();
+  const Clock::time_point start = Clock::now();
+  const SceneBuffers::Drawn drawn = buffers.select(objects);
+  drawScene(view);
+  glFinish();
+  const std::chrono::duration<double, std::micro> elapsed = Clock::now() - start;
+  return {.draw_us = elapsed.count(), .triangles = drawn.triangles, .ranges = drawn.ranges};
+}
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Result<Renderer> Renderer::create(const SceneView& scene, std::uint32_t width, std::uint32_t height) {
+  Result<GlContext> context = GlContext::create();
+  if (!context) {
+    return context.error();
+  }
+  auto impl = std::make_unique<Impl>(std::move(*context));
+  if (Status prepared = impl->prepare(scene, width, height); !prepared) {
+    return prepared.error();
+  }
+  return Renderer(std::move(impl));
+}
+
+Image Renderer::draw(const View& view, std::span<const ObjectId> objects, DrawStats* stats) {
+  const GlContext::Current current(impl_->context);
+  const DrawStats drawn = impl_->timedDraw(view, objects);
+  if (stats) {
+    *stats = drawn;
+  }
+  return readPixels(impl_->picture);
+}
+
+DrawStats Renderer::time(const View& view, std::span<const ObjectId> objects) {
+  const GlContext::Current current(impl_->context);
+  return impl_->timedDraw(view, objects);
+}
+
+Image Renderer::readBack() const {
+  const GlContext::Current current(impl_->context);
+  return readPixels(impl_->picture);
+}
+
+Image Renderer::drawPlan(const PlanView& plan) {
+  const GlContext::Current current(impl_->context);
+  return impl_->plan_painter.paint(impl_->buffers, impl_->bounds, plan);
+}
+
+std::string Renderer::device() const {
+  return impl_->context.device();
+}
+
+}  // namespace sightline

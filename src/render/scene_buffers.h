@@ -1,0 +1,86 @@
+#pragma once
+
+// The scene's triangles in OpenGL: one vertex buffer, one index buffer, one colour an object.
+//
+// Triangles lie in the index buffer by pass, then by object, so that any ascending list of objects becomes
+// few contiguous ranges a pass. Vertices carry the number of their object (a position shared by two objects
+// is stored twice): no state changes between objects.
+
+#include <epoxy/gl.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+// In the order of drawing. Blended triangles of both kinds of sidedness lie together: their order matters.
+enum class Pass : std::uint8_t {
+  kOpaque,
+  kOpaqueDoubleSided,
+  kAlphaTested,
+  kAlphaTestedDoubleSided,
+  kBlended
+};
+inline constexpr std::size_t kPassCount = 5;
+
+// Contiguous ranges of the index buffer, as glMultiDrawElements takes them.
+class RangeList {
+ public:
+  void clear();
+  void add(std::uint32_t first, std::uint32_t count);
+  void draw() const;  // with the current program and state
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(counts_.size()); }
+
+ private:
+  std::vector<GLsizei> counts_;
+  std::vector<const void*> offsets_;  // bytes
+  std::uint64_t end_ = 0;             // index after the last range
+};
+
+class SceneBuffers {
+ public:
+  // Precondition of all functions: the context is current.
+  static Result<SceneBuffers> create(const SceneView& scene);
+
+  struct Drawn {
+    std::uint64_t triangles = 0;
+    std::uint32_t ranges = 0;
+  };
+  // Sorts the objects' triangles by pass; drawPass() then draws them.
+  Drawn select(std::span<const ObjectId> objects);
+  void drawPass(Pass pass) const;
+  void drawAll() const;
+
+  // Binds the vertices and one of the two colour buffers (texture unit 0).
+  void bind() const;
+  void bindStateColors(std::span<const std::array<std::uint8_t, 4>> colors) const;
+
+  std::uint32_t objectCount() const { return static_cast<std::uint32_t>(ranges_.size()); }
+
+ private:
+  struct ObjectRange {
+    std::uint32_t first = 0, count = 0;  // in the index buffer
+    Pass pass = Pass::kOpaque;
+    bool double_sided = false;
+  };
+  struct BlendedRun {
+    RangeList ranges;
+    bool double_sided = false;
+  };
+  void addBlended(const ObjectRange& range);
+
+  std::vector<ObjectRange> ranges_;  // one an object
+  std::array<RangeList, kPassCount> selected_;
+  std::vector<BlendedRun> blended_;  // of equal sidedness each; kept between frames for their memory
+  std::size_t blended_count_ = 0;
+  std::uint32_t index_count_ = 0;
+  GLuint vertex_array_ = 0, color_buffer_ = 0, color_texture_ = 0, state_buffer_ = 0, state_texture_ = 0;
+};
+
+}  // namespace sightline
