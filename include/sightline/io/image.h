@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sightline/base/result.h"
+
+namespace sightline {
+
+// 8-bit RGBA, rows from the top, 4 * width * height bytes.
+struct Image {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+
+  friend bool operator==(const Image&, const Image&) = default;
+};
+
+Status writePng(const Image& image, const std::string& file);
+
+}  // namespace sightline

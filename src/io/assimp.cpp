@@ -1,0 +1,186 @@
+// OBJ, PLY, STL, FBX, COLLADA and the rest. Assimp parses; what it hands over is checked here like a glTF's.
+
+#include "assimp.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <assimp/config.h>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <exception>
+#include <vector>
+
+#include "failure.h"
+#include "sightline/math/mat4.h"
+
+namespace sightline {
+namespace {
+
+constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
+                            aiProcess_JoinIdenticalVertices;
+constexpr int kUnusedComponents = aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                  aiComponent_COLORS | aiComponent_TEXCOORDS | aiComponent_BONEWEIGHTS |
+                                  aiComponent_ANIMATIONS | aiComponent_TEXTURES | aiComponent_LIGHTS |
+                                  aiComponent_CAMERAS;
+
+Mat4 matrixFrom(const aiMatrix4x4& source) {
+  Mat4 matrix;
+  for (unsigned row = 0; row < 4; ++row) {
+    for (unsigned column = 0; column < 4; ++column) {
+      matrix(static_cast<int>(row), static_cast<int>(column)) = static_cast<double>(source[row][column]);
+    }
+  }
+  return matrix;
+}
+
+Material materialFrom(const aiMaterial& source, unsigned number) {
+  Material material;
+  aiString name;
+  source.Get(AI_MATKEY_NAME, name);
+  material.name = name.length > 0 ? name.C_Str() : fmt::format("material{}", number);
+  float opacity = 1.0f;
+  source.Get(AI_MATKEY_OPACITY, opacity);
+  float transparency = 0.0f;
+  source.Get(AI_MATKEY_TRANSMISSION_FACTOR, transparency);
+  const bool opaque = opacity >= 1.0f && !(transparency > 0.0f);
+  int two_sided = 0;
+  source.Get(AI_MATKEY_TWOSIDED, two_sided);
+  material.double_sided = two_sided != 0;
+  aiColor3D color(0.8f, 0.8f, 0.8f);
+  source.Get(AI_MATKEY_COLOR_DIFFUSE, color);
+  const bool has_opacity_map = source.GetTextureCount(aiTextureType_OPACITY) > 0;
+  material.opacity = !opaque ? Opacity::kBlended : has_opacity_map ? Opacity::kAlphaTested : Opacity::kOpaque;
+  const auto channel = [](float c) { return c >= 0.0f ? std::min(c, 1.0f) : 0.0f; };
+  material.base_color = {channel(color.r), channel(color.g), channel(color.b), channel(opacity)};
+  return material;
+}
+
+class AssimpConverter {
+ public:
+  AssimpConverter(const aiScene& source, const std::string& name, const ImportLimits& limits)
+      : source_(source), name_(name), limits_(limits), builder_(limits) {}
+
+  Result<Scene> convert() {
+    for (unsigned i = 0; i < source_.mNumMaterials; ++i) {
+      builder_.addMaterial(materialFrom(*source_.mMaterials[i], i));
+    }
+    // Depth first; Assimp's nodes form a tree, each owning its children.
+    std::vector<Open> open{{source_.mRootNode, Mat4{}}};
+    while (!open.empty()) {
+      const Open at = open.back();
+      open.pop_back();
+      const Mat4 world_from_node = at.world_from_parent * matrixFrom(at.node->mTransformation);
+      for (unsigned i = 0; i < at.node->mNumMeshes; ++i) {
+        const Status status = addMesh(*at.node, i, world_from_node);
+        if (!status) {
+          return status.error();
+        }
+      }
+      for (unsigned i = at.node->mNumChildren; i-- > 0;) {
+        open.push_back({at.node->mChildren[i], world_from_node});
+      }
+    }
+    return builder_.finish();
+  }
+
+ private:
+  struct Open {
+    const aiNode* node;
+    Mat4 world_from_parent;
+  };
+
+  Status addMesh(const aiNode& node, unsigned slot, const Mat4& world_from_node) {
+    const unsigned number = node.mMeshes[slot];
+    if (number >= source_.mNumMeshes) {
+      return failure("{}: node \"{}\": mesh {} does not exist (the file has {})", name_, node.mName.C_Str(),
+                     number, source_.mNumMeshes);
+    }
+    const aiMesh& mesh = *source_.mMeshes[number];
+    if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0 || mesh.mNumFaces == 0) {
+      return Success{};
+    }
+    if (mesh.mMaterialIndex >= source_.mNumMaterials) {
+      return failure("{}: mesh {}: material {} does not exist (the file has {})", name_, number,
+                     mesh.mMaterialIndex, source_.mNumMaterials);
+    }
+    if (!builder_.fits(mesh.mNumFaces)) {
+      return failure("{}: mesh {}: with its {} triangles the scene exceeds {} triangles", name_, number,
+                     mesh.mNumFaces, limits_.triangles);
+    }
+    std::string object_name = node.mName.length > 0 ? node.mName.C_Str() : mesh.mName.C_Str();
+    if (node.mNumMeshes > 1) {
+      object_name += fmt::format("/primitive{}", slot);
+    }
+    builder_.beginObject(std::move(object_name), MaterialId(mesh.mMaterialIndex), OccluderMark::kAutomatic);
+    return addFaces(mesh, number, world_from_node);
+  }
+
+  Status addFaces(const aiMesh& mesh, unsigned number, const Mat4& world_from_node) {
+    constexpr std::uint32_t kNone = 0xffffffffu;
+    const bool mirrored = determinant3(world_from_node) < 0.0;
+    std::vector<std::uint32_t> vertex_of(mesh.mNumVertices, kNone);
+    for (unsigned face = 0; face < mesh.mNumFaces; ++face) {
+      if (mesh.mFaces[face].mNumIndices != 3) {
+        continue;
+      }
+      std::array<std::uint32_t, 3> corners;
+      for (unsigned i = 0; i < 3; ++i) {
+        const unsigned index = mesh.mFaces[face].mIndices[i];
+        if (index >= mesh.mNumVertices) {
+          return failure("{}: mesh {}: index {} of face {} is out of range ({} vertices)", name_, number,
+                         index, face, mesh.mNumVertices);
+        }
+        if (vertex_of[index] == kNone) {
+          const aiVector3D& p = mesh.mVertices[index];
+          const Vec3d point_world =
+              transformPoint(world_from_node,
+                             {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+          if (!SceneBuilder::inRange(point_world)) {
+            return failure("{}: mesh {}: vertex {} is not finite or exceeds single precision", name_, number,
+                           index);
+          }
+          vertex_of[index] = builder_.addVertex(point_world);
+        }
+        corners[i] = vertex_of[index];
+      }
+      if (mirrored) {
+        std::swap(corners[1], corners[2]);
+      }
+      builder_.addTriangle(corners[0], corners[1], corners[2]);
+    }
+    return Success{};
+  }
+
+  const aiScene& source_;
+  const std::string& name_;
+  const ImportLimits& limits_;
+  SceneBuilder builder_;
+};
+
+}  // namespace
+
+bool isAssimpExtension(const std::string& extension) {
+  return Assimp::Importer().IsExtensionSupported(extension);
+}
+
+Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) {
+  // Assimp throws when memory runs out; nothing leaves here.
+  try {
+    Assimp::Importer importer;
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kUnusedComponents);
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const aiScene* const source = importer.ReadFile(file, kSteps);
+    if (source == nullptr || source->mRootNode == nullptr ||
+        (source->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
+      const std::string reason = importer.GetErrorString();
+      return failure("{}: could not be read: {}", file,
+                     reason.empty() ? "it holds no complete scene" : reason);
+    }
+    return AssimpConverter(*source, file, limits).convert();
+  } catch (const std::exception& exception) {
+    return failure("{}: could not be read: {}", file, exception.what());
+  }
+}
+
+}  // namespace sightline

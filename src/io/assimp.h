@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "scene_builder.h"
+#include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+// Whether Assimp reads files with this extension (".obj").
+bool isAssimpExtension(const std::string& extension);
+
+Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits);
+
+}  // namespace sightline

@@ -1,0 +1,74 @@
+#include "sightline/io/file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "failure.h"
+
+namespace sightline {
+namespace fs = std::filesystem;
+
+Result<std::string> readFile(const std::string& file) {
+  std::error_code code;
+  const fs::file_status status = fs::status(file, code);
+  if (!fs::exists(status)) {
+    return failure("{}: no such file", file);
+  }
+  if (fs::is_directory(status)) {
+    return failure("{}: is a directory, not a file", file);
+  }
+  if (!fs::is_regular_file(status)) {
+    return failure("{}: is not a regular file", file);
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return failure("{}: cannot be opened for reading: {}", file, std::strerror(errno));
+  }
+  const std::uintmax_t size = fs::file_size(file, code);
+  if (code) {
+    return failure("{}: its size cannot be read: {}", file, code.message());
+  }
+  std::string bytes;
+  try {
+    bytes.resize(size);
+  } catch (const std::exception&) {
+    return failure("{}: {} bytes do not fit into memory", file, size);
+  }
+  stream.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
+    return failure("{}: ended after {} of {} bytes while it was read", file, stream.gcount(), size);
+  }
+  return bytes;
+}
+
+Status writeFile(const std::string& file, std::string_view bytes) {
+  const std::string unfinished = fmt::format("{}.{}.unfinished", file, ::getpid());
+  std::error_code code;
+  {
+    std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
+    if (!stream) {
+      return failure("{}: cannot be written: {}", file, std::strerror(errno));
+    }
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) {
+      const std::string reason = std::strerror(errno);
+      fs::remove(unfinished, code);
+      return failure("{}: could not be written completely: {}", file, reason);
+    }
+  }
+  fs::rename(unfinished, file, code);
+  if (code) {
+    std::error_code ignored;
+    fs::remove(unfinished, ignored);
+    return failure("{}: cannot be written: {}", file, code.message());
+  }
+  return Success{};
+}
+
+}  // namespace sightline

@@ -1,0 +1,86 @@
+#pragma once
+
+// What the steps of the glTF reader share: the parsed file with its bytes, and checked access to its parts.
+
+#include <tiny_gltf.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "failure.h"
+#include "gltf_buffers.h"
+#include "scene_builder.h"
+#include "sightline/math/mat4.h"
+
+namespace sightline::gltf {
+
+struct Document {
+  std::string name;  // of the file, in errors
+  ImportLimits limits;
+  tinygltf::Model model;  // without buffers; indices between its parts are not yet checked
+  Buffers buffers;
+};
+
+// Elements of an accessor, all checked to lie in their buffer.
+class AccessorView {
+ public:
+  std::uint64_t count() const { return count_; }
+  int componentType() const { return component_type_; }
+
+  // Component of an element, normalised where the accessor says so. Precondition: element < count().
+  double number(std::uint64_t element, int component) const;
+  // Of integer accessors.
+  std::uint32_t index(std::uint64_t element) const;
+
+ private:
+  friend Result<AccessorView> viewAccessor(const Document&, int, const std::string&);
+  friend Status addSparse(const Document&, int, AccessorView&);
+
+  const char* addressOf(std::uint64_t element) const;
+
+  const char* data_ = nullptr;  // nullptr: all zero
+  std::uint64_t stride_ = 0;
+  std::uint64_t count_ = 0;
+  std::uint64_t element_size_ = 0;
+  int component_type_ = 0;
+  int type_ = 0;
+  bool normalized_ = false;
+  std::vector<std::uint32_t> replaced_;  // sparse: ascending
+  const char* replacements_ = nullptr;
+
+ public:
+  int type() const { return type_; }
+};
+
+// user: who refers to the accessor, in errors ("mesh 3 primitive 0").
+Result<AccessorView> viewAccessor(const Document& document, int accessor, const std::string& user);
+
+// The nodes of the file as a forest.
+struct NodeTree {
+  std::vector<int> parent;  // -1: none
+  std::vector<Mat4> parent_from_node;
+  std::vector<Mat4> world_from_node;
+  std::vector<int> visited;  // nodes of the default scene, depth first
+};
+Result<NodeTree> buildNodeTree(const Document& document);
+
+// Translation, rotation (x, y, z, w), scale.
+struct NodePose {
+  Vec3d translation;
+  std::array<double, 4> rotation{0, 0, 0, 1};
+  Vec3d scale{1, 1, 1};
+};
+// Of a node without a matrix whose numbers buildNodeTree has checked.
+NodePose poseOf(const tinygltf::Node& node);
+Mat4 matrixOf(const NodePose& pose);
+
+Status addMaterials(const Document& document, SceneBuilder& builder);
+Status addObjects(const Document& document, const NodeTree& tree, SceneBuilder& builder);
+Status addCameras(const Document& document, const NodeTree& tree, SceneBuilder& builder);
+
+inline bool isIndexInto(int index, std::size_t size) {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+}  // namespace sightline::gltf

@@ -1,0 +1,40 @@
+#include "sightline/io/import.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "assimp.h"
+#include "failure.h"
+#include "sightline/io/file.h"
+
+namespace sightline {
+
+Result<Scene> importScene(const std::string& file) {
+  const std::filesystem::path path(file);
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_gltf = extension == ".glb" || extension == ".gltf";
+  // Read first: a missing file is the better news than a strange name.
+  Result<std::string> bytes = readFile(file);
+  if (!bytes) {
+    return bytes.error();
+  }
+  if (bytes->empty()) {
+    return failure("{}: the file is empty", file);
+  }
+  if (is_gltf) {
+    const std::string folder = path.parent_path().string();
+    return importGltf(*bytes, folder.empty() ? "." : folder, file);
+  }
+  if (extension.empty() || !isAssimpExtension(extension)) {
+    return failure(
+        "{}: files ending in \"{}\" are not read; .glb, .gltf, .obj, .ply, .stl, .fbx, .dae and others are",
+        file, extension);
+  }
+  *bytes = {};  // Assimp reads the file itself, with the others that it names
+  return importAssimp(file, ImportLimits{});
+}
+
+}  // namespace sightline

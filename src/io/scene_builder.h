@@ -1,0 +1,60 @@
+#pragma once
+
+// Collects world-space triangles in double precision and turns them into a Scene: the last step of every
+// importer.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+// What one file may grow to, so that a small hostile file cannot ask for all memory.
+struct ImportLimits {
+  std::uint64_t triangles = 100'000'000;     // of the scene, all instances counted
+  std::uint64_t implied_elements = 1 << 24;  // of an accessor without bytes behind it (zeros by definition)
+  std::uint64_t elements = 1 << 22;          // nodes, meshes, accessors, ... each
+  std::uint64_t camera_frames = 1000000;     // of all animated cameras: frames times nodes above, plus keys
+};
+
+// Largest magnitude of a world coordinate: extents and sums of two stay finite in single precision.
+inline constexpr double kLargestCoordinate = 0x1p125;
+
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const ImportLimits& limits) : limits_(limits) {}
+
+  MaterialId addMaterial(Material material);
+
+  // Whether this many more triangles stay within the limits. Ask before adding.
+  bool fits(std::uint64_t triangles) const {
+    return triangles <= limits_.triangles && triangleCount() <= limits_.triangles - triangles;
+  }
+
+  void beginObject(std::string name, MaterialId material, OccluderMark mark);
+  // Returns the vertex's number for addTriangle. Precondition: inRange(position).
+  std::uint32_t addVertex(const Vec3d& position_world);
+  void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+
+  static bool inRange(const Vec3d& position_world) {
+    return maxComponent(abs(position_world)) <= kLargestCoordinate && isFinite(position_world);
+  }
+
+  // Path with far == 0: "as far as the scene reaches".
+  void addPath(CameraPath path) { scene_.paths.push_back(std::move(path)); }
+
+  // Recentres, rounds to single precision, welds. The builder is empty afterwards.
+  Scene finish();
+
+ private:
+  std::uint64_t triangleCount() const { return scene_.indices.size() / 3; }
+
+  ImportLimits limits_;
+  Scene scene_;
+  std::vector<Vec3d> positions_world_;
+};
+
+}  // namespace sightline
