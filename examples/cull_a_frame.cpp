@@ -11,11 +11,8 @@ static void addBox(Scene& scene, const Vec3f& low, const Vec3f& high) {
   for (int i = 0; i < 8; ++i) {
     scene.positions.push_back({(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z});
   }
-  Object box;
-  box.first_index = static_cast<std::uint32_t>(scene.indices.size());
-  box.index_count = 36;
-  box.material = MaterialId(0u);
-  scene.objects.push_back(box);
+  const auto first_index = static_cast<std::uint32_t>(scene.indices.size());
+  scene.objects.push_back({.first_index = first_index, .index_count = 36, .material = MaterialId(0u)});
   for (std::uint32_t corner : {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
                                2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6}) {
     scene.indices.push_back(first_corner + corner);
@@ -24,7 +21,7 @@ static void addBox(Scene& scene, const Vec3f& low, const Vec3f& high) {
 
 int main() {
   Scene scene;
-  scene.materials.push_back({"stone"});
+  scene.materials.push_back({.name = "stone"});
   addBox(scene, {-8, 0, -11}, {8, 6, -10});  // object 0, the wall
   for (float x : {-6.0f, -2.0f, 2.0f, 6.0f, 16.5f}) {
     addBox(scene, {x, 0, -21}, {x + 1, 1, -20});  // objects 1 to 5, the crates
