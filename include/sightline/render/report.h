@@ -14,7 +14,7 @@
 namespace sightline {
 
 struct ReportFact {
-  std::string name, value;  // "triangles", "1,104,233"
+  std::string name{}, value{};  // "triangles", "1,104,233"
 };
 
 // One method's line of the summary table; means over all frames.
@@ -32,8 +32,8 @@ struct ReportRow {
 
 // Pictures of one frame stand side by side.
 struct ReportPicture {
-  std::string file;  // a name inside the report's folder
-  std::string caption;
+  std::string file{};  // a name inside the report's folder
+  std::string caption{};
   std::uint32_t frame = 0;
   bool plan = false;  // a plan view: the legend of its colours is shown
 };
