@@ -1,0 +1,26 @@
+#pragma once
+
+// 32-bit indices, one type each, so that an object's number is never taken for a node's.
+
+#include <compare>
+#include <cstdint>
+
+namespace sightline {
+
+template <typename Tag>
+struct Id {
+  std::uint32_t value = 0xffffffffu;
+
+  constexpr Id() = default;
+  constexpr explicit Id(std::uint32_t v) : value(v) {}
+  constexpr explicit Id(std::size_t v) : value(static_cast<std::uint32_t>(v)) {}
+  constexpr bool valid() const { return value != 0xffffffffu; }
+  friend constexpr auto operator<=>(Id, Id) = default;
+};
+
+using ObjectId = Id<struct ObjectTag>;      // object of a Scene, in the contract's numbering
+using MaterialId = Id<struct MaterialTag>;  // material of a Scene
+using NodeIndex = Id<struct NodeTag>;       // node of a Hierarchy
+using OccluderId = Id<struct OccluderTag>;  // polygon of an OccluderSet
+
+}  // namespace sightline

@@ -1,0 +1,53 @@
+#pragma once
+
+// Result<T>: the value of a fallible operation or the reason why there is none.
+// Member names follow std::expected, which it stands in for until every compiler has it.
+
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace sightline {
+
+// Says what is wrong, where, and what to do. One line.
+struct Error {
+  std::string message;
+};
+
+template <typename T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}
+  Result(Error error) : state_(std::move(error)) {}
+
+  bool has_value() const { return state_.index() == 0; }
+  explicit operator bool() const { return has_value(); }
+
+  // Precondition of the four accessors of the value: has_value(). Of error(): !has_value().
+  T& value() {
+    assert(has_value());
+    return *std::get_if<0>(&state_);
+  }
+  const T& value() const {
+    assert(has_value());
+    return *std::get_if<0>(&state_);
+  }
+  T& operator*() { return value(); }
+  const T& operator*() const { return value(); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+  const Error& error() const {
+    assert(!has_value());
+    return *std::get_if<1>(&state_);
+  }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+// The result of an operation that yields nothing but success.
+struct Success {};
+using Status = Result<Success>;
+
+}  // namespace sightline

@@ -1,0 +1,74 @@
+#pragma once
+
+// The front door of run-time culling: one call a frame, from a view to the objects that may be seen.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occluders/choose_occluders.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/occlusion/occlusion_tree.h"
+#include "sightline/occlusion/visibility.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+
+enum class CullMethod : std::uint8_t { kFrustum, kOcclusionTree };
+
+struct CullerSettings {
+  CullMethod method = CullMethod::kOcclusionTree;
+  OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
+  std::uint32_t occluder_count = 64;  // at most so many a frame
+  AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;
+  double lambda_steps =
+      100.0;  // occluders are looked for within so many steps of the observer; 0: everywhere
+  std::uint32_t min_node_cost = 0;  // a node with fewer triangles is taken as visible without a test
+  bool temporal_coherence = true;   // nodes found partial are not tested in the next frame
+  bool test_objects = true;         // objects of partly visible leaves are tested by their own boxes
+};
+
+struct CullStats {
+  std::uint32_t nodes_visited = 0;   // frustum tests of nodes
+  std::uint32_t nodes_tested = 0;    // nodes asked of the occlusion structure
+  std::uint32_t objects_tested = 0;  // objects asked of it
+  std::uint32_t nodes_skipped = 0;   // by temporal coherence
+  std::uint32_t occluders = 0;       // in the occlusion structure
+  std::uint32_t tree_nodes = 0;      // of the occlusion tree
+  std::uint32_t tree_dropped =
+      0;  // occluder fragments that found no room (costs tightness, never correctness)
+  double choose_us = 0.0, build_us = 0.0, walk_us = 0.0;
+  double totalUs() const { return choose_us + build_us + walk_us; }
+};
+
+class Culler {
+ public:
+  // Views of the caller's data, which must outlive this.
+  Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
+         const CullerSettings& settings = {});
+  ~Culler();
+  Culler(Culler&&) noexcept;
+  Culler& operator=(Culler&&) noexcept;
+
+  // One frame. dynamic_boxes: moving occludees, classified in the same call. Does not fail, and does not
+  // allocate after a few frames.
+  void cull(const View& view, std::span<const Box> dynamic_boxes = {});
+
+  // Answers of the last cull(). Objects that may be seen, ascending.
+  std::span<const ObjectId> visible() const;
+  // One state a dynamic box: hidden also means outside the frustum.
+  std::span<const Visibility> dynamicStates() const;
+  // The occluders that this frame's structure was built from.
+  std::span<const OccluderId> occludersUsed() const;
+  const CullStats& stats() const;
+
+  // Forgets the previous frame (after a change of scene).
+  void reset();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline

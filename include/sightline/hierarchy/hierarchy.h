@@ -1,0 +1,64 @@
+#pragma once
+
+// A binary hierarchy over objects in one flat layout, shared by the kd-tree and the bounding-volume
+// hierarchy.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
+
+namespace sightline {
+
+// Nodes lie in depth-first order: the left child follows its parent. 32 bytes.
+struct HierarchyNode {
+  Box bounds;              // encloses what its objects have in its region
+  std::uint32_t link = 0;  // leaf: first entry in Hierarchy::objects. Inner: one past the last node below it
+  std::uint16_t leaf_count = 0;  // leaf: number of entries, at least 1. Inner: 0
+  std::uint16_t cost = 0;        // triangles below it, at most 65,535
+
+  bool leaf() const { return leaf_count != 0; }
+};
+static_assert(sizeof(HierarchyNode) == 32);
+
+enum class HierarchyKind : std::uint8_t { kKdTree, kBvh };
+
+struct Hierarchy {
+  HierarchyKind kind = HierarchyKind::kBvh;
+  std::vector<HierarchyNode> nodes;  // [0] is the root; empty for a scene without objects
+  std::vector<ObjectId>
+      objects;  // of the leaves, leaf after leaf; a kd-tree may name an object several times
+  std::uint32_t object_count = 0;  // different objects
+  std::uint32_t depth = 0;         // levels
+
+  NodeIndex left(NodeIndex n) const { return NodeIndex(n.value + 1); }
+  NodeIndex right(NodeIndex n) const { return NodeIndex(end(left(n))); }
+  // One past the last node of the subtree of n.
+  std::uint32_t end(NodeIndex n) const {
+    const HierarchyNode& node = nodes[n.value];
+    return node.leaf() ? n.value + 1 : node.link;
+  }
+  // Entries of `objects` that are named below n: one contiguous range.
+  std::span<const ObjectId> objectsBelow(NodeIndex n) const;
+  std::uint32_t duplicates() const { return static_cast<std::uint32_t>(objects.size()) - object_count; }
+};
+
+struct HierarchySettings {
+  HierarchyKind kind = HierarchyKind::kBvh;
+  std::uint32_t max_leaf_objects = 2;  // split until so few are left ...
+  std::uint32_t max_depth = 0;  // ... or so many levels are reached; 0: chosen from the number of objects
+  double median_window = 0.25;  // kd-tree: split planes are looked for within this fraction of the extent
+                                // from the spatial median
+};
+
+// Builds either kind. Objects with an empty or non-finite box lie in leaves with an infinite box, which no
+// test calls hidden or outside. object_cost: triangles of each object, as many as boxes, or empty for 1 each.
+// The kd-tree: Bittner et al. 1998, section 2.2; it stops also where a split would only copy objects. The
+// bounding-volume hierarchy: binned surface-area heuristic (Wald 2007), each object in one leaf.
+Hierarchy buildHierarchy(std::span<const Box> object_bounds, std::span<const std::uint32_t> object_cost,
+                         const HierarchySettings& settings = {});
+
+}  // namespace sightline

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <limits>
+
+#include "sightline/math/vec3.h"
+
+namespace sightline {
+
+// Closed axis-aligned box, 24 bytes. The default one is empty (min > max) and grows by extend().
+struct Box {
+  Vec3f min{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+            std::numeric_limits<float>::infinity()};
+  Vec3f max{-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+            -std::numeric_limits<float>::infinity()};
+
+  constexpr bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+  constexpr void extend(const Vec3f& p) {
+    min = sightline::min(min, p);
+    max = sightline::max(max, p);
+  }
+  constexpr void extend(const Box& b) {
+    min = sightline::min(min, b.min);
+    max = sightline::max(max, b.max);
+  }
+  constexpr Vec3f extent() const { return max - min; }
+  // Finite and not empty: a box that a culling answer other than "visible" may be given for.
+  bool wellFormed() const { return isFinite(min) && isFinite(max) && !empty(); }
+  friend constexpr bool operator==(const Box&, const Box&) = default;
+};
+
+constexpr double surfaceArea(const Box& b) {
+  if (b.empty()) {
+    return 0.0;
+  }
+  const Vec3d e(b.extent());
+  return 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+}
+constexpr Vec3d center(const Box& b) {
+  return (Vec3d(b.min) + Vec3d(b.max)) * 0.5;
+}
+constexpr Box intersection(const Box& a, const Box& b) {
+  return {max(a.min, b.min), min(a.max, b.max)};
+}
+constexpr bool overlaps(const Box& a, const Box& b) {
+  return !intersection(a, b).empty();
+}
+constexpr bool contains(const Box& a, const Box& b) {
+  return a.min.x <= b.min.x && a.min.y <= b.min.y && a.min.z <= b.min.z && a.max.x >= b.max.x &&
+         a.max.y >= b.max.y && a.max.z >= b.max.z;
+}
+
+}  // namespace sightline

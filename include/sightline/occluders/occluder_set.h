@@ -1,0 +1,110 @@
+#pragma once
+
+// The potential occluders of a scene: convex polygons merged out of coplanar opaque triangles.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/math/plane.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+// A convex polygon, counter-clockwise seen from its front. Its boundary runs along edges of the mesh.
+struct Occluder {
+  std::uint32_t first_vertex = 0;  // into OccluderSet::vertices and OccluderSet::edges
+  std::uint16_t vertex_count = 0;
+  bool double_sided = false;
+  bool seals = false;  // no sharp corner: it may close the seam to a neighbour (see docs/conservative.md)
+  ObjectId object;     // that its triangles belong to
+  float area = 0.0f;   // square metres
+  float slack =
+      0.0f;        // metres: bounds how far the polygon and its triangles lie apart, in and across its plane
+  Vec3f centroid;  // of area
+  Plane plane;     // unit normal, towards the front; scene space
+};
+
+// The edge from one corner of an occluder to the next.
+struct OccluderEdge {
+  std::uint32_t line = 0;         // into OccluderSet::lines; edges along one seam of the mesh share a line
+  std::uint32_t first_cover = 0;  // into OccluderSet::covers
+  std::uint16_t cover_count = 0;
+  std::uint16_t chain = 0;  // mesh edges that it consists of; 0: it may never be sealed
+};
+
+// Another occluder that has one mesh edge of an edge's chain in its own boundary.
+struct EdgeCover {
+  OccluderId occluder;
+  std::uint32_t element = 0;  // which mesh edge of the chain, from 0
+};
+
+// Why triangles are in no occluder: one count each, in triangles.
+struct OccluderReport {
+  std::uint64_t used = 0;          // in occluders
+  std::uint64_t see_through = 0;   // blended or alpha-tested material
+  std::uint64_t marked_never = 0;  // by the scene's author
+  std::uint64_t degenerate = 0;    // without area, doubled, or a polygon thinner than rounding
+  std::uint64_t too_small = 0;     // the merged polygon is not among the large ones
+};
+
+struct OccluderSettings {
+  std::uint32_t max_vertices = 16;  // of a polygon, 3 to 64
+  // The largest polygons that together hold this fraction of the area of all polygons are kept, whatever the
+  // scene's scale; those of objects marked as occluders always.
+  double area_fraction = 0.98;
+  double min_area = 0.0;            // square metres, in addition
+  std::uint32_t max_occluders = 0;  // in addition; 0: no limit
+};
+
+// Ranked by area, largest first: a smaller OccluderId is a larger polygon.
+struct OccluderSet {
+  std::vector<Occluder> occluders;
+  std::vector<Vec3f> vertices;              // corners of all occluders, scene space
+  std::vector<OccluderEdge> edges;          // edge i starts at vertex i
+  std::vector<std::array<Vec3f, 2>> lines;  // two points on each line
+  std::vector<EdgeCover> covers;
+  std::vector<std::uint32_t> first_of_object;  // object_count + 1 entries into of_object
+  std::vector<OccluderId> of_object;           // occluders by object
+  OccluderReport report;
+  double area = 0.0;  // of all occluders, square metres
+
+  const Occluder& operator[](OccluderId id) const { return occluders[id.value]; }
+  std::span<const Vec3f> verticesOf(const Occluder& o) const {
+    return std::span(vertices).subspan(o.first_vertex, o.vertex_count);
+  }
+  std::span<const OccluderEdge> edgesOf(const Occluder& o) const {
+    return std::span(edges).subspan(o.first_vertex, o.vertex_count);
+  }
+  std::span<const EdgeCover> coversOf(const OccluderEdge& e) const {
+    return std::span(covers).subspan(e.first_cover, e.cover_count);
+  }
+  std::span<const OccluderId> occludersOf(ObjectId object) const {
+    if (object.value + 1 >= first_of_object.size()) {
+      return {};
+    }
+    const std::uint32_t first = first_of_object[object.value];
+    return std::span(of_object).subspan(first, first_of_object[object.value + 1] - first);
+  }
+};
+
+// Finds them in raw triangles. Deterministic, whatever the number of threads.
+OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settings = {},
+                          const ParallelFor& parallel_for = serialFor);
+
+// A polygon of the caller's own: what he really draws and nobody sees through.
+struct OccluderPolygon {
+  std::span<const Vec3f> vertices;  // scene space, counter-clockwise from the front, convex, in one plane
+  bool double_sided = false;
+  ObjectId object = ObjectId(0u);
+};
+
+// A set from polygons given by the caller, for scenes that change or come without meshes. Edges with equal
+// end points close the seam between their polygons. Polygons that are not convex or not planar beyond
+// rounding, and those without area, are left out (conservative: they then hide nothing).
+OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons);
+
+}  // namespace sightline

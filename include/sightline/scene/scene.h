@@ -1,0 +1,77 @@
+#pragma once
+
+// A scene as every part of Sightline sees it: world-space triangles in objects with materials.
+//
+// Positions are single precision in "scene space": world space moved by Scene::origin (double precision), so
+// that a city in national grid coordinates keeps its millimetres. These stored floats are the truth that is
+// drawn, that occludes, and that rays are cast against.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/math/box.h"
+#include "sightline/scene/camera.h"
+#include "sightline/scene/material.h"
+
+namespace sightline {
+
+// What the author of a scene says about an object's use as an occluder.
+enum class OccluderMark : std::uint8_t {
+  kAutomatic,  // nothing: Sightline judges by material and size
+  kOccluder,   // use it, however small (if its material is opaque)
+  kNever,      // never use it
+};
+
+// One drawable unit, the occludee: one (node, primitive) pair of the scene file.
+struct Object {
+  std::uint32_t first_index = 0;  // into Scene::indices
+  std::uint32_t index_count = 0;  // three a triangle
+  MaterialId material;
+  OccluderMark mark = OccluderMark::kAutomatic;
+  Box bounds;  // of its vertices, exact, scene space
+
+  std::uint32_t triangleCount() const { return index_count / 3; }
+};
+
+// Views of the caller's own memory, all in scene space; what the library's functions take.
+// Triangles are counter-clockwise seen from their front.
+struct SceneView {
+  std::span<const Vec3f> positions;
+  std::span<const std::uint32_t> indices;  // into positions
+  std::span<const Object> objects;         // ObjectId is the index here
+  std::span<const Material> materials;     // MaterialId is the index here
+
+  std::span<const std::uint32_t> indicesOf(const Object& object) const {
+    return indices.subspan(object.first_index, object.index_count);
+  }
+  const Material& materialOf(const Object& object) const { return materials[object.material.value]; }
+};
+
+// A scene that owns its memory. Identical positions are stored once (see weldPositions).
+struct Scene {
+  std::vector<Vec3f> positions;
+  std::vector<std::uint32_t> indices;
+  std::vector<Object> objects;
+  std::vector<Material> materials;
+  std::vector<std::string> object_names;  // one an object
+  std::vector<CameraPath> paths;          // of the file's cameras or of the procedural scene; world space
+  Vec3d origin;                           // world position of scene space's origin
+
+  SceneView view() const { return {positions, indices, objects, materials}; }
+  std::uint64_t triangleCount() const { return indices.size() / 3; }
+};
+
+// Bounds of all objects, scene space; empty for a scene without triangles.
+Box sceneBounds(const SceneView& scene);
+
+// Stores positions that are equal (bit for bit, -0 taken as 0) once and renumbers the indices; drops unused
+// positions.
+void weldPositions(Scene& scene);
+
+// Recomputes Object::bounds from the triangles.
+void updateBounds(Scene& scene);
+
+}  // namespace sightline

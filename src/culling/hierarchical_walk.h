@@ -1,0 +1,154 @@
+#pragma once
+
+// The one walk through a hierarchy that every from-point method uses.
+//
+// Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998,
+// sections 5.3, 5.4. Differs from the paper in: objects of leaves that stay partly visible may be tested by
+// their own boxes.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "culling/object_bits.h"
+#include "sightline/culling/culler.h"
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/math/frustum.h"
+
+namespace sightline::culling_detail {
+
+struct WalkOptions {
+  std::uint32_t min_node_cost = 0;
+  bool temporal_coherence = true;
+  bool test_objects = true;
+};
+
+class HierarchicalWalk {
+ public:
+  HierarchicalWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
+      : hierarchy_(hierarchy),
+        object_bounds_(object_bounds),
+        visible_(object_bounds.size()),
+        decided_(object_bounds.size()),
+        partial_(hierarchy.nodes.size(), false) {}
+
+  // Appends the objects that may be seen to out, ascending. classify(box) -> Visibility is the occlusion
+  // structure.
+  template <typename Classify>
+  void run(const Frustum& frustum, const WalkOptions& options, Classify&& classify, CullStats& stats,
+           std::vector<ObjectId>& out) {
+    stack_.clear();
+    if (!hierarchy_.nodes.empty()) {
+      stack_.push_back({0, kNoParent, kAllFrustumPlanes, false});
+    }
+    while (!stack_.empty()) {
+      const Entry entry = stack_.back();
+      stack_.pop_back();
+      visit(entry, frustum, options, classify, stats);
+    }
+    visible_.drainInto(out);
+    decided_.clear();
+  }
+
+  // Forgets which nodes were found partly visible.
+  void forget() { partial_.assign(partial_.size(), false); }
+
+ private:
+  static constexpr std::uint32_t kNoParent = 0xffffffffu;
+
+  struct Entry {
+    std::uint32_t node, parent;
+    std::uint8_t planes;  // of the frustum that still cut it
+    bool surely_visible;  // with respect to the occluders
+  };
+
+  template <typename Classify>
+  void visit(const Entry& entry, const Frustum& frustum, const WalkOptions& options, Classify&& classify,
+             CullStats& stats) {
+    const HierarchyNode& node = hierarchy_.nodes[entry.node];
+    std::uint8_t planes = entry.planes;
+    if (planes != 0) {
+      ++stats.nodes_visited;
+      if (sightline::classify(frustum, node.bounds, planes) == FrustumSide::kOutside) {
+        settle(entry);
+        return;
+      }
+    }
+    Visibility state = Visibility::kVisible;
+    bool skipped = false;
+    if (!entry.surely_visible && node.cost >= options.min_node_cost) {
+      skipped = options.temporal_coherence && !node.leaf() && partial_[entry.node];
+      if (skipped) {
+        ++stats.nodes_skipped;
+        state = Visibility::kPartial;
+      } else {
+        ++stats.nodes_tested;
+        state = classify(node.bounds);
+      }
+    }
+    if (state != Visibility::kPartial) {
+      settle(entry);
+    }
+    if (state == Visibility::kHidden) {
+      return;
+    }
+    const bool surely_visible = state == Visibility::kVisible;
+    if (surely_visible && planes == 0) {
+      for (const ObjectId object : hierarchy_.objectsBelow(NodeIndex(entry.node))) {
+        visible_.insert(object);
+      }
+    } else if (node.leaf()) {
+      keepLeaf(node, frustum, planes, surely_visible || !options.test_objects, classify, stats);
+    } else {
+      if (!surely_visible) {
+        partial_[entry.node] = true;
+      }
+      const std::uint32_t left = entry.node + 1;
+      stack_.push_back({hierarchy_.right(NodeIndex(entry.node)).value, entry.node, planes, surely_visible});
+      stack_.push_back({left, entry.node, planes, surely_visible});
+    }
+  }
+
+  // A node's state became certain: it, and its parent, are tested again in the next frame.
+  void settle(const Entry& entry) {
+    partial_[entry.node] = false;
+    if (entry.parent != kNoParent) {
+      partial_[entry.parent] = false;
+    }
+  }
+
+  template <typename Classify>
+  void keepLeaf(const HierarchyNode& leaf, const Frustum& frustum, std::uint8_t planes, bool surely_visible,
+                Classify&& classify, CullStats& stats) {
+    for (std::uint32_t i = 0; i < leaf.leaf_count; ++i) {
+      const ObjectId object = hierarchy_.objects[leaf.link + i];
+      const Box& box = object_bounds_[object.value];
+      const bool is_the_node = box == leaf.bounds;
+      if (!is_the_node) {
+        // An object in several leaves is judged once: the answer is for the whole of it.
+        if (hierarchy_.kind == HierarchyKind::kKdTree && !decided_.insert(object)) {
+          continue;
+        }
+        std::uint8_t object_planes = planes;
+        if (object_planes != 0 && sightline::classify(frustum, box, object_planes) == FrustumSide::kOutside) {
+          continue;
+        }
+        if (!surely_visible) {
+          ++stats.objects_tested;
+          if (classify(box) == Visibility::kHidden) {
+            continue;
+          }
+        }
+      }
+      visible_.insert(object);
+    }
+  }
+
+  const Hierarchy& hierarchy_;
+  std::span<const Box> object_bounds_;
+  ObjectBits visible_, decided_;
+  std::vector<bool> partial_;  // by node: found partly visible, and no child has become certain since
+  std::vector<Entry> stack_;
+};
+
+}  // namespace sightline::culling_detail

@@ -1,0 +1,90 @@
+#include "sightline/occluders/choose_occluders.h"
+
+#include <algorithm>
+
+namespace sightline {
+namespace {
+
+bool insideFrustum(const Frustum& frustum, const OccluderSet& set, const Occluder& occluder) {
+  for (const Plane& plane : frustum.planes) {
+    bool any_inside = false;
+    for (const Vec3f& vertex : set.verticesOf(occluder)) {
+      any_inside |= plane.evaluate(Vec3d(vertex)) > 0.0;
+    }
+    if (!any_inside) {
+      return false;
+    }
+  }
+  return true;
+}
+
+double squaredDistance(const Box& box, const Vec3d& point) {
+  const Vec3d nearest = max(Vec3d(box.min), min(Vec3d(box.max), point));
+  return dot(nearest - point, nearest - point);
+}
+
+}  // namespace
+
+double areaAngle(const Occluder& occluder, const View& view, AreaAngleDirection direction) {
+  const Vec3d to_center = Vec3d(occluder.centroid) - view.eye;
+  const double facing =
+      view.orthographic ? dot(occluder.plane.normal, view.forward) : -occluder.plane.evaluate(view.eye);
+  double sign = -1.0;
+  if (facing >= 0.0) {
+    if (!occluder.double_sided || facing == 0.0) {
+      return 0.0;
+    }
+    sign = 1.0;
+  }
+  const double area = occluder.area;
+  if (view.orthographic) {
+    return std::max(0.0, sign * area * dot(occluder.plane.normal, view.forward));
+  }
+  const double squared = dot(to_center, to_center);
+  if (!(squared > 0.0)) {
+    return 0.0;
+  }
+  const Vec3d v = direction == AreaAngleDirection::kView ? view.forward : to_center / std::sqrt(squared);
+  return std::max(0.0, sign * area * dot(occluder.plane.normal, v) / squared);
+}
+
+std::span<const OccluderId> OccluderChooser::choose(const View& view, const OccluderSet& set,
+                                                    std::span<const ObjectId> objects,
+                                                    std::span<const Box> object_bounds,
+                                                    const ChoiceSettings& settings) {
+  ranked_.clear();
+  chosen_.clear();
+  const double limit = settings.max_distance * settings.max_distance;
+  for (const ObjectId object : objects) {
+    if (limit > 0.0 && squaredDistance(object_bounds[object.value], view.eye) > limit) {
+      continue;
+    }
+    for (const OccluderId id : set.occludersOf(object)) {
+      const double score = areaAngle(set[id], view, settings.direction);
+      if (score > 0.0) {
+        ranked_.emplace_back(score, id);
+      }
+    }
+  }
+  const auto better = [](const auto& a, const auto& b) {
+    return a.first > b.first || (a.first == b.first && a.second < b.second);
+  };
+  // Best first; the frustum test is made only for those that come into question.
+  const Frustum frustum = frustumOf(view);
+  auto begin = ranked_.begin();
+  while (chosen_.size() < settings.count && begin != ranked_.end()) {
+    const auto wanted = static_cast<std::ptrdiff_t>(settings.count - chosen_.size());
+    const auto part = std::min(ranked_.end() - begin, std::max<std::ptrdiff_t>(2 * wanted, 32));
+    std::nth_element(begin, begin + (part - 1), ranked_.end(), better);
+    std::sort(begin, begin + part, better);
+    for (auto it = begin; it != begin + part && chosen_.size() < settings.count; ++it) {
+      if (insideFrustum(frustum, set, set[it->second])) {
+        chosen_.push_back(it->second);
+      }
+    }
+    begin += part;
+  }
+  return chosen_;
+}
+
+}  // namespace sightline

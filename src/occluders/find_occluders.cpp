@@ -1,0 +1,165 @@
+#include <algorithm>
+
+#include "occluders/links.h"
+#include "occluders/polygon_merge.h"
+#include "sightline/occluders/occluder_set.h"
+
+namespace sightline {
+namespace {
+
+using occluder_detail::FoundPolygon;
+using occluder_detail::RankedPolygon;
+
+struct ObjectResult {
+  std::vector<FoundPolygon> polygons;
+  OccluderReport report;
+};
+
+ObjectResult findInObject(const SceneView& scene, const Object& object, std::uint32_t max_vertices) {
+  ObjectResult result;
+  const Material& material = scene.materialOf(object);
+  if (!material.opaque()) {
+    result.report.see_through = object.triangleCount();
+    return result;
+  }
+  if (object.mark == OccluderMark::kNever) {
+    result.report.marked_never = object.triangleCount();
+    return result;
+  }
+  const double largest = maxComponent(max(abs(Vec3d(object.bounds.min)), abs(Vec3d(object.bounds.max))));
+  if (!std::isfinite(largest)) {
+    result.report.degenerate = object.triangleCount();
+    return result;
+  }
+  const double tolerance = occluder_detail::roundingTolerance(largest);
+  const auto found = occluder_detail::findPatches(scene.positions, scene.indicesOf(object),
+                                                  material.double_sided, tolerance);
+  std::uint64_t in_polygons = 0;
+  for (const occluder_detail::Patch& patch : found.patches) {
+    for (FoundPolygon& polygon :
+         occluder_detail::mergePatch(scene.positions, patch, tolerance, max_vertices)) {
+      polygon.double_sided = material.double_sided;
+      in_polygons += polygon.triangle_count;
+      result.polygons.push_back(std::move(polygon));
+    }
+  }
+  result.report.degenerate = object.triangleCount() - in_polygons;
+  return result;
+}
+
+void add(OccluderReport& sum, const OccluderReport& part) {
+  sum.used += part.used;
+  sum.see_through += part.see_through;
+  sum.marked_never += part.marked_never;
+  sum.degenerate += part.degenerate;
+  sum.too_small += part.too_small;
+}
+
+// The polygons to keep, largest first; the others are counted as too small.
+std::vector<RankedPolygon> rank(const SceneView& scene, std::vector<ObjectResult>& results,
+                                const OccluderSettings& settings, OccluderReport& report) {
+  std::vector<RankedPolygon> all;
+  double total_area = 0.0;
+  for (std::size_t o = 0; o < results.size(); ++o) {
+    for (FoundPolygon& polygon : results[o].polygons) {
+      total_area += polygon.area;
+      all.push_back({std::move(polygon), ObjectId(o)});
+    }
+    add(report, results[o].report);
+    results[o].polygons.clear();
+  }
+  std::stable_sort(all.begin(), all.end(), [](const RankedPolygon& a, const RankedPolygon& b) {
+    return a.polygon.area > b.polygon.area;
+  });
+  const std::size_t limit = settings.max_occluders != 0 ? settings.max_occluders : all.size();
+  double area_before = 0.0;
+  std::size_t kept = 0;
+  for (RankedPolygon& candidate : all) {
+    const double area = candidate.polygon.area;
+    const bool large = area_before < settings.area_fraction * total_area && area >= settings.min_area;
+    const bool marked = scene.objects[candidate.object.value].mark == OccluderMark::kOccluder;
+    area_before += area;
+    if ((large || marked) && kept < limit) {
+      std::swap(all[kept++], candidate);
+    } else {
+      report.too_small += candidate.polygon.triangle_count;
+    }
+  }
+  all.resize(kept);
+  return all;
+}
+
+std::uint32_t clampedVertices(std::uint32_t max_vertices) {
+  return std::clamp(max_vertices, 3u, 64u);
+}
+
+}  // namespace
+
+OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settings,
+                          const ParallelFor& parallel_for) {
+  std::vector<ObjectResult> results(scene.objects.size());
+  const std::uint32_t max_vertices = clampedVertices(settings.max_vertices);
+  parallel_for(static_cast<std::uint32_t>(results.size()), [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t o = begin; o < end; ++o) {
+      results[o] = findInObject(scene, scene.objects[o], max_vertices);
+    }
+  });
+  OccluderSet set;
+  const std::vector<RankedPolygon> ranked = rank(scene, results, settings, set.report);
+  occluder_detail::assembleSet(scene.positions, ranked, scene.objects.size(), set);
+  return set;
+}
+
+OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
+  // Equal corners get one vertex id, as in a welded mesh.
+  Scene corners;
+  for (const OccluderPolygon& polygon : polygons) {
+    for (const Vec3f& vertex : polygon.vertices) {
+      corners.indices.push_back(static_cast<std::uint32_t>(corners.positions.size()));
+      corners.positions.push_back(vertex);
+    }
+  }
+  weldPositions(corners);
+
+  std::vector<RankedPolygon> ranked;
+  OccluderSet set;
+  std::size_t first = 0, object_count = 0;
+  for (const OccluderPolygon& polygon : polygons) {
+    FoundPolygon found;
+    found.double_sided = polygon.double_sided;
+    double largest = 0.0;
+    Vec3d normal;
+    for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
+      found.loop.push_back(corners.indices[first + i]);
+      largest = std::max(largest, static_cast<double>(maxComponent(abs(polygon.vertices[i]))));
+      const Vec3d origin(polygon.vertices[0]);
+      normal += cross(Vec3d(polygon.vertices[i]) - origin,
+                      Vec3d(polygon.vertices[(i + 1) % polygon.vertices.size()]) - origin);
+    }
+    first += polygon.vertices.size();
+    object_count = std::max<std::size_t>(object_count, polygon.object.value + std::size_t{1});
+    if (found.loop.size() < 3 || !std::isfinite(largest) || !(length(normal) > 0.0)) {
+      ++set.report.degenerate;
+      continue;
+    }
+    found.plane.normal = normalized(normal);
+    found.plane.offset = -dot(found.plane.normal, Vec3d(polygon.vertices[0]));
+    for (const Vec3f& vertex : polygon.vertices) {
+      found.slack = std::max(found.slack, std::abs(found.plane.evaluate(Vec3d(vertex))));
+    }
+    found.triangle_count = static_cast<std::uint32_t>(found.loop.size() - 2);
+    const double tolerance = occluder_detail::roundingTolerance(largest);
+    if (found.slack > tolerance || !occluder_detail::finishPolygon(corners.positions, tolerance, 64, found)) {
+      ++set.report.degenerate;
+      continue;
+    }
+    ranked.push_back({std::move(found), polygon.object});
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedPolygon& a, const RankedPolygon& b) {
+    return a.polygon.area > b.polygon.area;
+  });
+  occluder_detail::assembleSet(corners.positions, ranked, object_count, set);
+  return set;
+}
+
+}  // namespace sightline

@@ -1,0 +1,294 @@
+// Which occluders share seams of the mesh. Two polygons that have a mesh edge in common leave no gap between
+// them; to keep it so in the occlusion structures, the edges along one seam are put on one line, given by two
+// mesh vertices, and each edge knows which polygons lie beyond each of the mesh edges that it was merged
+// from.
+
+#include "occluders/links.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace sightline::occluder_detail {
+namespace {
+
+// One mesh edge in the chain of one occluder edge.
+struct Use {
+  std::uint32_t low, high;  // vertex ids
+  std::uint32_t edge;       // into OccluderSet::edges
+  std::uint32_t element;    // of the chain
+};
+
+struct UnionFind {
+  std::vector<std::uint32_t> parent;
+  explicit UnionFind(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent[i] != i) {
+      i = parent[i] = parent[parent[i]];
+    }
+    return i;
+  }
+  void unite(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+};
+
+double distanceToLine(const Vec3d& point, const Vec3d& p, const Vec3d& q) {
+  const Vec3d d = q - p;
+  const double l = length(d);
+  return l > 0.0 ? length(cross(d, point - p)) / l : length(point - p);
+}
+
+class Linker {
+ public:
+  Linker(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set)
+      : positions_(positions), polygons_(polygons), set_(set), classes_(set.edges.size()) {}
+
+  void run() {
+    collectUses();
+    uniteSeams();
+    chooseLines();
+    writeCovers();
+  }
+
+ private:
+  void collectUses() {
+    for (std::size_t o = 0; o < polygons_.size(); ++o) {
+      const FoundPolygon& polygon = polygons_[o].polygon;
+      const std::size_t n = polygon.loop.size(), c = polygon.corners.size();
+      for (std::size_t e = 0; e < c; ++e) {
+        const std::uint32_t edge = set_.occluders[o].first_vertex + static_cast<std::uint32_t>(e);
+        owner_.push_back(static_cast<std::uint32_t>(o));
+        std::uint32_t element = 0;
+        std::size_t i = polygon.corners[e];
+        do {
+          const std::uint32_t a = polygon.loop[i], b = polygon.loop[(i + 1) % n];
+          uses_.push_back({std::min(a, b), std::max(a, b), edge, element++});
+          i = (i + 1) % n;
+        } while (i != polygon.corners[(e + 1) % c]);
+        set_.edges[edge].chain = static_cast<std::uint16_t>(element <= 64 ? element : 0);
+        chain_start_.push_back(static_cast<std::uint32_t>(uses_.size()) - element);
+        chain_length_.push_back(element);
+      }
+    }
+    by_edge_ = uses_;
+    std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
+      return std::tie(a.low, a.high, a.edge, a.element) < std::tie(b.low, b.high, b.edge, b.element);
+    });
+  }
+
+  template <typename Visit>
+  void forEachSharedMeshEdge(Visit visit) const {
+    for (std::size_t i = 0; i < uses_.size();) {
+      std::size_t end = i + 1;
+      while (end < uses_.size() && uses_[end].low == uses_[i].low && uses_[end].high == uses_[i].high) {
+        ++end;
+      }
+      if (end - i > 1) {
+        visit(std::span(uses_).subspan(i, end - i));
+      }
+      i = end;
+    }
+  }
+
+  void uniteSeams() {
+    forEachSharedMeshEdge([this](std::span<const Use> users) {
+      for (const Use& use : users.subspan(1)) {
+        classes_.unite(users[0].edge, use.edge);
+      }
+    });
+  }
+
+  // All mesh vertices of the chain of an edge.
+  template <typename Visit>
+  void forEachVertex(std::uint32_t edge, Visit visit) const {
+    for (std::uint32_t k = 0; k < chain_length_[edge]; ++k) {
+      const Use& use = by_edge_[chain_start_[edge] + k];
+      visit(positions_[use.low]);
+      visit(positions_[use.high]);
+    }
+  }
+
+  std::array<Vec3f, 2> ownLine(std::uint32_t edge) const {
+    const Occluder& occluder = set_.occluders[owner_[edge]];
+    const std::uint32_t next =
+        edge + 1 == occluder.first_vertex + occluder.vertex_count ? occluder.first_vertex : edge + 1;
+    return {set_.vertices[edge], set_.vertices[next]};
+  }
+
+  void chooseLines() {
+    std::vector<std::uint32_t> order(set_.edges.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return classes_.root(a) < classes_.root(b);
+    });
+    for (std::size_t i = 0; i < order.size();) {
+      std::size_t end = i + 1;
+      while (end < order.size() && classes_.root(order[end]) == classes_.root(order[i])) {
+        ++end;
+      }
+      chooseLine(std::span(order).subspan(i, end - i));
+      i = end;
+    }
+  }
+
+  // One line for all edges of a seam: through its outermost mesh vertices along its longest edge. Where a
+  // vertex is farther from it than rounding explains, each edge keeps a line of its own and the seam is not
+  // closed.
+  void chooseLine(std::span<const std::uint32_t> seam) {
+    std::array<Vec3f, 2> line = ownLine(seam[0]);
+    if (seam.size() > 1) {
+      double longest = 0.0;
+      Vec3d along;
+      for (const std::uint32_t edge : seam) {
+        const auto own = ownLine(edge);
+        const Vec3d d = Vec3d(own[1]) - Vec3d(own[0]);
+        if (length(d) > longest) {
+          longest = length(d);
+          along = d;
+        }
+      }
+      double low = 0.0, high = 0.0;
+      bool first = true;
+      for (const std::uint32_t edge : seam) {
+        forEachVertex(edge, [&](const Vec3f& p) {
+          const double t = dot(along, Vec3d(p));
+          if (first || t < low) {
+            low = t;
+            line[0] = p;
+          }
+          if (first || t > high) {
+            high = t;
+            line[1] = p;
+          }
+          first = false;
+        });
+      }
+    }
+    double deviation = 0.0, largest = 0.0;
+    for (const std::uint32_t edge : seam) {
+      forEachVertex(edge, [&](const Vec3f& p) {
+        deviation = std::max(deviation, distanceToLine(Vec3d(p), Vec3d(line[0]), Vec3d(line[1])));
+        largest = std::max(largest, static_cast<double>(maxComponent(abs(p))));
+      });
+    }
+    if (deviation <= 4.0 * roundingTolerance(largest)) {
+      assign(seam, line, deviation);
+      return;
+    }
+    for (const std::uint32_t edge : seam) {
+      set_.edges[edge].chain = 0;
+      assign(std::span(&edge, 1), ownLine(edge), 0.0);
+    }
+  }
+
+  void assign(std::span<const std::uint32_t> edges, const std::array<Vec3f, 2>& line, double deviation) {
+    for (const std::uint32_t edge : edges) {
+      set_.edges[edge].line = static_cast<std::uint32_t>(set_.lines.size());
+      Occluder& occluder = set_.occluders[owner_[edge]];
+      occluder.slack = std::max(occluder.slack, static_cast<float>(deviation * 1.001));
+    }
+    set_.lines.push_back(line);
+  }
+
+  void writeCovers() {
+    struct Found {
+      std::uint32_t edge;
+      EdgeCover cover;
+    };
+    std::vector<Found> found;
+    forEachSharedMeshEdge([&](std::span<const Use> users) {
+      for (const Use& a : users) {
+        for (const Use& b : users) {
+          if (owner_[a.edge] != owner_[b.edge] && set_.edges[a.edge].chain != 0 &&
+              set_.occluders[owner_[b.edge]].seals) {
+            found.push_back({a.edge, {OccluderId(owner_[b.edge]), a.element}});
+          }
+        }
+      }
+    });
+    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+      return std::tie(a.edge, a.cover.element, a.cover.occluder) <
+             std::tie(b.edge, b.cover.element, b.cover.occluder);
+    });
+    for (std::size_t i = 0; i < found.size();) {
+      std::size_t end = i;
+      OccluderEdge& edge = set_.edges[found[i].edge];
+      edge.first_cover = static_cast<std::uint32_t>(set_.covers.size());
+      while (end < found.size() && found[end].edge == found[i].edge) {
+        set_.covers.push_back(found[end++].cover);
+      }
+      const std::size_t count = end - i;
+      edge.cover_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
+      i = end;
+    }
+  }
+
+  std::span<const Vec3f> positions_;
+  std::span<const RankedPolygon> polygons_;
+  OccluderSet& set_;
+  UnionFind classes_;                // of edges along one seam
+  std::vector<Use> uses_, by_edge_;  // sorted by mesh edge; in the order of edges
+  std::vector<std::uint32_t> owner_, chain_start_, chain_length_;  // by edge
+};
+
+// No corner sharper than three degrees: near such a one a neighbour's own boundary would be too close to the
+// seam.
+bool hasNoSharpCorner(std::span<const Vec3f> corners) {
+  constexpr double kSine = 0.052;
+  const std::size_t n = corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3d at(corners[i]);
+    const Vec3d a = normalized(Vec3d(corners[(i + n - 1) % n]) - at);
+    const Vec3d b = normalized(Vec3d(corners[(i + 1) % n]) - at);
+    if (length(cross(a, b)) < kSine && dot(a, b) > 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void listByObject(std::size_t object_count, OccluderSet& set) {
+  set.first_of_object.assign(object_count + 1, 0);
+  for (const Occluder& occluder : set.occluders) {
+    ++set.first_of_object[occluder.object.value + 1];
+  }
+  std::partial_sum(set.first_of_object.begin(), set.first_of_object.end(), set.first_of_object.begin());
+  std::vector<std::uint32_t> next(set.first_of_object.begin(), set.first_of_object.end() - 1);
+  set.of_object.resize(set.occluders.size());
+  for (std::size_t o = 0; o < set.occluders.size(); ++o) {
+    set.of_object[next[set.occluders[o].object.value]++] = OccluderId(o);
+  }
+}
+
+}  // namespace
+
+void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+                 std::size_t object_count, OccluderSet& set) {
+  for (const RankedPolygon& ranked : polygons) {
+    const FoundPolygon& polygon = ranked.polygon;
+    Occluder occluder;
+    occluder.first_vertex = static_cast<std::uint32_t>(set.vertices.size());
+    occluder.vertex_count = static_cast<std::uint16_t>(polygon.corners.size());
+    occluder.double_sided = polygon.double_sided;
+    occluder.object = ranked.object;
+    occluder.area = static_cast<float>(polygon.area);
+    occluder.slack = static_cast<float>(polygon.slack * 1.001);
+    occluder.plane = polygon.plane;
+    occluder.centroid = Vec3f(polygon.centroid);
+    for (const std::uint32_t corner : polygon.corners) {
+      set.vertices.push_back(positions[polygon.loop[corner]]);
+    }
+    occluder.seals = hasNoSharpCorner(std::span(set.vertices).subspan(occluder.first_vertex));
+    set.area += polygon.area;
+    set.report.used += polygon.triangle_count;
+    set.occluders.push_back(occluder);
+  }
+  set.edges.resize(set.vertices.size());
+  Linker(positions, polygons, set).run();
+  listByObject(object_count, set);
+}
+
+}  // namespace sightline::occluder_detail

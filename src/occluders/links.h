@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "occluders/polygon_merge.h"
+#include "sightline/occluders/occluder_set.h"
+
+namespace sightline::occluder_detail {
+
+// A found polygon with what the set says of it.
+struct RankedPolygon {
+  FoundPolygon polygon;  // vertex ids into positions shared by all
+  ObjectId object;
+};
+
+// Fills vertices, edges, lines, covers and the per-object lists of a set from its polygons, in their order.
+void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+                 std::size_t object_count, OccluderSet& set);
+
+}  // namespace sightline::occluder_detail

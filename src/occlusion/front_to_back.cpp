@@ -1,0 +1,139 @@
+#include "occlusion/front_to_back.h"
+
+#include <algorithm>
+
+namespace sightline::occlusion_detail {
+
+Side FrontToBack::sideOf(std::uint32_t fragment, std::uint32_t splitter) const {
+  const OcclusionVolume& by = volumes_->volumes[all_[splitter].volume];
+  const OcclusionVolume& of = volumes_->volumes[all_[fragment].volume];
+  const double tolerance = by.depth_slack + of.depth_slack + kDepthMargin * (by.reach + of.reach);
+  bool front = false, back = false;
+  for (const Corner& corner : stack_->of(all_[fragment].piece)) {
+    const double d = by.support.evaluate(corner.position);
+    front |= d > tolerance;
+    back |= d < -tolerance;
+  }
+  return front && back ? Side::kBoth : front ? Side::kFront : back ? Side::kBack : Side::kOnPlane;
+}
+
+// Of a few candidates the one whose plane cuts the fewest others.
+std::uint32_t FrontToBack::chooseSplitter(std::size_t begin, std::size_t end) const {
+  constexpr std::size_t kCandidates = 5;
+  const std::size_t count = end - begin;
+  const std::size_t tries = std::min(count, kCandidates);
+  std::uint32_t best = work_[begin];
+  std::size_t best_cuts = count;
+  for (std::size_t t = 0; t < tries && best_cuts > 0; ++t) {
+    const std::uint32_t candidate = work_[begin + t * count / tries];
+    std::size_t cuts = 0;
+    for (std::size_t i = begin; i < end && cuts < best_cuts; ++i) {
+      cuts += work_[i] != candidate && sideOf(work_[i], candidate) == Side::kBoth ? 1 : 0;
+    }
+    if (cuts < best_cuts) {
+      best_cuts = cuts;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+// Cuts a fragment by the splitter's plane. False: it stays whole.
+bool FrontToBack::cut(std::uint32_t fragment, std::uint32_t splitter, std::uint32_t& front,
+                      std::uint32_t& back) {
+  const Plane& plane = volumes_->volumes[all_[splitter].volume].support;
+  const PlaneRef cut_plane = PlaneRef::make(volumes_->planes.size(), false);
+  const std::size_t stack_size = stack_->corners.size();
+  const Fragment whole = all_[fragment];
+  const SplitResult parts =
+      stack_->split(whole.piece, plane, cut_plane, volumes_->volumes[whole.volume].reach);
+  bool usable = parts.side == Side::kBoth && parts.front.count >= 3 && parts.back.count >= 3;
+  if (usable) {
+    // The front part's new edge runs from p to q, counter-clockwise seen from the eye.
+    const auto corners = stack_->of(parts.front);
+    std::size_t at = 0;
+    while (at < corners.size() && !corners[at].edge.samePlane(cut_plane)) {
+      ++at;
+    }
+    double sine = 0.0;
+    Plane shadow;
+    if (at < corners.size()) {
+      shadow =
+          volumes_->eye.shadowPlane(corners[at].position, corners[(at + 1) % corners.size()].position, sine);
+    }
+    usable = sine > 0x1p-12;
+    if (usable) {
+      // split() takes the front part to lie in front of the named plane, i.e. behind its other side.
+      volumes_->planes.push_back(shadow.flipped());
+    }
+  }
+  if (!usable) {
+    stack_->corners.resize(stack_size);
+    return false;
+  }
+  for (const Piece& piece : {parts.front, parts.back}) {
+    for (Corner& corner : stack_->of(piece)) {
+      corner.embedded = false;  // no tree yet whose planes they could lie in
+    }
+  }
+  front = static_cast<std::uint32_t>(all_.size());
+  all_.push_back({parts.front, whole.volume});
+  back = static_cast<std::uint32_t>(all_.size());
+  all_.push_back({parts.back, whole.volume});
+  return true;
+}
+
+void FrontToBack::visit(std::size_t begin, std::size_t end) {
+  if (begin == end) {
+    return;
+  }
+  const std::uint32_t splitter = chooseSplitter(begin, end);
+  const std::size_t front_begin = work_.size();
+  std::size_t back_count = 0;
+  // Behind ones are collected in place at the start of this range, in front ones on top of the stack.
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::uint32_t fragment = work_[i];
+    if (fragment == splitter) {
+      continue;
+    }
+    std::uint32_t front = 0, back = 0;
+    Side side = sideOf(fragment, splitter);
+    if (side == Side::kBoth) {
+      if (cut(fragment, splitter, front, back)) {
+        work_.push_back(front);
+        work_[begin + back_count++] = back;
+        continue;
+      }
+      const OcclusionVolume& volume = volumes_->volumes[all_[fragment].volume];
+      side = volumes_->volumes[all_[splitter].volume].support.evaluate(volume.centroid) > 0.0 ? Side::kFront
+                                                                                              : Side::kBack;
+    }
+    if (side == Side::kFront) {
+      work_.push_back(fragment);
+    } else {
+      work_[begin + back_count++] = fragment;
+    }
+  }
+  visit(front_begin, work_.size());
+  work_.resize(front_begin);
+  ordered_.push_back(splitter);
+  visit(begin, begin + back_count);
+}
+
+void FrontToBack::order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments) {
+  volumes_ = &volumes;
+  stack_ = &stack;
+  all_.assign(fragments.begin(), fragments.end());
+  work_.clear();
+  ordered_.clear();
+  for (std::uint32_t i = 0; i < all_.size(); ++i) {
+    work_.push_back(i);
+  }
+  visit(0, work_.size());
+  fragments.clear();
+  for (const std::uint32_t i : ordered_) {
+    fragments.push_back(all_[i]);
+  }
+}
+
+}  // namespace sightline::occlusion_detail

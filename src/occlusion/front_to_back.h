@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "occlusion/occlusion_volume.h"
+#include "occlusion/polygon_split.h"
+
+namespace sightline::occlusion_detail {
+
+// A part of an occluder; corners on the stack of the tree's builder.
+struct Fragment {
+  Piece piece;
+  std::uint32_t volume = 0;
+};
+
+// Orders occluders front to back as seen from the eye, by a small BSP tree of their own planes (Fuchs, Kedem
+// and Naylor, SIGGRAPH 1980). All occluders face the eye, so the eye is in front of every plane: first what
+// is in front of a splitter, then the splitter, then what is behind it. Occluders that cross a splitter's
+// plane are cut; the cut gets a shadow plane that both parts share.
+//
+// Any order keeps the occlusion tree conservative; a wrong one costs tightness only. So where a cut would be
+// badly conditioned the occluder stays whole.
+class FrontToBack {
+ public:
+  // fragments: one a volume on entry, the ordered ones on return.
+  void order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments);
+
+ private:
+  void visit(std::size_t begin, std::size_t end);
+  std::uint32_t chooseSplitter(std::size_t begin, std::size_t end) const;
+  Side sideOf(std::uint32_t fragment, std::uint32_t splitter) const;
+  bool cut(std::uint32_t fragment, std::uint32_t splitter, std::uint32_t& front, std::uint32_t& back);
+
+  VolumeBuilder* volumes_ = nullptr;
+  PolygonStack* stack_ = nullptr;
+  std::vector<Fragment> all_;
+  std::vector<std::uint32_t> work_;  // fragments waiting, a stack of ranges
+  std::vector<std::uint32_t> ordered_;
+};
+
+}  // namespace sightline::occlusion_detail

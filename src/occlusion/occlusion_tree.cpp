@@ -1,0 +1,88 @@
+// Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998.
+// Differs from the paper in: the frustum's side planes are the tree's first nodes, so that only what is in
+// view counts; outlines are drawn in by a margin where nothing adjoins them and shared exactly where
+// something does (see docs/conservative.md); and in the exact leaf test (see tree_classify.cpp).
+
+#include "sightline/occlusion/occlusion_tree.h"
+
+#include "occlusion/tree_build.h"
+#include "occlusion/tree_classify.h"
+
+namespace sightline {
+
+using namespace occlusion_detail;
+
+struct OcclusionTree::Impl {
+  OcclusionTreeSettings settings;
+  TreeBuilder builder;
+  TreeData tree;
+  SplittingQuery splitting;
+  OcclusionTreeStats stats;
+  std::vector<OccluderId> used;
+
+  bool modified() const {
+    return settings.variant == OcclusionTreeVariant::kFME || settings.variant == OcclusionTreeVariant::kFMC;
+  }
+  bool exact() const {
+    return settings.variant == OcclusionTreeVariant::kFSE || settings.variant == OcclusionTreeVariant::kFME;
+  }
+};
+
+OcclusionTree::OcclusionTree(const OcclusionTreeSettings& settings) : impl_(std::make_unique<Impl>()) {
+  impl_->settings = settings;
+}
+OcclusionTree::~OcclusionTree() = default;
+OcclusionTree::OcclusionTree(OcclusionTree&&) noexcept = default;
+OcclusionTree& OcclusionTree::operator=(OcclusionTree&&) noexcept = default;
+
+void OcclusionTree::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
+  Impl& impl = *impl_;
+  const TreeLimits limits{impl.modified(), impl.settings.clip_to_frustum, impl.settings.max_nodes};
+  std::span<const OccluderId> part = chosen;
+  while (!impl.builder.build(view, set, part, limits, impl.tree) && !part.empty()) {
+    part = part.first(part.size() / 2);
+  }
+  impl.used.clear();
+  for (const OcclusionVolume& volume : impl.tree.volumes.volumes) {
+    impl.used.push_back(volume.occluder);
+  }
+  OcclusionTreeStats& stats = impl.stats;
+  stats.occluders = static_cast<std::uint32_t>(impl.used.size());
+  stats.dropped = static_cast<std::uint32_t>(chosen.size() - part.size());
+  stats.unusable = static_cast<std::uint32_t>(part.size()) - stats.occluders;
+  stats.nodes = static_cast<std::uint32_t>(impl.tree.nodes.size());
+  stats.leaves = static_cast<std::uint32_t>(impl.tree.leaves.size());
+  stats.depth = impl.tree.depth;
+}
+
+Visibility OcclusionTree::classify(const Box& box) {
+  if (!box.wellFormed()) {
+    return Visibility::kVisible;
+  }
+  Impl& impl = *impl_;
+  const Eye& eye = impl.tree.volumes.eye;
+  const EyeBox relative{Vec3d(box.min) - eye.position, Vec3d(box.max) - eye.position};
+  if (!eye.orthographic && relative.min.x <= 0.0 && relative.min.y <= 0.0 && relative.min.z <= 0.0 &&
+      relative.max.x >= 0.0 && relative.max.y >= 0.0 && relative.max.z >= 0.0) {
+    return Visibility::kVisible;  // the eye is inside
+  }
+  const State state = impl.modified() ? classifyByPlanes(impl.tree, relative, impl.exact())
+                                      : impl.splitting.classify(impl.tree, relative, impl.exact());
+  switch (state) {
+    case State::kVisible:
+      return Visibility::kVisible;
+    case State::kPartial:
+      return Visibility::kPartial;
+    default:
+      return Visibility::kHidden;
+  }
+}
+
+const OcclusionTreeStats& OcclusionTree::stats() const {
+  return impl_->stats;
+}
+std::span<const OccluderId> OcclusionTree::occluders() const {
+  return impl_->used;
+}
+
+}  // namespace sightline

@@ -1,0 +1,104 @@
+#pragma once
+
+// The chosen occluders as seen from one eye: facing it, beyond the near plane, with shadow planes whose
+// rounding is on the visible side. First stage of building an occlusion structure in object space.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/geometry/tolerance.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline::occlusion_detail {
+
+// A plane that may be used from both sides. Occluders lie behind (at negative values of) their own shadow
+// planes.
+struct PlaneRef {
+  std::uint32_t bits = 0xffffffffu;
+
+  static PlaneRef make(std::size_t plane, bool flipped) {
+    return {static_cast<std::uint32_t>(plane << 1) | (flipped ? 1u : 0u)};
+  }
+  std::uint32_t plane() const { return bits >> 1; }
+  bool flipped() const { return (bits & 1u) != 0; }
+  PlaneRef other() const { return {bits ^ 1u}; }
+  bool samePlane(PlaneRef b) const { return plane() == b.plane(); }
+};
+
+// A corner of a polygon and the edge to the next one. Positions are relative to the eye.
+struct Corner {
+  Vec3d position;
+  PlaneRef edge;          // the polygon lies behind it
+  bool embedded = false;  // the edge lies in a plane of the tree above: no node needed
+};
+
+struct OcclusionVolume {
+  OccluderId occluder;
+  Plane support;             // of the polygon, unit normal towards the eye, relative to the eye
+  double depth_slack = 0.0;  // metres that a point must be behind it, in addition to kDepthMargin
+  Vec3d centroid;            // of the unclipped polygon, relative to the eye
+  std::uint32_t first_corner = 0, corner_count = 0;
+  double reach = 0.0;  // largest magnitude of a corner
+};
+
+// The eye as the volumes need it: a point, or a direction for orthographic views. Everything is relative to
+// it.
+struct Eye {
+  Vec3d position;
+  Vec3d forward;
+  double near = 0.0;
+  bool orthographic = false;
+
+  // A plane through the eye and the line from p to q, unit normal, such that a polygon with the edge p -> q,
+  // counter- clockwise as seen from the eye, lies behind it. sine: of the angle the edge spans (1 for
+  // orthographic eyes).
+  Plane shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const;
+};
+
+class VolumeBuilder {
+ public:
+  // Fills volumes, corners and planes. Occluders that are of no use from here get no volume.
+  void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen);
+
+  Eye eye;
+  std::vector<OcclusionVolume> volumes;
+  std::vector<Corner> corners;
+  std::vector<Plane> planes;  // unit normals
+  double reach = 0.0;         // largest of the volumes
+
+ private:
+  struct Candidate {
+    OccluderId id;
+    bool flipped = false;  // seen from the back of a double-sided polygon
+    Plane support;
+    double inset = 0.0;  // metres by which open edges are drawn in
+    double slack = 0.0;
+    double reach = 0.0;
+    Vec3d centroid;
+  };
+  struct Outline {
+    Vec3d from, to;      // the edge
+    std::uint32_t edge;  // into OccluderSet::edges
+  };
+
+  bool examine(const OccluderSet& set, OccluderId id, Candidate& candidate);
+  void addVolume(const OccluderSet& set, const Candidate& candidate);
+  bool sealed(const OccluderSet& set, const Candidate& candidate, const OccluderEdge& edge,
+              const Plane& plane) const;
+  PlaneRef edgePlane(const OccluderSet& set, const Candidate& candidate, const Outline& outline);
+  std::uint32_t clipNear(std::uint32_t first, std::uint32_t count, double depth);
+  Outline outline(const OccluderSet& set, const Candidate& candidate, std::uint32_t side) const;
+  Plane insetPlane(const Candidate& candidate, const Outline& outline, double& sine) const;
+  double clipDepth(const Candidate& candidate) const;
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<Candidate> candidates_;
+  std::vector<std::uint32_t> candidate_of_;   // by OccluderId, kNone between builds
+  std::vector<std::uint32_t> plane_of_line_;  // by line, kNone between builds
+  std::vector<std::uint32_t> used_lines_;
+  std::vector<Corner> clipped_;
+};
+
+}  // namespace sightline::occlusion_detail

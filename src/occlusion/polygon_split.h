@@ -1,0 +1,53 @@
+#pragma once
+
+// Splitting convex polygons by planes, on a stack of corners that is shared by a whole recursion.
+
+#include <array>
+#include <vector>
+
+#include "occlusion/occlusion_volume.h"
+
+namespace sightline::occlusion_detail {
+
+// A polygon on the stack.
+struct Piece {
+  std::uint32_t first = 0, count = 0;
+};
+
+enum class Side : std::uint8_t {
+  kBack,     // no corner in front
+  kFront,    // no corner behind
+  kBoth,     // split
+  kOnPlane,  // all corners on the plane
+};
+
+struct SplitResult {
+  Side side = Side::kOnPlane;
+  Piece front, back;  // on top of the stack, for kBoth
+};
+
+class PolygonStack {
+ public:
+  static constexpr std::uint32_t kMaxCorners = 128;
+
+  std::vector<Corner> corners;
+
+  std::span<Corner> of(Piece piece) { return std::span(corners).subspan(piece.first, piece.count); }
+  std::span<const Corner> of(Piece piece) const {
+    return std::span(corners).subspan(piece.first, piece.count);
+  }
+
+  // plane: unit normal. ref: its name, or an invalid one (bits all set) for planes that edges can't lie in.
+  // on_plane: how near a corner at p must be to count as on the plane: on_plane * (magnitude(p) + scale).
+  // New edges, and old ones that lie in the plane, get ref as their plane and are marked as embedded.
+  // Polygons that would get too many corners are not split but reported as kOnPlane with overflow set.
+  SplitResult split(Piece piece, const Plane& plane, PlaneRef ref, double scale);
+
+  bool overflow = false;
+
+ private:
+  std::array<double, kMaxCorners> distance_{};
+  std::array<std::int8_t, kMaxCorners> sign_{};
+};
+
+}  // namespace sightline::occlusion_detail

@@ -1,0 +1,128 @@
+// Building the occlusion tree: Bittner, Havran, Slavik, CGI 1998, sections 5 and 6.1; the shadow volume BSP
+// tree of Chin and Feiner, SIGGRAPH 1990.
+
+#include "occlusion/tree_build.h"
+
+#include <algorithm>
+
+namespace sightline::occlusion_detail {
+
+// The frustum's side planes at the top: what is outside them says nothing, and no shadow is stored there.
+void TreeBuilder::addFrustum(const View& view) {
+  const Frustum frustum = frustumOf(view);
+  for (std::size_t i = 0; i < 4; ++i) {
+    Plane outwards = frustum.planes[i].flipped();
+    outwards.offset = view.orthographic ? outwards.evaluate(view.eye) : 0.0;
+    TreeNode node{outwards, Link::outside(), Link::node(i + 1)};
+    if (i == 3) {
+      node.back = Link::out();
+    }
+    tree_->nodes.push_back(node);
+    tree_->node_plane.push_back(PlaneRef::make(tree_->volumes.planes.size(), false));
+    tree_->volumes.planes.push_back(outwards);
+  }
+  tree_->root = Link::node(0);
+}
+
+// The subtree for one lit fragment: a node for each edge, in-shadow behind all of them.
+Link TreeBuilder::occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth) {
+  TreeData& tree = *tree_;
+  if (tree.nodes.size() + piece.count > limits_.max_nodes || depth + piece.count > kMaxDepth) {
+    failed_ = true;
+    return Link::out();
+  }
+  ShadowLeaf leaf{volume, static_cast<std::uint32_t>(tree.corners.size()), piece.count};
+  for (const Corner& corner : stack_.of(piece)) {
+    tree.corners.push_back(corner.position);
+  }
+  tree.leaves.push_back(leaf);
+  Link link = Link::shadow(tree.leaves.size() - 1);
+  std::uint32_t added = 0;
+  for (const Corner& corner : stack_.of(piece)) {
+    if (corner.embedded && limits_.modified) {
+      continue;
+    }
+    const Plane& stored = tree.volumes.planes[corner.edge.plane()];
+    const Plane plane = corner.edge.flipped() ? stored.flipped() : stored;
+    tree.nodes.push_back({plane, Link::out(), link});
+    tree.node_plane.push_back(corner.edge);
+    link = Link::node(tree.nodes.size() - 1);
+    ++added;
+  }
+  tree.depth = std::max(tree.depth, depth + added);
+  return link;
+}
+
+void TreeBuilder::filterDown(Link& link, Piece piece, std::uint32_t volume, std::uint32_t depth) {
+  if (failed_) {
+    return;
+  }
+  if (link.isNode()) {
+    filterDownNode(link.nodeIndex(), piece, volume, depth);
+  } else if (link.isOut()) {
+    // occlusionVolume appends nodes, which moves the one that `link` is in: never keep references across it.
+    const Link made = occlusionVolume(piece, volume, depth);
+    link = made;
+  }
+}
+
+void TreeBuilder::filterDownNode(std::size_t node, Piece piece, std::uint32_t volume, std::uint32_t depth) {
+  const Plane plane = tree_->nodes[node].plane;
+  const std::size_t stack_size = stack_.corners.size();
+  const SplitResult split = stack_.split(piece, plane, tree_->node_plane[node], tree_->on_plane_scale);
+  const auto descend = [&](bool front, Piece part) {
+    Link link = front ? tree_->nodes[node].front : tree_->nodes[node].back;
+    filterDown(link, part, volume, depth + 1);
+    (front ? tree_->nodes[node].front : tree_->nodes[node].back) = link;
+  };
+  switch (split.side) {
+    case Side::kFront:
+      descend(true, piece);
+      break;
+    case Side::kBack:
+      descend(false, piece);
+      break;
+    case Side::kBoth:
+      descend(true, split.front);
+      descend(false, split.back);
+      break;
+    case Side::kOnPlane:
+      break;  // thinner than rounding: it hides nothing
+  }
+  stack_.corners.resize(stack_size);
+}
+
+bool TreeBuilder::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
+                        const TreeLimits& limits, TreeData& tree) {
+  tree_ = &tree;
+  limits_ = limits;
+  failed_ = false;
+  tree.root = Link::out();
+  tree.nodes.clear();
+  tree.node_plane.clear();
+  tree.leaves.clear();
+  tree.corners.clear();
+  tree.depth = 0;
+  tree.volumes.build(view, set, chosen);
+  tree.on_plane_scale = view.orthographic ? tree.volumes.reach : 0.0;
+  if (limits.clip_to_frustum) {
+    addFrustum(view);
+  }
+  stack_.overflow = false;
+  stack_.corners.clear();
+  fragments_.clear();
+  for (std::uint32_t v = 0; v < tree.volumes.volumes.size(); ++v) {
+    const OcclusionVolume& volume = tree.volumes.volumes[v];
+    const Piece piece{static_cast<std::uint32_t>(stack_.corners.size()), volume.corner_count};
+    const auto first = tree.volumes.corners.begin() + volume.first_corner;
+    stack_.corners.insert(stack_.corners.end(), first, first + volume.corner_count);
+    fragments_.push_back({piece, v});
+  }
+  front_to_back_.order(tree.volumes, stack_, fragments_);
+  for (const Fragment& fragment : fragments_) {
+    filterDown(tree.root, fragment.piece, fragment.volume, 0);
+  }
+  return !failed_ && !stack_.overflow;
+}
+
+}  // namespace sightline::occlusion_detail

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "occlusion/occlusion_volume.h"
+#include "occlusion/polygon_split.h"
+
+namespace sightline::occlusion_detail {
+
+// Where a branch of the tree leads: to a node, or to one of three kinds of leaves.
+struct Link {
+  std::int32_t value = -1;
+
+  static constexpr Link out() { return {-1}; }      // nothing there hides
+  static constexpr Link outside() { return {-2}; }  // outside the view's frustum: says nothing
+  static constexpr Link node(std::size_t i) { return {static_cast<std::int32_t>(i)}; }
+  static constexpr Link shadow(std::size_t leaf) { return {-3 - static_cast<std::int32_t>(leaf)}; }
+  bool isNode() const { return value >= 0; }
+  bool isOut() const { return value == -1; }
+  bool isOutside() const { return value == -2; }
+  std::size_t nodeIndex() const { return static_cast<std::size_t>(value); }
+  std::size_t leafIndex() const { return static_cast<std::size_t>(-3 - value); }
+};
+
+// A shadow plane; the occluder that made it lies behind. Positions are relative to the eye.
+struct TreeNode {
+  Plane plane;  // unit normal
+  Link front, back;
+};
+
+// A leaf in shadow: the cone of a fragment of an occluder, as cut out by the planes on the path to it.
+struct ShadowLeaf {
+  std::uint32_t volume = 0;
+  std::uint32_t first_corner = 0, corner_count = 0;  // of the fragment, into TreeData::corners
+};
+
+struct TreeData {
+  Link root = Link::out();
+  std::vector<TreeNode> nodes;
+  std::vector<PlaneRef> node_plane;  // of each node, for building
+  std::vector<ShadowLeaf> leaves;
+  std::vector<Vec3d> corners;
+  VolumeBuilder volumes;
+  double on_plane_scale = 0.0;  // see PolygonStack::split
+  std::uint32_t depth = 0;
+};
+
+}  // namespace sightline::occlusion_detail

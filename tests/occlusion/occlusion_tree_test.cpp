@@ -1,0 +1,422 @@
+#include "sightline/occlusion/occlusion_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/support/visibility_oracle.h"
+
+namespace sightline {
+namespace {
+
+using test::OraclePolygon;
+
+constexpr OcclusionTreeVariant kVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
+                                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
+
+View viewFrom(const Vec3d& eye, const Vec3d& forward) {
+  View view;
+  view.eye = eye;
+  setOrientation(view, forward, {0, 1, 0});
+  view.near = 0.01;
+  view.far = 1e4;
+  view.tan_half_fovy = 1.0;
+  view.aspect = 1.0;
+  return view;
+}
+
+OccluderSet setOf(std::span<const OraclePolygon> polygons) {
+  std::vector<OccluderPolygon> input;
+  for (const OraclePolygon& polygon : polygons) {
+    input.push_back({polygon.vertices, polygon.double_sided, ObjectId(0u)});
+  }
+  return makeOccluders(input);
+}
+
+std::vector<OccluderId> all(const OccluderSet& set) {
+  std::vector<OccluderId> ids;
+  for (std::size_t i = 0; i < set.occluders.size(); ++i) {
+    ids.push_back(OccluderId(i));
+  }
+  return ids;
+}
+
+Visibility ask(OcclusionTreeVariant variant, const View& view, std::span<const OraclePolygon> polygons,
+               const Box& box) {
+  const OccluderSet set = setOf(polygons);
+  OcclusionTree tree({.variant = variant});
+  tree.build(view, set, all(set));
+  return tree.classify(box);
+}
+
+// Facing +z, at depth z, from x0 to x1 and y0 to y1.
+OraclePolygon wall(float x0, float x1, float y0, float y1, float z) {
+  return {{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}, false};
+}
+
+const View kLookingBack = viewFrom({0, 0, 0}, {0, 0, -1});
+
+TEST(OcclusionTree, HidesABoxBehindOneWall) {
+  const std::vector<OraclePolygon> walls{wall(-1, 1, -1, 1, -5)};
+  for (const auto variant : kVariants) {
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -4}, {1, 1, -3}}), Visibility::kVisible);
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-9, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{5, -1, -12}, {6, 1, -10}}), Visibility::kVisible);
+  }
+}
+
+TEST(OcclusionTree, WithoutOccludersHidesNothingInView) {
+  for (const auto variant : kVariants) {
+    EXPECT_EQ(ask(variant, kLookingBack, {}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kVisible);
+  }
+}
+
+TEST(OcclusionTree, ABoxThatTouchesTheWallFromBehindIsNotHidden) {
+  const std::vector<OraclePolygon> walls{wall(-4, 4, -4, 4, -5)};
+  for (const auto variant : kVariants) {
+    EXPECT_NE(ask(variant, kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5}}), Visibility::kHidden);
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -6}, {1, 1, -5.001f}}), Visibility::kHidden);
+  }
+}
+
+TEST(OcclusionTree, AdjoiningWallsHideABoxAcrossTheirSeamTogether) {
+  const std::vector<OraclePolygon> walls{wall(-4, 0.3f, -4, 4, -5), wall(0.3f, 4, -4, 4, -5)};
+  for (const auto variant : kVariants) {
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
+  }
+}
+
+TEST(OcclusionTree, TheSidesOfACornerHideTogether) {
+  // A building's corner towards the eye: two walls that meet in a vertical edge.
+  const std::vector<OraclePolygon> walls{
+      {{{-3, -2, -8}, {0, -2, -5}, {0, 2, -5}, {-3, 2, -8}}, false},
+      {{{0, -2, -5}, {3, -2, -8}, {3, 2, -8}, {0, 2, -5}}, false},
+  };
+  for (const auto variant : kVariants) {
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-0.5, -0.5, -12}, {0.5, 0.5, -10}}), Visibility::kHidden);
+  }
+}
+
+TEST(OcclusionTree, DisconnectedWallsAtDifferentDepthsHideTogether) {
+  const std::vector<OraclePolygon> walls{wall(-2, 0.5f, -4, 4, -4), wall(0, 5, -8, 8, -6)};
+  EXPECT_EQ(ask(OcclusionTreeVariant::kFSE, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}),
+            Visibility::kHidden);
+}
+
+TEST(OcclusionTree, NeverHidesABoxSeenThroughAGap) {
+  // 640 pixels high, 90 degrees: a pixel is 2 / 640 at unit distance.
+  std::mt19937_64 random(7);
+  for (const double pixels : {0.001, 0.3, 0.6, 0.9, 3.0}) {
+    for (int turn = 0; turn < 60; ++turn) {
+      const double angle = 0.11 * turn;
+      const double gap = pixels * 2.0 / 640.0 * 5.0;
+      const double offset = 0.003 * static_cast<double>(random() % 1000);
+      const auto at = [&](double u, double v) {
+        return Vec3f(static_cast<float>(std::cos(angle) * u - std::sin(angle) * v),
+                     static_cast<float>(std::sin(angle) * u + std::cos(angle) * v), -5.0f);
+      };
+      const std::vector<OraclePolygon> walls{
+          {{at(-40, -40), at(offset, -40), at(offset, 40), at(-40, 40)}, false},
+          {{at(offset + gap, -40), at(40, -40), at(40, 40), at(offset + gap, 40)}, false}};
+      const Vec3d middle = Vec3d(at(offset + 0.5 * gap, 0.0)) * 2.0;
+      const Box box{Vec3f(middle - Vec3d(0.5, 0.5, 0.5)), Vec3f(middle + Vec3d(0.5, 0.5, 0.5))};
+      for (const auto variant : kVariants) {
+        EXPECT_NE(ask(variant, kLookingBack, walls, box), Visibility::kHidden)
+            << pixels << " pixels, turn " << turn;
+      }
+    }
+  }
+}
+
+TEST(OcclusionTree, TouchingSilhouettesOfUnconnectedWallsCountAsAGap) {
+  // The right wall is farther away and begins exactly where the left one ends, as seen from the eye.
+  const std::vector<OraclePolygon> walls{wall(-4, 1, -4, 4, -4), wall(2, 12, -8, 8, -8)};
+  for (const auto variant : kVariants) {
+    EXPECT_NE(ask(variant, kLookingBack, walls, {{1, -1, -14}, {5, 1, -12}}), Visibility::kHidden);
+  }
+}
+
+TEST(OcclusionTree, SingleSidedWallsHideNothingFromBehind) {
+  OraclePolygon turned = wall(-4, 4, -4, 4, -5);
+  std::reverse(turned.vertices.begin(), turned.vertices.end());
+  OraclePolygon both = turned;
+  both.double_sided = true;
+  for (const auto variant : kVariants) {
+    const Box behind{{-1, -1, -12}, {1, 1, -10}};
+    EXPECT_EQ(ask(variant, kLookingBack, {{turned}}, behind), Visibility::kVisible);
+    EXPECT_EQ(ask(variant, kLookingBack, {{both}}, behind), Visibility::kHidden);
+  }
+}
+
+TEST(OcclusionTree, WhatTheNearPlaneClipsHidesNothing) {
+  View view = kLookingBack;
+  view.near = 5.5;
+  for (const auto variant : kVariants) {
+    EXPECT_NE(ask(variant, view, {{wall(-9, 9, -9, 9, -5)}}, {{-1, -1, -12}, {1, 1, -10}}),
+              Visibility::kHidden);
+  }
+  // A wall that crosses the near plane hides with the part beyond it only.
+  const OraclePolygon side{{{-1, -4, 0}, {3, -4, -8}, {3, 4, -8}, {-1, 4, 0}}, true};
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const double x = -6.0 + 0.006 * i;
+    const Box box{Vec3f(Vec3d(x, -0.2, -12)), Vec3f(Vec3d(x + 0.5, 0.2, -11))};
+    for (const auto variant : kVariants) {
+      if (ask(variant, view, {{side}}, box) == Visibility::kHidden) {
+        EXPECT_FALSE(test::lookAt(box, view, {{side}}, 200, random).seen) << "x " << x;
+      }
+    }
+  }
+}
+
+TEST(OcclusionTree, TheEyeInAnOccludersPlaneOrInsideTheBoxHidesNothing) {
+  const OraclePolygon edge_on{{{-4, 0, -2}, {4, 0, -2}, {4, 0, -9}, {-4, 0, -9}}, true};
+  for (const auto variant : kVariants) {
+    EXPECT_EQ(ask(variant, kLookingBack, {{edge_on}}, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kVisible);
+    EXPECT_EQ(ask(variant, kLookingBack, {{wall(-1, 1, -1, 1, -5)}}, {{-3, -3, -3}, {3, 3, 3}}),
+              Visibility::kVisible);
+  }
+}
+
+TEST(OcclusionTree, BoxesThatAreNotWellFormedAreVisible) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  for (const auto variant : kVariants) {
+    for (const Box& box : {Box{}, Box{{nan, 0, 0}, {1, 1, 1}}, Box{{-1, -1, -inf}, {1, 1, -10}}}) {
+      EXPECT_EQ(ask(variant, kLookingBack, {{wall(-9, 9, -9, 9, -5)}}, box), Visibility::kVisible);
+    }
+  }
+}
+
+TEST(OcclusionTree, FlatAndPointLikeBoxesAreAnsweredToo) {
+  for (const auto variant : kVariants) {
+    const std::vector<OraclePolygon> walls{wall(-2, 2, -2, 2, -5)};
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -10}, {1, 1, -10}}), Visibility::kHidden);
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{0, 0, -10}, {0, 0, -10}}), Visibility::kHidden);
+    EXPECT_EQ(ask(variant, kLookingBack, walls, {{3, 3, -6}, {3, 3, -6}}), Visibility::kVisible);
+  }
+}
+
+TEST(OcclusionTree, ABoxInFrontThatCrossesTheSupportingPlaneBesideTheOccluderIsNotHidden) {
+  // In front of the slanted wall within its cone, behind its plane outside of it; it does not meet the wall.
+  const OraclePolygon slanted{{{-1, -1, -4}, {1, -1, -6}, {1, 1, -6}, {-1, 1, -4}}, true};
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d c((static_cast<double>(random() % 4000) - 2000) * 1e-3, 0.0,
+                  -3.0 - static_cast<double>(random() % 4000) * 1e-3);
+    const Vec3d h(0.2, 0.2, 0.4);
+    const Box box{Vec3f(c - h), Vec3f(c + h)};
+    const test::Sight sight = test::lookAt(box, kLookingBack, {{slanted}}, 60, random);
+    for (const auto variant : kVariants) {
+      if (sight.seen) {
+        EXPECT_NE(ask(variant, kLookingBack, {{slanted}}, box), Visibility::kHidden) << c.x << " " << c.z;
+      }
+    }
+  }
+}
+
+// Random scenes of families that are hard for floating point.
+struct Family {
+  const char* name;
+  double scale;       // metres
+  double far_offset;  // metres from the origin
+  bool slivers;
+};
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine(seed) {}
+  double in(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1p-53;
+  }
+  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
+  std::mt19937_64 engine;
+};
+
+OraclePolygon randomPolygon(Random& random, const Family& family, const Vec3d& around) {
+  const Vec3d center = around + random.point(6.0) * family.scale;
+  const Vec3d normal = normalized(random.point(1.0));
+  const Vec3d u = normalized(cross(normal, Vec3d(0.3, 0.5, 0.8)));
+  const Vec3d v = cross(normal, u);
+  const int n = 3 + static_cast<int>(random.engine() % 4);
+  const double a = random.in(0.5, 4.0) * family.scale;
+  const double b =
+      family.slivers && random.engine() % 2 ? a * random.in(1e-6, 1e-2) : random.in(0.5, 4.0) * family.scale;
+  OraclePolygon polygon;
+  const double start = random.in(0.0, 6.0);
+  for (int i = 0; i < n; ++i) {
+    const double t = start + 6.283185307179586 * i / n;
+    polygon.vertices.push_back(Vec3f(center + u * (a * std::cos(t)) + v * (b * std::sin(t))));
+  }
+  polygon.double_sided = random.engine() % 2 == 0;
+  return polygon;
+}
+
+// A fan of triangles or a row of walls, connected by shared vertices.
+void addConnected(Random& random, const Family& family, const Vec3d& around,
+                  std::vector<OraclePolygon>& polygons) {
+  const Vec3d up(0, random.in(1, 4) * family.scale, 0);
+  Vec3d at = around + random.point(4.0) * family.scale;
+  const bool double_sided = random.engine() % 2 == 0;
+  for (int i = 0; i < 5; ++i) {
+    const Vec3d next = at + Vec3d(random.in(-2, 2), 0, random.in(-2, 2)) * family.scale;
+    polygons.push_back({{Vec3f(at - up), Vec3f(next - up), Vec3f(next + up), Vec3f(at + up)}, double_sided});
+    at = next;
+  }
+}
+
+class OcclusionTreeFamilies : public ::testing::TestWithParam<Family> {};
+
+TEST_P(OcclusionTreeFamilies, NothingThatARayReachesIsHidden) {
+  const Family family = GetParam();
+  int hidden = 0;
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    Random random(seed);
+    const Vec3d origin(family.far_offset, 0.5 * family.far_offset, -family.far_offset);
+    std::vector<OraclePolygon> polygons;
+    for (int i = 0; i < 8; ++i) {
+      polygons.push_back(randomPolygon(random, family, origin));
+    }
+    addConnected(random, family, origin, polygons);
+    View view = viewFrom(origin + random.point(8.0) * family.scale, random.point(1.0));
+    if (seed % 4 == 0) {
+      // The eye on a vertex's coordinates: planes through it, edges through the eye's pixel.
+      view.eye = Vec3d(polygons[0].vertices[0]) + Vec3d(0, 0, 1) * family.scale;
+    }
+    view.near = 0.01 * family.scale;
+    view.far = 1e3 * family.scale;
+    view.orthographic = seed % 3 == 0;
+    view.ortho_height = 12.0 * family.scale;
+    const OccluderSet set = setOf(polygons);
+    std::vector<OcclusionTree> trees;
+    for (const auto variant : kVariants) {
+      trees.emplace_back(OcclusionTreeSettings{.variant = variant});
+      trees.back().build(view, set, all(set));
+    }
+    for (int i = 0; i < 60; ++i) {
+      const Vec3d c = origin + random.point(10.0) * family.scale;
+      const Vec3d h = abs(random.point(random.in(0.01, 2.0))) * family.scale;
+      const Box box{Vec3f(c - h), Vec3f(c + h)};
+      std::vector<Visibility> states;
+      for (OcclusionTree& tree : trees) {
+        states.push_back(tree.classify(box));
+      }
+      const bool any_hidden = std::count(states.begin(), states.end(), Visibility::kHidden) > 0;
+      hidden += any_hidden ? 1 : 0;
+      if (any_hidden) {
+        const test::Sight sight = test::lookAt(box, view, polygons, 400, random.engine);
+        EXPECT_FALSE(sight.seen) << family.name << " seed " << seed << " box " << i << " variants "
+                                 << static_cast<int>(states[0]) << static_cast<int>(states[1])
+                                 << static_cast<int>(states[2]) << static_cast<int>(states[3]);
+      }
+      // What the conservative algorithms hide, the exact one hides as well.
+      if (states[2] == Visibility::kHidden || states[3] == Visibility::kHidden) {
+        EXPECT_EQ(states[0], Visibility::kHidden) << family.name << " seed " << seed << " box " << i;
+      }
+    }
+  }
+  EXPECT_GT(hidden, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scales, OcclusionTreeFamilies,
+                         ::testing::Values(Family{"metres", 1.0, 0.0, false},
+                                           Family{"slivers", 1.0, 0.0, true},
+                                           Family{"micrometres", 1e-6, 0.0, false},
+                                           Family{"megametres", 1e6, 0.0, false},
+                                           Family{"metres far from the origin", 1.0, 1e5, false},
+                                           Family{"slivers far from the origin", 1.0, 1e6, true}),
+                         [](const auto& param) { return "Family" + std::to_string(param.index); });
+
+TEST(OcclusionTree, TheExactVariantFindsAllThatTheOccludersHide) {
+  // Every box that 3,000 rays find blocked, with none near an edge, must be called hidden.
+  int blocked = 0, missed = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    const Family family{"metres", 1.0, 0.0, false};
+    std::vector<OraclePolygon> polygons;
+    for (int i = 0; i < 6; ++i) {
+      polygons.push_back(randomPolygon(random, family, {0, 0, -10}));
+    }
+    const View view = kLookingBack;
+    const OccluderSet set = setOf(polygons);
+    OcclusionTree tree({.variant = OcclusionTreeVariant::kFSE});
+    tree.build(view, set, all(set));
+    for (int i = 0; i < 40; ++i) {
+      const Vec3d c = Vec3d(0, 0, -18) + random.point(6.0);
+      const Vec3d h = abs(random.point(0.6)) + Vec3d(0.05, 0.05, 0.05);
+      const Box box{Vec3f(c - h), Vec3f(c + h)};
+      const test::Sight sight = test::lookAt(box, view, polygons, 3000, random.engine);
+      if (!sight.seen && sight.blocked) {
+        ++blocked;
+        missed += tree.classify(box) != Visibility::kHidden ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(blocked, 200);
+  // Rays are samples: a visible corner can be smaller than what 3,000 of them find.
+  EXPECT_LE(missed, blocked / 50);
+}
+
+TEST(OcclusionTree, TheOrderOfTheChosenOccludersDoesNotMatterForSafety) {
+  Random random(5);
+  const Family family{"metres", 1.0, 0.0, false};
+  std::vector<OraclePolygon> polygons;
+  for (int i = 0; i < 30; ++i) {
+    polygons.push_back(randomPolygon(random, family, {0, 0, -12}));
+  }
+  const OccluderSet set = setOf(polygons);
+  std::vector<OccluderId> ids = all(set);
+  for (int round = 0; round < 20; ++round) {
+    std::shuffle(ids.begin(), ids.end(), random.engine);
+    OcclusionTree tree;
+    tree.build(kLookingBack, set, ids);
+    for (int i = 0; i < 60; ++i) {
+      const Vec3d c = Vec3d(0, 0, -16) + random.point(8.0);
+      const Box box{Vec3f(c - Vec3d(0.3, 0.3, 0.3)), Vec3f(c + Vec3d(0.3, 0.3, 0.3))};
+      if (tree.classify(box) == Visibility::kHidden) {
+        EXPECT_FALSE(test::lookAt(box, kLookingBack, polygons, 300, random.engine).seen);
+      }
+    }
+  }
+}
+
+TEST(OcclusionTree, TooFewNodesCostTightnessButNeverSafety) {
+  Random random(9);
+  const Family family{"metres", 1.0, 0.0, false};
+  std::vector<OraclePolygon> polygons;
+  for (int i = 0; i < 30; ++i) {
+    polygons.push_back(randomPolygon(random, family, {0, 0, -12}));
+  }
+  const OccluderSet set = setOf(polygons);
+  OcclusionTree tree({.max_nodes = 40});
+  tree.build(kLookingBack, set, all(set));
+  EXPECT_GT(tree.stats().dropped, 0u);
+  EXPECT_LE(tree.stats().nodes, 40u);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3d c = Vec3d(0, 0, -16) + random.point(8.0);
+    const Box box{Vec3f(c - Vec3d(0.3, 0.3, 0.3)), Vec3f(c + Vec3d(0.3, 0.3, 0.3))};
+    if (tree.classify(box) == Visibility::kHidden) {
+      EXPECT_FALSE(test::lookAt(box, kLookingBack, polygons, 300, random.engine).seen);
+    }
+  }
+}
+
+TEST(OcclusionTree, TheModifiedTreeHasNoMoreNodesThanTheStandardOne) {
+  Random random(13);
+  const Family family{"metres", 1.0, 0.0, false};
+  for (int round = 0; round < 20; ++round) {
+    std::vector<OraclePolygon> polygons;
+    for (int i = 0; i < 12; ++i) {
+      polygons.push_back(randomPolygon(random, family, {0, 0, -12}));
+    }
+    const OccluderSet set = setOf(polygons);
+    OcclusionTree standard({.variant = OcclusionTreeVariant::kFSE}),
+        modified({.variant = OcclusionTreeVariant::kFME});
+    standard.build(kLookingBack, set, all(set));
+    modified.build(kLookingBack, set, all(set));
+    EXPECT_LE(modified.stats().nodes, standard.stats().nodes);
+  }
+}
+
+}  // namespace
+}  // namespace sightline

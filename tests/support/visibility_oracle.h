@@ -1,0 +1,128 @@
+#pragma once
+
+// An independent, brute-force answer to "is some point of this box seen?" for scenes of a few polygons: rays
+// from the eye to points on the box against every polygon. A ray near an edge, or a point near a polygon, is
+// left undecided; only what is beyond doubt is used to accuse the code under test.
+
+#include <random>
+#include <span>
+#include <vector>
+
+#include "sightline/math/box.h"
+#include "sightline/math/frustum.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline::test {
+
+struct OraclePolygon {
+  std::vector<Vec3f> vertices;  // counter-clockwise from the front
+  bool double_sided = false;
+};
+
+enum class RayAnswer { kClear, kBlocked, kUndecided };
+
+// The segment from `from` to `to` against one polygon. margin: relative distance within which nothing is
+// decided.
+inline RayAnswer castAt(const OraclePolygon& polygon, const Vec3d& from, const Vec3d& to, double near_depth,
+                        const Vec3d& forward, double margin = 1e-10) {
+  const std::size_t n = polygon.vertices.size();
+  Vec3d normal;
+  const Vec3d origin(polygon.vertices[0]);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    normal += cross(Vec3d(polygon.vertices[i]) - origin, Vec3d(polygon.vertices[i + 1]) - origin);
+  }
+  normal = normalized(normal);
+  const double size = length(from - origin) + length(to - origin);
+  const double before = dot(normal, from - origin), after = dot(normal, to - origin);
+  if (std::abs(before) < margin * size || std::abs(after) < margin * size) {
+    return RayAnswer::kUndecided;
+  }
+  if ((before > 0.0) == (after > 0.0)) {
+    return RayAnswer::kClear;
+  }
+  const Vec3d direction = to - from;
+  const Vec3d hit = from + direction * (before / (before - after));
+  bool inside = true, undecided = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3d a(polygon.vertices[i]), b(polygon.vertices[(i + 1) % n]);
+    const Vec3d inwards = normalized(cross(normal, b - a));
+    const double d = dot(inwards, hit - a);
+    undecided |= std::abs(d) < margin * size;
+    inside &= d > 0.0;
+  }
+  if (undecided) {
+    return RayAnswer::kUndecided;
+  }
+  if (!inside || (before < 0.0 && !polygon.double_sided)) {
+    return RayAnswer::kClear;
+  }
+  const double depth = dot(forward, hit - from);
+  if (std::abs(depth - near_depth) < 1e-9 * (1.0 + near_depth)) {
+    return RayAnswer::kUndecided;
+  }
+  return depth > near_depth ? RayAnswer::kBlocked : RayAnswer::kClear;
+}
+
+inline RayAnswer castAtAll(std::span<const OraclePolygon> polygons, const View& view, const Vec3d& target) {
+  const Vec3d from =
+      view.orthographic ? target - view.forward * dot(view.forward, target - view.eye) : view.eye;
+  RayAnswer answer = RayAnswer::kClear;
+  for (const OraclePolygon& polygon : polygons) {
+    const RayAnswer one = castAt(polygon, from, target, view.near, view.forward);
+    if (one == RayAnswer::kBlocked) {
+      return one;
+    }
+    if (one == RayAnswer::kUndecided) {
+      answer = one;
+    }
+  }
+  return answer;
+}
+
+inline bool insideView(const View& view, const Vec3d& point) {
+  for (const Plane& plane : frustumOf(view).planes) {
+    if (plane.evaluate(point) < 1e-9 * (1.0 + length(point))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+struct Sight {
+  bool seen = false;  // a point is surely seen
+  Vec3d point;
+  bool blocked = true;  // every sampled ray was surely blocked, or its point is out of view
+};
+
+// Looks at `samples` random points of the box's surface, its corners and its edges' points included.
+inline Sight lookAt(const Box& box, const View& view, std::span<const OraclePolygon> polygons, int samples,
+                    std::mt19937_64& random) {
+  Sight sight;
+  for (int s = 0; s < samples; ++s) {
+    Vec3d t;
+    for (int axis = 0; axis < 3; ++axis) {
+      t[axis] = static_cast<double>(random() >> 11) * 0x1p-53;
+      if (random() % 3 == 0) {
+        t[axis] = static_cast<double>(random() % 2);
+      }
+    }
+    t[static_cast<int>(random() % 3)] = static_cast<double>(random() % 2);
+    Vec3d point;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = box.min[axis] + t[axis] * (static_cast<double>(box.max[axis]) - box.min[axis]);
+    }
+    if (!insideView(view, point)) {
+      continue;
+    }
+    const RayAnswer answer = castAtAll(polygons, view, point);
+    sight.blocked &= answer == RayAnswer::kBlocked;
+    if (answer == RayAnswer::kClear) {
+      sight.seen = true;
+      sight.point = point;
+      return sight;
+    }
+  }
+  return sight;
+}
+
+}  // namespace sightline::test
