@@ -1,0 +1,37 @@
+#pragma once
+
+// Seeded procedural scenes, shared by the tool (demo:NAME?key=value&...), tests, benchmarks and examples.
+// The same options give the same bits everywhere. Each scene comes with walks in Scene::paths.
+
+#include <cstdint>
+#include <string_view>
+
+#include "sightline/base/result.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+struct CityOptions {
+  std::uint32_t copies = 30;  // about 10,000 polygons each
+  std::uint32_t seed = 1;
+};
+// Streets and blocks, buildings with facade detail, trees, street furniture.
+// Walks: "smooth" (400 frames through the streets; the default, first), "best", "average", "worst" (by
+// occlusion).
+Scene makeCity(const CityOptions& options);
+
+struct BuildingOptions {
+  std::uint32_t floors = 4;
+  std::uint32_t plants = 0;  // detail objects of about 644 triangles spread over the rooms
+  std::uint32_t seed = 1;
+};
+// Corridors, rooms, doors, windows, stairs, furniture. Walk: "smooth" (400 frames through corridors, rooms,
+// stairs).
+Scene makeBuilding(const BuildingOptions& options);
+
+// "demo:city?copies=30&seed=1", "demo:building?floors=4&plants=100". An unknown scene or key, or a value out
+// of range, is an error that lists what there is.
+bool isDemoUrl(std::string_view url);
+Result<Scene> makeDemoScene(std::string_view url);
+
+}  // namespace sightline
