@@ -40,7 +40,9 @@ test: setup
 bench: setup
 	@$(configure)
 	@$(build)
-	@SHORT="$(SHORT)" scripts/bench $(BUILD)
+	@for program in $$(find $(BUILD)/bench -maxdepth 1 -type f -executable | sort); do \
+	  $$program $(if $(SHORT),--benchmark_min_time=0.05) || exit 1; \
+	done
 
 format:
 	@scripts/setup --checks
