@@ -31,7 +31,7 @@ const Pen& penOf(std::size_t series) {
   return kPens[series % kPens.size()];
 }
 
-constexpr double kLeft = 78.0, kRight = 18.0, kTop = 34.0, kBottom = 46.0, kLegendRow = 20.0;
+constexpr double kLeft = 92.0, kRight = 18.0, kTop = 34.0, kBottom = 46.0, kLegendRow = 20.0;
 
 // The rectangle of the curves, in the SVG's units, and its two axes.
 struct Canvas {

@@ -20,7 +20,7 @@ p { margin: 0 0 12px; max-width: 75ch; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(200px, 1fr)); gap: 12px; margin: 24px 0 0; }
 .tile { background: var(--card); border-radius: 10px; padding: 14px 18px; }
 .tile b { display: block; font-size: 28px; line-height: 1.25; font-variant-numeric: tabular-nums; }
-.tile span { color: var(--dim); font-size: 14px; }
+.tile > span { color: var(--dim); font-size: 14px; }
 dl.facts { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 10px 24px; margin: 0; }
 dl.facts div { border-top: 1px solid var(--line); padding-top: 6px; }
 dt { color: var(--dim); font-size: 13px; } dd { margin: 0; font-variant-numeric: tabular-nums; }

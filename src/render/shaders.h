@@ -26,24 +26,21 @@ void main() {
 }
 )";
 
-// Sun, sky and a little light from the eye on flat faces; haze with distance.
-#define SIGHTLINE_SHADE                                                                  \
-  "in vec3 relative;\n"                                                                  \
-  "flat in vec4 color;\n"                                                                \
-  "uniform float haze;\n"                                                                \
-  "out vec4 result;\n"                                                                   \
-  "vec4 shade() {\n"                                                                     \
-  "  vec3 n = cross(dFdx(relative), dFdy(relative));\n"                                  \
-  "  float n2 = dot(n, n), d2 = dot(relative, relative);\n"                              \
-  "  n = n2 > 0.0 ? n * inversesqrt(n2) : vec3(0.0, 1.0, 0.0);\n"                        \
-  "  float sun = max(dot(n, vec3(0.4286, 0.7845, 0.4482)), 0.0);\n"                      \
-  "  float front = d2 > 0.0 ? abs(dot(n, relative)) * inversesqrt(d2) : 1.0;\n"          \
-  "  vec3 sky = mix(vec3(0.20, 0.19, 0.18), vec3(0.36, 0.40, 0.46), n.y * 0.5 + 0.5);\n" \
-  "  vec3 light = sky + sun * vec3(0.66, 0.62, 0.54) + 0.10 * front;\n"                  \
-  "  vec3 lit = color.rgb * color.rgb * light;\n"                                        \
-  "  float fog = d2 * haze;\n"                                                           \
-  "  fog = 0.75 * fog / (1.0 + fog);\n"                                                  \
-  "  return vec4(sqrt(mix(lit, vec3(0.66, 0.73, 0.80), fog)), color.a);\n"               \
+// Sun, sky and a little difference between walls on flat faces; haze with distance.
+#define SIGHTLINE_SHADE                                                                                  \
+  "in vec3 relative;\n"                                                                                  \
+  "flat in vec4 color;\n"                                                                                \
+  "uniform float haze;\n"                                                                                \
+  "out vec4 result;\n"                                                                                   \
+  "vec4 shade() {\n"                                                                                     \
+  "  vec3 n = cross(dFdx(relative), dFdy(relative));\n"                                                  \
+  "  n *= inversesqrt(max(dot(n, n), 1e-36));\n"                                                         \
+  "  float sun = max(dot(n, vec3(0.4286, 0.7845, 0.4482)), 0.0);\n"                                      \
+  "  float sky = dot(n, vec3(0.035, 0.09, -0.02)) + 0.33;\n"                                             \
+  "  vec3 lit = color.rgb * color.rgb * (sky * vec3(0.95, 1.0, 1.08) + sun * vec3(0.52, 0.49, 0.43));\n" \
+  "  float fog = dot(relative, relative) * haze;\n"                                                      \
+  "  fog = 0.75 * fog / (1.0 + fog);\n"                                                                  \
+  "  return vec4(sqrt(mix(lit, vec3(0.66, 0.73, 0.80), fog)), color.a);\n"                               \
   "}\n"
 
 inline constexpr const char* kSceneFragment =
@@ -80,7 +77,7 @@ void main() {
 }
 )";
 
-// Plan: state colours, a little light on slopes; what the cut lays open (backs of faces) is dark.
+// Plan: state colours, a little light on slopes; what the cut lays open (backs of faces) is darker.
 inline constexpr const char* kPlanFragment = R"(#version 430 core
 in vec3 relative;
 flat in vec4 color;
@@ -89,7 +86,7 @@ void main() {
   vec3 n = cross(dFdx(relative), dFdy(relative));
   float n2 = dot(n, n);
   float up = n2 > 0.0 ? abs(n.y) * inversesqrt(n2) : 1.0;
-  float light = gl_FrontFacing ? 0.70 + 0.30 * up : 0.45;
+  float light = (gl_FrontFacing ? 1.0 : 0.75) * (0.70 + 0.30 * up);
   result = vec4(color.rgb * light, 1.0);
 }
 )";

@@ -22,9 +22,9 @@ enum class ObjectState : std::uint8_t {
 
 // sRGB. Told apart by colour-blind people by lightness too. Reports use them in the legend.
 using PlanColor = std::array<std::uint8_t, 3>;
-inline constexpr PlanColor kPlanOutside{214, 214, 210};
-inline constexpr PlanColor kPlanHidden{214, 96, 77};
-inline constexpr PlanColor kPlanKept{112, 184, 92};
+inline constexpr PlanColor kPlanOutside{216, 216, 212};
+inline constexpr PlanColor kPlanHidden{196, 70, 56};
+inline constexpr PlanColor kPlanKept{134, 202, 112};
 inline constexpr PlanColor kPlanOccluder{20, 60, 190};
 inline constexpr PlanColor kPlanCamera{24, 24, 24};
 inline constexpr PlanColor kPlanBackground{250, 250, 248};
