@@ -1,0 +1,22 @@
+#pragma once
+
+// The commands. Each adds itself to the command line; the one that the user names becomes `chosen`.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "sightline/base/result.h"
+
+namespace sightline::tool {
+
+// Exit codes of a command that ran: kOk or kCheckFailed. An Error is kBadUsage, with one line on stderr.
+enum ExitCode { kOk = 0, kCheckFailed = 1, kBadUsage = 2 };
+
+using Command = std::function<Result<ExitCode>()>;
+
+void addInfo(CLI::App& app, Command& chosen);
+void addWalk(CLI::App& app, Command& chosen);
+void addCull(CLI::App& app, Command& chosen);
+void addVerify(CLI::App& app, Command& chosen);
+
+}  // namespace sightline::tool

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <chrono>
+
+#include "sightline/culling/culler.h"
+
+namespace sightline::tool {
+
+// A culler on its way along a walk, with the time of its last frame as a caller sees it.
+struct CullRun {
+  Culler culler;
+  double cull_us = 0.0;
+
+  void cull(const View& view) {
+    const auto start = std::chrono::steady_clock::now();
+    culler.cull(view);
+    cull_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  }
+};
+
+}  // namespace sightline::tool

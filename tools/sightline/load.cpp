@@ -1,0 +1,120 @@
+#include "tools/sightline/load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "scenes/procedural.h"
+#include "sightline/io/camera_path_json.h"
+#include "sightline/io/import.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr const char* kPathBesideScene = "walk.path.json";
+
+std::string pathNames(const Scene& scene) {
+  std::string names;
+  for (const CameraPath& path : scene.paths) {
+    names += (names.empty() ? "" : ", ") + path.name;
+  }
+  return names;
+}
+
+Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
+  for (const CameraPath& path : scene.paths) {
+    if (path.name == name) {
+      return path;
+    }
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(name, ignored)) {
+    return readCameraPath(name);
+  }
+  const std::string walks = pathNames(scene);
+  return Error{fmt::format("--path {}: there is no such file, and {}", name,
+                           walks.empty() ? "the scene has no walks" : "the scene's walks are: " + walks)};
+}
+
+Result<CameraPath> defaultPath(const std::string& scene_name, const Scene& scene) {
+  if (!isDemoUrl(scene_name)) {
+    const std::filesystem::path beside = std::filesystem::path(scene_name).parent_path() / kPathBesideScene;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(beside, ignored)) {
+      Result<CameraPath> path = readCameraPath(beside.string());
+      if (path) {
+        fmt::print(stderr, "sightline: using the camera path {}\n", beside.string());
+      }
+      return path;
+    }
+  }
+  if (!scene.paths.empty()) {
+    return scene.paths.front();
+  }
+  return Error{fmt::format(
+      "{}: has no camera; give a path with --path FILE.json, put a {} beside it, or add a camera to it",
+      scene_name, kPathBesideScene)};
+}
+
+}  // namespace
+
+Result<Scene> loadScene(const std::string& name) {
+  Result<Scene> scene = isDemoUrl(name) ? makeDemoScene(name) : importScene(name);
+  if (scene && scene->objects.empty()) {
+    return Error{fmt::format("{}: there is nothing in it to draw; it has no triangles", name)};
+  }
+  return scene;
+}
+
+Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene) {
+  Result<CameraPath> path =
+      options.path.empty() ? defaultPath(scene_name, scene) : namedPath(options.path, scene);
+  if (!path) {
+    return path.error();
+  }
+  if (path->frames.empty()) {
+    return Error{fmt::format("the camera path '{}' has no frames", path->name)};
+  }
+  Result<std::vector<std::uint32_t>> frames = chooseFrames(options.frames, path->frames.size());
+  if (!frames) {
+    return frames.error();
+  }
+  return Walk{std::move(*path), std::move(*frames)};
+}
+
+CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for)
+    : occluders_(findOccluders(scene.view(), {}, parallel_for)) {
+  for (const Object& object : scene.objects) {
+    bounds_.push_back(object.bounds);
+    triangles_.push_back(object.triangleCount());
+  }
+}
+
+const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
+  std::unique_ptr<Hierarchy>& hierarchy = hierarchies_[static_cast<std::size_t>(kind)];
+  if (!hierarchy) {
+    HierarchySettings settings;
+    settings.kind = kind;
+    hierarchy = std::make_unique<Hierarchy>(buildHierarchy(bounds_, triangles_, settings));
+  }
+  return *hierarchy;
+}
+
+Culler CullingData::makeCuller(const Setting& setting) {
+  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler);
+}
+
+std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
+  std::uint64_t sum = 0;
+  for (const ObjectId object : objects) {
+    sum += triangles_[object.value];
+  }
+  return sum;
+}
+
+Json sceneJson(const Scene& scene) {
+  return {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,50 @@
+#pragma once
+
+// From what the user names to what commands work on.
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/scene/scene.h"
+#include "tools/sightline/options.h"
+
+namespace sightline::tool {
+
+// A file or a demo:NAME?...
+Result<Scene> loadScene(const std::string& name);
+
+struct Walk {
+  CameraPath path;
+  std::vector<std::uint32_t> frames;  // chosen ones, ascending
+
+  View view(std::uint32_t frame, const Scene& scene) const { return path.view(frame, scene.origin); }
+};
+// Says on stderr when it took a file that the user did not name.
+Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene);
+
+// What cullers of one scene share.
+class CullingData {
+ public:
+  CullingData(const Scene& scene, const ParallelFor& parallel_for);
+
+  Culler makeCuller(const Setting& setting);
+  const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
+  const OccluderSet& occluders() const { return occluders_; }
+  std::span<const Box> bounds() const { return bounds_; }
+  std::span<const std::uint32_t> triangles() const { return triangles_; }  // of each object
+  std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
+
+ private:
+  std::vector<Box> bounds_;
+  std::vector<std::uint32_t> triangles_;
+  OccluderSet occluders_;
+  std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
+};
+
+Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
+
+}  // namespace sightline::tool

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+#include "tools/sightline/commands.h"
+
+namespace sightline::tool {
+namespace {
+
+int fail(std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  while (!message.empty() && message.back() == ' ') {
+    message.pop_back();
+  }
+  fmt::print(stderr, "sightline: {}\n", message);
+  return kBadUsage;
+}
+
+std::string commandNames(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.append(names.empty() ? "" : ", ").append(command->get_name());
+  }
+  return names;
+}
+
+bool isCommand(const CLI::App& app, const std::string& word) {
+  return !app.get_subcommands([&](const CLI::App* command) { return command->get_name() == word; }).empty();
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Conservative visibility: what can be seen in a 3D scene, and what need not be drawn.",
+               "sightline");
+  app.set_version_flag("--version", "sightline " SIGHTLINE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "SCENE is a file (.glb .gltf .obj .ply .stl ...) or a built-in scene: demo:city?copies=30&seed=1, "
+      "demo:building.\n"
+      "Exit code: 0 fine, 1 a check failed, 2 bad usage or input.\n"
+      "sightline COMMAND --help shows a command's options and examples.");
+  Command chosen;
+  addInfo(app, chosen);
+  addWalk(app, chosen);
+  addCull(app, chosen);
+  addVerify(app, chosen);
+  if (const std::string word = argc > 1 ? argv[1] : "";
+      !word.empty() && word[0] != '-' && !isCommand(app, word)) {
+    return fail(fmt::format("there is no command '{}'; choose from: {}", word, commandNames(app)));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return fail(std::string(error.what()) + " (see sightline --help)");
+  }
+  const Result<ExitCode> result = chosen();
+  return result ? *result : fail(result.error().message);
+}
+
+}  // namespace
+}  // namespace sightline::tool
+
+int main(int argc, char** argv) {
+  try {
+    return sightline::tool::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return sightline::tool::fail("out of memory: the scene or the result is too large for this machine");
+  } catch (const std::exception& error) {
+    return sightline::tool::fail(error.what());
+  }
+}

@@ -1,0 +1,61 @@
+#pragma once
+
+// The one table from names on the command line and in JSON to the library's values; parsing, help and output
+// use it.
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sightline/culling/culler.h"
+
+namespace sightline::tool {
+
+template <typename T>
+struct Name {
+  std::string_view text;
+  T value;
+};
+
+inline constexpr std::array<Name<CullMethod>, 2> kMethods{{
+    {"frustum", CullMethod::kFrustum},
+    {"occlusion-tree", CullMethod::kOcclusionTree},
+}};
+inline constexpr std::array<Name<OcclusionTreeVariant>, 4> kVariants{{
+    {"FSE", OcclusionTreeVariant::kFSE},
+    {"FSC", OcclusionTreeVariant::kFSC},
+    {"FME", OcclusionTreeVariant::kFME},
+    {"FMC", OcclusionTreeVariant::kFMC},
+}};
+inline constexpr std::array<Name<HierarchyKind>, 2> kHierarchies{{
+    {"kd", HierarchyKind::kKdTree},
+    {"bvh", HierarchyKind::kBvh},
+}};
+inline constexpr std::array<Name<AreaAngleDirection>, 2> kAreaAngleDirections{{
+    {"occluder", AreaAngleDirection::kOccluder},
+    {"view", AreaAngleDirection::kView},
+}};
+inline constexpr std::array<Name<bool>, 2> kSwitch{{{"on", true}, {"off", false}}};
+
+template <typename T, std::size_t N>
+std::string nameOf(const std::array<Name<T>, N>& names, T value) {
+  for (const Name<T>& name : names) {
+    if (name.value == value) {
+      return std::string(name.text);
+    }
+  }
+  return "?";
+}
+
+// "a, b, c"
+template <typename T, std::size_t N>
+std::string listNames(const std::array<Name<T>, N>& names) {
+  std::string list;
+  for (const Name<T>& name : names) {
+    list += (list.empty() ? "" : ", ") + std::string(name.text);
+  }
+  return list;
+}
+
+}  // namespace sightline::tool

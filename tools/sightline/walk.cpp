@@ -1,0 +1,265 @@
+// sightline walk: culls and draws every frame of a walk with each setting, compares the pictures, writes the
+// report.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "sightline/io/file.h"
+#include "sightline/render/compare.h"
+#include "sightline/render/plot.h"
+#include "sightline/render/renderer.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/json_output.h"
+#include "tools/sightline/progress_bar.h"
+#include "tools/sightline/threads.h"
+#include "tools/sightline/walk_pictures.h"
+#include "tools/sightline/walk_report.h"
+
+namespace sightline::tool {
+namespace {
+
+struct WalkOptions {
+  CommonOptions common;
+  PathOptions path;
+  MethodOptions method;
+  std::string folder;
+  std::uint32_t width = 0, height = 0;  // 0: the path's
+};
+
+// View-frustum culling first, whatever was asked for: what the others are compared with.
+std::vector<Setting> withBaseline(std::vector<Setting> settings) {
+  const auto is_frustum = [](const Setting& setting) {
+    return setting.culler.method == CullMethod::kFrustum;
+  };
+  const auto frustum = std::find_if(settings.begin(), settings.end(), is_frustum);
+  Setting baseline = settings.front();
+  baseline.culler.method = CullMethod::kFrustum;
+  if (frustum != settings.end()) {
+    baseline = *frustum;
+    settings.erase(frustum);
+  }
+  settings.insert(settings.begin(), baseline);
+  return settings;
+}
+
+class Walker {
+ public:
+  Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer& renderer,
+         const std::string& folder)
+      : scene_(scene),
+        walk_(walk),
+        data_(data),
+        renderer_(renderer),
+        folder_(folder),
+        chooser_(walk.frames) {}
+
+  Result<WalkRecord> run(const std::vector<Setting>& settings) {
+    for (const Setting& setting : settings) {
+      record_.runs.push_back({setting, CullRun{data_.makeCuller(setting)}, {}});
+    }
+    record_.shown = record_.runs.size() > 1 ? 1 : 0;
+    record_.device = renderer_.device();
+    images_.resize(record_.runs.size());
+    ProgressBar progress("walking");
+    for (std::size_t i = 0; i < walk_.frames.size(); ++i) {
+      if (const Status drawn = step(i); !drawn) {
+        return drawn.error();
+      }
+      progress.update(static_cast<double>(i + 1) / static_cast<double>(walk_.frames.size()));
+    }
+    record_.pictures = chooser_.chosen();
+    return std::move(record_);
+  }
+
+ private:
+  Status step(std::size_t i) {
+    const std::uint32_t frame = walk_.frames[i];
+    const View view = walk_.view(frame, scene_);
+    for (WalkRun& run : record_.runs) {
+      run.run.cull(view);
+      const CullStats& stats = run.run.culler.stats();
+      const std::span<const ObjectId> visible = run.run.culler.visible();
+      run.frames.push_back({frame, visible.size(), data_.trianglesOf(visible), run.run.cull_us, 0.0,
+                            stats.nodes_tested, stats.occluders, false});
+    }
+    if (i == 0) {
+      renderer_.time(view, record_.baseline().run.culler.visible());  // warms up
+    }
+    // Each frame begins with another run, so that none has the others' warm caches always.
+    for (std::size_t k = 0; k < record_.runs.size(); ++k) {
+      const std::size_t r = (i + k) % record_.runs.size();
+      DrawStats stats;
+      images_[r] = renderer_.draw(view, record_.runs[r].run.culler.visible(), &stats);
+      record_.runs[r].frames.back().draw_us = stats.draw_us;
+    }
+    keep(frame, view);
+    return compare(frame);
+  }
+
+  Status compare(std::uint32_t frame) {
+    for (std::size_t r = 1; r < images_.size(); ++r) {
+      const ImageDifference difference = compareImages(images_[0], images_[r]);
+      if (difference.equal()) {
+        continue;
+      }
+      WalkRun& run = record_.runs[r];
+      const bool first = run.differingFrames().empty();
+      run.frames.back().differs = true;
+      if (first) {
+        const std::string file = fmt::format("differs_{}_{:04}.png", r, frame);
+        const Image both = sideBySide(images_[r], differenceImage(images_[0], images_[r]));
+        if (const Status written = writePng(both, folder_ + "/" + file); !written) {
+          return written;
+        }
+        record_.changed.push_back(
+            {frame, file,
+             fmt::format("DIFFERS: {} ({}), {} pixels, the first at {}, {}", methodName(run.setting),
+                         optionsText(run.setting), difference.pixels, difference.x, difference.y)});
+      }
+    }
+    return Success{};
+  }
+
+  void keep(std::uint32_t frame, const View& view) {
+    const Culler& all = record_.baseline().run.culler;
+    const Culler& shown = record_.runs[record_.shown].run.culler;
+    KeptFrame kept;
+    kept.frame = frame;
+    kept.view = view;
+    kept.in_frustum.assign(all.visible().begin(), all.visible().end());
+    kept.visible.assign(shown.visible().begin(), shown.visible().end());
+    kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
+    kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
+    kept.triangles_visible = data_.trianglesOf(kept.visible);
+    chooser_.offer(kept);
+  }
+
+  const Scene& scene_;
+  const Walk& walk_;
+  CullingData& data_;
+  Renderer& renderer_;
+  const std::string& folder_;
+  PictureChooser chooser_;
+  WalkRecord record_;
+  std::vector<Image> images_;  // of this frame, one a run
+};
+
+Status writePlots(const Report& report, const std::string& folder) {
+  const char* names[] = {"triangles", "frame_time", "cull_time", "nodes_tested"};
+  for (std::size_t i = 0; i < report.plots.size(); ++i) {
+    if (const Status ok = writeFile(fmt::format("{}/{}.svg", folder, names[i]), toSvg(report.plots[i]));
+        !ok) {
+      return ok;
+    }
+  }
+  return Success{};
+}
+
+Status makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    return Error{
+        fmt::format("{}: cannot make this folder: {}", folder, error ? error.message() : "a file is there")};
+  }
+  return Success{};
+}
+
+Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRecord& record,
+                Renderer& renderer) {
+  Result<std::vector<ReportPicture>> pictures =
+      drawPictures(record, input.scene, input.occluders, renderer, options.folder);
+  if (!pictures) {
+    return pictures.error();
+  }
+  Report report = walkReport(input, record, std::move(*pictures));
+  report.command = fmt::format("sightline walk {} -o {}", options.common.scene, options.folder);
+  const std::string json = walkJson(input, record);
+  for (const Status& status :
+       {writePlots(report, options.folder), writeOutput(options.folder + "/walk.json", json),
+        writeReport(report, options.folder), writeOutput(options.common.json, json)}) {
+    if (!status) {
+      return status;
+    }
+  }
+  return Success{};
+}
+
+Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting>& settings,
+                           const Scene& scene, const Walk& walk) {
+  const std::uint32_t width = options.width > 0 ? options.width : walk.path.width;
+  const std::uint32_t height = options.height > 0 ? options.height : walk.path.height;
+  Result<Renderer> renderer = Renderer::create(scene.view(), width, height);
+  if (!renderer) {
+    return renderer.error();
+  }
+  if (const Status made = makeFolder(options.folder); !made) {
+    return made.error();
+  }
+  const Threads threads(options.common.threads);
+  CullingData data(scene, threads.parallelFor());
+  Result<WalkRecord> record = Walker(scene, walk, data, *renderer, options.folder).run(settings);
+  if (!record) {
+    return record.error();
+  }
+  record->width = width;
+  record->height = height;
+  const WalkInput input{options.common.scene, scene, walk, data.occluders()};
+  if (const Status written = writeAll(options, input, *record, *renderer); !written) {
+    return written.error();
+  }
+  if (options.common.textOnStdout()) {
+    printWalk(*record);
+    fmt::print("report: {}\n", (std::filesystem::path(options.folder) / "index.html").string());
+  }
+  return record->differing() == 0 ? kOk : kCheckFailed;
+}
+
+Result<ExitCode> runWalk(const WalkOptions& options) {
+  const Result<std::vector<Setting>> settings = settingsOf(options.method);
+  if (!settings) {
+    return settings.error();
+  }
+  if (const Status ok = checkOutput(options.common.json); !ok) {
+    return ok.error();
+  }
+  const Result<Scene> scene = loadScene(options.common.scene);
+  if (!scene) {
+    return scene.error();
+  }
+  const Result<Walk> walk = loadWalk(options.path, options.common.scene, *scene);
+  if (!walk) {
+    return walk.error();
+  }
+  return walkScene(options, withBaseline(*settings), *scene, *walk);
+}
+
+}  // namespace
+
+void addWalk(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "walk",
+      "walks a path with each method, measures, compares all pictures, writes the report DIR/index.html");
+  const auto options = std::make_shared<WalkOptions>();
+  addCommonOptions(*command, options->common);
+  addPathOptions(*command, options->path);
+  addMethodOptions(*command, options->method, true);
+  command->add_option("-o,--output", options->folder, "folder of the report; made if needed")->required();
+  command->add_option("--width", options->width, "of the pictures, in pixels (default: the path's)")
+      ->check(CLI::Range(1u, 16384u));
+  command->add_option("--height", options->height, "of the pictures, in pixels (default: the path's)")
+      ->check(CLI::Range(1u, 16384u));
+  command->footer(
+      "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
+      "picture.\n"
+      "Examples:\n"
+      "  sightline walk demo:city -o report\n"
+      "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"
+      "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
+  command->callback([options, &chosen] { chosen = [options] { return runWalk(*options); }; });
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,208 @@
+#include "tools/sightline/walk_report.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "tools/sightline/json_output.h"
+
+namespace sightline::tool {
+namespace {
+
+double objectsOf(const FrameRecord& frame) {
+  return static_cast<double>(frame.objects);
+}
+double trianglesOf(const FrameRecord& frame) {
+  return static_cast<double>(frame.triangles);
+}
+double cullMs(const FrameRecord& frame) {
+  return frame.cull_us * 1e-3;
+}
+double drawMs(const FrameRecord& frame) {
+  return frame.draw_us * 1e-3;
+}
+double frameMs(const FrameRecord& frame) {
+  return frame.frameUs() * 1e-3;
+}
+double nodesTested(const FrameRecord& frame) {
+  return frame.nodes_tested;
+}
+double occludersOf(const FrameRecord& frame) {
+  return frame.occluders;
+}
+
+double ratio(double a, double b) {
+  return b > 0.0 ? a / b : 1.0;
+}
+
+// "1,104,233"
+std::string grouped(std::uint64_t number) {
+  const std::string digits = std::to_string(number);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) {
+      text += ',';
+    }
+    text += digits[i];
+  }
+  return text;
+}
+
+ReportRow rowOf(const WalkRun& run, const WalkRecord& record) {
+  const WalkRun& baseline = record.baseline();
+  ReportRow row;
+  row.method = methodName(run.setting);
+  row.options = optionsText(run.setting);
+  row.triangles = run.mean(trianglesOf);
+  row.triangles_share = ratio(row.triangles, baseline.mean(trianglesOf));
+  row.objects = run.mean(objectsOf);
+  row.cull_ms = run.mean(cullMs);
+  row.draw_ms = run.mean(drawMs);
+  row.frame_ms = run.mean(frameMs);
+  row.speed_up = ratio(baseline.mean(frameMs), row.frame_ms);
+  row.nodes_tested = run.mean(nodesTested);
+  row.occluders = run.mean(occludersOf);
+  row.frames_differing = run.differingFrames().size();
+  if (&run == &baseline) {
+    row.frames_differing.reset();  // it is what the others are compared with
+  }
+  return row;
+}
+
+std::string seriesName(const WalkRun& run) {
+  const bool tree = run.setting.culler.method == CullMethod::kOcclusionTree;
+  return tree ? optionsText(run.setting) : methodName(run.setting);
+}
+
+template <typename Of>
+Plot plotOf(const WalkRecord& record, const Walk& walk, const std::string& title, const std::string& y_label,
+            bool with_baseline, Of of) {
+  Plot plot;
+  plot.title = title;
+  plot.y_label = y_label;
+  const bool every_frame = walk.frames.back() - walk.frames.front() + 1 == walk.frames.size();
+  plot.x_label = every_frame ? "frame" : "frame of those chosen";
+  plot.first_x = every_frame ? walk.frames.front() : 0.0;
+  for (const WalkRun& run : record.runs) {
+    if (with_baseline || &run != &record.baseline()) {
+      PlotSeries series{seriesName(run), {}};
+      for (const FrameRecord& frame : run.frames) {
+        series.values.push_back(of(frame));
+      }
+      plot.series.push_back(std::move(series));
+    }
+  }
+  return plot;
+}
+
+std::string frameJson(const FrameRecord& frame) {
+  return dump({{"frame", frame.frame},
+               {"objects", frame.objects},
+               {"triangles", frame.triangles},
+               {"cull_us", frame.cull_us},
+               {"draw_us", frame.draw_us},
+               {"nodes_tested", frame.nodes_tested},
+               {"occluders", frame.occluders},
+               {"differs", frame.differs}});
+}
+
+std::string runJson(const WalkRun& run, const WalkRecord& record) {
+  const ReportRow row = rowOf(run, record);
+  const Json head = {{"method", row.method},
+                     {"options", optionsJson(run.setting)},
+                     {"mean",
+                      {{"objects", row.objects},
+                       {"triangles", row.triangles},
+                       {"triangles_share", row.triangles_share},
+                       {"cull_us", row.cull_ms * 1e3},
+                       {"draw_us", row.draw_ms * 1e3},
+                       {"frame_us", row.frame_ms * 1e3},
+                       {"speed_up", row.speed_up},
+                       {"nodes_tested", row.nodes_tested},
+                       {"occluders", row.occluders}}},
+                     {"differing_frames", run.differingFrames()}};
+  std::vector<std::string> frames;
+  for (const FrameRecord& frame : run.frames) {
+    frames.push_back(frameJson(frame));
+  }
+  return dumpWithList(head, "frames", frames);
+}
+
+std::string pathName(const Walk& walk) {
+  return walk.path.name.empty() ? "unnamed" : walk.path.name;
+}
+
+std::string summaryOf(const WalkRecord& record) {
+  if (record.runs.size() < 2) {
+    return "View-frustum culling alone.";
+  }
+  const ReportRow row = rowOf(record.runs[record.shown], record);
+  const std::size_t differing = record.differing();
+  return fmt::format(
+      "{} ({}) draws {:.1f} % of the triangles that view-frustum culling draws, at {:.2f} times its frame "
+      "rate; {}.",
+      row.method, row.options, 100.0 * row.triangles_share, row.speed_up,
+      differing == 0 ? "every picture is the same, pixel by pixel"
+                     : fmt::format("{} pictures DIFFER from those without culling", differing));
+}
+
+}  // namespace
+
+std::string walkJson(const WalkInput& input, const WalkRecord& record) {
+  const Json head = {{"scene", sceneJson(input.scene)}, {"path", pathName(input.walk)},
+                     {"width", record.width},           {"height", record.height},
+                     {"device", record.device},         {"differing_frames", record.differing()}};
+  std::vector<std::string> runs;
+  for (const WalkRun& run : record.runs) {
+    runs.push_back(runJson(run, record));
+  }
+  return dumpWithList(head, "runs", runs);
+}
+
+void printWalk(const WalkRecord& record) {
+  fmt::print("{:<16} {:<44} {:>11} {:>7} {:>9} {:>9} {:>9} {:>9} {:>8}\n", "method", "options", "triangles",
+             "share", "cull ms", "draw ms", "frame ms", "speed-up", "differ");
+  for (const WalkRun& run : record.runs) {
+    const ReportRow row = rowOf(run, record);
+    fmt::print("{:<16} {:<44} {:>11.0f} {:>6.1f}% {:>9.3f} {:>9.3f} {:>9.3f} {:>9.2f} {:>8}\n", row.method,
+               row.options, row.triangles, 100.0 * row.triangles_share, row.cull_ms, row.draw_ms,
+               row.frame_ms, row.speed_up,
+               row.frames_differing ? std::to_string(*row.frames_differing) : "-");
+  }
+}
+
+Report walkReport(const WalkInput& input, const WalkRecord& record, std::vector<ReportPicture> pictures) {
+  Report report;
+  const std::filesystem::path file(input.scene_name);
+  report.title = file.has_filename() ? file.filename().string() : input.scene_name;
+  report.summary = summaryOf(record);
+  report.facts = {{"objects", grouped(input.scene.objects.size())},
+                  {"triangles", grouped(input.scene.triangleCount())},
+                  {"potential occluders", grouped(input.occluders.occluders.size())},
+                  {"walk", fmt::format("{}, {} frames", pathName(input.walk), input.walk.frames.size())},
+                  {"pictures", fmt::format("{} x {}", record.width, record.height)},
+                  {"OpenGL", record.device}};
+  for (const WalkRun& run : record.runs) {
+    report.rows.push_back(rowOf(run, record));
+  }
+  const Walk& walk = input.walk;
+  report.plots = {plotOf(record, walk, "Triangles drawn", "triangles", true, trianglesOf),
+                  plotOf(record, walk, "Frame time: culling and drawing", "ms", true, frameMs),
+                  plotOf(record, walk, "Cull time", "ms", true, cullMs)};
+  if (record.runs.size() > 1) {
+    report.plots.push_back(
+        plotOf(record, walk, "Nodes asked of the occlusion structure", "nodes", false, nodesTested));
+  }
+  report.pictures = std::move(pictures);
+  for (const ChangedPicture& changed : record.changed) {
+    report.pictures.push_back({changed.file, changed.caption, changed.frame, false});
+  }
+  report.notes = {
+      "Times are of this machine, in this run; drawing is measured to the last pixel, without reading back.",
+      "Every frame's picture is compared with the one of view-frustum culling, pixel by pixel.",
+      fmt::format("Pictures and plan views show {} ({}).", methodName(record.runs[record.shown].setting),
+                  optionsText(record.runs[record.shown].setting))};
+  return report;
+}
+
+}  // namespace sightline::tool
