@@ -97,10 +97,10 @@ std::string groupedNumber(double value, int decimals) {
   std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
   const std::size_t point = std::min(digits.find('.'), digits.size());
   for (std::size_t i = point; i > 3; i -= 3) {
-    digits.insert(i - 3, ",");
+    digits.insert(i - 3, 1, ',');
   }
   const bool zero = digits.find_first_not_of("0.,") == std::string::npos;
-  return value < 0.0 && !zero ? "−" + digits : digits;
+  return (value < 0.0 && !zero ? "−" : "") + digits;
 }
 
 std::size_t characterCount(std::string_view text) {
