@@ -1,0 +1,84 @@
+#pragma once
+
+// Runs the built tool as a user does, and gives back what it did.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <sys/wait.h>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace sightline::tool_test {
+
+// A new folder, gone with this.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "sightline-tool-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary) << bytes;
+    return file(name);
+  }
+  std::size_t entries() const {
+    const auto all = std::filesystem::directory_iterator(path_);
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string contents(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+
+  std::ptrdiff_t errorLines() const { return std::count(err.begin(), err.end(), '\n'); }
+};
+
+// arguments: one word each.
+inline Outcome runTool(const std::vector<std::string>& arguments) {
+  const TemporaryFolder folder;
+  std::string command = "'" SIGHTLINE_TOOL "'";
+  for (const std::string& argument : arguments) {
+    command += " '" + argument + "'";  // no test has a quote in it
+  }
+  command += " > '" + folder.file("out") + "' 2> '" + folder.file("err") + "' < /dev/null";
+  std::FILE* pipe = popen(command.c_str(), "r");
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder.file("out")),
+          contents(folder.file("err"))};
+}
+
+// Bad usage or input: exit code 2, one line on stderr that mentions `about`, nothing on stdout.
+inline void expectRefused(const std::vector<std::string>& arguments, const std::string& about) {
+  const Outcome outcome = runTool(arguments);
+  const std::string shown = ::testing::PrintToString(arguments) + ": " + outcome.err;
+  EXPECT_EQ(outcome.code, 2) << shown;
+  EXPECT_EQ(outcome.errorLines(), 1) << shown;
+  EXPECT_NE(outcome.err.find(about), std::string::npos) << shown << " does not mention " << about;
+  EXPECT_EQ(outcome.out, "") << shown;
+}
+
+inline nlohmann::json parse(const std::string& text) {
+  return nlohmann::json::parse(text, nullptr, false);
+}
+
+}  // namespace sightline::tool_test

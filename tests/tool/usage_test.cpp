@@ -1,0 +1,155 @@
+// Exit codes and error lines.
+
+#include "tests/tool/run_tool.h"
+
+namespace sightline::tool_test {
+namespace {
+
+const std::string kCity = "demo:city?copies=1";
+
+TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
+  EXPECT_EQ(runTool({"--help"}).code, 0);
+  EXPECT_EQ(runTool({"--version"}).code, 0);
+  for (const std::string command : {"info", "walk", "cull", "verify"}) {
+    const Outcome outcome = runTool({command, "--help"});
+    EXPECT_EQ(outcome.code, 0) << command;
+    EXPECT_EQ(outcome.err, "") << command;
+    EXPECT_NE(outcome.out.find("sightline " + command + " "), std::string::npos) << command;
+  }
+}
+
+TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
+  expectRefused({}, "--help");
+  expectRefused({"bogus"}, "info, walk, cull, verify");
+  expectRefused({"cull"}, "SCENE");
+  expectRefused({"cull", kCity, "--bogus"}, "--bogus");
+  expectRefused({"cull", kCity, "--threads"}, "--threads");
+  expectRefused({"walk", kCity}, "--output");
+}
+
+TEST(Tool, UnknownNamesAreAnsweredWithThoseThatExist) {
+  expectRefused({"info", "demo:nothing"}, "city");
+  expectRefused({"cull", kCity, "--method", "opacity-map"}, "frustum, occlusion-tree");
+  expectRefused({"cull", kCity, "--method", ""}, "frustum, occlusion-tree");
+  expectRefused({"verify", kCity, "--method", "frustum,,frustum"}, "frustum, occlusion-tree");
+  expectRefused({"cull", kCity, "--variant", "fse"}, "FSE, FSC, FME, FMC");
+  expectRefused({"cull", kCity, "--hierarchy", "octree"}, "kd, bvh");
+  expectRefused({"cull", kCity, "--coherence", "maybe"}, "on, off");
+  expectRefused({"cull", kCity, "--occluders", "database"}, "area-angle");
+  expectRefused({"cull", kCity, "--area-angle", "x"}, "occluder, view");
+  expectRefused({"cull", kCity, "--path", "nowhere"}, "smooth");
+  expectRefused({"cull", kCity, "--method", "frustum,occlusion-tree"}, "one value");
+}
+
+TEST(Tool, NumbersOutOfRangeAreRefused) {
+  for (const std::string bad : {"0", "-1", "99999999999999999999", "1e3", "nan", "", " ", "8x"}) {
+    expectRefused({"cull", kCity, "--occluder-count", bad}, "--occluder-count");
+    expectRefused({"cull", kCity, "--threads", bad}, "--threads");
+    expectRefused({"verify", kCity, "--width", bad}, "--width");
+    expectRefused({"verify", kCity, "--height", bad}, "--height");
+  }
+  for (const std::string bad : {"-1", "99999999999999999999", "x"}) {
+    expectRefused({"verify", kCity, "--aimed-rays", bad}, "--aimed-rays");
+    expectRefused({"cull", kCity, "--min-node-cost", bad}, "--min-node-cost");
+  }
+  for (const std::string bad : {"-1", "nan", "inf", "1e999", "x"}) {
+    expectRefused({"cull", kCity, "--lambda-steps", bad}, "--lambda-steps");
+  }
+  for (const std::string bad :
+       {"3:1", "2:2", "0:10:0", "400", "400:500", "-1:3", "a:b", "0:1:2:3", ":", "1:99999999999999"}) {
+    expectRefused({"cull", kCity, "--frames", bad}, "--frames");
+  }
+}
+
+TEST(Tool, FilesThatAreNoScenesAreRefused) {
+  const TemporaryFolder folder;
+  expectRefused({"info", folder.file("missing.glb")}, "missing.glb");
+  expectRefused({"info", folder.file("")}, folder.file(""));
+  expectRefused({"info", folder.write("empty.glb", "")}, "empty.glb");
+  expectRefused({"info", folder.write("empty.obj", "")}, "empty.obj");
+  expectRefused(
+      {"info", folder.write("cut.glb", std::string("glTF\2\0\0\0\0\4\0\0\0\2\0\0JSON{\"asset\":", 33))},
+      "cut.glb");
+  expectRefused({"info", folder.write("empty.gltf", "{\"asset\":{\"version\":\"2.0\"}}")}, "empty.gltf");
+  expectRefused({"info", folder.write("scene.unknown", "text")}, "scene.unknown");
+  for (const std::string command : {"info", "cull", "verify"}) {
+    expectRefused({command, folder.file("missing.glb")}, "missing.glb");
+  }
+  expectRefused({"walk", folder.file("missing.glb"), "-o", folder.file("report")}, "missing.glb");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("report")));
+}
+
+std::string pathWith(const std::string& eye, const std::string& more = "") {
+  return "{\"fovy_deg\":60,\"width\":64,\"height\":36,\"near\":0.1,\"far\":100" + more +
+         ",\"frames\":[{\"eye\":" + eye + ",\"forward\":[0,0,-1],\"up\":[0,1,0]}]}";
+}
+
+TEST(Tool, FilesThatAreNoPathsAreRefused) {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"empty", ""},
+      {"cut", "{\"fovy_deg\":60,\"fra"},
+      {"list", "[]"},
+      {"no_frames", "{\"fovy_deg\":60,\"width\":64,\"height\":36,\"near\":0.1,\"far\":100,\"frames\":[]}"},
+      {"nan", pathWith("[NaN,0,0]")},
+      {"huge", pathWith("[1e999,0,0]")},
+      {"null", pathWith("[null,0,0]")},
+      {"short", pathWith("[0,0]")},
+      {"text", pathWith("\"here\"")},
+      {"wrong_types", "{\"fovy_deg\":\"wide\",\"frames\":7}"},
+      {"utf8", "{\"\xff\xfe\":1}"},
+  };
+  for (const auto& [name, text] : bad) {
+    const std::string file = folder.write(name + ".json", text);
+    expectRefused({"cull", kCity, "--path", file}, name);
+  }
+  expectRefused({"cull", kCity, "--path", folder.file("")}, folder.file(""));
+  const std::string good = folder.write("good.json", pathWith("[0,2,0]"));
+  EXPECT_EQ(runTool({"cull", kCity, "--path", good}).code, 0);
+}
+
+const std::string kTriangle = "v 0 0 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 3\n";
+
+TEST(Tool, AFileWithoutCameraNeedsAPath) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("triangle.obj", kTriangle);
+  EXPECT_EQ(runTool({"info", scene}).code, 0);
+  expectRefused({"cull", scene}, "--path");
+}
+
+TEST(Tool, ThePathBesideASceneIsUsedAndSaid) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("triangle.obj", kTriangle);
+  folder.write("walk.path.json", pathWith("[0,0,0]"));
+  const Outcome outcome = runTool({"cull", scene, "--json", "-"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.errorLines(), 1);
+  EXPECT_NE(outcome.err.find("walk.path.json"), std::string::npos);
+  EXPECT_EQ(parse(outcome.out)["frames"][0]["visible"], nlohmann::json::array({0}));
+  folder.write("walk.path.json", "{}");
+  expectRefused({"cull", scene}, "walk.path.json");
+}
+
+TEST(Tool, OutputThatCannotBeWrittenIsRefusedAndLeavesNothing) {
+  const TemporaryFolder folder;
+  expectRefused({"info", kCity, "--json", folder.file("no/such/folder.json")}, "folder.json");
+  expectRefused({"cull", kCity, "--frames", "0", "--json", folder.file("")}, folder.file(""));
+  EXPECT_EQ(folder.entries(), 0u);
+  const std::string file = folder.write("there", "old");
+  expectRefused({"walk", kCity, "--frames", "0", "-o", file}, "there");
+  EXPECT_EQ(contents(file), "old");
+}
+
+TEST(Tool, AFailedRunKeepsTheOldFileAndNoHalfOne) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("result.json", "old");
+  expectRefused({"cull", kCity, "--path", "nowhere", "--json", file}, "nowhere");
+  EXPECT_EQ(contents(file), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_EQ(runTool({"cull", kCity, "--frames", "0", "--json", file}).code, 0);
+  EXPECT_TRUE(parse(contents(file)).is_object());
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace sightline::tool_test

@@ -1,0 +1,57 @@
+// The main job, end to end.
+
+#include "tests/tool/run_tool.h"
+
+namespace sightline::tool_test {
+namespace {
+
+using nlohmann::json;
+
+TEST(Tool, WalkWritesAReportThatStandsAlone) {
+  const TemporaryFolder folder;
+  const std::string report = folder.file("new/report");
+  const Outcome outcome = runTool({"walk", "demo:city?copies=1", "-o", report, "--frames", "0:400:50",
+                                   "--width", "160", "--height", "90", "--variant", "FSE,FME"});
+  if (outcome.code == 2 && outcome.err.find("OpenGL") != std::string::npos) {
+    GTEST_SKIP() << outcome.err;
+  }
+  ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+  EXPECT_EQ(outcome.err, "");
+  const json walk = parse(contents(report + "/walk.json"));
+  ASSERT_EQ(walk["runs"].size(), 3u);
+  EXPECT_EQ(walk["runs"][0]["method"], "frustum");
+  EXPECT_EQ(walk["differing_frames"], 0);
+  for (const json& run : walk["runs"]) {
+    ASSERT_EQ(run["frames"].size(), 8u);
+    for (std::size_t i = 0; i < 8; ++i) {
+      EXPECT_LE(run["frames"][i]["triangles"], walk["runs"][0]["frames"][i]["triangles"]);
+      EXPECT_GT(run["frames"][i]["draw_us"], 0.0);
+    }
+  }
+  const std::string html = contents(report + "/index.html");
+  EXPECT_NE(html.find("<svg"), std::string::npos);
+  std::size_t pictures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(report)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() == ".png") {
+      EXPECT_EQ(contents(entry.path().string()).substr(1, 3), "PNG");
+      EXPECT_NE(html.find(name), std::string::npos) << name;
+      pictures += 1;
+    }
+  }
+  EXPECT_GE(pictures, 8u) << "a picture and a plan of at least four frames";
+}
+
+TEST(Tool, WalkCopesWithASingleFrame) {
+  const TemporaryFolder folder;
+  const Outcome outcome = runTool({"walk", "demo:building?floors=1", "-o", folder.file("report"), "--frames",
+                                   "7", "--method", "frustum", "--width", "64", "--height", "36"});
+  if (outcome.code == 2 && outcome.err.find("OpenGL") != std::string::npos) {
+    GTEST_SKIP() << outcome.err;
+  }
+  ASSERT_EQ(outcome.code, 0) << outcome.err << outcome.out;
+  EXPECT_TRUE(std::filesystem::exists(folder.file("report") + "/frame_0007.png"));
+}
+
+}  // namespace
+}  // namespace sightline::tool_test
