@@ -127,7 +127,7 @@ void addOccluders(OverlayBuilder& builder, const PlanView& plan) {
     }
   }
   for (const std::vector<Point>& polygon : polygons) {
-    builder.fill(polygon, kPlanOccluder, 0.16);
+    builder.fill(polygon, kPlanOccluder, 0.09);
   }
   for (const std::vector<Point>& polygon : polygons) {
     builder.outline(polygon, kPlanOccluder, 3.0);

@@ -175,6 +175,31 @@ Image Renderer::readBack() const {
   return readPixels(impl_->picture);
 }
 
+std::uint64_t Renderer::countShowing(const View& view, std::span<const ObjectId> kept,
+                                     std::span<const ObjectId> culled) {
+  // A few times the rounding of a float depth buffer and of its interpolation.
+  constexpr float kDepthScale = 1.0f - 4e-6f;
+  const GlContext::Current current(impl_->context);
+  (void)impl_->timedDraw(view, kept);
+  impl_->buffers.select(culled);
+  GLuint query = 0;
+  glGenQueries(1, &query);
+  glDepthMask(GL_FALSE);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  useProgram(impl_->solid, view, 0.0f, kDepthScale);
+  glBeginQuery(GL_SAMPLES_PASSED, query);
+  for (std::size_t pass = 0; pass < kPassCount; ++pass) {
+    impl_->buffers.drawPass(static_cast<Pass>(pass));
+  }
+  glEndQuery(GL_SAMPLES_PASSED);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  GLuint64 samples = 0;
+  glGetQueryObjectui64v(query, GL_QUERY_RESULT, &samples);
+  glDeleteQueries(1, &query);
+  return samples;
+}
+
 Image Renderer::drawPlan(const PlanView& plan) {
   const GlContext::Current current(impl_->context);
   return impl_->plan_painter.paint(impl_->buffers, impl_->bounds, plan);

@@ -37,10 +37,11 @@ Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, co
                       .clip_from_relative = glGetUniformLocation(*id, "clip_from_relative"),
                       .eye_high = glGetUniformLocation(*id, "eye_high"),
                       .eye_low = glGetUniformLocation(*id, "eye_low"),
-                      .haze = glGetUniformLocation(*id, "haze")};
+                      .haze = glGetUniformLocation(*id, "haze"),
+                      .depth_scale = glGetUniformLocation(*id, "depth_scale")};
 }
 
-void useProgram(const SceneProgram& program, const View& view, float haze) {
+void useProgram(const SceneProgram& program, const View& view, float haze, float depth_scale) {
   const Vec3f high(view.eye);
   const Vec3f low(view.eye - Vec3d(high));
   glUseProgram(program.id);
@@ -48,6 +49,7 @@ void useProgram(const SceneProgram& program, const View& view, float haze) {
   glUniform3f(program.eye_high, high.x, high.y, high.z);
   glUniform3f(program.eye_low, low.x, low.y, low.z);
   glUniform1f(program.haze, haze);
+  glUniform1f(program.depth_scale, depth_scale);
 }
 
 void beginPicture(GLuint framebuffer, std::uint32_t width, std::uint32_t height,

@@ -16,6 +16,7 @@ layout(location = 1) in uint object;
 uniform mat4 clip_from_relative;
 uniform vec3 eye_high, eye_low;
 uniform samplerBuffer colors;
+uniform float depth_scale;  // 1 in pictures; less pushes everything away a little
 out vec3 relative;
 flat out vec4 color;
 invariant gl_Position;
@@ -23,6 +24,7 @@ void main() {
   relative = (position - eye_high) - eye_low;
   color = texelFetch(colors, int(object));
   gl_Position = clip_from_relative * vec4(relative, 1.0);
+  gl_Position.z *= depth_scale;
 }
 )";
 

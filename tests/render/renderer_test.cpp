@@ -166,6 +166,22 @@ TEST_F(RendererTest, SmallDistancesHoldFarFromTheOrigin) {
   }
 }
 
+TEST_F(RendererTest, CountsWhatShowsOfCulledObjectsButNotWhatADepthBufferCannotOrder) {
+  SceneMaker maker;
+  const ObjectId front = maker.wall(0.0, 1.0, kGreen);
+  const ObjectId equal = maker.wall(0.0, 1.0, kRed);
+  const ObjectId behind = maker.wall(-1.0, 0.5, kRed);
+  const ObjectId before = maker.wall(0.01, 0.5, kRed);
+  const ObjectId glass = maker.wall(0.01, 0.5, kGlass);
+  Renderer renderer = rendererOf(maker.scene);
+  const std::vector kept{front};
+  EXPECT_EQ(renderer.countShowing(testView(), kept, std::vector{equal, behind}), 0u);
+  EXPECT_EQ(renderer.countShowing(testView(), kept, {}), 0u);
+  EXPECT_GT(renderer.countShowing(testView(), kept, std::vector{before}), 500u);
+  EXPECT_GT(renderer.countShowing(testView(), kept, std::vector{glass}), 500u);
+  EXPECT_GT(renderer.countShowing(testView(), {}, kept), 2000u);
+}
+
 TEST_F(RendererTest, AnEmptySceneIsSky) {
   const Scene scene;
   Renderer renderer = rendererOf(scene);
