@@ -61,9 +61,10 @@ class OverlayBuilder {
   }
 
   void add(const Point& p, const PlanColor& color, double alpha) {
-    vertices_.push_back({static_cast<float>(p.x),
-                         static_cast<float>(p.y),
-                         {color[0], color[1], color[2], static_cast<std::uint8_t>(alpha * 255.0 + 0.5)}});
+    vertices_.push_back(
+        {static_cast<float>(p.x),
+         static_cast<float>(p.y),
+         {color[0], color[1], color[2], static_cast<std::uint8_t>(std::lround(alpha * 255.0))}});
   }
 
   const PlanView& plan_;
