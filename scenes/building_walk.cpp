@@ -76,7 +76,7 @@ CameraPath buildingWalk(const BuildingPlan& plan) {
   } else {
     route.visit(rooms[3]);
   }
-  const WalkOptions options{.name = "smooth", .look_ahead = 1.2, .far = 200.0};
+  const WalkOptions options{.name = "smooth", .look_ahead = 1.2, .calm = 2, .most_turn = 0.04, .far = 200.0};
   return walkAlong(roundedRoute(route.corners(), 0.6), options);
 }
 

@@ -5,7 +5,6 @@
 namespace sightline::procedural {
 namespace {
 
-constexpr double kStorey = 3.1;
 constexpr double kGroundStorey = 4.0;  // of passages and arcades
 
 CityMaterial anyWall(Random& random) {
@@ -110,8 +109,32 @@ std::vector<CityBuilding> planTower(const Placement& block, Random& random) {
   return {tower};
 }
 
-// Two houses, one of them T-shaped, turned by any angle.
-std::vector<CityBuilding> planTurned(const Placement& block, Random& random) {
+// Parking decks behind walls full of openings.
+CityBuilding planGarage(const Placement& middle, Random& random) {
+  constexpr double kDeck = 2.9, kThickness = 0.3;
+  constexpr Rectangle kArea{{-11, 4.5}, {11, 12.5}};
+  CityBuilding garage = newBuilding(middle, WindowStyle::kPlain, random);
+  garage.wall = CityMaterial::kConcrete;
+  constexpr std::uint32_t kDecks = 3;
+  for (std::uint32_t deck = 1; deck <= kDecks; ++deck) {
+    Mass slab = box({kArea.min + Point2{0.5, 0.5}, kArea.max - Point2{0.5, 0.5}}, deck * kDeck - 0.5, 1,
+                    RoofShape::kNone);
+    slab.storey_height = kThickness;
+    slab.fronts.clear();
+    garage.masses.push_back(slab);
+  }
+  const std::vector<Point2> outline = corners(kArea);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    // The short walls stand between the long ones.
+    const double inset = i % 2 ? 0.5 : 0.0;
+    const Point2 a = outline[i], b = outline[(i + 1) % 4], d = (b - a) / length(b - a);
+    garage.arcades.push_back({a + d * inset, b - d * inset, kDeck, i % 2 ? 1u : 4u, kDecks, 0.9});
+  }
+  return garage;
+}
+
+// Two buildings, the first a T-shaped house, turned by any angle.
+std::vector<CityBuilding> planTurned(const Placement& block, bool with_garage, Random& random) {
   const Placement middle = block.moved({kBlock / 2, kBlock / 2, 0}).turned(random.uniform());
   CityBuilding first = newBuilding(middle, WindowStyle::kSill, random);
   Mass t;
@@ -120,6 +143,9 @@ std::vector<CityBuilding> planTurned(const Placement& block, Random& random) {
   t.fronts = frontsOf(t.footprint);
   t.has_door = true;
   first.masses.push_back(t);
+  if (with_garage) {
+    return {first, planGarage(middle, random)};
+  }
   CityBuilding second = newBuilding(middle, WindowStyle::kPlain, random);
   second.roof = CityMaterial::kTiles;
   second.masses.push_back(box({{-11, 4.5}, {11, 12.5}}, 0.0, random.between(2, 4), RoofShape::kHip));
@@ -155,7 +181,9 @@ std::vector<CityBuilding> planBlock(BlockKind kind, const Placement& block, Rand
     case BlockKind::kTower:
       return planTower(block, random);
     case BlockKind::kTurned:
-      return planTurned(block, random);
+      return planTurned(block, false, random);
+    case BlockKind::kGarage:
+      return planTurned(block, true, random);
     default:
       return planSquare(block, random);
   }

@@ -130,7 +130,7 @@ void addFront(const Detail& detail, const Front& front, Random& random) {
   }
   addPanes(detail, front);
   const WindowRow row = windowRow(front, detail.spacing);
-  const bool balconies = detail.building.style != WindowStyle::kRibbon && random.chance(0.15);
+  const bool balconies = detail.building.style != WindowStyle::kRibbon && random.chance(0.12);
   const double along = row.middle(random.below(row.count));
   for (std::uint32_t storey = 1; balconies && storey < detail.mass.storeys; ++storey) {
     addBalcony(detail, front, storey, std::clamp(along, 1.5, length(front.b - front.a) - 1.5));
@@ -172,12 +172,16 @@ void addArcade(MeshBuilder& mesh, const CityBuilding& building, const Arcade& ar
                const std::string& name) {
   const double along = length(arcade.b - arcade.a), bay = along / arcade.openings;
   std::vector<Rectangle> openings;
-  for (std::uint32_t i = 0; i < arcade.openings; ++i) {
-    openings.push_back({{i * bay + 0.5, 0.0}, {(i + 1) * bay - 0.5, arcade.height - 0.7}});
+  for (std::uint32_t row = 0; row < arcade.rows; ++row) {
+    const double foot = row * arcade.height;
+    for (std::uint32_t i = 0; i < arcade.openings; ++i) {
+      openings.push_back(
+          {{i * bay + 0.5, foot + arcade.parapet}, {(i + 1) * bay - 0.5, foot + arcade.height - 0.7}});
+    }
   }
   mesh.place(building.placement.onWall(arcade.a, arcade.b, 0.0));
   mesh.startObject(name, id(building.wall));
-  mesh.plate({{0.0, 0.0}, {along, arcade.height}}, -0.5, 0.0, openings);
+  mesh.plate({{0.0, 0.0}, {along, arcade.rows * arcade.height}}, -0.5, 0.0, openings);
 }
 
 }  // namespace
@@ -211,13 +215,18 @@ double windowCost(const CityBuilding& building) {
   }
 }
 
-double ribbonCost(const CityBuilding& building) {
-  constexpr double kBand = 22.0;  // triangles of one band: frame, sill, pane
-  double bands = 0.0;
+double fixedCost(const CityBuilding& building) {
+  constexpr double kBand = 22.0;  // frame, sill, pane
+  double cost = 0.0;
   for (const Mass& mass : building.masses) {
-    bands += static_cast<double>(mass.fronts.size()) * mass.storeys;
+    const double bands = static_cast<double>(mass.fronts.size()) * mass.storeys;
+    cost += building.style == WindowStyle::kRibbon ? bands * kBand : 0.0;
   }
-  return building.style == WindowStyle::kRibbon ? bands * kBand : 0.0;
+  for (const Arcade& arcade : building.arcades) {
+    const double n = arcade.openings, rows = arcade.rows;
+    cost += 4.0 * ((2 * n + 1) * (2 * rows + 1) - n * rows) + 8.0 * n * rows;
+  }
+  return cost;
 }
 
 void addBuilding(MeshBuilder& mesh, const CityBuilding& building, double spacing, Random random,

@@ -84,11 +84,14 @@ struct Mass {
   double top() const { return base + storeys * storey_height; }
 };
 
-// A wall with a row of openings, standing by itself in front of a recessed ground floor.
+// A wall with openings, standing by itself: in front of a recessed ground floor, or around the decks of a
+// garage.
 struct Arcade {
   Point2 a, b;
-  double height = 4.0;
-  std::uint32_t openings = 1;
+  double height = 4.0;         // of one row of openings
+  std::uint32_t openings = 1;  // in a row
+  std::uint32_t rows = 1;
+  double parapet = 0.0;  // metres from each row's foot to its openings
 };
 
 struct CityBuilding {
@@ -106,8 +109,8 @@ std::vector<Front> frontsOf(const std::vector<Point2>& footprint, std::uint32_t 
 
 // Triangles that a building's windows cost for each metre of storey when a window takes one metre.
 double windowCost(const CityBuilding& building);
-// Triangles of its bands of windows, whatever the spacing.
-double ribbonCost(const CityBuilding& building);
+// Triangles of its bands of windows and arcades, whatever the spacing.
+double fixedCost(const CityBuilding& building);
 // spacing: metres of front for one window.
 void addBuilding(MeshBuilder& mesh, const CityBuilding& building, double spacing, Random random,
                  const std::string& name);
@@ -128,7 +131,7 @@ void addFurniture(MeshBuilder& mesh, Furniture what, const Placement& placement,
                   const std::string& name);
 
 // The buildings of a block whose south-west corner is the placement's origin, by the block's kind.
-enum class BlockKind : std::uint8_t { kCourtyard, kRows, kTower, kTurned, kSquare };
+enum class BlockKind : std::uint8_t { kCourtyard, kRows, kTower, kTurned, kGarage, kSquare };
 std::vector<CityBuilding> planBlock(BlockKind kind, const Placement& block, Random& random);
 
 // What walks through the city need to know.

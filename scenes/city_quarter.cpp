@@ -63,7 +63,8 @@ void planBlockSlots(BlockKind kind, const Placement& block, Random& random, std:
     put(Furniture::kBin, 10.0, 20.0, 0);
   } else if (kind == BlockKind::kRows) {
     for (double x = 4.0; x < 33.0; x += 7.0) {
-      put(Furniture::kTree, x + random.range(-1, 1), random.range(15, 19), 0);
+      const double along = x + random.range(-1, 1);
+      put(Furniture::kTree, along, random.range(15, 19), 0);
     }
     put(Furniture::kHedge, 9.0, 14.0, 0);
     put(Furniture::kHedge, 25.0, 14.0, 0);
@@ -142,8 +143,7 @@ void addSlots(MeshBuilder& mesh, const QuarterPlan& plan, Random& random, std::u
   std::vector<Slot> needed, spare;
   planStreetSlots(plan, random, needed, spare);
   for (std::uint32_t i = 0; i < 4; ++i) {
-    const Point2 corner = blockCorner(i);
-    planBlockSlots(plan.blocks[i], plan.corner.moved({corner.x, corner.y, kKerb}), random, needed);
+    planBlockSlots(plan.blocks[i], blockPlacement(plan, i), random, needed);
   }
   shuffle(spare, random);
   std::uint32_t number = 0;
@@ -167,6 +167,14 @@ Point2 blockCorner(std::uint32_t block) {
   return {block % 2 ? kLaneEnd : kBlockStart, block / 2 ? kLaneEnd : kBlockStart};
 }
 
+Placement blockPlacement(const QuarterPlan& plan, std::uint32_t block) {
+  constexpr double kMiddle = kBlock / 2;
+  const Point2 corner = blockCorner(block);
+  return plan.corner.moved({corner.x + kMiddle, corner.y + kMiddle, kKerb})
+      .turned(0.25 * plan.turns[block])
+      .moved({-kMiddle, -kMiddle, 0});
+}
+
 QuarterPlan planQuarter(std::uint32_t seed, std::uint32_t number, std::uint32_t columns) {
   QuarterPlan plan;
   plan.random = Random(seed, number);
@@ -174,33 +182,36 @@ QuarterPlan planQuarter(std::uint32_t seed, std::uint32_t number, std::uint32_t 
   plan.corner.origin = {number % columns * kQuarter, number / columns * kQuarter, 0.0};
   plan.blocks = {BlockKind::kCourtyard, BlockKind::kRows,
                  plan.random.chance(0.6) ? BlockKind::kTower : BlockKind::kTurned,
-                 plan.random.chance(0.6) ? BlockKind::kSquare : BlockKind::kTurned};
+                 plan.random.chance(0.6) ? BlockKind::kSquare : BlockKind::kGarage};
   for (std::uint32_t i = 4; i > 1; --i) {
     std::swap(plan.blocks[i - 1], plan.blocks[plan.random.below(i)]);
+  }
+  for (std::uint32_t& turns : plan.turns) {
+    turns = plan.random.below(4);
   }
   return plan;
 }
 
 void addQuarter(MeshBuilder& mesh, QuarterPlan plan) {
-  constexpr double kWindowTriangles = 4600.0;  // what a quarter spends on windows
+  constexpr double kFrontTriangles = 4700.0;  // what a quarter spends on windows and arcades
   const std::uint64_t start_count = mesh.triangleCount();
   addGround(mesh, plan);
   addMarkings(mesh, plan);
   std::vector<CityBuilding> buildings;
-  double cost = 0.0, ribbons = 0.0;
+  double cost = 0.0, fixed = 0.0;
   for (std::uint32_t i = 0; i < 4; ++i) {
-    const Point2 corner = blockCorner(i);
-    const Placement block = plan.corner.moved({corner.x, corner.y, kKerb});
+    const Placement block = blockPlacement(plan, i);
     addBlockGround(mesh, plan.blocks[i], block, plan.name + " block " + std::to_string(i));
     for (CityBuilding& building : planBlock(plan.blocks[i], block, plan.random)) {
       cost += windowCost(building);
-      ribbons += ribbonCost(building);
+      fixed += fixedCost(building);
       buildings.push_back(std::move(building));
     }
   }
-  const double spacing = std::clamp(cost / (kWindowTriangles - ribbons), 2.6, 9.0);
+  const double spacing = std::clamp(cost / (kFrontTriangles - fixed), 2.6, 9.0);
   for (std::size_t b = 0; b < buildings.size(); ++b) {
-    addBuilding(mesh, buildings[b], spacing * plan.random.range(0.9, 1.1), Random(plan.random.next()),
+    const double own_spacing = spacing * plan.random.range(0.9, 1.1);
+    addBuilding(mesh, buildings[b], own_spacing, Random(plan.random.next()),
                 plan.name + " building " + std::to_string(b));
   }
   addSlots(mesh, plan, plan.random, start_count);

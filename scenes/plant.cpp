@@ -70,7 +70,9 @@ void addPlant(MeshBuilder& mesh, const Placement& placement, Random random) {
   }
   for (std::uint32_t i = 0; i < kLeaves; ++i) {
     const Vec3d root = stems[i % kStems].at(random.range(0.35, 1.0));
-    addLeaf(mesh, root, unitVector(random.uniform()), random.range(0.13, 0.23), random.range(-0.02, 0.08));
+    const Point2 direction = unitVector(random.uniform());
+    const double reach = random.range(0.13, 0.23), lift = random.range(-0.02, 0.08);
+    addLeaf(mesh, root, direction, reach, lift);
   }
 }
 

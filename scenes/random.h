@@ -7,6 +7,7 @@
 
 namespace sightline::procedural {
 
+// Of two calls in one function's arguments the order is the compiler's choice: name one of the values first.
 class Random {
  public:
   constexpr explicit Random(std::uint64_t seed) : state_(seed) {}

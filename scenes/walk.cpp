@@ -35,6 +35,32 @@ void appendCorner(std::vector<Vec3d>& line, const Vec3d& from, const Vec3d& corn
   }
 }
 
+// Each look becomes the mean of its neighbours'.
+void calmLooks(std::vector<CameraFrame>& frames, std::size_t reach) {
+  const std::vector<CameraFrame> before = frames;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const std::size_t low = i < reach ? 0 : i - reach, high = std::min(i + reach, frames.size() - 1);
+    Vec3d sum;
+    for (std::size_t k = low; k <= high; ++k) {
+      sum += before[k].forward;
+    }
+    frames[i].forward = normalized(sum);
+  }
+}
+
+// Lets no look turn farther from the one before than so much of a full turn.
+void limitTurns(std::vector<CameraFrame>& frames, double most_turn) {
+  const Point2 most = unitVector(most_turn);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const Vec3d before = frames[i - 1].forward;
+    Vec3d& look = frames[i].forward;
+    const double cosine = dot(before, look);
+    if (cosine < most.x) {
+      look = before * most.x + normalized(look - before * cosine) * most.y;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Vec3d> roundedRoute(std::span<const Vec3d> corners, double radius) {
@@ -65,6 +91,10 @@ CameraPath walkAlong(std::span<const Vec3d> line, const WalkOptions& options) {
     forward.z += options.tilt;
     path.frames.push_back({worldFromPlan(eye), normalized(worldFromPlan(forward)), {0.0, 1.0, 0.0}});
   }
+  for (int pass = 0; pass < 2 && options.calm > 0; ++pass) {
+    calmLooks(path.frames, options.calm);
+  }
+  limitTurns(path.frames, options.most_turn);
   return path;
 }
 

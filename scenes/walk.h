@@ -21,6 +21,8 @@ struct WalkOptions {
   double look_ahead = 2.5;  // metres: the camera looks at the point of the route that lies this far ahead
   double glance = 0.0;      // how far the look swings to both sides, as the tangent of the angle
   double glance_turns = 3;  // how often it does so on the whole walk
+  std::uint32_t calm = 0;   // frames before and after over whose looks each look is averaged, twice
+  double most_turn = 0.5;   // of the look from frame to frame, as part of a full turn
   double tilt = 0.0;        // tangent of the look's angle above the route
   double far = 2000.0;
 };

@@ -1,0 +1,209 @@
+#include "tests/scenes/scene_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+#include <utility>
+
+namespace sightline::scene_checks {
+namespace {
+
+class Hash {
+ public:
+  void add(std::uint64_t value) {
+    for (int byte = 0; byte < 8; ++byte) {
+      value_ = (value_ ^ (value >> (8 * byte) & 0xff)) * 0x100000001b3ull;
+    }
+  }
+  void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  template <typename T>
+  void add(const Vec3<T>& v) {
+    add(v.x);
+    add(v.y);
+    add(v.z);
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ull;
+};
+
+using Triangle = std::array<Vec3d, 3>;
+
+Triangle triangleAt(const Scene& scene, std::size_t first_index) {
+  Triangle triangle;
+  for (std::size_t k = 0; k < 3; ++k) {
+    triangle[k] = Vec3d(scene.positions[scene.indices[first_index + k]]);
+  }
+  return triangle;
+}
+
+bool segmentHits(const Vec3d& from, const Vec3d& to, const Triangle& t) {
+  const Vec3d direction = to - from, e1 = t[1] - t[0], e2 = t[2] - t[0], p = cross(direction, e2);
+  const double det = dot(e1, p);
+  if (std::abs(det) < 1e-15) {
+    return false;
+  }
+  const Vec3d s = from - t[0], q = cross(s, e1);
+  const double u = dot(s, p) / det, v = dot(direction, q) / det, along = dot(e2, q) / det;
+  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && along >= 0.0 && along <= 1.0;
+}
+
+double distanceToSegment(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
+  const Vec3d d = b - a;
+  const double t = std::clamp(dot(p - a, d) / std::max(dot(d, d), 1e-30), 0.0, 1.0);
+  return length(p - (a + d * t));
+}
+
+double distanceTo(const Vec3d& p, const Triangle& t) {
+  const Vec3d normal = normalized(cross(t[1] - t[0], t[2] - t[0]));
+  const double height = dot(p - t[0], normal);
+  bool inside = true;
+  double nearest = 1e30;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3d &a = t[k], &b = t[(k + 1) % 3];
+    inside = inside && dot(cross(b - a, p - a), normal) >= 0.0;
+    nearest = std::min(nearest, distanceToSegment(p, a, b));
+  }
+  return inside ? std::abs(height) : nearest;
+}
+
+Box boxAround(const Vec3d& a, const Vec3d& b, double margin) {
+  Box box;
+  box.extend(Vec3f(min(a, b) - Vec3d(margin, margin, margin)));
+  box.extend(Vec3f(max(a, b) + Vec3d(margin, margin, margin)));
+  return box;
+}
+
+}  // namespace
+
+std::uint64_t hashOf(const Scene& scene) {
+  Hash hash;
+  for (const Vec3f& position : scene.positions) {
+    hash.add(position);
+  }
+  for (const std::uint32_t index : scene.indices) {
+    hash.add(std::uint64_t{index});
+  }
+  for (const Object& object : scene.objects) {
+    hash.add(std::uint64_t{object.first_index});
+    hash.add(std::uint64_t{object.index_count});
+    hash.add(std::uint64_t{object.material.value});
+  }
+  for (const CameraPath& path : scene.paths) {
+    for (const CameraFrame& frame : path.frames) {
+      hash.add(frame.eye);
+      hash.add(frame.forward);
+    }
+  }
+  return hash.value();
+}
+
+std::string whatIsWrong(const Scene& scene) {
+  if (scene.object_names.size() != scene.objects.size()) {
+    return "as many names as objects";
+  }
+  for (const Vec3f& position : scene.positions) {
+    if (!isFinite(position)) {
+      return "a position is not finite";
+    }
+  }
+  std::uint64_t next = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    Box bounds;
+    for (std::uint32_t k = 0; k < object.index_count; ++k) {
+      const std::uint32_t index = scene.indices[object.first_index + k];
+      if (index >= scene.positions.size()) {
+        return scene.object_names[i] + ": index out of range";
+      }
+      bounds.extend(scene.positions[index]);
+    }
+    if (object.first_index != next || object.index_count == 0 || object.index_count % 3 != 0 ||
+        object.material.value >= scene.materials.size() || bounds != object.bounds || !bounds.wellFormed()) {
+      return scene.object_names[i] + ": indices, material or bounds";
+    }
+    next += object.index_count;
+  }
+  return next == scene.indices.size() ? "" : "indices that belong to no object";
+}
+
+double degenerateShare(const Scene& scene) {
+  std::size_t degenerate = 0;
+  for (std::size_t i = 0; i < scene.indices.size(); i += 3) {
+    const Triangle t = triangleAt(scene, i);
+    degenerate += length(cross(t[1] - t[0], t[2] - t[0])) * 0.5 < 1e-7 ? 1 : 0;
+  }
+  return static_cast<double>(degenerate) / static_cast<double>(scene.triangleCount());
+}
+
+bool isClosed(const Scene& scene, const Object& object) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+  for (std::uint32_t i = 0; i < object.index_count; ++i) {
+    const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+    const std::uint32_t a = scene.indices[object.first_index + i],
+                        b = scene.indices[object.first_index + next];
+    balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+  }
+  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+}
+
+double volumeOf(const Scene& scene, const Object& object) {
+  const Vec3d middle = center(object.bounds);
+  double sixfold = 0.0;
+  for (std::uint32_t i = 0; i < object.index_count; i += 3) {
+    const Triangle t = triangleAt(scene, object.first_index + i);
+    sixfold += dot(t[0] - middle, cross(t[1] - middle, t[2] - middle));
+  }
+  return sixfold / 6.0;
+}
+
+SolidCounts countSolids(const Scene& scene) {
+  SolidCounts counts;
+  for (const Object& object : scene.objects) {
+    if (isClosed(scene, object)) {
+      ++counts.closed;
+      counts.inside_out += volumeOf(scene, object) <= 0.0 ? 1 : 0;
+    }
+  }
+  return counts;
+}
+
+std::string whatIsHit(const Scene& scene, const CameraPath& path, double clearance) {
+  for (std::size_t f = 0; f < path.frames.size(); ++f) {
+    const Vec3d eye = path.frames[f].eye - scene.origin;
+    const Vec3d next = path.frames[std::min(f + 1, path.frames.size() - 1)].eye - scene.origin;
+    const Box around = boxAround(eye, next, clearance);
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      const Object& object = scene.objects[o];
+      for (std::uint32_t i = 0; overlaps(around, object.bounds) && i < object.index_count; i += 3) {
+        const Triangle triangle = triangleAt(scene, object.first_index + i);
+        if (segmentHits(eye, next, triangle) || distanceTo(eye, triangle) < clearance) {
+          return path.name + " frame " + std::to_string(f) + ": " + scene.object_names[o];
+        }
+      }
+    }
+  }
+  return "";
+}
+
+double smallestTurnCosine(const CameraPath& path) {
+  double smallest = 1.0;
+  for (std::size_t f = 1; f < path.frames.size(); ++f) {
+    smallest =
+        std::min(smallest, dot(normalized(path.frames[f - 1].forward), normalized(path.frames[f].forward)));
+  }
+  return smallest;
+}
+
+double longestStep(const CameraPath& path) {
+  double longest = 0.0;
+  for (std::size_t f = 1; f < path.frames.size(); ++f) {
+    longest = std::max(longest, length(path.frames[f].eye - path.frames[f - 1].eye));
+  }
+  return longest;
+}
+
+}  // namespace sightline::scene_checks
