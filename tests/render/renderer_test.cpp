@@ -85,8 +85,9 @@ TEST_F(RendererTest, APictureWithoutTheHiddenObjectsIsBitEqual) {
   SceneMaker maker;
   std::vector<ObjectId> kept;
   for (int i = 0; i < 40; ++i) {
-    const auto x = static_cast<float>(i % 10 - 5);
-    const auto y = static_cast<float>(i / 10 - 2);
+    const int column = i % 10, row = i / 10;
+    const auto x = static_cast<float>(column - 5);
+    const auto y = static_cast<float>(row - 2);
     // Every other small box is behind the wall at z = 3, the others before it or beside it.
     const float z = i % 2 == 0 ? 1.0f : 4.0f;
     const ObjectId id = maker.box({0.2f * x, 0.2f * y, z}, {0.2f * x + 0.15f, 0.2f * y + 0.15f, z + 0.3f},
