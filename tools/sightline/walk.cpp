@@ -21,6 +21,9 @@
 namespace sightline::tool {
 namespace {
 
+constexpr std::size_t kEverythingEvery =
+    10;  // frames: so often the baseline is compared with all objects drawn
+
 struct WalkOptions {
   CommonOptions common;
   PathOptions path;
@@ -49,12 +52,11 @@ class Walker {
  public:
   Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer& renderer,
          const std::string& folder)
-      : scene_(scene),
-        walk_(walk),
-        data_(data),
-        renderer_(renderer),
-        folder_(folder),
-        chooser_(walk.frames) {}
+      : scene_(scene), walk_(walk), data_(data), renderer_(renderer), folder_(folder), chooser_(walk.frames) {
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      everything_.push_back(ObjectId(o));
+    }
+  }
 
   Result<WalkRecord> run(const std::vector<Setting>& settings) {
     for (const Setting& setting : settings) {
@@ -96,31 +98,37 @@ class Walker {
       record_.runs[r].frames.back().draw_us = stats.draw_us;
     }
     keep(frame, view);
-    return compare(frame);
-  }
-
-  Status compare(std::uint32_t frame) {
-    for (std::size_t r = 1; r < images_.size(); ++r) {
-      const ImageDifference difference = compareImages(images_[0], images_[r]);
-      if (difference.equal()) {
-        continue;
+    if (i % kEverythingEvery == 0) {
+      if (const Status drawn = compare(renderer_.draw(view, everything_), 0, frame); !drawn) {
+        return drawn;
       }
-      WalkRun& run = record_.runs[r];
-      const bool first = run.differingFrames().empty();
-      run.frames.back().differs = true;
-      if (first) {
-        const std::string file = fmt::format("differs_{}_{:04}.png", r, frame);
-        const Image both = sideBySide(images_[r], differenceImage(images_[0], images_[r]));
-        if (const Status written = writePng(both, folder_ + "/" + file); !written) {
-          return written;
-        }
-        record_.changed.push_back(
-            {frame, file,
-             fmt::format("DIFFERS: {} ({}), {} pixels, the first at {}, {}", methodName(run.setting),
-                         optionsText(run.setting), difference.pixels, difference.x, difference.y)});
+    }
+    for (std::size_t r = 1; r < images_.size(); ++r) {
+      if (const Status drawn = compare(images_[0], r, frame); !drawn) {
+        return drawn;
       }
     }
     return Success{};
+  }
+
+  // The picture of run r with what it must be.
+  Status compare(const Image& reference, std::size_t r, std::uint32_t frame) {
+    const ImageDifference difference = compareImages(reference, images_[r]);
+    if (difference.equal()) {
+      return Success{};
+    }
+    WalkRun& run = record_.runs[r];
+    const bool first = run.differingFrames().empty();
+    run.frames.back().differs = true;
+    if (!first) {
+      return Success{};
+    }
+    const std::string file = fmt::format("differs_{}_{:04}.png", r, frame);
+    const std::string caption =
+        fmt::format("DIFFERS: {} ({}), {} pixels, the first at {}, {}", methodName(run.setting),
+                    optionsText(run.setting), difference.pixels, difference.x, difference.y);
+    record_.changed.push_back({frame, file, caption});
+    return writePng(sideBySide(images_[r], differenceImage(reference, images_[r])), folder_ + "/" + file);
   }
 
   void keep(std::uint32_t frame, const View& view) {
@@ -142,6 +150,7 @@ class Walker {
   CullingData& data_;
   Renderer& renderer_;
   const std::string& folder_;
+  std::vector<ObjectId> everything_;
   PictureChooser chooser_;
   WalkRecord record_;
   std::vector<Image> images_;  // of this frame, one a run
