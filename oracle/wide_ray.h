@@ -10,7 +10,7 @@ namespace sightline {
 
 // At least 113 bits of mantissa where the compiler has them.
 #if defined(__SIZEOF_FLOAT128__)
-__extension__ typedef __float128 Wide;
+using Wide = __float128;
 #else
 using Wide = long double;
 #endif

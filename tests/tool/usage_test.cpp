@@ -68,7 +68,7 @@ TEST(Tool, FilesThatAreNoScenesAreRefused) {
   expectRefused({"info", folder.write("empty.glb", "")}, "empty.glb");
   expectRefused({"info", folder.write("empty.obj", "")}, "empty.obj");
   expectRefused(
-      {"info", folder.write("cut.glb", std::string("glTF\2\0\0\0\0\4\0\0\0\2\0\0JSON{\"asset\":", 33))},
+      {"info", folder.write("cut.glb", std::string("glTF\2\0\0\0\0\4\0\0\0\2\0\0JSON{\"asset\":", 29))},
       "cut.glb");
   expectRefused({"info", folder.write("empty.gltf", "{\"asset\":{\"version\":\"2.0\"}}")}, "empty.gltf");
   expectRefused({"info", folder.write("scene.unknown", "text")}, "scene.unknown");
