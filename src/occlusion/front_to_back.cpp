@@ -47,7 +47,13 @@ bool FrontToBack::cut(std::uint32_t fragment, std::uint32_t splitter, std::uint3
   const Fragment whole = all_[fragment];
   const SplitResult parts =
       stack_->split(whole.piece, plane, cut_plane, volumes_->volumes[whole.volume].reach);
-  bool usable = parts.side == Side::kBoth && parts.front.count >= 3 && parts.back.count >= 3;
+  const auto cutEdges = [&](Piece piece) {
+    const auto corners = stack_->of(piece);
+    return std::count_if(corners.begin(), corners.end(),
+                         [&](const Corner& corner) { return corner.edge.samePlane(cut_plane); });
+  };
+  bool usable = parts.side == Side::kBoth && parts.front.count >= 3 && parts.back.count >= 3 &&
+                cutEdges(parts.front) == 1 && cutEdges(parts.back) == 1;
   if (usable) {
     // The front part's new edge runs from p to q, counter-clockwise seen from the eye.
     const auto corners = stack_->of(parts.front);

@@ -64,7 +64,7 @@ Visibility OcclusionTree::classify(const Box& box) {
   const EyeBox relative{Vec3d(box.min) - eye.position, Vec3d(box.max) - eye.position};
   if (!eye.orthographic && relative.min.x <= 0.0 && relative.min.y <= 0.0 && relative.min.z <= 0.0 &&
       relative.max.x >= 0.0 && relative.max.y >= 0.0 && relative.max.z >= 0.0) {
-    return Visibility::kVisible;  // the eye is inside
+    return Visibility::kPartial;  // the eye is inside: never hidden, but what else is in it may be
   }
   const State state = impl.modified() ? classifyByPlanes(impl.tree, relative, impl.exact())
                                       : impl.splitting.classify(impl.tree, relative, impl.exact());

@@ -11,6 +11,23 @@ bool named(PlaneRef ref) {
 
 }  // namespace
 
+bool PolygonStack::agrees(const Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const {
+  if (!named(corner.edge)) {
+    return false;
+  }
+  const Vec3d& stored = (*planes)[corner.edge.plane()].normal;
+  const double cosine = dot(stored, plane.normal);
+  const bool same_way = corner.edge.flipped() == (oriented.flipped() != ref.flipped());
+  return same_way ? cosine > 0.0 : cosine < 0.0;
+}
+
+void PolygonStack::embed(Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const {
+  if (agrees(corner, plane, ref, oriented)) {
+    corner.edge = oriented;
+    corner.embedded = true;
+  }
+}
+
 SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, double scale) {
   const std::uint32_t n = piece.count;
   const std::uint32_t first = piece.first;
@@ -19,33 +36,35 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
     overflow = true;
     return result;
   }
+  if (named(ref)) {
+    bool made_by_it = false;
+    for (Corner& corner : of(piece)) {
+      if (corner.edge.samePlane(ref)) {
+        corner.embedded = true;
+        made_by_it = true;
+        result.side = corner.edge.flipped() == ref.flipped() ? Side::kBack : Side::kFront;
+      }
+    }
+    if (made_by_it) {
+      return result;
+    }
+  }
+  bool any_front = false, any_back = false;
   for (std::uint32_t i = 0; i < n; ++i) {
     const Vec3d& p = corners[first + i].position;
     distance_[i] = plane.evaluate(p);
     const double on_plane = kOnPlane * (magnitude(p) + scale);
     sign_[i] = static_cast<std::int8_t>(distance_[i] > on_plane ? 1 : distance_[i] < -on_plane ? -1 : 0);
+    any_front |= distance_[i] > 4.0 * on_plane;
+    any_back |= distance_[i] < -4.0 * on_plane;
   }
   const auto next = [n](std::uint32_t i) { return i + 1 == n ? 0 : i + 1; };
-  if (named(ref)) {
-    // An edge that was made by this very plane lies in it, whatever rounding says.
-    for (std::uint32_t i = 0; i < n; ++i) {
-      if (corners[first + i].edge.samePlane(ref)) {
-        sign_[i] = sign_[next(i)] = 0;
-      }
-    }
-  }
-  bool any_front = false, any_back = false;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    any_front |= sign_[i] > 0;
-    any_back |= sign_[i] < 0;
-  }
   if (!any_front || !any_back) {
     result.side = any_front ? Side::kFront : any_back ? Side::kBack : Side::kOnPlane;
     if (named(ref) && result.side != Side::kOnPlane) {
       for (std::uint32_t i = 0; i < n; ++i) {
         if (sign_[i] == 0 && sign_[next(i)] == 0) {
-          corners[first + i].edge = any_front ? ref.other() : ref;
-          corners[first + i].embedded = true;
+          embed(corners[first + i], plane, ref, any_front ? ref.other() : ref);
         }
       }
     }
@@ -60,22 +79,23 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
   for (const int wanted : {1, -1}) {
     Piece& part = wanted > 0 ? result.front : result.back;
     part.first = static_cast<std::uint32_t>(corners.size());
-    const PlaneRef cut_edge = wanted > 0 ? ref.other() : ref;
+    const PlaneRef oriented = !named(ref) ? PlaneRef{} : wanted > 0 ? ref.other() : ref;
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t j = next(i);
       const int si = sign_[i] * wanted, sj = sign_[j] * wanted;
-      if (si >= 0) {
-        Corner corner = corners[first + i];
-        if (si == 0 && sj <= 0) {
-          corner.edge = named(ref) ? cut_edge : kNoPlane;
-          corner.embedded = named(ref);
-        }
+      Corner corner = corners[first + i];
+      if (si > 0 || (si == 0 && sj > 0)) {
         corners.push_back(corner);
+      } else if (si == 0 && sj == 0) {
+        embed(corner, plane, ref, oriented);
+        corners.push_back(corner);
+      } else if (si == 0) {
+        corners.push_back({corner.position, oriented, named(ref)});
       }
       if (si * sj < 0) {
-        Corner corner{cut(i, j), corners[first + i].edge, corners[first + i].embedded};
+        corner.position = cut(i, j);
         if (si > 0) {
-          corner.edge = named(ref) ? cut_edge : kNoPlane;
+          corner.edge = oriented;
           corner.embedded = named(ref);
         }
         corners.push_back(corner);

@@ -37,15 +37,25 @@ class PolygonStack {
     return std::span(corners).subspan(piece.first, piece.count);
   }
 
-  // plane: unit normal. ref: its name, or an invalid one (bits all set) for planes that edges can't lie in.
-  // on_plane: how near a corner at p must be to count as on the plane: on_plane * (magnitude(p) + scale).
-  // New edges, and old ones that lie in the plane, get ref as their plane and are marked as embedded.
-  // Polygons that would get too many corners are not split but reported as kOnPlane with overflow set.
+  // plane: unit normal. ref: its name, or an invalid one (bits all set) for planes that edges can't lie in. A
+  // corner counts as on the plane within kOnPlane * (magnitude + scale); a polygon reaches a side when a
+  // corner is four times as far there.
+  //
+  // New edges, and old ones that lie in the plane and bound the polygon towards the same side, get ref as
+  // their plane and are marked as embedded. A polygon with an edge that was made by this very plane is on the
+  // side where that edge has it, whatever rounding says of its corners. Polygons that would get too many
+  // corners are not split but reported as kOnPlane with overflow set.
   SplitResult split(Piece piece, const Plane& plane, PlaneRef ref, double scale);
 
+  // What PlaneRefs of corners stand for; needed when split() is given named planes.
+  const std::vector<Plane>* planes = nullptr;
   bool overflow = false;
 
  private:
+  // Whether the corner's edge bounds its polygon as the plane of the given name and side does.
+  bool agrees(const Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const;
+  void embed(Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const;
+
   std::array<double, kMaxCorners> distance_{};
   std::array<std::int8_t, kMaxCorners> sign_{};
 };

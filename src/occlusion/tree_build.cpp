@@ -109,6 +109,7 @@ bool TreeBuilder::build(const View& view, const OccluderSet& set, std::span<cons
     addFrustum(view);
   }
   stack_.overflow = false;
+  stack_.planes = &tree.volumes.planes;
   stack_.corners.clear();
   fragments_.clear();
   for (std::uint32_t v = 0; v < tree.volumes.volumes.size(); ++v) {

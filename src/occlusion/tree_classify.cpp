@@ -55,12 +55,13 @@ State SplittingQuery::leaf(const ShadowLeaf& leaf, Piece piece) const {
   if (!exact_) {
     return boxBehindSupport(volume, *box_);
   }
-  bool any_front = false, any_behind = false;
   for (const Corner& corner : stack_.of(piece)) {
-    const bool behind = volume.support.evaluate(corner.position) < -supportMargin(volume, corner.position);
-    (behind ? any_behind : any_front) = true;
+    if (!(volume.support.evaluate(corner.position) < -supportMargin(volume, corner.position))) {
+      // A part of the face is seen. Whether all of the box is depends on what of it lies behind the occluder.
+      return boxBehindSupport(volume, *box_) == State::kVisible ? State::kVisible : State::kPartial;
+    }
   }
-  return any_front && any_behind ? State::kPartial : any_front ? State::kVisible : State::kHidden;
+  return State::kHidden;
 }
 
 State SplittingQuery::node(const TreeNode& node, Piece piece) {
