@@ -69,8 +69,13 @@ void checkScene(const Scene& scene) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const ImportLimits limits{
-      .triangles = 100'000, .implied_elements = 1 << 16, .elements = 1 << 12, .camera_frames = 10'000};
+  const ImportLimits limits{.triangles = 100'000,
+                            .objects = 10'000,
+                            .name_bytes = 1 << 20,
+                            .elements = 1 << 12,
+                            .implied_elements = 1 << 16,
+                            .sparse_elements = 1 << 16,
+                            .camera_work = 10'000};
   std::string bytes(reinterpret_cast<const char*>(data), size);
   const std::size_t zero = bytes.find('\0');
   if (bytes.compare(0, 4, "glTF") != 0 && zero != std::string::npos) {

@@ -49,6 +49,19 @@ Status parse(const CheckedJson& checked, Document& document) {
   return Success{};
 }
 
+// The elements that sparse accessors replace are checked one by one, and accessors may share them.
+Status checkSparseWork(const Document& document) {
+  std::uint64_t replaced = 0;
+  for (const tinygltf::Accessor& accessor : document.model.accessors) {
+    replaced += accessor.sparse.isSparse ? static_cast<std::uint64_t>(accessor.sparse.count) : 0;
+  }
+  if (replaced > document.limits.sparse_elements) {
+    return failure("{}: its sparse accessors replace {} elements; at most {} are read", document.name,
+                   replaced, document.limits.sparse_elements);
+  }
+  return Success{};
+}
+
 Result<Document> load(std::string_view bytes, const std::string& base_dir, const std::string& name,
                       const ImportLimits& limits) {
   Document document;
@@ -73,9 +86,12 @@ Result<Document> load(std::string_view bytes, const std::string& base_dir, const
     return buffers.error();
   }
   document.buffers = std::move(*buffers);
-  const Status parsed = parse(*checked, document);
-  if (!parsed) {
-    return parsed.error();
+  Status status = parse(*checked, document);
+  if (status) {
+    status = checkSparseWork(document);
+  }
+  if (!status) {
+    return status.error();
   }
   return document;
 }
@@ -85,13 +101,14 @@ Result<Scene> convert(const Document& document) {
   if (!tree) {
     return tree.error();
   }
+  Accessors accessors(document);
   SceneBuilder builder(document.limits);
   Status status = addMaterials(document, builder);
   if (status) {
-    status = addObjects(document, *tree, builder);
+    status = addObjects(document, *tree, accessors, builder);
   }
   if (status) {
-    status = addCameras(document, *tree, builder);
+    status = addCameras(document, *tree, accessors, builder);
   }
   if (!status) {
     return status.error();

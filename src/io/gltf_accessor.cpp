@@ -198,13 +198,9 @@ Status addSparse(const Document& document, int accessor, AccessorView& view) {
   return Success{};
 }
 
-Result<AccessorView> viewAccessor(const Document& document, int accessor, const std::string& user) {
-  const auto& accessors = document.model.accessors;
-  if (!isIndexInto(accessor, accessors.size())) {
-    return failure("{}: {}: accessor {} does not exist (the file has {})", document.name, user, accessor,
-                   accessors.size());
-  }
-  const tinygltf::Accessor& source = accessors[static_cast<std::size_t>(accessor)];
+// Precondition: the accessor exists.
+Result<AccessorView> openAccessor(const Document& document, int accessor, const std::string& user) {
+  const tinygltf::Accessor& source = document.model.accessors[static_cast<std::size_t>(accessor)];
   const std::string where = fmt::format("accessor {}", accessor);
   AccessorView view;
   view.count_ = source.count;
@@ -235,6 +231,22 @@ Result<AccessorView> viewAccessor(const Document& document, int accessor, const 
     }
   }
   return view;
+}
+
+Result<const AccessorView*> Accessors::view(int accessor, const std::string& user) {
+  if (!isIndexInto(accessor, views_.size())) {
+    return failure("{}: {}: accessor {} does not exist (the file has {})", document_.name, user, accessor,
+                   views_.size());
+  }
+  std::optional<AccessorView>& view = views_[static_cast<std::size_t>(accessor)];
+  if (!view) {
+    Result<AccessorView> opened = openAccessor(document_, accessor, user);
+    if (!opened) {
+      return opened.error();
+    }
+    view = std::move(*opened);
+  }
+  return &*view;
 }
 
 }  // namespace sightline::gltf

@@ -49,7 +49,7 @@ Status checkTimes(const AccessorView& times, const std::string& where) {
 Value Track::element(std::uint64_t element) const {
   Value value{};
   for (int i = 0; i < (rotation_ ? 4 : 3); ++i) {
-    value[static_cast<std::size_t>(i)] = values_.number(element, i);
+    value[static_cast<std::size_t>(i)] = values_->number(element, i);
   }
   return value;
 }
@@ -79,10 +79,10 @@ Value Track::sample(double time) const {
   std::uint64_t high = keyCount() - 1;
   while (high - low > 1) {
     const std::uint64_t middle = low + (high - low) / 2;
-    (times_.number(middle, 0) <= time ? low : high) = middle;
+    (times_->number(middle, 0) <= time ? low : high) = middle;
   }
-  const double start = times_.number(low, 0);
-  const double duration = times_.number(high, 0) - start;
+  const double start = times_->number(low, 0);
+  const double duration = times_->number(high, 0) - start;
   const double fraction = (time - start) / duration;
   switch (interpolation_) {
     case Interpolation::kStep:
@@ -97,7 +97,7 @@ Value Track::sample(double time) const {
 }
 
 Result<Track> openTrack(const Document& document, std::size_t animation,
-                        const tinygltf::AnimationChannel& channel) {
+                        const tinygltf::AnimationChannel& channel, Accessors& accessors) {
   const auto& samplers = document.model.animations[animation].samplers;
   const std::string user = fmt::format("animation {} sampler {}", animation, channel.sampler);
   const std::string where = document.name + ": " + user;
@@ -114,28 +114,29 @@ Result<Track> openTrack(const Document& document, std::size_t animation,
     return failure("{}: interpolation \"{}\" is not LINEAR, STEP or CUBICSPLINE", where,
                    sampler.interpolation);
   }
-  Result<AccessorView> times = viewAccessor(document, sampler.input, user);
+  const Result<const AccessorView*> times = accessors.view(sampler.input, user);
   if (!times) {
     return times.error();
   }
-  Result<AccessorView> values = viewAccessor(document, sampler.output, user);
+  const Result<const AccessorView*> values = accessors.view(sampler.output, user);
   if (!values) {
     return values.error();
   }
-  if (times->type() != TINYGLTF_TYPE_SCALAR || times->componentType() != TINYGLTF_COMPONENT_TYPE_FLOAT ||
-      values->type() != (track.rotation_ ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3)) {
+  if ((*times)->type() != TINYGLTF_TYPE_SCALAR ||
+      (*times)->componentType() != TINYGLTF_COMPONENT_TYPE_FLOAT ||
+      (*values)->type() != (track.rotation_ ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3)) {
     return failure("{}: times must be SCALAR of floats, and values VEC4 for a rotation, else VEC3", where);
   }
   const std::uint64_t values_per_key = track.interpolation_ == Track::Interpolation::kCubic ? 3 : 1;
-  if (times->count() == 0 || times->count() * values_per_key != values->count()) {
-    return failure("{}: {} values do not go with {} keys", where, values->count(), times->count());
+  if ((*times)->count() == 0 || (*times)->count() * values_per_key != (*values)->count()) {
+    return failure("{}: {} values do not go with {} keys", where, (*values)->count(), (*times)->count());
   }
-  const Status ascending = checkTimes(*times, where);
+  const Status ascending = checkTimes(**times, where);
   if (!ascending) {
     return ascending.error();
   }
-  track.times_ = std::move(*times);
-  track.values_ = std::move(*values);
+  track.times_ = *times;
+  track.values_ = *values;
   return track;
 }
 

@@ -40,8 +40,13 @@ struct Link {
 
 class CameraAdder {
  public:
-  CameraAdder(const Document& document, const NodeTree& tree, const ChannelMap& channels)
-      : document_(document), tree_(tree), channels_(channels), work_left_(document.limits.camera_frames) {}
+  CameraAdder(const Document& document, const NodeTree& tree, const ChannelMap& channels,
+              Accessors& accessors)
+      : document_(document),
+        tree_(tree),
+        channels_(channels),
+        accessors_(accessors),
+        work_left_(document.limits.camera_work) {}
 
   Result<CameraPath> pathOf(std::size_t node_number) {
     const tinygltf::Node& node = document_.model.nodes[node_number];
@@ -188,7 +193,7 @@ class CameraAdder {
       if (channel == nullptr) {
         continue;
       }
-      Result<Track> opened = openTrack(document_, animation, *channel);
+      Result<Track> opened = openTrack(document_, animation, *channel, accessors_);
       if (!opened) {
         return opened.error();
       }
@@ -222,12 +227,13 @@ class CameraAdder {
   Error tooMuch() const {
     return failure(
         "{}: the animations of the file's cameras need more than {} frames, keys and nodes together", where_,
-        document_.limits.camera_frames);
+        document_.limits.camera_work);
   }
 
   const Document& document_;
   const NodeTree& tree_;
   const ChannelMap& channels_;
+  Accessors& accessors_;
   std::uint64_t work_left_;
   std::string where_;
   double step_back_ = 0.0;
@@ -235,12 +241,13 @@ class CameraAdder {
 
 }  // namespace
 
-Status addCameras(const Document& document, const NodeTree& tree, SceneBuilder& builder) {
+Status addCameras(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder) {
   const Result<ChannelMap> channels = channelsOf(document);
   if (!channels) {
     return channels.error();
   }
-  CameraAdder adder(document, tree, *channels);
+  CameraAdder adder(document, tree, *channels, accessors);
   for (const int node : tree.visited) {
     if (document.model.nodes[static_cast<std::size_t>(node)].camera < 0) {
       continue;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "failure.h"
@@ -29,7 +30,7 @@ struct Where {
       return before;
     }
     const std::string self = number < 0 ? std::string(name) : fmt::format("{} {}", name, number);
-    return before.empty() ? self : before + " " + self;
+    return before.empty() ? self : fmt::format("{} {}", before, self);
   }
 };
 
@@ -78,7 +79,14 @@ class Checker {
       case Kind::kFlag:
         return keep(input.is_boolean(), input, field, "true or false", where, output);
       case Kind::kNumbers:
-        return keep(isArrayOf(input, &json::is_number), input, field, "an array of numbers", where, output);
+        return keep(isArrayOf(input, &json::is_number) && input.size() == field.count, input, field,
+                    fmt::format("an array of {} numbers", field.count), where, output);
+      case Kind::kStride:
+        return integer(input, field, 252, where, output) &&
+               keep(output.get<int>() % 4 == 0, input, field, "a multiple of 4", where, output);
+      case Kind::kElementType:
+        return keep(isElementType(input), input, field, "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4", where,
+                    output);
       case Kind::kTexts:
         return keep(isArrayOf(input, &json::is_string), input, field, "an array of strings", where, output);
       case Kind::kIndices:
@@ -100,7 +108,12 @@ class Checker {
            std::all_of(input.begin(), input.end(), [is](const json& item) { return (item.*is)(); });
   }
 
-  bool keep(bool valid, json& input, const Field& field, const char* wanted, const Where& where,
+  static bool isElementType(const json& input) {
+    constexpr std::array<const char*, 7> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+    return input.is_string() && std::find(kTypes.begin(), kTypes.end(), input) != kTypes.end();
+  }
+
+  bool keep(bool valid, json& input, const Field& field, std::string_view wanted, const Where& where,
             json& output) {
     if (!valid) {
       return fail(where, "\"{}\" must be {}", field.key, wanted);
@@ -152,9 +165,9 @@ class Checker {
     if (!input.is_array()) {
       return fail(where, "\"{}\" must be an array, but is {}", field.key, input.type_name());
     }
-    if (input.size() > limits_.elements) {
-      return fail(where, "\"{}\" has {} elements; at most {} are read", field.key, input.size(),
-                  limits_.elements);
+    const std::uint64_t most = field.few ? std::min<std::uint64_t>(kFew, limits_.elements) : limits_.elements;
+    if (input.size() > most) {
+      return fail(where, "\"{}\" has {} elements; at most {} are read", field.key, input.size(), most);
     }
     output = json::array();
     for (std::size_t i = 0; i < input.size(); ++i) {
@@ -171,8 +184,8 @@ class Checker {
   template <typename... Args>
   bool fail(const Where& where, fmt::format_string<Args...> text, Args&&... args) {
     const std::string place = where.text();
-    error_.message =
-        name_ + ": " + (place.empty() ? "" : place + ": ") + fmt::format(text, std::forward<Args>(args)...);
+    const std::string what = fmt::format(text, std::forward<Args>(args)...);
+    error_ = place.empty() ? failure("{}: {}", name_, what) : failure("{}: {}: {}", name_, place, what);
     return false;
   }
 

@@ -27,10 +27,6 @@ Result<Material> convert(const Document& document, std::size_t number) {
                    source.alphaMode);
   }
   const std::vector<double>& color = source.pbrMetallicRoughness.baseColorFactor;
-  if (color.size() != 4) {
-    return failure("{}: material {}: baseColorFactor must have 4 numbers, but has {}", document.name, number,
-                   color.size());
-  }
   std::transform(color.begin(), color.end(), material.base_color.begin(),
                  [](double c) { return static_cast<float>(std::clamp(c, 0.0, 1.0)); });
   return material;

@@ -1,6 +1,6 @@
 #include <optional>
 
-#include "gltf_model.h"
+#include "gltf_primitives.h"
 
 namespace sightline::gltf {
 namespace {
@@ -12,37 +12,54 @@ std::optional<OccluderMark> markOf(const tinygltf::Value& extras) {
   return extras.Get("occluder").Get<bool>() ? OccluderMark::kOccluder : OccluderMark::kNever;
 }
 
-// Which corner of a primitive's vertex sequence is corner 0, 1, 2 of a triangle.
-std::array<std::uint64_t, 3> cornersOf(int mode, std::uint64_t triangle) {
-  switch (mode) {
-    case TINYGLTF_MODE_TRIANGLE_STRIP:
-      return {triangle, triangle + 1 + triangle % 2, triangle + 2 - triangle % 2};
-    case TINYGLTF_MODE_TRIANGLE_FAN:
-      return {triangle + 1, triangle + 2, 0};
-    default:
-      return {3 * triangle, 3 * triangle + 1, 3 * triangle + 2};
-  }
-}
-
 class ObjectAdder {
  public:
-  ObjectAdder(const Document& document, const NodeTree& tree, SceneBuilder& builder)
-      : document_(document), tree_(tree), builder_(builder) {}
+  ObjectAdder(const Document& document, const NodeTree& tree, Accessors& accessors, SceneBuilder& builder)
+      : document_(document), tree_(tree), builder_(builder), meshes_(document, accessors) {}
+
+  // Instances multiply: their sum is known before the first is made.
+  Status checkLimits() {
+    const ImportLimits& limits = document_.limits;
+    std::uint64_t objects = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t name_bytes = 0;
+    for (const int node : tree_.visited) {
+      const auto number = static_cast<std::size_t>(node);
+      const Result<const MeshSource*> mesh = meshOf(number);
+      if (!mesh) {
+        return mesh.error();
+      }
+      if (*mesh == nullptr) {
+        continue;
+      }
+      const std::uint64_t count = (*mesh)->primitives.size();
+      objects += count;
+      triangles += (*mesh)->triangles;
+      name_bytes += count * (document_.model.nodes[number].name.size() + 24);
+      if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
+        return failure(
+            "{}: node {}: up to here the scene has {} objects, {} triangles and {} bytes of names; at most "
+            "{}, "
+            "{} and {} are read",
+            document_.name, node, objects, triangles, name_bytes, limits.objects, limits.triangles,
+            limits.name_bytes);
+      }
+    }
+    return Success{};
+  }
 
   // One object for each primitive with triangles of the node's mesh.
   Status addNode(std::size_t node_number) {
-    const tinygltf::Model& model = document_.model;
-    const tinygltf::Node& node = model.nodes[node_number];
-    if (node.mesh < 0) {
+    const Result<const MeshSource*> mesh = meshOf(node_number);
+    if (!mesh) {
+      return mesh.error();
+    }
+    if (*mesh == nullptr) {
       return Success{};
     }
-    if (!isIndexInto(node.mesh, model.meshes.size())) {
-      return failure("{}: node {}: mesh {} does not exist (the file has {})", document_.name, node_number,
-                     node.mesh, model.meshes.size());
-    }
-    const std::size_t count = model.meshes[static_cast<std::size_t>(node.mesh)].primitives.size();
-    for (std::size_t primitive = 0; primitive < count; ++primitive) {
-      const Status status = addPrimitive(node_number, primitive);
+    for (const PrimitiveSource& primitive : (*mesh)->primitives) {
+      addObject(primitive, node_number);
+      const Status status = addTriangles(primitive, node_number);
       if (!status) {
         return status;
       }
@@ -51,103 +68,31 @@ class ObjectAdder {
   }
 
  private:
-  struct Source {
-    std::string where;  // "mesh 3 primitive 0"
-    int mode = TINYGLTF_MODE_TRIANGLES;
-    int position_accessor = -1;
-    AccessorView positions;
-    std::optional<AccessorView> indices;
-    std::uint64_t corners = 0;
-    std::uint64_t triangles = 0;
-  };
+  // nullptr: the node has none.
+  Result<const MeshSource*> meshOf(std::size_t node_number) {
+    const int mesh = document_.model.nodes[node_number].mesh;
+    if (mesh < 0) {
+      return static_cast<const MeshSource*>(nullptr);
+    }
+    if (!isIndexInto(mesh, document_.model.meshes.size())) {
+      return failure("{}: node {}: mesh {} does not exist (the file has {})", document_.name, node_number,
+                     mesh, document_.model.meshes.size());
+    }
+    return meshes_.open(static_cast<std::size_t>(mesh));
+  }
 
-  Status addPrimitive(std::size_t node_number, std::size_t number) {
+  void addObject(const PrimitiveSource& primitive, std::size_t node_number) {
     const tinygltf::Node& node = document_.model.nodes[node_number];
     const tinygltf::Mesh& mesh = document_.model.meshes[static_cast<std::size_t>(node.mesh)];
-    const tinygltf::Primitive& primitive = mesh.primitives[number];
-    Source source;
-    source.where = fmt::format("mesh {} primitive {}", node.mesh, number);
-    source.mode = primitive.mode;
-    if (source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-      return failure("{}: {}: mode {} does not exist", document_.name, source.where, source.mode);
-    }
-    if (source.mode < TINYGLTF_MODE_TRIANGLES) {
-      return Success{};  // points and lines
-    }
-    const Status opened = open(primitive, source);
-    if (!opened || source.triangles == 0) {
-      return opened;
-    }
-    const Result<MaterialId> material = materialOf(primitive, source);
-    if (!material) {
-      return material.error();
-    }
     std::string name = node.name.empty() ? fmt::format("node{}", node_number) : node.name;
     if (mesh.primitives.size() > 1) {
-      name += fmt::format("/primitive{}", number);
+      name += fmt::format("/primitive{}", primitive.number);
     }
-    builder_.beginObject(std::move(name), *material, markFor(node, mesh, primitive));
-    return addTriangles(source, node_number);
+    builder_.beginObject(std::move(name), materialOf(primitive), markFor(node, mesh, primitive));
   }
 
-  // Finds and checks the accessors of a primitive of triangles.
-  Status open(const tinygltf::Primitive& primitive, Source& source) const {
-    const auto attribute = primitive.attributes.find("POSITION");
-    if (attribute == primitive.attributes.end()) {
-      return failure("{}: {}: has no POSITION attribute", document_.name, source.where);
-    }
-    source.position_accessor = attribute->second;
-    Result<AccessorView> positions = viewAccessor(document_, attribute->second, source.where);
-    if (!positions) {
-      return positions.error();
-    }
-    if (positions->type() != TINYGLTF_TYPE_VEC3 ||
-        positions->componentType() == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-      return failure("{}: {}: positions must be VEC3 of floats, bytes or shorts, but accessor {} is not",
-                     document_.name, source.where, source.position_accessor);
-    }
-    source.positions = std::move(*positions);
-    source.corners = source.positions.count();
-    if (primitive.indices >= 0) {
-      Result<AccessorView> indices = viewAccessor(document_, primitive.indices, source.where);
-      if (!indices) {
-        return indices.error();
-      }
-      const int type = indices->componentType();
-      if (indices->type() != TINYGLTF_TYPE_SCALAR ||
-          (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-           type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)) {
-        return failure("{}: {}: indices must be SCALAR of unsigned integers, but accessor {} is not",
-                       document_.name, source.where, primitive.indices);
-      }
-      source.indices = std::move(*indices);
-      source.corners = source.indices->count();
-    }
-    return countTriangles(source);
-  }
-
-  Status countTriangles(Source& source) const {
-    if (source.mode == TINYGLTF_MODE_TRIANGLES && source.corners % 3 != 0) {
-      return failure("{}: {}: {} corners do not make whole triangles", document_.name, source.where,
-                     source.corners);
-    }
-    source.triangles = source.mode == TINYGLTF_MODE_TRIANGLES ? source.corners / 3
-                       : source.corners < 3                   ? 0
-                                                              : source.corners - 2;
-    if (!builder_.fits(source.triangles)) {
-      return failure("{}: {}: with its {} triangles the scene exceeds {} triangles", document_.name,
-                     source.where, source.triangles, document_.limits.triangles);
-    }
-    return Success{};
-  }
-
-  Result<MaterialId> materialOf(const tinygltf::Primitive& primitive, const Source& source) {
-    const std::size_t count = document_.model.materials.size();
+  MaterialId materialOf(const PrimitiveSource& primitive) {
     if (primitive.material >= 0) {
-      if (!isIndexInto(primitive.material, count)) {
-        return failure("{}: {}: material {} does not exist (the file has {})", document_.name, source.where,
-                       primitive.material, count);
-      }
       return MaterialId(static_cast<std::uint32_t>(primitive.material));
     }
     if (!default_material_.valid()) {
@@ -158,33 +103,30 @@ class ObjectAdder {
     return default_material_;
   }
 
+  // Node, then mesh, then material.
   OccluderMark markFor(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
-                       const tinygltf::Primitive& primitive) const {
-    if (const auto mark = markOf(node.extras)) {
-      return *mark;
+                       const PrimitiveSource& primitive) const {
+    std::optional<OccluderMark> mark = markOf(node.extras);
+    if (!mark) {
+      mark = markOf(mesh.extras);
     }
-    if (const auto mark = markOf(mesh.extras)) {
-      return *mark;
+    if (!mark && primitive.material >= 0) {
+      mark = markOf(document_.model.materials[static_cast<std::size_t>(primitive.material)].extras);
     }
-    const auto material = static_cast<std::size_t>(primitive.material);
-    const bool has_material = primitive.material >= 0;
-    return has_material
-               ? markOf(document_.model.materials[material].extras).value_or(OccluderMark::kAutomatic)
-               : OccluderMark::kAutomatic;
+    return mark.value_or(OccluderMark::kAutomatic);
   }
 
-  Status addTriangles(const Source& source, std::size_t node_number) {
-    const Mat4& world_from_node = tree_.world_from_node[node_number];
-    const bool mirrored = determinant3(world_from_node) < 0.0;
+  Status addTriangles(const PrimitiveSource& source, std::size_t node_number) {
+    const bool mirrored = determinant3(tree_.world_from_node[node_number]) < 0.0;
     ++object_;
-    if (slots_.size() < source.positions.count()) {
-      slots_.resize(source.positions.count());
+    if (slots_.size() < source.positions->count()) {
+      slots_.resize(source.positions->count());
     }
     for (std::uint64_t triangle = 0; triangle < source.triangles; ++triangle) {
       std::array<std::uint32_t, 3> vertices;
-      const std::array<std::uint64_t, 3> corners = cornersOf(source.mode, triangle);
+      const std::array<std::uint64_t, 3> corners = source.cornersOf(triangle);
       for (std::size_t i = 0; i < 3; ++i) {
-        const Result<std::uint32_t> vertex = vertexAt(source, corners[i], world_from_node, node_number);
+        const Result<std::uint32_t> vertex = vertexAt(source, corners[i], node_number);
         if (!vertex) {
           return vertex.error();
         }
@@ -200,25 +142,25 @@ class ObjectAdder {
 
   // The builder's vertex for a corner; each vertex of an accessor is transformed once an object, and only if
   // used.
-  Result<std::uint32_t> vertexAt(const Source& source, std::uint64_t corner, const Mat4& world_from_node,
+  Result<std::uint32_t> vertexAt(const PrimitiveSource& source, std::uint64_t corner,
                                  std::size_t node_number) {
-    const std::uint64_t index = source.indices ? source.indices->index(corner) : corner;
-    if (index >= source.positions.count()) {
+    const std::uint64_t index = source.indices == nullptr ? corner : source.indices->index(corner);
+    if (index >= source.positions->count()) {
       return failure("{}: {}: index {} at position {} is out of range (accessor {} has {} vertices)",
                      document_.name, source.where, index, corner, source.position_accessor,
-                     source.positions.count());
+                     source.positions->count());
     }
     Slot& slot = slots_[index];
     if (slot.object == object_) {
       return slot.vertex;
     }
-    const Vec3d point(source.positions.number(index, 0), source.positions.number(index, 1),
-                      source.positions.number(index, 2));
+    const Vec3d point(source.positions->number(index, 0), source.positions->number(index, 1),
+                      source.positions->number(index, 2));
     if (!isFinite(point)) {
       return failure("{}: {}: vertex {} of accessor {} is not finite", document_.name, source.where, index,
                      source.position_accessor);
     }
-    const Vec3d point_world = transformPoint(world_from_node, point);
+    const Vec3d point_world = transformPoint(tree_.world_from_node[node_number], point);
     if (!SceneBuilder::inRange(point_world)) {
       return failure("{}: node {}: {}: the world position of vertex {} exceeds single precision",
                      document_.name, node_number, source.where, index);
@@ -235,6 +177,7 @@ class ObjectAdder {
   const Document& document_;
   const NodeTree& tree_;
   SceneBuilder& builder_;
+  MeshSources meshes_;
   MaterialId default_material_;
   std::vector<Slot> slots_;
   std::uint32_t object_ = 0;
@@ -242,8 +185,13 @@ class ObjectAdder {
 
 }  // namespace
 
-Status addObjects(const Document& document, const NodeTree& tree, SceneBuilder& builder) {
-  ObjectAdder adder(document, tree, builder);
+Status addObjects(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder) {
+  ObjectAdder adder(document, tree, accessors, builder);
+  const Status within_limits = adder.checkLimits();
+  if (!within_limits) {
+    return within_limits;
+  }
   for (const int node : tree.visited) {
     const Status status = adder.addNode(static_cast<std::size_t>(node));
     if (!status) {

@@ -4,6 +4,8 @@
 
 #include <tiny_gltf.h>
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +29,7 @@ class AccessorView {
  public:
   std::uint64_t count() const { return count_; }
   int componentType() const { return component_type_; }
+  int type() const { return type_; }
 
   // Component of an element, normalised where the accessor says so. Precondition: element < count().
   double number(std::uint64_t element, int component) const;
@@ -34,7 +37,7 @@ class AccessorView {
   std::uint32_t index(std::uint64_t element) const;
 
  private:
-  friend Result<AccessorView> viewAccessor(const Document&, int, const std::string&);
+  friend Result<AccessorView> openAccessor(const Document&, int, const std::string&);
   friend Status addSparse(const Document&, int, AccessorView&);
 
   const char* addressOf(std::uint64_t element) const;
@@ -48,13 +51,21 @@ class AccessorView {
   bool normalized_ = false;
   std::vector<std::uint32_t> replaced_;  // sparse: ascending
   const char* replacements_ = nullptr;
-
- public:
-  int type() const { return type_; }
 };
 
-// user: who refers to the accessor, in errors ("mesh 3 primitive 0").
-Result<AccessorView> viewAccessor(const Document& document, int accessor, const std::string& user);
+// Checks each accessor once, when it is first asked for: instances must not multiply the work.
+class Accessors {
+ public:
+  explicit Accessors(const Document& document)
+      : document_(document), views_(document.model.accessors.size()) {}
+
+  // Valid as long as this object. user: who refers to the accessor, in errors ("mesh 3 primitive 0").
+  Result<const AccessorView*> view(int accessor, const std::string& user);
+
+ private:
+  const Document& document_;
+  std::vector<std::optional<AccessorView>> views_;
+};
 
 // The nodes of the file as a forest.
 struct NodeTree {
@@ -76,8 +87,10 @@ NodePose poseOf(const tinygltf::Node& node);
 Mat4 matrixOf(const NodePose& pose);
 
 Status addMaterials(const Document& document, SceneBuilder& builder);
-Status addObjects(const Document& document, const NodeTree& tree, SceneBuilder& builder);
-Status addCameras(const Document& document, const NodeTree& tree, SceneBuilder& builder);
+Status addObjects(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder);
+Status addCameras(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder);
 
 inline bool isIndexInto(int index, std::size_t size) {
   return index >= 0 && static_cast<std::size_t>(index) < size;

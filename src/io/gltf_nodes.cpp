@@ -14,25 +14,8 @@ bool allFinite(const Mat4& matrix) {
   return true;
 }
 
-Status checkCount(const Document& document, std::size_t node, const char* key, std::size_t found,
-                  std::size_t wanted) {
-  if (found != 0 && found != wanted) {
-    return failure("{}: node {}: \"{}\" must have {} numbers, but has {}", document.name, node, key, wanted,
-                   found);
-  }
-  return Success{};
-}
-
 Result<Mat4> parentFromNode(const Document& document, std::size_t number) {
   const tinygltf::Node& node = document.model.nodes[number];
-  for (const Status& status : {checkCount(document, number, "matrix", node.matrix.size(), 16),
-                               checkCount(document, number, "translation", node.translation.size(), 3),
-                               checkCount(document, number, "rotation", node.rotation.size(), 4),
-                               checkCount(document, number, "scale", node.scale.size(), 3)}) {
-    if (!status) {
-      return status.error();
-    }
-  }
   Mat4 matrix;
   if (!node.matrix.empty()) {
     std::copy(node.matrix.begin(), node.matrix.end(), matrix.m.begin());
@@ -154,6 +137,7 @@ Result<std::vector<int>> rootsOf(const Document& document, const NodeTree& tree)
 
 NodePose poseOf(const tinygltf::Node& node) {
   NodePose pose;
+  // The arrays are of these lengths or absent.
   if (node.translation.size() == 3) {
     pose.translation = {node.translation[0], node.translation[1], node.translation[2]};
   }

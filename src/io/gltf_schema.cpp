@@ -8,14 +8,21 @@ using enum Kind;
 constexpr bool kRequired = true;
 constexpr bool kOptional = false;
 
+constexpr Field numbers(const char* key, std::size_t count) {
+  return {.key = key, .kind = kNumbers, .count = count};
+}
+constexpr Field fewObjects(const char* key, std::span<const Field> fields, const char* element) {
+  return {.key = key, .kind = kObjects, .fields = fields, .element = element, .few = true};
+}
+
 constexpr Field kAsset[] = {{"version", kText, kRequired}, {"minVersion", kText}};
 
 constexpr Field kScene[] = {{"nodes", kIndices}, {"name", kText}};
 
 constexpr Field kNode[] = {
     {"name", kText},        {"camera", kIndex},     {"mesh", kIndex},
-    {"children", kIndices}, {"matrix", kNumbers},   {"scale", kNumbers},
-    {"extras", kMark},      {"rotation", kNumbers}, {"translation", kNumbers},
+    {"children", kIndices}, numbers("matrix", 16),  numbers("scale", 3),
+    {"extras", kMark},      numbers("rotation", 4), numbers("translation", 3),
 };
 
 constexpr Field kAttributes[] = {{"POSITION", kIndex}};
@@ -32,7 +39,7 @@ constexpr Field kBuffer[] = {{"byteLength", kSize, kRequired}, {"uri", kText}};
 constexpr Field kBufferView[] = {{"buffer", kIndex, kRequired},
                                  {"byteLength", kSize, kRequired},
                                  {"byteOffset", kSize},
-                                 {"byteStride", kSize}};
+                                 {"byteStride", kStride}};
 
 constexpr Field kSparseIndices[] = {
     {"bufferView", kIndex, kRequired}, {"componentType", kIndex, kRequired}, {"byteOffset", kIndex}};
@@ -47,12 +54,12 @@ constexpr Field kAccessor[] = {
     {"byteOffset", kSize},
     {"componentType", kIndex, kRequired},
     {"count", kSize, kRequired},
-    {"type", kText, kRequired},
+    {"type", kElementType, kRequired},
     {"normalized", kFlag},
     {"sparse", kObject, kOptional, kSparse},
 };
 
-constexpr Field kMetallicRoughness[] = {{"baseColorFactor", kNumbers}};
+constexpr Field kMetallicRoughness[] = {numbers("baseColorFactor", 4)};
 constexpr Field kTransmission[] = {{"transmissionFactor", kNumber}};
 constexpr Field kMaterialExtensions[] = {{"KHR_materials_transmission", kObject, kOptional, kTransmission}};
 constexpr Field kMaterial[] = {
@@ -97,9 +104,9 @@ constexpr Field kDocument[] = {
     {"accessors", kObjects, kOptional, kAccessor, "accessor"},
     {"bufferViews", kObjects, kOptional, kBufferView, "buffer view"},
     {"buffers", kObjects, kOptional, kBuffer, "buffer"},
-    {"materials", kObjects, kOptional, kMaterial, "material"},
-    {"cameras", kObjects, kOptional, kCamera, "camera"},
-    {"animations", kObjects, kOptional, kAnimation, "animation"},
+    fewObjects("materials", kMaterial, "material"),
+    fewObjects("cameras", kCamera, "camera"),
+    fewObjects("animations", kAnimation, "animation"),
 };
 
 }  // namespace
