@@ -1,0 +1,175 @@
+#include "sightline/io/file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "sightline/io/image.h"
+#include "sightline/io/import.h"
+
+namespace sightline {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("sightline_files_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string put(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return path(name);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Files, BytesComeBackAsTheyWereWritten) {
+  std::string bytes;
+  for (int i = 0; i < 1000; ++i) {
+    bytes.push_back(static_cast<char>(i));
+  }
+  ASSERT_TRUE(writeFile(path("a.bin"), bytes));
+  EXPECT_EQ(readFile(path("a.bin")).value(), bytes);
+  ASSERT_TRUE(writeFile(path("a.bin"), "short"));
+  EXPECT_EQ(readFile(path("a.bin")).value(), "short") << "an older file is replaced, not overwritten in part";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+      << "nothing is left over";
+}
+
+TEST_F(Files, WhatCannotBeReadIsNamedWithTheReason) {
+  EXPECT_EQ(readFile(path("none")).error().message, path("none") + ": no such file");
+  EXPECT_EQ(readFile(folder_.string()).error().message, folder_.string() + ": is a directory, not a file");
+  EXPECT_EQ(readFile("/dev/null").error().message, "/dev/null: is not a regular file");
+}
+
+TEST_F(Files, WhatCannotBeWrittenIsNamedAndLeavesNothing) {
+  EXPECT_EQ(
+      writeFile(path("no/such/folder"), "x").error().message.find(path("no/such/folder") + ": cannot be"),
+      0u);
+  fs::create_directories(folder_ / "taken" / "by a folder");
+  EXPECT_FALSE(writeFile(path("taken"), "x"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(Files, PicturesAreWrittenAsPng) {
+  const Image image{2, 1, {255, 0, 0, 255, 0, 255, 0, 128}};
+  ASSERT_TRUE(writePng(image, path("a.png")));
+  const std::string bytes = readFile(path("a.png")).value();
+  ASSERT_GT(bytes.size(), 33u);
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(bytes.substr(12, 4), "IHDR");
+  // Width and height, big-endian; 8 bits; colour type 6 is RGBA.
+  EXPECT_EQ(bytes.substr(16, 10), std::string("\0\0\0\2\0\0\0\1\x08\x06", 10));
+  EXPECT_EQ(bytes.substr(bytes.size() - 8, 4), "IEND");
+}
+
+TEST_F(Files, PicturesOfTheWrongSizeAreRefused) {
+  EXPECT_FALSE(writePng(Image{2, 2, std::vector<std::uint8_t>(15)}, path("a.png")));
+  EXPECT_FALSE(writePng(Image{}, path("a.png")));
+  EXPECT_FALSE(fs::exists(path("a.png")));
+}
+
+TEST_F(Files, ScenesOfUnknownKindAreRefused) {
+  EXPECT_NE(importScene(put("a.xyzzy", "x")).error().message.find("files ending in \".xyzzy\" are not read"),
+            std::string::npos);
+  EXPECT_NE(importScene(put("noextension", "x")).error().message.find("are not read"), std::string::npos);
+  EXPECT_EQ(importScene(path("none.obj")).error().message, path("none.obj") + ": no such file");
+  fs::create_directories(folder_ / "folder.glb");
+  EXPECT_EQ(importScene(path("folder.glb")).error().message,
+            path("folder.glb") + ": is a directory, not a file");
+  for (const char* name : {"empty.glb", "empty.gltf", "empty.obj", "empty.stl"}) {
+    EXPECT_EQ(importScene(put(name, "")).error().message, path(name) + ": the file is empty");
+  }
+}
+
+constexpr const char* kObj =
+    "mtllib a.mtl\n"
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 5\n"
+    "o quad\nusemtl glass\nf 1 2 3 4\n"
+    "o triangle\nusemtl wall\nf 1 2 5\n";
+constexpr const char* kMtl = "newmtl wall\nKd 0.5 0.25 1\nnewmtl glass\nd 0.5\n";
+
+TEST_F(Files, ObjIsReadWithItsMaterials) {
+  put("a.mtl", kMtl);
+  const Result<Scene> scene = importScene(put("a.obj", kObj));
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->objects.size(), 2u);
+  EXPECT_EQ(scene->object_names[0], "quad");
+  EXPECT_EQ(scene->object_names[1], "triangle");
+  EXPECT_EQ(scene->objects[0].triangleCount(), 2u);
+  EXPECT_EQ(scene->objects[1].triangleCount(), 1u);
+  EXPECT_EQ(scene->positions.size(), 5u);
+  const SceneView view = scene->view();
+  EXPECT_EQ(view.materialOf(view.objects[0]).opacity, Opacity::kBlended);
+  EXPECT_EQ(view.materialOf(view.objects[1]).opacity, Opacity::kOpaque);
+  EXPECT_EQ(view.materialOf(view.objects[1]).name, "wall");
+  EXPECT_EQ(view.objects[1].bounds, (Box{{0, 0, 0}, {1, 0, 5}}));
+}
+
+constexpr const char* kPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n2 0 0\n2 3 0\n0 3 0\n4 0 1 2 3\n";
+
+TEST_F(Files, PlyIsReadInTriangles) {
+  const Result<Scene> scene = importScene(put("a.PLY", kPly));
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->objects.size(), 1u);
+  EXPECT_EQ(scene->objects[0].triangleCount(), 2u);
+  EXPECT_EQ(scene->objects[0].bounds, (Box{{0, 0, 0}, {2, 3, 0}}));
+}
+
+std::string binaryStl(const std::vector<float>& corners) {
+  std::string bytes(80, ' ');
+  const auto triangles = static_cast<std::uint32_t>(corners.size() / 9);
+  bytes.append(reinterpret_cast<const char*>(&triangles), 4);
+  for (std::size_t i = 0; i < triangles; ++i) {
+    bytes.append(12, '\0');
+    bytes.append(reinterpret_cast<const char*>(&corners[9 * i]), 36);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+TEST_F(Files, StlIsReadAndWelded) {
+  const Result<Scene> scene =
+      importScene(put("a.stl", binaryStl({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})));
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->objects.size(), 1u);
+  EXPECT_EQ(scene->objects[0].triangleCount(), 2u);
+  EXPECT_EQ(scene->positions.size(), 4u);
+}
+
+TEST_F(Files, NumbersThatAreNotFiniteAreRefused) {
+  const float nan = std::nanf("");
+  const Result<Scene> stl = importScene(put("a.stl", binaryStl({0, 0, 0, 1, 0, 0, 0, nan, 0})));
+  ASSERT_FALSE(stl);
+  EXPECT_EQ(stl.error().message.find(path("a.stl") + ": "), 0u) << stl.error().message;
+}
+
+TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
+  const std::string stl = binaryStl({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  for (const std::string& file :
+       {put("cut.stl", stl.substr(0, 100)), put("cut.ply", std::string(kPly).substr(0, 165)),
+        put("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n"), put("noise.fbx", "nothing of the kind")}) {
+    const Result<Scene> scene = importScene(file);
+    if (scene) {
+      EXPECT_TRUE(scene->objects.empty()) << file << " has no whole triangle";
+      continue;
+    }
+    EXPECT_EQ(scene.error().message.find(file + ": "), 0u) << scene.error().message;
+    EXPECT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,163 @@
+#include "sightline/scene/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace sightline {
+namespace {
+
+struct Clip {
+  double x, y, z, w;
+};
+
+Clip project(const Mat4& clip_from_scene, const Vec3d& p) {
+  const auto row = [&](int r) {
+    return clip_from_scene(r, 0) * p.x + clip_from_scene(r, 1) * p.y + clip_from_scene(r, 2) * p.z +
+           clip_from_scene(r, 3);
+  };
+  return {row(0), row(1), row(2), row(3)};
+}
+
+Vec3d randomVector(std::mt19937& random, double reach) {
+  std::uniform_real_distribution<double> number(-reach, reach);
+  const double x = number(random);
+  const double y = number(random);
+  const double z = number(random);
+  return {x, y, z};
+}
+
+View randomView(std::mt19937& random) {
+  View view;
+  view.eye = randomVector(random, 100.0);
+  setOrientation(view, randomVector(random, 1.0), randomVector(random, 1.0));
+  view.orthographic = random() % 2 == 0;
+  view.tan_half_fovy = 0.2 + 0.1 * static_cast<double>(random() % 10);
+  view.ortho_height = 1.0 + static_cast<double>(random() % 50);
+  view.aspect = 0.5 + 0.25 * static_cast<double>(random() % 8);
+  view.near = 0.5;
+  view.far = 80.0;
+  return view;
+}
+
+void expectOrthonormal(const View& view) {
+  EXPECT_NEAR(length(view.forward), 1.0, 1e-12);
+  EXPECT_NEAR(length(view.up), 1.0, 1e-12);
+  EXPECT_NEAR(dot(view.forward, view.up), 0.0, 1e-12);
+  EXPECT_NEAR(length(cross(view.forward, view.up) - view.right), 0.0, 1e-12) << "right-handed";
+}
+
+TEST(Camera, OrientationIsOrthonormalForAnyDirection) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 1000; ++i) {
+    View view;
+    const Vec3d forward = randomVector(random, 5.0);
+    setOrientation(view, forward, randomVector(random, 5.0));
+    expectOrthonormal(view);
+    EXPECT_NEAR(dot(view.forward, normalized(forward)), 1.0, 1e-12);
+  }
+}
+
+TEST(Camera, OrientationSurvivesLookingAlongTheHint) {
+  for (const Vec3d& axis : {Vec3d(0, 1, 0), Vec3d(0, -1, 0), Vec3d(1, 0, 0), Vec3d(0, 0, 3)}) {
+    View view;
+    setOrientation(view, axis, axis);
+    expectOrthonormal(view);
+    setOrientation(view, axis, -axis);
+    expectOrthonormal(view);
+    setOrientation(view, axis, {0, 0, 0});
+    expectOrthonormal(view);
+  }
+}
+
+TEST(Camera, UpIsTheSideOfTheHint) {
+  View view;
+  setOrientation(view, {0, -0.9, -1}, {0, 1, 0});
+  EXPECT_GT(view.up.y, 0.0);
+  EXPECT_NEAR(view.right.x, 1.0, 1e-12) << "looking along -Z, +X is to the right";
+}
+
+TEST(Camera, ClipSpaceAndFrustumAgreeOnWhatIsInside) {
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    const View view = randomView(random);
+    const Mat4 clip_from_scene = clipFromScene(view);
+    const Frustum frustum = frustumOf(view);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3d point = view.eye + randomVector(random, 100.0);
+      const Clip clip = project(clip_from_scene, point);
+      // Left, right, bottom, top, near, far.
+      const double margins[6] = {clip.w + clip.x, clip.w - clip.x, clip.w + clip.y,
+                                 clip.w - clip.y, clip.w + clip.z, clip.w - clip.z};
+      for (std::size_t plane = 0; plane < 6; ++plane) {
+        const double distance = frustum.planes[plane].evaluate(point);
+        if (std::abs(distance) < 1e-6) {
+          continue;
+        }
+        EXPECT_EQ(margins[plane] > 0.0, distance > 0.0) << "seed " << seed << " plane " << plane;
+      }
+    }
+  }
+}
+
+TEST(Camera, FrustumPlanesHaveUnitNormals) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 100; ++i) {
+    for (const Plane& plane : frustumOf(randomView(random)).planes) {
+      EXPECT_NEAR(length(plane.normal), 1.0, 1e-12);
+    }
+  }
+}
+
+TEST(Camera, CornersOfThePictureProjectToTheCornersOfClipSpace) {
+  View view;
+  view.eye = {10, 20, 30};
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.tan_half_fovy = 0.5;
+  view.aspect = 2.0;
+  view.near = 1.0;
+  view.far = 9.0;
+  // 2 metres ahead the picture is 4 metres wide and 2 high.
+  Clip clip = project(clipFromScene(view), {12, 21, 28});
+  EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-12);
+  EXPECT_NEAR(clip.y / clip.w, 1.0, 1e-12);
+  clip = project(clipFromScene(view), {10, 20, 29});
+  EXPECT_NEAR(clip.z / clip.w, -1.0, 1e-12) << "on the near plane";
+  clip = project(clipFromScene(view), {10, 20, 21});
+  EXPECT_NEAR(clip.z / clip.w, 1.0, 1e-12) << "on the far plane";
+
+  view.orthographic = true;
+  view.ortho_height = 6.0;
+  clip = project(clipFromScene(view), {4, 17, 25});
+  EXPECT_NEAR(clip.w, 1.0, 1e-12);
+  EXPECT_NEAR(clip.x, -1.0, 1e-12);
+  EXPECT_NEAR(clip.y, -1.0, 1e-12);
+  EXPECT_NEAR(clip.z, 0.0, 1e-12) << "half way between near and far";
+}
+
+TEST(CameraPath, ViewsAreInSceneSpace) {
+  CameraPath path;
+  path.fovy_deg = 90.0;
+  path.width = 300;
+  path.height = 200;
+  path.near = 0.25;
+  path.far = 70.0;
+  path.frames = {{{5e6 + 1.5, 0, 0}, {0, 0, -4}, {0, 2, 0}}, {{5e6, 3, 0}, {1, 0, 0}, {0, 1, 0}}};
+  const View view = path.view(0, {5e6, 0, 10});
+  EXPECT_EQ(view.eye, Vec3d(1.5, 0, -10));
+  EXPECT_EQ(view.forward, Vec3d(0, 0, -1));
+  EXPECT_FALSE(view.orthographic);
+  EXPECT_NEAR(view.tan_half_fovy, 1.0, 1e-12);
+  EXPECT_EQ(view.aspect, 1.5);
+  EXPECT_EQ(view.near, 0.25);
+  EXPECT_EQ(view.far, 70.0);
+  EXPECT_EQ(path.view(1, {5e6, 0, 0}).eye, Vec3d(0, 3, 0));
+  path.ortho_height = 8.0;
+  EXPECT_TRUE(path.view(0, {}).orthographic);
+  EXPECT_EQ(path.view(0, {}).ortho_height, 8.0);
+}
+
+}  // namespace
+}  // namespace sightline
