@@ -6,6 +6,7 @@
 
 #include "assimp.h"
 #include "failure.h"
+#include "ply_check.h"
 #include "sightline/io/file.h"
 
 namespace sightline {
@@ -32,6 +33,12 @@ Result<Scene> importScene(const std::string& file) {
     return failure(
         "{}: files ending in \"{}\" are not read; .glb, .gltf, .obj, .ply, .stl, .fbx, .dae and others are",
         file, extension);
+  }
+  if (extension == ".ply") {
+    const Status whole = checkPlyIsWhole(*bytes, file);
+    if (!whole) {
+      return whole.error();
+    }
   }
   *bytes = {};  // Assimp reads the file itself, with the others that it names
   return importAssimp(file, ImportLimits{});

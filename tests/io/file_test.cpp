@@ -128,6 +128,30 @@ TEST_F(Files, PlyIsReadInTriangles) {
   EXPECT_EQ(scene->objects[0].bounds, (Box{{0, 0, 0}, {2, 3, 0}}));
 }
 
+TEST_F(Files, PlyThatIsCutOffIsRefused) {
+  const std::string whole = kPly;
+  const std::size_t last_line = whole.find("4 0 1 2 3");
+  for (std::size_t size = 1; size <= last_line; ++size) {
+    EXPECT_FALSE(importScene(put("cut.ply", whole.substr(0, size)))) << "cut after " << size << " bytes";
+  }
+  std::string binary =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+      "float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const std::int32_t indices[3] = {0, 1, 2};
+  binary.append(reinterpret_cast<const char*>(corners), 36);
+  const std::size_t before_face = binary.size();
+  binary.push_back(3);
+  binary.append(reinterpret_cast<const char*>(indices), 12);
+  const Result<Scene> scene = importScene(put("whole.ply", binary));
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->triangleCount(), 1u);
+  for (std::size_t size = 1; size <= before_face; ++size) {
+    EXPECT_FALSE(importScene(put("cut.ply", binary.substr(0, size)))) << "cut after " << size << " bytes";
+  }
+}
+
 std::string binaryStl(const std::vector<float>& corners) {
   std::string bytes(80, ' ');
   const auto triangles = static_cast<std::uint32_t>(corners.size() / 9);
@@ -159,8 +183,8 @@ TEST_F(Files, NumbersThatAreNotFiniteAreRefused) {
 TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
   const std::string stl = binaryStl({0, 0, 0, 1, 0, 0, 0, 1, 0});
   for (const std::string& file :
-       {put("cut.stl", stl.substr(0, 100)), put("cut.ply", std::string(kPly).substr(0, 165)),
-        put("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n"), put("noise.fbx", "nothing of the kind")}) {
+       {put("cut.stl", stl.substr(0, 100)), put("index.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n"),
+        put("noise.fbx", "nothing of the kind")}) {
     const Result<Scene> scene = importScene(file);
     if (scene) {
       EXPECT_TRUE(scene->objects.empty()) << file << " has no whole triangle";
