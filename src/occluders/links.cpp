@@ -69,6 +69,10 @@ class Linker {
           i = (i + 1) % n;
         } while (i != polygon.corners[(e + 1) % c]);
         set_.edges[edge].chain = static_cast<std::uint16_t>(element <= 64 ? element : 0);
+        set_.edges[edge].first_joint = static_cast<std::uint32_t>(set_.joints.size());
+        for (std::uint32_t k = 1; k < element && element <= 64; ++k) {
+          set_.joints.push_back(positions_[polygon.loop[(polygon.corners[e] + k) % n]]);
+        }
         chain_start_.push_back(static_cast<std::uint32_t>(uses_.size()) - element);
         chain_length_.push_back(element);
       }

@@ -4,6 +4,45 @@
 
 namespace sightline::occlusion_detail {
 
+bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& volumes, PolygonStack& stack,
+                 Fragment& front, Fragment& back) {
+  const PlaneRef cut_plane = PlaneRef::make(volumes.planes.size(), false);
+  const std::size_t stack_size = stack.corners.size();
+  const SplitResult parts =
+      stack.split(fragment.piece, plane, cut_plane, volumes.volumes[fragment.volume].reach);
+  const auto cutEdges = [&](Piece piece) {
+    const auto corners = stack.of(piece);
+    return std::count_if(corners.begin(), corners.end(),
+                         [&](const Corner& corner) { return corner.edge.samePlane(cut_plane); });
+  };
+  if (parts.side == Side::kBoth && parts.front.count >= 3 && parts.back.count >= 3 &&
+      cutEdges(parts.front) == 1 && cutEdges(parts.back) == 1) {
+    // The front part's new edge runs from p to q, counter-clockwise seen from the eye.
+    const auto corners = stack.of(parts.front);
+    std::size_t at = 0;
+    while (!corners[at].edge.samePlane(cut_plane)) {
+      ++at;
+    }
+    double sine = 0.0;
+    const Plane shadow =
+        volumes.eye.shadowPlane(corners[at].position, corners[(at + 1) % corners.size()].position, sine);
+    if (sine > 0x1p-12) {
+      // split() takes the front part to lie in front of the named plane, i.e. behind its other side.
+      volumes.addPlane(shadow.flipped());
+      for (const Piece& piece : {parts.front, parts.back}) {
+        for (Corner& corner : stack.of(piece)) {
+          corner.embedded = false;  // no tree yet whose planes they could lie in
+        }
+      }
+      front = {parts.front, fragment.volume};
+      back = {parts.back, fragment.volume};
+      return true;
+    }
+  }
+  stack.corners.resize(stack_size);
+  return false;
+}
+
 Side FrontToBack::sideOf(std::uint32_t fragment, std::uint32_t splitter) const {
   const OcclusionVolume& by = volumes_->volumes[all_[splitter].volume];
   const OcclusionVolume& of = volumes_->volumes[all_[fragment].volume];
@@ -38,57 +77,6 @@ std::uint32_t FrontToBack::chooseSplitter(std::size_t begin, std::size_t end) co
   return best;
 }
 
-// Cuts a fragment by the splitter's plane. False: it stays whole.
-bool FrontToBack::cut(std::uint32_t fragment, std::uint32_t splitter, std::uint32_t& front,
-                      std::uint32_t& back) {
-  const Plane& plane = volumes_->volumes[all_[splitter].volume].support;
-  const PlaneRef cut_plane = PlaneRef::make(volumes_->planes.size(), false);
-  const std::size_t stack_size = stack_->corners.size();
-  const Fragment whole = all_[fragment];
-  const SplitResult parts =
-      stack_->split(whole.piece, plane, cut_plane, volumes_->volumes[whole.volume].reach);
-  const auto cutEdges = [&](Piece piece) {
-    const auto corners = stack_->of(piece);
-    return std::count_if(corners.begin(), corners.end(),
-                         [&](const Corner& corner) { return corner.edge.samePlane(cut_plane); });
-  };
-  bool usable = parts.side == Side::kBoth && parts.front.count >= 3 && parts.back.count >= 3 &&
-                cutEdges(parts.front) == 1 && cutEdges(parts.back) == 1;
-  if (usable) {
-    // The front part's new edge runs from p to q, counter-clockwise seen from the eye.
-    const auto corners = stack_->of(parts.front);
-    std::size_t at = 0;
-    while (at < corners.size() && !corners[at].edge.samePlane(cut_plane)) {
-      ++at;
-    }
-    double sine = 0.0;
-    Plane shadow;
-    if (at < corners.size()) {
-      shadow =
-          volumes_->eye.shadowPlane(corners[at].position, corners[(at + 1) % corners.size()].position, sine);
-    }
-    usable = sine > 0x1p-12;
-    if (usable) {
-      // split() takes the front part to lie in front of the named plane, i.e. behind its other side.
-      volumes_->planes.push_back(shadow.flipped());
-    }
-  }
-  if (!usable) {
-    stack_->corners.resize(stack_size);
-    return false;
-  }
-  for (const Piece& piece : {parts.front, parts.back}) {
-    for (Corner& corner : stack_->of(piece)) {
-      corner.embedded = false;  // no tree yet whose planes they could lie in
-    }
-  }
-  front = static_cast<std::uint32_t>(all_.size());
-  all_.push_back({parts.front, whole.volume});
-  back = static_cast<std::uint32_t>(all_.size());
-  all_.push_back({parts.back, whole.volume});
-  return true;
-}
-
 void FrontToBack::visit(std::size_t begin, std::size_t end) {
   if (begin == end) {
     return;
@@ -102,12 +90,15 @@ void FrontToBack::visit(std::size_t begin, std::size_t end) {
     if (fragment == splitter) {
       continue;
     }
-    std::uint32_t front = 0, back = 0;
+    Fragment front, back;
     Side side = sideOf(fragment, splitter);
     if (side == Side::kBoth) {
-      if (cut(fragment, splitter, front, back)) {
-        work_.push_back(front);
-        work_[begin + back_count++] = back;
+      const Plane& plane = volumes_->volumes[all_[splitter].volume].support;
+      if (cutFragment(all_[fragment], plane, *volumes_, *stack_, front, back)) {
+        all_.push_back(front);
+        work_.push_back(static_cast<std::uint32_t>(all_.size() - 1));
+        all_.push_back(back);
+        work_[begin + back_count++] = static_cast<std::uint32_t>(all_.size() - 1);
         continue;
       }
       const OcclusionVolume& volume = volumes_->volumes[all_[fragment].volume];

@@ -13,6 +13,11 @@ struct Fragment {
   std::uint32_t volume = 0;
 };
 
+// Cuts a fragment by a plane. Both parts get the same shadow plane for the cut. False: the cut would be badly
+// conditioned, or one part would be empty; the fragment stays whole.
+bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& volumes, PolygonStack& stack,
+                 Fragment& front, Fragment& back);
+
 // Orders occluders front to back as seen from the eye, by a small BSP tree of their own planes (Fuchs, Kedem
 // and Naylor, SIGGRAPH 1980). All occluders face the eye, so the eye is in front of every plane: first what
 // is in front of a splitter, then the splitter, then what is behind it. Occluders that cross a splitter's
@@ -29,7 +34,6 @@ class FrontToBack {
   void visit(std::size_t begin, std::size_t end);
   std::uint32_t chooseSplitter(std::size_t begin, std::size_t end) const;
   Side sideOf(std::uint32_t fragment, std::uint32_t splitter) const;
-  bool cut(std::uint32_t fragment, std::uint32_t splitter, std::uint32_t& front, std::uint32_t& back);
 
   VolumeBuilder* volumes_ = nullptr;
   PolygonStack* stack_ = nullptr;

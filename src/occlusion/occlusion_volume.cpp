@@ -99,46 +99,102 @@ bool VolumeBuilder::examine(const OccluderSet& set, OccluderId id, Candidate& ca
   return true;
 }
 
-// Whether for each mesh edge of the edge another volume begins beyond it, so that the seam lets nothing
-// through.
-bool VolumeBuilder::sealed(const OccluderSet& set, const Candidate& candidate, const OccluderEdge& edge,
-                           const Plane& plane) const {
-  if (edge.chain == 0 || !set[candidate.id].seals) {
-    return false;
-  }
+// The mesh edges of an edge beyond which no other volume begins, a bit each; beyond the others the seam lets
+// nothing through.
+std::uint64_t VolumeBuilder::openElements(const OccluderSet& set, const Candidate& candidate,
+                                          const OccluderEdge& edge, const Plane& plane) const {
   std::uint64_t open = edge.chain >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge.chain) - 1;
+  if (edge.chain == 0 || !set[candidate.id].seals) {
+    return ~std::uint64_t{0};
+  }
   for (const EdgeCover& cover : set.coversOf(edge)) {
     const std::uint32_t other = candidate_of_[cover.occluder.value];
     if (other != kNone && plane.evaluate(candidates_[other].centroid) > 0.0) {
       open &= ~(std::uint64_t{1} << cover.element);
     }
   }
-  return open == 0;
+  return open;
 }
 
-PlaneRef VolumeBuilder::edgePlane(const OccluderSet& set, const Candidate& candidate,
-                                  const Outline& outline) {
+PlaneRef VolumeBuilder::addPlane(const Plane& plane) {
+  planes.push_back(plane);
+  return PlaneRef::make(planes.size() - 1, false);
+}
+
+// An edge of which some parts are sealed and some open: a corner for each part, and a cut through each
+// change. The change is moved into the sealed part by the inset, so that this stays as far from open outlines
+// as everything else. False: the parts are too short or too many, nothing was added.
+bool VolumeBuilder::addRuns(const OccluderSet& set, const Candidate& candidate, const Outline& outline,
+                            std::uint64_t open, PlaneRef on_line) {
+  constexpr std::uint32_t kMaxCorners = 96;
+  const OccluderEdge& edge = set.edges[outline.edge];
+  const std::uint32_t n = edge.chain;
+  const Vec3d along = normalized(outline.to - outline.from);
+  // In the direction of the outline, which is the mesh edges' own or, seen from the back, the other.
+  const auto isOpen = [&](std::uint32_t k) { return (open >> (candidate.flipped ? n - 1 - k : k) & 1) != 0; };
+  const auto joint = [&](std::uint32_t k) {  // before part k, k > 0
+    return Vec3d(set.joints[edge.first_joint + (candidate.flipped ? n - 1 - k : k - 1)]) - eye.position;
+  };
+  double at = dot(along, outline.from);
+  const double end = dot(along, outline.to);
+  for (std::uint32_t k = 1; k <= n; ++k) {
+    const bool change = k == n || isOpen(k) != isOpen(k - 1);
+    if (change) {
+      const double next = k == n ? end : dot(along, joint(k));
+      if (!(next - at > 4.0 * candidate.inset)) {
+        return false;
+      }
+      at = next;
+    }
+  }
+  if (corners.size() + n > candidate_first_corner_ + kMaxCorners) {
+    return false;
+  }
+  double sine = 0.0;
+  const PlaneRef inset = addPlane(insetPlane(candidate, outline, sine));
+  corners.push_back({outline.from, isOpen(0) ? inset : on_line, false});
+  for (std::uint32_t k = 1; k < n; ++k) {
+    if (isOpen(k) != isOpen(k - 1)) {
+      const Vec3d change = joint(k) + along * (isOpen(k) ? -candidate.inset : candidate.inset);
+      corners.push_back({change, isOpen(k) ? inset : on_line, false});
+      cuts.push_back({static_cast<std::uint32_t>(volumes.size()), {along, -dot(along, change)}});
+    }
+  }
+  return true;
+}
+
+// The corner at the start of an edge, with the edge's shadow plane: on the seam's line where other volumes
+// adjoin, drawn in where nothing does.
+void VolumeBuilder::addEdge(const OccluderSet& set, const Candidate& candidate, const Outline& outline) {
   const OccluderEdge& edge = set.edges[outline.edge];
   double sine = 0.0;
   if (edge.cover_count != 0) {
     const auto& line = set.lines[edge.line];
-    Vec3d p = Vec3d(line[0]) - eye.position, q = Vec3d(line[1]) - eye.position;
+    const Vec3d p = Vec3d(line[0]) - eye.position, q = Vec3d(line[1]) - eye.position;
     const Plane on_line = eye.shadowPlane(p, q, sine);
     const bool flipped = dot(q - p, outline.to - outline.from) < 0.0;
     const Plane oriented = flipped ? on_line.flipped() : on_line;
-    if (sine > kShortestEdgeSine && oriented.evaluate(candidate.centroid) < 0.0 &&
-        sealed(set, candidate, edge, oriented)) {
-      std::uint32_t& plane = plane_of_line_[edge.line];
-      if (plane == kNone) {
-        plane = static_cast<std::uint32_t>(planes.size());
-        planes.push_back(on_line);
-        used_lines_.push_back(edge.line);
+    if (sine > kShortestEdgeSine && oriented.evaluate(candidate.centroid) < 0.0) {
+      const std::uint64_t all = edge.chain >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge.chain) - 1;
+      const std::uint64_t open = openElements(set, candidate, edge, oriented);
+      if ((open & all) != all) {
+        std::uint32_t& plane = plane_of_line_[edge.line];
+        if (plane == kNone) {
+          plane = addPlane(on_line).plane();
+          used_lines_.push_back(edge.line);
+        }
+        const PlaneRef ref = PlaneRef::make(plane, flipped);
+        if (open == 0) {
+          corners.push_back({outline.from, ref, false});
+          return;
+        }
+        if (addRuns(set, candidate, outline, open, ref)) {
+          return;
+        }
       }
-      return PlaneRef::make(plane, flipped);
     }
   }
-  planes.push_back(insetPlane(candidate, outline, sine));
-  return PlaneRef::make(planes.size() - 1, false);
+  corners.push_back({outline.from, addPlane(insetPlane(candidate, outline, sine)), false});
 }
 
 // Cuts away what lies before the depth. The new edge gets a plane of its own. Returns the new number of
@@ -172,8 +228,7 @@ std::uint32_t VolumeBuilder::clipNear(std::uint32_t first, std::uint32_t count, 
     if (!(sine > kShortestEdgeSine)) {
       return 0;
     }
-    clipped_[cut].edge = PlaneRef::make(planes.size(), false);
-    planes.push_back(plane);
+    clipped_[cut].edge = addPlane(plane);
   }
   corners.resize(first);
   corners.insert(corners.end(), clipped_.begin(), clipped_.end());
@@ -187,15 +242,16 @@ void VolumeBuilder::addVolume(const OccluderSet& set, const Candidate& candidate
   volume.depth_slack = candidate.slack;
   volume.centroid = candidate.centroid;
   volume.reach = candidate.reach;
-  volume.first_corner = static_cast<std::uint32_t>(corners.size());
-  const std::uint32_t n = set[candidate.id].vertex_count;
-  for (std::uint32_t side = 0; side < n; ++side) {
-    const Outline o = outline(set, candidate, side);
-    corners.push_back({o.from, edgePlane(set, candidate, o), false});
+  volume.first_corner = candidate_first_corner_ = static_cast<std::uint32_t>(corners.size());
+  const std::size_t cuts_before = cuts.size();
+  for (std::uint32_t side = 0; side < set[candidate.id].vertex_count; ++side) {
+    addEdge(set, candidate, outline(set, candidate, side));
   }
-  volume.corner_count = clipNear(volume.first_corner, n, clipDepth(candidate));
+  const auto count = static_cast<std::uint32_t>(corners.size()) - volume.first_corner;
+  volume.corner_count = clipNear(volume.first_corner, count, clipDepth(candidate));
   if (volume.corner_count < 3) {
     corners.resize(volume.first_corner);
+    cuts.resize(cuts_before);
     return;
   }
   reach = std::max(reach, volume.reach);
@@ -207,6 +263,7 @@ void VolumeBuilder::build(const View& view, const OccluderSet& set, std::span<co
   volumes.clear();
   corners.clear();
   planes.clear();
+  cuts.clear();
   candidates_.clear();
   used_lines_.clear();
   reach = 0.0;

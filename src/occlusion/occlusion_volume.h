@@ -34,6 +34,13 @@ struct Corner {
   bool embedded = false;  // the edge lies in a plane of the tree above: no node needed
 };
 
+// A place where an edge changes from adjoining another occluder to being open. The polygon is cut there, so
+// that the margin of the open part does not make a gap along the other.
+struct EdgeCut {
+  std::uint32_t volume = 0;
+  Plane plane;  // across the edge, relative to the eye
+};
+
 struct OcclusionVolume {
   OccluderId occluder;
   Plane support;             // of the polygon, unit normal towards the eye, relative to the eye
@@ -62,10 +69,14 @@ class VolumeBuilder {
   // Fills volumes, corners and planes. Occluders that are of no use from here get no volume.
   void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen);
 
+  // Adds a shadow plane.
+  PlaneRef addPlane(const Plane& plane);
+
   Eye eye;
   std::vector<OcclusionVolume> volumes;
   std::vector<Corner> corners;
   std::vector<Plane> planes;  // unit normals
+  std::vector<EdgeCut> cuts;  // volume after volume
   double reach = 0.0;         // largest of the volumes
 
  private:
@@ -85,9 +96,11 @@ class VolumeBuilder {
 
   bool examine(const OccluderSet& set, OccluderId id, Candidate& candidate);
   void addVolume(const OccluderSet& set, const Candidate& candidate);
-  bool sealed(const OccluderSet& set, const Candidate& candidate, const OccluderEdge& edge,
-              const Plane& plane) const;
-  PlaneRef edgePlane(const OccluderSet& set, const Candidate& candidate, const Outline& outline);
+  std::uint64_t openElements(const OccluderSet& set, const Candidate& candidate, const OccluderEdge& edge,
+                             const Plane& plane) const;
+  void addEdge(const OccluderSet& set, const Candidate& candidate, const Outline& outline);
+  bool addRuns(const OccluderSet& set, const Candidate& candidate, const Outline& outline, std::uint64_t open,
+               PlaneRef on_line);
   std::uint32_t clipNear(std::uint32_t first, std::uint32_t count, double depth);
   Outline outline(const OccluderSet& set, const Candidate& candidate, std::uint32_t side) const;
   Plane insetPlane(const Candidate& candidate, const Outline& outline, double& sine) const;
@@ -99,6 +112,7 @@ class VolumeBuilder {
   std::vector<std::uint32_t> plane_of_line_;  // by line, kNone between builds
   std::vector<std::uint32_t> used_lines_;
   std::vector<Corner> clipped_;
+  std::uint32_t candidate_first_corner_ = 0;  // of the volume that is being added
 };
 
 }  // namespace sightline::occlusion_detail

@@ -92,6 +92,31 @@ void TreeBuilder::filterDownNode(std::size_t node, Piece piece, std::uint32_t vo
   stack_.corners.resize(stack_size);
 }
 
+// One fragment a volume, or several where edges are open in part.
+void TreeBuilder::makeFragments() {
+  VolumeBuilder& volumes = tree_->volumes;
+  std::size_t next_cut = 0;
+  for (std::uint32_t v = 0; v < volumes.volumes.size(); ++v) {
+    const OcclusionVolume& volume = volumes.volumes[v];
+    const Piece piece{static_cast<std::uint32_t>(stack_.corners.size()), volume.corner_count};
+    const auto first = volumes.corners.begin() + volume.first_corner;
+    stack_.corners.insert(stack_.corners.end(), first, first + volume.corner_count);
+    const std::size_t first_fragment = fragments_.size();
+    fragments_.push_back({piece, v});
+    for (; next_cut < volumes.cuts.size() && volumes.cuts[next_cut].volume == v; ++next_cut) {
+      const Plane plane = volumes.cuts[next_cut].plane;
+      const std::size_t before = fragments_.size();
+      for (std::size_t f = first_fragment; f < before; ++f) {
+        Fragment front, back;
+        if (cutFragment(fragments_[f], plane, volumes, stack_, front, back)) {
+          fragments_[f] = front;
+          fragments_.push_back(back);
+        }
+      }
+    }
+  }
+}
+
 bool TreeBuilder::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
                         const TreeLimits& limits, TreeData& tree) {
   tree_ = &tree;
@@ -112,13 +137,7 @@ bool TreeBuilder::build(const View& view, const OccluderSet& set, std::span<cons
   stack_.planes = &tree.volumes.planes;
   stack_.corners.clear();
   fragments_.clear();
-  for (std::uint32_t v = 0; v < tree.volumes.volumes.size(); ++v) {
-    const OcclusionVolume& volume = tree.volumes.volumes[v];
-    const Piece piece{static_cast<std::uint32_t>(stack_.corners.size()), volume.corner_count};
-    const auto first = tree.volumes.corners.begin() + volume.first_corner;
-    stack_.corners.insert(stack_.corners.end(), first, first + volume.corner_count);
-    fragments_.push_back({piece, v});
-  }
+  makeFragments();
   front_to_back_.order(tree.volumes, stack_, fragments_);
   for (const Fragment& fragment : fragments_) {
     filterDown(tree.root, fragment.piece, fragment.volume, 0);

@@ -23,6 +23,7 @@ class TreeBuilder {
       1500;  // the recursion of queries stays within any thread's stack
 
   void addFrustum(const View& view);
+  void makeFragments();
   void filterDown(Link& link, Piece piece, std::uint32_t volume, std::uint32_t depth);
   void filterDownNode(std::size_t node, Piece piece, std::uint32_t volume, std::uint32_t depth);
   Link occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth);

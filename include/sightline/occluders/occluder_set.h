@@ -33,7 +33,8 @@ struct OccluderEdge {
   std::uint32_t line = 0;         // into OccluderSet::lines; edges along one seam of the mesh share a line
   std::uint32_t first_cover = 0;  // into OccluderSet::covers
   std::uint16_t cover_count = 0;
-  std::uint16_t chain = 0;  // mesh edges that it consists of; 0: it may never be sealed
+  std::uint16_t chain = 0;        // mesh edges that it consists of; 0: it may never be sealed
+  std::uint32_t first_joint = 0;  // into OccluderSet::joints: the chain - 1 mesh vertices between its corners
 };
 
 // Another occluder that has one mesh edge of an edge's chain in its own boundary.
@@ -67,6 +68,7 @@ struct OccluderSet {
   std::vector<OccluderEdge> edges;          // edge i starts at vertex i
   std::vector<std::array<Vec3f, 2>> lines;  // two points on each line
   std::vector<EdgeCover> covers;
+  std::vector<Vec3f> joints;                   // mesh vertices along edges, between the corners
   std::vector<std::uint32_t> first_of_object;  // object_count + 1 entries into of_object
   std::vector<OccluderId> of_object;           // occluders by object
   OccluderReport report;
