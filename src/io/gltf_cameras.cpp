@@ -200,7 +200,7 @@ class CameraAdder {
       if (!spend(opened->keyCount())) {
         return tooMuch();
       }
-      *track = std::move(*opened);
+      *track = *opened;
     }
     return Success{};
   }

@@ -18,18 +18,18 @@ namespace fs = std::filesystem;
 class Files : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("sightline_files_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
+    folder = fs::temp_directory_path() / ("sightline_files_" + std::to_string(::getpid()));
+    fs::create_directories(folder);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder); }
 
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    std::ofstream(folder / name, std::ios::binary) << bytes;
     return path(name);
   }
 
-  fs::path folder_;
+  fs::path folder;
 };
 
 TEST_F(Files, BytesComeBackAsTheyWereWritten) {
@@ -41,13 +41,13 @@ TEST_F(Files, BytesComeBackAsTheyWereWritten) {
   EXPECT_EQ(readFile(path("a.bin")).value(), bytes);
   ASSERT_TRUE(writeFile(path("a.bin"), "short"));
   EXPECT_EQ(readFile(path("a.bin")).value(), "short") << "an older file is replaced, not overwritten in part";
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
       << "nothing is left over";
 }
 
 TEST_F(Files, WhatCannotBeReadIsNamedWithTheReason) {
   EXPECT_EQ(readFile(path("none")).error().message, path("none") + ": no such file");
-  EXPECT_EQ(readFile(folder_.string()).error().message, folder_.string() + ": is a directory, not a file");
+  EXPECT_EQ(readFile(folder.string()).error().message, folder.string() + ": is a directory, not a file");
   EXPECT_EQ(readFile("/dev/null").error().message, "/dev/null: is not a regular file");
 }
 
@@ -55,9 +55,9 @@ TEST_F(Files, WhatCannotBeWrittenIsNamedAndLeavesNothing) {
   EXPECT_EQ(
       writeFile(path("no/such/folder"), "x").error().message.find(path("no/such/folder") + ": cannot be"),
       0u);
-  fs::create_directories(folder_ / "taken" / "by a folder");
+  fs::create_directories(folder / "taken" / "by a folder");
   EXPECT_FALSE(writeFile(path("taken"), "x"));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }
 
 TEST_F(Files, PicturesAreWrittenAsPng) {
@@ -83,7 +83,7 @@ TEST_F(Files, ScenesOfUnknownKindAreRefused) {
             std::string::npos);
   EXPECT_NE(importScene(put("noextension", "x")).error().message.find("are not read"), std::string::npos);
   EXPECT_EQ(importScene(path("none.obj")).error().message, path("none.obj") + ": no such file");
-  fs::create_directories(folder_ / "folder.glb");
+  fs::create_directories(folder / "folder.glb");
   EXPECT_EQ(importScene(path("folder.glb")).error().message,
             path("folder.glb") + ": is a directory, not a file");
   for (const char* name : {"empty.glb", "empty.gltf", "empty.obj", "empty.stl"}) {

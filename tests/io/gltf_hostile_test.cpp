@@ -333,21 +333,21 @@ TEST(GltfHostile, ContainersThatLieAreRefused) {
 class GltfFiles : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("sightline_gltf_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_ / "scene");
-    glb_ = oneTriangle();
-    std::ofstream(folder_ / "scene" / "some data.bin", std::ios::binary) << glb_.binary;
-    std::ofstream(folder_ / "secret.bin", std::ios::binary) << glb_.binary;
+    folder = std::filesystem::temp_directory_path() / ("sightline_gltf_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder / "scene");
+    written = oneTriangle();
+    std::ofstream(folder / "scene" / "some data.bin", std::ios::binary) << written.binary;
+    std::ofstream(folder / "secret.bin", std::ios::binary) << written.binary;
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
 
   Result<Scene> withUri(const std::string& uri) {
-    glb_.json["buffers"][0]["uri"] = uri;
-    return importGltf(glb_.json.dump(), (folder_ / "scene").string(), "scene.gltf");
+    written.json["buffers"][0]["uri"] = uri;
+    return importGltf(written.json.dump(), (folder / "scene").string(), "scene.gltf");
   }
 
-  std::filesystem::path folder_;
-  Glb glb_;
+  std::filesystem::path folder;
+  Glb written;
 };
 
 TEST_F(GltfFiles, BuffersBesideTheSceneAreRead) {
@@ -375,10 +375,10 @@ TEST_F(GltfFiles, BuffersInTheTextAreRead) {
 }
 
 TEST_F(GltfFiles, PathsOutOfTheFolderAreRefused) {
-  std::filesystem::create_symlink(folder_ / "secret.bin", folder_ / "scene" / "link.bin");
+  std::filesystem::create_symlink(folder / "secret.bin", folder / "scene" / "link.bin");
   for (const std::string& uri :
        {std::string("../secret.bin"), std::string("%2e%2e/secret.bin"), std::string("x/../../secret.bin"),
-        (folder_ / "secret.bin").string(), "file://" + (folder_ / "secret.bin").string(),
+        (folder / "secret.bin").string(), "file://" + (folder / "secret.bin").string(),
         std::string("..\\secret.bin"), std::string("link.bin"), std::string("http://example.com/a.bin")}) {
     const Result<Scene> scene = withUri(uri);
     ASSERT_FALSE(scene) << uri;
@@ -394,7 +394,7 @@ TEST_F(GltfFiles, MissingAndShortBuffersAreNamed) {
   EXPECT_NE(withUri("").error().message.find("malformed"), std::string::npos);
   EXPECT_NE(withUri("%00").error().message.find("malformed"), std::string::npos);
   EXPECT_NE(withUri(".").error().message.find("buffer 0: "), std::string::npos);
-  std::ofstream(folder_ / "scene" / "short.bin", std::ios::binary) << "abc";
+  std::ofstream(folder / "scene" / "short.bin", std::ios::binary) << "abc";
   EXPECT_EQ(withUri("short.bin").error().message, "scene.gltf: buffer 0: states 42 bytes, but has only 3");
 }
 

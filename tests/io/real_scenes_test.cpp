@@ -30,8 +30,8 @@ std::vector<std::string> splitAt(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::stringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) {
-    part.erase(0, part.find_first_not_of(" "));
-    part.erase(part.find_last_not_of(" ") + 1);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
     parts.push_back(part);
   }
   return parts;
