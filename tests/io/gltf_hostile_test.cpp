@@ -29,8 +29,8 @@ struct Fault {
   std::string message;             // a part of it
 };
 
-void PrintTo(const Fault& fault, std::ostream* out) {
-  *out << fault.name;
+std::ostream& operator<<(std::ostream& out, const Fault& fault) {
+  return out << fault.name;
 }
 
 class GltfFault : public testing::TestWithParam<Fault> {};
