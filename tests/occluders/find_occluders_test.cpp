@@ -1,0 +1,519 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include "scenes/procedural.h"
+#include "tests/occluders/flat_mesh.h"
+
+namespace sightline {
+namespace {
+
+using namespace flat_mesh;
+
+const Placement kBehind{{0, 0, -5}};
+
+std::size_t countOf(const OccluderSet& set, ObjectId object) {
+  return static_cast<std::size_t>(std::count_if(set.occluders.begin(), set.occluders.end(),
+                                                [&](const Occluder& o) { return o.object == object; }));
+}
+
+bool sameSet(const OccluderSet& a, const OccluderSet& b) {
+  const auto sameOccluder = [](const Occluder& p, const Occluder& q) {
+    return p.first_vertex == q.first_vertex && p.vertex_count == q.vertex_count &&
+           p.double_sided == q.double_sided && p.seals == q.seals && p.object == q.object &&
+           p.area == q.area && p.slack == q.slack && p.centroid == q.centroid &&
+           p.plane.normal == q.plane.normal && p.plane.offset == q.plane.offset;
+  };
+  const auto sameEdge = [](const OccluderEdge& p, const OccluderEdge& q) {
+    return p.line == q.line && p.first_cover == q.first_cover && p.cover_count == q.cover_count &&
+           p.chain == q.chain;
+  };
+  const auto sameCover = [](const EdgeCover& p, const EdgeCover& q) {
+    return p.occluder == q.occluder && p.element == q.element;
+  };
+  return std::equal(a.occluders.begin(), a.occluders.end(), b.occluders.begin(), b.occluders.end(),
+                    sameOccluder) &&
+         std::equal(a.edges.begin(), a.edges.end(), b.edges.begin(), b.edges.end(), sameEdge) &&
+         std::equal(a.covers.begin(), a.covers.end(), b.covers.begin(), b.covers.end(), sameCover) &&
+         a.vertices == b.vertices && a.lines == b.lines && a.first_of_object == b.first_of_object &&
+         a.of_object == b.of_object && a.area == b.area && reported(a.report) == reported(b.report) &&
+         a.report.used == b.report.used;
+}
+
+TEST(FindOccluders, SeeThroughMaterialsAreNeverUsed) {
+  for (const Opacity opacity : {Opacity::kBlended, Opacity::kAlphaTested}) {
+    for (const OccluderMark mark : {OccluderMark::kAutomatic, OccluderMark::kOccluder}) {
+      Scene scene = sceneOf(rectangle(0, 0, 1, 1));
+      const ObjectId glass =
+          addObject(scene, rectangle(0, 0, 90, 90), kBehind, addMaterial(scene, opacity), mark);
+      const OccluderSet set = findOccluders(scene.view());
+      EXPECT_EQ(set.occluders.size(), 1u);
+      EXPECT_TRUE(set.occludersOf(glass).empty());
+      EXPECT_EQ(set.report.see_through, 2u);
+    }
+  }
+}
+
+TEST(FindOccluders, ObjectsMarkedNeverAreNotUsed) {
+  Scene scene = sceneOf(rectangle(0, 0, 1, 1));
+  addObject(scene, rectangle(0, 0, 90, 90), kBehind, MaterialId(0u), OccluderMark::kNever);
+  const OccluderSet set = findOccluders(scene.view());
+  ASSERT_EQ(set.occluders.size(), 1u);
+  EXPECT_EQ(set.occluders[0].object, ObjectId(0u));
+  EXPECT_EQ(set.report.marked_never, 2u);
+}
+
+TEST(FindOccluders, ObjectsMarkedAsOccludersAreUsedHoweverSmall) {
+  Scene scene = sceneOf(rectangle(0, 0, 100, 100));
+  const ObjectId small = addObject(scene, rectangle(0, 0, 0.5, 0.5), kBehind, MaterialId(0u));
+  const ObjectId marked =
+      addObject(scene, rectangle(0, 0, 0.1, 0.1), kBehind, MaterialId(0u), OccluderMark::kOccluder);
+  for (const OccluderSettings& settings : {OccluderSettings{}, OccluderSettings{.min_area = 50.0}}) {
+    const OccluderSet set = findOccluders(scene.view(), settings);
+    EXPECT_EQ(countOf(set, small), 0u);
+    EXPECT_EQ(countOf(set, marked), 1u);
+    EXPECT_EQ(set.report.too_small, 2u);
+    EXPECT_EQ(set.report.used, 4u);
+  }
+}
+
+TEST(FindOccluders, TheScaleOfTheSceneDoesNotChangeWhatIsLarge) {
+  std::vector<std::size_t> counts;
+  for (const double scale : {1e-4, 1.0, 1e4}) {
+    Random random(3);
+    Scene scene;
+    const MaterialId material = addMaterial(scene);
+    for (int i = 0; i < 200; ++i) {
+      const double size = scale * std::exp2(random.in(-6.0, 3.0));
+      addObject(scene, rectangle(0, 0, size, size), {random.point(10.0) * scale}, material);
+    }
+    counts.push_back(findOccluders(scene.view()).occluders.size());
+  }
+  EXPECT_LT(counts[1], 180u);
+  EXPECT_GT(counts[1], 20u);
+  EXPECT_EQ(counts[0], counts[1]);
+  EXPECT_EQ(counts[2], counts[1]);
+}
+
+TEST(FindOccluders, RanksByAreaAndKeepsTheLargest) {
+  Random random(9);
+  Scene scene;
+  const MaterialId material = addMaterial(scene);
+  std::vector<float> areas;
+  for (int i = 0; i < 60; ++i) {
+    const double size = random.in(0.5, 4.0);
+    addObject(scene, rectangle(0, 0, size, 1), anyPlacement(random, 5.0), material);
+    areas.push_back(static_cast<float>(size));
+  }
+  std::sort(areas.begin(), areas.end(), std::greater<>());
+  const OccluderSet all = findOccluders(scene.view(), kKeepAll);
+  ASSERT_EQ(all.occluders.size(), areas.size());
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    EXPECT_NEAR(all.occluders[i].area, areas[i], 1e-4);
+  }
+  const OccluderSet ten = findOccluders(scene.view(), {.area_fraction = 1.0, .max_occluders = 10});
+  ASSERT_EQ(ten.occluders.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(ten.occluders[i].object, all.occluders[i].object);
+  }
+  EXPECT_EQ(ten.report.too_small, 100u);
+  const OccluderSet large = findOccluders(scene.view(), {.area_fraction = 1.0, .min_area = 2.0});
+  EXPECT_EQ(large.occluders.size(), static_cast<std::size_t>(std::count_if(
+                                        areas.begin(), areas.end(), [](float a) { return a >= 2.0f; })));
+}
+
+TEST(FindOccluders, KeepsTheLargestThatTogetherHaveTheWantedShareOfTheArea) {
+  Scene scene;
+  const MaterialId material = addMaterial(scene);
+  for (const double width : {40.0, 30.0, 20.0, 10.0}) {
+    addObject(scene, rectangle(0, 0, width, 1), {{0, 0, width}}, material);
+  }
+  const auto kept = [&](double fraction) {
+    return findOccluders(scene.view(), {.area_fraction = fraction}).occluders.size();
+  };
+  EXPECT_EQ(kept(0.39), 1u);
+  EXPECT_EQ(kept(0.41), 2u);
+  EXPECT_EQ(kept(0.71), 3u);
+  EXPECT_EQ(kept(0.89), 3u);
+  EXPECT_EQ(kept(1.0), 4u);
+  EXPECT_EQ(kept(0.0), 0u);
+}
+
+TEST(FindOccluders, DegenerateDoubledAndSliverTrianglesAreLeftOutAndCounted) {
+  Scene scene = sceneOf(rectangle(0, 0, 4, 4));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  scene.positions.push_back({2, 0, 0});                           // 4: on the edge from 0 to 1
+  scene.positions.push_back({2, std::nextafter(0.0f, 1.0f), 0});  // 5: hardly off it
+  scene.positions.push_back({nan, 1, 0});                         // 6
+  const std::vector<std::uint32_t> extra{0, 0, 1, 0, 1, 4, 0, 1, 5, 1, 2, 0, 0, 1, 2, 0, 1, 6, 3, 3, 3};
+  scene.indices.insert(scene.indices.end(), extra.begin(), extra.end());
+  scene.objects[0].index_count = static_cast<std::uint32_t>(scene.indices.size());
+  for (const bool double_sided : {false, true}) {
+    scene.materials[0].double_sided = double_sided;
+    const OccluderSet set = findOccluders(scene.view(), kKeepAll);
+    ASSERT_EQ(set.occluders.size(), 1u);
+    EXPECT_FLOAT_EQ(set.occluders[0].area, 16.0f);
+    EXPECT_EQ(set.occluders[0].vertex_count, 4u);
+    EXPECT_EQ(set.report.used, 2u);
+    EXPECT_EQ(set.report.degenerate, 7u);
+  }
+}
+
+TEST(FindOccluders, AnObjectWithoutFiniteBoundsHasNone) {
+  Scene scene = sceneOf(rectangle(0, 0, 4, 4));
+  scene.objects[0].bounds.max.x = std::numeric_limits<float>::infinity();
+  const OccluderSet set = findOccluders(scene.view());
+  EXPECT_TRUE(set.occluders.empty());
+  EXPECT_EQ(set.report.degenerate, 2u);
+}
+
+TEST(FindOccluders, OfAnEmptySceneAreNone) {
+  const OccluderSet set = findOccluders(Scene{}.view());
+  EXPECT_TRUE(set.occluders.empty());
+  EXPECT_EQ(reported(set.report), 0u);
+  EXPECT_TRUE(set.occludersOf(ObjectId(0u)).empty());
+}
+
+TEST(FindOccluders, TheReportAddsUpToAllTriangles) {
+  for (const Scene& scene : {makeCity({.copies = 3}), makeBuilding({.floors = 2, .plants = 5})}) {
+    for (const OccluderSettings& settings :
+         {OccluderSettings{}, kKeepAll, OccluderSettings{.max_vertices = 4, .max_occluders = 100}}) {
+      const OccluderSet set = findOccluders(scene.view(), settings);
+      EXPECT_EQ(reported(set.report), scene.triangleCount());
+      EXPECT_GT(set.report.used, 0u);
+    }
+  }
+}
+
+TEST(FindOccluders, ListsEachOccluderWithItsObject) {
+  const Scene scene = makeBuilding({.floors = 1});
+  const OccluderSet set = findOccluders(scene.view());
+  std::size_t listed = 0;
+  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+    for (const OccluderId id : set.occludersOf(ObjectId(object))) {
+      EXPECT_EQ(set[id].object, ObjectId(object));
+      ++listed;
+    }
+  }
+  EXPECT_EQ(listed, set.occluders.size());
+}
+
+TEST(FindOccluders, KeepsToTheirObjectsAndFacesForwardLikeItsTriangles) {
+  const Scene scene = makeCity({.copies = 2});
+  const OccluderSet set = findOccluders(scene.view());
+  for (const Occluder& occluder : set.occluders) {
+    const Object& object = scene.objects[occluder.object.value];
+    EXPECT_NEAR(length(occluder.plane.normal), 1.0, 1e-12);
+    const std::span<const Vec3f> corners = set.verticesOf(occluder);
+    Vec3d normal;
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      normal += cross(Vec3d(corners[i]) - Vec3d(corners[0]), Vec3d(corners[i + 1]) - Vec3d(corners[0]));
+    }
+    EXPECT_GT(dot(normal, occluder.plane.normal), 0.999 * length(normal));
+    for (const Vec3f& corner : corners) {
+      EXPECT_TRUE(contains(object.bounds, {corner, corner}));
+      EXPECT_LE(std::abs(occluder.plane.evaluate(Vec3d(corner))), occluder.slack + 1e-12);
+    }
+  }
+}
+
+TEST(FindOccluders, DoNotDependOnHowTheWorkIsCut) {
+  const Scene scene = makeBuilding({.floors = 2, .plants = 3});
+  const OccluderSet serial = findOccluders(scene.view());
+  EXPECT_GT(serial.occluders.size(), 50u);
+  for (const std::uint32_t step : {1u, 7u, 1000u}) {
+    const ParallelFor backwards = [step](std::uint32_t count, const RangeBody& body) {
+      for (std::uint32_t end = count; end > 0;) {
+        const std::uint32_t begin = end > step ? end - step : 0;
+        body(begin, end);
+        end = begin;
+      }
+    };
+    EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, backwards))) << "step " << step;
+  }
+  const ParallelFor threads = [](std::uint32_t count, const RangeBody& body) {
+    std::vector<std::thread> running;
+    for (std::uint32_t t = 0; t < 4; ++t) {
+      running.emplace_back([=, &body] { body(count * t / 4, count * (t + 1) / 4); });
+    }
+    for (std::thread& thread : running) {
+      thread.join();
+    }
+  };
+  EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, threads)));
+}
+
+// What each edge says of its neighbours.
+
+bool onLine(const std::array<Vec3f, 2>& line, const Vec3f& p, double tolerance) {
+  const Vec3d a(line[0]), d = Vec3d(line[1]) - a;
+  const Vec3d across = cross(d, Vec3d(p) - a);
+  return length(across) <= tolerance * length(d);
+}
+
+// Corners lie on the lines of the edges that meet there; each cover names an occluder that names this one in
+// return, on the same line; elements are in the chain.
+std::string whatIsWrongWithLinks(const OccluderSet& set) {
+  std::string wrong;
+  for (std::size_t o = 0; o < set.occluders.size(); ++o) {
+    const Occluder& occluder = set.occluders[o];
+    const std::span<const OccluderEdge> edges = set.edgesOf(occluder);
+    const std::span<const Vec3f> corners = set.verticesOf(occluder);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const OccluderEdge& edge = edges[e];
+      const std::array<Vec3f, 2>& line = set.lines[edge.line];
+      if (!onLine(line, corners[e], occluder.slack + 1e-9) ||
+          !onLine(line, corners[(e + 1) % corners.size()], occluder.slack + 1e-9)) {
+        wrong += "corner beside its line; ";
+      }
+      if (edge.chain == 0 && edge.cover_count != 0) {
+        wrong += "covers without a chain; ";
+      }
+      for (const EdgeCover& cover : set.coversOf(edge)) {
+        if (cover.element >= edge.chain) {
+          wrong += "element beyond the chain; ";
+        }
+        if (cover.occluder == OccluderId(o)) {
+          wrong += "names itself; ";
+        }
+        const std::span<const OccluderEdge> others = set.edgesOf(set[cover.occluder]);
+        if (std::none_of(others.begin(), others.end(), [&](const OccluderEdge& other) {
+              const std::span<const EdgeCover> back = set.coversOf(other);
+              return other.line == edge.line &&
+                     (!occluder.seals || std::any_of(back.begin(), back.end(), [&](const EdgeCover& c) {
+                       return c.occluder == OccluderId(o);
+                     }));
+            })) {
+          wrong += "is not named in return; ";
+        }
+      }
+    }
+  }
+  return wrong;
+}
+
+// Six faces, each a grid of n x n quads, in one object; vertices shared after welding.
+Scene cube(std::uint32_t n, const Placement& place) {
+  Scene scene;
+  const MaterialId material = addMaterial(scene);
+  const Vec3d x = place.x, y = place.y, z = cross(x, y);
+  const Vec3d axes[6][2] = {{x, y}, {y, x}, {y, z}, {z, y}, {z, x}, {x, z}};
+  Random random(n);
+  std::vector<double> steps_along;
+  for (std::uint32_t i = 0; i <= n; ++i) {
+    steps_along.push_back(static_cast<double>(i) / n);
+  }
+  for (const auto& axis : axes) {
+    const Vec3d normal = cross(axis[0], axis[1]);
+    // Faces towards a positive axis lie at its far end.
+    const bool far = dot(normal, x + y * 2.0 + z * 3.0) > 0.0;
+    const FlatMesh mesh =
+        grid(steps_along, steps_along, random, [](std::uint32_t, std::uint32_t) { return true; });
+    addObject(scene, mesh, {place.origin + (far ? normal : Vec3d()), axis[0], axis[1]}, material);
+  }
+  scene.objects[0].index_count = static_cast<std::uint32_t>(scene.indices.size());
+  scene.objects.resize(1);
+  scene.object_names.resize(1);
+  weldPositions(scene);
+  updateBounds(scene);
+  return scene;
+}
+
+TEST(OccluderEdges, OfACubeNameTheNeighbourForEachMeshEdge) {
+  for (const std::uint32_t n : {1u, 2u, 8u}) {
+    const OccluderSet set = findOccluders(cube(n, {}).view(), kKeepAll);
+    ASSERT_EQ(set.occluders.size(), 6u) << n;
+    EXPECT_EQ(whatIsWrongWithLinks(set), "") << n;
+    EXPECT_EQ(set.lines.size(), 12u) << n;
+    for (const Occluder& occluder : set.occluders) {
+      EXPECT_TRUE(occluder.seals);
+      for (const OccluderEdge& edge : set.edgesOf(occluder)) {
+        EXPECT_EQ(edge.chain, n);
+        ASSERT_EQ(edge.cover_count, n);
+        for (std::uint32_t k = 0; k < n; ++k) {
+          EXPECT_EQ(set.coversOf(edge)[k].element, k);
+          EXPECT_EQ(set.coversOf(edge)[k].occluder, set.coversOf(edge)[0].occluder);
+        }
+      }
+    }
+  }
+}
+
+TEST(OccluderEdges, OfATurnedCubeShareLinesWithinTheSlack) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed);
+    const OccluderSet set = findOccluders(cube(1, anyPlacement(random, 100.0)).view(), kKeepAll);
+    EXPECT_EQ(whatIsWrongWithLinks(set), "") << "seed " << seed;
+  }
+}
+
+TEST(OccluderEdges, NameADifferentNeighbourForEachPartOfAChain) {
+  // A floor whose rear side is the foot of two walls of two objects, 0 to 1 and 1 to 2.
+  FlatMesh floor;
+  for (const Point2& p : {Point2{0, 0}, Point2{2, 0}, Point2{2, 3}, Point2{1, 3}, Point2{0, 3}}) {
+    floor.add(p);
+  }
+  floor.triangles = {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}};
+  Scene scene = sceneOf(floor);
+  const Placement upright{{0, 3, 0}, {1, 0, 0}, {0, 0, 1}};
+  const ObjectId left = addObject(scene, rectangle(0, 0, 1, 2), upright, MaterialId(0u));
+  const ObjectId right = addObject(scene, rectangle(1, 0, 2, 5), upright, MaterialId(0u));
+  weldPositions(scene);
+  const OccluderSet set = findOccluders(scene.view(), kKeepAll);
+  ASSERT_EQ(set.occluders.size(), 3u);
+  EXPECT_EQ(whatIsWrongWithLinks(set), "");
+  const Occluder& ground = set[set.occludersOf(ObjectId(0u))[0]];
+  ASSERT_EQ(ground.vertex_count, 4u);
+  int chains = 0;
+  for (const OccluderEdge& edge : set.edgesOf(ground)) {
+    if (edge.chain != 2) {
+      EXPECT_EQ(edge.cover_count, 0u);
+      continue;
+    }
+    ++chains;
+    ASSERT_EQ(edge.cover_count, 2u);
+    // The side runs from x = 2 to x = 0.
+    EXPECT_EQ(set[set.coversOf(edge)[0].occluder].object, right);
+    EXPECT_EQ(set[set.coversOf(edge)[1].occluder].object, left);
+  }
+  EXPECT_EQ(chains, 1);
+}
+
+TEST(OccluderEdges, OfAWallCutIntoConvexPartsNameEachOther) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    const std::vector<double> xs = steps(random, 6), ys = steps(random, 6);
+    const FlatMesh mesh = grid(
+        xs, ys, random, [&](std::uint32_t c, std::uint32_t r) { return (c * 7 + r * 3 + seed) % 5 != 0; });
+    const Placement place = anyPlacement(random, seed % 2 == 0 ? 1.0 : 200.0);
+    const OccluderSet set = findOccluders(sceneOf(mesh, place).view(), kKeepAll);
+    EXPECT_EQ(whatIsWrongWithLinks(set), "") << "seed " << seed;
+    EXPECT_FALSE(set.covers.empty()) << "seed " << seed;
+  }
+}
+
+TEST(OccluderEdges, WithoutACommonMeshEdgeNameNobody) {
+  // Two walls that touch along half of a side: the mesh has a T-junction there.
+  FlatMesh mesh = rectangle(0, 0, 2, 1);
+  const FlatMesh upper = rectangle(0, 1, 1, 2);
+  Scene scene = sceneOf(mesh);
+  addObject(scene, upper, {}, MaterialId(0u));
+  weldPositions(scene);
+  EXPECT_TRUE(findOccluders(scene.view(), kKeepAll).covers.empty());
+}
+
+TEST(OccluderEdges, OfDemoScenesAreInOrder) {
+  EXPECT_EQ(whatIsWrongWithLinks(findOccluders(makeCity({.copies = 2}).view())), "");
+  EXPECT_EQ(whatIsWrongWithLinks(findOccluders(makeBuilding({.floors = 2}).view())), "");
+}
+
+// Polygons that a caller gives.
+
+std::size_t madeOf(const std::vector<Vec3f>& polygon) {
+  const OccluderPolygon input[] = {{polygon, false, ObjectId(0u)}};
+  return makeOccluders(input).occluders.size();
+}
+
+TEST(MakeOccluders, TakesConvexPlanarPolygons) {
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}), 1u);
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), 1u);
+  EXPECT_EQ(madeOf({{0, 0, 0}, {0.5f, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), 1u) << "a vertex on a side";
+}
+
+TEST(MakeOccluders, LeavesOutWhatIsNotConvexOrNotPlanarOrHasNoArea) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(madeOf({}), 0u);
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}}), 0u);
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}), 0u);
+  EXPECT_EQ(madeOf({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}), 0u);
+  EXPECT_EQ(madeOf({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}}), 0u) << "an arrowhead";
+  EXPECT_EQ(madeOf({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 3.99f, 0}, {0, 4, 0}}), 0u) << "slightly dented";
+  EXPECT_EQ(madeOf({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 3, 0}}), 0u) << "a bow tie";
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.01f}, {0, 1, 0}}), 0u) << "warped";
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}, {nan, 1, 0}}), 0u);
+  EXPECT_EQ(madeOf({{0, 0, 0}, {1, 0, 0}, {inf, 1, 0}}), 0u);
+  std::vector<Vec3f> pentagram, twice_round;
+  for (int i = 0; i < 5; ++i) {
+    const double angle = 2.0 * 6.283185307179586 * i / 5;
+    pentagram.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
+  }
+  for (int i = 0; i < 8; ++i) {
+    twice_round.push_back({i % 4 == 0 || i % 4 == 3 ? 0.0f : 1.0f, i % 4 < 2 ? 0.0f : 1.0f, 0});
+  }
+  EXPECT_EQ(madeOf(pentagram), 0u);
+  EXPECT_EQ(madeOf(twice_round), 0u);
+}
+
+TEST(MakeOccluders, CountsWhatItLeavesOutAndKeepsTheRest) {
+  const std::vector<Vec3f> good{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, larger{{0, 0, 1}, {3, 0, 1}, {0, 3, 1}},
+      bad{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  const OccluderPolygon input[] = {
+      {good, true, ObjectId(2u)}, {bad, false, ObjectId(5u)}, {larger, false, ObjectId(1u)}};
+  const OccluderSet set = makeOccluders(input);
+  ASSERT_EQ(set.occluders.size(), 2u);
+  EXPECT_EQ(set.occluders[0].object, ObjectId(1u)) << "largest first";
+  EXPECT_FALSE(set.occluders[0].double_sided);
+  EXPECT_TRUE(set.occluders[1].double_sided);
+  EXPECT_EQ(set.occludersOf(ObjectId(2u)).size(), 1u);
+  EXPECT_TRUE(set.occludersOf(ObjectId(5u)).empty());
+  EXPECT_EQ(set.report.degenerate, 1u);
+}
+
+TEST(MakeOccluders, ClosesTheSeamOfEdgesWithEqualEnds) {
+  const std::vector<Vec3f> left{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+      right{{1, 0, 0}, {2, 0, 1}, {2, 1, 1}, {1, 1, 0}}, apart{{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {5, 1, 0}};
+  const OccluderPolygon input[] = {
+      {left, false, ObjectId(0u)}, {right, false, ObjectId(1u)}, {apart, false, ObjectId(2u)}};
+  const OccluderSet set = makeOccluders(input);
+  ASSERT_EQ(set.occluders.size(), 3u);
+  EXPECT_EQ(whatIsWrongWithLinks(set), "");
+  EXPECT_EQ(set.covers.size(), 2u);
+}
+
+TEST(MakeOccluders, NeverCoversMoreThanTheCallersPolygon) {
+  // Random loops, most of them neither convex nor simple: what is accepted is what was given, and convex.
+  int accepted = 0;
+  for (std::uint64_t seed = 1; seed <= 20000; ++seed) {
+    Random random(seed);
+    const Placement place = anyPlacement(random, 5.0);
+    std::vector<Vec3f> loop;
+    std::vector<Point2> flat;
+    for (std::uint32_t i = 0; i < 3 + seed % 4; ++i) {
+      flat.push_back({static_cast<double>(random.below(4)), static_cast<double>(random.below(4))});
+      loop.push_back(place(flat.back()));
+    }
+    const OccluderPolygon input[] = {{loop, true, ObjectId(0u)}};
+    const OccluderSet set = makeOccluders(input);
+    if (set.occluders.empty()) {
+      continue;
+    }
+    ++accepted;
+    // The reference: winding of points off the lattice's lines and diagonals.
+    const std::vector<Point2> polygon = flattened(set, set.occluders[0], place);
+    for (int s = 0; s < 12; ++s) {
+      const Point2 p{random.in(-0.5, 3.5), random.in(-0.5, 3.5)};
+      int winding = 0;
+      for (std::size_t i = 0; i < flat.size(); ++i) {
+        const Point2 &a = flat[i], &b = flat[(i + 1) % flat.size()];
+        if ((a.y <= p.y) != (b.y <= p.y)) {
+          const double side = crossAt(a, b, p);
+          winding += a.y <= p.y && side > 0.0 ? 1 : a.y > p.y && side < 0.0 ? -1 : 0;
+        }
+      }
+      std::vector<Point2> front(polygon.begin(), polygon.end());
+      if (areaOf(front) < 0.0) {
+        std::reverse(front.begin(), front.end());
+      }
+      if (depthIn(front, p) > 1e-4) {
+        EXPECT_EQ(std::abs(winding), 1) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(accepted, 2000);
+}
+
+}  // namespace
+}  // namespace sightline
