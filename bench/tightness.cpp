@@ -1,9 +1,10 @@
-// How close to exact is what is kept? For each scene one table: kept / exact for frustum culling and for the occlusion
-// tree's variants with 8 to 256 occluders, exact being what rays through the pixels of 1280 x 720 see (Embree).
+// How close to exact is what is kept? For each scene one table: kept / exact for frustum culling and for the
+// occlusion tree's variants with 8 to 256 occluders, exact being what rays through the pixels of 1280 x 720
+// see (Embree).
 //
-// "boxes" is the best that any test of bounding boxes can do: the objects that are exactly visible, and those whose box
-// shows although nothing of the object in it does (rays to points of the box's faces). What lies between it and the
-// occlusion tree is due to the occluders: too few, too small, or not joined.
+// "boxes" is the best that any test of bounding boxes can do: the objects that are exactly visible, and those
+// whose box shows although nothing of the object in it does (rays to points of the box's faces). What lies
+// between it and the occlusion tree is due to the occluders: too few, too small, or not joined.
 //
 //   tightness [--step N] [SCENE...]    SCENE: a file with walk.path.json beside it, or demo:...
 
@@ -86,7 +87,8 @@ bool insideFrustum(const Frustum& frustum, const Vec3d& point) {
 }
 
 // Whether one of 256 random points on the faces of the box towards the eye is seen.
-bool boxShows(const RayScene& rays, const SceneView& scene, const View& view, const Box& box, std::mt19937& random) {
+bool boxShows(const RayScene& rays, const SceneView& scene, const View& view, const Box& box,
+              std::mt19937& random) {
   const Frustum frustum = frustumOf(view);
   const auto unit = [&] { return static_cast<double>(random()) * 0x1p-32; };
   std::vector<RayHit> hits;
@@ -158,10 +160,13 @@ void table(const std::string& name, std::size_t step) {
       kept[c] += cullers[c].visible().size();
     }
     for (const ObjectId object : cullers[0].visible()) {
-      by_box += visible[object.value] || boxShows(rays, scene, view, loaded.bounds[object.value], random) ? 1 : 0;
+      by_box +=
+          visible[object.value] || boxShows(rays, scene, view, loaded.bounds[object.value], random) ? 1 : 0;
     }
   }
-  const auto ratio = [&](std::uint64_t count) { return static_cast<double>(count) / static_cast<double>(seen); };
+  const auto ratio = [&](std::uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(seen);
+  };
   fmt::print("\n{}: exact {}, kept / exact: boxes {:.2f}\n", name, seen, ratio(by_box));
   for (std::size_t c = 0; c < all.size(); ++c) {
     fmt::print("{}{:<9}{:8.2f}", c % 6 == 1 ? "\n" : "  ", all[c].name, ratio(kept[c]));

@@ -25,31 +25,47 @@ struct Culler::Impl {
         occluders(o),
         settings(s),
         walk(h, bounds),
+        search(h, bounds),
         tree(OcclusionTreeSettings{.variant = s.variant}) {}
 
   // Temporal coherence of the choice: what was seen in the last frame holds the occluders of this one.
-  // Without a last frame that resembles this one, all that the frustum holds is looked through.
+  // Without a last frame that resembles this one, or when little of it is left in view, all that the frustum
+  // holds is looked through; a search that found little is not repeated for a while.
   std::span<const OccluderId> choose(const View& view, const Frustum& frustum) {
-    const double step = has_previous ? length(view.eye - previous_eye) : 0.0;
-    const bool turned = has_previous && dot(view.forward, previous_forward) < kJumpCosine;
-    const bool jumped = has_previous && last_step > 0.0 && step > kJumpSteps * last_step;
+    const bool jump = jumped(view);
     ChoiceSettings choice;
     choice.count = settings.occluder_count;
     choice.direction = settings.area_angle_direction;
-    if (!has_previous || turned || jumped) {
+    choice.max_distance = jump ? 0.0 : settings.lambda_steps * last_step;
+    std::span<const OccluderId> chosen;
+    if (!jump) {
+      chosen = chooser.choose(view, occluders, visible, object_bounds, choice);
+    }
+    const bool few = chosen.size() < settings.occluder_count / 2;
+    if (jump || (few && frames_since_search >= frames_between_searches)) {
       candidates.clear();
       CullStats ignored;
-      walk.run(frustum, {}, seeEverything, ignored, candidates);
-      walk.forget();
+      search.run(frustum, {.temporal_coherence = false}, seeEverything, ignored, candidates);
+      const std::size_t before = chosen.size();
+      chosen = chooser.choose(view, occluders, candidates, object_bounds, choice);
+      frames_between_searches = chosen.size() > 2 * before ? 0 : kSearchPause;
+      frames_since_search = 0;
     } else {
-      candidates.assign(visible.begin(), visible.end());
-      last_step = step > 0.0 ? step : last_step;
-      choice.max_distance = settings.lambda_steps * last_step;
+      ++frames_since_search;
     }
+    return chosen;
+  }
+
+  // Whether this view has little to do with the last one; remembers it for the next call.
+  bool jumped(const View& view) {
+    const double step = has_previous ? length(view.eye - previous_eye) : 0.0;
+    const bool jump = !has_previous || dot(view.forward, previous_forward) < kJumpCosine ||
+                      (last_step > 0.0 && step > kJumpSteps * last_step);
+    last_step = !jump && step > 0.0 ? step : last_step;
     has_previous = true;
     previous_eye = view.eye;
     previous_forward = view.forward;
-    return chooser.choose(view, occluders, candidates, object_bounds, choice);
+    return jump;
   }
 
   void cullWithTree(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes) {
@@ -92,11 +108,12 @@ struct Culler::Impl {
   // A turn by more than 60 degrees, or a step ten times the last one, is a jump.
   static constexpr double kJumpCosine = 0.5;
   static constexpr double kJumpSteps = 10.0;
+  static constexpr std::uint32_t kSearchPause = 16;
 
   std::span<const Box> object_bounds;
   const OccluderSet& occluders;
   CullerSettings settings;
-  culling_detail::HierarchicalWalk walk;
+  culling_detail::HierarchicalWalk walk, search;  // search: for occluders
   OccluderChooser chooser;
   OcclusionTree tree;
   std::vector<ObjectId> visible, candidates;
@@ -105,6 +122,7 @@ struct Culler::Impl {
   bool has_previous = false;
   Vec3d previous_eye, previous_forward;
   double last_step = 0.0;
+  std::uint32_t frames_since_search = 0, frames_between_searches = 0;
 };
 
 Culler::Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
@@ -141,6 +159,7 @@ const CullStats& Culler::stats() const {
 void Culler::reset() {
   impl_->has_previous = false;
   impl_->last_step = 0.0;
+  impl_->frames_between_searches = 0;
   impl_->walk.forget();
 }
 
