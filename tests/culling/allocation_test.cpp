@@ -1,0 +1,106 @@
+// Counts what operator new hands out in this program: a frame must not allocate once its storage has grown.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+#include "tests/culling/demo_frames.h"
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  void* memory = alignment <= alignof(std::max_align_t) ? std::malloc(size == 0 ? 1 : size)
+                                                        : std::aligned_alloc(alignment, rounded);
+  if (memory == nullptr) {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size, 1);
+}
+void* operator new[](std::size_t size) {
+  return counted(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace sightline {
+namespace {
+
+using namespace demo_frames;
+
+std::size_t allocationsIn(Culler& culler, std::span<const View> views, std::span<const Box> dynamic_boxes) {
+  const std::size_t before = allocations;
+  for (const View& view : views) {
+    culler.cull(view, dynamic_boxes);
+  }
+  return allocations - before;
+}
+
+TEST(Allocations, AreCountedByThisTest) {
+  Culler culler = smallCity().culler(HierarchyKind::kBvh, {});
+  EXPECT_GT(allocationsIn(culler, smallCity().frames(smallCity().scene.paths[0], 0, 1), {}), 0u);
+}
+
+TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
+  for (const DemoScene* demo : {&smallCity(), &smallBuilding()}) {
+    // A walk and some jumps, so that the choice of the first frame is there as well.
+    std::vector<View> views = demo->frames(demo->scene.paths[0], 80, 30);
+    const std::vector<View> others = jumps(*demo, 21, 6);
+    views.insert(views.end(), others.begin(), others.end());
+    const std::vector<Box> dynamic_boxes(demo->bounds.begin(), demo->bounds.begin() + 20);
+    for (const HierarchyKind kind : kKinds) {
+      for (const OcclusionTreeVariant variant : kVariants) {
+        for (const CullMethod method : {CullMethod::kOcclusionTree, CullMethod::kFrustum}) {
+          Culler culler = demo->culler(kind, {.method = method, .variant = variant});
+          allocationsIn(culler, views, dynamic_boxes);
+          allocationsIn(culler, views, dynamic_boxes);
+          EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u)
+              << "variant " << static_cast<int>(variant) << " kind " << static_cast<int>(kind);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,462 @@
+#include "sightline/culling/culler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "culling/object_bits.h"
+#include "tests/culling/demo_frames.h"
+
+namespace sightline {
+namespace {
+
+using namespace demo_frames;
+
+using Objects = std::vector<ObjectId>;
+
+Objects visibleOf(Culler& culler, const View& view) {
+  culler.cull(view);
+  return {culler.visible().begin(), culler.visible().end()};
+}
+
+bool includesAll(const Objects& large, const Objects& small) {
+  return std::includes(large.begin(), large.end(), small.begin(), small.end());
+}
+
+// How many objects a culler keeps of those in the frustum.
+struct Share {
+  std::size_t kept = 0, in_frustum = 0;
+  double value() const { return static_cast<double>(kept) / static_cast<double>(in_frustum); }
+};
+
+class ShareMeter {
+ public:
+  ShareMeter(const DemoScene& demo, HierarchyKind kind, const CullerSettings& settings = {})
+      : tree_(demo.culler(kind, settings)), frustum_(demo.culler(kind, {.method = CullMethod::kFrustum})) {}
+
+  void add(const View& view, Share& share) {
+    tree_.cull(view);
+    frustum_.cull(view);
+    share.kept += tree_.visible().size();
+    share.in_frustum += frustum_.visible().size();
+  }
+  void reset() { tree_.reset(); }
+
+ private:
+  Culler tree_, frustum_;
+};
+
+const DemoScene& city() {
+  static const DemoScene scene(makeCity({.copies = 10}));
+  return scene;
+}
+
+constexpr std::size_t kPlaces[] = {5, 60, 120, 190, 260, 330};
+
+TEST(Culler, CullsFromTheFirstFrameOn) {
+  for (const HierarchyKind kind : kKinds) {
+    ShareMeter meter(city(), kind);
+    Share share;
+    for (const std::size_t place : kPlaces) {
+      meter.reset();
+      meter.add(city().frames(city().scene.paths[0], place, 1)[0], share);
+    }
+    EXPECT_LT(share.value(), 0.6);
+  }
+}
+
+TEST(Culler, CullsInTheFrameAfterAJump) {
+  for (const HierarchyKind kind : kKinds) {
+    ShareMeter meter(city(), kind);
+    Share share, steady;
+    for (const std::size_t place : kPlaces) {
+      const std::vector<View> frames = city().frames(city().scene.paths[0], place, 4);
+      meter.add(frames[0], share);
+      for (const View& view : frames) {
+        meter.add(view, steady);
+      }
+    }
+    EXPECT_LT(share.value(), 0.6);
+    EXPECT_LT(share.value(), 1.25 * steady.value()) << "as well as in the frames after it";
+  }
+}
+
+TEST(Culler, CullsOnASteadyWalk) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const OcclusionTreeVariant variant : kVariants) {
+      ShareMeter meter(city(), kind, {.variant = variant});
+      Share share;
+      for (const View& view : city().frames(city().scene.paths[0], 100, 30)) {
+        meter.add(view, share);
+      }
+      EXPECT_LT(share.value(), 0.6) << "variant " << static_cast<int>(variant);
+    }
+  }
+}
+
+TEST(Culler, KeepsNothingThatFrustumCullingLeavesOut) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const OcclusionTreeVariant variant : kVariants) {
+      Culler tree = city().culler(kind, {.variant = variant});
+      Culler frustum = city().culler(kind, {.method = CullMethod::kFrustum});
+      for (const View& view : jumps(city(), 3, 20)) {
+        EXPECT_TRUE(includesAll(visibleOf(frustum, view), visibleOf(tree, view)));
+      }
+    }
+  }
+}
+
+Objects notOutside(const DemoScene& demo, const View& view) {
+  Objects objects;
+  for (std::size_t i = 0; i < demo.bounds.size(); ++i) {
+    std::uint8_t mask = kAllFrustumPlanes;
+    if (classify(frustumOf(view), demo.bounds[i], mask) != FrustumSide::kOutside) {
+      objects.push_back(ObjectId(i));
+    }
+  }
+  return objects;
+}
+
+// Looks at a lattice of points of the box.
+bool hasAPointInside(const Frustum& frustum, const Box& box) {
+  constexpr int kSteps = 12;
+  const Vec3d extent = Vec3d(box.max) - Vec3d(box.min);
+  for (int i = 0; i < kSteps * kSteps * kSteps; ++i) {
+    const Vec3d t(i % kSteps, i / kSteps % kSteps, i / (kSteps * kSteps));
+    const Vec3d point =
+        Vec3d(box.min) + Vec3d(t.x * extent.x, t.y * extent.y, t.z * extent.z) / (kSteps - 1.0);
+    if (std::all_of(frustum.planes.begin(), frustum.planes.end(),
+                    [&](const Plane& plane) { return plane.evaluate(point) > 1e-6; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(Culler, FrustumCullingKeepsTheObjectsWhoseBoxesAreNotOutside) {
+  Culler bvh = smallCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+  Culler kd_tree = smallCity().culler(HierarchyKind::kKdTree, {.method = CullMethod::kFrustum});
+  for (const View& view : jumps(smallCity(), 4, 60)) {
+    const Objects expected = notOutside(smallCity(), view);
+    EXPECT_EQ(visibleOf(bvh, view), expected);
+    // The parts of a box in several leaves are smaller and may all be outside, each of another plane.
+    const Objects kept = visibleOf(kd_tree, view);
+    EXPECT_TRUE(includesAll(expected, kept));
+    Objects left_out;
+    std::set_difference(expected.begin(), expected.end(), kept.begin(), kept.end(),
+                        std::back_inserter(left_out));
+    for (const ObjectId object : left_out) {
+      EXPECT_FALSE(hasAPointInside(frustumOf(view), smallCity().bounds[object.value]));
+    }
+  }
+  EXPECT_TRUE(bvh.occludersUsed().empty());
+}
+
+TEST(Culler, TemporalCoherenceTestsFewerNodesAndCullsAsMuch) {
+  for (const HierarchyKind kind : kKinds) {
+    Culler coherent = city().culler(kind, {.temporal_coherence = true});
+    Culler incoherent = city().culler(kind, {.temporal_coherence = false});
+    std::size_t coherent_tests = 0, incoherent_tests = 0, coherent_kept = 0, incoherent_kept = 0, skipped = 0;
+    for (const View& view : city().frames(city().scene.paths[0], 20, 60)) {
+      coherent.cull(view);
+      incoherent.cull(view);
+      coherent_tests += coherent.stats().nodes_tested;
+      incoherent_tests += incoherent.stats().nodes_tested;
+      coherent_kept += coherent.visible().size();
+      incoherent_kept += incoherent.visible().size();
+      skipped += coherent.stats().nodes_skipped;
+      EXPECT_EQ(incoherent.stats().nodes_skipped, 0u);
+    }
+    EXPECT_LT(coherent_tests, incoherent_tests);
+    EXPECT_GT(skipped, 0u);
+    // A skipped node costs tests of its children, never tightness.
+    EXPECT_LE(coherent_kept, incoherent_kept + incoherent_kept / 20);
+  }
+}
+
+TEST(Culler, ANodeBelowTheMinimumCostIsTakenAsVisible) {
+  for (const HierarchyKind kind : kKinds) {
+    Culler all = city().culler(kind, {.min_node_cost = 0});
+    Culler some = city().culler(kind, {.min_node_cost = 400});
+    Culler none = city().culler(kind, {.min_node_cost = 0x10000});
+    Culler frustum = city().culler(kind, {.method = CullMethod::kFrustum});
+    std::size_t all_tests = 0, some_tests = 0;
+    for (const View& view : city().frames(city().scene.paths[0], 40, 8)) {
+      for (Culler* culler : {&all, &some, &none, &frustum}) {
+        culler->reset();  // the same occluders for each
+      }
+      const Objects tight = visibleOf(all, view), loose = visibleOf(some, view);
+      EXPECT_TRUE(includesAll(loose, tight));
+      EXPECT_EQ(visibleOf(none, view), visibleOf(frustum, view));
+      EXPECT_EQ(none.stats().nodes_tested + none.stats().objects_tested, 0u);
+      all_tests += all.stats().nodes_tested;
+      some_tests += some.stats().nodes_tested;
+    }
+    EXPECT_LT(some_tests, all_tests);
+  }
+}
+
+TEST(Culler, WithoutTestsOfObjectsKeepsASuperset) {
+  for (const HierarchyKind kind : kKinds) {
+    Culler with = city().culler(kind, {});
+    Culler without = city().culler(kind, {.test_objects = false});
+    for (const View& view : city().frames(city().scene.paths[0], 40, 6)) {
+      with.reset();
+      without.reset();
+      EXPECT_TRUE(includesAll(visibleOf(without, view), visibleOf(with, view)));
+      EXPECT_EQ(without.stats().objects_tested, 0u);
+    }
+  }
+}
+
+TEST(Culler, UsesAtMostTheGivenNumberOfOccluders) {
+  for (const std::uint32_t count : {0u, 1u, 8u, 50u}) {
+    Culler culler = city().culler(HierarchyKind::kBvh, {.occluder_count = count});
+    Culler frustum = city().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+    for (const View& view : city().frames(city().scene.paths[0], 40, 4)) {
+      const Objects visible = visibleOf(culler, view);
+      EXPECT_LE(culler.occludersUsed().size(), count);
+      EXPECT_EQ(culler.stats().occluders, culler.occludersUsed().size());
+      if (count == 0) {
+        EXPECT_EQ(visible, visibleOf(frustum, view));
+      }
+    }
+  }
+}
+
+bool sameWork(const CullStats& a, const CullStats& b) {
+  return a.nodes_visited == b.nodes_visited && a.nodes_tested == b.nodes_tested &&
+         a.objects_tested == b.objects_tested && a.nodes_skipped == b.nodes_skipped &&
+         a.occluders == b.occluders && a.tree_nodes == b.tree_nodes && a.tree_dropped == b.tree_dropped;
+}
+
+// Both do the same, frame by frame.
+void expectEqualRuns(Culler& a, Culler& b, std::span<const View> views) {
+  for (const View& view : views) {
+    a.cull(view);
+    b.cull(view);
+    EXPECT_TRUE(std::equal(a.visible().begin(), a.visible().end(), b.visible().begin(), b.visible().end()));
+    EXPECT_TRUE(std::equal(a.occludersUsed().begin(), a.occludersUsed().end(), b.occludersUsed().begin(),
+                           b.occludersUsed().end()));
+    EXPECT_TRUE(sameWork(a.stats(), b.stats()));
+  }
+}
+
+TEST(Culler, GivesTheSameBitForBitWhenRunTwice) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const OcclusionTreeVariant variant : kVariants) {
+      Culler a = smallCity().culler(kind, {.variant = variant}),
+             b = smallCity().culler(kind, {.variant = variant});
+      expectEqualRuns(a, b, smallCity().frames(smallCity().scene.paths[0], 50, 20));
+      expectEqualRuns(a, b, jumps(smallCity(), 5, 20));
+    }
+  }
+}
+
+TEST(Culler, IsAsNewAfterReset) {
+  for (const HierarchyKind kind : kKinds) {
+    Culler used = smallCity().culler(kind, {}), fresh = smallCity().culler(kind, {});
+    for (const View& view : jumps(smallCity(), 6, 10)) {
+      used.cull(view);
+    }
+    used.reset();
+    expectEqualRuns(used, fresh, smallCity().frames(smallCity().scene.paths[0], 50, 20));
+  }
+}
+
+TEST(Culler, CanBeMoved) {
+  Culler first = smallCity().culler(HierarchyKind::kBvh, {}),
+         other = smallCity().culler(HierarchyKind::kBvh, {});
+  Culler second = std::move(first);
+  expectEqualRuns(second, other, smallCity().frames(smallCity().scene.paths[0], 50, 3));
+}
+
+TEST(Culler, OfAnEmptySceneKeepsNothing) {
+  const DemoScene empty{Scene{}};
+  for (const HierarchyKind kind : kKinds) {
+    Culler culler = empty.culler(kind, {});
+    for (const View& view : jumps(smallCity(), 7, 4)) {
+      EXPECT_TRUE(visibleOf(culler, view).empty());
+    }
+  }
+}
+
+TEST(Culler, OfASceneWithoutOccludersDoesFrustumCulling) {
+  Scene glass = makeCity({.copies = 1});
+  for (Material& material : glass.materials) {
+    material.opacity = Opacity::kBlended;
+  }
+  const DemoScene demo(std::move(glass));
+  ASSERT_TRUE(demo.occluders.occluders.empty());
+  for (const HierarchyKind kind : kKinds) {
+    Culler culler = demo.culler(kind, {}), frustum = demo.culler(kind, {.method = CullMethod::kFrustum});
+    for (const View& view : jumps(demo, 8, 10)) {
+      EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view));
+    }
+  }
+}
+
+// A wall of 8 x 8 metres at z = -5, seen from the origin along -z.
+struct WallScene {
+  std::vector<Box> bounds{{{-4, -4, -5}, {4, 4, -5}}};
+  OccluderSet occluders;
+  View view;
+
+  WallScene() {
+    const std::vector<Vec3f> corners{{-4, -4, -5}, {4, -4, -5}, {4, 4, -5}, {-4, 4, -5}};
+    const OccluderPolygon wall[] = {{corners, false, ObjectId(0u)}};
+    occluders = makeOccluders(wall);
+    setOrientation(view, {0, 0, -1}, {0, 1, 0});
+    view.tan_half_fovy = 2.0;
+    view.aspect = 1.0;
+    view.near = 0.1;
+    view.far = 100.0;
+  }
+};
+
+TEST(Culler, ObjectsWithBadBoxesAreNeverCulled) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  WallScene scene;
+  const Box hidden{{-1, -1, -12}, {1, 1, -10}};
+  for (const Box& box : {hidden, Box{}, Box{{nan, 0, -12}, {1, 1, -10}}, Box{{-1, -1, -inf}, {1, 1, -10}},
+                         hidden, Box{{5, 5, 90}, {4, 4, 80}}}) {
+    scene.bounds.push_back(box);
+  }
+  const Objects bad{ObjectId(2u), ObjectId(3u), ObjectId(4u), ObjectId(6u)};
+  for (const HierarchyKind kind : kKinds) {
+    const Hierarchy hierarchy = buildHierarchy(scene.bounds, {}, {.kind = kind, .max_leaf_objects = 1});
+    for (const OcclusionTreeVariant variant : kVariants) {
+      Culler culler(hierarchy, scene.bounds, scene.occluders, {.variant = variant});
+      for (int frame = 0; frame < 3; ++frame) {
+        EXPECT_TRUE(includesAll(visibleOf(culler, scene.view), bad)) << "frame " << frame;
+      }
+    }
+  }
+}
+
+TEST(Culler, DynamicBoxesAreHiddenBehindWallsAndOutsideTheFrustumOnly) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const WallScene scene;
+  const std::array<Box, 8> boxes{Box{{-1, -1, -12}, {1, 1, -10}},    // behind the wall
+                                 Box{{-1, -1, -4}, {1, 1, -3}},      // before it
+                                 Box{{-1, -1, 3}, {1, 1, 4}},        // behind the viewer
+                                 Box{{-1, -1, -120}, {1, 1, -110}},  // beyond the far plane
+                                 Box{{7, -1, -12}, {12, 1, -10}},    // beside its shadow, in part
+                                 Box{{12, -1, -12}, {13, 1, -10}},   // beside its shadow
+                                 Box{{nan, -1, -12}, {1, 1, -10}},  Box{}};
+  const std::array<Visibility, 8> expected{Visibility::kHidden,  Visibility::kVisible, Visibility::kHidden,
+                                           Visibility::kHidden,  Visibility::kPartial, Visibility::kVisible,
+                                           Visibility::kVisible, Visibility::kVisible};
+  const Hierarchy hierarchy = buildHierarchy(scene.bounds, {});
+  for (const OcclusionTreeVariant variant : kVariants) {
+    Culler culler(hierarchy, scene.bounds, scene.occluders, {.variant = variant});
+    for (int frame = 0; frame < 3; ++frame) {
+      culler.cull(scene.view, boxes);
+      ASSERT_EQ(culler.dynamicStates().size(), boxes.size());
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        EXPECT_EQ(culler.dynamicStates()[i], expected[i])
+            << "box " << i << " variant " << static_cast<int>(variant);
+      }
+      EXPECT_EQ(culler.visible().size(), 1u);
+    }
+    culler.cull(scene.view);
+    EXPECT_TRUE(culler.dynamicStates().empty());
+  }
+}
+
+TEST(Culler, DynamicBoxesAreClassifiedAsTheOcclusionTreeDoes) {
+  std::mt19937_64 random(12);
+  const auto in = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  std::size_t hidden = 0, others = 0;
+  for (const OcclusionTreeVariant variant : kVariants) {
+    Culler culler = smallCity().culler(HierarchyKind::kBvh, {.variant = variant});
+    for (const View& view : smallCity().frames(smallCity().scene.paths[0], 30, 10)) {
+      std::vector<Box> boxes;
+      for (int i = 0; i < 100; ++i) {
+        const Vec3d middle =
+            view.eye + view.forward * in(1, 60) + view.right * in(-20, 20) + view.up * in(-3, 9);
+        const Vec3d half(in(0.1, 2), in(0.1, 2), in(0.1, 2));
+        boxes.push_back({Vec3f(middle - half), Vec3f(middle + half)});
+      }
+      culler.cull(view, boxes);
+      OcclusionTree tree({.variant = variant});
+      tree.build(view, smallCity().occluders, culler.occludersUsed());
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        std::uint8_t mask = kAllFrustumPlanes;
+        const bool outside = classify(frustumOf(view), boxes[i], mask) == FrustumSide::kOutside;
+        const Visibility expected = outside ? Visibility::kHidden : tree.classify(boxes[i]);
+        EXPECT_EQ(culler.dynamicStates()[i], expected) << "variant " << static_cast<int>(variant);
+        hidden += !outside && expected == Visibility::kHidden ? 1 : 0;
+        others += expected != Visibility::kHidden ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(hidden, 100u);
+  EXPECT_GT(others, 100u);
+}
+
+TEST(Culler, FrustumCullingClassifiesDynamicBoxesByTheFrustumAlone) {
+  const WallScene scene;
+  const Hierarchy hierarchy = buildHierarchy(scene.bounds, {});
+  Culler culler(hierarchy, scene.bounds, scene.occluders, {.method = CullMethod::kFrustum});
+  const Box boxes[] = {{{-1, -1, -12}, {1, 1, -10}}, {{-1, -1, 3}, {1, 1, 4}}};
+  culler.cull(scene.view, boxes);
+  EXPECT_EQ(culler.dynamicStates()[0], Visibility::kVisible);
+  EXPECT_EQ(culler.dynamicStates()[1], Visibility::kHidden);
+}
+
+template <typename T>
+std::size_t bytesOf(const std::vector<T>& v) {
+  return v.size() * sizeof(T);
+}
+
+TEST(Culler, NeedsAtMost64BytesAnObjectAnd32ANode) {
+  for (const HierarchyKind kind : kKinds) {
+    const Hierarchy& hierarchy = city().hierarchy(kind);
+    const std::size_t objects = city().bounds.size();
+    EXPECT_LE(bytesOf(hierarchy.nodes), 32 * hierarchy.nodes.size());
+    // Boxes, the leaves' lists, the answer and the candidates, two sets of bits with their summaries, and a
+    // bit a node.
+    const std::size_t words = (objects + 63) / 64, bits = 2 * 8 * (words + (words + 63) / 64);
+    const std::size_t answers = 2 * objects * sizeof(ObjectId);
+    const std::size_t all = bytesOf(city().bounds) + bytesOf(hierarchy.objects) + answers + bits +
+                            (hierarchy.nodes.size() + 7) / 8;
+    EXPECT_LE(all, 64 * objects) << static_cast<double>(all) / static_cast<double>(objects)
+                                 << " bytes an object";
+  }
+}
+
+TEST(ObjectBits, ReturnTheirMembersOnceAndInOrder) {
+  for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 5000u, 70000u}) {
+    std::mt19937_64 random(count);
+    culling_detail::ObjectBits bits(count);
+    for (int round = 0; round < 3; ++round) {
+      Objects expected;
+      for (std::size_t i = 0; i < count; i += 1 + random() % 40) {
+        expected.push_back(ObjectId(i));
+      }
+      Objects shuffled = expected;
+      std::shuffle(shuffled.begin(), shuffled.end(), random);
+      for (const ObjectId object : shuffled) {
+        EXPECT_TRUE(bits.insert(object));
+        EXPECT_FALSE(bits.insert(object));
+      }
+      Objects drained;
+      if (round == 1) {
+        bits.clear();
+        expected.clear();
+      }
+      bits.drainInto(drained);
+      EXPECT_EQ(drained, expected) << "of " << count;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,85 @@
+#pragma once
+
+// Demo scenes prepared for culling, and views of them.
+
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/procedural.h"
+#include "sightline/culling/culler.h"
+
+namespace sightline::demo_frames {
+
+constexpr OcclusionTreeVariant kVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
+                                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
+constexpr HierarchyKind kKinds[] = {HierarchyKind::kKdTree, HierarchyKind::kBvh};
+
+struct DemoScene {
+  Scene scene;
+  std::vector<Box> bounds;
+  Hierarchy kd_tree, bvh;
+  OccluderSet occluders;
+
+  explicit DemoScene(Scene source) : scene(std::move(source)) {
+    std::vector<std::uint32_t> triangles;
+    for (const Object& object : scene.objects) {
+      bounds.push_back(object.bounds);
+      triangles.push_back(object.triangleCount());
+    }
+    kd_tree = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kKdTree});
+    bvh = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kBvh});
+    occluders = findOccluders(scene.view());
+  }
+  const Hierarchy& hierarchy(HierarchyKind kind) const {
+    return kind == HierarchyKind::kKdTree ? kd_tree : bvh;
+  }
+  Culler culler(HierarchyKind kind, const CullerSettings& settings) const {
+    return Culler(hierarchy(kind), bounds, occluders, settings);
+  }
+  // Frames first, first + 1, ... of a walk, fewer at its end.
+  std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {
+    std::vector<View> views;
+    for (std::size_t f = first; f < path.frames.size() && f < first + count; ++f) {
+      views.push_back(path.view(f, scene.origin));
+    }
+    return views;
+  }
+};
+
+inline const DemoScene& smallCity() {
+  static const DemoScene city(makeCity({.copies = 2}));
+  return city;
+}
+inline const DemoScene& smallBuilding() {
+  static const DemoScene building(makeBuilding({.floors = 2, .plants = 10}));
+  return building;
+}
+
+// Anywhere in and around the scene, in any direction, of both kinds of projection: each a jump.
+inline std::vector<View> jumps(const DemoScene& demo, std::uint64_t seed, std::size_t count) {
+  std::mt19937_64 random(seed);
+  const auto in = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  const Box all = sceneBounds(demo.scene.view());
+  std::vector<View> views;
+  for (std::size_t i = 0; i < count; ++i) {
+    View view;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double margin = 0.1 * (static_cast<double>(all.max[axis]) - all.min[axis]);
+      view.eye[axis] = in(all.min[axis] - margin, all.max[axis] + margin);
+    }
+    setOrientation(view, {in(-1, 1), in(-1, 1), in(-0.4, 0.4)}, {0, 0, 1});
+    view.orthographic = i % 2 == 1;
+    view.ortho_height = in(5.0, 60.0);
+    view.tan_half_fovy = in(0.2, 1.2);
+    view.near = in(0.05, 1.0);
+    view.far = in(50.0, 1000.0);
+    views.push_back(view);
+  }
+  return views;
+}
+
+}  // namespace sightline::demo_frames

@@ -1,0 +1,112 @@
+#pragma once
+
+// Every setting of the culler on the same views, judged by rays.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "oracle/exact_visibility.h"
+#include "tests/culling/demo_frames.h"
+
+namespace sightline::demo_frames {
+
+struct NamedCuller {
+  std::string name;
+  Culler culler;
+};
+
+// All variants, hierarchies, both settings of temporal coherence, few and many occluders.
+inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
+  std::vector<NamedCuller> cullers;
+  for (const OcclusionTreeVariant variant : kVariants) {
+    for (const HierarchyKind kind : kKinds) {
+      for (const bool coherence : {true, false}) {
+        for (const std::uint32_t count : {8u, 64u}) {
+          const CullerSettings settings{
+              .variant = variant, .occluder_count = count, .temporal_coherence = coherence};
+          cullers.push_back({"variant " + std::to_string(static_cast<int>(variant)) +
+                                 (kind == HierarchyKind::kKdTree ? " kd-tree" : " bvh") +
+                                 (coherence ? " coherent " : " incoherent ") + std::to_string(count) +
+                                 " occluders",
+                             demo.culler(kind, settings)});
+        }
+      }
+    }
+  }
+  return cullers;
+}
+
+inline bool kept(const Culler& culler, ObjectId object) {
+  return std::binary_search(culler.visible().begin(), culler.visible().end(), object);
+}
+
+// Objects that any of the cullers left out.
+inline std::vector<ObjectId> culledByAny(const DemoScene& demo, const std::vector<NamedCuller>& cullers) {
+  std::vector<std::size_t> keepers(demo.bounds.size(), 0);
+  for (const NamedCuller& c : cullers) {
+    for (const ObjectId object : c.culler.visible()) {
+      ++keepers[object.value];
+    }
+  }
+  std::vector<ObjectId> culled;
+  for (std::size_t i = 0; i < keepers.size(); ++i) {
+    if (keepers[i] < cullers.size()) {
+      culled.push_back(ObjectId(i));
+    }
+  }
+  return culled;
+}
+
+struct Counts {
+  std::size_t seen = 0, hidden = 0;  // objects seen by rays; culled ones within the frustum
+};
+
+class Judge {
+ public:
+  explicit Judge(const DemoScene& demo)
+      : demo_(demo),
+        exact_(demo.scene.view()),
+        cullers_(allCullers(demo)),
+        frustum_(demo.culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum})) {}
+
+  void judge(const View& view, const std::string& where) {
+    for (NamedCuller& c : cullers_) {
+      c.culler.cull(view);
+      const std::span<const ObjectId> visible = c.culler.visible();
+      EXPECT_TRUE(std::adjacent_find(visible.begin(), visible.end(), std::greater_equal<>()) == visible.end())
+          << "not ascending, or twice the same: " << c.name << ", " << where;
+    }
+    frustum_.cull(view);
+    std::vector<ObjectId> culled = culledByAny(demo_, cullers_);
+    std::vector<Witness> witnesses = exact_.visibleThroughPixels(view, 128, 72);
+    counts.seen += witnesses.size();
+    std::erase_if(culled, [&](ObjectId object) { return !kept(frustum_, object); });
+    counts.hidden += culled.size();
+    const std::vector<Witness> aimed = exact_.visibleByAimedRays(view, culled, 6);
+    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
+    for (const Witness& witness : witnesses) {
+      std::string blind;
+      for (const NamedCuller& c : cullers_) {
+        blind += kept(c.culler, witness.object) ? "" : c.name + "; ";
+      }
+      blind += kept(frustum_, witness.object) ? "" : "frustum";
+      if (!blind.empty() && exact_.confirm(view, witness)) {
+        ADD_FAILURE() << "object " << witness.object.value << " is seen at " << witness.point.x << " "
+                      << witness.point.y << " " << witness.point.z << ", " << where << ", but culled by "
+                      << blind;
+      }
+    }
+  }
+
+  Counts counts;
+
+ private:
+  const DemoScene& demo_;
+  ExactVisibility exact_;
+  std::vector<NamedCuller> cullers_;
+  Culler frustum_;
+};
+
+}  // namespace sightline::demo_frames
