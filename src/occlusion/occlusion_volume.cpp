@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace sightline::occlusion_detail {
+namespace {
+
+// Seams that may appear to lie farther from their line than this (radians; orthographic: metres) are not
+// closed.
+constexpr double kWidestSeam = 0.01;
+
+}  // namespace
 
 Plane Eye::shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const {
   const Vec3d normal = orthographic ? cross(q - p, forward) : cross(p, q);
@@ -66,7 +73,7 @@ bool VolumeBuilder::examine(const OccluderSet& set, OccluderId id, Candidate& ca
   if (!(grazing > kGrazingSine) || !std::isfinite(candidate.reach)) {
     return false;
   }
-  candidate.slack = occluder.slack;
+  candidate.slack = candidate.deviation = occluder.slack;
   if (!(deepest > clipDepth(candidate))) {
     return false;
   }
@@ -116,8 +123,9 @@ std::uint64_t VolumeBuilder::openElements(const OccluderSet& set, const Candidat
   return open;
 }
 
-PlaneRef VolumeBuilder::addPlane(const Plane& plane) {
+PlaneRef VolumeBuilder::addPlane(const Plane& plane, double tolerance) {
   planes.push_back(plane);
+  tolerances.push_back(tolerance);
   return PlaneRef::make(planes.size() - 1, false);
 }
 
@@ -163,6 +171,19 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const Candidate& candidate, 
   return true;
 }
 
+// How far the mesh's seam may appear to lie from its line: both occluders may be off by their slack. See
+// VolumeBuilder::tolerances.
+double VolumeBuilder::seamTolerance(const Candidate& candidate, const Outline& outline,
+                                    double line_sine) const {
+  const double rounding = 0x1p-49 / line_sine;
+  if (eye.orthographic) {
+    return 4.0 * candidate.deviation + rounding * candidate.reach;
+  }
+  const Vec3d along = outline.to - outline.from;
+  const double t = std::clamp(-dot(outline.from, along) / dot(along, along), 0.0, 1.0);
+  return 4.0 * candidate.deviation / length(outline.from + along * t) + rounding;
+}
+
 // The corner at the start of an edge, with the edge's shadow plane: on the seam's line where other volumes
 // adjoin, drawn in where nothing does.
 void VolumeBuilder::addEdge(const OccluderSet& set, const Candidate& candidate, const Outline& outline) {
@@ -174,7 +195,8 @@ void VolumeBuilder::addEdge(const OccluderSet& set, const Candidate& candidate, 
     const Plane on_line = eye.shadowPlane(p, q, sine);
     const bool flipped = dot(q - p, outline.to - outline.from) < 0.0;
     const Plane oriented = flipped ? on_line.flipped() : on_line;
-    if (sine > kShortestEdgeSine && oriented.evaluate(candidate.centroid) < 0.0) {
+    const double tolerance = seamTolerance(candidate, outline, sine);
+    if (sine > kShortestEdgeSine && tolerance < kWidestSeam && oriented.evaluate(candidate.centroid) < 0.0) {
       const std::uint64_t all = edge.chain >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge.chain) - 1;
       const std::uint64_t open = openElements(set, candidate, edge, oriented);
       if ((open & all) != all) {
@@ -183,6 +205,7 @@ void VolumeBuilder::addEdge(const OccluderSet& set, const Candidate& candidate, 
           plane = addPlane(on_line).plane();
           used_lines_.push_back(edge.line);
         }
+        tolerances[plane] = std::max(tolerances[plane], tolerance);
         const PlaneRef ref = PlaneRef::make(plane, flipped);
         if (open == 0) {
           corners.push_back({outline.from, ref, false});
@@ -263,6 +286,7 @@ void VolumeBuilder::build(const View& view, const OccluderSet& set, std::span<co
   volumes.clear();
   corners.clear();
   planes.clear();
+  tolerances.clear();
   cuts.clear();
   candidates_.clear();
   used_lines_.clear();

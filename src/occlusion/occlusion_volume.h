@@ -70,12 +70,16 @@ class VolumeBuilder {
   void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen);
 
   // Adds a shadow plane.
-  PlaneRef addPlane(const Plane& plane);
+  PlaneRef addPlane(const Plane& plane, double tolerance = 0.0);
 
   Eye eye;
   std::vector<OcclusionVolume> volumes;
   std::vector<Corner> corners;
   std::vector<Plane> planes;  // unit normals
+  // Of each plane: how far from it both sides must be looked at. Planes of seams: where the mesh's own
+  // vertices may lie, with a gap between two occluders beyond. Relative to the distance from the eye
+  // (perspective), or in metres (orthographic); 0 for all others, which are drawn in instead.
+  std::vector<double> tolerances;
   std::vector<EdgeCut> cuts;  // volume after volume
   double reach = 0.0;         // largest of the volumes
 
@@ -84,7 +88,8 @@ class VolumeBuilder {
     OccluderId id;
     bool flipped = false;  // seen from the back of a double-sided polygon
     Plane support;
-    double inset = 0.0;  // metres by which open edges are drawn in
+    double inset = 0.0;      // metres by which open edges are drawn in
+    double deviation = 0.0;  // metres, Occluder::slack
     double slack = 0.0;
     double reach = 0.0;
     Vec3d centroid;
@@ -98,6 +103,7 @@ class VolumeBuilder {
   void addVolume(const OccluderSet& set, const Candidate& candidate);
   std::uint64_t openElements(const OccluderSet& set, const Candidate& candidate, const OccluderEdge& edge,
                              const Plane& plane) const;
+  double seamTolerance(const Candidate& candidate, const Outline& outline, double line_sine) const;
   void addEdge(const OccluderSet& set, const Candidate& candidate, const Outline& outline);
   bool addRuns(const OccluderSet& set, const Candidate& candidate, const Outline& outline, std::uint64_t open,
                PlaneRef on_line);

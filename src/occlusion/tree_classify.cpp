@@ -64,31 +64,44 @@ State SplittingQuery::leaf(const ShadowLeaf& leaf, Piece piece) const {
   return State::kHidden;
 }
 
+// The part of the piece in front of a plane, or behind it; empty when there is none.
+Piece SplittingQuery::part(Piece piece, const Plane& plane, bool front) {
+  const SplitResult split = stack_.split(piece, plane, PlaneRef{}, tree_->on_plane_scale);
+  switch (split.side) {
+    case Side::kFront:
+      return front ? piece : Piece{};
+    case Side::kBack:
+      return front ? Piece{} : piece;
+    case Side::kBoth:
+      return front ? split.front : split.back;
+    default:
+      return piece;
+  }
+}
+
 State SplittingQuery::node(const TreeNode& node, Piece piece) {
   const std::size_t stack_size = stack_.corners.size();
-  const SplitResult split = stack_.split(piece, node.plane, PlaneRef{}, tree_->on_plane_scale);
-  State state = State::kPartial;
-  if (!stack_.overflow) {
-    switch (split.side) {
-      case Side::kFront:
-        state = polygon(node.front, piece);
-        break;
-      case Side::kBack:
-        state = polygon(node.back, piece);
-        break;
-      case Side::kBoth:
-      case Side::kOnPlane: {
-        const bool both = split.side == Side::kBoth;
-        state = polygon(node.front, both ? split.front : piece);
-        if (state != State::kPartial) {
-          state = combine(state, polygon(node.back, both ? split.back : piece));
-        }
-        break;
-      }
+  Plane front_plane = node.plane, back_plane = node.plane;
+  if (node.tolerance != 0.0) {
+    // The same for all planes that a box meets, so that what is overlap at one is not taken for more at
+    // another.
+    const double width = seamWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
+    front_plane.offset += node.tolerance > 0.0 ? width : -width;
+    back_plane.offset -= width;
+  }
+  State state = State::kNothing;
+  const Piece front = part(piece, front_plane, true);
+  if (front.count != 0) {
+    state = polygon(node.front, front);
+  }
+  if (state != State::kPartial) {
+    const Piece back = part(piece, back_plane, false);
+    if (back.count != 0) {
+      state = combine(state, polygon(node.back, back));
     }
   }
   stack_.corners.resize(stack_size);
-  return state;
+  return stack_.overflow ? State::kPartial : state;
 }
 
 State SplittingQuery::polygon(Link link, Piece piece) {
@@ -105,6 +118,7 @@ State SplittingQuery::classify(const TreeData& tree, const EyeBox& box, bool exa
   tree_ = &tree;
   box_ = &box;
   exact_ = exact;
+  reach_ = magnitude(max(abs(box.min), abs(box.max)));
   stack_.overflow = false;
   State state = State::kNothing;
   for (int axis = 0; axis < 3 && state != State::kPartial; ++axis) {
@@ -128,7 +142,8 @@ class PlaneQuery {
   PlaneQuery(const TreeData& tree, const EyeBox& box, bool exact)
       : tree_(tree), box_(box), exact_(exact), center_(box.center()), half_(box.half()) {
     // What a corner may be off its true side of a plane by, at most.
-    tolerance_ = kOnPlane * (magnitude(center_) + magnitude(half_) + tree.on_plane_scale);
+    reach_ = magnitude(center_) + magnitude(half_);
+    tolerance_ = kOnPlane * (reach_ + tree.on_plane_scale);
   }
 
   State ask(Link link) const {
@@ -144,10 +159,16 @@ class PlaneQuery {
     const TreeNode& node = tree_.nodes[link.nodeIndex()];
     const double distance = node.plane.evaluate(center_);
     const double radius = dot(abs(node.plane.normal), half_);
-    if (distance - radius >= -tolerance_ && distance + radius > tolerance_) {
+    double front_from = -tolerance_, back_to = tolerance_;
+    if (node.tolerance != 0.0) {
+      const double width = seamWidth(node.tolerance, reach_, tree_.volumes.eye, tree_.on_plane_scale);
+      front_from = width;
+      back_to = node.tolerance > 0.0 ? -width : width;
+    }
+    if (distance - radius >= front_from && distance + radius > tolerance_) {
       return ask(node.front);
     }
-    if (distance + radius <= tolerance_ && distance - radius < -tolerance_) {
+    if (distance + radius <= back_to && distance - radius < -tolerance_) {
       return ask(node.back);
     }
     const State front = ask(node.front);
@@ -167,7 +188,7 @@ class PlaneQuery {
   const EyeBox& box_;
   bool exact_;
   Vec3d center_, half_;
-  double tolerance_;
+  double reach_, tolerance_;
 };
 
 // Separating-axis test of the box against a set of points. Grows the box by the margin.

@@ -30,11 +30,13 @@ class SplittingQuery {
  private:
   State polygon(Link link, Piece piece);
   State node(const TreeNode& node, Piece piece);
+  Piece part(Piece piece, const Plane& plane, bool front);
   State leaf(const ShadowLeaf& leaf, Piece piece) const;
 
   const TreeData* tree_ = nullptr;
   const EyeBox* box_ = nullptr;
   bool exact_ = true;
+  double reach_ = 0.0;  // largest magnitude in the box
   PolygonStack stack_;
 };
 

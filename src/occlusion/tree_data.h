@@ -25,6 +25,8 @@ struct Link {
 // A shadow plane; the occluder that made it lies behind. Positions are relative to the eye.
 struct TreeNode {
   Plane plane;  // unit normal
+  double tolerance =
+      0.0;  // VolumeBuilder::tolerances; negative: as much in front still counts as behind only
   Link front, back;
 };
 
@@ -33,6 +35,12 @@ struct ShadowLeaf {
   std::uint32_t volume = 0;
   std::uint32_t first_corner = 0, corner_count = 0;  // of the fragment, into TreeData::corners
 };
+
+// The tolerance of a node for points of this magnitude, metres.
+inline double seamWidth(double tolerance, double point_magnitude, const Eye& eye, double on_plane_scale) {
+  return std::abs(tolerance) * (eye.orthographic ? 1.0 : point_magnitude) +
+         16.0 * kOnPlane * (point_magnitude + on_plane_scale);
+}
 
 struct TreeData {
   Link root = Link::out();

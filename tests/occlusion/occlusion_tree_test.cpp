@@ -137,6 +137,26 @@ TEST(OcclusionTree, TouchingSilhouettesOfUnconnectedWallsCountAsAGap) {
   }
 }
 
+TEST(OcclusionTree, TheTipOfAGapThatEndsOnASeamIsSeen) {
+  // The lower polygon's upper edge runs through v, which lies a little below the line of the seam. Above it
+  // two polygons adjoin, one on each side of v, with a gap in the form of a V between them: its tip is at v.
+  for (const double dent : {0.0, 1e-7, 5e-7}) {
+    const Vec3f u(-1, 0, -1), v(0, static_cast<float>(-dent), -1), w(1, 0, -1);
+    const std::vector<OraclePolygon> polygons{{{{-1, -1, -1}, {1, -1, -1}, w, v, u}, true},
+                                              {{u, v, {-0.5f, 0.5f, -1}, {-1, 0.5f, -1}}, true},
+                                              {{v, w, {1, 0.5f, -1}, {0.5f, 0.5f, -1}}, true}};
+    for (const double part : {0.02, 0.2, 0.6}) {
+      const auto top = static_cast<float>(dent > 0.0 ? -part * dent : 1e-7);
+      const Box box{{-0.1f, -0.5f, -3}, {0.1f, top, -2}};
+      ASSERT_EQ(test::castAtAll(polygons, kLookingBack, {0, dent > 0.0 ? 1.5 * top : 0.5 * top, -2}),
+                test::RayAnswer::kClear);
+      for (const auto variant : kVariants) {
+        EXPECT_NE(ask(variant, kLookingBack, polygons, box), Visibility::kHidden) << dent << " " << part;
+      }
+    }
+  }
+}
+
 TEST(OcclusionTree, SingleSidedWallsHideNothingFromBehind) {
   OraclePolygon turned = wall(-4, 4, -4, 4, -5);
   std::reverse(turned.vertices.begin(), turned.vertices.end());
