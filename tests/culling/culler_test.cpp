@@ -51,8 +51,8 @@ class ShareMeter {
 };
 
 const DemoScene& city() {
-  static const DemoScene scene(makeCity({.copies = 10}));
-  return scene;
+  static const DemoScene kCity(makeCity({.copies = 10}));
+  return kCity;
 }
 
 constexpr std::size_t kPlaces[] = {5, 60, 120, 190, 260, 330};
@@ -126,7 +126,8 @@ bool hasAPointInside(const Frustum& frustum, const Box& box) {
   constexpr int kSteps = 12;
   const Vec3d extent = Vec3d(box.max) - Vec3d(box.min);
   for (int i = 0; i < kSteps * kSteps * kSteps; ++i) {
-    const Vec3d t(i % kSteps, i / kSteps % kSteps, i / (kSteps * kSteps));
+    const int column = i % kSteps, row = i / kSteps % kSteps, layer = i / (kSteps * kSteps);
+    const Vec3d t(column, row, layer);
     const Vec3d point =
         Vec3d(box.min) + Vec3d(t.x * extent.x, t.y * extent.y, t.z * extent.z) / (kSteps - 1.0);
     if (std::all_of(frustum.planes.begin(), frustum.planes.end(),

@@ -49,12 +49,12 @@ struct DemoScene {
 };
 
 inline const DemoScene& smallCity() {
-  static const DemoScene city(makeCity({.copies = 2}));
-  return city;
+  static const DemoScene kCity(makeCity({.copies = 2}));
+  return kCity;
 }
 inline const DemoScene& smallBuilding() {
-  static const DemoScene building(makeBuilding({.floors = 2, .plants = 10}));
-  return building;
+  static const DemoScene kBuilding(makeBuilding({.floors = 2, .plants = 10}));
+  return kBuilding;
 }
 
 // Anywhere in and around the scene, in any direction, of both kinds of projection: each a jump.
