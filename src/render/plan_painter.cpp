@@ -31,14 +31,22 @@ View viewFromAbove(const Box& bounds, const PlanView& plan) {
   return view;
 }
 
+bool largerThanPicture(const Object& object, const PlanView& plan) {
+  const auto extent = object.bounds.extent();
+  const double side = 2.0 * plan.radius;
+  return object.bounds.wellFormed() && extent.x * extent.z > side * side;
+}
+
 // A colour an object: its state's, a little lighter or darker from object to object.
 std::vector<std::array<std::uint8_t, 4>> stateColors(const PlanView& plan, std::uint32_t object_count) {
   std::vector<std::array<std::uint8_t, 4>> colors(object_count);
   for (std::uint32_t i = 0; i < object_count; ++i) {
     const ObjectState state = i < plan.states.size() ? plan.states[i] : ObjectState::kOutside;
-    const PlanColor& color = state == ObjectState::kKept     ? kPlanKept
-                             : state == ObjectState::kHidden ? kPlanHidden
-                                                             : kPlanOutside;
+    const PlanColor& full = state == ObjectState::kKept     ? kPlanKept
+                            : state == ObjectState::kHidden ? kPlanHidden
+                                                            : kPlanOutside;
+    const bool pale = i < plan.objects.size() && largerThanPicture(plan.objects[i], plan);
+    const PlanColor color = pale ? paleOf(full) : full;
     const std::uint32_t percent = 92 + ((i * 2654435761u) >> 24) % 9;
     for (std::size_t c = 0; c < 3; ++c) {
       colors[i][c] = static_cast<std::uint8_t>(color[c] * percent / 100);

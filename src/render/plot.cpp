@@ -27,8 +27,8 @@ constexpr std::array<Pen, 8> kPens{{{"#808790", "none"},
                                     {"#9a7d0a", "5 5"},
                                     {"#7c5cd6", "14 4"},
                                     {"#d64545", "1 5"}}};
-const Pen& penOf(std::size_t series) {
-  return kPens[series % kPens.size()];
+const Pen& penOf(const Plot& plot, std::size_t series) {
+  return kPens[plot.series[series].pen.value_or(series) % kPens.size()];
 }
 
 constexpr double kLeft = 92.0, kRight = 18.0, kTop = 34.0, kBottom = 46.0, kLegendRow = 20.0;
@@ -88,7 +88,7 @@ Canvas canvasOf(const Plot& plot, double legend_bottom) {
   for (const PlotSeries& series : plot.series) {
     longest = std::max(longest, series.values.size());
   }
-  const double last_x = plot.first_x + static_cast<double>(longest - 1);
+  const double last_x = plot.first_x + plot.step_x * static_cast<double>(longest - 1);
   Canvas canvas{.left = kLeft,
                 .top = legend_bottom,
                 .right = plot.width - kRight,
@@ -134,7 +134,7 @@ void addCurve(std::string& out, const Plot& plot, const Canvas& c, std::size_t i
     if (!c.shows(series.values[i])) {
       continue;
     }
-    const double x = c.px(plot.first_x + static_cast<double>(i));
+    const double x = c.px(plot.first_x + plot.step_x * static_cast<double>(i));
     const double y = c.py(series.values[i]);
     const bool starts = i == 0 || !c.shows(series.values[i - 1]);
     const bool alone = starts && (i + 1 == series.values.size() || !c.shows(series.values[i + 1]));
@@ -144,7 +144,7 @@ void addCurve(std::string& out, const Plot& plot, const Canvas& c, std::size_t i
     out += fmt::format(
         "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-dasharray=\"{}\" "
         "stroke-linejoin=\"round\" stroke-linecap=\"round\"><title>{}</title></path>\n",
-        path, penOf(index).color, penOf(index).dashes, escapeMarkup(series.name));
+        path, penOf(plot, index).color, penOf(plot, index).dashes, escapeMarkup(series.name));
   }
 }
 
@@ -154,8 +154,8 @@ void addLegend(std::string& out, const Plot& plot, const std::vector<LegendEntry
         "<path d=\"M{:.1f} {:.1f}h26\" fill=\"none\" stroke=\"{}\" stroke-width=\"2.4\" "
         "stroke-dasharray=\"{}\"/>"
         "<text x=\"{:.1f}\" y=\"{:.1f}\" dy=\"0.35em\">{}</text>\n",
-        entries[i].x, entries[i].y, penOf(i).color, penOf(i).dashes, entries[i].x + 32.0, entries[i].y,
-        escapeMarkup(plot.series[i].name));
+        entries[i].x, entries[i].y, penOf(plot, i).color, penOf(plot, i).dashes, entries[i].x + 32.0,
+        entries[i].y, escapeMarkup(plot.series[i].name));
   }
 }
 

@@ -43,15 +43,19 @@ void addTiles(std::string& out, const Report& report) {
   const std::string name = best->method + (best->options.empty() ? "" : " (" + best->options + ")");
   out += tile(factor(best->speed_up), "the frame rate of view-frustum culling, with " + name);
   out += tile(percent(best->triangles_share), "of its triangles drawn, by the same method");
-  std::uint64_t differing = 0;
+  std::uint64_t differing = 0, tied = 0;
   bool compared = false;
   for (const ReportRow& row : report.rows) {
     differing += row.frames_differing.value_or(0);
+    tied += row.frames_tied;
     compared = compared || row.frames_differing.has_value();
   }
   if (compared) {
     out += differing == 0
-               ? tile("<span class=\"good\">equal</span>", "pictures with and without culling, every pixel")
+               ? tile("<span class=\"good\">equal</span>",
+                      tied == 0 ? "pictures with and without culling, every pixel"
+                                : "pictures with and without culling, but for ties of the depth buffer in " +
+                                      groupedNumber(static_cast<double>(tied), 0))
                : tile("<span class=\"bad\">" + groupedNumber(static_cast<double>(differing), 0) + "</span>",
                       "pictures differ from those without culling");
   }
@@ -69,12 +73,15 @@ void addFacts(std::string& out, const Report& report) {
   out += "</dl>\n";
 }
 
-std::string picturesCell(const std::optional<std::uint64_t>& differing) {
-  if (!differing) {
+std::string picturesCell(const ReportRow& row) {
+  if (!row.frames_differing) {
     return "<td>–</td>";
   }
-  return *differing == 0 ? "<td class=\"good\">equal</td>"
-                         : fmt::format("<td class=\"bad\">{} differ</td>", *differing);
+  const std::string ties =
+      row.frames_tied == 0 ? "" : fmt::format("<small>ties in {}</small>", row.frames_tied);
+  return *row.frames_differing == 0
+             ? "<td class=\"good\">equal" + ties + "</td>"
+             : fmt::format("<td class=\"bad\">{} differ{}</td>", *row.frames_differing, ties);
 }
 
 void addRow(std::string& out, const ReportRow& row) {
@@ -88,7 +95,7 @@ void addRow(std::string& out, const ReportRow& row) {
                                   groupedNumber(row.nodes_tested, 1), groupedNumber(row.occluders, 1)}) {
     out += "<td>" + cell + "</td>";
   }
-  out += picturesCell(row.frames_differing) + "</tr>\n";
+  out += picturesCell(row) + "</tr>\n";
 }
 
 void addTable(std::string& out, const Report& report) {
@@ -129,6 +136,7 @@ void addPlanLegend(std::string& out) {
   item(kPlanKept, "kept: drawn");
   item(kPlanHidden, "hidden: culled by occluders");
   item(kPlanOutside, "outside the view frustum");
+  item(paleOf(kPlanKept), "pale: larger than the picture");
   item(kPlanOccluder, "occluders used");
   item(kPlanCamera, "camera and its frustum");
   out += "</ul>\n";

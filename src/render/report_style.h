@@ -30,7 +30,8 @@ th, td { padding: 7px 10px; text-align: right; border-bottom: 1px solid var(--li
 th { color: var(--dim); font-weight: 600; vertical-align: bottom; border-bottom-color: var(--dim); }
 th:first-child, td:first-child { text-align: left; padding-left: 0; white-space: normal; min-width: 150px; }
 td small { display: block; color: var(--dim); font-size: 12.5px; }
-td.share { background: linear-gradient(to left, var(--bar) var(--share), transparent 0) no-repeat center / 100% 70%; }
+td.share { min-width: 140px;
+  background: linear-gradient(to right, var(--bar) var(--share), transparent 0) no-repeat left center / calc(100% - 68px) 60%; }
 .good { color: var(--good); } .bad { color: var(--bad); font-weight: 600; }
 .hint { color: var(--dim); font-size: 14px; margin-top: 10px; }
 .plot { margin: 0 0 20px; } .plot svg { display: block; width: 100%; height: auto; }

@@ -53,6 +53,15 @@ TEST_F(PlanViewTest, WithoutACutTheStoreyAboveIsOnTop) {
   EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), kPlanHidden));
 }
 
+TEST_F(PlanViewTest, WhatIsLargerThanThePictureIsPale) {
+  Renderer renderer = rendererOf(maker.scene);
+  plan.cut_height = std::numeric_limits<double>::infinity();
+  plan.objects = maker.scene.objects;
+  EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), kPlanHidden)) << "18 metres of 20";
+  plan.radius = 8.0;
+  EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), paleOf(kPlanHidden)));
+}
+
 TEST_F(PlanViewTest, OccludersAreOutlinedOnTop) {
   OccluderSet set;
   set.vertices = {{-3, 0, -3}, {3, 0, -3}, {3, 2, -3}, {-3, 2, -3}};

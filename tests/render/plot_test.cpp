@@ -36,6 +36,25 @@ TEST(Plot, IsOneBalancedSvgElementWithTitleLabelsAndLegend) {
   }
 }
 
+TEST(Plot, ASeriesKeepsItsPenWhenOthersAreLeftOut) {
+  Plot plot = twoCurves();
+  const std::string both = toSvg(plot);
+  plot.series = {plot.series[1]};
+  plot.series[0].pen = 1;
+  const std::string alone = toSvg(plot);
+  const auto last_color = [](const std::string& svg) { return svg.substr(svg.rfind("stroke=\"#") + 8, 7); };
+  EXPECT_EQ(last_color(alone), last_color(both));
+}
+
+TEST(Plot, TheHorizontalAxisShowsTheNumbersGiven) {
+  Plot plot = twoCurves();
+  plot.first_x = 100.0;
+  plot.step_x = 50.0;
+  const std::string svg = toSvg(plot);
+  EXPECT_NE(svg.find(">100<"), std::string::npos);
+  EXPECT_NE(svg.find(">200<"), std::string::npos);
+}
+
 TEST(Plot, AGapBreaksTheCurve) {
   const std::string svg = toSvg(twoCurves());
   const std::size_t curve = svg.rfind("<path d=\"");

@@ -93,6 +93,15 @@ TEST(Report, PicturesThatDifferAreSaidLoudly) {
   EXPECT_NE(html.find("pictures differ from those without culling"), std::string::npos);
 }
 
+TEST(Report, TiesAreCountedButNoFailure) {
+  Report report = smallReport();
+  report.rows[1].frames_tied = 3;
+  const std::string html = toHtml(report);
+  EXPECT_EQ(firstMarkupError(html), "");
+  EXPECT_NE(html.find("ties in 3"), std::string::npos);
+  EXPECT_EQ(html.find("differ from"), std::string::npos);
+}
+
 TEST(Report, IsWrittenBesideItsPictures) {
   const fs::path folder = fs::path(::testing::TempDir()) / "sightline_report_test";
   fs::remove_all(folder);

@@ -21,6 +21,7 @@ TEST(Tool, WalkWritesAReportThatStandsAlone) {
   ASSERT_EQ(walk["runs"].size(), 3u);
   EXPECT_EQ(walk["runs"][0]["method"], "frustum");
   EXPECT_EQ(walk["differing_frames"], 0);
+  EXPECT_TRUE(walk["tie_frames"].is_number_unsigned());
   for (const json& run : walk["runs"]) {
     ASSERT_EQ(run["frames"].size(), 8u);
     for (std::size_t i = 0; i < 8; ++i) {
@@ -30,6 +31,9 @@ TEST(Tool, WalkWritesAReportThatStandsAlone) {
   }
   const std::string html = contents(report + "/index.html");
   EXPECT_NE(html.find("<svg"), std::string::npos);
+  EXPECT_NE(html.find(">350<"), std::string::npos) << "frame numbers under the curves";
+  EXPECT_NE(html.find("--frames 0:400:50"), std::string::npos) << "the whole command line";
+  EXPECT_NE(html.find("--variant FSE,FME"), std::string::npos);
   std::size_t pictures = 0;
   for (const auto& entry : std::filesystem::directory_iterator(report)) {
     const std::string name = entry.path().filename().string();

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "sightline/io/file.h"
 #include "sightline/render/compare.h"
@@ -30,6 +32,7 @@ struct WalkOptions {
   MethodOptions method;
   std::string folder;
   std::uint32_t width = 0, height = 0;  // 0: the path's
+  std::string command_line;
 };
 
 // View-frustum culling first, whatever was asked for: what the others are compared with.
@@ -85,7 +88,7 @@ class Walker {
       const CullStats& stats = run.run.culler.stats();
       const std::span<const ObjectId> visible = run.run.culler.visible();
       run.frames.push_back({frame, visible.size(), data_.trianglesOf(visible), run.run.cull_us, 0.0,
-                            stats.nodes_tested, stats.occluders, false});
+                            stats.nodes_tested, stats.occluders});
     }
     if (i == 0) {
       renderer_.time(view, record_.baseline().run.culler.visible());  // warms up
@@ -99,25 +102,34 @@ class Walker {
     }
     keep(frame, view);
     if (i % kEverythingEvery == 0) {
-      if (const Status drawn = compare(renderer_.draw(view, everything_), 0, frame); !drawn) {
+      if (const Status drawn = compare(renderer_.draw(view, everything_), everything_, 0, view); !drawn) {
         return drawn;
       }
     }
     for (std::size_t r = 1; r < images_.size(); ++r) {
-      if (const Status drawn = compare(images_[0], r, frame); !drawn) {
+      if (const Status drawn = compare(images_[0], record_.baseline().run.culler.visible(), r, view);
+          !drawn) {
         return drawn;
       }
     }
     return Success{};
   }
 
-  // The picture of run r with what it must be.
-  Status compare(const Image& reference, std::size_t r, std::uint32_t frame) {
+  // The picture of run r with what it must be, the picture of these objects.
+  Status compare(const Image& reference, std::span<const ObjectId> reference_objects, std::size_t r,
+                 const View& view) {
     const ImageDifference difference = compareImages(reference, images_[r]);
     if (difference.equal()) {
       return Success{};
     }
     WalkRun& run = record_.runs[r];
+    const std::uint32_t frame = run.frames.back().frame;
+    const std::span<const ObjectId> kept = run.run.culler.visible();
+    const std::vector<ObjectId> culled = culledOf(reference_objects, kept);
+    if (!culled.empty() && renderer_.countShowing(view, kept, culled) == 0) {
+      run.frames.back().tie = true;
+      return Success{};
+    }
     const bool first = run.differingFrames().empty();
     run.frames.back().differs = true;
     if (!first) {
@@ -129,6 +141,20 @@ class Walker {
                     optionsText(run.setting), difference.pixels, difference.x, difference.y);
     record_.changed.push_back({frame, file, caption});
     return writePng(sideBySide(images_[r], differenceImage(reference, images_[r])), folder_ + "/" + file);
+  }
+
+  std::vector<ObjectId> culledOf(std::span<const ObjectId> objects, std::span<const ObjectId> kept) const {
+    std::vector<bool> is_kept(scene_.objects.size(), false);
+    for (const ObjectId object : kept) {
+      is_kept[object.value] = true;
+    }
+    std::vector<ObjectId> culled;
+    for (const ObjectId object : objects) {
+      if (!is_kept[object.value]) {
+        culled.push_back(object);
+      }
+    }
+    return culled;
   }
 
   void keep(std::uint32_t frame, const View& view) {
@@ -167,6 +193,36 @@ Status writePlots(const Report& report, const std::string& folder) {
   return Success{};
 }
 
+std::string shellWord(const std::string& word) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) ||
+           std::string_view("-_./:,=+@%").find(c) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) {
+    return word;
+  }
+  std::string quoted = "'";
+  for (const char c : word) {
+    quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  }
+  return quoted + "'";
+}
+
+// What was asked for, as it can be typed again: the scene, then the options that were given.
+std::string commandLine(const CLI::App& command) {
+  std::string words, options;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& value : option->results()) {
+      if (option->nonpositional()) {
+        options += " " + option->get_name() + " " + shellWord(value);
+      } else {
+        words += " " + shellWord(value);
+      }
+    }
+  }
+  return "sightline " + command.get_name() + words + options;
+}
+
 Status makeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -185,7 +241,7 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
     return pictures.error();
   }
   Report report = walkReport(input, record, std::move(*pictures));
-  report.command = fmt::format("sightline walk {} -o {}", options.common.scene, options.folder);
+  report.command = options.command_line;
   const std::string json = walkJson(input, record);
   for (const Status& status :
        {writePlots(report, options.folder), writeOutput(options.folder + "/walk.json", json),
@@ -263,12 +319,16 @@ void addWalk(CLI::App& app, Command& chosen) {
       ->check(CLI::Range(1u, 16384u));
   command->footer(
       "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
-      "picture.\n"
+      "picture, "
+      "ties of the depth buffer apart.\n"
       "Examples:\n"
       "  sightline walk demo:city -o report\n"
       "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"
       "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
-  command->callback([options, &chosen] { chosen = [options] { return runWalk(*options); }; });
+  command->callback([options, command, &chosen] {
+    options->command_line = commandLine(*command);
+    chosen = [options] { return runWalk(*options); };
+  });
 }
 
 }  // namespace sightline::tool

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/sightline/walk_report.h"
+
 namespace sightline::tool {
 namespace {
 
@@ -65,6 +67,7 @@ Image drawPlanOf(const KeptFrame& frame, const Scene& scene, const OccluderSet& 
     plan.cut_height = frame.view.eye.y + kCutAboveEye;
   }
   plan.states = states;
+  plan.objects = scene.objects;
   plan.occluders = &occluders;
   plan.occluders_used = frame.occluders;
   return renderer.drawPlan(plan);
@@ -108,15 +111,15 @@ Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const 
   };
   for (const KeptFrame& frame : record.pictures) {
     const std::string drawn =
-        fmt::format("{} of {} triangles in the frustum drawn ({:.1f} %)", frame.triangles_visible,
-                    frame.triangles_in_frustum, 100.0 * shareKept(frame));
+        fmt::format("{} of {} triangles in the frustum drawn ({:.1f} %)", grouped(frame.triangles_visible),
+                    grouped(frame.triangles_in_frustum), 100.0 * shareKept(frame));
     const Status picture = add(renderer.draw(frame.view, frame.visible),
                                fmt::format("frame_{:04}.png", frame.frame), drawn, frame.frame, false);
-    const Status plan =
-        add(drawPlanOf(frame, scene, occluders, renderer), fmt::format("plan_{:04}.png", frame.frame),
-            fmt::format("{} objects kept, {} hidden in the frustum, {} occluders", frame.visible.size(),
-                        frame.in_frustum.size() - frame.visible.size(), frame.occluders.size()),
-            frame.frame, true);
+    const Status plan = add(
+        drawPlanOf(frame, scene, occluders, renderer), fmt::format("plan_{:04}.png", frame.frame),
+        fmt::format("{} objects kept, {} hidden in the frustum, {} occluders", grouped(frame.visible.size()),
+                    grouped(frame.in_frustum.size() - frame.visible.size()), grouped(frame.occluders.size())),
+        frame.frame, true);
     if (!picture || !plan) {
       return picture ? plan.error() : picture.error();
     }

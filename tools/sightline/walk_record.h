@@ -18,7 +18,8 @@ struct FrameRecord {
   std::uint64_t triangles = 0;  // drawn
   double cull_us = 0.0, draw_us = 0.0;
   std::uint32_t nodes_tested = 0, occluders = 0;
-  bool differs = false;  // the picture, from the one of view-frustum culling
+  bool differs = false;  // the picture, from the one of view-frustum culling: something culled would show
+  bool tie = false;      // the picture differs, but by ties of the depth buffer only
 
   double frameUs() const { return cull_us + draw_us; }
 };
@@ -36,14 +37,18 @@ struct WalkRun {
     }
     return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
   }
-  std::vector<std::uint32_t> differingFrames() const {
-    std::vector<std::uint32_t> differing;
+  std::vector<std::uint32_t> differingFrames() const { return framesWhere(&FrameRecord::differs); }
+  std::vector<std::uint32_t> tieFrames() const { return framesWhere(&FrameRecord::tie); }
+
+ private:
+  std::vector<std::uint32_t> framesWhere(bool FrameRecord::*is) const {
+    std::vector<std::uint32_t> numbers;
     for (const FrameRecord& frame : frames) {
-      if (frame.differs) {
-        differing.push_back(frame.frame);
+      if (frame.*is) {
+        numbers.push_back(frame.frame);
       }
     }
-    return differing;
+    return numbers;
   }
 };
 
@@ -75,6 +80,13 @@ struct WalkRecord {
     std::size_t sum = 0;
     for (const WalkRun& run : runs) {
       sum += run.differingFrames().size();
+    }
+    return sum;
+  }
+  std::size_t ties() const {
+    std::size_t sum = 0;
+    for (const WalkRun& run : runs) {
+      sum += run.tieFrames().size();
     }
     return sum;
   }

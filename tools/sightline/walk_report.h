@@ -2,6 +2,7 @@
 
 // A walk's numbers as JSON, as a table for the terminal, and as the report.
 
+#include <cstdint>
 #include <string>
 
 #include "sightline/render/report.h"
@@ -15,6 +16,9 @@ struct WalkInput {
   const Walk& walk;
   const OccluderSet& occluders;
 };
+
+// 1104233 -> "1,104,233"
+std::string grouped(std::uint64_t number);
 
 std::string walkJson(const WalkInput& input, const WalkRecord& record);
 void printWalk(const WalkRecord& record);

@@ -28,6 +28,7 @@ struct ReportRow {
   double nodes_tested = 0.0;  // asked of the occlusion structure
   double occluders = 0.0;
   std::optional<std::uint64_t> frames_differing;  // from the picture without culling; empty: not compared
+  std::uint64_t frames_tied = 0;                  // besides those: differ by ties of the depth buffer only
 };
 
 // Pictures of one frame stand side by side.
