@@ -77,7 +77,9 @@ class HierarchicalWalk {
     Visibility state = Visibility::kVisible;
     bool skipped = false;
     if (!entry.surely_visible && node.cost >= options.min_node_cost) {
-      skipped = options.temporal_coherence && !node.leaf() && partial_[entry.node];
+      // A node with a box that says nothing may still hold objects that are hidden.
+      const bool unbounded = !node.leaf() && !node.bounds.wellFormed();
+      skipped = unbounded || (options.temporal_coherence && !node.leaf() && partial_[entry.node]);
       if (skipped) {
         ++stats.nodes_skipped;
         state = Visibility::kPartial;

@@ -8,8 +8,14 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
                  Fragment& front, Fragment& back) {
   const PlaneRef cut_plane = PlaneRef::make(volumes.planes.size(), false);
   const std::size_t stack_size = stack.corners.size();
-  const SplitResult parts =
-      stack.split(fragment.piece, plane, cut_plane, volumes.volumes[fragment.volume].reach);
+  // A copy is split: where nothing comes of it, the fragment must not keep edges named after a plane that is
+  // not made.
+  const Piece copy{static_cast<std::uint32_t>(stack_size), fragment.piece.count};
+  for (std::uint32_t i = 0; i < copy.count; ++i) {
+    const Corner corner = stack.corners[fragment.piece.first + i];
+    stack.corners.push_back(corner);
+  }
+  const SplitResult parts = stack.split(copy, plane, cut_plane, volumes.volumes[fragment.volume].reach);
   const auto cutEdges = [&](Piece piece) {
     const auto corners = stack.of(piece);
     return std::count_if(corners.begin(), corners.end(),

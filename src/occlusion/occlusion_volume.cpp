@@ -12,7 +12,7 @@ constexpr double kWidestSeam = 0.01;
 }  // namespace
 
 Plane Eye::shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const {
-  const Vec3d normal = orthographic ? cross(q - p, forward) : cross(p, q);
+  const Vec3d normal = orthographic ? cross(forward, q - p) : cross(p, q);
   const double l = length(normal);
   const double size = orthographic ? length(q - p) : length(p) * length(q);
   sine = size > 0.0 ? l / size : 0.0;

@@ -1,0 +1,52 @@
+// Parallel projections: they cull as well, and nothing that is seen.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/culling/ray_judge.h"
+
+namespace sightline {
+namespace {
+
+using namespace demo_frames;
+
+TEST(OrthographicCulling, HidesABoxBehindAWall) {
+  const std::vector<Box> bounds{
+      {{-4, -4, -5}, {4, 4, -5}}, {{-1, -1, -12}, {1, 1, -10}}, {{3, 3, -12}, {5, 5, -10}}};
+  const std::vector<Vec3f> corners{{-4, -4, -5}, {4, -4, -5}, {4, 4, -5}, {-4, 4, -5}};
+  const OccluderPolygon wall[] = {{corners, false, ObjectId(0u)}};
+  const OccluderSet occluders = makeOccluders(wall);
+  View view;
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.orthographic = true;
+  view.ortho_height = 20.0;
+  const std::vector<ObjectId> expected{ObjectId(0u), ObjectId(2u)};
+  for (const HierarchyKind kind : kKinds) {
+    const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
+    for (const OcclusionTreeVariant variant : kVariants) {
+      Culler culler(hierarchy, bounds, occluders, {.variant = variant});
+      culler.cull(view);
+      EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected)
+          << "variant " << static_cast<int>(variant);
+    }
+  }
+}
+
+TEST(OrthographicCulling, CullsNothingSeenOnTheWalks) {
+  for (const DemoScene* demo : {&smallCity(), &smallBuilding()}) {
+    Judge judge(*demo);
+    for (const std::size_t first : {10, 200}) {
+      std::size_t frame = first;
+      for (View view : demo->frames(demo->scene.paths[0], first, 6)) {
+        view.orthographic = true;
+        view.ortho_height = 12.0;
+        judge.judge(view, "orthographic frame " + std::to_string(frame++));
+      }
+    }
+    EXPECT_GT(judge.counts.hidden, 10u);
+  }
+}
+
+}  // namespace
+}  // namespace sightline
