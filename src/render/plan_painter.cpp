@@ -31,10 +31,9 @@ View viewFromAbove(const Box& bounds, const PlanView& plan) {
   return view;
 }
 
-bool largerThanPicture(const Object& object, const PlanView& plan) {
+bool fillsHalfThePicture(const Object& object, const PlanView& plan) {
   const auto extent = object.bounds.extent();
-  const double side = 2.0 * plan.radius;
-  return object.bounds.wellFormed() && extent.x * extent.z > side * side;
+  return object.bounds.wellFormed() && extent.x * extent.z > 2.0 * plan.radius * plan.radius;
 }
 
 // A colour an object: its state's, a little lighter or darker from object to object.
@@ -45,7 +44,7 @@ std::vector<std::array<std::uint8_t, 4>> stateColors(const PlanView& plan, std::
     const PlanColor& full = state == ObjectState::kKept     ? kPlanKept
                             : state == ObjectState::kHidden ? kPlanHidden
                                                             : kPlanOutside;
-    const bool pale = i < plan.objects.size() && largerThanPicture(plan.objects[i], plan);
+    const bool pale = i < plan.objects.size() && fillsHalfThePicture(plan.objects[i], plan);
     const PlanColor color = pale ? paleOf(full) : full;
     const std::uint32_t percent = 92 + ((i * 2654435761u) >> 24) % 9;
     for (std::size_t c = 0; c < 3; ++c) {

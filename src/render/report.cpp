@@ -136,7 +136,7 @@ void addPlanLegend(std::string& out) {
   item(kPlanKept, "kept: drawn");
   item(kPlanHidden, "hidden: culled by occluders");
   item(kPlanOutside, "outside the view frustum");
-  item(paleOf(kPlanKept), "pale: larger than the picture");
+  item(paleOf(kPlanKept), "pale: larger than half the picture");
   item(kPlanOccluder, "occluders used");
   item(kPlanCamera, "camera and its frustum");
   out += "</ul>\n";

@@ -53,12 +53,13 @@ TEST_F(PlanViewTest, WithoutACutTheStoreyAboveIsOnTop) {
   EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), kPlanHidden));
 }
 
-TEST_F(PlanViewTest, WhatIsLargerThanThePictureIsPale) {
+TEST_F(PlanViewTest, WhatIsLargerThanHalfThePictureIsPale) {
   Renderer renderer = rendererOf(maker.scene);
   plan.cut_height = std::numeric_limits<double>::infinity();
   plan.objects = maker.scene.objects;
-  EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), kPlanHidden)) << "18 metres of 20";
-  plan.radius = 8.0;
+  plan.radius = 16.0;
+  EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), kPlanHidden)) << "18 metres of 32, squared";
+  plan.radius = 10.0;
   EXPECT_TRUE(hasHueOf(at(renderer.drawPlan(plan), -5, 0), paleOf(kPlanHidden)));
 }
 

@@ -31,7 +31,7 @@ inline constexpr PlanColor kPlanOccluder{20, 60, 190};
 inline constexpr PlanColor kPlanCamera{24, 24, 24};
 inline constexpr PlanColor kPlanBackground{250, 250, 248};
 
-// Of what is larger than the picture, such as the ground, so that what stands on it is seen.
+// Of what is larger than half the picture, such as the ground, so that what stands on it is seen.
 constexpr PlanColor paleOf(const PlanColor& color) {
   PlanColor pale{};
   for (std::size_t c = 0; c < pale.size(); ++c) {
@@ -47,7 +47,7 @@ struct PlanView {
   std::uint32_t size_px = 900;  // width and height, 1 to 16384
   double cut_height = std::numeric_limits<double>::infinity();  // what is above (y) is cut away; inf: nothing
   std::span<const ObjectState> states;                          // one an object of the scene
-  std::span<const Object> objects;  // the scene's: what is larger than the picture is pale; empty: nothing
+  std::span<const Object> objects;  // the scene's: what is larger than half the picture is pale; or empty
   const OccluderSet* occluders = nullptr;
   std::span<const OccluderId> occluders_used;  // of *occluders; drawn on top of everything
 };
