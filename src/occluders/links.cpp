@@ -51,6 +51,7 @@ class Linker {
     uniteSeams();
     chooseLines();
     writeCovers();
+    shareSlack();
   }
 
  private:
@@ -227,6 +228,22 @@ class Linker {
       const std::size_t count = end - i;
       edge.cover_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
       i = end;
+    }
+  }
+
+  // The outline of a neighbour beyond a seam is as uncertain as its own slack says, and as near as the seam's
+  // end.
+  void shareSlack() {
+    std::vector<float> slack;
+    for (const Occluder& occluder : set_.occluders) {
+      slack.push_back(occluder.slack);
+    }
+    for (Occluder& occluder : set_.occluders) {
+      for (const OccluderEdge& edge : set_.edgesOf(occluder)) {
+        for (const EdgeCover& cover : set_.coversOf(edge)) {
+          occluder.slack = std::max(occluder.slack, slack[cover.occluder.value]);
+        }
+      }
     }
   }
 

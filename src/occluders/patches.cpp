@@ -112,6 +112,7 @@ class PatchGrower {
     patch.plane = {normal, -dot(normal, at(positions_, triangles_[seed][0]))};
     std::vector<std::uint32_t> queue{seed};
     taken_[seed] = true;
+    flipped_[seed] = false;
     while (!queue.empty()) {
       const std::uint32_t t = queue.back();
       queue.pop_back();

@@ -83,7 +83,12 @@ std::uint32_t FrontToBack::chooseSplitter(std::size_t begin, std::size_t end) co
   return best;
 }
 
-void FrontToBack::visit(std::size_t begin, std::size_t end) {
+void FrontToBack::visit(std::size_t begin, std::size_t end, std::uint32_t depth) {
+  if (depth > kMaxDepth) {
+    ordered_.insert(ordered_.end(), work_.begin() + static_cast<std::ptrdiff_t>(begin),
+                    work_.begin() + static_cast<std::ptrdiff_t>(end));
+    return;
+  }
   if (begin == end) {
     return;
   }
@@ -117,10 +122,10 @@ void FrontToBack::visit(std::size_t begin, std::size_t end) {
       work_[begin + back_count++] = fragment;
     }
   }
-  visit(front_begin, work_.size());
+  visit(front_begin, work_.size(), depth + 1);
   work_.resize(front_begin);
   ordered_.push_back(splitter);
-  visit(begin, begin + back_count);
+  visit(begin, begin + back_count, depth + 1);
 }
 
 void FrontToBack::order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments) {
@@ -132,7 +137,7 @@ void FrontToBack::order(VolumeBuilder& volumes, PolygonStack& stack, std::vector
   for (std::uint32_t i = 0; i < all_.size(); ++i) {
     work_.push_back(i);
   }
-  visit(0, work_.size());
+  visit(0, work_.size(), 0);
   fragments.clear();
   for (const std::uint32_t i : ordered_) {
     fragments.push_back(all_[i]);

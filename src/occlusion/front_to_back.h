@@ -31,7 +31,9 @@ class FrontToBack {
   void order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments);
 
  private:
-  void visit(std::size_t begin, std::size_t end);
+  static constexpr std::uint32_t kMaxDepth = 400;  // deeper, the order stays as it is
+
+  void visit(std::size_t begin, std::size_t end, std::uint32_t depth);
   std::uint32_t chooseSplitter(std::size_t begin, std::size_t end) const;
   Side sideOf(std::uint32_t fragment, std::uint32_t splitter) const;
 

@@ -5,6 +5,8 @@
 
 #include "sightline/occlusion/occlusion_tree.h"
 
+#include <algorithm>
+
 #include "occlusion/tree_build.h"
 #include "occlusion/tree_classify.h"
 
@@ -18,6 +20,7 @@ struct OcclusionTree::Impl {
   TreeData tree;
   SplittingQuery splitting;
   OcclusionTreeStats stats;
+  bool usable_view = false;  // finite, and there was one
   std::vector<OccluderId> used;
 
   bool modified() const {
@@ -38,7 +41,11 @@ OcclusionTree& OcclusionTree::operator=(OcclusionTree&&) noexcept = default;
 void OcclusionTree::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
   Impl& impl = *impl_;
   const TreeLimits limits{impl.modified(), impl.settings.clip_to_frustum, impl.settings.max_nodes};
-  std::span<const OccluderId> part = chosen;
+  impl.usable_view =
+      isFinite(view.eye) && isFinite(view.forward) && isFinite(view.right) && isFinite(view.up);
+  // Each occluder needs three nodes at least.
+  std::span<const OccluderId> part =
+      chosen.first(std::min<std::size_t>(chosen.size(), impl.settings.max_nodes / 3));
   while (!impl.builder.build(view, set, part, limits, impl.tree) && !part.empty()) {
     part = part.first(part.size() / 2);
   }
@@ -56,10 +63,10 @@ void OcclusionTree::build(const View& view, const OccluderSet& set, std::span<co
 }
 
 Visibility OcclusionTree::classify(const Box& box) {
-  if (!box.wellFormed()) {
+  Impl& impl = *impl_;
+  if (!box.wellFormed() || !impl.usable_view) {
     return Visibility::kVisible;
   }
-  Impl& impl = *impl_;
   const Eye& eye = impl.tree.volumes.eye;
   const EyeBox relative{Vec3d(box.min) - eye.position, Vec3d(box.max) - eye.position};
   if (!eye.orthographic && relative.min.x <= 0.0 && relative.min.y <= 0.0 && relative.min.z <= 0.0 &&

@@ -52,7 +52,8 @@ bool VolumeBuilder::examine(const OccluderSet& set, OccluderId id, Candidate& ca
   const Occluder& occluder = set[id];
   candidate.id = id;
   candidate.centroid = Vec3d(occluder.centroid) - eye.position;
-  const double height = occluder.plane.evaluate(eye.position);
+  const double height =
+      -dot(occluder.plane.normal, Vec3d(set.vertices[occluder.first_vertex]) - eye.position);
   const double facing = eye.orthographic ? -dot(occluder.plane.normal, eye.forward) : height;
   candidate.flipped = facing < 0.0;
   if (candidate.flipped && !occluder.double_sided) {
@@ -160,11 +161,11 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const Candidate& candidate, 
   }
   double sine = 0.0;
   const PlaneRef inset = addPlane(insetPlane(candidate, outline, sine));
-  corners.push_back({outline.from, isOpen(0) ? inset : on_line, false});
+  corners.push_back({outline.from, isOpen(0) ? inset : on_line, false, isOpen(0)});
   for (std::uint32_t k = 1; k < n; ++k) {
     if (isOpen(k) != isOpen(k - 1)) {
       const Vec3d change = joint(k) + along * (isOpen(k) ? -candidate.inset : candidate.inset);
-      corners.push_back({change, isOpen(k) ? inset : on_line, false});
+      corners.push_back({change, isOpen(k) ? inset : on_line, false, isOpen(k)});
       cuts.push_back({static_cast<std::uint32_t>(volumes.size()), {along, -dot(along, change)}});
     }
   }
@@ -217,7 +218,7 @@ void VolumeBuilder::addEdge(const OccluderSet& set, const Candidate& candidate, 
       }
     }
   }
-  corners.push_back({outline.from, addPlane(insetPlane(candidate, outline, sine)), false});
+  corners.push_back({outline.from, addPlane(insetPlane(candidate, outline, sine)), false, true});
 }
 
 // Cuts away what lies before the depth. The new edge gets a plane of its own. Returns the new number of
@@ -240,7 +241,7 @@ std::uint32_t VolumeBuilder::clipNear(std::uint32_t first, std::uint32_t count, 
         cut = clipped_.size();
         has_cut = true;
       }
-      clipped_.push_back({crossing, a.edge, false});
+      clipped_.push_back({crossing, a.edge, false, a.open});
     }
   }
   if (has_cut) {
@@ -252,6 +253,7 @@ std::uint32_t VolumeBuilder::clipNear(std::uint32_t first, std::uint32_t count, 
       return 0;
     }
     clipped_[cut].edge = addPlane(plane);
+    clipped_[cut].open = false;
   }
   corners.resize(first);
   corners.insert(corners.end(), clipped_.begin(), clipped_.end());

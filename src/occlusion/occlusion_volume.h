@@ -32,6 +32,7 @@ struct Corner {
   Vec3d position;
   PlaneRef edge;          // the polygon lies behind it
   bool embedded = false;  // the edge lies in a plane of the tree above: no node needed
+  bool open = false;      // its plane is drawn in: only that very plane can stand for it
 };
 
 // A place where an edge changes from adjoining another occluder to being open. The polygon is cut there, so

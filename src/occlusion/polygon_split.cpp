@@ -12,7 +12,7 @@ bool named(PlaneRef ref) {
 }  // namespace
 
 bool PolygonStack::agrees(const Corner& corner, const Plane& plane, PlaneRef ref, PlaneRef oriented) const {
-  if (!named(corner.edge)) {
+  if (corner.open || !named(corner.edge)) {
     return false;
   }
   const Vec3d& stored = (*planes)[corner.edge.plane()].normal;
@@ -90,13 +90,14 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
         embed(corner, plane, ref, oriented);
         corners.push_back(corner);
       } else if (si == 0) {
-        corners.push_back({corner.position, oriented, named(ref)});
+        corners.push_back({corner.position, oriented, named(ref), false});
       }
       if (si * sj < 0) {
         corner.position = cut(i, j);
         if (si > 0) {
           corner.edge = oriented;
           corner.embedded = named(ref);
+          corner.open = false;
         }
         corners.push_back(corner);
       }

@@ -13,7 +13,7 @@ void TreeBuilder::addFrustum(const View& view) {
   for (std::size_t i = 0; i < 4; ++i) {
     Plane outwards = frustum.planes[i].flipped();
     outwards.offset = view.orthographic ? outwards.evaluate(view.eye) : 0.0;
-    TreeNode node{outwards, 0.0, Link::outside(), Link::node(i + 1)};
+    TreeNode node{outwards, 0.0, false, Link::outside(), Link::node(i + 1)};
     if (i == 3) {
       node.back = Link::out();
     }
@@ -43,9 +43,8 @@ Link TreeBuilder::occlusionVolume(Piece piece, std::uint32_t volume, std::uint32
     }
     const Plane& stored = tree.volumes.planes[corner.edge.plane()];
     const Plane plane = corner.edge.flipped() ? stored.flipped() : stored;
-    // What reaches a seam's plane a second time on its path has been looked at on both sides.
-    const double tolerance = tree.volumes.tolerances[corner.edge.plane()];
-    tree.nodes.push_back({plane, corner.embedded ? -tolerance : tolerance, Link::out(), link});
+    tree.nodes.push_back(
+        {plane, tree.volumes.tolerances[corner.edge.plane()], corner.embedded, Link::out(), link});
     tree.node_plane.push_back(corner.edge);
     link = Link::node(tree.nodes.size() - 1);
     ++added;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace sightline::occlusion_detail {
 namespace {
@@ -79,16 +80,25 @@ Piece SplittingQuery::part(Piece piece, const Plane& plane, bool front) {
   }
 }
 
+// The parts that the two sides get overlap by the width.
 State SplittingQuery::node(const TreeNode& node, Piece piece) {
+  const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (const Corner& corner : stack_.of(piece)) {
+    const double distance = node.plane.evaluate(corner.position);
+    lowest = std::min(lowest, distance);
+    highest = std::max(highest, distance);
+  }
+  if (highest <= (node.repeated ? width : -width)) {
+    return polygon(node.back, piece);
+  }
+  if (lowest >= width) {
+    return polygon(node.front, piece);
+  }
   const std::size_t stack_size = stack_.corners.size();
   Plane front_plane = node.plane, back_plane = node.plane;
-  if (node.tolerance != 0.0) {
-    // The same for all planes that a box meets, so that what is overlap at one is not taken for more at
-    // another.
-    const double width = seamWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
-    front_plane.offset += node.tolerance > 0.0 ? width : -width;
-    back_plane.offset -= width;
-  }
+  front_plane.offset += node.repeated ? -width : width;
+  back_plane.offset -= width;
   State state = State::kNothing;
   const Piece front = part(piece, front_plane, true);
   if (front.count != 0) {
@@ -141,9 +151,7 @@ class PlaneQuery {
  public:
   PlaneQuery(const TreeData& tree, const EyeBox& box, bool exact)
       : tree_(tree), box_(box), exact_(exact), center_(box.center()), half_(box.half()) {
-    // What a corner may be off its true side of a plane by, at most.
     reach_ = magnitude(center_) + magnitude(half_);
-    tolerance_ = kOnPlane * (reach_ + tree.on_plane_scale);
   }
 
   State ask(Link link) const {
@@ -159,16 +167,11 @@ class PlaneQuery {
     const TreeNode& node = tree_.nodes[link.nodeIndex()];
     const double distance = node.plane.evaluate(center_);
     const double radius = dot(abs(node.plane.normal), half_);
-    double front_from = -tolerance_, back_to = tolerance_;
-    if (node.tolerance != 0.0) {
-      const double width = seamWidth(node.tolerance, reach_, tree_.volumes.eye, tree_.on_plane_scale);
-      front_from = width;
-      back_to = node.tolerance > 0.0 ? -width : width;
-    }
-    if (distance - radius >= front_from && distance + radius > tolerance_) {
+    const double width = overlapWidth(node.tolerance, reach_, tree_.volumes.eye, tree_.on_plane_scale);
+    if (distance - radius >= width) {
       return ask(node.front);
     }
-    if (distance + radius <= back_to && distance - radius < -tolerance_) {
+    if (distance + radius <= (node.repeated ? width : -width)) {
       return ask(node.back);
     }
     const State front = ask(node.front);
@@ -188,7 +191,7 @@ class PlaneQuery {
   const EyeBox& box_;
   bool exact_;
   Vec3d center_, half_;
-  double reach_, tolerance_;
+  double reach_;
 };
 
 // Separating-axis test of the box against a set of points. Grows the box by the margin.

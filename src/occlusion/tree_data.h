@@ -24,9 +24,9 @@ struct Link {
 
 // A shadow plane; the occluder that made it lies behind. Positions are relative to the eye.
 struct TreeNode {
-  Plane plane;  // unit normal
-  double tolerance =
-      0.0;  // VolumeBuilder::tolerances; negative: as much in front still counts as behind only
+  Plane plane;             // unit normal
+  double tolerance = 0.0;  // VolumeBuilder::tolerances
+  bool repeated = false;   // stands on the path already: all that comes here counts as behind
   Link front, back;
 };
 
@@ -36,10 +36,11 @@ struct ShadowLeaf {
   std::uint32_t first_corner = 0, corner_count = 0;  // of the fragment, into TreeData::corners
 };
 
-// The tolerance of a node for points of this magnitude, metres.
-inline double seamWidth(double tolerance, double point_magnitude, const Eye& eye, double on_plane_scale) {
-  return std::abs(tolerance) * (eye.orthographic ? 1.0 : point_magnitude) +
-         16.0 * kOnPlane * (point_magnitude + on_plane_scale);
+// How near to a node's plane, in metres, a box that reaches so far from the eye is looked at on both sides:
+// the width of a seam, and in any case more than the rounding of all that is computed for the box. The same
+// for all planes that a box meets, so that what is overlap at one is not taken for more at another.
+inline double overlapWidth(double tolerance, double reach, const Eye& eye, double on_plane_scale) {
+  return tolerance * (eye.orthographic ? 1.0 : reach) + 16.0 * kOnPlane * (reach + on_plane_scale);
 }
 
 struct TreeData {
