@@ -28,7 +28,8 @@ void PolygonStack::embed(Corner& corner, const Plane& plane, PlaneRef ref, Plane
   }
 }
 
-SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, double scale) {
+SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, double scale,
+                                double relative) {
   const std::uint32_t n = piece.count;
   const std::uint32_t first = piece.first;
   SplitResult result;
@@ -53,7 +54,7 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
   for (std::uint32_t i = 0; i < n; ++i) {
     const Vec3d& p = corners[first + i].position;
     distance_[i] = plane.evaluate(p);
-    const double on_plane = kOnPlane * (magnitude(p) + scale);
+    const double on_plane = kOnPlane * (relative * magnitude(p) + scale);
     sign_[i] = static_cast<std::int8_t>(distance_[i] > on_plane ? 1 : distance_[i] < -on_plane ? -1 : 0);
     any_front |= distance_[i] > 4.0 * on_plane;
     any_back |= distance_[i] < -4.0 * on_plane;

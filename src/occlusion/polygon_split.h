@@ -38,14 +38,14 @@ class PolygonStack {
   }
 
   // plane: unit normal. ref: its name, or an invalid one (bits all set) for planes that edges can't lie in. A
-  // corner counts as on the plane within kOnPlane * (magnitude + scale); a polygon reaches a side when a
-  // corner is four times as far there.
+  // corner counts as on the plane within kOnPlane * (relative * magnitude + scale); a polygon reaches a side
+  // when a corner is four times as far there.
   //
   // New edges, and old ones that lie in the plane and bound the polygon towards the same side, get ref as
   // their plane and are marked as embedded. A polygon with an edge that was made by this very plane is on the
   // side where that edge has it, whatever rounding says of its corners. Polygons that would get too many
   // corners are not split but reported as kOnPlane with overflow set.
-  SplitResult split(Piece piece, const Plane& plane, PlaneRef ref, double scale);
+  SplitResult split(Piece piece, const Plane& plane, PlaneRef ref, double scale, double relative = 1.0);
 
   // What PlaneRefs of corners stand for; needed when split() is given named planes.
   const std::vector<Plane>* planes = nullptr;

@@ -9,16 +9,18 @@ namespace sightline::occlusion_detail {
 
 // The frustum's side planes at the top: what is outside them says nothing, and no shadow is stored there.
 void TreeBuilder::addFrustum(const View& view) {
+  constexpr double kTouching =
+      0x1p-60;  // what touches the frustum is in it: a width of no more than rounding
   const Frustum frustum = frustumOf(view);
   for (std::size_t i = 0; i < 4; ++i) {
     Plane outwards = frustum.planes[i].flipped();
     outwards.offset = view.orthographic ? outwards.evaluate(view.eye) : 0.0;
-    TreeNode node{outwards, 0.0, false, Link::outside(), Link::node(i + 1)};
+    TreeNode node{outwards, kTouching, false, Link::outside(), Link::node(i + 1)};
     if (i == 3) {
       node.back = Link::out();
     }
     tree_->nodes.push_back(node);
-    tree_->node_plane.push_back(tree_->volumes.addPlane(outwards));
+    tree_->node_plane.push_back(tree_->volumes.addPlane(outwards, kTouching));
   }
   tree_->root = Link::node(0);
 }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace sightline::occlusion_detail {
 namespace {
@@ -66,52 +65,45 @@ State SplittingQuery::leaf(const ShadowLeaf& leaf, Piece piece) const {
 }
 
 // The part of the piece in front of a plane, or behind it; empty when there is none.
-Piece SplittingQuery::part(Piece piece, const Plane& plane, bool front) {
-  const SplitResult split = stack_.split(piece, plane, PlaneRef{}, tree_->on_plane_scale);
+Piece SplittingQuery::part(const SplitResult& split, Piece whole, bool front) {
   switch (split.side) {
     case Side::kFront:
-      return front ? piece : Piece{};
+      return front ? whole : Piece{};
     case Side::kBack:
-      return front ? Piece{} : piece;
+      return front ? Piece{} : whole;
     case Side::kBoth:
       return front ? split.front : split.back;
     default:
-      return piece;
+      return whole;
   }
 }
 
-// The parts that the two sides get overlap by the width.
+State SplittingQuery::bothSides(const TreeNode& node, Piece front, Piece back) {
+  State state = front.count != 0 ? polygon(node.front, front) : State::kNothing;
+  if (state != State::kPartial && back.count != 0) {
+    state = combine(state, polygon(node.back, back));
+  }
+  return stack_.overflow ? State::kPartial : state;
+}
+
 State SplittingQuery::node(const TreeNode& node, Piece piece) {
-  const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
-  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-  for (const Corner& corner : stack_.of(piece)) {
-    const double distance = node.plane.evaluate(corner.position);
-    lowest = std::min(lowest, distance);
-    highest = std::max(highest, distance);
-  }
-  if (highest <= (node.repeated ? width : -width)) {
-    return polygon(node.back, piece);
-  }
-  if (lowest >= width) {
-    return polygon(node.front, piece);
-  }
   const std::size_t stack_size = stack_.corners.size();
-  Plane front_plane = node.plane, back_plane = node.plane;
-  front_plane.offset += node.repeated ? -width : width;
-  back_plane.offset -= width;
+  const auto splitBy = [&](double shift) {
+    const Plane plane{node.plane.normal, node.plane.offset + shift};
+    return stack_.split(piece, plane, PlaneRef{}, on_plane_scale_, 0.0);
+  };
   State state = State::kNothing;
-  const Piece front = part(piece, front_plane, true);
-  if (front.count != 0) {
-    state = polygon(node.front, front);
-  }
-  if (state != State::kPartial) {
-    const Piece back = part(piece, back_plane, false);
-    if (back.count != 0) {
-      state = combine(state, polygon(node.back, back));
-    }
+  if (node.tolerance == 0.0) {
+    const SplitResult split = splitBy(0.0);
+    state = bothSides(node, part(split, piece, true), part(split, piece, false));
+  } else {
+    // The parts that the two sides of a seam get overlap.
+    const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
+    const Piece front = part(splitBy(node.repeated ? -width : width), piece, true);
+    state = bothSides(node, front, part(splitBy(-width), piece, false));
   }
   stack_.corners.resize(stack_size);
-  return stack_.overflow ? State::kPartial : state;
+  return state;
 }
 
 State SplittingQuery::polygon(Link link, Piece piece) {
@@ -129,6 +121,8 @@ State SplittingQuery::classify(const TreeData& tree, const EyeBox& box, bool exa
   box_ = &box;
   exact_ = exact;
   reach_ = magnitude(max(abs(box.min), abs(box.max)));
+  // Of the box's nearest point: a corner far away may be the end of an edge that passes close by.
+  on_plane_scale_ = magnitude(max(max(box.min, -box.max), Vec3d())) + tree.on_plane_scale;
   stack_.overflow = false;
   State state = State::kNothing;
   for (int axis = 0; axis < 3 && state != State::kPartial; ++axis) {

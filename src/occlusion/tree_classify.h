@@ -30,13 +30,15 @@ class SplittingQuery {
  private:
   State polygon(Link link, Piece piece);
   State node(const TreeNode& node, Piece piece);
-  Piece part(Piece piece, const Plane& plane, bool front);
+  static Piece part(const SplitResult& split, Piece whole, bool front);
+  State bothSides(const TreeNode& node, Piece front, Piece back);
   State leaf(const ShadowLeaf& leaf, Piece piece) const;
 
   const TreeData* tree_ = nullptr;
   const EyeBox* box_ = nullptr;
   bool exact_ = true;
-  double reach_ = 0.0;  // largest magnitude in the box
+  double reach_ = 0.0;           // largest magnitude in the box
+  double on_plane_scale_ = 0.0;  // smallest, and the tree's
   PolygonStack stack_;
 };
 

@@ -36,9 +36,9 @@ struct ShadowLeaf {
   std::uint32_t first_corner = 0, corner_count = 0;  // of the fragment, into TreeData::corners
 };
 
-// How near to a node's plane, in metres, a box that reaches so far from the eye is looked at on both sides:
-// the width of a seam, and in any case more than the rounding of all that is computed for the box. The same
-// for all planes that a box meets, so that what is overlap at one is not taken for more at another.
+// How near to a seam's plane, in metres, a box that reaches so far from the eye is looked at on both sides:
+// the seam's own width, and more than the rounding of all that is computed for the box. The same for all
+// planes that a box meets, so that what is overlap at one is not taken for more at another.
 inline double overlapWidth(double tolerance, double reach, const Eye& eye, double on_plane_scale) {
   return tolerance * (eye.orthographic ? 1.0 : reach) + 16.0 * kOnPlane * (reach + on_plane_scale);
 }
