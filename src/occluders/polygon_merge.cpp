@@ -99,6 +99,12 @@ class Merger {
     return polygon.area / (perimeter * perimeter);
   }
 
+  // Whether the boundary p -> q -> r turns away from the inside by clearly more than the tolerance.
+  bool turnsRight(std::uint32_t p, std::uint32_t q, std::uint32_t r, const Vec3d& normal) const {
+    const Vec3d from(positions_[p]), at(positions_[q]), to(positions_[r]);
+    return dot(cross(at - from, to - at), normal) < -4.0 * tolerance_ * length(to - from);
+  }
+
   // The union of p and q, which share edge i of p; an empty loop when their common boundary is not one chain.
   FoundPolygon joined(std::uint32_t p, std::uint32_t q, std::size_t i) const {
     const FoundPolygon& a = polygons_[p];
@@ -114,6 +120,18 @@ class Merger {
       ++count;
     }
     FoundPolygon result;
+    const std::uint32_t chain_start = a.loop[first], chain_end = a.loop[(first + count) % n];
+    const auto positionIn = [](const FoundPolygon& polygon, std::uint32_t vertex) {
+      const auto found = std::find(polygon.loop.begin(), polygon.loop.end(), vertex);
+      return static_cast<std::size_t>(found - polygon.loop.begin());
+    };
+    const std::size_t start_b = positionIn(b, chain_start), end_b = positionIn(b, chain_end);
+    // Most candidates turn the wrong way where the two boundaries meet: known before anything is built.
+    if (start_b == m || end_b == m ||
+        turnsRight(a.loop[(first + n - 1) % n], chain_start, b.loop[(start_b + 1) % m], a.plane.normal) ||
+        turnsRight(b.loop[(end_b + m - 1) % m], chain_end, a.loop[(first + count + 1) % n], a.plane.normal)) {
+      return result;
+    }
     std::size_t common = 0;
     for (std::size_t k = 0; k < n; ++k) {
       common += beyond(p, k) == q ? 1 : 0;
@@ -121,13 +139,10 @@ class Merger {
     if (common != count || count >= n || count >= m) {
       return result;
     }
-    const std::uint32_t chain_start = a.loop[first];
     for (std::size_t k = 0; k < n - count; ++k) {
       result.loop.push_back(a.loop[(first + count + k) % n]);
     }
     // a's part ends just before chain_start; b's part runs from chain_start to the chain's end.
-    const auto in_b = std::find(b.loop.begin(), b.loop.end(), chain_start);
-    const auto start_b = static_cast<std::size_t>(in_b - b.loop.begin());
     for (std::size_t k = 0; k < m - count; ++k) {
       result.loop.push_back(b.loop[(start_b + k) % m]);
     }
