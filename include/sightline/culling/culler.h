@@ -22,8 +22,8 @@ struct CullerSettings {
   OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
   std::uint32_t occluder_count = 64;  // at most so many a frame
   AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;
-  // Occluders are looked for within so many steps of the observer (lambda); 0: everywhere. The paper has 100, which
-  // suits interiors; along a street it leaves out the walls at its end.
+  // Occluders are looked for within so many steps of the observer (lambda); 0: everywhere. The paper has 100,
+  // which suits interiors; along a street it leaves out the walls at its end.
   double lambda_steps = 0.0;
   std::uint32_t min_node_cost = 0;  // a node with fewer triangles is taken as visible without a test
   bool temporal_coherence = true;   // nodes found partial are not tested in the next frame
