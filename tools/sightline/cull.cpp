@@ -96,18 +96,11 @@ Result<ExitCode> runCull(const CullOptions& options) {
   if (!setting) {
     return setting.error();
   }
-  if (const Status ok = checkOutput(options.common.json); !ok) {
-    return ok.error();
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path);
+  if (!input) {
+    return input.error();
   }
-  const Result<Scene> scene = loadScene(options.common.scene);
-  if (!scene) {
-    return scene.error();
-  }
-  const Result<Walk> walk = loadWalk(options.path, options.common.scene, *scene);
-  if (!walk) {
-    return walk.error();
-  }
-  return cullWalk(options, *setting, *scene, *walk);
+  return cullWalk(options, *setting, input->scene, input->walk);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "scenes/procedural.h"
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
+#include "tools/sightline/json_output.h"
 
 namespace sightline::tool {
 namespace {
@@ -81,6 +82,21 @@ Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name,
     return frames.error();
   }
   return Walk{std::move(*path), std::move(*frames)};
+}
+
+Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path) {
+  if (const Status ok = checkOutput(common.json); !ok) {
+    return ok.error();
+  }
+  Result<Scene> scene = loadScene(common.scene);
+  if (!scene) {
+    return scene.error();
+  }
+  Result<Walk> walk = loadWalk(path, common.scene, *scene);
+  if (!walk) {
+    return walk.error();
+  }
+  return SceneAndWalk{std::move(*scene), std::move(*walk)};
 }
 
 CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for)

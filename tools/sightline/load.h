@@ -26,6 +26,13 @@ struct Walk {
 // Says on stderr when it took a file that the user did not name.
 Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene);
 
+// What a command along a walk begins with. Asks first whether its output can be written, before the work.
+struct SceneAndWalk {
+  Scene scene;
+  Walk walk;
+};
+Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path);
+
 // What cullers of one scene share.
 class CullingData {
  public:

@@ -271,18 +271,11 @@ Result<ExitCode> runVerify(const VerifyOptions& options) {
   if (!settings) {
     return settings.error();
   }
-  if (const Status ok = checkOutput(options.common.json); !ok) {
-    return ok.error();
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path);
+  if (!input) {
+    return input.error();
   }
-  const Result<Scene> scene = loadScene(options.common.scene);
-  if (!scene) {
-    return scene.error();
-  }
-  const Result<Walk> walk = loadWalk(options.path, options.common.scene, *scene);
-  if (!walk) {
-    return walk.error();
-  }
-  return verifyWalk(options, *settings, *scene, *walk);
+  return verifyWalk(options, *settings, input->scene, input->walk);
 }
 
 }  // namespace

@@ -288,18 +288,11 @@ Result<ExitCode> runWalk(const WalkOptions& options) {
   if (!settings) {
     return settings.error();
   }
-  if (const Status ok = checkOutput(options.common.json); !ok) {
-    return ok.error();
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path);
+  if (!input) {
+    return input.error();
   }
-  const Result<Scene> scene = loadScene(options.common.scene);
-  if (!scene) {
-    return scene.error();
-  }
-  const Result<Walk> walk = loadWalk(options.path, options.common.scene, *scene);
-  if (!walk) {
-    return walk.error();
-  }
-  return walkScene(options, withBaseline(*settings), *scene, *walk);
+  return walkScene(options, withBaseline(*settings), input->scene, input->walk);
 }
 
 }  // namespace
