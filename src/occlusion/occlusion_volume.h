@@ -7,9 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sightline/geometry/tolerance.h"
-#include "sightline/occluders/occluder_set.h"
-#include "sightline/scene/camera.h"
+#include "occlusion/eye_occluder.h"
 
 namespace sightline::occlusion_detail {
 
@@ -51,20 +49,6 @@ struct OcclusionVolume {
   double reach = 0.0;  // largest magnitude of a corner
 };
 
-// The eye as the volumes need it: a point, or a direction for orthographic views. Everything is relative to
-// it.
-struct Eye {
-  Vec3d position;
-  Vec3d forward;
-  double near = 0.0;
-  bool orthographic = false;
-
-  // A plane through the eye and the line from p to q, unit normal, such that a polygon with the edge p -> q,
-  // counter- clockwise as seen from the eye, lies behind it. sine: of the angle the edge spans (1 for
-  // orthographic eyes).
-  Plane shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const;
-};
-
 class VolumeBuilder {
  public:
   // Fills volumes, corners and planes. Occluders that are of no use from here get no volume.
@@ -85,36 +69,16 @@ class VolumeBuilder {
   double reach = 0.0;         // largest of the volumes
 
  private:
-  struct Candidate {
-    OccluderId id;
-    bool flipped = false;  // seen from the back of a double-sided polygon
-    Plane support;
-    double inset = 0.0;      // metres by which open edges are drawn in
-    double deviation = 0.0;  // metres, Occluder::slack
-    double slack = 0.0;
-    double reach = 0.0;
-    Vec3d centroid;
-  };
-  struct Outline {
-    Vec3d from, to;      // the edge
-    std::uint32_t edge;  // into OccluderSet::edges
-  };
-
-  bool examine(const OccluderSet& set, OccluderId id, Candidate& candidate);
-  void addVolume(const OccluderSet& set, const Candidate& candidate);
-  std::uint64_t openElements(const OccluderSet& set, const Candidate& candidate, const OccluderEdge& edge,
-                             const Plane& plane) const;
-  double seamTolerance(const Candidate& candidate, const Outline& outline, double line_sine) const;
-  void addEdge(const OccluderSet& set, const Candidate& candidate, const Outline& outline);
-  bool addRuns(const OccluderSet& set, const Candidate& candidate, const Outline& outline, std::uint64_t open,
-               PlaneRef on_line);
+  bool fitsInset(const OccluderSet& set, const EyeOccluder& candidate) const;
+  void addVolume(const OccluderSet& set, const EyeOccluder& candidate);
+  void addEdge(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline);
+  bool addRuns(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline,
+               std::uint64_t open, PlaneRef on_line);
   std::uint32_t clipNear(std::uint32_t first, std::uint32_t count, double depth);
-  Outline outline(const OccluderSet& set, const Candidate& candidate, std::uint32_t side) const;
-  Plane insetPlane(const Candidate& candidate, const Outline& outline, double& sine) const;
-  double clipDepth(const Candidate& candidate) const;
+  Plane insetPlane(const EyeOccluder& candidate, const Outline& outline, double& sine) const;
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<Candidate> candidates_;
+  std::vector<EyeOccluder> candidates_;
   std::vector<std::uint32_t> candidate_of_;   // by OccluderId, kNone between builds
   std::vector<std::uint32_t> plane_of_line_;  // by line, kNone between builds
   std::vector<std::uint32_t> used_lines_;

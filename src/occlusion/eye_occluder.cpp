@@ -1,0 +1,126 @@
+#include "occlusion/eye_occluder.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sightline::occlusion_detail {
+namespace {
+
+// Seams that may appear to lie farther from their line than this (radians; orthographic: metres) are not
+// closed.
+constexpr double kWidestSeam = 0.01;
+
+// How far the mesh's seam may appear to lie from its line: both occluders may be off by their slack.
+double seamTolerance(const Eye& eye, const EyeOccluder& occluder, const Outline& outline, double line_sine) {
+  const double rounding = 0x1p-49 / line_sine;
+  if (eye.orthographic) {
+    return 4.0 * occluder.deviation + rounding * occluder.reach;
+  }
+  const Vec3d along = outline.to - outline.from;
+  const double t = std::clamp(-dot(outline.from, along) / dot(along, along), 0.0, 1.0);
+  return 4.0 * occluder.deviation / length(outline.from + along * t) + rounding;
+}
+
+}  // namespace
+
+Plane Eye::shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const {
+  const Vec3d normal = orthographic ? cross(forward, q - p) : cross(p, q);
+  const double l = length(normal);
+  const double size = orthographic ? length(q - p) : length(p) * length(q);
+  sine = size > 0.0 ? l / size : 0.0;
+  Plane plane;
+  plane.normal = l > 0.0 ? normal / l : Vec3d();
+  plane.offset = orthographic ? -dot(plane.normal, p) : 0.0;
+  return plane;
+}
+
+Outline outlineOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& seen, std::uint32_t side) {
+  const Occluder& occluder = set[seen.id];
+  const std::uint32_t n = occluder.vertex_count;
+  // Seen from the back the corners run the other way round.
+  const std::uint32_t a = seen.flipped ? n - 1 - side : side;
+  const std::uint32_t b = seen.flipped ? (a + n - 1) % n : (a + 1) % n;
+  const std::uint32_t edge = seen.flipped ? b : a;
+  const auto corner = [&](std::uint32_t i) {
+    return Vec3d(set.vertices[occluder.first_vertex + i]) - eye.position;
+  };
+  return {corner(a), corner(b), occluder.first_vertex + edge};
+}
+
+std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, OccluderId id) {
+  const Occluder& occluder = set[id];
+  EyeOccluder seen;
+  seen.id = id;
+  seen.centroid = Vec3d(occluder.centroid) - eye.position;
+  const double height =
+      -dot(occluder.plane.normal, Vec3d(set.vertices[occluder.first_vertex]) - eye.position);
+  const double facing = eye.orthographic ? -dot(occluder.plane.normal, eye.forward) : height;
+  seen.flipped = facing < 0.0;
+  if (seen.flipped && !occluder.double_sided) {
+    return std::nullopt;
+  }
+  seen.support = {occluder.plane.normal, height};
+  if (seen.flipped) {
+    seen.support = seen.support.flipped();
+  }
+  double deepest = -1.0, farthest = 0.0;
+  seen.nearest = std::numeric_limits<double>::infinity();
+  for (const Vec3f& vertex : set.verticesOf(occluder)) {
+    const Vec3d r = Vec3d(vertex) - eye.position;
+    const double depth = dot(eye.forward, r);
+    seen.reach = std::max(seen.reach, magnitude(r));
+    farthest = std::max(farthest, length(r));
+    deepest = std::max(deepest, depth);
+    seen.nearest = std::min(seen.nearest, depth);
+  }
+  const double grazing = std::abs(facing) / (eye.orthographic ? 1.0 : farthest);
+  if (!(grazing > kGrazingSine) || !std::isfinite(seen.reach)) {
+    return std::nullopt;
+  }
+  seen.deviation = occluder.slack;
+  // How far a point that is off by the slack may appear to move in the polygon's plane; a sharp corner of a
+  // neighbour of three degrees costs a factor of twenty.
+  double smallest_sine = 1.0;
+  for (std::uint32_t side = 0; side < occluder.vertex_count; ++side) {
+    double sine = 0.0;
+    const Outline outline = outlineOf(eye, set, seen, side);
+    eye.shadowPlane(outline.from, outline.to, sine);
+    smallest_sine = std::min(smallest_sine, sine);
+  }
+  if (!(smallest_sine > kShortestEdgeSine)) {
+    return std::nullopt;
+  }
+  seen.inset = (32.0 * seen.deviation + kEdgeMargin * seen.reach * (1.0 + 0x1p-8 / smallest_sine)) / grazing;
+  if (!(seen.inset * seen.inset < 0.0025 * occluder.area)) {
+    return std::nullopt;
+  }
+  // What kEdgeMargin allows sideways becomes depth where the plane is seen at a grazing angle.
+  seen.depth_slack = (4.0 * seen.deviation + kDepthMargin * 0x1p-8 * seen.reach) / grazing;
+  seen.clip_depth = eye.near + seen.depth_slack + kDepthMargin * (eye.near + seen.reach);
+  if (!(deepest > seen.clip_depth)) {
+    return std::nullopt;
+  }
+  return seen;
+}
+
+std::optional<Seam> seamOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& seen,
+                           const Outline& outline) {
+  const OccluderEdge& edge = set.edges[outline.edge];
+  if (edge.cover_count == 0 || edge.chain == 0 || !set[seen.id].seals) {
+    return std::nullopt;
+  }
+  const auto& line = set.lines[edge.line];
+  const Vec3d p = Vec3d(line[0]) - eye.position, q = Vec3d(line[1]) - eye.position;
+  double sine = 0.0;
+  Seam seam;
+  seam.plane = eye.shadowPlane(p, q, sine);
+  seam.flipped = dot(q - p, outline.to - outline.from) < 0.0;
+  seam.tolerance = seamTolerance(eye, seen, outline, sine);
+  if (!(sine > kShortestEdgeSine) || !(seam.tolerance < kWidestSeam) ||
+      !(seam.oriented().evaluate(seen.centroid) < 0.0)) {
+    return std::nullopt;
+  }
+  return seam;
+}
+
+}  // namespace sightline::occlusion_detail
