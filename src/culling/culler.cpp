@@ -13,29 +13,86 @@ double microseconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double, std::micro>(to - from).count();
 }
 
-Visibility seeEverything(const Box&) {
-  return Visibility::kVisible;
+using culling_detail::AskAll;
+
+auto seeEverything() {
+  return AskAll{[](const Box&) { return Visibility::kVisible; }};
 }
+
+// The supporting planes as the walk asks them: relations of what lies below a node go when the walk ends at
+// it. They stay while it is merely outside the frustum.
+struct KeptPlanes {
+  SupportingPlanes& planes;
+  const Hierarchy& hierarchy;
+  std::vector<bool>& entered;  // by node: the walk went on below it, and what is there may have relations
+
+  OccluderList start() const { return planes.all(); }
+  Visibility classify(const Box& box, std::uint32_t item, OccluderList among, OccluderList& touching) {
+    const Visibility state = planes.classify(box, item, among, touching);
+    if (item < entered.size() && state == Visibility::kPartial) {
+      entered[item] = true;
+    }
+    return state;
+  }
+  void settled(NodeIndex node) {
+    if (!entered[node.value]) {
+      return;
+    }
+    entered[node.value] = false;
+    const HierarchyNode& n = hierarchy.nodes[node.value];
+    if (n.leaf()) {
+      for (std::uint32_t i = 0; i < n.leaf_count; ++i) {
+        planes.forget(static_cast<std::uint32_t>(hierarchy.nodes.size()) + n.link + i);
+      }
+    } else {
+      for (const NodeIndex child : {hierarchy.left(node), hierarchy.right(node)}) {
+        planes.forget(child.value);
+        settled(child);
+      }
+    }
+  }
+};
 
 }  // namespace
 
 struct Culler::Impl {
-  Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s)
-      : object_bounds(bounds),
+  Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s,
+       const OccluderDatabase* d)
+      : hierarchy(h),
+        object_bounds(bounds),
         occluders(o),
         settings(s),
+        database(d),
         walk(h, bounds),
         search(h, bounds),
-        tree(OcclusionTreeSettings{.variant = s.variant}) {}
+        tree(OcclusionTreeSettings{.variant = s.variant}),
+        planes(planesSettings(s)),
+        entered(h.nodes.size()) {}
+
+  static SupportingPlanesSettings planesSettings(const CullerSettings& settings) {
+    SupportingPlanesSettings planes = settings.supporting_planes;
+    planes.keep_relations = settings.temporal_coherence;
+    return planes;
+  }
+
+  bool usesDatabase() const { return database != nullptr && settings.occluders == OccluderChoice::kDatabase; }
+
+  std::span<const OccluderId> chooseOccluders(const View& view, const Frustum& frustum) {
+    ChoiceSettings choice;
+    choice.count = settings.occluder_count;
+    choice.direction = settings.area_angle_direction;
+    if (usesDatabase()) {
+      return chooser.choose(view, occluders, database->find(view.eye, view.forward), choice);
+    }
+    return chooseByAreaAngle(view, frustum, choice);
+  }
 
   // Temporal coherence of the choice: what was seen in the last frame holds the occluders of this one.
   // Without a last frame that resembles this one, or when little of it is left in view, all that the frustum
   // holds is looked through; a search that found little is not repeated for a while.
-  std::span<const OccluderId> choose(const View& view, const Frustum& frustum) {
+  std::span<const OccluderId> chooseByAreaAngle(const View& view, const Frustum& frustum,
+                                                ChoiceSettings choice) {
     const bool jump = jumped(view);
-    ChoiceSettings choice;
-    choice.count = settings.occluder_count;
-    choice.direction = settings.area_angle_direction;
     choice.max_distance = jump ? 0.0 : settings.lambda_steps * last_step;
     std::span<const OccluderId> chosen;
     if (!jump) {
@@ -45,7 +102,7 @@ struct Culler::Impl {
     if (jump || (few && frames_since_search >= frames_between_searches)) {
       candidates.clear();
       CullStats ignored;
-      search.run(frustum, {.temporal_coherence = false}, seeEverything, ignored, candidates);
+      search.run(frustum, {.temporal_coherence = false}, seeEverything(), ignored, candidates);
       const std::size_t before = chosen.size();
       chosen = chooser.choose(view, occluders, candidates, object_bounds, choice);
       frames_between_searches = chosen.size() > 2 * before ? 0 : kSearchPause;
@@ -68,40 +125,102 @@ struct Culler::Impl {
     return jump;
   }
 
-  void cullWithTree(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+  // Choose, build, walk. build(chosen) makes the structure ready for the view.
+  template <typename Build, typename Structure>
+  void cullWith(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes, Build&& build,
+                Structure&& structure) {
     const Clock::time_point start = Clock::now();
-    const std::span<const OccluderId> chosen = choose(view, frustum);
+    const std::span<const OccluderId> chosen = chooseOccluders(view, frustum);
     const Clock::time_point chosen_at = Clock::now();
-    tree.build(view, occluders, chosen);
+    build(chosen);
     const Clock::time_point built_at = Clock::now();
-    const auto classify = [this](const Box& box) { return tree.classify(box); };
-    finish(frustum, dynamic_boxes, classify);
-    const Clock::time_point end = Clock::now();
+    finish(frustum, dynamic_boxes, structure);
     stats.choose_us = microseconds(start, chosen_at);
     stats.build_us = microseconds(chosen_at, built_at);
-    stats.walk_us = microseconds(built_at, end);
+    stats.walk_us = microseconds(built_at, Clock::now());
+  }
+
+  void cullWithTree(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+    cullWith(
+        view, frustum, dynamic_boxes,
+        [&](std::span<const OccluderId> chosen) { tree.build(view, occluders, chosen); },
+        AskAll{[this](const Box& box) { return tree.classify(box); }});
     stats.occluders = tree.stats().occluders;
     stats.tree_nodes = tree.stats().nodes;
     stats.tree_dropped = tree.stats().dropped;
   }
 
+  void cullWithPlanes(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+    cullWith(
+        view, frustum, dynamic_boxes,
+        [&](std::span<const OccluderId> chosen) { planes.build(view, occluders, chosen); },
+        KeptPlanes{planes, hierarchy, entered});
+    stats.occluders = planes.stats().occluders;
+  }
+
+  // The second test of what the walk kept: is the eye hidden from the object by occluders near the object?
+  void testDetailObjects(const View& view) {
+    const Clock::time_point start = Clock::now();
+    if (settings.method != CullMethod::kSupportingPlanes) {
+      planes.build(view, occluders, {});
+    }
+    const auto first_item = static_cast<std::uint32_t>(hierarchy.nodes.size() + hierarchy.objects.size());
+    std::span<const OccluderId> last_near;
+    OccluderList list;
+    std::erase_if(visible, [&](ObjectId object) {
+      const Box& box = object_bounds[object.value];
+      if (!box.wellFormed()) {
+        return false;
+      }
+      const Vec3d middle = center(box);
+      const Vec3d to_eye = view.orthographic ? -view.forward : view.eye - middle;
+      const std::span<const OccluderId> found = database->find(middle, to_eye);
+      const auto near = found.subspan(0, std::min<std::size_t>(found.size(), settings.detail_occluder_count));
+      if (near.data() != last_near.data() || near.size() != last_near.size()) {
+        last_near = near;
+        list = planes.add(near);
+      }
+      OccluderList touching;
+      const bool hidden =
+          planes.classify(box, first_item + object.value, list, touching) == Visibility::kHidden;
+      stats.detail_tested += 1;
+      stats.detail_culled += hidden ? 1 : 0;
+      return hidden;
+    });
+    stats.detail_us = microseconds(start, Clock::now());
+  }
+
   void cullByFrustum(const Frustum& frustum, std::span<const Box> dynamic_boxes) {
     const Clock::time_point start = Clock::now();
-    finish(frustum, dynamic_boxes, seeEverything);
+    finish(frustum, dynamic_boxes, seeEverything());
     stats.walk_us = microseconds(start, Clock::now());
   }
 
-  template <typename Classify>
-  void finish(const Frustum& frustum, std::span<const Box> dynamic_boxes, Classify&& classify) {
+  template <typename Structure>
+  void finish(const Frustum& frustum, std::span<const Box> dynamic_boxes, Structure&& structure) {
     visible.clear();
-    const WalkOptions options{settings.min_node_cost, settings.temporal_coherence, settings.test_objects};
-    walk.run(frustum, options, classify, stats, visible);
+    // Supporting planes have temporal coherence of their own, which needs every node's lists.
+    const bool skip_partial = settings.temporal_coherence && settings.method != CullMethod::kSupportingPlanes;
+    const WalkOptions options{settings.min_node_cost, skip_partial, settings.test_objects};
+    walk.run(frustum, options, structure, stats, visible);
     dynamic_states.clear();
     for (const Box& box : dynamic_boxes) {
-      std::uint8_t planes = kAllFrustumPlanes;
-      const bool outside = sightline::classify(frustum, box, planes) == FrustumSide::kOutside;
-      dynamic_states.push_back(outside ? Visibility::kHidden : classify(box));
+      std::uint8_t cut = kAllFrustumPlanes;
+      const bool outside = sightline::classify(frustum, box, cut) == FrustumSide::kOutside;
+      dynamic_states.push_back(outside ? Visibility::kHidden : classifyDynamic(box));
     }
+  }
+
+  Visibility classifyDynamic(const Box& box) {
+    switch (settings.method) {
+      case CullMethod::kOcclusionTree:
+        return tree.classify(box);
+      case CullMethod::kSupportingPlanes:
+        return planes.classify(box);
+      case CullMethod::kFrustum:
+        break;
+    }
+    return Visibility::kVisible;
   }
 
   using WalkOptions = culling_detail::WalkOptions;
@@ -110,12 +229,16 @@ struct Culler::Impl {
   static constexpr double kJumpSteps = 10.0;
   static constexpr std::uint32_t kSearchPause = 16;
 
+  const Hierarchy& hierarchy;
   std::span<const Box> object_bounds;
   const OccluderSet& occluders;
   CullerSettings settings;
+  const OccluderDatabase* database;
   culling_detail::HierarchicalWalk walk, search;  // search: for occluders
   OccluderChooser chooser;
   OcclusionTree tree;
+  SupportingPlanes planes;
+  std::vector<bool> entered;  // by node, see KeptPlanes
   std::vector<ObjectId> visible, candidates;
   std::vector<Visibility> dynamic_states;
   CullStats stats;
@@ -126,8 +249,8 @@ struct Culler::Impl {
 };
 
 Culler::Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
-               const CullerSettings& settings)
-    : impl_(std::make_unique<Impl>(hierarchy, object_bounds, occluders, settings)) {}
+               const CullerSettings& settings, const OccluderDatabase* database)
+    : impl_(std::make_unique<Impl>(hierarchy, object_bounds, occluders, settings, database)) {}
 Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
@@ -135,11 +258,22 @@ Culler& Culler::operator=(Culler&&) noexcept = default;
 void Culler::cull(const View& view, std::span<const Box> dynamic_boxes) {
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
-  if (impl_->settings.method == CullMethod::kOcclusionTree) {
-    impl_->cullWithTree(view, frustum, dynamic_boxes);
-  } else {
-    impl_->cullByFrustum(frustum, dynamic_boxes);
+  const CullMethod method = impl_->settings.method;
+  switch (method) {
+    case CullMethod::kFrustum:
+      impl_->cullByFrustum(frustum, dynamic_boxes);
+      break;
+    case CullMethod::kOcclusionTree:
+      impl_->cullWithTree(view, frustum, dynamic_boxes);
+      break;
+    case CullMethod::kSupportingPlanes:
+      impl_->cullWithPlanes(view, frustum, dynamic_boxes);
+      break;
   }
+  if (impl_->settings.detail_objects && impl_->database != nullptr && method != CullMethod::kFrustum) {
+    impl_->testDetailObjects(view);
+  }
+  impl_->stats.relations = impl_->planes.stats().relations;
 }
 
 std::span<const ObjectId> Culler::visible() const {
@@ -149,8 +283,15 @@ std::span<const Visibility> Culler::dynamicStates() const {
   return impl_->dynamic_states;
 }
 std::span<const OccluderId> Culler::occludersUsed() const {
-  return impl_->settings.method == CullMethod::kOcclusionTree ? impl_->tree.occluders()
-                                                              : std::span<const OccluderId>();
+  switch (impl_->settings.method) {
+    case CullMethod::kOcclusionTree:
+      return impl_->tree.occluders();
+    case CullMethod::kSupportingPlanes:
+      return impl_->planes.occluders();
+    case CullMethod::kFrustum:
+      break;
+  }
+  return {};
 }
 const CullStats& Culler::stats() const {
   return impl_->stats;
@@ -161,6 +302,8 @@ void Culler::reset() {
   impl_->last_step = 0.0;
   impl_->frames_between_searches = 0;
   impl_->walk.forget();
+  impl_->planes.forgetAll();
+  impl_->entered.assign(impl_->entered.size(), false);
 }
 
 }  // namespace sightline

@@ -3,8 +3,9 @@
 // The one walk through a hierarchy that every from-point method uses.
 //
 // Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998,
-// sections 5.3, 5.4. Differs from the paper in: objects of leaves that stay partly visible may be tested by
-// their own boxes.
+// sections 5.3, 5.4; Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997,
+// section 4. Differs from the papers in: objects of leaves that stay partly visible may be tested by their
+// own boxes.
 
 #include <cstdint>
 #include <span>
@@ -14,8 +15,32 @@
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/math/frustum.h"
+#include "sightline/occlusion/supporting_planes.h"
 
 namespace sightline::culling_detail {
+
+// What the walk needs of an occlusion structure:
+//
+//   Visibility classify(const Box&, std::uint32_t item, OccluderList among, OccluderList& touching)
+//     The box's state. item: a node's number, or the number of nodes plus an entry's in Hierarchy::objects.
+//     among: what was touching the node above, or start() at the root.
+//   OccluderList start()
+//   void settled(NodeIndex)
+//     The node was found hidden or visible, so the walk ends here.
+//
+// This one asks all occluders, whatever lies above.
+template <typename Classify>
+struct AskAll {
+  Classify classify_box;  // Box -> Visibility
+
+  Visibility classify(const Box& box, std::uint32_t /*item*/, OccluderList, OccluderList&) {
+    return classify_box(box);
+  }
+  OccluderList start() const { return {}; }
+  void settled(NodeIndex) {}
+};
+template <typename Classify>
+AskAll(Classify) -> AskAll<Classify>;
 
 struct WalkOptions {
   std::uint32_t min_node_cost = 0;
@@ -32,19 +57,18 @@ class HierarchicalWalk {
         decided_(object_bounds.size()),
         partial_(hierarchy.nodes.size(), false) {}
 
-  // Appends the objects that may be seen to out, ascending. classify(box) -> Visibility is the occlusion
-  // structure.
-  template <typename Classify>
-  void run(const Frustum& frustum, const WalkOptions& options, Classify&& classify, CullStats& stats,
+  // Appends the objects that may be seen to out, ascending.
+  template <typename Structure>
+  void run(const Frustum& frustum, const WalkOptions& options, Structure&& structure, CullStats& stats,
            std::vector<ObjectId>& out) {
     stack_.clear();
     if (!hierarchy_.nodes.empty()) {
-      stack_.push_back({0, kNoParent, kAllFrustumPlanes, false});
+      stack_.push_back({0, kNoParent, structure.start(), kAllFrustumPlanes, false});
     }
     while (!stack_.empty()) {
       const Entry entry = stack_.back();
       stack_.pop_back();
-      visit(entry, frustum, options, classify, stats);
+      visit(entry, frustum, options, structure, stats);
     }
     visible_.drainInto(out);
     decided_.clear();
@@ -58,12 +82,13 @@ class HierarchicalWalk {
 
   struct Entry {
     std::uint32_t node, parent;
-    std::uint8_t planes;  // of the frustum that still cut it
-    bool surely_visible;  // with respect to the occluders
+    OccluderList occluders;  // that may hide some of it
+    std::uint8_t planes;     // of the frustum that still cut it
+    bool surely_visible;     // with respect to the occluders
   };
 
-  template <typename Classify>
-  void visit(const Entry& entry, const Frustum& frustum, const WalkOptions& options, Classify&& classify,
+  template <typename Structure>
+  void visit(const Entry& entry, const Frustum& frustum, const WalkOptions& options, Structure&& structure,
              CullStats& stats) {
     const HierarchyNode& node = hierarchy_.nodes[entry.node];
     std::uint8_t planes = entry.planes;
@@ -75,6 +100,7 @@ class HierarchicalWalk {
       }
     }
     Visibility state = Visibility::kVisible;
+    OccluderList occluders = entry.occluders;
     bool skipped = false;
     if (!entry.surely_visible && node.cost >= options.min_node_cost) {
       // A node with a box that says nothing may still hold objects that are hidden.
@@ -85,11 +111,12 @@ class HierarchicalWalk {
         state = Visibility::kPartial;
       } else {
         ++stats.nodes_tested;
-        state = classify(node.bounds);
+        state = structure.classify(node.bounds, entry.node, entry.occluders, occluders);
       }
     }
     if (state != Visibility::kPartial) {
       settle(entry);
+      structure.settled(NodeIndex(entry.node));
     }
     if (state == Visibility::kHidden) {
       return;
@@ -100,14 +127,16 @@ class HierarchicalWalk {
         visible_.insert(object);
       }
     } else if (node.leaf()) {
-      keepLeaf(node, frustum, planes, surely_visible || !options.test_objects, classify, stats);
+      const bool test_objects = !surely_visible && options.test_objects;
+      keepLeaf(node, frustum, planes, test_objects, occluders, structure, stats);
     } else {
       if (!surely_visible) {
         partial_[entry.node] = true;
       }
       const std::uint32_t left = entry.node + 1;
-      stack_.push_back({hierarchy_.right(NodeIndex(entry.node)).value, entry.node, planes, surely_visible});
-      stack_.push_back({left, entry.node, planes, surely_visible});
+      stack_.push_back(
+          {hierarchy_.right(NodeIndex(entry.node)).value, entry.node, occluders, planes, surely_visible});
+      stack_.push_back({left, entry.node, occluders, planes, surely_visible});
     }
   }
 
@@ -119,9 +148,9 @@ class HierarchicalWalk {
     }
   }
 
-  template <typename Classify>
-  void keepLeaf(const HierarchyNode& leaf, const Frustum& frustum, std::uint8_t planes, bool surely_visible,
-                Classify&& classify, CullStats& stats) {
+  template <typename Structure>
+  void keepLeaf(const HierarchyNode& leaf, const Frustum& frustum, std::uint8_t planes, bool test_objects,
+                OccluderList occluders, Structure&& structure, CullStats& stats) {
     for (std::uint32_t i = 0; i < leaf.leaf_count; ++i) {
       const ObjectId object = hierarchy_.objects[leaf.link + i];
       const Box& box = object_bounds_[object.value];
@@ -135,9 +164,11 @@ class HierarchicalWalk {
         if (object_planes != 0 && sightline::classify(frustum, box, object_planes) == FrustumSide::kOutside) {
           continue;
         }
-        if (!surely_visible) {
+        if (test_objects) {
           ++stats.objects_tested;
-          if (classify(box) == Visibility::kHidden) {
+          OccluderList touching;
+          const auto item = static_cast<std::uint32_t>(hierarchy_.nodes.size() + leaf.link + i);
+          if (structure.classify(box, item, occluders, touching) == Visibility::kHidden) {
             continue;
           }
         }

@@ -53,31 +53,51 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
                                                     std::span<const Box> object_bounds,
                                                     const ChoiceSettings& settings) {
   ranked_.clear();
-  chosen_.clear();
   const double limit = settings.max_distance * settings.max_distance;
   for (const ObjectId object : objects) {
     if (limit > 0.0 && squaredDistance(object_bounds[object.value], view.eye) > limit) {
       continue;
     }
     for (const OccluderId id : set.occludersOf(object)) {
-      const double score = areaAngle(set[id], view, settings.direction);
-      if (score > 0.0) {
-        ranked_.emplace_back(score, id);
-      }
+      rank(view, set, id, settings.direction);
     }
   }
+  return takeBest(view, set, settings.count);
+}
+
+std::span<const OccluderId> OccluderChooser::choose(const View& view, const OccluderSet& set,
+                                                    std::span<const OccluderId> candidates,
+                                                    const ChoiceSettings& settings) {
+  ranked_.clear();
+  for (const OccluderId id : candidates) {
+    rank(view, set, id, settings.direction);
+  }
+  return takeBest(view, set, settings.count);
+}
+
+void OccluderChooser::rank(const View& view, const OccluderSet& set, OccluderId id,
+                           AreaAngleDirection direction) {
+  const double score = areaAngle(set[id], view, direction);
+  if (score > 0.0) {
+    ranked_.emplace_back(score, id);
+  }
+}
+
+std::span<const OccluderId> OccluderChooser::takeBest(const View& view, const OccluderSet& set,
+                                                      std::uint32_t count) {
+  chosen_.clear();
   const auto better = [](const auto& a, const auto& b) {
     return a.first > b.first || (a.first == b.first && a.second < b.second);
   };
   // Best first; the frustum test is made only for those that come into question.
   const Frustum frustum = frustumOf(view);
   auto begin = ranked_.begin();
-  while (chosen_.size() < settings.count && begin != ranked_.end()) {
-    const auto wanted = static_cast<std::ptrdiff_t>(settings.count - chosen_.size());
+  while (chosen_.size() < count && begin != ranked_.end()) {
+    const auto wanted = static_cast<std::ptrdiff_t>(count - chosen_.size());
     const auto part = std::min(ranked_.end() - begin, std::max<std::ptrdiff_t>(2 * wanted, 32));
     std::nth_element(begin, begin + (part - 1), ranked_.end(), better);
     std::sort(begin, begin + part, better);
-    for (auto it = begin; it != begin + part && chosen_.size() < settings.count; ++it) {
+    for (auto it = begin; it != begin + part && chosen_.size() < count; ++it) {
       if (insideFrustum(frustum, set, set[it->second])) {
         chosen_.push_back(it->second);
       }

@@ -8,26 +8,41 @@
 
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
+#include "sightline/occluders/occluder_database.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occlusion/occlusion_tree.h"
+#include "sightline/occlusion/supporting_planes.h"
 #include "sightline/occlusion/visibility.h"
 #include "sightline/scene/camera.h"
 
 namespace sightline {
 
-enum class CullMethod : std::uint8_t { kFrustum, kOcclusionTree };
+enum class CullMethod : std::uint8_t { kFrustum, kOcclusionTree, kSupportingPlanes };
+
+// Where a frame's occluders come from.
+enum class OccluderChoice : std::uint8_t {
+  kAreaAngle,  // ranked anew in every frame, among the objects that the last frame kept
+  kDatabase,   // the database's list for the viewpoint's cell and the nearest direction
+};
 
 struct CullerSettings {
   CullMethod method = CullMethod::kOcclusionTree;
   OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
+  SupportingPlanesSettings supporting_planes;  // keep_relations: see temporal_coherence
+  OccluderChoice occluders = OccluderChoice::kAreaAngle;
   std::uint32_t occluder_count = 64;  // at most so many a frame
   AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;
   // Occluders are looked for within so many steps of the observer (lambda); 0: everywhere. The paper has 100,
   // which suits interiors; along a street it leaves out the walls at its end.
   double lambda_steps = 0.0;
   std::uint32_t min_node_cost = 0;  // a node with fewer triangles is taken as visible without a test
-  bool temporal_coherence = true;   // nodes found partial are not tested in the next frame
-  bool test_objects = true;         // objects of partly visible leaves are tested by their own boxes
+  // Occlusion tree: nodes found partial are not tested in the next frame. Supporting planes: relations are
+  // kept from frame to frame.
+  bool temporal_coherence = true;
+  bool test_objects = true;  // objects of partly visible leaves are tested by their own boxes
+  // Objects that the walk kept are tested once more, with the database's occluders near themselves.
+  bool detail_objects = false;
+  std::uint32_t detail_occluder_count = 8;  // for each of them
 };
 
 struct CullStats {
@@ -38,16 +53,20 @@ struct CullStats {
   std::uint32_t occluders = 0;       // in the occlusion structure
   std::uint32_t tree_nodes = 0;      // of the occlusion tree
   std::uint32_t tree_dropped =
-      0;  // occluder fragments that found no room (costs tightness, never correctness)
-  double choose_us = 0.0, build_us = 0.0, walk_us = 0.0;
-  double totalUs() const { return choose_us + build_us + walk_us; }
+      0;                    // occluder fragments that found no room (costs tightness, never correctness)
+  RelationStats relations;  // of the supporting planes
+  std::uint32_t detail_tested = 0;  // objects that got the second test
+  std::uint32_t detail_culled = 0;  // and were hidden by it
+  double choose_us = 0.0, build_us = 0.0, walk_us = 0.0, detail_us = 0.0;
+  double totalUs() const { return choose_us + build_us + walk_us + detail_us; }
 };
 
 class Culler {
  public:
-  // Views of the caller's data, which must outlive this.
+  // Views of the caller's data, which must outlive this. database: for OccluderChoice::kDatabase and
+  // detail_objects; without one, occluders are chosen by area-angle and the second test is left out.
   Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
-         const CullerSettings& settings = {});
+         const CullerSettings& settings = {}, const OccluderDatabase* database = nullptr);
   ~Culler();
   Culler(Culler&&) noexcept;
   Culler& operator=(Culler&&) noexcept;

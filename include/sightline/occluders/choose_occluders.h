@@ -37,7 +37,14 @@ class OccluderChooser {
                                      std::span<const ObjectId> objects, std::span<const Box> object_bounds,
                                      const ChoiceSettings& settings);
 
+  // The best of these occluders (each named at most once), in the same way; max_distance is not regarded.
+  std::span<const OccluderId> choose(const View& view, const OccluderSet& set,
+                                     std::span<const OccluderId> candidates, const ChoiceSettings& settings);
+
  private:
+  void rank(const View& view, const OccluderSet& set, OccluderId id, AreaAngleDirection direction);
+  std::span<const OccluderId> takeBest(const View& view, const OccluderSet& set, std::uint32_t count);
+
   std::vector<std::pair<double, OccluderId>> ranked_;
   std::vector<OccluderId> chosen_;
 };

@@ -1,0 +1,43 @@
+#pragma once
+
+// The cells of the occluder database: regions of a kd-tree's nodes, as a small tree of split planes of their
+// own, because a Hierarchy keeps only tight boxes.
+
+#include <cstdint>
+#include <vector>
+
+#include "sightline/hierarchy/hierarchy.h"
+
+namespace sightline::database_detail {
+
+// Inner: points with p[axis] < plane are in nodes[link], all others, NaN too, in nodes[link + 1].
+// A cell: axis is kCell and link its number.
+struct CellNode {
+  static constexpr std::uint32_t kCell = 3;
+  float plane = 0.0f;
+  std::uint32_t axis = kCell;
+  std::uint32_t link = 0;
+};
+
+// For each cell: a tree of n cells has 2 n - 1 nodes.
+inline constexpr std::size_t kBytesPerCell = 2 * sizeof(CellNode) + sizeof(Box);
+
+struct CellTree {
+  std::vector<CellNode> nodes;  // [0] is the root
+  // By cell. Together they tile the box of the root, enlarged a little; beyond it the outermost cells go on
+  // to infinity, which their boxes here do not say.
+  std::vector<Box> regions;
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(regions.size()); }
+  // Every point is in one cell. At most as many comparisons as the hierarchy has levels.
+  std::uint32_t cellOf(const Vec3d& point) const;
+  std::size_t bytes() const;  // beside the object itself
+};
+
+// Splits the cell with the longest diagonal (of equal ones, the one made first) as the kd-tree does, until
+// there are max_cells of them or all that is left are leaves. A node that no plane separates (an over-full
+// leaf) is one cell, and so is what is not a kd-tree; objects with a broken box do not count.
+// default_bounds: the region where the tree has no finite box of its own.
+CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::uint32_t max_cells);
+
+}  // namespace sightline::database_detail

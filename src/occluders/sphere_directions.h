@@ -1,0 +1,48 @@
+#pragma once
+
+// Directions spread evenly over the sphere, with a table that finds the nearest of them in constant time.
+
+#include <cstdint>
+#include <vector>
+
+#include "sightline/math/vec3.h"
+
+namespace sightline::database_detail {
+
+inline constexpr std::uint32_t kMaxDirections = 4096;
+
+class SphereDirections {
+ public:
+  // count is clamped to [1, kMaxDirections].
+  explicit SphereDirections(std::uint32_t count);
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(directions_.size()); }
+  const Vec3d& operator[](std::uint32_t index) const { return directions_[index]; }
+
+  // The one with the largest cosine, of several the lowest index: what trying all of them would find, up to
+  // the rounding of one scalar product. Any length; zero and what is not finite: 0. It tries the few
+  // directions listed for one texel of a cube, about three.
+  std::uint32_t nearest(const Vec3d& direction) const;
+
+  // Bounds the angle between any direction and its nearest one, radians; at most 2% of 2 / sqrt(count) too
+  // large.
+  double coveringAngle() const { return covering_angle_; }
+
+  std::size_t bytes() const;  // beside the object itself
+
+ private:
+  struct Quad;
+  void buildTable();
+  void appendCandidates(const Quad& texel);
+  double boundCoveringAngle() const;
+
+  std::vector<Vec3d> directions_;  // unit
+  // A cube [-1, 1]^3 with texels_per_edge_^2 texels a face; texel t lists candidates_[first_of_[t]] to
+  // candidates_[first_of_[t + 1]], ascending.
+  std::uint32_t texels_per_edge_ = 1;
+  std::vector<std::uint32_t> first_of_;
+  std::vector<std::uint16_t> candidates_;
+  double covering_angle_ = 0.0;
+};
+
+}  // namespace sightline::database_detail

@@ -1,0 +1,383 @@
+// Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, sections 3
+// and 4. Differs from the paper in: joint occlusion is decided by elimination, so that a connected set hides
+// a box also when only part of it does, see docs/algorithms/supporting-planes.md.
+
+#include "sightline/occlusion/supporting_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "occlusion/relation.h"
+#include "occlusion/relation_store.h"
+
+namespace sightline {
+
+using namespace occlusion_detail;
+
+struct SupportingPlanes::Impl {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr Item kNoItem = 0xffffffffu;
+
+  // An occluder that has all of the box behind it and hides some of it.
+  struct Partial {
+    std::uint32_t member = 0;
+    std::uint64_t failing = 0;  // edges whose supporting plane the eye does not satisfy
+  };
+
+  enum class Role : std::uint8_t { kUnknown, kAlive, kRejected };
+  static constexpr std::size_t kMaxJoint = 256;  // members of a set that hides together
+
+  explicit Impl(const SupportingPlanesSettings& s) : settings(s), store(s.relation_bytes) {}
+
+  void build(const View& view, const OccluderSet& new_set, std::span<const OccluderId> chosen);
+  void follow(const Eye& next);
+  std::uint32_t memberOf(OccluderId id);
+  OccluderList listOf(std::span<const OccluderId> ids, std::vector<OccluderId>* used);
+  std::span<const InsetEdge> edgesOf(Member& member);
+  void findSeams(Member& member);
+  Relation relate(Item item, const Box& box, Member& member, PlaneSide side);
+  Visibility classify(const Box& box, Item item, OccluderList among, OccluderList& touching);
+  bool hiddenJointly(const Box& box);
+  bool survives(const Partial& partial, const Box& box);
+  bool recruit(OccluderId id, const Box& box);
+
+  SupportingPlanesSettings settings;
+  SupportingPlanesStats stats;
+  const OccluderSet* set = nullptr;
+  Eye eye;
+  bool has_eye = false;
+  double path = 0.0;  // of the eye, metres; orthographic: of its direction on the unit sphere
+  std::vector<Member> members;
+  std::uint32_t recruitable = 0;         // so many of them are those of build()
+  std::vector<std::uint32_t> member_of;  // by OccluderId
+  std::vector<OccluderId> asked;         // that have an entry there
+  std::vector<OccluderId> used;          // of build()
+  std::vector<InsetEdge> inset_edges;
+  std::vector<Plane> seams;          // by edge of a member, the member behind it, relative to the eye
+  std::vector<std::uint32_t> lists;  // members, ascending by OccluderId in each list
+  OccluderList all;
+  RelationStore store;
+
+  // Of one call of classify().
+  std::vector<Relation> fresh;
+  std::vector<PlaneQuad> fresh_planes, plane_scratch;
+  std::vector<Partial> partials;
+  std::vector<Role> roles;              // by member, in the search for a set that hides the box
+  std::vector<std::uint32_t> examined;  // members that have a role
+};
+
+// The way of the eye since the last frame makes the path longer. Rounding may only lengthen it.
+void SupportingPlanes::Impl::follow(const Eye& next) {
+  const double step =
+      next.orthographic ? length(next.forward - eye.forward) : length(next.position - eye.position);
+  if (!has_eye || next.orthographic != eye.orthographic || !std::isfinite(step)) {
+    store.clear();
+    path = 0.0;
+  } else if (step > 0.0) {
+    path = path * (1.0 + 0x1p-52) + step * (1.0 + 0x1p-40);
+  }
+  has_eye = true;
+  eye = next;
+}
+
+void SupportingPlanes::Impl::build(const View& view, const OccluderSet& new_set,
+                                   std::span<const OccluderId> chosen) {
+  for (const OccluderId id : asked) {
+    member_of[id.value] = kNone;
+  }
+  asked.clear();
+  if (set != &new_set) {
+    store.clear();
+    set = &new_set;
+  }
+  follow(Eye(view));
+  store.beginFrame();
+  members.clear();
+  inset_edges.clear();
+  seams.clear();
+  lists.clear();
+  used.clear();
+  roles.clear();
+  member_of.resize(std::max(member_of.size(), set->occluders.size()), kNone);
+  stats = {};
+  all = listOf(chosen, &used);
+  recruitable = static_cast<std::uint32_t>(members.size());
+  stats.occluders = static_cast<std::uint32_t>(used.size());
+  stats.unusable = static_cast<std::uint32_t>(asked.size()) - stats.occluders;
+}
+
+// kNone where the occluder can't be used from here.
+std::uint32_t SupportingPlanes::Impl::memberOf(OccluderId id) {
+  constexpr std::uint32_t kUnusable = kNone - 1;
+  std::uint32_t& index = member_of[id.value];
+  if (index == kNone) {
+    asked.push_back(id);
+    index = kUnusable;
+    if (const std::optional<Member> member = makeMember(eye, *set, id)) {
+      index = static_cast<std::uint32_t>(members.size());
+      members.push_back(*member);
+      roles.push_back(Role::kUnknown);
+    }
+  }
+  return index == kUnusable ? kNone : index;
+}
+
+OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids, std::vector<OccluderId>* names) {
+  const std::size_t first = lists.size();
+  for (const OccluderId id : ids) {
+    const std::uint32_t member = set != nullptr && id.value < set->occluders.size() ? memberOf(id) : kNone;
+    if (member != kNone) {
+      lists.push_back(member);
+    }
+  }
+  const auto begin = lists.begin() + static_cast<std::ptrdiff_t>(first);
+  if (names != nullptr) {
+    // In the caller's order, each once.
+    for (auto it = begin; it != lists.end(); ++it) {
+      if (std::find(begin, it, *it) == it) {
+        names->push_back(members[*it].seen.id);
+      }
+    }
+  }
+  std::sort(begin, lists.end(),
+            [this](std::uint32_t a, std::uint32_t b) { return members[a].seen.id < members[b].seen.id; });
+  lists.erase(std::unique(begin, lists.end()), lists.end());
+  return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(lists.size() - first)};
+}
+
+std::span<const InsetEdge> SupportingPlanes::Impl::edgesOf(Member& member) {
+  if (member.first_edge == Member::kNotYet) {
+    member.first_edge = static_cast<std::uint32_t>(inset_edges.size());
+    appendInsetEdges(*set, member, inset_edges);
+  }
+  return std::span(inset_edges).subspan(member.first_edge, (*set)[member.seen.id].vertex_count);
+}
+
+void SupportingPlanes::Impl::findSeams(Member& member) {
+  if (member.first_seam != Member::kNotYet) {
+    return;
+  }
+  const Occluder& occluder = (*set)[member.seen.id];
+  member.first_seam = static_cast<std::uint32_t>(seams.size());
+  seams.resize(seams.size() + occluder.vertex_count);
+  for (std::uint32_t side = 0; side < occluder.vertex_count; ++side) {
+    const Outline outline = outlineOf(eye, *set, member.seen, side);
+    if (const std::optional<Seam> seam = seamOf(eye, *set, member.seen, outline)) {
+      const std::uint32_t e = outline.edge - occluder.first_vertex;
+      seams[member.first_seam + e] = seam->oriented();
+      member.sealable |= std::uint64_t{1} << e;
+    }
+  }
+}
+
+// An occluder that need not touch the box: it may still be what an edge of another one goes on in.
+bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
+  const std::uint32_t index = member_of[id.value];
+  if (index >= recruitable || roles[index] != Role::kUnknown || partials.size() >= kMaxJoint) {
+    return false;
+  }
+  Member& member = members[index];
+  roles[index] = Role::kRejected;
+  examined.push_back(index);
+  if (sideOf(member, box) != PlaneSide::kBehind || !beyondNearCut(eye, member, box)) {
+    return false;
+  }
+  Partial partial{index, failingEdges(eye, member, edgesOf(member), box)};
+  findSeams(member);
+  if ((partial.failing & ~member.sealable) != 0) {
+    return false;
+  }
+  roles[index] = Role::kAlive;
+  partials.push_back(partial);
+  return true;
+}
+
+// Whether what lies beyond each failing edge is covered by occluders that are alive, or are now made so.
+bool SupportingPlanes::Impl::survives(const Partial& partial, const Box& box) {
+  const Occluder& occluder = (*set)[members[partial.member].seen.id];
+  const auto centroidOf = [this](OccluderId id) -> const Vec3d* {
+    const std::uint32_t other = member_of[id.value];
+    return other < members.size() && roles[other] == Role::kAlive ? &members[other].seen.centroid : nullptr;
+  };
+  for (std::uint32_t e = 0; e < occluder.vertex_count; ++e) {
+    if ((partial.failing >> e & 1) == 0) {
+      continue;
+    }
+    const OccluderEdge& edge = set->edges[occluder.first_vertex + e];
+    const Plane seam = seams[members[partial.member].first_seam + e];
+    std::uint64_t open = openElements(*set, edge, seam, centroidOf);
+    for (std::uint32_t c = 0; c < edge.cover_count && open != 0; ++c) {
+      const EdgeCover& cover = set->covers[edge.first_cover + c];
+      if ((open >> cover.element & 1) != 0 && recruit(cover.occluder, box)) {
+        open = openElements(*set, edge, seam, centroidOf);
+      }
+    }
+    if (open != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// A set of occluders hides what lies behind all of them and satisfies the supporting planes of all edges but
+// those at which the set goes on. The largest such set is what elimination leaves.
+bool SupportingPlanes::Impl::hiddenJointly(const Box& box) {
+  examined.clear();
+  std::erase_if(partials, [this](const Partial& partial) {
+    Member& member = members[partial.member];
+    findSeams(member);
+    const bool dead = (partial.failing & ~member.sealable) != 0;
+    roles[partial.member] = dead ? Role::kRejected : Role::kAlive;
+    examined.push_back(partial.member);
+    return dead;
+  });
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < partials.size();) {
+      const Partial partial = partials[i];
+      if (survives(partial, box)) {
+        ++i;
+      } else {
+        roles[partial.member] = Role::kRejected;
+        partials[i] = partials.back();
+        partials.pop_back();
+        changed = true;
+      }
+    }
+  }
+  for (const std::uint32_t member : examined) {
+    roles[member] = Role::kUnknown;
+  }
+  return !partials.empty();
+}
+
+// A new relation, evaluated; remembered to be kept.
+Relation SupportingPlanes::Impl::relate(Item item, const Box& box, Member& member, PlaneSide side) {
+  const std::span<const InsetEdge> edges = edgesOf(member);
+  const std::size_t first_quad = fresh_planes.size();
+  fresh_planes.resize(first_quad + (edges.size() + 3) / 4);
+  const std::span<PlaneQuad> planes = std::span(fresh_planes).subspan(first_quad);
+  Relation relation;
+  makeRelation(member, edges, box, side, settings.tangent_search, relation, planes);
+  evaluate(member, planes, path, relation);
+  ++stats.relations.rebuilt;
+  if (item == kNoItem) {
+    fresh_planes.resize(first_quad);
+  } else {
+    fresh.push_back(relation);
+  }
+  return relation;
+}
+
+Visibility SupportingPlanes::Impl::classify(const Box& box, Item item, OccluderList among,
+                                            OccluderList& touching) {
+  touching = {static_cast<std::uint32_t>(lists.size()), 0};
+  if (!box.wellFormed()) {
+    return Visibility::kVisible;
+  }
+  if (!settings.keep_relations) {
+    item = kNoItem;
+  }
+  partials.clear();
+  bool hidden = false;
+  std::optional<RelationStore::Cursor> cursor;
+  if (item != kNoItem) {
+    cursor = store.relationsOf(item);
+  }
+  for (std::uint32_t i = among.first; i < among.first + among.count && !hidden; ++i) {
+    const std::uint32_t index = lists[i];
+    Member& member = members[index];
+    const RelationStore::Index kept = cursor ? cursor->find(member.seen.id) : RelationStore::kNone;
+    Relation relation;
+    if (kept != RelationStore::kNone && store[kept].fits(member.inset_exponent, member.seen.flipped)) {
+      ++stats.relations.reused;
+      if (path < store[kept].until) {
+        ++stats.relations.unchanged;
+      } else {
+        evaluate(member, store.planes(kept, plane_scratch), path, store[kept]);
+      }
+      store.use(kept);
+      relation = store[kept];
+    } else {
+      const PlaneSide side = sideOf(member, box);
+      if (side == PlaneSide::kFront) {
+        continue;
+      }
+      relation = relate(item, box, member, side);
+    }
+    if (!relation.touches) {
+      continue;
+    }
+    const bool covers = relation.behind && beyondNearCut(eye, member, box);
+    hidden = covers && relation.hides();
+    lists.push_back(index);
+    if (covers) {
+      partials.push_back({index, relation.allEdges() & ~relation.satisfied});
+    }
+  }
+  if (!fresh.empty()) {
+    store.keep(item, fresh, fresh_planes);
+  }
+  fresh.clear();
+  fresh_planes.clear();
+  if (hidden || (settings.joint_occlusion && !partials.empty() && hiddenJointly(box))) {
+    lists.resize(touching.first);
+    return Visibility::kHidden;
+  }
+  touching.count = static_cast<std::uint32_t>(lists.size()) - touching.first;
+  return touching.count == 0 ? Visibility::kVisible : Visibility::kPartial;
+}
+
+SupportingPlanes::SupportingPlanes(const SupportingPlanesSettings& settings)
+    : impl_(std::make_unique<Impl>(settings)) {}
+SupportingPlanes::~SupportingPlanes() = default;
+SupportingPlanes::SupportingPlanes(SupportingPlanes&&) noexcept = default;
+SupportingPlanes& SupportingPlanes::operator=(SupportingPlanes&&) noexcept = default;
+
+void SupportingPlanes::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
+  impl_->build(view, set, chosen);
+}
+
+OccluderList SupportingPlanes::add(std::span<const OccluderId> more) {
+  return impl_->listOf(more, nullptr);
+}
+
+OccluderList SupportingPlanes::all() const {
+  return impl_->all;
+}
+
+Visibility SupportingPlanes::classify(const Box& box) {
+  OccluderList touching;
+  const Visibility visibility = impl_->classify(box, Impl::kNoItem, impl_->all, touching);
+  impl_->lists.resize(touching.first);
+  return visibility;
+}
+
+Visibility SupportingPlanes::classify(const Box& box, Item item, OccluderList among, OccluderList& touching) {
+  return impl_->classify(box, item, among, touching);
+}
+
+bool SupportingPlanes::forget(Item item) {
+  const std::uint32_t count = impl_->store.forget(item);
+  impl_->stats.relations.dropped += count;
+  return count > 0;
+}
+
+void SupportingPlanes::forgetAll() {
+  impl_->store.clear();
+}
+
+const SupportingPlanesStats& SupportingPlanes::stats() const {
+  RelationStats& relations = impl_->stats.relations;
+  relations.evicted += impl_->store.takeEvicted();
+  relations.kept = impl_->store.size();
+  relations.bytes = impl_->store.bytes();
+  return impl_->stats;
+}
+
+std::span<const OccluderId> SupportingPlanes::occluders() const {
+  return impl_->used;
+}
+
+}  // namespace sightline
