@@ -45,7 +45,7 @@ struct Relation {
   std::uint64_t allEdges() const {
     return edge_count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge_count) - 1;
   }
-  bool hides() const { return behind && touches && satisfied == allEdges(); }
+  std::uint64_t failing() const { return allEdges() & ~satisfied; }
   std::uint32_t quads() const { return (edge_count + 3u) / 4u; }
 };
 
@@ -63,13 +63,15 @@ struct Member {
   double threshold = 0.0;  // a value above it is surely positive
   double inset = 0.0;      // metres, 2^inset_exponent: at least seen.inset
   std::int16_t inset_exponent = 0;
+  std::uint16_t edge_count = 0;
   bool near_clipped = false;
   Plane near_cut;  // through the eye, where the near plane cuts it; what is left lies behind; relative to the
                    // eye
   // Filled when first asked for.
-  std::uint32_t first_edge = kNotYet;  // into the inset edges of all members
-  std::uint32_t first_seam = kNotYet;  // into the seams of all members
-  std::uint64_t sealable = 0;          // edges that have a seam, a bit each
+  std::uint32_t first_edge = kNotYet;      // into the inset edges of all members
+  std::uint32_t first_eye_quad = kNotYet;  // into the planes through the eye of all members
+  std::uint32_t first_seam = kNotYet;      // into the seams of all members
+  std::uint64_t sealable = 0;              // edges that have a seam, a bit each
 
   static constexpr std::uint32_t kNotYet = 0xffffffffu;
 };
@@ -91,10 +93,22 @@ void makeRelation(const Member& member, std::span<const InsetEdge> edges, const 
 // Looks where the eye is. path: its length so far.
 void evaluate(const Member& member, std::span<const PlaneQuad> planes, double path, Relation& relation);
 
-// The edges, a bit each, beyond which the eye sees some of a box that is behind the occluder. What evaluate()
-// finds for boxes that the occluder touches, for any box, without planes that could be kept.
-std::uint64_t failingEdges(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
-                           const Box& box);
+// Planes through the eye and four edges of the outline, drawn in; unit normals, relative to the eye. The
+// occluder lies behind them.
+struct EyeQuad {
+  double x[4] = {}, y[4] = {}, z[4] = {}, offset[4] = {};
+};
+// Appends the planes of these edges, in quads.
+void appendEyeQuads(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
+                    std::vector<EyeQuad>& quads);
+
+// The box as the planes through the eye see it.
+struct EyeLook {
+  bool touches = false;         // not wholly beyond an edge
+  std::uint64_t satisfied = 0;  // edges that have all of the box on the occluder's side; all bits beyond the
+                                // edges are set
+};
+EyeLook lookFromEye(const Eye& eye, const Member& member, std::span<const EyeQuad> quads, const Box& box);
 
 // Whether all of the box is seen, if at all, through what the near plane leaves of the occluder.
 bool beyondNearCut(const Eye& eye, const Member& member, const Box& box);

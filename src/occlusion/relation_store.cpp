@@ -1,159 +1,146 @@
 #include "occlusion/relation_store.h"
 
 #include <algorithm>
-#include <utility>
+#include <array>
 
 namespace sightline::occlusion_detail {
 
 RelationStore::RelationStore(std::size_t max_bytes)
-    : max_blocks_(static_cast<std::uint32_t>(std::min<std::size_t>(max_bytes / sizeof(Block), kNone - 1))) {}
+    : max_(static_cast<std::uint32_t>(
+          std::min<std::size_t>(max_bytes / (sizeof(Entry) + sizeof(Quad) + 4 * sizeof(Index)), 1u << 28))) {}
 
-std::span<const PlaneQuad> RelationStore::planes(Index r, std::vector<PlaneQuad>& scratch) const {
-  const Block* b = &block(r);
-  if (b->more == kNone) {
-    return {&b->planes, 1};
-  }
-  scratch.clear();
-  for (;; b = &block(b->more)) {
-    scratch.push_back(b->planes);
-    if (b->more == kNone) {
-      return scratch;
+std::size_t RelationStore::slotOf(Item item, OccluderId occluder) const {
+  const std::uint64_t key = std::uint64_t{item} << 32 | occluder.value;
+  std::size_t slot = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 20) & (slots_.size() - 1);
+  while (slots_[slot] != kNone) {
+    const Entry& entry = entries_[slots_[slot]];
+    if (entry.item == item && entry.relation.occluder == occluder) {
+      break;
     }
+    slot = (slot + 1) & (slots_.size() - 1);
   }
+  return slot;
 }
 
-void RelationStore::unlinkFromAge(Index r) {
-  const Block& b = block(r);
-  (b.older == kNone ? oldest_ : block(b.older).newer) = b.newer;
-  (b.newer == kNone ? newest_ : block(b.newer).older) = b.older;
-}
-
-void RelationStore::linkAsNewest(Index r) {
-  Block& b = block(r);
-  b.older = newest_;
-  b.newer = kNone;
-  (newest_ == kNone ? oldest_ : block(newest_).newer) = r;
-  newest_ = r;
-}
-
-void RelationStore::use(Index r) {
-  block(r).used_at = frame_;
-  if (r != newest_) {
-    unlinkFromAge(r);
-    linkAsNewest(r);
-  }
-}
-
-RelationStore::Index RelationStore::Cursor::find(OccluderId occluder) {
-  if (link_ == nullptr) {
+RelationStore::Index RelationStore::find(Item item, OccluderId occluder) {
+  if (slots_.empty()) {
     return kNone;
   }
-  while (*link_ != kNone) {
-    const Index r = *link_;
-    Block& b = store_->block(r);
-    if (b.relation.occluder >= occluder) {
-      return b.relation.occluder == occluder ? r : kNone;
+  const Index r = slots_[slotOf(item, occluder)];
+  if (r != kNone) {
+    entries_[r].used_at = frame_;
+  }
+  return r;
+}
+
+std::span<const PlaneQuad> RelationStore::planes(Index r, std::vector<PlaneQuad>& scratch) const {
+  const Entry& entry = entries_[r];
+  if (entry.relation.quads() == 1) {
+    return {&quad(entry.quad).planes, 1};
+  }
+  scratch.clear();
+  for (Index q = entry.quad; q != kNone; q = quad(q).next) {
+    scratch.push_back(quad(q).planes);
+  }
+  return scratch;
+}
+
+void RelationStore::insertSlot(Index r) {
+  slots_[slotOf(entries_[r].item, entries_[r].relation.occluder)] = r;
+}
+
+// What follows in the same run of slots moves up, so that no run has a gap.
+void RelationStore::eraseSlot(Index r) {
+  std::size_t slot = slotOf(entries_[r].item, entries_[r].relation.occluder);
+  slots_[slot] = kNone;
+  for (slot = (slot + 1) & (slots_.size() - 1); slots_[slot] != kNone;
+       slot = (slot + 1) & (slots_.size() - 1)) {
+    insertSlot(std::exchange(slots_[slot], kNone));
+  }
+}
+
+void RelationStore::rebuildTable(std::size_t slots) {
+  slots_.assign(slots, kNone);
+  for (Index r = 0; r < entries_.size(); ++r) {
+    if (entries_[r].quad != kNone) {
+      insertSlot(r);
     }
-    if (store_->frame_ - b.used_at > kStale) {
-      *link_ = b.next;
-      store_->release(r);
-    } else {
-      link_ = &b.next;
+  }
+}
+
+RelationStore::Index RelationStore::takeEntry() {
+  ++used_;
+  if (free_entry_ != kNone) {
+    return std::exchange(free_entry_, entries_[free_entry_].next);
+  }
+  if (entries_.size() == entries_.capacity()) {
+    entries_.reserve(std::min<std::size_t>(max_, std::max<std::size_t>(256, entries_.size() * 2)));
+  }
+  entries_.emplace_back();
+  if (slots_.size() < 2 * entries_.size()) {
+    rebuildTable(std::max<std::size_t>(512, slots_.size() * 2));
+  }
+  return static_cast<Index>(entries_.size() - 1);
+}
+
+RelationStore::Index RelationStore::takeQuad() {
+  ++quads_used_;
+  if (free_quad_ != kNone) {
+    return std::exchange(free_quad_, quad(free_quad_).next);
+  }
+  if ((quads_ & ((1u << kSlabBits) - 1)) == 0) {
+    slabs_.push_back(std::make_unique<Quad[]>(std::min(max_ - quads_, 1u << kSlabBits)));
+  }
+  return quads_++;
+}
+
+void RelationStore::keep(Item item, const Relation& relation, std::span<const PlaneQuad> planes) {
+  Index r = find(item, relation.occluder);
+  if (r != kNone) {
+    // Of the same occluder, so with as many planes.
+    entries_[r].relation = relation;
+    Index q = entries_[r].quad;
+    for (const PlaneQuad& own : planes) {
+      quad(q).planes = own;
+      q = quad(q).next;
     }
+    return;
   }
-  return kNone;
-}
-
-void RelationStore::unlinkFromItem(Index r) {
-  Index* link = &items_[block(r).item];
-  while (*link != r) {
-    link = &block(*link).next;
-  }
-  *link = block(r).next;
-}
-
-void RelationStore::release(Index r) {
-  unlinkFromAge(r);
-  for (Index i = r; i != kNone; ++free_blocks_) {
-    Block& b = block(i);
-    b.next = free_;
-    free_ = i;
-    i = std::exchange(b.more, kNone);
-  }
-  --size_;
-}
-
-// Whether so many blocks can be taken, for which the least recently used relations go.
-bool RelationStore::makeRoom(std::size_t blocks) {
-  if (blocks > max_blocks_) {
-    return false;
-  }
-  while (free_blocks_ + (max_blocks_ - used_blocks_) < blocks) {
-    const Index r = oldest_;
-    unlinkFromItem(r);
-    release(r);
+  if (used_ == max_ || planes.size() > max_ - quads_used_) {
     ++evicted_;
+    return;
   }
-  return true;
-}
-
-RelationStore::Index RelationStore::takeBlock() {
-  if (free_ != kNone) {
-    --free_blocks_;
-    return std::exchange(free_, block(free_).next);
-  }
-  if ((used_blocks_ & kSlabMask) == 0) {
-    const std::uint32_t count = std::min(max_blocks_ - used_blocks_, kSlabMask + 1);
-    slabs_.push_back(std::make_unique<Block[]>(count));
-  }
-  return used_blocks_++;
-}
-
-void RelationStore::keep(Item item, std::span<const Relation> relations, std::span<const PlaneQuad> planes) {
   if (item >= items_.size()) {
     items_.resize(std::max<std::size_t>(item + std::size_t{1}, items_.size() * 2), kNone);
   }
-  Index* link = &items_[item];
-  for (const Relation& relation : relations) {
-    const std::span<const PlaneQuad> own = planes.first(relation.quads());
-    planes = planes.subspan(own.size());
-    const std::uint32_t evicted_before = evicted_;
-    if (!makeRoom(own.size())) {
-      continue;
-    }
-    if (evicted_ != evicted_before) {
-      link = &items_[item];  // what it pointed into may be gone
-    }
-    while (*link != kNone && block(*link).relation.occluder < relation.occluder) {
-      link = &block(*link).next;
-    }
-    if (*link != kNone && block(*link).relation.occluder == relation.occluder) {
-      const Index old = *link;
-      *link = block(old).next;
-      release(old);
-    }
-    Index head = kNone;
-    for (std::size_t i = own.size(); i-- > 0;) {
-      const Index taken = takeBlock();
-      block(taken).planes = own[i];
-      block(taken).more = std::exchange(head, taken);
-    }
-    Block& b = block(head);
-    b.relation = relation;
-    b.item = item;
-    b.used_at = frame_;
-    b.next = std::exchange(*link, head);
-    linkAsNewest(head);
-    ++size_;
+  r = takeEntry();
+  Index first = kNone;
+  for (std::size_t i = planes.size(); i-- > 0;) {
+    const Index q = takeQuad();
+    quad(q).planes = planes[i];
+    quad(q).next = std::exchange(first, q);
   }
+  entries_[r] = {relation, item, frame_, first, std::exchange(items_[item], r)};
+  insertSlot(r);
+}
+
+void RelationStore::free(Index r) {
+  for (Index q = std::exchange(entries_[r].quad, kNone); q != kNone; --quads_used_) {
+    const Index next = std::exchange(quad(q).next, free_quad_);
+    free_quad_ = q;
+    q = next;
+  }
+  entries_[r].next = std::exchange(free_entry_, r);
+  --used_;
 }
 
 std::uint32_t RelationStore::forget(Item item) {
   std::uint32_t count = 0;
   if (item < items_.size()) {
     for (Index r = std::exchange(items_[item], kNone); r != kNone; ++count) {
-      const Index next = block(r).next;
-      release(r);
+      const Index next = entries_[r].next;
+      eraseSlot(r);
+      free(r);
       r = next;
     }
   }
@@ -161,20 +148,63 @@ std::uint32_t RelationStore::forget(Item item) {
 }
 
 void RelationStore::clear() {
-  items_.assign(items_.size(), kNone);
-  for (Index i = 0; i < used_blocks_; ++i) {
-    block(i).more = kNone;
-    block(i).next = i + 1 < used_blocks_ ? i + 1 : kNone;
+  std::fill(items_.begin(), items_.end(), kNone);
+  for (Index r = 0; r < entries_.size(); ++r) {
+    if (entries_[r].quad != kNone) {
+      free(r);
+    }
   }
-  free_ = used_blocks_ > 0 ? 0 : kNone;
-  free_blocks_ = used_blocks_;
-  oldest_ = newest_ = kNone;
-  size_ = 0;
+  std::fill(slots_.begin(), slots_.end(), kNone);
+}
+
+void RelationStore::beginFrame() {
+  ++frame_;
+  const bool little = std::max(used_, quads_used_) > max_ - max_ / 8;
+  if (little && frame_ >= next_sweep_) {
+    makeRoom();
+  }
+}
+
+// The least recently used relations go, until a quarter of the budget is free; never those of the last frame,
+// which are wanted again.
+void RelationStore::makeRoom() {
+  constexpr std::size_t kAges = 256;
+  std::array<std::uint32_t, kAges> by_age{};
+  const auto ageOf = [this](const Entry& entry) {
+    return std::min<std::size_t>(frame_ - entry.used_at, kAges - 1);
+  };
+  for (const Entry& entry : entries_) {
+    if (entry.quad != kNone) {
+      ++by_age[ageOf(entry)];
+    }
+  }
+  std::size_t oldest = kAges;
+  for (std::uint32_t going = 0; oldest > 2 && going < max_ / 4;) {
+    going += by_age[--oldest];
+  }
+  std::fill(items_.begin(), items_.end(), kNone);
+  const std::uint32_t before = used_;
+  for (Index r = 0; r < entries_.size(); ++r) {
+    Entry& entry = entries_[r];
+    if (entry.quad == kNone) {
+      continue;
+    }
+    if (ageOf(entry) >= oldest) {
+      free(r);
+    } else {
+      entry.next = std::exchange(items_[entry.item], r);
+    }
+  }
+  rebuildTable(slots_.size());
+  evicted_ += before - used_;
+  // Where there was little to find it is not worth looking again at once.
+  next_sweep_ = frame_ + (before - used_ < max_ / 16 ? 16 : 1);
 }
 
 std::size_t RelationStore::bytes() const {
-  const std::size_t slots = std::min<std::size_t>(slabs_.size() << kSlabBits, max_blocks_);
-  return slots * sizeof(Block) + items_.capacity() * sizeof(Index);
+  const std::size_t quads = std::min<std::size_t>(slabs_.size() << kSlabBits, max_);
+  return entries_.capacity() * sizeof(Entry) + quads * sizeof(Quad) + slots_.capacity() * sizeof(Index) +
+         items_.capacity() * sizeof(Index);
 }
 
 }  // namespace sightline::occlusion_detail

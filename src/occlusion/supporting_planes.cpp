@@ -19,10 +19,17 @@ struct SupportingPlanes::Impl {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr Item kNoItem = 0xffffffffu;
 
-  // An occluder that has all of the box behind it and hides some of it.
+  // An occluder that has all of the box behind it and may hide some of it.
   struct Partial {
     std::uint32_t member = 0;
     std::uint64_t failing = 0;  // edges whose supporting plane the eye does not satisfy
+  };
+
+  // How an occluder stands to a box.
+  struct Found {
+    bool touches = false;       // hides some of it
+    bool behind = false;        // and all of it lies behind the occluder, beyond what the near plane clips
+    std::uint64_t failing = 0;  // edges beyond which the eye sees some of the box
   };
 
   enum class Role : std::uint8_t { kUnknown, kAlive, kRejected };
@@ -36,6 +43,9 @@ struct SupportingPlanes::Impl {
   OccluderList listOf(std::span<const OccluderId> ids, std::vector<OccluderId>* used);
   std::span<const InsetEdge> edgesOf(Member& member);
   void findSeams(Member& member);
+  std::span<const EyeQuad> eyeQuadsOf(Member& member);
+  Found look(const Box& box, Item item, Member& member);
+  const Relation* lookAgain(Item item, const Member& member);
   Relation relate(Item item, const Box& box, Member& member, PlaneSide side);
   Visibility classify(const Box& box, Item item, OccluderList among, OccluderList& touching);
   bool hiddenJointly(const Box& box);
@@ -54,6 +64,7 @@ struct SupportingPlanes::Impl {
   std::vector<OccluderId> asked;         // that have an entry there
   std::vector<OccluderId> used;          // of build()
   std::vector<InsetEdge> inset_edges;
+  std::vector<EyeQuad> eye_quads;
   std::vector<Plane> seams;          // by edge of a member, the member behind it, relative to the eye
   std::vector<std::uint32_t> lists;  // members, ascending by OccluderId in each list
   OccluderList all;
@@ -95,6 +106,7 @@ void SupportingPlanes::Impl::build(const View& view, const OccluderSet& new_set,
   store.beginFrame();
   members.clear();
   inset_edges.clear();
+  eye_quads.clear();
   seams.clear();
   lists.clear();
   used.clear();
@@ -151,7 +163,15 @@ std::span<const InsetEdge> SupportingPlanes::Impl::edgesOf(Member& member) {
     member.first_edge = static_cast<std::uint32_t>(inset_edges.size());
     appendInsetEdges(*set, member, inset_edges);
   }
-  return std::span(inset_edges).subspan(member.first_edge, (*set)[member.seen.id].vertex_count);
+  return std::span(inset_edges).subspan(member.first_edge, member.edge_count);
+}
+
+std::span<const EyeQuad> SupportingPlanes::Impl::eyeQuadsOf(Member& member) {
+  if (member.first_eye_quad == Member::kNotYet) {
+    member.first_eye_quad = static_cast<std::uint32_t>(eye_quads.size());
+    appendEyeQuads(eye, member, edgesOf(member), eye_quads);
+  }
+  return std::span(eye_quads).subspan(member.first_eye_quad, (member.edge_count + 3u) / 4u);
 }
 
 void SupportingPlanes::Impl::findSeams(Member& member) {
@@ -183,7 +203,7 @@ bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
   if (sideOf(member, box) != PlaneSide::kBehind || !beyondNearCut(eye, member, box)) {
     return false;
   }
-  Partial partial{index, failingEdges(eye, member, edgesOf(member), box)};
+  const Partial partial{index, ~lookFromEye(eye, member, eyeQuadsOf(member), box).satisfied};
   findSeams(member);
   if ((partial.failing & ~member.sealable) != 0) {
     return false;
@@ -270,54 +290,73 @@ Relation SupportingPlanes::Impl::relate(Item item, const Box& box, Member& membe
   return relation;
 }
 
+// One occluder and the box, by the form of planes in use.
+SupportingPlanes::Impl::Found SupportingPlanes::Impl::look(const Box& box, Item item, Member& member) {
+  Found found;
+  const bool through_box = settings.form == PlaneForm::kThroughBox;
+  if (const Relation* kept = through_box && item != kNoItem ? lookAgain(item, member) : nullptr) {
+    found = {kept->touches, kept->behind, kept->failing()};
+  } else {
+    const PlaneSide side = sideOf(member, box);
+    if (side == PlaneSide::kFront) {
+      return {};
+    }
+    if (through_box) {
+      const Relation relation = relate(item, box, member, side);
+      found = {relation.touches, relation.behind, relation.failing()};
+    } else {
+      const EyeLook seen = lookFromEye(eye, member, eyeQuadsOf(member), box);
+      found = {seen.touches, side == PlaneSide::kBehind, ~seen.satisfied};
+    }
+  }
+  found.behind = found.behind && found.touches && beyondNearCut(eye, member, box);
+  return found;
+}
+
+// A kept relation, looked at again where a sign may have changed; null: there is none.
+const Relation* SupportingPlanes::Impl::lookAgain(Item item, const Member& member) {
+  const RelationStore::Index kept = store.find(item, member.seen.id);
+  if (kept == RelationStore::kNone || !store[kept].fits(member.inset_exponent, member.seen.flipped)) {
+    return nullptr;
+  }
+  Relation& relation = store[kept];
+  ++stats.relations.reused;
+  if (path < relation.until) {
+    ++stats.relations.unchanged;
+  } else {
+    evaluate(member, store.planes(kept, plane_scratch), path, relation);
+  }
+  return &relation;
+}
+
 Visibility SupportingPlanes::Impl::classify(const Box& box, Item item, OccluderList among,
                                             OccluderList& touching) {
   touching = {static_cast<std::uint32_t>(lists.size()), 0};
   if (!box.wellFormed()) {
     return Visibility::kVisible;
   }
-  if (!settings.keep_relations) {
-    item = kNoItem;
-  }
   partials.clear();
   bool hidden = false;
-  std::optional<RelationStore::Cursor> cursor;
-  if (item != kNoItem) {
-    cursor = store.relationsOf(item);
+  if (!settings.keep_relations) {
+    item = kNoItem;
   }
   for (std::uint32_t i = among.first; i < among.first + among.count && !hidden; ++i) {
     const std::uint32_t index = lists[i];
     Member& member = members[index];
-    const RelationStore::Index kept = cursor ? cursor->find(member.seen.id) : RelationStore::kNone;
-    Relation relation;
-    if (kept != RelationStore::kNone && store[kept].fits(member.inset_exponent, member.seen.flipped)) {
-      ++stats.relations.reused;
-      if (path < store[kept].until) {
-        ++stats.relations.unchanged;
-      } else {
-        evaluate(member, store.planes(kept, plane_scratch), path, store[kept]);
-      }
-      store.use(kept);
-      relation = store[kept];
-    } else {
-      const PlaneSide side = sideOf(member, box);
-      if (side == PlaneSide::kFront) {
-        continue;
-      }
-      relation = relate(item, box, member, side);
-    }
-    if (!relation.touches) {
+    const Found found = look(box, item, member);
+    if (!found.touches) {
       continue;
     }
-    const bool covers = relation.behind && beyondNearCut(eye, member, box);
-    hidden = covers && relation.hides();
+    hidden = found.behind && found.failing == 0;
     lists.push_back(index);
-    if (covers) {
-      partials.push_back({index, relation.allEdges() & ~relation.satisfied});
+    if (found.behind) {
+      partials.push_back({index, found.failing});
     }
   }
-  if (!fresh.empty()) {
-    store.keep(item, fresh, fresh_planes);
+  std::size_t quad = 0;
+  for (const Relation& relation : fresh) {
+    store.keep(item, relation, std::span(fresh_planes).subspan(quad, relation.quads()));
+    quad += relation.quads();
   }
   fresh.clear();
   fresh_planes.clear();

@@ -230,6 +230,43 @@ TEST(ChooseOccluders, ReturnsWhatSortingAllOfThemReturns) {
   EXPECT_GT(partly, 100u);
 }
 
+TEST(ChooseOccluders, OfGivenOccludersReturnsWhatSortingThemReturns) {
+  OccluderChooser chooser;
+  std::size_t full = 0, partly = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    const Crowd scene = crowd(random);
+    View view;
+    view.eye = random.point(20.0);
+    setOrientation(view, random.point(1.0), {0, 1, 0});
+    view.orthographic = seed % 4 == 0;
+    view.ortho_height = 30.0;
+    std::vector<OccluderId> given;  // in no order
+    for (const ObjectId object : scene.asked) {
+      const std::span<const OccluderId> of_object = scene.set.occludersOf(object);
+      given.insert(random.below(2) == 0 ? given.begin() : given.end(), of_object.begin(), of_object.end());
+    }
+    for (const AreaAngleDirection direction : kDirections) {
+      for (const std::uint32_t count : {0u, 1u, 8u, 64u, 1000u}) {
+        const ChoiceSettings settings{.count = count, .direction = direction};
+        const std::vector<OccluderId> expected = chosenBySorting(scene, view, settings);
+        // The distance is one to objects: here it has no meaning.
+        const ChoiceSettings near_only{.count = count, .direction = direction, .max_distance = 1.0};
+        for (const ChoiceSettings& s : {settings, near_only}) {
+          const std::span<const OccluderId> chosen = chooser.choose(view, scene.set, given, s);
+          EXPECT_TRUE(std::equal(chosen.begin(), chosen.end(), expected.begin(), expected.end()))
+              << "seed " << seed << " count " << count;
+          full += chosen.size() == count ? 1 : 0;
+          partly += chosen.size() < count && !chosen.empty() ? 1 : 0;
+        }
+      }
+    }
+    EXPECT_TRUE(chooser.choose(view, scene.set, std::span<const OccluderId>(), {}).empty());
+  }
+  EXPECT_GT(full, 100u);
+  EXPECT_GT(partly, 100u);
+}
+
 TEST(ChooseOccluders, TiesGoToTheLowerId) {
   // Four equal squares at equal distances.
   const OccluderSet set =

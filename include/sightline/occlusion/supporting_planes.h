@@ -13,7 +13,14 @@
 
 namespace sightline {
 
-// How the two vertices of a box are found that planes through a line touch.
+// Which planes a box is compared with. A plane through the eye and an edge of the occluder leaves all of the
+// box on the occluder's side exactly where the eye satisfies the supporting plane of edge and box.
+enum class PlaneForm : std::uint8_t {
+  kThroughEye,  // a few planes an occluder and frame, nothing for a box: the fastest
+  kThroughBox,  // the supporting and separating planes of each box, which can be kept (Coorg and Teller 1997)
+};
+
+// How the two vertices of a box are found that planes through a line touch; for kThroughBox.
 enum class TangentSearch : std::uint8_t {
   kTables,       // two table look-ups (Coorg and Teller 1997, 3.3); exact
   kAllVertices,  // all eight vertices are compared; where rounding leaves none, no plane hides anything
@@ -21,7 +28,8 @@ enum class TangentSearch : std::uint8_t {
 
 struct SupportingPlanesSettings {
   bool joint_occlusion = true;  // occluders that share edges hide together what none of them hides alone
-  bool keep_relations = true;   // for classify() with an item
+  PlaneForm form = PlaneForm::kThroughEye;
+  bool keep_relations = true;              // of classify() with an item; for kThroughBox
   std::size_t relation_bytes = 64u << 20;  // of kept relations, at most; the least recently used go first
   TangentSearch tangent_search = TangentSearch::kTables;
 };
