@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 namespace sightline::occlusion_detail {
 
@@ -78,7 +79,7 @@ RelationStore::Index RelationStore::takeEntry() {
   }
   entries_.emplace_back();
   if (slots_.size() < 2 * entries_.size()) {
-    rebuildTable(std::max<std::size_t>(512, slots_.size() * 2));
+    rebuildTable(slots_.empty() ? std::min<std::size_t>(512, std::bit_ceil(2u * max_)) : slots_.size() * 2);
   }
   return static_cast<Index>(entries_.size() - 1);
 }

@@ -54,7 +54,7 @@ TEST(Tool, InfoCountsAddUp) {
 }
 
 TEST(Tool, CullListsVisibleObjectsAscending) {
-  for (const std::string method : {"frustum", "occlusion-tree"}) {
+  for (const std::string method : {"frustum", "supporting-planes", "occlusion-tree"}) {
     const json cull = jsonOf({"cull", kCity, "--method", method, "--frames", "0:400:80"});
     expectKeys(cull, {"scene", "method", "options", "frames"});
     expectKeys(cull["scene"], {"objects", "triangles"});

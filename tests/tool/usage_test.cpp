@@ -10,7 +10,7 @@ const std::string kCity = "demo:city?copies=1";
 TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
   EXPECT_EQ(runTool({"--help"}).code, 0);
   EXPECT_EQ(runTool({"--version"}).code, 0);
-  for (const std::string command : {"info", "walk", "cull", "verify"}) {
+  for (const std::string command : {"info", "walk", "cull", "verify", "reproduce"}) {
     const Outcome outcome = runTool({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_EQ(outcome.err, "") << command;
@@ -20,7 +20,7 @@ TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
 
 TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
   expectRefused({}, "--help");
-  expectRefused({"bogus"}, "info, walk, cull, verify");
+  expectRefused({"bogus"}, "info, walk, cull, verify, reproduce");
   expectRefused({"cull"}, "SCENE");
   expectRefused({"cull", kCity, "--bogus"}, "--bogus");
   expectRefused({"cull", kCity, "--threads"}, "--threads");
@@ -29,13 +29,14 @@ TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
 
 TEST(Tool, UnknownNamesAreAnsweredWithThoseThatExist) {
   expectRefused({"info", "demo:nothing"}, "city");
-  expectRefused({"cull", kCity, "--method", "opacity-map"}, "frustum, occlusion-tree");
-  expectRefused({"cull", kCity, "--method", ""}, "frustum, occlusion-tree");
-  expectRefused({"verify", kCity, "--method", "frustum,,frustum"}, "frustum, occlusion-tree");
+  expectRefused({"cull", kCity, "--method", "opacity-map"}, "frustum, supporting-planes, occlusion-tree");
+  expectRefused({"cull", kCity, "--method", ""}, "frustum, supporting-planes, occlusion-tree");
+  expectRefused({"verify", kCity, "--method", "frustum,,frustum"},
+                "frustum, supporting-planes, occlusion-tree");
   expectRefused({"cull", kCity, "--variant", "fse"}, "FSE, FSC, FME, FMC");
   expectRefused({"cull", kCity, "--hierarchy", "octree"}, "kd, bvh");
   expectRefused({"cull", kCity, "--coherence", "maybe"}, "on, off");
-  expectRefused({"cull", kCity, "--occluders", "database"}, "area-angle");
+  expectRefused({"cull", kCity, "--occluders", "projected-size"}, "area-angle, database");
   expectRefused({"cull", kCity, "--area-angle", "x"}, "occluder, view");
   expectRefused({"cull", kCity, "--path", "nowhere"}, "smooth");
   expectRefused({"cull", kCity, "--method", "frustum,occlusion-tree"}, "one value");

@@ -18,5 +18,6 @@ void addInfo(CLI::App& app, Command& chosen);
 void addWalk(CLI::App& app, Command& chosen);
 void addCull(CLI::App& app, Command& chosen);
 void addVerify(CLI::App& app, Command& chosen);
+void addReproduce(CLI::App& app, Command& chosen);
 
 }  // namespace sightline::tool

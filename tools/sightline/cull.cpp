@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 
 #include "tools/sightline/commands.h"
@@ -9,6 +10,7 @@
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/statistics.h"
 #include "tools/sightline/threads.h"
 
 namespace sightline::tool {
@@ -21,21 +23,28 @@ struct CullOptions {
   bool no_times = false;
 };
 
+// Over all frames.
 struct Totals {
-  double objects = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0, occluders = 0.0;
+  double objects = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0, tested_share = 0.0,
+         occluders = 0.0;
+  std::map<std::string, double> statistics{};  // by their texts
 };
 
-std::string frameJson(std::uint32_t frame, const CullRun& run, bool times) {
+std::string frameJson(std::uint32_t frame, const CullRun& run, const Setting& setting, double tested_share,
+                      bool times) {
   std::vector<std::uint32_t> ids;
   for (const ObjectId object : run.culler.visible()) {
     ids.push_back(object.value);
   }
   const CullStats& stats = run.culler.stats();
-  return dump({{"frame", frame},
+  Json json = {{"frame", frame},
                {"visible", ids},
                {"cull_us", times ? run.cull_us : 0.0},
                {"nodes_tested", stats.nodes_tested},
-               {"occluders", stats.occluders}});
+               {"nodes_tested_share", tested_share},
+               {"occluders", stats.occluders}};
+  addStatistics(json, setting, [&](const Statistic& statistic) { return statistic.of(stats); });
+  return dump(json);
 }
 
 void print(const Setting& setting, const CullingData& data, std::size_t frames, const Totals& sum) {
@@ -44,8 +53,12 @@ void print(const Setting& setting, const CullingData& data, std::size_t frames, 
   fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n, data.bounds().size());
   fmt::print("  their triangles   {:12.1f}\n", sum.triangles / n);
   fmt::print("  cull time         {:12.1f} us\n", sum.cull_us / n);
-  fmt::print("  nodes tested      {:12.1f}\n", sum.nodes_tested / n);
+  fmt::print("  nodes tested      {:12.1f} ({:.1f} % of the hierarchy)\n", sum.nodes_tested / n,
+             100.0 * sum.tested_share / n);
   fmt::print("  occluders         {:12.1f}\n", sum.occluders / n);
+  for (const Statistic& statistic : statisticsOf(setting)) {
+    fmt::print("  {:<18}{:12.1f}\n", statistic.text, sum.statistics.at(statistic.text) / n);
+  }
 }
 
 Result<Setting> singleSetting(const MethodOptions& options) {
@@ -69,19 +82,27 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
   ProgressBar progress("culling");
   for (const std::uint32_t frame : walk.frames) {
     run.cull(walk.view(frame, scene));
-    if (!options.common.json.empty()) {
-      frames.push_back(frameJson(frame, run, !options.no_times));
-    }
     const CullStats& stats = run.culler.stats();
+    const double tested_share = testedShare(stats, data.hierarchy(setting.hierarchy).nodes.size());
+    if (!options.common.json.empty()) {
+      frames.push_back(frameJson(frame, run, setting, tested_share, !options.no_times));
+    }
     sum.objects += static_cast<double>(run.culler.visible().size());
     sum.triangles += static_cast<double>(data.trianglesOf(run.culler.visible()));
     sum.cull_us += options.no_times ? 0.0 : run.cull_us;
     sum.nodes_tested += stats.nodes_tested;
+    sum.tested_share += tested_share;
     sum.occluders += stats.occluders;
+    for (const Statistic& statistic : statisticsOf(setting)) {
+      sum.statistics[statistic.text] += static_cast<double>(statistic.of(stats));
+    }
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
   }
-  const Json head = {
+  Json head = {
       {"scene", sceneJson(scene)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
+  if (data.database() != nullptr) {
+    head["database"] = databaseJson(data, !options.no_times);
+  }
   if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", frames)); !ok) {
     return ok.error();
   }
@@ -116,6 +137,7 @@ void addCull(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  sightline cull city.glb --path walk.json --json visible.json\n"
       "  sightline cull demo:city --path worst --variant FSE --occluder-count 32 --json -\n"
+      "  sightline cull demo:building --method supporting-planes --hierarchy kd --occluders database\n"
       "  sightline cull demo:building --method frustum --frames 0:400:10");
   command->callback([options, &chosen] { chosen = [options] { return runCull(*options); }; });
 }

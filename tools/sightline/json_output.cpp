@@ -40,6 +40,16 @@ Status checkOutput(const std::string& target) {
   return Success{};
 }
 
+Status makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    return Error{
+        fmt::format("{}: cannot make this folder: {}", folder, error ? error.message() : "a file is there")};
+  }
+  return Success{};
+}
+
 Status writeOutput(const std::string& target, const std::string& text) {
   if (target.empty()) {
     return Success{};

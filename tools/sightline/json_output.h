@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sightline/base/result.h"
-#include "tools/sightline/options.h"
+#include "tools/sightline/method_options.h"
 
 namespace sightline::tool {
 
@@ -17,6 +17,9 @@ std::string dumpWithList(const Json& head, const std::string& key, const std::ve
 
 // Whether output can go there, to be asked before the work: "" and "-" can, a file in an existing folder.
 Status checkOutput(const std::string& target);
+
+// Makes the folder, and those above it, where there is none.
+Status makeFolder(const std::string& folder);
 
 // To the file, or to standard output for "-"; nothing for "".
 Status writeOutput(const std::string& target, const std::string& text);

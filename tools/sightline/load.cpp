@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 
 #include "scenes/procedural.h"
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
 #include "tools/sightline/json_output.h"
+#include "tools/sightline/progress_bar.h"
 
 namespace sightline::tool {
 namespace {
@@ -100,7 +102,7 @@ Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOpt
 }
 
 CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for)
-    : occluders_(findOccluders(scene.view(), {}, parallel_for)) {
+    : parallel_for_(parallel_for), occluders_(findOccluders(scene.view(), {}, parallel_for)) {
   for (const Object& object : scene.objects) {
     bounds_.push_back(object.bounds);
     triangles_.push_back(object.triangleCount());
@@ -117,8 +119,23 @@ const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
   return *hierarchy;
 }
 
+// All settings of one run have the same database.
+const OccluderDatabase& CullingData::databaseFor(const Setting& setting) {
+  if (!database_) {
+    const Hierarchy& cells = hierarchy(HierarchyKind::kKdTree);
+    ProgressBar progress("occluder database");
+    const auto start = std::chrono::steady_clock::now();
+    database_ = std::make_unique<OccluderDatabase>(OccluderDatabase::build(
+        cells, occluders_, setting.database, parallel_for_, [&](double done) { progress.update(done); }));
+    database_us_ =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  }
+  return *database_;
+}
+
 Culler CullingData::makeCuller(const Setting& setting) {
-  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler);
+  const OccluderDatabase* database = setting.usesDatabase() ? &databaseFor(setting) : nullptr;
+  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, database);
 }
 
 std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
@@ -131,6 +148,14 @@ std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const 
 
 Json sceneJson(const Scene& scene) {
   return {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
+}
+
+Json databaseJson(const CullingData& data, bool times) {
+  const OccluderDatabase& database = *data.database();
+  return {{"cells", database.cellCount()},
+          {"directions", database.directionCount()},
+          {"bytes", database.bytes()},
+          {"build_us", times ? data.databaseUs() : 0.0}};
 }
 
 }  // namespace sightline::tool

@@ -10,6 +10,7 @@
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/scene/scene.h"
+#include "tools/sightline/method_options.h"
 #include "tools/sightline/options.h"
 
 namespace sightline::tool {
@@ -19,7 +20,7 @@ Result<Scene> loadScene(const std::string& name);
 
 struct Walk {
   CameraPath path;
-  std::vector<std::uint32_t> frames;  // chosen ones, ascending
+  std::vector<std::uint32_t> frames{};  // chosen ones, ascending
 
   View view(std::uint32_t frame, const Scene& scene) const { return path.view(frame, scene.origin); }
 };
@@ -40,18 +41,28 @@ class CullingData {
 
   Culler makeCuller(const Setting& setting);
   const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
+  // The occluder database of the first setting that uses one; null until a culler needed it.
+  const OccluderDatabase* database() const { return database_.get(); }
+  double databaseUs() const { return database_us_; }  // that building it took
   const OccluderSet& occluders() const { return occluders_; }
   std::span<const Box> bounds() const { return bounds_; }
   std::span<const std::uint32_t> triangles() const { return triangles_; }  // of each object
   std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
 
  private:
+  const OccluderDatabase& databaseFor(const Setting& setting);
+
+  ParallelFor parallel_for_;
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
   OccluderSet occluders_;
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
+  std::unique_ptr<OccluderDatabase> database_;
+  double database_us_ = 0.0;
 };
 
 Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
+// {"cells":n,"directions":n,"bytes":n,"build_us":t}; there is a database. times: else 0 for them.
+Json databaseJson(const CullingData& data, bool times = true);
 
 }  // namespace sightline::tool

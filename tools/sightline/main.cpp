@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   addWalk(app, chosen);
   addCull(app, chosen);
   addVerify(app, chosen);
+  addReproduce(app, chosen);
   if (const std::string word = argc > 1 ? argv[1] : "";
       !word.empty() && word[0] != '-' && !isCommand(app, word)) {
     return fail(fmt::format("there is no command '{}'; choose from: {}", word, commandNames(app)));

@@ -18,8 +18,9 @@ struct Name {
   T value;
 };
 
-inline constexpr std::array<Name<CullMethod>, 2> kMethods{{
+inline constexpr std::array<Name<CullMethod>, 3> kMethods{{
     {"frustum", CullMethod::kFrustum},
+    {"supporting-planes", CullMethod::kSupportingPlanes},
     {"occlusion-tree", CullMethod::kOcclusionTree},
 }};
 inline constexpr std::array<Name<OcclusionTreeVariant>, 4> kVariants{{
@@ -32,9 +33,17 @@ inline constexpr std::array<Name<HierarchyKind>, 2> kHierarchies{{
     {"kd", HierarchyKind::kKdTree},
     {"bvh", HierarchyKind::kBvh},
 }};
+inline constexpr std::array<Name<OccluderChoice>, 2> kOccluderChoices{{
+    {"area-angle", OccluderChoice::kAreaAngle},
+    {"database", OccluderChoice::kDatabase},
+}};
 inline constexpr std::array<Name<AreaAngleDirection>, 2> kAreaAngleDirections{{
     {"occluder", AreaAngleDirection::kOccluder},
     {"view", AreaAngleDirection::kView},
+}};
+inline constexpr std::array<Name<TangentSearch>, 2> kTangentSearches{{
+    {"tables", TangentSearch::kTables},
+    {"all-vertices", TangentSearch::kAllVertices},
 }};
 inline constexpr std::array<Name<bool>, 2> kSwitch{{{"on", true}, {"off", false}}};
 

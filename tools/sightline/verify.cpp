@@ -12,6 +12,7 @@
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/text_table.h"
 #include "tools/sightline/threads.h"
 
 namespace sightline::tool {
@@ -224,17 +225,18 @@ void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const S
   fmt::print("{} frames, {} objects, exactly visible {:.1f} a frame\n", verifier.exact_of_frame.size(),
              scene.objects.size(),
              static_cast<double>(verifier.exact_total) / static_cast<double>(verifier.exact_of_frame.size()));
-  fmt::print("{:<16} {:<44} {:>10} {:>12} {:>11} {:>12}\n", "method", "options", "kept", "overestimate",
-             "unconfirmed", "false culls");
+  TextTable table{{"method", "options", "kept", "overestimate", "unconfirmed", "false culls"}, {}, 2};
   for (const VerifyRun& run : runs) {
     double kept = 0.0;
     for (const FrameCounts& frame : run.frames) {
       kept += static_cast<double>(frame.kept);
     }
-    fmt::print("{:<16} {:<44} {:>10.1f} {:>12.3f} {:>11} {:>12}\n", methodName(run.setting),
-               optionsText(run.setting), kept / static_cast<double>(run.frames.size()),
-               run.overestimate(verifier.exact_total), run.unconfirmed, run.false_culls.size());
+    table.rows.push_back({methodName(run.setting), optionsText(run.setting),
+                          fmt::format("{:.1f}", kept / static_cast<double>(run.frames.size())),
+                          fmt::format("{:.3f}", run.overestimate(verifier.exact_total)),
+                          std::to_string(run.unconfirmed), std::to_string(run.false_culls.size())});
   }
+  fmt::print("{}", toText(table));
 }
 
 Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Setting>& settings,
@@ -303,6 +305,8 @@ void addVerify(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  sightline verify city.glb --path walk.json\n"
       "  sightline verify demo:building --variant FSE,FSC,FME,FMC --hierarchy kd,bvh --coherence on,off\n"
+      "  sightline verify demo:city --method supporting-planes --joint on,off --occluders "
+      "area-angle,database\n"
       "  sightline verify demo:city --frames 0:400:20 --width 3840 --height 2160 --aimed-rays 64 --json "
       "verify.json");
   command->callback([options, &chosen] { chosen = [options] { return runVerify(*options); }; });

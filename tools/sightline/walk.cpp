@@ -4,21 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <memory>
-#include <string_view>
 
 #include "sightline/io/file.h"
 #include "sightline/render/compare.h"
 #include "sightline/render/plot.h"
 #include "sightline/render/renderer.h"
+#include "tools/sightline/command_line.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/progress_bar.h"
 #include "tools/sightline/threads.h"
 #include "tools/sightline/walk_pictures.h"
 #include "tools/sightline/walk_report.h"
+#include "tools/sightline/walk_runs.h"
 
 namespace sightline::tool {
 namespace {
@@ -31,7 +31,7 @@ struct WalkOptions {
   PathOptions path;
   MethodOptions method;
   std::string folder;
-  std::uint32_t width = 0, height = 0;  // 0: the path's
+  PictureOptions picture;
   std::string command_line;
 };
 
@@ -62,9 +62,7 @@ class Walker {
   }
 
   Result<WalkRecord> run(const std::vector<Setting>& settings) {
-    for (const Setting& setting : settings) {
-      record_.runs.push_back({setting, CullRun{data_.makeCuller(setting)}, {}});
-    }
+    record_.runs = makeRuns(settings, data_);
     record_.shown = record_.runs.size() > 1 ? 1 : 0;
     record_.device = renderer_.device();
     images_.resize(record_.runs.size());
@@ -83,23 +81,8 @@ class Walker {
   Status step(std::size_t i) {
     const std::uint32_t frame = walk_.frames[i];
     const View view = walk_.view(frame, scene_);
-    for (WalkRun& run : record_.runs) {
-      run.run.cull(view);
-      const CullStats& stats = run.run.culler.stats();
-      const std::span<const ObjectId> visible = run.run.culler.visible();
-      run.frames.push_back({frame, visible.size(), data_.trianglesOf(visible), run.run.cull_us, 0.0,
-                            stats.nodes_tested, stats.occluders});
-    }
-    if (i == 0) {
-      renderer_.time(view, record_.baseline().run.culler.visible());  // warms up
-    }
-    // Each frame begins with another run, so that none has the others' warm caches always.
-    for (std::size_t k = 0; k < record_.runs.size(); ++k) {
-      const std::size_t r = (i + k) % record_.runs.size();
-      DrawStats stats;
-      images_[r] = renderer_.draw(view, record_.runs[r].run.culler.visible(), &stats);
-      record_.runs[r].frames.back().draw_us = stats.draw_us;
-    }
+    cullFrame(record_.runs, data_, frame, view);
+    drawFrame(record_.runs, view, renderer_, &images_);
     keep(frame, view);
     if (i % kEverythingEvery == 0) {
       if (const Status drawn = compare(renderer_.draw(view, everything_), everything_, 0, view); !drawn) {
@@ -193,50 +176,10 @@ Status writePlots(const Report& report, const std::string& folder) {
   return Success{};
 }
 
-std::string shellWord(const std::string& word) {
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) ||
-           std::string_view("-_./:,=+@%").find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) {
-    return word;
-  }
-  std::string quoted = "'";
-  for (const char c : word) {
-    quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  }
-  return quoted + "'";
-}
-
-// What was asked for, as it can be typed again: the scene, then the options that were given.
-std::string commandLine(const CLI::App& command) {
-  std::string words, options;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& value : option->results()) {
-      if (option->nonpositional()) {
-        options += " " + option->get_name() + " " + shellWord(value);
-      } else {
-        words += " " + shellWord(value);
-      }
-    }
-  }
-  return "sightline " + command.get_name() + words + options;
-}
-
-Status makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    return Error{
-        fmt::format("{}: cannot make this folder: {}", folder, error ? error.message() : "a file is there")};
-  }
-  return Success{};
-}
-
 Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRecord& record,
                 Renderer& renderer) {
   Result<std::vector<ReportPicture>> pictures =
-      drawPictures(record, input.scene, input.occluders, renderer, options.folder);
+      drawPictures(record, input.scene, input.data.occluders(), renderer, options.folder);
   if (!pictures) {
     return pictures.error();
   }
@@ -255,8 +198,7 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
 
 Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting>& settings,
                            const Scene& scene, const Walk& walk) {
-  const std::uint32_t width = options.width > 0 ? options.width : walk.path.width;
-  const std::uint32_t height = options.height > 0 ? options.height : walk.path.height;
+  const auto [width, height] = pictureSize(options.picture, walk.path);
   Result<Renderer> renderer = Renderer::create(scene.view(), width, height);
   if (!renderer) {
     return renderer.error();
@@ -272,7 +214,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   }
   record->width = width;
   record->height = height;
-  const WalkInput input{options.common.scene, scene, walk, data.occluders()};
+  const WalkInput input{options.common.scene, scene, walk, data};
   if (const Status written = writeAll(options, input, *record, *renderer); !written) {
     return written.error();
   }
@@ -306,10 +248,7 @@ void addWalk(CLI::App& app, Command& chosen) {
   addPathOptions(*command, options->path);
   addMethodOptions(*command, options->method, true);
   command->add_option("-o,--output", options->folder, "folder of the report; made if needed")->required();
-  command->add_option("--width", options->width, "of the pictures, in pixels (default: the path's)")
-      ->check(CLI::Range(1u, 16384u));
-  command->add_option("--height", options->height, "of the pictures, in pixels (default: the path's)")
-      ->check(CLI::Range(1u, 16384u));
+  addPictureOptions(*command, options->picture);
   command->footer(
       "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
       "picture, "
@@ -317,6 +256,8 @@ void addWalk(CLI::App& app, Command& chosen) {
       "Examples:\n"
       "  sightline walk demo:city -o report\n"
       "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"
+      "  sightline walk demo:city --method occlusion-tree,supporting-planes --hierarchy kd "
+      "--occluders area-angle,database -o report\n"
       "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
   command->callback([options, command, &chosen] {
     options->command_line = commandLine(*command);

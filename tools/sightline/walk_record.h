@@ -17,7 +17,7 @@ struct FrameRecord {
   std::size_t objects = 0;      // drawn
   std::uint64_t triangles = 0;  // drawn
   double cull_us = 0.0, draw_us = 0.0;
-  std::uint32_t nodes_tested = 0, occluders = 0;
+  CullStats stats;
   bool differs = false;  // the picture, from the one of view-frustum culling: something culled would show
   bool tie = false;      // the picture differs, but by ties of the depth buffer only
 
@@ -27,6 +27,8 @@ struct FrameRecord {
 struct WalkRun {
   Setting setting;
   CullRun run;
+  std::size_t hierarchy_nodes = 0;
+  std::uint32_t hierarchy_depth = 0;
   std::vector<FrameRecord> frames;
 
   template <typename Of>
@@ -73,7 +75,7 @@ struct WalkRecord {
   std::vector<KeptFrame> pictures;  // ascending by frame
   std::vector<ChangedPicture> changed;
   std::uint32_t width = 0, height = 0;
-  std::string device;  // OpenGL's
+  std::string device;  // OpenGL's; empty: nothing was drawn
 
   const WalkRun& baseline() const { return runs.front(); }
   std::size_t differing() const {

@@ -14,11 +14,20 @@ struct WalkInput {
   const std::string& scene_name;
   const Scene& scene;
   const Walk& walk;
-  const OccluderSet& occluders;
+  const CullingData& data;
 };
 
 // 1104233 -> "1,104,233"
 std::string grouped(std::uint64_t number);
+
+// The run's line of the table, means of a frame.
+ReportRow rowOf(const WalkRun& run, const WalkRecord& record);
+// In a sentence: how much of the hierarchy is tested, and what statisticsOf the setting has.
+std::string statisticsText(const WalkRun& run);
+// The curves of the runs, frame by frame.
+std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk);
+// Of the scene, the walk, and what was made for them.
+std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& record);
 
 std::string walkJson(const WalkInput& input, const WalkRecord& record);
 void printWalk(const WalkRecord& record);
