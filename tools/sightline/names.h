@@ -41,6 +41,10 @@ inline constexpr std::array<Name<AreaAngleDirection>, 2> kAreaAngleDirections{{
     {"occluder", AreaAngleDirection::kOccluder},
     {"view", AreaAngleDirection::kView},
 }};
+inline constexpr std::array<Name<PlaneForm>, 2> kPlaneForms{{
+    {"through-eye", PlaneForm::kThroughEye},
+    {"through-box", PlaneForm::kThroughBox},
+}};
 inline constexpr std::array<Name<TangentSearch>, 2> kTangentSearches{{
     {"tables", TangentSearch::kTables},
     {"all-vertices", TangentSearch::kAllVertices},

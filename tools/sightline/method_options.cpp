@@ -1,0 +1,319 @@
+// One table of options says everything about each: its name, what it belongs to, its values and its place in
+// the library's settings.
+
+#include "tools/sightline/method_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "tools/sightline/names.h"
+#include "tools/sightline/parse_text.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::uint32_t kMaxOccluders = 65535;
+constexpr std::uint32_t kMaxDirections = 4096;
+constexpr std::uint32_t kMaxTriangles = 1'000'000'000;
+constexpr double kMaxMebibytes = 65536.0;
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+// What an option sets, from text and back.
+struct Value {
+  std::string help;                                                    // after the option's own
+  std::string expected;                                                // "a whole number from 1 to 9"
+  std::function<bool(const std::string& text, Setting& setting)> set;  // false: not what was expected
+  std::function<Json(Setting setting)> get;
+};
+
+template <typename T>
+using Field = T& (*)(Setting&);
+
+template <typename T, std::size_t N>
+Value oneOf(const std::array<Name<T>, N>& names, Field<T> field) {
+  const auto set = [&names, field](const std::string& text, Setting& setting) {
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.text == text; });
+    if (found != names.end()) {
+      field(setting) = found->value;
+    }
+    return found != names.end();
+  };
+  return {": " + listNames(names), "one of: " + listNames(names), set,
+          [&names, field](Setting setting) { return Json(nameOf(names, field(setting))); }};
+}
+
+Value whole(std::uint32_t least, std::uint32_t most, Field<std::uint32_t> field) {
+  const auto set = [=](const std::string& text, Setting& setting) {
+    const std::optional<std::uint32_t> value = parseWhole(text);
+    if (!value || *value < least || *value > most) {
+      return false;
+    }
+    field(setting) = *value;
+    return true;
+  };
+  return {"", fmt::format("a whole number from {} to {}", least, most), set,
+          [field](Setting setting) { return Json(field(setting)); }};
+}
+
+// 0 or more, at most `most`.
+bool parseUpTo(double most, const std::string& text, double& value) {
+  const std::optional<double> parsed = parseDecimal(text);
+  if (!parsed || std::signbit(*parsed) || *parsed > most) {
+    return false;
+  }
+  value = *parsed;
+  return true;
+}
+
+Value decimal(Field<double> field) {
+  const auto set = [field](const std::string& text, Setting& setting) {
+    return parseUpTo(std::numeric_limits<double>::max(), text, field(setting));
+  };
+  return {"", "a finite number, 0 or greater", set,
+          [field](Setting setting) { return Json(field(setting)); }};
+}
+
+Value mebibytes(Field<std::size_t> bytes) {
+  const auto set = [bytes](const std::string& text, Setting& setting) {
+    double value = 0.0;
+    if (!parseUpTo(kMaxMebibytes, text, value)) {
+      return false;
+    }
+    bytes(setting) = static_cast<std::size_t>(value * kMebibyte);
+    return true;
+  };
+  return {"", fmt::format("a number of MiB from 0 to {:.0f}", kMaxMebibytes), set,
+          [bytes](Setting setting) { return Json(static_cast<double>(bytes(setting)) / kMebibyte); }};
+}
+
+// What an option belongs to.
+bool always(const Setting&) {
+  return true;
+}
+bool usesOccluders(const Setting& setting) {
+  return setting.culler.method != CullMethod::kFrustum;
+}
+bool usesTree(const Setting& setting) {
+  return setting.culler.method == CullMethod::kOcclusionTree;
+}
+bool usesPlanes(const Setting& setting) {
+  return setting.culler.method == CullMethod::kSupportingPlanes;
+}
+bool usesRelations(const Setting& setting) {
+  return setting.keepsRelations();
+}
+bool hasCoherence(const Setting& setting) {
+  return usesTree(setting) || usesRelations(setting);
+}
+bool testsDetail(const Setting& setting) {
+  return usesOccluders(setting) && setting.culler.detail_objects;
+}
+bool usesDatabase(const Setting& setting) {
+  return setting.usesDatabase();
+}
+
+struct Option {
+  std::string name;  // "occluder-count": --occluder-count, and occluder_count in JSON
+  // Whether it means anything for a setting; asked when the options above it are set. Where it does not, it
+  // is neither set nor shown, and its list does not multiply the setting.
+  bool (*belongs)(const Setting&);
+  bool list;      // takes several values, where the command does
+  bool headline;  // optionsText always tells it, in words of its own
+  std::string help;
+  Value value;
+};
+
+constexpr bool kList = true, kOne = false, kHeadline = true, kWhenChanged = false;
+
+// An option comes after those that decide whether it means anything.
+const std::vector<Option>& allOptions() {
+  static const std::vector<Option> kOptions{
+      {"method", always, kList, kHeadline, "how to cull",
+       oneOf(
+           kMethods, +[](Setting& s) -> CullMethod& { return s.culler.method; })},
+      {"hierarchy", always, kList, kHeadline, "over the objects",
+       oneOf(
+           kHierarchies, +[](Setting& s) -> HierarchyKind& { return s.hierarchy; })},
+      {"variant", usesTree, kList, kHeadline, "of the occlusion tree",
+       oneOf(
+           kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.culler.variant; })},
+      {"occluders", usesOccluders, kList, kWhenChanged, "how occluders are chosen",
+       oneOf(
+           kOccluderChoices, +[](Setting& s) -> OccluderChoice& { return s.culler.occluders; })},
+      {"occluder-count", usesOccluders, kList, kHeadline, "most occluders in a frame",
+       whole(
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluder_count; })},
+      {"planes", usesPlanes, kList, kWhenChanged,
+       "supporting planes: made for each occluder, or for each occluder and box, to be kept",
+       oneOf(
+           kPlaneForms, +[](Setting& s) -> PlaneForm& { return s.culler.supporting_planes.form; })},
+      {"coherence", hasCoherence, kList, kHeadline, "temporal coherence; supporting planes: kept relations",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.temporal_coherence; })},
+      {"lambda-steps", usesOccluders, kOne, kWhenChanged,
+       "occluders are looked for within so many steps of the observer; 0: everywhere",
+       decimal(+[](Setting& s) -> double& { return s.culler.lambda_steps; })},
+      {"min-node-cost", usesOccluders, kOne, kWhenChanged, "nodes with fewer triangles are not tested",
+       whole(
+           0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.culler.min_node_cost; })},
+      {"area-angle", usesOccluders, kOne, kWhenChanged, "direction that ranks occluders",
+       oneOf(
+           kAreaAngleDirections,
+           +[](Setting& s) -> AreaAngleDirection& { return s.culler.area_angle_direction; })},
+      {"test-objects", usesOccluders, kOne, kWhenChanged,
+       "objects of partly visible leaves are tested one by one",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.test_objects; })},
+      {"joint", usesPlanes, kList, kWhenChanged,
+       "supporting planes: occluders that share edges hide together",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.supporting_planes.joint_occlusion; })},
+      {"relation-mib", usesRelations, kOne, kWhenChanged, "supporting planes: most memory of kept relations",
+       mebibytes(+[](Setting& s) -> std::size_t& { return s.culler.supporting_planes.relation_bytes; })},
+      {"tangents", usesRelations, kOne, kWhenChanged, "supporting planes: how their vertices are found",
+       oneOf(
+           kTangentSearches,
+           +[](Setting& s) -> TangentSearch& { return s.culler.supporting_planes.tangent_search; })},
+      {"detail-objects", usesOccluders, kList, kWhenChanged,
+       "what was kept is tested again, with the database's occluders near itself",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.detail_objects; })},
+      {"detail-occluder-count", testsDetail, kOne, kWhenChanged, "most occluders in that second test",
+       whole(
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.detail_occluder_count; })},
+      {"database-directions", usesDatabase, kOne, kWhenChanged, "occluder database: directions of a cell",
+       whole(
+           1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.database.directions; })},
+      {"database-occluder-count", usesDatabase, kOne, kWhenChanged,
+       "occluder database: most occluders of a cell in a direction",
+       whole(
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.database.occluder_count; })},
+      {"database-mib", usesDatabase, kOne, kWhenChanged, "occluder database: most memory of its lists",
+       mebibytes(+[](Setting& s) -> std::size_t& { return s.database.max_bytes; })},
+  };
+  return kOptions;
+}
+
+// Of JSON: text without its quotes.
+std::string plainText(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string jsonKey(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+// The values of one option, each of them known to be fine.
+Result<std::vector<std::string>> valuesOf(const Option& option, const std::string& text) {
+  std::vector<std::string> values = splitAt(text, ',');
+  if (values.size() > 1 && !option.list) {
+    return Error{fmt::format("--{} takes one value, not '{}'", option.name, text)};
+  }
+  for (const std::string& value : values) {
+    Setting ignored;
+    if (!option.value.set(value, ignored)) {
+      return Error{fmt::format("--{}: '{}' is not {}", option.name, value, option.value.expected)};
+    }
+  }
+  return values;
+}
+
+std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option& option,
+                              const std::vector<std::string>& values) {
+  std::vector<Setting> all;
+  for (const Setting& setting : settings) {
+    if (!option.belongs(setting)) {
+      all.push_back(setting);
+      continue;
+    }
+    for (const std::string& value : values) {
+      all.push_back(setting);
+      option.value.set(value, all.back());
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+bool Setting::usesDatabase() const {
+  return usesOccluders(*this) && (culler.occluders == OccluderChoice::kDatabase || culler.detail_objects);
+}
+
+bool Setting::keepsRelations() const {
+  return usesPlanes(*this) && culler.supporting_planes.form == PlaneForm::kThroughBox;
+}
+
+MethodOptions::MethodOptions() {
+  for (const Option& option : allOptions()) {
+    texts.push_back(plainText(option.value.get(Setting{})));
+  }
+}
+
+void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const std::string help =
+        option.help + option.value.help + (lists && option.list ? " (several: a,b,c)" : "");
+    command.add_option("--" + option.name, options.texts[i], help)->capture_default_str();
+  }
+}
+
+Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
+  std::vector<Setting> settings{Setting{}};
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const Result<std::vector<std::string>> values = valuesOf(option, options.texts[i]);
+    if (!values) {
+      return values.error();
+    }
+    settings = multiply(settings, option, *values);
+  }
+  for (Setting& setting : settings) {
+    setting.database.area_angle_direction = setting.culler.area_angle_direction;
+  }
+  return settings;
+}
+
+std::string methodName(const Setting& setting) {
+  return nameOf(kMethods, setting.culler.method);
+}
+
+std::string optionsText(const Setting& setting) {
+  std::string text = nameOf(kHierarchies, setting.hierarchy);
+  if (!usesOccluders(setting)) {
+    return text;
+  }
+  text = fmt::format("{} occluders, {}", setting.culler.occluder_count, text);
+  if (hasCoherence(setting)) {
+    text += ", coherence " + nameOf(kSwitch, setting.culler.temporal_coherence);
+  }
+  if (usesTree(setting)) {
+    text = nameOf(kVariants, setting.culler.variant) + ", " + text;
+  }
+  for (const Option& option : allOptions()) {
+    const Json value = option.value.get(setting);
+    if (!option.headline && option.belongs(setting) && value != option.value.get(Setting{})) {
+      text += fmt::format(", {} {}", option.name, plainText(value));
+    }
+  }
+  return text;
+}
+
+Json optionsJson(const Setting& setting) {
+  Json json;
+  for (const Option& option : allOptions()) {
+    if (option.name != "method" && option.belongs(setting)) {
+      json[jsonKey(option.name)] = option.value.get(setting);
+    }
+  }
+  return json;
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,43 @@
+#pragma once
+
+// How to cull: the options of the command line, and what they mean for the library.
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sightline/base/result.h"
+#include "sightline/culling/culler.h"
+
+namespace sightline::tool {
+
+using Json = nlohmann::ordered_json;
+
+// One method with one value of each option.
+struct Setting {
+  HierarchyKind hierarchy = HierarchySettings{}.kind;
+  CullerSettings culler{};
+  OccluderDatabaseSettings database{};
+
+  bool usesDatabase() const;
+  bool keepsRelations() const;  // where temporal coherence is on
+};
+
+// The options as text, one for each option that there is; several values are separated by commas.
+struct MethodOptions {
+  MethodOptions();  // the library's defaults
+
+  std::vector<std::string> texts;
+};
+void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
+
+// All combinations, in the order of the lists; options that a method does not have do not multiply it.
+Result<std::vector<Setting>> settingsOf(const MethodOptions& options);
+
+std::string methodName(const Setting& setting);
+// For people: "FME, 64 occluders, bvh, coherence on", then what is not as usual.
+std::string optionsText(const Setting& setting);
+Json optionsJson(const Setting& setting);
+
+}  // namespace sightline::tool

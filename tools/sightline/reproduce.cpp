@@ -1,0 +1,187 @@
+// sightline reproduce: the experiments of a paper, on the scenes of today.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "sightline/io/file.h"
+#include "tools/sightline/command_line.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/json_output.h"
+#include "tools/sightline/names.h"
+#include "tools/sightline/reproduction.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::size_t kFewerFrames = 10;  // one in so many, with --short
+
+struct Paper {
+  const char* title;
+  std::vector<std::string> scenes;  // unless the user names others
+  Result<Reproduction> (*reproduce)(const ReproduceOptions&, const std::vector<SceneAndWalk>&);
+};
+
+// The papers, by the names they have on the command line.
+const std::vector<std::pair<std::string, Paper>>& papers() {
+  static const std::vector<std::pair<std::string, Paper>> kPapers{
+      {"coorg-teller",
+       {"Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997.",
+        {"demo:building?plants=100", "demo:city"},
+        reproduceCoorgTeller}},
+  };
+  return kPapers;
+}
+
+std::string paperNames() {
+  std::string names;
+  for (const auto& [name, paper] : papers()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
+Result<const Paper*> findPaper(const std::string& name) {
+  for (const auto& [known, paper] : papers()) {
+    if (known == name) {
+      return &paper;
+    }
+  }
+  return Error{fmt::format("there is no paper '{}'; choose from: {}", name, paperNames())};
+}
+
+// All of them before the work, which takes longer.
+Result<std::vector<SceneAndWalk>> loadAll(const ReproduceOptions& options) {
+  std::vector<SceneAndWalk> inputs;
+  for (const std::string& scene : options.scenes) {
+    Result<SceneAndWalk> input = loadSceneAndWalk({options.output, scene}, options.path);
+    if (!input) {
+      return input.error();
+    }
+    if (options.fewer_frames && options.path.frames.empty()) {
+      std::vector<std::uint32_t> fewer;
+      for (std::size_t i = 0; i < input->walk.frames.size(); i += kFewerFrames) {
+        fewer.push_back(input->walk.frames[i]);
+      }
+      input->walk.frames = fewer;
+    }
+    inputs.push_back(std::move(*input));
+  }
+  return inputs;
+}
+
+std::string toJson(const ReproduceOptions& options, const Paper& paper, const Reproduction& result) {
+  Json experiments;
+  for (const Experiment& experiment : result.experiments) {
+    experiments[experiment.key] = toJson(experiment);
+  }
+  return dump({{"paper", options.paper},
+               {"title", paper.title},
+               {"scenes", options.scenes},
+               {"experiments", experiments},
+               {"notes", result.notes}});
+}
+
+std::string toText(const Paper& paper, const Reproduction& result) {
+  std::string text = std::string(paper.title) + "\n";
+  for (const Experiment& experiment : result.experiments) {
+    text += "\n" + toText(experiment);
+  }
+  for (const std::string& note : result.notes) {
+    text += "\n" + note + "\n";
+  }
+  return text;
+}
+
+// A name for a folder, from a scene's.
+std::string folderName(const std::string& scene) {
+  std::string name;
+  for (const char c : std::filesystem::path(scene).filename().string()) {
+    name += std::isalnum(static_cast<unsigned char>(c)) ? c : '-';
+  }
+  return name;
+}
+
+Status writeFolder(const ReproduceOptions& options, const std::string& text, const std::string& json,
+                   const Reproduction& result) {
+  for (std::size_t i = 0; i < result.reports.size(); ++i) {
+    const std::string folder = fmt::format("{}/{}-{}", options.folder, i + 1, folderName(options.scenes[i]));
+    if (const Status made = makeFolder(folder); !made) {
+      return made;
+    }
+    if (const Status written = writeReport(result.reports[i], folder); !written) {
+      return written;
+    }
+  }
+  const Status tables = writeFile(options.folder + "/tables.txt", text);
+  return tables ? writeOutput(options.folder + "/reproduce.json", json) : tables;
+}
+
+Result<ExitCode> writeResult(const ReproduceOptions& options, const Paper& paper,
+                             const Reproduction& result) {
+  const std::string text = toText(paper, result), json = toJson(options, paper, result);
+  if (const Status written = writeOutput(options.output.json, json); !written) {
+    return written.error();
+  }
+  if (!options.folder.empty()) {
+    if (const Status written = writeFolder(options, text, json, result); !written) {
+      return written.error();
+    }
+  }
+  if (options.output.textOnStdout()) {
+    fmt::print("{}", text);
+  }
+  return kOk;
+}
+
+Result<ExitCode> runReproduce(ReproduceOptions options) {
+  const Result<const Paper*> found = findPaper(options.paper);
+  if (!found) {
+    return found.error();
+  }
+  const Paper& paper = **found;
+  if (options.scenes.empty()) {
+    options.scenes = paper.scenes;
+  }
+  const Result<std::vector<SceneAndWalk>> inputs = loadAll(options);
+  if (!inputs) {
+    return inputs.error();
+  }
+  if (!options.folder.empty()) {
+    if (const Status made = makeFolder(options.folder); !made) {
+      return made.error();
+    }
+  }
+  const Result<Reproduction> result = paper.reproduce(options, *inputs);
+  return result ? writeResult(options, paper, *result) : result.error();
+}
+
+}  // namespace
+
+void addReproduce(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand("reproduce", "a paper's experiments, on the scenes of today");
+  const auto options = std::make_shared<ReproduceOptions>();
+  command->add_option("PAPER", options->paper, "one of: " + paperNames())->required();
+  command
+      ->add_option("--scene", options->scenes,
+                   "a file or demo:NAME?key=value&...; several: once for each (default: the paper's)")
+      ->allow_extra_args(false);
+  addOutputOptions(*command, options->output);
+  addPathOptions(*command, options->path);
+  addPictureOptions(*command, options->picture);
+  command->add_flag("--short", options->fewer_frames, "few frames, unless --frames says which");
+  command->add_option("-o,--output", options->folder,
+                      "folder of the tables and a report for each scene; made if needed");
+  command->footer(
+      "Examples:\n"
+      "  sightline reproduce coorg-teller\n"
+      "  sightline reproduce coorg-teller --short --scene \"demo:city?copies=4\" --json tables.json\n"
+      "  sightline reproduce coorg-teller --scene office.glb --path walk.json -o report");
+  command->callback([options, command, &chosen] {
+    options->command_line = commandLine(*command);
+    chosen = [options] { return runReproduce(*options); };
+  });
+}
+
+}  // namespace sightline::tool

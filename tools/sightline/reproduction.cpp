@@ -1,0 +1,42 @@
+#include "tools/sightline/reproduction.h"
+
+#include <fmt/format.h>
+
+#include "tools/sightline/text_table.h"
+
+namespace sightline::tool {
+namespace {
+
+std::string cellText(const Json& row, const Column& column) {
+  if (!row.contains(column.key) || row[column.key].is_null()) {
+    return "-";
+  }
+  const Json& value = row[column.key];
+  return column.decimals < 0 ? value.get<std::string>()
+                             : fmt::format("{:.{}f}", value.get<double>(), column.decimals);
+}
+
+}  // namespace
+
+std::string toText(const Experiment& experiment) {
+  TextTable table;
+  table.left = 0;
+  for (const Column& column : experiment.columns) {
+    table.head.push_back(column.head);
+    table.left += column.decimals < 0 ? 1 : 0;
+  }
+  for (const Json& row : experiment.rows) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    for (const Column& column : experiment.columns) {
+      cells.push_back(cellText(row, column));
+    }
+  }
+  const std::string claim = experiment.claim.empty() ? "" : "The paper: " + experiment.claim + "\n";
+  return experiment.title + "\n" + claim + toText(table);
+}
+
+Json toJson(const Experiment& experiment) {
+  return {{"title", experiment.title}, {"claim", experiment.claim}, {"rows", experiment.rows}};
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,53 @@
+#pragma once
+
+// What reproducing a paper yields, whichever paper it is.
+
+#include <string>
+#include <vector>
+
+#include "sightline/render/report.h"
+#include "tools/sightline/load.h"
+
+namespace sightline::tool {
+
+struct ReproduceOptions {
+  std::string paper;
+  OutputOptions output;
+  PathOptions path;
+  PictureOptions picture;
+  std::vector<std::string> scenes;
+  bool fewer_frames = false;
+  std::string folder;  // of the reports; empty: none
+  std::string command_line;
+};
+
+// How one value of the rows is printed.
+struct Column {
+  std::string key;
+  std::string head;
+  int decimals = -1;  // -1: words
+};
+
+// One table. Its rows are JSON objects, as they are written; a value that a row lacks is printed as "-".
+struct Experiment {
+  std::string key;  // in JSON
+  std::string title;
+  std::string claim;  // what the paper says, in words: the digits of its tables did not come down to us
+  std::vector<Column> columns;
+  std::vector<Json> rows{};
+};
+
+std::string toText(const Experiment& experiment);
+Json toJson(const Experiment& experiment);
+
+struct Reproduction {
+  std::vector<Experiment> experiments{};
+  std::vector<std::string> notes{};
+  std::vector<Report> reports{};  // one a scene
+};
+
+// Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 6.
+Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
+                                          const std::vector<SceneAndWalk>& inputs);
+
+}  // namespace sightline::tool
