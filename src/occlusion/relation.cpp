@@ -19,8 +19,6 @@ constexpr double kPlaneValue = 0x1p-45;
 // A box is compared with an occluder only while its rounding, this times its farthest corner, is below the
 // inset.
 constexpr double kFarBox = 0x1p-46;
-// Rounding of planes through the eye, times the distances involved.
-constexpr double kEyePlane = 0x1p-36;
 // A plane that every eye satisfies.
 constexpr double kAlways = 1e300;
 
@@ -38,15 +36,6 @@ void store(PlaneQuad& quad, std::uint32_t which, std::uint32_t lane, const Plane
   quad.y[which][lane] = plane.normal.y;
   quad.z[which][lane] = plane.normal.z;
   quad.offset[which][lane] = plane.offset;
-}
-
-// Whether a box lies behind a plane through the eye, beyond the rounding of the plane.
-bool liesBehind(const Plane& plane, const Eye& eye, const Member& member, const Box& box) {
-  const Vec3d low = Vec3d(box.min) - eye.position, high = Vec3d(box.max) - eye.position;
-  const Vec3d& n = plane.normal;
-  const double worst = std::max(n.x * low.x, n.x * high.x) + std::max(n.y * low.y, n.y * high.y) +
-                       std::max(n.z * low.z, n.z * high.z) + plane.offset;
-  return worst < -kEyePlane * (magnitude(max(abs(low), abs(high))) + member.seen.reach);
 }
 
 // The part of a polygon beyond the near plane, as a plane through the eye and the line where it is cut.
@@ -191,11 +180,19 @@ void evaluate(const Member& member, std::span<const PlaneQuad> planes, double pa
   relation.until = path + clearance * (1.0 - 0x1p-20) - 0x1p-40 * std::max(1.0, member.seen.reach);
 }
 
-void appendEyeQuads(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
+EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
                     std::vector<EyeQuad>& quads) {
+  const EyeOccluder& seen = member.seen;
+  const EyeShape shape{seen.support.normal,
+                       seen.support.offset,
+                       member.inset,
+                       seen.reach,
+                       static_cast<std::uint32_t>(quads.size()),
+                       member.edge_count,
+                       member.near_clipped};
   for (std::size_t e = 0; e < edges.size(); ++e) {
     // The edge runs the other way round for an eye behind the occluder's front.
-    const Vec3d along = member.seen.flipped ? -edges[e].direction : edges[e].direction;
+    const Vec3d along = seen.flipped ? -edges[e].direction : edges[e].direction;
     const Vec3d from = edges[e].point + (member.origin - eye.position);
     double sine = 0.0;
     const Plane plane = eye.shadowPlane(from, from + along * length(from), sine);
@@ -208,33 +205,18 @@ void appendEyeQuads(const Eye& eye, const Member& member, std::span<const InsetE
     quad.z[e % 4] = plane.normal.z;
     quad.offset[e % 4] = plane.offset;
   }
-}
-
-EyeLook lookFromEye(const Eye& eye, const Member& member, std::span<const EyeQuad> quads, const Box& box) {
-  const Vec3d low = Vec3d(box.min) - eye.position, high = Vec3d(box.max) - eye.position;
-  const double tolerance = kEyePlane * (magnitude(max(abs(low), abs(high))) + member.seen.reach);
-  EyeLook look{true, ~std::uint64_t{0}};
-  std::uint32_t first = 0;
-  for (const EyeQuad& quad : quads) {
-    double least[4], most[4];
-    for (int lane = 0; lane < 4; ++lane) {
-      const double x0 = quad.x[lane] * low.x, x1 = quad.x[lane] * high.x;
-      const double y0 = quad.y[lane] * low.y, y1 = quad.y[lane] * high.y;
-      const double z0 = quad.z[lane] * low.z, z1 = quad.z[lane] * high.z;
-      least[lane] = std::min(x0, x1) + std::min(y0, y1) + std::min(z0, z1) + quad.offset[lane];
-      most[lane] = std::max(x0, x1) + std::max(y0, y1) + std::max(z0, z1) + quad.offset[lane];
-    }
-    for (std::uint32_t lane = 0; lane < 4 && first + lane < member.edge_count; ++lane) {
-      look.touches &= !(least[lane] >= -tolerance);
-      look.satisfied &= ~((most[lane] < -tolerance ? std::uint64_t{0} : std::uint64_t{1}) << (first + lane));
-    }
-    first += 4;
-  }
-  return look;
+  return shape;
 }
 
 bool beyondNearCut(const Eye& eye, const Member& member, const Box& box) {
-  return !member.near_clipped || liesBehind(member.near_cut, eye, member, box);
+  if (!member.near_clipped) {
+    return true;
+  }
+  const Vec3d low = Vec3d(box.min) - eye.position, high = Vec3d(box.max) - eye.position;
+  const Vec3d& n = member.near_cut.normal;
+  const double worst = std::max(n.x * low.x, n.x * high.x) + std::max(n.y * low.y, n.y * high.y) +
+                       std::max(n.z * low.z, n.z * high.z) + member.near_cut.offset;
+  return worst < -kEyePlane * (magnitude(max(abs(low), abs(high))) + member.seen.reach);
 }
 
 }  // namespace sightline::occlusion_detail

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "occlusion/eye_occluder.h"
+#include "occlusion/eye_planes.h"
 #include "sightline/occlusion/supporting_planes.h"
 
 namespace sightline::occlusion_detail {
@@ -67,11 +68,9 @@ struct Member {
   bool near_clipped = false;
   Plane near_cut;  // through the eye, where the near plane cuts it; what is left lies behind; relative to the
                    // eye
-  // Filled when first asked for.
-  std::uint32_t first_edge = kNotYet;      // into the inset edges of all members
-  std::uint32_t first_eye_quad = kNotYet;  // into the planes through the eye of all members
-  std::uint32_t first_seam = kNotYet;      // into the seams of all members
-  std::uint64_t sealable = 0;              // edges that have a seam, a bit each
+  std::uint32_t first_edge = 0;        // into the inset edges of all members
+  std::uint32_t first_seam = kNotYet;  // into the seams of all members, once they were asked for
+  std::uint64_t sealable = 0;          // edges that have a seam, a bit each; likewise
 
   static constexpr std::uint32_t kNotYet = 0xffffffffu;
 };
@@ -93,22 +92,9 @@ void makeRelation(const Member& member, std::span<const InsetEdge> edges, const 
 // Looks where the eye is. path: its length so far.
 void evaluate(const Member& member, std::span<const PlaneQuad> planes, double path, Relation& relation);
 
-// Planes through the eye and four edges of the outline, drawn in; unit normals, relative to the eye. The
-// occluder lies behind them.
-struct EyeQuad {
-  double x[4] = {}, y[4] = {}, z[4] = {}, offset[4] = {};
-};
-// Appends the planes of these edges, in quads.
-void appendEyeQuads(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
+// The occluder as lookPast() needs it; appends its planes. edges: its own.
+EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
                     std::vector<EyeQuad>& quads);
-
-// The box as the planes through the eye see it.
-struct EyeLook {
-  bool touches = false;         // not wholly beyond an edge
-  std::uint64_t satisfied = 0;  // edges that have all of the box on the occluder's side; all bits beyond the
-                                // edges are set
-};
-EyeLook lookFromEye(const Eye& eye, const Member& member, std::span<const EyeQuad> quads, const Box& box);
 
 // Whether all of the box is seen, if at all, through what the near plane leaves of the occluder.
 bool beyondNearCut(const Eye& eye, const Member& member, const Box& box);

@@ -25,13 +25,6 @@ struct SupportingPlanes::Impl {
     std::uint64_t failing = 0;  // edges whose supporting plane the eye does not satisfy
   };
 
-  // How an occluder stands to a box.
-  struct Found {
-    bool touches = false;       // hides some of it
-    bool behind = false;        // and all of it lies behind the occluder, beyond what the near plane clips
-    std::uint64_t failing = 0;  // edges beyond which the eye sees some of the box
-  };
-
   enum class Role : std::uint8_t { kUnknown, kAlive, kRejected };
   static constexpr std::size_t kMaxJoint = 256;  // members of a set that hides together
 
@@ -41,10 +34,9 @@ struct SupportingPlanes::Impl {
   void follow(const Eye& next);
   std::uint32_t memberOf(OccluderId id);
   OccluderList listOf(std::span<const OccluderId> ids, std::vector<OccluderId>* used);
-  std::span<const InsetEdge> edgesOf(Member& member);
+  std::span<const InsetEdge> edgesOf(const Member& member) const;
   void findSeams(Member& member);
-  std::span<const EyeQuad> eyeQuadsOf(Member& member);
-  Found look(const Box& box, Item item, Member& member);
+  EyeLook lookThrough(const Box& box, Item item, Member& member);
   const Relation* lookAgain(Item item, const Member& member);
   Relation relate(Item item, const Box& box, Member& member, PlaneSide side);
   Visibility classify(const Box& box, Item item, OccluderList among, OccluderList& touching);
@@ -64,6 +56,7 @@ struct SupportingPlanes::Impl {
   std::vector<OccluderId> asked;         // that have an entry there
   std::vector<OccluderId> used;          // of build()
   std::vector<InsetEdge> inset_edges;
+  std::vector<EyeShape> shapes;  // by member
   std::vector<EyeQuad> eye_quads;
   std::vector<Plane> seams;          // by edge of a member, the member behind it, relative to the eye
   std::vector<std::uint32_t> lists;  // members, ascending by OccluderId in each list
@@ -73,6 +66,7 @@ struct SupportingPlanes::Impl {
   // Of one call of classify().
   std::vector<Relation> fresh;
   std::vector<PlaneQuad> fresh_planes, plane_scratch;
+  std::vector<EyeLook> looks;
   std::vector<Partial> partials;
   std::vector<Role> roles;              // by member, in the search for a set that hides the box
   std::vector<std::uint32_t> examined;  // members that have a role
@@ -106,6 +100,7 @@ void SupportingPlanes::Impl::build(const View& view, const OccluderSet& new_set,
   store.beginFrame();
   members.clear();
   inset_edges.clear();
+  shapes.clear();
   eye_quads.clear();
   seams.clear();
   lists.clear();
@@ -129,6 +124,9 @@ std::uint32_t SupportingPlanes::Impl::memberOf(OccluderId id) {
     if (const std::optional<Member> member = makeMember(eye, *set, id)) {
       index = static_cast<std::uint32_t>(members.size());
       members.push_back(*member);
+      members.back().first_edge = static_cast<std::uint32_t>(inset_edges.size());
+      appendInsetEdges(*set, *member, inset_edges);
+      shapes.push_back(eyeShapeOf(eye, *member, edgesOf(members.back()), eye_quads));
       roles.push_back(Role::kUnknown);
     }
   }
@@ -158,20 +156,8 @@ OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids, std
   return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(lists.size() - first)};
 }
 
-std::span<const InsetEdge> SupportingPlanes::Impl::edgesOf(Member& member) {
-  if (member.first_edge == Member::kNotYet) {
-    member.first_edge = static_cast<std::uint32_t>(inset_edges.size());
-    appendInsetEdges(*set, member, inset_edges);
-  }
+std::span<const InsetEdge> SupportingPlanes::Impl::edgesOf(const Member& member) const {
   return std::span(inset_edges).subspan(member.first_edge, member.edge_count);
-}
-
-std::span<const EyeQuad> SupportingPlanes::Impl::eyeQuadsOf(Member& member) {
-  if (member.first_eye_quad == Member::kNotYet) {
-    member.first_eye_quad = static_cast<std::uint32_t>(eye_quads.size());
-    appendEyeQuads(eye, member, edgesOf(member), eye_quads);
-  }
-  return std::span(eye_quads).subspan(member.first_eye_quad, (member.edge_count + 3u) / 4u);
 }
 
 void SupportingPlanes::Impl::findSeams(Member& member) {
@@ -200,10 +186,12 @@ bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
   Member& member = members[index];
   roles[index] = Role::kRejected;
   examined.push_back(index);
-  if (sideOf(member, box) != PlaneSide::kBehind || !beyondNearCut(eye, member, box)) {
+  EyeLook look;
+  lookPast(shapes, eye_quads, {&index, 1}, EyeBox(box, eye.position), {&look, 1});
+  if (!look.behind || !beyondNearCut(eye, member, box)) {
     return false;
   }
-  const Partial partial{index, ~lookFromEye(eye, member, eyeQuadsOf(member), box).satisfied};
+  const Partial partial{index, look.failing};
   findSeams(member);
   if ((partial.failing & ~member.sealable) != 0) {
     return false;
@@ -290,27 +278,17 @@ Relation SupportingPlanes::Impl::relate(Item item, const Box& box, Member& membe
   return relation;
 }
 
-// One occluder and the box, by the form of planes in use.
-SupportingPlanes::Impl::Found SupportingPlanes::Impl::look(const Box& box, Item item, Member& member) {
-  Found found;
-  const bool through_box = settings.form == PlaneForm::kThroughBox;
-  if (const Relation* kept = through_box && item != kNoItem ? lookAgain(item, member) : nullptr) {
-    found = {kept->touches, kept->behind, kept->failing()};
-  } else {
-    const PlaneSide side = sideOf(member, box);
-    if (side == PlaneSide::kFront) {
-      return {};
-    }
-    if (through_box) {
-      const Relation relation = relate(item, box, member, side);
-      found = {relation.touches, relation.behind, relation.failing()};
-    } else {
-      const EyeLook seen = lookFromEye(eye, member, eyeQuadsOf(member), box);
-      found = {seen.touches, side == PlaneSide::kBehind, ~seen.satisfied};
-    }
+// One occluder and the box, by planes through the box.
+EyeLook SupportingPlanes::Impl::lookThrough(const Box& box, Item item, Member& member) {
+  if (const Relation* kept = item != kNoItem ? lookAgain(item, member) : nullptr) {
+    return {kept->touches, kept->behind, kept->failing()};
   }
-  found.behind = found.behind && found.touches && beyondNearCut(eye, member, box);
-  return found;
+  const PlaneSide side = sideOf(member, box);
+  if (side == PlaneSide::kFront) {
+    return {};
+  }
+  const Relation relation = relate(item, box, member, side);
+  return {relation.touches, relation.behind, relation.failing()};
 }
 
 // A kept relation, looked at again where a sign may have changed; null: there is none.
@@ -335,22 +313,28 @@ Visibility SupportingPlanes::Impl::classify(const Box& box, Item item, OccluderL
   if (!box.wellFormed()) {
     return Visibility::kVisible;
   }
-  partials.clear();
-  bool hidden = false;
   if (!settings.keep_relations) {
     item = kNoItem;
   }
-  for (std::uint32_t i = among.first; i < among.first + among.count && !hidden; ++i) {
-    const std::uint32_t index = lists[i];
-    Member& member = members[index];
-    const Found found = look(box, item, member);
-    if (!found.touches) {
+  partials.clear();
+  bool hidden = false;
+  const bool through_eye = settings.form == PlaneForm::kThroughEye;
+  std::uint32_t count = among.count;
+  if (through_eye) {
+    looks.resize(std::max<std::size_t>(looks.size(), count));
+    const std::span<const std::uint32_t> list = std::span(lists).subspan(among.first, count);
+    count = static_cast<std::uint32_t>(lookPast(shapes, eye_quads, list, EyeBox(box, eye.position), looks));
+  }
+  for (std::uint32_t i = 0; i < count && !hidden; ++i) {
+    const std::uint32_t index = lists[among.first + i];
+    const EyeLook look = through_eye ? looks[i] : lookThrough(box, item, members[index]);
+    if (!look.touches) {
       continue;
     }
-    hidden = found.behind && found.failing == 0;
     lists.push_back(index);
-    if (found.behind) {
-      partials.push_back({index, found.failing});
+    if (look.behind && beyondNearCut(eye, members[index], box)) {
+      hidden = look.failing == 0;
+      partials.push_back({index, look.failing});
     }
   }
   std::size_t quad = 0;

@@ -30,7 +30,7 @@ struct SupportingPlanesSettings {
   bool joint_occlusion = true;  // occluders that share edges hide together what none of them hides alone
   PlaneForm form = PlaneForm::kThroughEye;
   bool keep_relations = true;              // of classify() with an item; for kThroughBox
-  std::size_t relation_bytes = 64u << 20;  // of kept relations, at most; the least recently used go first
+  std::size_t relation_bytes = 16u << 20;  // of kept relations, at most; the least recently used go first
   TangentSearch tangent_search = TangentSearch::kTables;
 };
 

@@ -1,0 +1,78 @@
+#include "occlusion/eye_planes.h"
+
+#include "sightline/geometry/tolerance.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "occlusion/eye_planes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion_detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// No fused operations: they would round differently from one instruction set to another.
+std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
+                        std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks) {
+  const hn::CappedTag<double, 4> d;
+  const auto low_x = hn::Set(d, box.low.x), low_y = hn::Set(d, box.low.y), low_z = hn::Set(d, box.low.z);
+  const auto high_x = hn::Set(d, box.high.x), high_y = hn::Set(d, box.high.y),
+             high_z = hn::Set(d, box.high.z);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const EyeShape& shape = shapes[list[i]];
+    EyeLook& look = looks[i];
+    look = {};
+    const Vec3d at_low(shape.normal.x * box.low.x, shape.normal.y * box.low.y, shape.normal.z * box.low.z);
+    const Vec3d at_high(shape.normal.x * box.high.x, shape.normal.y * box.high.y,
+                        shape.normal.z * box.high.z);
+    const Vec3d nearest = max(at_low, at_high), farthest = min(at_low, at_high);
+    const double margin = shape.depth_slack + kDepthMargin * (box.farthest + shape.reach);
+    if (!(farthest.x + farthest.y + farthest.z + shape.offset < -margin)) {
+      continue;
+    }
+    const auto tolerance = hn::Set(d, -kEyePlane * (box.farthest + shape.reach));
+    look.touches = true;
+    for (std::uint32_t first = 0; first < shape.edge_count; first += 4) {
+      const EyeQuad& quad = quads[shape.first_quad + first / 4];
+      for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+        const auto x = hn::LoadU(d, quad.x + lane), y = hn::LoadU(d, quad.y + lane);
+        const auto z = hn::LoadU(d, quad.z + lane), offset = hn::LoadU(d, quad.offset + lane);
+        const auto x0 = hn::Mul(x, low_x), x1 = hn::Mul(x, high_x);
+        const auto y0 = hn::Mul(y, low_y), y1 = hn::Mul(y, high_y);
+        const auto z0 = hn::Mul(z, low_z), z1 = hn::Mul(z, high_z);
+        const auto least =
+            hn::Add(hn::Add(hn::Add(hn::Min(x0, x1), hn::Min(y0, y1)), hn::Min(z0, z1)), offset);
+        const auto most =
+            hn::Add(hn::Add(hn::Add(hn::Max(x0, x1), hn::Max(y0, y1)), hn::Max(z0, z1)), offset);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::Not(hn::Lt(most, tolerance)), bits);
+        look.failing |= std::uint64_t{bits[0]} << (first + lane);
+        look.touches = look.touches && hn::AllTrue(d, hn::Lt(least, tolerance));
+      }
+    }
+    look.behind = nearest.x + nearest.y + nearest.z + shape.offset < -margin;
+    if (look.hidden() && !shape.near_clipped) {
+      return i + 1;
+    }
+  }
+  return list.size();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::occlusion_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion_detail {
+
+HWY_EXPORT(lookPastAll);
+
+std::size_t lookPast(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
+                     std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks) {
+  return HWY_DYNAMIC_DISPATCH(lookPastAll)(shapes, quads, list, box, looks);
+}
+
+}  // namespace sightline::occlusion_detail
+#endif
