@@ -57,12 +57,12 @@ struct KeptPlanes {
 
 struct Culler::Impl {
   Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s,
-       const OccluderDatabase* d)
+       const OccluderDatabases& d)
       : hierarchy(h),
         object_bounds(bounds),
         occluders(o),
         settings(s),
-        database(d),
+        databases(d),
         walk(h, bounds),
         search(h, bounds),
         tree(OcclusionTreeSettings{.variant = s.variant}),
@@ -75,14 +75,16 @@ struct Culler::Impl {
     return planes;
   }
 
-  bool usesDatabase() const { return database != nullptr && settings.occluders == OccluderChoice::kDatabase; }
+  bool usesDatabase() const {
+    return databases.from_eye != nullptr && settings.occluders == OccluderChoice::kDatabase;
+  }
 
   std::span<const OccluderId> chooseOccluders(const View& view, const Frustum& frustum) {
     ChoiceSettings choice;
     choice.count = settings.occluder_count;
     choice.direction = settings.area_angle_direction;
     if (usesDatabase()) {
-      return chooser.choose(view, occluders, database->find(view.eye, view.forward), choice);
+      return chooser.choose(view, occluders, databases.from_eye->find(view.eye, view.forward), choice);
     }
     return chooseByAreaAngle(view, frustum, choice);
   }
@@ -173,8 +175,9 @@ struct Culler::Impl {
         return false;
       }
       const Vec3d middle = center(box);
+      // Towards the eye: what stands in between faces the eye, and turns its back to the object.
       const Vec3d to_eye = view.orthographic ? -view.forward : view.eye - middle;
-      const std::span<const OccluderId> found = database->find(middle, to_eye);
+      const std::span<const OccluderId> found = databases.from_objects->find(middle, to_eye);
       const auto near = found.subspan(0, std::min<std::size_t>(found.size(), settings.detail_occluder_count));
       if (near.data() != last_near.data() || near.size() != last_near.size()) {
         last_near = near;
@@ -233,7 +236,7 @@ struct Culler::Impl {
   std::span<const Box> object_bounds;
   const OccluderSet& occluders;
   CullerSettings settings;
-  const OccluderDatabase* database;
+  OccluderDatabases databases;
   culling_detail::HierarchicalWalk walk, search;  // search: for occluders
   OccluderChooser chooser;
   OcclusionTree tree;
@@ -249,8 +252,8 @@ struct Culler::Impl {
 };
 
 Culler::Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
-               const CullerSettings& settings, const OccluderDatabase* database)
-    : impl_(std::make_unique<Impl>(hierarchy, object_bounds, occluders, settings, database)) {}
+               const CullerSettings& settings, const OccluderDatabases& databases)
+    : impl_(std::make_unique<Impl>(hierarchy, object_bounds, occluders, settings, databases)) {}
 Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
@@ -270,7 +273,8 @@ void Culler::cull(const View& view, std::span<const Box> dynamic_boxes) {
       impl_->cullWithPlanes(view, frustum, dynamic_boxes);
       break;
   }
-  if (impl_->settings.detail_objects && impl_->database != nullptr && method != CullMethod::kFrustum) {
+  if (impl_->settings.detail_objects && impl_->databases.from_objects != nullptr &&
+      method != CullMethod::kFrustum) {
     impl_->testDetailObjects(view);
   }
   impl_->stats.relations = impl_->planes.stats().relations;

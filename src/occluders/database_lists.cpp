@@ -58,14 +58,15 @@ double radiusOf(const OccluderSet& set, const Occluder& occluder) {
 
 }  // namespace
 
-CandidateTree::CandidateTree(const OccluderSet& set) {
+CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
   std::vector<Candidate> usable;
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < set.occluders.size(); ++i) {
     const Occluder& o = set.occluders[i];
     const double radius = radiusOf(set, o);
     if (isFinite(o.centroid) && std::isfinite(radius) && std::isfinite(o.area) && o.area > 0.0f) {
-      usable.push_back({Vec3d(o.centroid), o.plane, o.area, radius, OccluderId(i), o.double_sided});
+      usable.push_back({Vec3d(o.centroid), turned_away ? o.plane.flipped() : o.plane, o.area, radius,
+                        OccluderId(i), o.double_sided});
       boxes.push_back({o.centroid, o.centroid});
       bounds_.extend(o.centroid);
     }

@@ -26,8 +26,9 @@ struct Candidate {
 // The occluders of a set in a hierarchy over their centroids.
 class CandidateTree {
  public:
-  // Those without area or with coordinates that are not finite are left out.
-  explicit CandidateTree(const OccluderSet& set);
+  // Those without area or with coordinates that are not finite are left out. turned_away: with their backs
+  // for fronts.
+  explicit CandidateTree(const OccluderSet& set, bool turned_away = false);
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(candidates_.size()); }
   const Box& bounds() const { return bounds_; }  // of the centroids; empty without candidates

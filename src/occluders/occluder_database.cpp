@@ -106,7 +106,7 @@ OccluderDatabase OccluderDatabase::build(const Hierarchy& kd_tree, const Occlude
                                          const OccluderDatabaseSettings& settings,
                                          const ParallelFor& parallel_for, const Progress& progress) {
   const auto data = std::make_shared<Data>(settings.directions);
-  const CandidateTree candidates(set);
+  const CandidateTree candidates(set, settings.turned_away);
   const std::uint32_t directions = data->directions.count();
   const std::size_t length = std::min(settings.occluder_count, candidates.count());
   data->cells =

@@ -229,7 +229,7 @@ Experiment memory(const std::vector<Measured>& scenes) {
       peak.kept = std::max(peak.kept, frame.stats.relations.kept);
       peak.bytes = std::max(peak.bytes, frame.stats.relations.bytes);
     }
-    const OccluderDatabase& database = *measured.data.database();
+    const OccluderDatabase& database = *measured.data.databases().from_eye;
     experiment.rows.push_back({{"scene", measured.name},
                                {"objects", measured.input.scene.objects.size()},
                                {"triangles", measured.input.scene.triangleCount()},

@@ -119,23 +119,35 @@ const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
   return *hierarchy;
 }
 
-// All settings of one run have the same database.
-const OccluderDatabase& CullingData::databaseFor(const Setting& setting) {
-  if (!database_) {
+// All settings of one run have the same databases.
+const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool turned_away,
+                                                 std::unique_ptr<OccluderDatabase>& database) {
+  if (!database) {
     const Hierarchy& cells = hierarchy(HierarchyKind::kKdTree);
     ProgressBar progress("occluder database");
     const auto start = std::chrono::steady_clock::now();
-    database_ = std::make_unique<OccluderDatabase>(OccluderDatabase::build(
-        cells, occluders_, setting.database, parallel_for_, [&](double done) { progress.update(done); }));
-    database_us_ =
+    OccluderDatabaseSettings settings = setting.database;
+    settings.turned_away = turned_away;
+    database = std::make_unique<OccluderDatabase>(OccluderDatabase::build(
+        cells, occluders_, settings, parallel_for_, [&](double done) { progress.update(done); }));
+    database_us_ +=
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
   }
-  return *database_;
+  return database.get();
 }
 
 Culler CullingData::makeCuller(const Setting& setting) {
-  const OccluderDatabase* database = setting.usesDatabase() ? &databaseFor(setting) : nullptr;
-  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, database);
+  if (setting.usesDatabase()) {
+    databases_.from_eye = databaseFor(setting, false, from_eye_);
+  }
+  if (setting.testsDetailObjects()) {
+    databases_.from_objects = databaseFor(setting, true, from_objects_);
+  }
+  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases_);
+}
+
+std::size_t CullingData::databaseBytes() const {
+  return (from_eye_ ? from_eye_->bytes() : 0) + (from_objects_ ? from_objects_->bytes() : 0);
 }
 
 std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
@@ -151,10 +163,14 @@ Json sceneJson(const Scene& scene) {
 }
 
 Json databaseJson(const CullingData& data, bool times) {
-  const OccluderDatabase& database = *data.database();
-  return {{"cells", database.cellCount()},
-          {"directions", database.directionCount()},
-          {"bytes", database.bytes()},
+  const OccluderDatabases& databases = data.databases();
+  const OccluderDatabase* any = databases.from_eye != nullptr ? databases.from_eye : databases.from_objects;
+  if (any == nullptr) {
+    return nullptr;
+  }
+  return {{"cells", any->cellCount()},
+          {"directions", any->directionCount()},
+          {"bytes", data.databaseBytes()},
           {"build_us", times ? data.databaseUs() : 0.0}};
 }
 

@@ -41,28 +41,32 @@ class CullingData {
 
   Culler makeCuller(const Setting& setting);
   const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
-  // The occluder database of the first setting that uses one; null until a culler needed it.
-  const OccluderDatabase* database() const { return database_.get(); }
-  double databaseUs() const { return database_us_; }  // that building it took
+  // The occluder databases of the first setting that uses them; null until a culler needed them.
+  const OccluderDatabases& databases() const { return databases_; }
+  std::size_t databaseBytes() const;
+  double databaseUs() const { return database_us_; }  // that building them took
   const OccluderSet& occluders() const { return occluders_; }
   std::span<const Box> bounds() const { return bounds_; }
   std::span<const std::uint32_t> triangles() const { return triangles_; }  // of each object
   std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
 
  private:
-  const OccluderDatabase& databaseFor(const Setting& setting);
+  const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
+                                      std::unique_ptr<OccluderDatabase>& database);
 
   ParallelFor parallel_for_;
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
   OccluderSet occluders_;
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
-  std::unique_ptr<OccluderDatabase> database_;
+  std::unique_ptr<OccluderDatabase> from_eye_, from_objects_;
+  OccluderDatabases databases_;
   double database_us_ = 0.0;
 };
 
 Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
-// {"cells":n,"directions":n,"bytes":n,"build_us":t}; there is a database. times: else 0 for them.
+// {"cells":n,"directions":n,"bytes":n,"build_us":t}, of all databases; null: there is none. times: else 0 for
+// them.
 Json databaseJson(const CullingData& data, bool times = true);
 
 }  // namespace sightline::tool

@@ -114,7 +114,7 @@ bool testsDetail(const Setting& setting) {
   return usesOccluders(setting) && setting.culler.detail_objects;
 }
 bool usesDatabase(const Setting& setting) {
-  return setting.usesDatabase();
+  return setting.usesDatabase() || setting.testsDetailObjects();
 }
 
 struct Option {
@@ -180,7 +180,7 @@ const std::vector<Option>& allOptions() {
            kTangentSearches,
            +[](Setting& s) -> TangentSearch& { return s.culler.supporting_planes.tangent_search; })},
       {"detail-objects", usesOccluders, kList, kWhenChanged,
-       "what was kept is tested again, with the database's occluders near itself",
+       "what was kept is tested again, with a database's occluders near itself",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.detail_objects; })},
       {"detail-occluder-count", testsDetail, kOne, kWhenChanged, "most occluders in that second test",
@@ -243,7 +243,11 @@ std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option
 }  // namespace
 
 bool Setting::usesDatabase() const {
-  return usesOccluders(*this) && (culler.occluders == OccluderChoice::kDatabase || culler.detail_objects);
+  return usesOccluders(*this) && culler.occluders == OccluderChoice::kDatabase;
+}
+
+bool Setting::testsDetailObjects() const {
+  return usesOccluders(*this) && culler.detail_objects;
 }
 
 bool Setting::keepsRelations() const {

@@ -21,6 +21,7 @@ struct Setting {
   OccluderDatabaseSettings database{};
 
   bool usesDatabase() const;
+  bool testsDetailObjects() const;
   bool keepsRelations() const;  // where temporal coherence is on
 };
 

@@ -9,7 +9,7 @@ bool hasRelations(const Setting& setting) {
   return setting.keepsRelations();
 }
 bool hasDetail(const Setting& setting) {
-  return setting.usesDatabase() && setting.culler.detail_objects;
+  return setting.testsDetailObjects();
 }
 
 constexpr Statistic kStatistics[] = {

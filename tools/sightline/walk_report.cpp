@@ -212,12 +212,12 @@ std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& reco
       {"triangles", grouped(input.scene.triangleCount())},
       {"potential occluders", grouped(input.data.occluders().occluders.size())},
       {"walk", fmt::format("{}, {} frames", pathName(input.walk), input.walk.frames.size())}};
-  if (const OccluderDatabase* database = input.data.database()) {
-    const double mebibytes = static_cast<double>(database->bytes()) / (1024.0 * 1024.0);
-    facts.push_back(
-        {"occluder database",
-         fmt::format("{} cells, {} directions, {:.1f} MiB, built in {:.2f} s", grouped(database->cellCount()),
-                     database->directionCount(), mebibytes, input.data.databaseUs() * 1e-6)});
+  if (const Json database = databaseJson(input.data); !database.is_null()) {
+    facts.push_back({"occluder database",
+                     fmt::format("{} cells, {} directions, {:.1f} MiB, built in {:.2f} s",
+                                 grouped(database["cells"]), database["directions"].get<std::uint32_t>(),
+                                 database["bytes"].get<double>() / (1024.0 * 1024.0),
+                                 database["build_us"].get<double>() * 1e-6)});
   }
   if (!record.device.empty()) {
     facts.push_back({"pictures", fmt::format("{} x {}", record.width, record.height)});
@@ -243,8 +243,8 @@ std::string walkJson(const WalkInput& input, const WalkRecord& record) {
                {"width", record.width},           {"height", record.height},
                {"device", record.device},         {"differing_frames", record.differing()},
                {"tie_frames", record.ties()}};
-  if (input.data.database() != nullptr) {
-    head["database"] = databaseJson(input.data);
+  if (const Json database = databaseJson(input.data); !database.is_null()) {
+    head["database"] = database;
   }
   std::vector<std::string> runs;
   for (const WalkRun& run : record.runs) {

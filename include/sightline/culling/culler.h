@@ -40,7 +40,7 @@ struct CullerSettings {
   // kept from frame to frame.
   bool temporal_coherence = true;
   bool test_objects = true;  // objects of partly visible leaves are tested by their own boxes
-  // Objects that the walk kept are tested once more, with the database's occluders near themselves.
+  // Objects that the walk kept are tested once more, with the occluders near themselves.
   bool detail_objects = false;
   std::uint32_t detail_occluder_count = 8;  // for each of them
 };
@@ -61,12 +61,18 @@ struct CullStats {
   double totalUs() const { return choose_us + build_us + walk_us + detail_us; }
 };
 
+struct OccluderDatabases {
+  // For OccluderChoice::kDatabase; without it occluders are chosen by area-angle.
+  const OccluderDatabase* from_eye = nullptr;
+  // For detail_objects, OccluderDatabaseSettings::turned_away; without it the second test is left out.
+  const OccluderDatabase* from_objects = nullptr;
+};
+
 class Culler {
  public:
-  // Views of the caller's data, which must outlive this. database: for OccluderChoice::kDatabase and
-  // detail_objects; without one, occluders are chosen by area-angle and the second test is left out.
+  // Views of the caller's data, which must outlive this.
   Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
-         const CullerSettings& settings = {}, const OccluderDatabase* database = nullptr);
+         const CullerSettings& settings = {}, const OccluderDatabases& databases = {});
   ~Culler();
   Culler(Culler&&) noexcept;
   Culler& operator=(Culler&&) noexcept;

@@ -18,10 +18,13 @@ namespace sightline {
 
 struct OccluderDatabaseSettings {
   std::uint32_t directions = 32;       // spread evenly on the sphere, 1 to 4096
-  std::uint32_t occluder_count = 128;  // k: the best for each cell and direction, at most
+  std::uint32_t occluder_count = 512;  // k: the best for each cell and direction, at most
   std::size_t max_bytes = 64u << 20;   // of the database; cells are coarser where it would not fit
   double view_angle_deg = 100.0;       // full angle of the cone around a direction in which occluders count
   AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;
+  // For look-ups from an object towards the eye (detail objects): single-sided occluders that turn their back
+  // to the cell, since what hides the object faces the eye.
+  bool turned_away = false;
 };
 
 // Does not change once it is built: any number of threads may ask it. Copies share one memory.
