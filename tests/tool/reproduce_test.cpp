@@ -51,7 +51,7 @@ TEST(Reproduce, CoorgTellerHasATableForEachExperiment) {
 TEST(Reproduce, OcclusionCullingDrawsFewerPolygons) {
   const json result = reproduced({"--scene", "demo:city?copies=1", "--scene", "demo:building?floors=1"});
   const json& rows = result["experiments"]["polygons_drawn"]["rows"];
-  ASSERT_EQ(rows.size(), 2u * 4u);
+  ASSERT_EQ(rows.size(), 2u * 5u);
   for (std::size_t scene = 0; scene < 2; ++scene) {
     const json& frustum = rows[4 * scene];
     EXPECT_EQ(frustum["culling"], "frustum");

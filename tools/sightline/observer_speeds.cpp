@@ -16,25 +16,29 @@ constexpr std::uint32_t kFewestCounted = 2;  // frames of a stretch, or the spee
 
 // Walks beside each other, so that whatever else the machine does meets them alike.
 struct Walkers {
-  Culler frustum, coherent, incoherent;
+  Culler frustum, coherent, incoherent, through_eye;
 
   void reset() {
     frustum.reset();
     coherent.reset();
     incoherent.reset();
+    through_eye.reset();
   }
   void cull(const View& view) {
     frustum.cull(view);
     coherent.cull(view);
     incoherent.cull(view);
+    through_eye.cull(view);
   }
 };
 
 Walkers makeWalkers(CullingData& data, const Setting& setting) {
-  Setting frustum = setting, incoherent = setting;
+  Setting frustum = setting, incoherent = setting, through_eye = setting;
   frustum.culler.method = CullMethod::kFrustum;
   incoherent.culler.temporal_coherence = false;
-  return {data.makeCuller(frustum), data.makeCuller(setting), data.makeCuller(incoherent)};
+  through_eye.culler.supporting_planes.form = PlaneForm::kThroughEye;
+  return {data.makeCuller(frustum), data.makeCuller(setting), data.makeCuller(incoherent),
+          data.makeCuller(through_eye)};
 }
 
 void add(const Walkers& walkers, SpeedResult& sum) {
@@ -42,6 +46,7 @@ void add(const Walkers& walkers, SpeedResult& sum) {
   sum.frustum_us += walkers.frustum.stats().totalUs();
   sum.coherent_us += walkers.coherent.stats().totalUs();
   sum.incoherent_us += walkers.incoherent.stats().totalUs();
+  sum.through_eye_us += walkers.through_eye.stats().totalUs();
   const RelationStats& relations = walkers.coherent.stats().relations;
   sum.reused += relations.reused;
   sum.unchanged += relations.unchanged;
@@ -65,8 +70,8 @@ void walkStretch(Walkers& walkers, const PathLine& line, const Vec3d& origin, co
 }
 
 SpeedResult meanOf(SpeedResult sum) {
-  for (double* value :
-       {&sum.frustum_us, &sum.coherent_us, &sum.incoherent_us, &sum.reused, &sum.unchanged, &sum.rebuilt}) {
+  for (double* value : {&sum.frustum_us, &sum.coherent_us, &sum.incoherent_us, &sum.through_eye_us,
+                        &sum.reused, &sum.unchanged, &sum.rebuilt}) {
     *value /= static_cast<double>(sum.frames);
   }
   return sum;
