@@ -28,13 +28,13 @@ std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQua
     const Vec3d at_high(shape.normal.x * box.high.x, shape.normal.y * box.high.y,
                         shape.normal.z * box.high.z);
     const Vec3d nearest = max(at_low, at_high), farthest = min(at_low, at_high);
-    const double margin = shape.depth_slack + kDepthMargin * (box.farthest + shape.reach);
+    const double margin = shape.depth_margin + kDepthMargin * (box.farthest + shape.reach);
     if (!(farthest.x + farthest.y + farthest.z + shape.offset < -margin)) {
       continue;
     }
     const auto tolerance = hn::Set(d, -kEyePlane * (box.farthest + shape.reach));
     look.touches = true;
-    for (std::uint32_t first = 0; first < shape.edge_count; first += 4) {
+    for (std::uint32_t first = 0; first < shape.plane_count; first += 4) {
       const EyeQuad& quad = quads[shape.first_quad + first / 4];
       for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
         const auto x = hn::LoadU(d, quad.x + lane), y = hn::LoadU(d, quad.y + lane);
@@ -53,7 +53,7 @@ std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQua
       }
     }
     look.behind = nearest.x + nearest.y + nearest.z + shape.offset < -margin;
-    if (look.hidden() && !shape.near_clipped) {
+    if (look.hidden()) {
       return i + 1;
     }
   }

@@ -26,13 +26,12 @@ struct EyeQuad {
 
 // An occluder.
 struct EyeShape {
-  Vec3d normal;              // unit, towards the eye
-  double offset = 0.0;       // of its plane
-  double depth_slack = 0.0;  // metres that a box must be behind it, in addition to kDepthMargin
-  double reach = 0.0;        // largest magnitude of a corner
+  Vec3d normal;               // unit, towards the eye
+  double offset = 0.0;        // of its plane
+  double depth_margin = 0.0;  // metres that a box must be behind it, in addition to kDepthMargin
+  double reach = 0.0;         // largest magnitude of a corner
   std::uint32_t first_quad = 0;
-  std::uint16_t edge_count = 0;
-  bool near_clipped = false;
+  std::uint16_t plane_count = 0;  // one for each edge, then one for the near plane's cut if there is one
 };
 
 struct EyeBox {
@@ -51,13 +50,13 @@ struct EyeBox {
 struct EyeLook {
   bool touches = false;  // some of the box is behind the occluder's plane, and not all of it beyond an edge
   bool behind = false;   // all of it is behind the plane
-  std::uint64_t failing = 0;  // edges beyond which some of it may be seen
+  std::uint64_t failing = 0;  // planes beyond which some of it may be seen
 
   bool hidden() const { return behind && failing == 0; }
 };
 
-// Looks at the box past the occluders of a list, shapes[list[i]] in looks[i], up to the first that hides it
-// and is not clipped. Returns how many were looked at.
+// Looks at the box past the occluders of a list, shapes[list[i]] in looks[i], up to the first that hides it.
+// Returns how many were looked at.
 std::size_t lookPast(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
                      std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks);
 

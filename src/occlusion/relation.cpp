@@ -82,7 +82,8 @@ std::optional<Member> makeMember(const Eye& eye, const OccluderSet& set, Occlude
   member.threshold = kPlaneValue * (eye.orthographic ? 1.0 : seen->reach);
   member.edge_count = occluder.vertex_count;
   member.near_clipped = seen->nearest < seen->clip_depth;
-  if (member.near_clipped && !cutAtNear(eye, set, member)) {
+  // A bit is needed for the cut.
+  if (member.near_clipped && (member.edge_count > 63 || !cutAtNear(eye, set, member))) {
     return std::nullopt;
   }
   return member;
@@ -177,46 +178,36 @@ void evaluate(const Member& member, std::span<const PlaneQuad> planes, double pa
   relation.satisfied = relation.behind && relation.touches ? satisfied : 0;
   // The values change by no more than the eye moves, their rounding and thresholds by far less than this.
   const double clearance = relation.touches ? nearest : escaped;
-  relation.until = path + clearance * (1.0 - 0x1p-20) - 0x1p-40 * std::max(1.0, member.seen.reach);
+  relation.until =
+      path + clearance * (1.0 - 0x1p-20) - 0x1p-40 * (member.eye_w > 0.0 ? member.seen.reach : 1.0);
 }
 
 EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
                     std::vector<EyeQuad>& quads) {
   const EyeOccluder& seen = member.seen;
-  const EyeShape shape{seen.support.normal,
-                       seen.support.offset,
-                       member.inset,
-                       seen.reach,
-                       static_cast<std::uint32_t>(quads.size()),
-                       member.edge_count,
-                       member.near_clipped};
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    // The edge runs the other way round for an eye behind the occluder's front.
-    const Vec3d along = seen.flipped ? -edges[e].direction : edges[e].direction;
-    const Vec3d from = edges[e].point + (member.origin - eye.position);
-    double sine = 0.0;
-    const Plane plane = eye.shadowPlane(from, from + along * length(from), sine);
-    if (e % 4 == 0) {
+  EyeShape shape{seen.support.normal, seen.support.offset, member.inset, seen.reach,
+                 static_cast<std::uint32_t>(quads.size())};
+  const auto add = [&](const Plane& plane) {
+    const std::uint32_t lane = shape.plane_count++ % 4;
+    if (lane == 0) {
       quads.emplace_back();
     }
-    EyeQuad& quad = quads.back();
-    quad.x[e % 4] = plane.normal.x;
-    quad.y[e % 4] = plane.normal.y;
-    quad.z[e % 4] = plane.normal.z;
-    quad.offset[e % 4] = plane.offset;
+    quads.back().x[lane] = plane.normal.x;
+    quads.back().y[lane] = plane.normal.y;
+    quads.back().z[lane] = plane.normal.z;
+    quads.back().offset[lane] = plane.offset;
+  };
+  for (const InsetEdge& edge : edges) {
+    // The edge runs the other way round for an eye behind the occluder's front.
+    const Vec3d along = seen.flipped ? -edge.direction : edge.direction;
+    const Vec3d from = edge.point + (member.origin - eye.position);
+    double sine = 0.0;
+    add(eye.shadowPlane(from, from + along * length(from), sine));
+  }
+  if (member.near_clipped) {
+    add(member.near_cut);
   }
   return shape;
-}
-
-bool beyondNearCut(const Eye& eye, const Member& member, const Box& box) {
-  if (!member.near_clipped) {
-    return true;
-  }
-  const Vec3d low = Vec3d(box.min) - eye.position, high = Vec3d(box.max) - eye.position;
-  const Vec3d& n = member.near_cut.normal;
-  const double worst = std::max(n.x * low.x, n.x * high.x) + std::max(n.y * low.y, n.y * high.y) +
-                       std::max(n.z * low.z, n.z * high.z) + member.near_cut.offset;
-  return worst < -kEyePlane * (magnitude(max(abs(low), abs(high))) + member.seen.reach);
 }
 
 }  // namespace sightline::occlusion_detail

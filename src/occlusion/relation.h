@@ -92,11 +92,9 @@ void makeRelation(const Member& member, std::span<const InsetEdge> edges, const 
 // Looks where the eye is. path: its length so far.
 void evaluate(const Member& member, std::span<const PlaneQuad> planes, double path, Relation& relation);
 
-// The occluder as lookPast() needs it; appends its planes. edges: its own.
+// The occluder as lookPast() needs it, what the near plane clips left out; appends its planes. edges: its
+// own.
 EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
                     std::vector<EyeQuad>& quads);
-
-// Whether all of the box is seen, if at all, through what the near plane leaves of the occluder.
-bool beyondNearCut(const Eye& eye, const Member& member, const Box& box);
 
 }  // namespace sightline::occlusion_detail

@@ -12,7 +12,9 @@ RelationStore::RelationStore(std::size_t max_bytes)
 
 std::size_t RelationStore::slotOf(Item item, OccluderId occluder) const {
   const std::uint64_t key = std::uint64_t{item} << 32 | occluder.value;
-  std::size_t slot = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 20) & (slots_.size() - 1);
+  // The upper bits of the product depend on all bits of the key.
+  std::size_t slot =
+      static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> (64 - std::countr_zero(slots_.size())));
   while (slots_[slot] != kNone) {
     const Entry& entry = entries_[slots_[slot]];
     if (entry.item == item && entry.relation.occluder == occluder) {
@@ -160,7 +162,7 @@ void RelationStore::clear() {
 
 void RelationStore::beginFrame() {
   ++frame_;
-  const bool little = std::max(used_, quads_used_) > max_ - max_ / 8;
+  const bool little = std::max(used_, quads_used_) + max_ / 8 >= max_;
   if (little && frame_ >= next_sweep_) {
     makeRoom();
   }
@@ -180,7 +182,7 @@ void RelationStore::makeRoom() {
     }
   }
   std::size_t oldest = kAges;
-  for (std::uint32_t going = 0; oldest > 2 && going < max_ / 4;) {
+  for (std::uint32_t going = 0; oldest > 2 && going < std::max(1u, max_ / 4);) {
     going += by_age[--oldest];
   }
   std::fill(items_.begin(), items_.end(), kNone);

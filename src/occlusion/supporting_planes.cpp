@@ -33,12 +33,12 @@ struct SupportingPlanes::Impl {
   void build(const View& view, const OccluderSet& new_set, std::span<const OccluderId> chosen);
   void follow(const Eye& next);
   std::uint32_t memberOf(OccluderId id);
-  OccluderList listOf(std::span<const OccluderId> ids, std::vector<OccluderId>* used);
+  OccluderList listOf(std::span<const OccluderId> ids);
   std::span<const InsetEdge> edgesOf(const Member& member) const;
   void findSeams(Member& member);
-  EyeLook lookThrough(const Box& box, Item item, Member& member);
+  EyeLook lookThrough(const Box& box, Item item, std::uint32_t index);
   const Relation* lookAgain(Item item, const Member& member);
-  Relation relate(Item item, const Box& box, Member& member, PlaneSide side);
+  Relation relate(Item item, const Box& box, const Member& member, PlaneSide side);
   Visibility classify(const Box& box, Item item, OccluderList among, OccluderList& touching);
   bool hiddenJointly(const Box& box);
   bool survives(const Partial& partial, const Box& box);
@@ -108,8 +108,11 @@ void SupportingPlanes::Impl::build(const View& view, const OccluderSet& new_set,
   roles.clear();
   member_of.resize(std::max(member_of.size(), set->occluders.size()), kNone);
   stats = {};
-  all = listOf(chosen, &used);
+  all = listOf(chosen);
   recruitable = static_cast<std::uint32_t>(members.size());
+  for (const Member& member : members) {
+    used.push_back(member.seen.id);
+  }
   stats.occluders = static_cast<std::uint32_t>(used.size());
   stats.unusable = static_cast<std::uint32_t>(asked.size()) - stats.occluders;
 }
@@ -133,7 +136,7 @@ std::uint32_t SupportingPlanes::Impl::memberOf(OccluderId id) {
   return index == kUnusable ? kNone : index;
 }
 
-OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids, std::vector<OccluderId>* names) {
+OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids) {
   const std::size_t first = lists.size();
   for (const OccluderId id : ids) {
     const std::uint32_t member = set != nullptr && id.value < set->occluders.size() ? memberOf(id) : kNone;
@@ -142,14 +145,6 @@ OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids, std
     }
   }
   const auto begin = lists.begin() + static_cast<std::ptrdiff_t>(first);
-  if (names != nullptr) {
-    // In the caller's order, each once.
-    for (auto it = begin; it != lists.end(); ++it) {
-      if (std::find(begin, it, *it) == it) {
-        names->push_back(members[*it].seen.id);
-      }
-    }
-  }
   std::sort(begin, lists.end(),
             [this](std::uint32_t a, std::uint32_t b) { return members[a].seen.id < members[b].seen.id; });
   lists.erase(std::unique(begin, lists.end()), lists.end());
@@ -188,7 +183,7 @@ bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
   examined.push_back(index);
   EyeLook look;
   lookPast(shapes, eye_quads, {&index, 1}, EyeBox(box, eye.position), {&look, 1});
-  if (!look.behind || !beyondNearCut(eye, member, box)) {
+  if (!look.behind) {
     return false;
   }
   const Partial partial{index, look.failing};
@@ -261,7 +256,7 @@ bool SupportingPlanes::Impl::hiddenJointly(const Box& box) {
 }
 
 // A new relation, evaluated; remembered to be kept.
-Relation SupportingPlanes::Impl::relate(Item item, const Box& box, Member& member, PlaneSide side) {
+Relation SupportingPlanes::Impl::relate(Item item, const Box& box, const Member& member, PlaneSide side) {
   const std::span<const InsetEdge> edges = edgesOf(member);
   const std::size_t first_quad = fresh_planes.size();
   fresh_planes.resize(first_quad + (edges.size() + 3) / 4);
@@ -278,8 +273,15 @@ Relation SupportingPlanes::Impl::relate(Item item, const Box& box, Member& membe
   return relation;
 }
 
-// One occluder and the box, by planes through the box.
-EyeLook SupportingPlanes::Impl::lookThrough(const Box& box, Item item, Member& member) {
+// One occluder and the box, by planes through the box. Where the near plane cuts the occluder, its outline
+// changes with every step: then by planes through the eye.
+EyeLook SupportingPlanes::Impl::lookThrough(const Box& box, Item item, std::uint32_t index) {
+  const Member& member = members[index];
+  if (member.near_clipped) {
+    EyeLook look;
+    lookPast(shapes, eye_quads, {&index, 1}, EyeBox(box, eye.position), {&look, 1});
+    return look;
+  }
   if (const Relation* kept = item != kNoItem ? lookAgain(item, member) : nullptr) {
     return {kept->touches, kept->behind, kept->failing()};
   }
@@ -327,12 +329,12 @@ Visibility SupportingPlanes::Impl::classify(const Box& box, Item item, OccluderL
   }
   for (std::uint32_t i = 0; i < count && !hidden; ++i) {
     const std::uint32_t index = lists[among.first + i];
-    const EyeLook look = through_eye ? looks[i] : lookThrough(box, item, members[index]);
+    const EyeLook look = through_eye ? looks[i] : lookThrough(box, item, index);
     if (!look.touches) {
       continue;
     }
     lists.push_back(index);
-    if (look.behind && beyondNearCut(eye, members[index], box)) {
+    if (look.behind) {
       hidden = look.failing == 0;
       partials.push_back({index, look.failing});
     }
@@ -363,7 +365,7 @@ void SupportingPlanes::build(const View& view, const OccluderSet& set, std::span
 }
 
 OccluderList SupportingPlanes::add(std::span<const OccluderId> more) {
-  return impl_->listOf(more, nullptr);
+  return impl_->listOf(more);
 }
 
 OccluderList SupportingPlanes::all() const {

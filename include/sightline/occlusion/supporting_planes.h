@@ -23,14 +23,16 @@ enum class PlaneForm : std::uint8_t {
 // How the two vertices of a box are found that planes through a line touch; for kThroughBox.
 enum class TangentSearch : std::uint8_t {
   kTables,       // two table look-ups (Coorg and Teller 1997, 3.3); exact
-  kAllVertices,  // all eight vertices are compared; where rounding leaves none, no plane hides anything
+  kAllVertices,  // all eight vertices are compared, to measure against; where rounding leaves no tangent, as
+                 // for edges parallel to the box's, nothing is hidden
 };
 
 struct SupportingPlanesSettings {
   bool joint_occlusion = true;  // occluders that share edges hide together what none of them hides alone
   PlaneForm form = PlaneForm::kThroughEye;
-  bool keep_relations = true;              // of classify() with an item; for kThroughBox
-  std::size_t relation_bytes = 16u << 20;  // of kept relations, at most; the least recently used go first
+  bool keep_relations = true;  // of classify() with an item; for kThroughBox
+  // Of kept relations, at most; the least recently used go first. 4 bytes an item come on top.
+  std::size_t relation_bytes = 16u << 20;
   TangentSearch tangent_search = TangentSearch::kTables;
 };
 
