@@ -15,47 +15,15 @@
 #include <string>
 #include <vector>
 
+#include "bench/benchmark_scene.h"
 #include "oracle/exact_visibility.h"
 #include "oracle/ray_scene.h"
-#include "scenes/procedural.h"
 #include "sightline/culling/culler.h"
-#include "sightline/io/camera_path_json.h"
-#include "sightline/io/import.h"
 
 namespace {
 
 using namespace sightline;
-
-struct Loaded {
-  Scene scene;
-  CameraPath path;
-  std::vector<Box> bounds;
-  std::vector<std::uint32_t> cost;
-};
-
-bool load(const std::string& name, Loaded& loaded) {
-  Result<Scene> scene = isDemoUrl(name) ? makeDemoScene(name) : importScene(name);
-  if (!scene) {
-    fmt::print(stderr, "tightness: {}\n", scene.error().message);
-    return false;
-  }
-  loaded.scene = std::move(*scene);
-  if (isDemoUrl(name)) {
-    loaded.path = loaded.scene.paths.at(0);
-  } else {
-    Result<CameraPath> path = readCameraPath(name.substr(0, name.rfind('/') + 1) + "walk.path.json");
-    if (!path) {
-      fmt::print(stderr, "tightness: {}\n", path.error().message);
-      return false;
-    }
-    loaded.path = std::move(*path);
-  }
-  for (const Object& object : loaded.scene.objects) {
-    loaded.bounds.push_back(object.bounds);
-    loaded.cost.push_back(object.triangleCount());
-  }
-  return true;
-}
+using namespace sightline::bench;
 
 struct Configuration {
   std::string name;
@@ -125,10 +93,7 @@ bool boxShows(const RayScene& rays, const SceneView& scene, const View& view, co
 }
 
 void table(const std::string& name, std::size_t step) {
-  Loaded loaded;
-  if (!load(name, loaded)) {
-    std::exit(2);
-  }
+  const BenchmarkScene loaded = loadScene(name, "tightness");
   const SceneView scene = loaded.scene.view();
   const Hierarchy hierarchy = buildHierarchy(loaded.bounds, loaded.cost);
   const OccluderSet occluders = findOccluders(scene);

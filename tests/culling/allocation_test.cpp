@@ -98,6 +98,22 @@ std::size_t allocationsIn(Culler& culler, std::span<const View> views, std::span
   return allocations - before;
 }
 
+// Every structure, little room for relations, and all that uses the database.
+std::vector<NamedSettings> allSettings() {
+  std::vector<NamedSettings> all(std::begin(kStructures), std::end(kStructures));
+  all.push_back({"frustum", {.method = CullMethod::kFrustum}});
+  all.push_back({"little room",
+                 {.method = CullMethod::kSupportingPlanes,
+                  .supporting_planes = {.form = PlaneForm::kThroughBox, .relation_bytes = 100'000}}});
+  for (const NamedSettings& method : kMethods) {
+    NamedSettings with_database = method;
+    with_database.settings.occluders = OccluderChoice::kDatabase;
+    with_database.settings.detail_objects = true;
+    all.push_back(with_database);
+  }
+  return all;
+}
+
 TEST(Allocations, AreCountedByThisTest) {
   Culler culler = smallCity().culler(HierarchyKind::kBvh, {});
   EXPECT_GT(allocationsIn(culler, smallCity().frames(smallCity().scene.paths[0], 0, 1), {}), 0u);
@@ -111,14 +127,11 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
     views.insert(views.end(), others.begin(), others.end());
     const std::vector<Box> dynamic_boxes(demo->bounds.begin(), demo->bounds.begin() + 20);
     for (const HierarchyKind kind : kKinds) {
-      for (const OcclusionTreeVariant variant : kVariants) {
-        for (const CullMethod method : {CullMethod::kOcclusionTree, CullMethod::kFrustum}) {
-          Culler culler = demo->culler(kind, {.method = method, .variant = variant});
-          allocationsIn(culler, views, dynamic_boxes);
-          allocationsIn(culler, views, dynamic_boxes);
-          EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u)
-              << "variant " << static_cast<int>(variant) << " kind " << static_cast<int>(kind);
-        }
+      for (const auto& [name, settings] : allSettings()) {
+        Culler culler = demo->culler(kind, settings);
+        allocationsIn(culler, views, dynamic_boxes);
+        allocationsIn(culler, views, dynamic_boxes);
+        EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u) << name << " " << nameOf(kind);
       }
     }
   }

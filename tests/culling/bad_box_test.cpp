@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sightline/culling/culler.h"
+#include "tests/culling/demo_frames.h"
 
 namespace sightline {
 namespace {
@@ -19,13 +20,15 @@ TEST(Culler, OneBadBoxDoesNotStopTheCullingOfTheOthers) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   const std::vector<ObjectId> expected{ObjectId(0u), ObjectId(2u)};
-  for (const HierarchyKind kind : {HierarchyKind::kKdTree, HierarchyKind::kBvh}) {
+  for (const HierarchyKind kind : demo_frames::kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
-    Culler culler(hierarchy, bounds, occluders);
-    for (int frame = 0; frame < 3; ++frame) {
-      culler.cull(view);
-      EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected)
-          << "frame " << frame << " kind " << static_cast<int>(kind);
+    for (const auto& [name, settings] : demo_frames::kStructures) {
+      Culler culler(hierarchy, bounds, occluders, settings);
+      for (int frame = 0; frame < 3; ++frame) {
+        culler.cull(view);
+        EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected)
+            << "frame " << frame << " " << demo_frames::nameOf(kind) << " " << name;
+      }
     }
   }
 }

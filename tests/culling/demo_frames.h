@@ -12,15 +12,37 @@
 
 namespace sightline::demo_frames {
 
-constexpr OcclusionTreeVariant kVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
 constexpr HierarchyKind kKinds[] = {HierarchyKind::kKdTree, HierarchyKind::kBvh};
+
+struct NamedSettings {
+  const char* name;
+  CullerSettings settings;
+};
+
+// Every structure: the variants of the occlusion tree, and the forms of the supporting planes.
+constexpr NamedSettings kStructures[] = {
+    {"FSE", {.variant = OcclusionTreeVariant::kFSE}},
+    {"FSC", {.variant = OcclusionTreeVariant::kFSC}},
+    {"FME", {.variant = OcclusionTreeVariant::kFME}},
+    {"FMC", {.variant = OcclusionTreeVariant::kFMC}},
+    {"planes through the eye", {.method = CullMethod::kSupportingPlanes}},
+    {"planes through the box",
+     {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.form = PlaneForm::kThroughBox}}},
+    {"planes through the eye, no joint occlusion",
+     {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.joint_occlusion = false}}},
+    {"planes through the box, no joint occlusion",
+     {.method = CullMethod::kSupportingPlanes,
+      .supporting_planes = {.joint_occlusion = false, .form = PlaneForm::kThroughBox}}},
+};
+// One of each method.
+constexpr NamedSettings kMethods[] = {kStructures[2], kStructures[4], kStructures[5]};
 
 struct DemoScene {
   Scene scene;
   std::vector<Box> bounds;
   Hierarchy kd_tree, bvh;
   OccluderSet occluders;
+  OccluderDatabase database, detail_database;  // coarse
 
   explicit DemoScene(Scene source) : scene(std::move(source)) {
     std::vector<std::uint32_t> triangles;
@@ -31,12 +53,16 @@ struct DemoScene {
     kd_tree = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kKdTree});
     bvh = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kBvh});
     occluders = findOccluders(scene.view());
+    OccluderDatabaseSettings coarse{.directions = 16, .occluder_count = 128, .max_bytes = 1u << 20};
+    database = OccluderDatabase::build(kd_tree, occluders, coarse);
+    coarse.turned_away = true;
+    detail_database = OccluderDatabase::build(kd_tree, occluders, coarse);
   }
   const Hierarchy& hierarchy(HierarchyKind kind) const {
     return kind == HierarchyKind::kKdTree ? kd_tree : bvh;
   }
   Culler culler(HierarchyKind kind, const CullerSettings& settings) const {
-    return Culler(hierarchy(kind), bounds, occluders, settings);
+    return Culler(hierarchy(kind), bounds, occluders, settings, {&database, &detail_database});
   }
   // Frames first, first + 1, ... of a walk, fewer at its end.
   std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {
@@ -55,6 +81,10 @@ inline const DemoScene& smallCity() {
 inline const DemoScene& smallBuilding() {
   static const DemoScene kBuilding(makeBuilding({.floors = 2, .plants = 10}));
   return kBuilding;
+}
+
+inline std::string nameOf(HierarchyKind kind) {
+  return kind == HierarchyKind::kKdTree ? "kd-tree" : "bvh";
 }
 
 // Anywhere in and around the scene, in any direction, of both kinds of projection: each a jump.

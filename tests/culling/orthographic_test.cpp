@@ -24,11 +24,10 @@ TEST(OrthographicCulling, HidesABoxBehindAWall) {
   const std::vector<ObjectId> expected{ObjectId(0u), ObjectId(2u)};
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
-    for (const OcclusionTreeVariant variant : kVariants) {
-      Culler culler(hierarchy, bounds, occluders, {.variant = variant});
+    for (const auto& [name, settings] : kStructures) {
+      Culler culler(hierarchy, bounds, occluders, settings);
       culler.cull(view);
-      EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected)
-          << "variant " << static_cast<int>(variant);
+      EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected) << name;
     }
   }
 }

@@ -17,22 +17,31 @@ struct NamedCuller {
   Culler culler;
 };
 
-// All variants, hierarchies, both settings of temporal coherence, few and many occluders.
+// All structures and hierarchies, both settings of temporal coherence, few and many occluders; and those of
+// the database, with the second test.
 inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   std::vector<NamedCuller> cullers;
-  for (const OcclusionTreeVariant variant : kVariants) {
-    for (const HierarchyKind kind : kKinds) {
+  const auto add = [&](std::string name, HierarchyKind kind, const CullerSettings& settings) {
+    name += " " + nameOf(kind) + (settings.temporal_coherence ? " coherent " : " incoherent ") +
+            std::to_string(settings.occluder_count) + " occluders";
+    cullers.push_back({std::move(name), demo.culler(kind, settings)});
+  };
+  for (const HierarchyKind kind : kKinds) {
+    for (const NamedSettings& structure : kStructures) {
       for (const bool coherence : {true, false}) {
         for (const std::uint32_t count : {8u, 64u}) {
-          const CullerSettings settings{
-              .variant = variant, .occluder_count = count, .temporal_coherence = coherence};
-          cullers.push_back({"variant " + std::to_string(static_cast<int>(variant)) +
-                                 (kind == HierarchyKind::kKdTree ? " kd-tree" : " bvh") +
-                                 (coherence ? " coherent " : " incoherent ") + std::to_string(count) +
-                                 " occluders",
-                             demo.culler(kind, settings)});
+          CullerSettings settings = structure.settings;
+          settings.occluder_count = count;
+          settings.temporal_coherence = coherence;
+          add(structure.name, kind, settings);
         }
       }
+    }
+    for (const NamedSettings& method : kMethods) {
+      CullerSettings settings = method.settings;
+      settings.occluders = OccluderChoice::kDatabase;
+      settings.detail_objects = true;
+      add(std::string("database, detail objects, ") + method.name, kind, settings);
     }
   }
   return cullers;
