@@ -1,6 +1,6 @@
 // How close to exact is what is kept? For each scene one table: kept / exact for frustum culling and for the
-// occlusion tree's variants with 8 to 256 occluders, exact being what rays through the pixels of 1280 x 720
-// see (Embree).
+// occlusion tree's variants and supporting planes with 8 to 256 occluders, exact being what rays through the
+// pixels of 1280 x 720 see (Embree).
 //
 // "boxes" is the best that any test of bounding boxes can do: the objects that are exactly visible, and those
 // whose box shows although nothing of the object in it does (rays to points of the box's faces). What lies
@@ -33,13 +33,16 @@ struct Configuration {
 std::vector<Configuration> configurations() {
   std::vector<Configuration> all;
   all.push_back({"frustum", {.method = CullMethod::kFrustum}});
-  const std::pair<const char*, OcclusionTreeVariant> variants[] = {{"FSE", OcclusionTreeVariant::kFSE},
-                                                                   {"FSC", OcclusionTreeVariant::kFSC},
-                                                                   {"FME", OcclusionTreeVariant::kFME},
-                                                                   {"FMC", OcclusionTreeVariant::kFMC}};
-  for (const auto& [name, variant] : variants) {
+  const std::pair<const char*, CullerSettings> structures[] = {
+      {"FSE", {.variant = OcclusionTreeVariant::kFSE}},
+      {"FSC", {.variant = OcclusionTreeVariant::kFSC}},
+      {"FME", {.variant = OcclusionTreeVariant::kFME}},
+      {"FMC", {.variant = OcclusionTreeVariant::kFMC}},
+      {"planes", {.method = CullMethod::kSupportingPlanes}}};
+  for (const auto& [name, settings] : structures) {
     for (const std::uint32_t count : {8u, 16u, 32u, 64u, 128u, 256u}) {
-      all.push_back({fmt::format("{} {:3}", name, count), {.variant = variant, .occluder_count = count}});
+      all.push_back({fmt::format("{} {:3}", name, count), settings});
+      all.back().settings.occluder_count = count;
     }
   }
   return all;
@@ -134,7 +137,7 @@ void table(const std::string& name, std::size_t step) {
   };
   fmt::print("\n{}: exact {}, kept / exact: boxes {:.2f}\n", name, seen, ratio(by_box));
   for (std::size_t c = 0; c < all.size(); ++c) {
-    fmt::print("{}{:<9}{:8.2f}", c % 6 == 1 ? "\n" : "  ", all[c].name, ratio(kept[c]));
+    fmt::print("{}{:<10}{:8.2f}", c % 6 == 1 ? "\n" : "  ", all[c].name, ratio(kept[c]));
   }
   fmt::print("\n");
 }
