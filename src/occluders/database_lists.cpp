@@ -1,7 +1,7 @@
 // Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 5.
 // Differs from the paper in: an occluder's score for a cell is a bound over all viewpoints of the cell
-// instead of the area-angle at one of them, so that none is lost that is among the best from some corner of
-// it.
+// instead of the area-angle at one of them, so that none is lost that is worth more from some corner of it
+// than the last one in the list could be from anywhere.
 //
 // Let c be the occluder's centroid, N its normal, A its area, E a viewpoint of the cell, r = |E - c|, and
 // h = N . (E - c), the height of E over the occluder on the side that is seen. With r >= r0, the distance

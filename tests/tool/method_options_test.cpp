@@ -51,8 +51,6 @@ TEST(MethodOptions, ValuesComeBackAsTheyWereGiven) {
                                "through-box",
                                "--joint",
                                "off",
-                               "--coherence",
-                               "off",
                                "--relation-mib",
                                "0.25",
                                "--tangents",
@@ -71,7 +69,7 @@ TEST(MethodOptions, ValuesComeBackAsTheyWereGiven) {
   EXPECT_EQ(options["occluders"], "database");
   EXPECT_EQ(options["planes"], "through-box");
   EXPECT_EQ(options["joint"], "off");
-  EXPECT_EQ(options["coherence"], "off");
+  EXPECT_EQ(options["coherence"], "on");
   EXPECT_EQ(options["relation_mib"], 0.25);
   EXPECT_EQ(options["tangents"], "all-vertices");
   EXPECT_EQ(options["detail_objects"], "on");
@@ -124,7 +122,8 @@ TEST(MethodOptions, FramesTellOfRelationsWhereTheyAreKept) {
   }
   EXPECT_GT(cull["frames"].back()["relations"]["reused"], 0);
   for (const std::string method : {"occlusion-tree", "supporting-planes"}) {
-    for (const json& frame : culled({"--method", method})["frames"]) {
+    const json without = culled({"--method", method});
+    for (const json& frame : without["frames"]) {
       EXPECT_FALSE(frame.contains("relations"));
       EXPECT_TRUE(frame.contains("nodes_tested_share"));
     }
@@ -137,10 +136,15 @@ TEST(MethodOptions, TheDatabaseIsToldOfWhereItIsUsed) {
   EXPECT_EQ(cull["database"]["directions"], 32);
   EXPECT_GT(cull["database"]["bytes"], 0);
   EXPECT_EQ(cull["database"]["build_us"], 0.0);
+  EXPECT_GT(cull["detail_database"]["bytes"], 0);
   for (const json& frame : cull["frames"]) {
     EXPECT_GE(frame["detail"]["tested"], frame["detail"]["culled"]);
   }
-  EXPECT_GT(culled({"--occluders", "database"})["database"]["build_us"], 0.0);
+  // What detail objects need is told apart.
+  const json without = culled({"--occluders", "database"});
+  EXPECT_GT(without["database"]["build_us"], 0.0);
+  EXPECT_EQ(without["database"]["bytes"], cull["database"]["bytes"]);
+  EXPECT_FALSE(without.contains("detail_database"));
 }
 
 TEST(MethodOptions, WithoutRoomForRelationsTheAnswerIsTheSame) {
@@ -218,6 +222,13 @@ TEST(MethodOptions, BadValuesAreRefused) {
   expectRefused({"cull", kCity, "--method", "supporting-planes", "--joint", "on,off"}, "one value");
   EXPECT_EQ(runTool({"cull", kCity, "--frames", "0", "--joint", "on,off"}).code, 0)
       << "the occlusion tree has no such option";
+}
+
+TEST(MethodOptions, AGivenOptionThatNoMethodHasIsTold) {
+  const Outcome outcome =
+      runTool({"cull", kCity, "--frames", "0", "--method", "supporting-planes", "--variant", "FSE"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("--variant changes nothing here"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

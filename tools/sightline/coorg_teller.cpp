@@ -222,10 +222,10 @@ Experiment memory(const std::vector<Measured>& scenes) {
                          {"triangles", "triangles", 0},
                          {"potential_occluders", "occluders", 0},
                          {"relations", "relations", 0},
-                         {"relation_mib", "their MiB", 2},
+                         {"relation_mib", "relations MiB", 2},
                          {"database_cells", "cells", 0},
                          {"database_directions", "directions", 0},
-                         {"database_mib", "their MiB", 2},
+                         {"database_mib", "database MiB", 2},
                          {"database_build_ms", "built in ms", 0}}};
   for (const Measured& measured : scenes) {
     RelationStats peak;
@@ -233,7 +233,7 @@ Experiment memory(const std::vector<Measured>& scenes) {
       peak.kept = std::max(peak.kept, frame.stats.relations.kept);
       peak.bytes = std::max(peak.bytes, frame.stats.relations.bytes);
     }
-    const OccluderDatabase& database = *measured.data.databases().from_eye;
+    const OccluderDatabase& database = measured.data.database()->database;
     experiment.rows.push_back({{"scene", measured.name},
                                {"objects", measured.input.scene.objects.size()},
                                {"triangles", measured.input.scene.triangleCount()},
@@ -243,7 +243,7 @@ Experiment memory(const std::vector<Measured>& scenes) {
                                {"database_cells", database.cellCount()},
                                {"database_directions", database.directionCount()},
                                {"database_mib", static_cast<double>(database.bytes()) / kMebibyte},
-                               {"database_build_ms", measured.data.databaseUs() * 1e-3}});
+                               {"database_build_ms", measured.data.database()->build_us * 1e-3}});
   }
   return experiment;
 }

@@ -100,9 +100,7 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
   }
   Json head = {
       {"scene", sceneJson(scene)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
-  if (const Json database = databaseJson(data, !options.no_times); !database.is_null()) {
-    head["database"] = database;
-  }
+  addDatabases(head, data, !options.no_times);
   if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", frames)); !ok) {
     return ok.error();
   }

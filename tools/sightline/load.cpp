@@ -121,33 +121,30 @@ const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
 
 // All settings of one run have the same databases.
 const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool turned_away,
-                                                 std::unique_ptr<OccluderDatabase>& database) {
-  if (!database) {
+                                                 std::unique_ptr<TimedDatabase>& timed) {
+  if (!timed) {
     const Hierarchy& cells = hierarchy(HierarchyKind::kKdTree);
-    ProgressBar progress("occluder database");
+    ProgressBar progress(turned_away ? "occluder database for detail objects" : "occluder database");
     const auto start = std::chrono::steady_clock::now();
     OccluderDatabaseSettings settings = setting.database;
     settings.turned_away = turned_away;
-    database = std::make_unique<OccluderDatabase>(OccluderDatabase::build(
-        cells, occluders_, settings, parallel_for_, [&](double done) { progress.update(done); }));
-    database_us_ +=
-        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    OccluderDatabase database = OccluderDatabase::build(cells, occluders_, settings, parallel_for_,
+                                                        [&](double done) { progress.update(done); });
+    const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
+    timed = std::make_unique<TimedDatabase>(TimedDatabase{std::move(database), time.count()});
   }
-  return database.get();
+  return &timed->database;
 }
 
 Culler CullingData::makeCuller(const Setting& setting) {
+  OccluderDatabases databases;
   if (setting.usesDatabase()) {
-    databases_.from_eye = databaseFor(setting, false, from_eye_);
+    databases.from_eye = databaseFor(setting, false, from_eye_);
   }
   if (setting.testsDetailObjects()) {
-    databases_.from_objects = databaseFor(setting, true, from_objects_);
+    databases.from_objects = databaseFor(setting, true, from_objects_);
   }
-  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases_);
-}
-
-std::size_t CullingData::databaseBytes() const {
-  return (from_eye_ ? from_eye_->bytes() : 0) + (from_objects_ ? from_objects_->bytes() : 0);
+  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases);
 }
 
 std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
@@ -162,16 +159,17 @@ Json sceneJson(const Scene& scene) {
   return {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
 }
 
-Json databaseJson(const CullingData& data, bool times) {
-  const OccluderDatabases& databases = data.databases();
-  const OccluderDatabase* any = databases.from_eye != nullptr ? databases.from_eye : databases.from_objects;
-  if (any == nullptr) {
-    return nullptr;
-  }
-  return {{"cells", any->cellCount()},
-          {"directions", any->directionCount()},
-          {"bytes", data.databaseBytes()},
-          {"build_us", times ? data.databaseUs() : 0.0}};
+void addDatabases(Json& json, const CullingData& data, bool times) {
+  const auto add = [&](const char* key, const CullingData::TimedDatabase* timed) {
+    if (timed != nullptr) {
+      json[key] = {{"cells", timed->database.cellCount()},
+                   {"directions", timed->database.directionCount()},
+                   {"bytes", timed->database.bytes()},
+                   {"build_us", times ? timed->build_us : 0.0}};
+    }
+  };
+  add("database", data.database());
+  add("detail_database", data.detailDatabase());
 }
 
 }  // namespace sightline::tool

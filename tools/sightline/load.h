@@ -42,9 +42,12 @@ class CullingData {
   Culler makeCuller(const Setting& setting);
   const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
   // The occluder databases of the first setting that uses them; null until a culler needed them.
-  const OccluderDatabases& databases() const { return databases_; }
-  std::size_t databaseBytes() const;
-  double databaseUs() const { return database_us_; }  // that building them took
+  struct TimedDatabase {
+    OccluderDatabase database;
+    double build_us = 0.0;
+  };
+  const TimedDatabase* database() const { return from_eye_.get(); }
+  const TimedDatabase* detailDatabase() const { return from_objects_.get(); }
   const OccluderSet& occluders() const { return occluders_; }
   std::span<const Box> bounds() const { return bounds_; }
   std::span<const std::uint32_t> triangles() const { return triangles_; }  // of each object
@@ -52,21 +55,19 @@ class CullingData {
 
  private:
   const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
-                                      std::unique_ptr<OccluderDatabase>& database);
+                                      std::unique_ptr<TimedDatabase>& database);
 
   ParallelFor parallel_for_;
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
   OccluderSet occluders_;
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
-  std::unique_ptr<OccluderDatabase> from_eye_, from_objects_;
-  OccluderDatabases databases_;
-  double database_us_ = 0.0;
+  std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
 };
 
 Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
-// {"cells":n,"directions":n,"bytes":n,"build_us":t}, of all databases; null: there is none. times: else 0 for
-// them.
-Json databaseJson(const CullingData& data, bool times = true);
+// Adds "database" and "detail_database", {"cells":n,"directions":n,"bytes":n,"build_us":t} each, as far as
+// they were built. times: else 0 for them.
+void addDatabases(Json& json, const CullingData& data, bool times = true);
 
 }  // namespace sightline::tool

@@ -104,11 +104,17 @@ bool usesTree(const Setting& setting) {
 bool usesPlanes(const Setting& setting) {
   return setting.culler.method == CullMethod::kSupportingPlanes;
 }
-bool usesRelations(const Setting& setting) {
-  return setting.keepsRelations();
+bool usesAreaAngle(const Setting& setting) {
+  return usesOccluders(setting) && !setting.usesDatabase();
+}
+bool planesThroughBox(const Setting& setting) {
+  return setting.planesThroughBox();
 }
 bool hasCoherence(const Setting& setting) {
-  return usesTree(setting) || usesRelations(setting);
+  return usesTree(setting) || planesThroughBox(setting);
+}
+bool keepsRelations(const Setting& setting) {
+  return planesThroughBox(setting) && setting.culler.temporal_coherence;
 }
 bool testsDetail(const Setting& setting) {
   return usesOccluders(setting) && setting.culler.detail_objects;
@@ -155,7 +161,7 @@ const std::vector<Option>& allOptions() {
       {"coherence", hasCoherence, kList, kHeadline, "temporal coherence; supporting planes: kept relations",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.temporal_coherence; })},
-      {"lambda-steps", usesOccluders, kOne, kWhenChanged,
+      {"lambda-steps", usesAreaAngle, kOne, kWhenChanged,
        "occluders are looked for within so many steps of the observer; 0: everywhere",
        decimal(+[](Setting& s) -> double& { return s.culler.lambda_steps; })},
       {"min-node-cost", usesOccluders, kOne, kWhenChanged, "nodes with fewer triangles are not tested",
@@ -173,9 +179,9 @@ const std::vector<Option>& allOptions() {
        "supporting planes: occluders that share edges hide together",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.supporting_planes.joint_occlusion; })},
-      {"relation-mib", usesRelations, kOne, kWhenChanged, "supporting planes: most memory of kept relations",
+      {"relation-mib", keepsRelations, kOne, kWhenChanged, "supporting planes: most memory of kept relations",
        mebibytes(+[](Setting& s) -> std::size_t& { return s.culler.supporting_planes.relation_bytes; })},
-      {"tangents", usesRelations, kOne, kWhenChanged, "supporting planes: how their vertices are found",
+      {"tangents", planesThroughBox, kOne, kWhenChanged, "supporting planes: how their vertices are found",
        oneOf(
            kTangentSearches,
            +[](Setting& s) -> TangentSearch& { return s.culler.supporting_planes.tangent_search; })},
@@ -250,7 +256,7 @@ bool Setting::testsDetailObjects() const {
   return usesOccluders(*this) && culler.detail_objects;
 }
 
-bool Setting::keepsRelations() const {
+bool Setting::planesThroughBox() const {
   return usesPlanes(*this) && culler.supporting_planes.form == PlaneForm::kThroughBox;
 }
 
@@ -278,6 +284,13 @@ Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
       return values.error();
     }
     settings = multiply(settings, option, *values);
+  }
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const bool given = options.texts[i] != MethodOptions().texts[i];
+    if (given && std::none_of(settings.begin(), settings.end(), option.belongs)) {
+      fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);
+    }
   }
   for (Setting& setting : settings) {
     setting.database.area_angle_direction = setting.culler.area_angle_direction;

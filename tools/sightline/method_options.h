@@ -22,7 +22,7 @@ struct Setting {
 
   bool usesDatabase() const;
   bool testsDetailObjects() const;
-  bool keepsRelations() const;  // where temporal coherence is on
+  bool planesThroughBox() const;  // which are kept where temporal coherence is on
 };
 
 // The options as text, one for each option that there is; several values are separated by commas.
@@ -33,7 +33,8 @@ struct MethodOptions {
 };
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 
-// All combinations, in the order of the lists; options that a method does not have do not multiply it.
+// All combinations, in the order of the lists; options that a method does not have do not multiply it. Says
+// on stderr which of the given ones no method has.
 Result<std::vector<Setting>> settingsOf(const MethodOptions& options);
 
 std::string methodName(const Setting& setting);

@@ -170,7 +170,9 @@ void addReproduce(CLI::App& app, Command& chosen) {
   addOutputOptions(*command, options->output);
   addPathOptions(*command, options->path);
   addPictureOptions(*command, options->picture);
-  command->add_flag("--short", options->fewer_frames, "few frames, unless --frames says which");
+  command->add_flag(
+      "--short", options->fewer_frames,
+      "few frames, unless --frames says which; experiments on stretches of the path have their own");
   command->add_option("-o,--output", options->folder,
                       "folder of the tables and a report for each scene; made if needed");
   command->footer(

@@ -6,7 +6,7 @@ namespace sightline::tool {
 namespace {
 
 bool hasRelations(const Setting& setting) {
-  return setting.keepsRelations();
+  return setting.planesThroughBox();
 }
 bool hasDetail(const Setting& setting) {
   return setting.testsDetailObjects();

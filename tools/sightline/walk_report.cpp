@@ -212,13 +212,17 @@ std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& reco
       {"triangles", grouped(input.scene.triangleCount())},
       {"potential occluders", grouped(input.data.occluders().occluders.size())},
       {"walk", fmt::format("{}, {} frames", pathName(input.walk), input.walk.frames.size())}};
-  if (const Json database = databaseJson(input.data); !database.is_null()) {
-    facts.push_back({"occluder database",
-                     fmt::format("{} cells, {} directions, {:.1f} MiB, built in {:.2f} s",
-                                 grouped(database["cells"]), database["directions"].get<std::uint32_t>(),
-                                 database["bytes"].get<double>() / (1024.0 * 1024.0),
-                                 database["build_us"].get<double>() * 1e-6)});
-  }
+  const auto addDatabase = [&](const char* name, const CullingData::TimedDatabase* timed) {
+    if (timed != nullptr) {
+      facts.push_back(
+          {name, fmt::format("{} cells, {} directions, {:.1f} MiB, built in {:.2f} s",
+                             grouped(timed->database.cellCount()), timed->database.directionCount(),
+                             static_cast<double>(timed->database.bytes()) / (1024.0 * 1024.0),
+                             timed->build_us * 1e-6)});
+    }
+  };
+  addDatabase("occluder database", input.data.database());
+  addDatabase("database for detail objects", input.data.detailDatabase());
   if (!record.device.empty()) {
     facts.push_back({"pictures", fmt::format("{} x {}", record.width, record.height)});
     facts.push_back({"OpenGL", record.device});
@@ -243,9 +247,7 @@ std::string walkJson(const WalkInput& input, const WalkRecord& record) {
                {"width", record.width},           {"height", record.height},
                {"device", record.device},         {"differing_frames", record.differing()},
                {"tie_frames", record.ties()}};
-  if (const Json database = databaseJson(input.data); !database.is_null()) {
-    head["database"] = database;
-  }
+  addDatabases(head, input.data);
   std::vector<std::string> runs;
   for (const WalkRun& run : record.runs) {
     runs.push_back(runJson(run, record));

@@ -40,7 +40,8 @@ struct CullerSettings {
   // kept from frame to frame.
   bool temporal_coherence = true;
   bool test_objects = true;  // objects of partly visible leaves are tested by their own boxes
-  // Objects that the walk kept are tested once more, with the occluders near themselves.
+  // Objects that the walk kept are tested once more, with the occluders near themselves; not dynamic boxes,
+  // and not with kFrustum.
   bool detail_objects = false;
   std::uint32_t detail_occluder_count = 8;  // for each of them
 };
