@@ -76,10 +76,10 @@ inline std::uint64_t allElements(const OccluderEdge& edge) {
 // or null.
 template <typename CentroidOf>
 std::uint64_t openElements(const OccluderSet& set, const OccluderEdge& edge, const Plane& oriented,
-                           CentroidOf&& centroidOf) {
+                           CentroidOf&& centroid_of) {
   std::uint64_t open = allElements(edge);
   for (const EdgeCover& cover : set.coversOf(edge)) {
-    const Vec3d* centroid = centroidOf(cover.occluder);
+    const Vec3d* centroid = centroid_of(cover.occluder);
     if (centroid != nullptr && oriented.evaluate(*centroid) > 0.0) {
       open &= ~(std::uint64_t{1} << cover.element);
     }
