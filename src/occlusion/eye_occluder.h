@@ -72,7 +72,7 @@ inline std::uint64_t allElements(const OccluderEdge& edge) {
 }
 
 // Those of them beyond which none of the occluders begins that are in use; beyond the others the seam lets
-// nothing through. oriented: of the edge's seam. centroidOf(id): of an occluder in use, relative to the eye,
+// nothing through. oriented: of the edge's seam. centroid_of(id): of an occluder in use, relative to the eye,
 // or null.
 template <typename CentroidOf>
 std::uint64_t openElements(const OccluderSet& set, const OccluderEdge& edge, const Plane& oriented,
