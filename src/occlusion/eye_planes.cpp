@@ -17,22 +17,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
                         std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks) {
   const hn::CappedTag<double, 4> d;
-  const auto low_x = hn::Set(d, box.low.x), low_y = hn::Set(d, box.low.y), low_z = hn::Set(d, box.low.z);
-  const auto high_x = hn::Set(d, box.high.x), high_y = hn::Set(d, box.high.y),
-             high_z = hn::Set(d, box.high.z);
+  const auto low_x = hn::Set(d, box.min.x), low_y = hn::Set(d, box.min.y), low_z = hn::Set(d, box.min.z);
+  const auto high_x = hn::Set(d, box.max.x), high_y = hn::Set(d, box.max.y), high_z = hn::Set(d, box.max.z);
+  const double farthest_corner = box.farthest();
   for (std::size_t i = 0; i < list.size(); ++i) {
     const EyeShape& shape = shapes[list[i]];
     EyeLook& look = looks[i];
     look = {};
-    const Vec3d at_low(shape.normal.x * box.low.x, shape.normal.y * box.low.y, shape.normal.z * box.low.z);
-    const Vec3d at_high(shape.normal.x * box.high.x, shape.normal.y * box.high.y,
-                        shape.normal.z * box.high.z);
+    const Vec3d at_low(shape.normal.x * box.min.x, shape.normal.y * box.min.y, shape.normal.z * box.min.z);
+    const Vec3d at_high(shape.normal.x * box.max.x, shape.normal.y * box.max.y, shape.normal.z * box.max.z);
     const Vec3d nearest = max(at_low, at_high), farthest = min(at_low, at_high);
-    const double margin = shape.depth_margin + kDepthMargin * (box.farthest + shape.reach);
+    const double margin = shape.depth_margin + kDepthMargin * (farthest_corner + shape.reach);
     if (!(farthest.x + farthest.y + farthest.z + shape.offset < -margin)) {
       continue;
     }
-    const auto tolerance = hn::Set(d, -kEyePlane * (box.farthest + shape.reach));
+    const auto tolerance = hn::Set(d, -kEyePlane * (farthest_corner + shape.reach));
     look.touches = true;
     for (std::uint32_t first = 0; first < shape.plane_count; first += 4) {
       const EyeQuad& quad = quads[shape.first_quad + first / 4];

@@ -8,8 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "sightline/math/box.h"
-#include "sightline/math/vec3.h"
+#include "occlusion/eye_box.h"
 
 namespace sightline::occlusion_detail {
 
@@ -32,19 +31,6 @@ struct EyeShape {
   double reach = 0.0;         // largest magnitude of a corner
   std::uint32_t first_quad = 0;
   std::uint16_t plane_count = 0;  // one for each edge, then one for the near plane's cut if there is one
-};
-
-struct EyeBox {
-  EyeBox(const Box& box, const Vec3d& eye)
-      : low(Vec3d(box.min) - eye),
-        high(Vec3d(box.max) - eye),
-        farthest(magnitudeOf(max(abs(low), abs(high)))) {}
-
-  Vec3d low, high;
-  double farthest;  // magnitude of its farthest corner, or more
-
- private:
-  static double magnitudeOf(const Vec3d& p) { return p.x + p.y + p.z; }
 };
 
 struct EyeLook {

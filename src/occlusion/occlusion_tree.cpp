@@ -68,7 +68,7 @@ Visibility OcclusionTree::classify(const Box& box) {
     return Visibility::kVisible;
   }
   const Eye& eye = impl.tree.volumes.eye;
-  const EyeBox relative{Vec3d(box.min) - eye.position, Vec3d(box.max) - eye.position};
+  const EyeBox relative = EyeBox::of(box, eye.position);
   if (!eye.orthographic && relative.min.x <= 0.0 && relative.min.y <= 0.0 && relative.min.z <= 0.0 &&
       relative.max.x >= 0.0 && relative.max.y >= 0.0 && relative.max.z >= 0.0) {
     return Visibility::kPartial;  // the eye is inside: never hidden, but what else is in it may be

@@ -182,7 +182,7 @@ bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
   roles[index] = Role::kRejected;
   examined.push_back(index);
   EyeLook look;
-  lookPast(shapes, eye_quads, {&index, 1}, EyeBox(box, eye.position), {&look, 1});
+  lookPast(shapes, eye_quads, {&index, 1}, EyeBox::of(box, eye.position), {&look, 1});
   if (!look.behind) {
     return false;
   }
@@ -279,7 +279,7 @@ EyeLook SupportingPlanes::Impl::lookThrough(const Box& box, Item item, std::uint
   const Member& member = members[index];
   if (member.near_clipped) {
     EyeLook look;
-    lookPast(shapes, eye_quads, {&index, 1}, EyeBox(box, eye.position), {&look, 1});
+    lookPast(shapes, eye_quads, {&index, 1}, EyeBox::of(box, eye.position), {&look, 1});
     return look;
   }
   if (const Relation* kept = item != kNoItem ? lookAgain(item, member) : nullptr) {
@@ -325,7 +325,8 @@ Visibility SupportingPlanes::Impl::classify(const Box& box, Item item, OccluderL
   if (through_eye) {
     looks.resize(std::max<std::size_t>(looks.size(), count));
     const std::span<const std::uint32_t> list = std::span(lists).subspan(among.first, count);
-    count = static_cast<std::uint32_t>(lookPast(shapes, eye_quads, list, EyeBox(box, eye.position), looks));
+    count =
+        static_cast<std::uint32_t>(lookPast(shapes, eye_quads, list, EyeBox::of(box, eye.position), looks));
   }
   for (std::uint32_t i = 0; i < count && !hidden; ++i) {
     const std::uint32_t index = lists[among.first + i];

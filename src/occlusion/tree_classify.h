@@ -1,17 +1,10 @@
 #pragma once
 
+#include "occlusion/eye_box.h"
 #include "occlusion/tree_data.h"
-#include "sightline/math/box.h"
 #include "sightline/occlusion/visibility.h"
 
 namespace sightline::occlusion_detail {
-
-// A box relative to the eye.
-struct EyeBox {
-  Vec3d min, max;
-  Vec3d center() const { return (min + max) * 0.5; }
-  Vec3d half() const { return (max - min) * 0.5; }
-};
 
 // The states of Visibility, and one more for parts outside the frustum, which do not count.
 enum class State : std::uint8_t { kHidden, kPartial, kVisible, kNothing };

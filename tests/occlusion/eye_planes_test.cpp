@@ -55,7 +55,7 @@ Scene randomScene(std::mt19937_64& random) {
 EyeBox randomBox(std::mt19937_64& random) {
   const Vec3d c = direction(random) * uniform(random, 0, 15);
   const Vec3d h(uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1));
-  return {Box{Vec3f(c - h), Vec3f(c + h)}, {0.1, 0.2, 0.3}};
+  return EyeBox::of({Vec3f(c - h), Vec3f(c + h)}, {0.1, 0.2, 0.3});
 }
 
 std::vector<EyeLook> lookPast(const Scene& scene, const EyeBox& box) {
@@ -99,8 +99,8 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
       const auto range = [&](const Vec3d& n, double offset) {
         double least = INFINITY, most = -INFINITY;
         for (unsigned c = 0; c < 8; ++c) {
-          const Vec3d x(c & 1 ? box.high.x : box.low.x, c & 2 ? box.high.y : box.low.y,
-                        c & 4 ? box.high.z : box.low.z);
+          const Vec3d x(c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
+                        c & 4 ? box.max.z : box.min.z);
           least = std::min(least, dot(n, x) + offset);
           most = std::max(most, dot(n, x) + offset);
         }
@@ -159,7 +159,7 @@ TEST(EyePlanes, LookingEndsAtTheFirstThatHidesTheBox) {
     scene.quads.push_back(quad);
     scene.list.push_back(i);
   }
-  const EyeBox box(Box{{-1, -1, -5}, {1, 1, -4}}, {0, 0, 0});
+  const EyeBox box = EyeBox::of({{-1, -1, -5}, {1, 1, -4}}, {0, 0, 0});
   const std::vector<EyeLook> looks = lookPast(scene, box);
   ASSERT_EQ(looks.size(), 3u);
   EXPECT_FALSE(looks[0].touches);

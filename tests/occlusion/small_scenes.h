@@ -4,6 +4,7 @@
 
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sightline/occluders/occluder_set.h"
@@ -44,6 +45,31 @@ inline OraclePolygon wall(float x0, float x1, float y0, float y1, float z) {
 }
 
 inline const View kLookingBack = viewFrom({0, 0, 0}, {0, 0, -1});
+
+// Two walls with a gap that grows from a thousandth of a pixel to three (640 pixels high, 90 degrees: a pixel
+// is 2 / 640 at unit distance), at many angles and offsets, and a box that is seen through it by
+// kLookingBack. look(walls, box, what)
+template <typename Look>
+void forEachGap(Look&& look) {
+  std::mt19937_64 random(7);
+  for (const double pixels : {0.001, 0.3, 0.6, 0.9, 3.0}) {
+    for (int turn = 0; turn < 60; ++turn) {
+      const double angle = 0.11 * turn;
+      const double gap = pixels * 2.0 / 640.0 * 5.0;
+      const double offset = 0.003 * static_cast<double>(random() % 1000);
+      const auto at = [&](double u, double v) {
+        return Vec3f(static_cast<float>(std::cos(angle) * u - std::sin(angle) * v),
+                     static_cast<float>(std::sin(angle) * u + std::cos(angle) * v), -5.0f);
+      };
+      const std::vector<OraclePolygon> walls{
+          {{at(-40, -40), at(offset, -40), at(offset, 40), at(-40, 40)}, false},
+          {{at(offset + gap, -40), at(40, -40), at(40, 40), at(offset + gap, 40)}, false}};
+      const Vec3d middle = Vec3d(at(offset + 0.5 * gap, 0.0)) * 2.0;
+      const Box box{Vec3f(middle - Vec3d(0.5, 0.5, 0.5)), Vec3f(middle + Vec3d(0.5, 0.5, 0.5))};
+      look(walls, box, std::to_string(pixels) + " pixels, turn " + std::to_string(turn));
+    }
+  }
+}
 
 // Random scenes of families that are hard for floating point.
 struct Family {

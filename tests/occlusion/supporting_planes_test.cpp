@@ -260,24 +260,9 @@ TEST(SupportingPlanes, DisconnectedWallsDoNotFuse) {
 }
 
 TEST(SupportingPlanes, NeverHideABoxSeenThroughAGap) {
-  std::mt19937_64 random(7);
-  for (const double pixels : {0.001, 0.3, 0.6, 0.9, 3.0}) {
-    for (int turn = 0; turn < 60; ++turn) {
-      const double angle = 0.11 * turn;
-      const double gap = pixels * 2.0 / 640.0 * 5.0;
-      const double offset = 0.003 * static_cast<double>(random() % 1000);
-      const auto at = [&](double u, double v) {
-        return Vec3f(static_cast<float>(std::cos(angle) * u - std::sin(angle) * v),
-                     static_cast<float>(std::sin(angle) * u + std::cos(angle) * v), -5.0f);
-      };
-      const std::vector<OraclePolygon> walls{
-          {{at(-40, -40), at(offset, -40), at(offset, 40), at(-40, 40)}, false},
-          {{at(offset + gap, -40), at(40, -40), at(40, 40), at(offset + gap, 40)}, false}};
-      const Vec3d middle = Vec3d(at(offset + 0.5 * gap, 0.0)) * 2.0;
-      const Box box{Vec3f(middle - Vec3d(0.5, 0.5, 0.5)), Vec3f(middle + Vec3d(0.5, 0.5, 0.5))};
-      EXPECT_NE(ask(kLookingBack, walls, box), Visibility::kHidden) << pixels << " pixels, turn " << turn;
-    }
-  }
+  forEachGap([](std::span<const OraclePolygon> walls, const Box& box, const std::string& what) {
+    EXPECT_NE(ask(kLookingBack, walls, box), Visibility::kHidden) << what;
+  });
 }
 
 TEST(SupportingPlanes, SingleSidedWallsHideNothingFromBehind) {

@@ -37,17 +37,16 @@ class OccluderDatabase {
   // its leaves if all their lists fit max_bytes at full length, else the largest cell (by its diagonal) is
   // split first until one more would not fit. One cell is always made, with the directions and the k asked
   // for, however small max_bytes is. A hierarchy of the other kind, or an empty one, is one cell. Equal lists
-  // are stored once, so that bytes() may be far below max_bytes. While it builds it takes up to
-  // twice as much, and for each range of cells handed to a thread the lists of one cell at full length.
+  // are stored once, so that bytes() may be far below max_bytes. While it builds it takes up to twice as
+  // much, and for each range of cells handed to a thread the lists of one cell at full length.
   //
   // A list holds exactly the k best occluders by a score that is never smaller than the area-angle at any
   // viewpoint in the cell, for any viewing direction whose nearest stored one is the list's, both capped at 2
   // pi: one that is worth more somewhere in the cell than the score of a full list's last entry is not lost.
-  // Ties by id. Left out is what no
-  // viewpoint of the cell sees from a side that hides, or sees within half the view angle of such a
-  // direction. (Both are bounded: see src/occluders/database_lists.cpp.) This holds for perspective views and
-  // viewpoints in the box of the tree, enlarged by 1/256 of its diagonal; beyond it, the lists of the
-  // outermost cells are found, as a good guess.
+  // Ties by id. Left out is what no viewpoint of the cell sees from a side that hides, or sees within half
+  // the view angle of such a direction. (Both are bounded: see src/occluders/database_lists.cpp.) This holds
+  // for perspective views and viewpoints in the box of the tree, enlarged by 1/256 of its diagonal; beyond
+  // it, the lists of the outermost cells are found, as a good guess.
   //
   // The result does not depend on the threads. progress: one step a cell.
   // Source: Coorg, Teller 1997, section 5.

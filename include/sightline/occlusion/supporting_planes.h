@@ -1,7 +1,7 @@
 #pragma once
 
-// Supporting and separating planes: boxes are classified against the planes through an occluder's edges that
-// touch the box. The planes do not depend on the eye, so they are kept from frame to frame.
+// Supporting and separating planes: whether occluders hide a box, from planes through their edges. Nothing is
+// built for a frame but a few planes an occluder.
 
 #include <cstdint>
 #include <memory>

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "sightline/geometry/tolerance.h"
+#include "sightline/math/box.h"
+
+namespace sightline::occlusion_detail {
+
+// A box relative to the eye.
+struct EyeBox {
+  Vec3d min, max;
+
+  static EyeBox of(const Box& box, const Vec3d& eye) { return {Vec3d(box.min) - eye, Vec3d(box.max) - eye}; }
+  Vec3d center() const { return (min + max) * 0.5; }
+  Vec3d half() const { return (max - min) * 0.5; }
+  // Magnitude of its farthest corner.
+  double farthest() const { return magnitude(sightline::max(abs(min), abs(max))); }
+};
+
+}  // namespace sightline::occlusion_detail
