@@ -200,17 +200,22 @@ std::vector<OccluderId> chosenBySorting(const Crowd& crowd, const View& view,
   return ids;
 }
 
+View crowdView(Random& random, std::uint64_t seed) {
+  View view;
+  view.eye = random.point(20.0);
+  setOrientation(view, random.point(1.0), {0, 1, 0});
+  view.orthographic = seed % 4 == 0;
+  view.ortho_height = 30.0;
+  return view;
+}
+
 TEST(ChooseOccluders, ReturnsWhatSortingAllOfThemReturns) {
   OccluderChooser chooser;  // one for all: nothing of the last view stays
   std::size_t full = 0, partly = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     Random random(seed);
     const Crowd scene = crowd(random);
-    View view;
-    view.eye = random.point(20.0);
-    setOrientation(view, random.point(1.0), {0, 1, 0});
-    view.orthographic = seed % 4 == 0;
-    view.ortho_height = 30.0;
+    const View view = crowdView(random, seed);
     for (const AreaAngleDirection direction : kDirections) {
       for (const std::uint32_t count : {0u, 1u, 8u, 64u, 1000u}) {
         for (const double lambda : {0.0, 15.0}) {
@@ -236,11 +241,7 @@ TEST(ChooseOccluders, OfGivenOccludersReturnsWhatSortingThemReturns) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Random random(seed);
     const Crowd scene = crowd(random);
-    View view;
-    view.eye = random.point(20.0);
-    setOrientation(view, random.point(1.0), {0, 1, 0});
-    view.orthographic = seed % 4 == 0;
-    view.ortho_height = 30.0;
+    const View view = crowdView(random, seed);
     std::vector<OccluderId> given;  // in no order
     for (const ObjectId object : scene.asked) {
       const std::span<const OccluderId> of_object = scene.set.occludersOf(object);
