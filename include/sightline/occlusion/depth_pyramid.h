@@ -1,0 +1,68 @@
+#pragma once
+
+// Depth pyramid: a hierarchical depth map of occluders, made for asking about many boxes at once.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sightline/base/parallel_for.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/occlusion/rasteriser.h"
+#include "sightline/occlusion/visibility.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+
+struct DepthPyramidSettings {
+  RasterSettings raster;
+};
+
+struct DepthPyramidStats {
+  RasterStats raster;
+};
+
+struct BoxAnswer {
+  Visibility visibility = Visibility::kVisible;
+  bool within_view = false;  // all of it surely lies in the view's volume
+};
+
+// Usable alone: build() from any occluders, then classify() any boxes at any time. With Coverage::kInner
+// answers are conservative: kHidden only where no point of the box can be seen from the view's eye. kVisible
+// where nothing in the map is before any part of the box. A box is compared by its own outline and depth in
+// each pixel wherever its rectangle leaves doubt. Not safe to share between threads; allocates nothing once
+// its storage has grown to what a few builds need.
+class DepthPyramid {
+ public:
+  explicit DepthPyramid(const DepthPyramidSettings& settings = {});
+  ~DepthPyramid();
+  DepthPyramid(DepthPyramid&&) noexcept;
+  DepthPyramid& operator=(DepthPyramid&&) noexcept;
+
+  void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
+             const ParallelFor& parallel_for = serialFor);
+  // The same in steps: draw() any number of occluders, also of several sets, as those that move; then
+  // finish().
+  void begin(const View& view);
+  void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
+            const ParallelFor& parallel_for = serialFor);
+  void finish(const ParallelFor& parallel_for = serialFor);
+
+  // Of boxes in scene space, as seen in the last view; one answer for each. Boxes that are not well formed,
+  // and those that reach the near plane, are kPartial or kVisible. What is wholly outside the view is
+  // kHidden.
+  void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
+  Visibility classify(const Box& box) const;
+
+  // Of the pyramid, level 0 is the map itself.
+  std::uint32_t levels() const;
+  DepthMapView map() const;
+  const DepthPyramidStats& stats() const;
+  std::span<const OccluderId> occluders() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,87 @@
+#pragma once
+
+// A conservative rasteriser: which pixels of a map occluders cover, and how near they surely are there.
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "sightline/base/parallel_for.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+
+enum class Coverage : std::uint8_t {
+  // A pixel is covered only where all of it is: by one occluder, or by several that share edges of the mesh.
+  // Its
+  // depth is their farthest over the whole pixel.
+  kInner,
+  // A pixel is covered where its centre is, with the depth there (Poon and Wang 1999). NOT conservative: what
+  // is
+  // seen through a gap between centres is hidden. For comparison only.
+  kCentre,
+};
+
+struct RasterSettings {
+  std::uint32_t width = 320,
+                height = 180;  // pixels, 1 to kMaxMapSize each; any aspect: pixels need not be square
+  Coverage coverage = Coverage::kInner;
+};
+inline constexpr std::uint32_t kMaxMapSize = 8192;
+
+// Of a pixel that nothing covers.
+inline constexpr float kUncovered = -std::numeric_limits<float>::max();
+
+// The lowest row comes first. Valid until the map is drawn again.
+struct DepthMapView {
+  std::span<const float> nearness;  // greater is nearer; 1 / depth (1 / metres), orthographic -depth (metres)
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t stride = 0;  // from one row to the next; what lies beyond the width has no meaning
+
+  float at(std::uint32_t x, std::uint32_t y) const { return nearness[std::size_t{y} * stride + x]; }
+  bool covered(std::uint32_t x, std::uint32_t y) const { return at(x, y) > kUncovered; }
+  std::span<const float> row(std::uint32_t y) const {
+    return nearness.subspan(std::size_t{y} * stride, width);
+  }
+};
+
+struct RasterStats {
+  std::uint32_t occluders = 0;  // drawn, or behind what was drawn
+  std::uint32_t unusable =
+      0;  // chosen, but seen from behind, edge-on, wholly before the near plane, or off the map
+  std::uint32_t hidden = 0;  // of the occluders: behind what was drawn before
+};
+
+// Usable alone. A covered pixel promises: from every point of the view's near plane or beyond that projects
+// into it, and is farther than the stored depth, the eye is hidden by triangles of the occluders. Every
+// instruction set and any number of threads give the same bits. Not safe to share between threads; allocates
+// nothing once its storage has grown to what a few frames need.
+class Rasteriser {
+ public:
+  explicit Rasteriser(const RasterSettings& settings = {});
+  ~Rasteriser();
+  Rasteriser(Rasteriser&&) noexcept;
+  Rasteriser& operator=(Rasteriser&&) noexcept;
+
+  // Clears the map for a view.
+  void begin(const View& view);
+  // Draws the chosen occluders, the nearest first, into the map. May be called several times, with the same
+  // or other sets, as for occluders that move; occluders of one call close the seams between them. The set
+  // must outlive the call only.
+  void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
+            const ParallelFor& parallel_for = serialFor);
+
+  const RasterSettings& settings() const;
+  DepthMapView map() const;
+  const RasterStats& stats() const;  // since begin()
+  // Those of the chosen ones that were drawn or are behind what was drawn, since begin().
+  std::span<const OccluderId> occluders() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline

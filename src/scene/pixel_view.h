@@ -1,0 +1,49 @@
+#pragma once
+
+// A view as a map of pixels has it: camera space, and where its points lie in the map.
+//
+// Camera space: x to the right, y upwards, z the depth along the viewing direction, metres, relative to the
+// eye. Map space: pixels from the map's lower left corner, x to the right, y upwards; pixel (i, j) is the
+// square from (i, j) to (i + 1, j + 1). Nearness is what a map stores of a depth: greater is nearer, and over
+// a plane's image it is linear. Perspective: 1 / depth; orthographic: -depth.
+
+#include <cstdint>
+
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+
+struct PixelView {
+  Vec3d eye;
+  Vec3d right, up, forward;
+  bool orthographic = false;
+  double near = 0.0, far = 0.0;
+  double scale_x = 0.0,
+         scale_y = 0.0;  // pixels for a unit of x / z (perspective), for a metre (orthographic)
+  double middle_x = 0.0, middle_y = 0.0;  // of the map, pixels
+
+  PixelView() = default;
+  PixelView(const View& view, std::uint32_t width, std::uint32_t height)
+      : eye(view.eye),
+        right(view.right),
+        up(view.up),
+        forward(view.forward),
+        orthographic(view.orthographic),
+        near(view.near),
+        far(view.far),
+        middle_x(0.5 * width),
+        middle_y(0.5 * height) {
+    const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
+    scale_x = middle_x / (half_height * view.aspect);
+    scale_y = middle_y / half_height;
+  }
+
+  // Of a direction, or of a point relative to the eye.
+  Vec3d toCamera(const Vec3d& r) const { return {dot(right, r), dot(up, r), dot(forward, r)}; }
+  // Of a point in camera space; perspective: z > 0.
+  double mapX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
+  double mapY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
+  double nearness(double depth) const { return orthographic ? -depth : 1.0 / depth; }
+};
+
+}  // namespace sightline
