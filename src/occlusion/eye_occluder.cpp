@@ -47,7 +47,7 @@ Outline outlineOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& see
   return {corner(a), corner(b), occluder.first_vertex + edge};
 }
 
-std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, OccluderId id) {
+std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, OccluderId id) {
   const Occluder& occluder = set[id];
   EyeOccluder seen;
   seen.id = id;
@@ -73,31 +73,41 @@ std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, O
     deepest = std::max(deepest, depth);
     seen.nearest = std::min(seen.nearest, depth);
   }
-  const double grazing = std::abs(facing) / (eye.orthographic ? 1.0 : farthest);
-  if (!(grazing > kGrazingSine) || !std::isfinite(seen.reach)) {
+  seen.grazing = std::abs(facing) / (eye.orthographic ? 1.0 : farthest);
+  if (!(seen.grazing > kGrazingSine) || !std::isfinite(seen.reach)) {
     return std::nullopt;
   }
   seen.deviation = occluder.slack;
+  // What kEdgeMargin allows sideways becomes depth where the plane is seen at a grazing angle.
+  seen.depth_slack = (4.0 * seen.deviation + kDepthMargin * 0x1p-8 * seen.reach) / seen.grazing;
+  seen.clip_depth = eye.near + seen.depth_slack + kDepthMargin * (eye.near + seen.reach);
+  if (!(deepest > seen.clip_depth)) {
+    return std::nullopt;
+  }
+  return seen;
+}
+
+bool keepsShape(const Occluder& occluder, double inset) {
+  return inset * inset < 0.0025 * occluder.area;
+}
+
+std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, OccluderId id) {
+  std::optional<EyeOccluder> seen = faceOccluder(eye, set, id);
+  if (!seen) {
+    return std::nullopt;
+  }
   // How far a point that is off by the slack may appear to move in the polygon's plane; a sharp corner of a
   // neighbour of three degrees costs a factor of twenty.
   double smallest_sine = 1.0;
-  for (std::uint32_t side = 0; side < occluder.vertex_count; ++side) {
+  for (std::uint32_t side = 0; side < set[id].vertex_count; ++side) {
     double sine = 0.0;
-    const Outline outline = outlineOf(eye, set, seen, side);
+    const Outline outline = outlineOf(eye, set, *seen, side);
     eye.shadowPlane(outline.from, outline.to, sine);
     smallest_sine = std::min(smallest_sine, sine);
   }
-  if (!(smallest_sine > kShortestEdgeSine)) {
-    return std::nullopt;
-  }
-  seen.inset = (32.0 * seen.deviation + kEdgeMargin * seen.reach * (1.0 + 0x1p-8 / smallest_sine)) / grazing;
-  if (!(seen.inset * seen.inset < 0.0025 * occluder.area)) {
-    return std::nullopt;
-  }
-  // What kEdgeMargin allows sideways becomes depth where the plane is seen at a grazing angle.
-  seen.depth_slack = (4.0 * seen.deviation + kDepthMargin * 0x1p-8 * seen.reach) / grazing;
-  seen.clip_depth = eye.near + seen.depth_slack + kDepthMargin * (eye.near + seen.reach);
-  if (!(deepest > seen.clip_depth)) {
+  seen->inset =
+      (32.0 * seen->deviation + kEdgeMargin * seen->reach * (1.0 + 0x1p-8 / smallest_sine)) / seen->grazing;
+  if (!(smallest_sine > kShortestEdgeSine) || !keepsShape(set[id], seen->inset)) {
     return std::nullopt;
   }
   return seen;

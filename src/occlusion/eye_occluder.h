@@ -39,10 +39,17 @@ struct EyeOccluder {
   double reach = 0.0;        // largest magnitude of a corner, relative to the eye
   double clip_depth = 0.0;   // metres along forward: what is nearer hides nothing
   double nearest = 0.0;      // depth of its nearest corner, metres along forward
+  double grazing = 0.0;      // sine of the angle at which it is seen, at least
   Vec3d centroid;            // of the unclipped polygon, relative to the eye
 };
 
-// Nothing where the occluder is of no use from here: seen from behind, edge-on, wholly before the near plane.
+// Without the inset, which depends on the structure. Nothing where the occluder is of no use from here: seen
+// from behind, edge-on, wholly before the near plane.
+std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, OccluderId id);
+// Whether a polygon that is drawn in by so much keeps its shape.
+bool keepsShape(const Occluder& occluder, double inset);
+
+// With the inset that shadow planes through its edges need; nothing also where that is too large.
 std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, OccluderId id);
 
 // An edge as the eye sees it, the polygon on its left, relative to the eye.

@@ -1,0 +1,319 @@
+#include "occlusion/map_polygon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/clip_convex.h"
+
+namespace sightline::occlusion_detail {
+namespace {
+
+// Polygons are cut so many widths and heights of the map beyond its borders, so that map coordinates stay
+// small.
+constexpr double kBeyond = 1.0;
+
+// The five half-spaces of what is drawn: positive inside, affine in camera space. beyond: see kBeyond.
+struct MapVolume {
+  const PixelView& view;
+  double depth = 0.0;
+  double beyond = 0.0;
+
+  double distance(int plane, const Vec3d& c) const {
+    const double w = view.orthographic ? 1.0 : c.z;
+    switch (plane) {
+      case 0:
+        return c.z - depth;
+      case 1:
+        return view.scale_x * c.x + (1.0 + 2.0 * beyond) * view.middle_x * w;
+      case 2:
+        return (1.0 + 2.0 * beyond) * view.middle_x * w - view.scale_x * c.x;
+      case 3:
+        return view.scale_y * c.y + (1.0 + 2.0 * beyond) * view.middle_y * w;
+      default:
+        return (1.0 + 2.0 * beyond) * view.middle_y * w - view.scale_y * c.y;
+    }
+  }
+  static constexpr int kPlanes = 5;
+};
+
+constexpr float kWholeMap = 1e9f;  // pixels
+
+MapEdge edgeBetween(const MapPoint& a, const MapPoint& b, EdgeKind kind, float margin) {
+  const bool rises = b.y > a.y;
+  const MapPoint &low = rises ? a : b, &high = rises ? b : a;
+  MapEdge edge;
+  edge.low = static_cast<float>(low.y);
+  edge.high = static_cast<float>(high.y);
+  edge.left = static_cast<float>(std::min(a.x, b.x));
+  edge.right = static_cast<float>(std::max(a.x, b.x));
+  edge.x_at_low = static_cast<float>(low.x);
+  edge.margin = margin;
+  edge.kind = kind;
+  if (!edge.flat()) {
+    edge.slope = static_cast<float>((high.x - low.x) / (high.y - low.y));
+    edge.side = rises ? 1 : -1;
+  }
+  return edge;
+}
+
+}  // namespace
+
+std::uint32_t MapPolygons::rootOf(std::uint32_t member) {
+  while (members_[member].group != member) {
+    member = members_[member].group = members_[members_[member].group].group;
+  }
+  return member;
+}
+
+void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId> chosen) {
+  members_.clear();
+  member_of_.resize(std::max(member_of_.size(), set.occluders.size()), kNone);
+  for (const OccluderId id : chosen) {
+    if (id.value >= set.occluders.size() || member_of_[id.value] != kNone) {
+      continue;
+    }
+    const std::optional<EyeOccluder> seen = faceOccluder(eye_, set, id);
+    const double inset = seen ? (32.0 * seen->deviation + kEdgeMargin * seen->reach) / seen->grazing : 0.0;
+    if (!seen || !keepsShape(set[id], inset)) {
+      ++unusable;
+      continue;
+    }
+    const auto index = static_cast<std::uint32_t>(members_.size());
+    member_of_[id.value] = index;
+    members_.push_back({*seen, inset, index});
+  }
+}
+
+// Polygons that share a seam must be cut at the same depth, else one of them would have an end there that the
+// other does not know of.
+double MapPolygons::commonClipDepth() const {
+  double depth = view_.near * (1.0 + kDepthMargin);
+  for (bool raised = true; raised;) {
+    raised = false;
+    for (const Member& member : members_) {
+      if (member.seen.nearest < depth && member.seen.clip_depth > depth) {
+        depth = member.seen.clip_depth;
+        raised = true;
+      }
+    }
+  }
+  return depth;
+}
+
+// Joins the groups of the member and of those that go on beyond the edge. Returns where none does.
+std::uint64_t MapPolygons::openElementsOf(const OccluderSet& set, std::uint32_t member,
+                                          const Outline& outline) {
+  const OccluderEdge& edge = set.edges[outline.edge];
+  const std::uint64_t all = allElements(edge);
+  if (edge.cover_count == 0 || edge.chain == 0 || !set[members_[member].seen.id].seals) {
+    return all;
+  }
+  Plane plane;  // through the eye and the edge, the polygon behind it; its length does not matter
+  plane.normal =
+      eye_.orthographic ? cross(eye_.forward, outline.to - outline.from) : cross(outline.from, outline.to);
+  plane.offset = eye_.orthographic ? -dot(plane.normal, outline.from) : 0.0;
+  if (!(plane.evaluate(members_[member].seen.centroid) < 0.0)) {
+    return all;
+  }
+  return openElements(set, edge, plane, [&](OccluderId id) -> const Vec3d* {
+    const std::uint32_t other = member_of_[id.value];
+    if (other == kNone || !set[id].seals) {
+      return nullptr;
+    }
+    const Vec3d& centroid = members_[other].seen.centroid;
+    if (plane.evaluate(centroid) > 0.0) {
+      members_[rootOf(other)].group = rootOf(member);
+    }
+    return &centroid;
+  });
+}
+
+bool MapPolygons::offMap() const {
+  const MapVolume map{view_, 0.0, 0.0};
+  for (int plane = 1; plane < MapVolume::kPlanes; ++plane) {
+    if (std::all_of(clipped_.begin(), clipped_.end(),
+                    [&](const Corner& c) { return map.distance(plane, c.position) < 0.0; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool MapPolygons::clip(double clip_depth) {
+  const MapVolume volume{view_, clip_depth, kBeyond};
+  for (int plane = 0; plane < MapVolume::kPlanes; ++plane) {
+    const auto distance = [&](const Vec3d& p) { return volume.distance(plane, p); };
+    if (std::any_of(clipped_.begin(), clipped_.end(),
+                    [&](const Corner& c) { return distance(c.position) < 0.0; }) &&
+        !clipConvex(clipped_, scratch_, Corner{{}, plane == 0 ? EdgeKind::kOpen : EdgeKind::kBorder},
+                    distance)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The open parts of an edge that others adjoin elsewhere, as segments in camera space.
+void MapPolygons::addGaps(const OccluderSet& set, const Member& member, std::uint32_t edge_index,
+                          std::uint64_t open) {
+  const OccluderEdge& edge = set.edges[edge_index];
+  const Occluder& occluder = set[member.seen.id];
+  const std::uint32_t next =
+      edge_index + 1 < occluder.first_vertex + occluder.vertex_count ? edge_index + 1 : occluder.first_vertex;
+  const auto point = [&](std::uint32_t k) {
+    const Vec3f& p = k == 0           ? set.vertices[edge_index]
+                     : k < edge.chain ? set.joints[edge.first_joint + k - 1]
+                                      : set.vertices[next];
+    return view_.toCamera(Vec3d(p) - eye_.position);
+  };
+  for (std::uint32_t k = 0; k < edge.chain; ++k) {
+    if ((open >> k & 1) != 0) {
+      const std::uint32_t first = k;
+      while (k + 1 < edge.chain && (open >> (k + 1) & 1) != 0) {
+        ++k;
+      }
+      gaps_.emplace_back(point(first), point(k + 1));
+    }
+  }
+}
+
+// The part of a segment within the volume.
+bool MapPolygons::clipGap(const Vec3d& from, const Vec3d& to, double clip_depth, Vec3d& a, Vec3d& b) const {
+  const MapVolume volume{view_, clip_depth, kBeyond};
+  double first = 0.0, last = 1.0;
+  for (int plane = 0; plane < MapVolume::kPlanes; ++plane) {
+    const double at_from = volume.distance(plane, from), at_to = volume.distance(plane, to);
+    if (at_from < 0.0 && at_to < 0.0) {
+      return false;
+    }
+    if (at_from < 0.0) {
+      first = std::max(first, at_from / (at_from - at_to));
+    } else if (at_to < 0.0) {
+      last = std::min(last, at_from / (at_from - at_to));
+    }
+  }
+  a = from + (to - from) * first;
+  b = from + (to - from) * last;
+  return first <= last;
+}
+
+// How far, in pixels on the map, something may appear from where it is that is off by twice the inset.
+float MapPolygons::marginAt(const Member& member, double depth) const {
+  if (!view_.orthographic && !(member.inset < 0.1 * depth)) {
+    return kWholeMap;
+  }
+  const double stretch_x = view_.orthographic ? view_.scale_x : (view_.scale_x + view_.middle_x) / depth;
+  const double stretch_y = view_.orthographic ? view_.scale_y : (view_.scale_y + view_.middle_y) / depth;
+  return static_cast<float>(4.0 * rounding_ + 2.25 * member.inset * std::max(stretch_x, stretch_y));
+}
+
+// The plane is moved away by what triangles may lie behind it.
+void MapPolygons::setNearness(const Member& member, const RasterSettings& settings,
+                              MapPolygon& polygon) const {
+  const Plane& support = member.seen.support;
+  const Vec3d n = view_.toCamera(support.normal);
+  double offset = support.offset;
+  if (settings.coverage == Coverage::kInner) {
+    offset += member.seen.depth_slack + 4.0 * kDepthMargin * member.seen.reach;
+  }
+  const double scale = view_.orthographic ? 1.0 / n.z : -1.0 / offset;
+  polygon.along_x = scale * n.x / view_.scale_x;
+  polygon.along_y = scale * n.y / view_.scale_y;
+  polygon.at_origin = scale * (view_.orthographic ? offset : n.z) - polygon.along_x * view_.middle_x -
+                      polygon.along_y * view_.middle_y;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::uint32_t i = 0; i < polygon.edge_count; ++i) {
+    const MapPoint& p = points[polygon.first_corner + i];
+    const double x = polygon.along_x * p.x, y = polygon.along_y * p.y;
+    const double value = polygon.at_origin + x + y;
+    const double rounding = 0x1p-22 * (std::abs(polygon.at_origin) + std::abs(x) + std::abs(y));
+    least = std::min(least, value - rounding);
+    most = std::max(most, value + rounding);
+  }
+  polygon.farthest = static_cast<float>(least);
+  polygon.nearest = static_cast<float>(most);
+}
+
+void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double clip_depth,
+                             const RasterSettings& settings) {
+  const Member& member = members_[index];
+  clipped_.clear();
+  gaps_.clear();
+  for (std::uint32_t side = 0; side < set[member.seen.id].vertex_count; ++side) {
+    const Outline outline = outlineOf(eye_, set, member.seen, side);
+    EdgeKind kind = EdgeKind::kOpen;
+    if (settings.coverage == Coverage::kInner) {
+      const std::uint64_t open = openElementsOf(set, index, outline);
+      if (open != allElements(set.edges[outline.edge])) {
+        kind = EdgeKind::kSealed;
+        addGaps(set, member, outline.edge, open);
+      }
+    }
+    clipped_.push_back({view_.toCamera(outline.from), kind});
+  }
+  if (offMap() || !clip(clip_depth)) {
+    ++unusable;
+    return;
+  }
+  MapPolygon polygon;
+  polygon.occluder = member.seen.id;
+  polygon.group = index;
+  polygon.first_edge = static_cast<std::uint32_t>(edges.size());
+  polygon.first_corner = static_cast<std::uint32_t>(points.size());
+  polygon.edge_count = static_cast<std::uint32_t>(clipped_.size());
+  polygon.low = polygon.left = std::numeric_limits<float>::max();
+  polygon.high = polygon.right = -std::numeric_limits<float>::max();
+  for (const Corner& corner : clipped_) {
+    points.push_back({view_.mapX(corner.position), view_.mapY(corner.position)});
+  }
+  for (std::size_t i = 0; i < clipped_.size(); ++i) {
+    const std::size_t next = i + 1 < clipped_.size() ? i + 1 : 0;
+    const double depth = std::min(clipped_[i].position.z, clipped_[next].position.z);
+    const MapEdge edge = edgeBetween(points[polygon.first_corner + i], points[polygon.first_corner + next],
+                                     clipped_[i].kind, marginAt(member, depth));
+    edges.push_back(edge);
+    polygon.low = std::min(polygon.low, edge.low);
+    polygon.high = std::max(polygon.high, edge.high);
+    polygon.left = std::min(polygon.left, edge.left);
+    polygon.right = std::max(polygon.right, edge.right);
+    polygon.margin = std::max(polygon.margin, edge.margin);
+  }
+  for (const auto& [from, to] : gaps_) {
+    Vec3d a, b;
+    if (clipGap(from, to, clip_depth, a, b)) {
+      edges.push_back(edgeBetween({view_.mapX(a), view_.mapY(a)}, {view_.mapX(b), view_.mapY(b)},
+                                  EdgeKind::kOpen, marginAt(member, std::min(a.z, b.z))));
+      ++polygon.gap_count;
+    }
+  }
+  setNearness(member, settings, polygon);
+  polygons.push_back(polygon);
+}
+
+void MapPolygons::build(const PixelView& view, const RasterSettings& settings, const OccluderSet& set,
+                        std::span<const OccluderId> chosen) {
+  view_ = view;
+  eye_.position = view.eye;
+  eye_.forward = view.forward;
+  eye_.near = view.near;
+  eye_.orthographic = view.orthographic;
+  rounding_ = mapRounding(settings.width, settings.height);
+  polygons.clear();
+  edges.clear();
+  points.clear();
+  unusable = 0;
+  takeMembers(set, chosen);
+  const double clip_depth = commonClipDepth();
+  for (std::uint32_t i = 0; i < members_.size(); ++i) {
+    addPolygon(set, i, clip_depth, settings);
+  }
+  for (MapPolygon& polygon : polygons) {
+    polygon.group = rootOf(polygon.group);
+  }
+  for (const Member& member : members_) {
+    member_of_[member.seen.id.value] = kNone;
+  }
+}
+
+}  // namespace sightline::occlusion_detail

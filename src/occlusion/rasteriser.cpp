@@ -1,0 +1,133 @@
+// A conservative rasteriser.
+//
+// Each convex polygon covers, row by row, the pixels between the last one that its left edges come near and
+// the first one that its right edges do. Pixels that shared edges cross are looked at group by group
+// afterwards (raster_rows.cpp). Edges are computed in single precision with a margin above its rounding,
+// depths are rounded away from the eye; docs/conservative.md has the argument.
+
+#include "sightline/occlusion/rasteriser.h"
+
+#include <algorithm>
+
+#include "occlusion/map_polygon.h"
+#include "occlusion/raster_rows.h"
+
+namespace sightline {
+
+using namespace occlusion_detail;
+
+struct Rasteriser::Impl {
+  // Rows that a thread draws together at least.
+  static constexpr std::uint32_t kBandRows = 16;
+
+  explicit Impl(const RasterSettings& s) : settings(s) {
+    settings.width = std::clamp(settings.width, 1u, kMaxMapSize);
+    settings.height = std::clamp(settings.height, 1u, kMaxMapSize);
+    stride = (settings.width + kRowSlack - 1) / kRowSlack * kRowSlack + kRowSlack;
+    nearness.resize(std::size_t{stride} * settings.height, kUncovered);
+    bands = (settings.height + kBandRows - 1) / kBandRows;
+    scratch.resize(bands);
+  }
+
+  // The nearest first, which hide most of what comes after.
+  void sortPolygons() {
+    order.resize(polygons.polygons.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+      order[i] = i;
+    }
+    std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
+      const MapPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
+      return p.nearest != q.nearest ? p.nearest > q.nearest : p.occluder < q.occluder;
+    });
+    by_group = order;
+    std::sort(by_group.begin(), by_group.end(), [this](std::uint32_t a, std::uint32_t b) {
+      const MapPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
+      return p.group != q.group ? p.group < q.group : a < b;
+    });
+  }
+
+  RasterBand bandOf(std::uint32_t begin, std::uint32_t end) {
+    return {nearness.data(), settings.width, stride, begin * kBandRows,
+            std::min(end * kBandRows, settings.height)};
+  }
+
+  void drawBands(std::uint32_t begin, std::uint32_t end) {
+    const RasterBand band = bandOf(begin, end);
+    if (settings.coverage == Coverage::kCentre) {
+      drawCentres(polygons, order, band);
+      return;
+    }
+    drawInsides(polygons, order, band, scratch[begin],
+                std::span(hidden).subspan(begin * order.size(), order.size()));
+    const double rounding = mapRounding(settings.width, settings.height);
+    for (std::size_t first = 0, last = 0; first < by_group.size(); first = last) {
+      const std::uint32_t group = polygons.polygons[by_group[first]].group;
+      while (last < by_group.size() && polygons.polygons[by_group[last]].group == group) {
+        ++last;
+      }
+      drawSeams(polygons, std::span(by_group).subspan(first, last - first), band, rounding, scratch[begin]);
+    }
+  }
+
+  void draw(const OccluderSet& set, std::span<const OccluderId> chosen, const ParallelFor& parallel_for) {
+    polygons.build(view, settings, set, chosen);
+    sortPolygons();
+    hidden.assign(order.size() * bands, 1);
+    parallel_for(bands, [this](std::uint32_t begin, std::uint32_t end) { drawBands(begin, end); });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      bool all_hidden = settings.coverage == Coverage::kInner;
+      for (std::uint32_t band = 0; band < bands; ++band) {
+        all_hidden = all_hidden && hidden[band * order.size() + i] != 0;
+      }
+      stats.hidden += all_hidden ? 1 : 0;
+    }
+    for (const MapPolygon& polygon : polygons.polygons) {
+      used.push_back(polygon.occluder);
+    }
+    stats.occluders = static_cast<std::uint32_t>(used.size());
+    stats.unusable += polygons.unusable;
+  }
+
+  RasterSettings settings;
+  std::uint32_t stride = 0, bands = 0;
+  std::vector<float> nearness;
+  PixelView view;
+  MapPolygons polygons;
+  std::vector<std::uint32_t> order, by_group;
+  std::vector<std::uint8_t> hidden;    // by band and place in the order
+  std::vector<RasterScratch> scratch;  // by the first band of a range
+  std::vector<OccluderId> used;
+  RasterStats stats;
+};
+
+Rasteriser::Rasteriser(const RasterSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Rasteriser::~Rasteriser() = default;
+Rasteriser::Rasteriser(Rasteriser&&) noexcept = default;
+Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
+
+void Rasteriser::begin(const View& view) {
+  impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height);
+  fillMap(impl_->nearness, kUncovered);
+  impl_->used.clear();
+  impl_->stats = {};
+}
+
+void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
+                      const ParallelFor& parallel_for) {
+  impl_->draw(set, chosen, parallel_for);
+}
+
+const RasterSettings& Rasteriser::settings() const {
+  return impl_->settings;
+}
+DepthMapView Rasteriser::map() const {
+  return {impl_->nearness, impl_->settings.width, impl_->settings.height, impl_->stride};
+}
+const RasterStats& Rasteriser::stats() const {
+  return impl_->stats;
+}
+std::span<const OccluderId> Rasteriser::occluders() const {
+  return impl_->used;
+}
+
+}  // namespace sightline
