@@ -9,32 +9,47 @@
 namespace sightline::occlusion_detail {
 namespace {
 
-// Polygons are cut so many widths and heights of the map beyond its borders, so that map coordinates stay
-// small.
-constexpr double kBeyond = 1.0;
-
-// The five half-spaces of what is drawn: positive inside, affine in camera space. beyond: see kBeyond.
+// The half-spaces of what is drawn, affine in camera space; positive inside.
 struct MapVolume {
-  const PixelView& view;
-  double depth = 0.0;
-  double beyond = 0.0;
+  // Polygons are cut so many widths and heights of the map beyond its borders, so that map coordinates stay
+  // small.
+  static constexpr double kBeyond = 1.0;
+  static constexpr int kPlanes = 5;
+  static constexpr int kNear = 0;
+
+  MapVolume(const PixelView& view, double clip_depth, double beyond)
+      : half_width((1.0 + 2.0 * beyond) * view.middle_x),
+        half_height((1.0 + 2.0 * beyond) * view.middle_y),
+        scale_x(view.scale_x),
+        scale_y(view.scale_y),
+        depth(clip_depth),
+        orthographic(view.orthographic) {}
 
   double distance(int plane, const Vec3d& c) const {
-    const double w = view.orthographic ? 1.0 : c.z;
+    const double w = orthographic ? 1.0 : c.z;
     switch (plane) {
-      case 0:
+      case kNear:
         return c.z - depth;
       case 1:
-        return view.scale_x * c.x + (1.0 + 2.0 * beyond) * view.middle_x * w;
+        return half_width * w + scale_x * c.x;
       case 2:
-        return (1.0 + 2.0 * beyond) * view.middle_x * w - view.scale_x * c.x;
+        return half_width * w - scale_x * c.x;
       case 3:
-        return view.scale_y * c.y + (1.0 + 2.0 * beyond) * view.middle_y * w;
+        return half_height * w + scale_y * c.y;
       default:
-        return (1.0 + 2.0 * beyond) * view.middle_y * w - view.scale_y * c.y;
+        return half_height * w - scale_y * c.y;
     }
   }
-  static constexpr int kPlanes = 5;
+  // A bit for each plane that the point is beyond.
+  unsigned outside(const Vec3d& c) const {
+    const double w = orthographic ? 1.0 : c.z;
+    const double x = scale_x * c.x, y = scale_y * c.y, right = half_width * w, top = half_height * w;
+    return (c.z < depth ? 1u : 0u) | (x < -right ? 2u : 0u) | (x > right ? 4u : 0u) | (y < -top ? 8u : 0u) |
+           (y > top ? 16u : 0u);
+  }
+
+  double half_width, half_height, scale_x, scale_y, depth;
+  bool orthographic;
 };
 
 constexpr float kWholeMap = 1e9f;  // pixels
@@ -129,25 +144,21 @@ std::uint64_t MapPolygons::openElementsOf(const OccluderSet& set, std::uint32_t 
   });
 }
 
-bool MapPolygons::offMap() const {
-  const MapVolume map{view_, 0.0, 0.0};
-  for (int plane = 1; plane < MapVolume::kPlanes; ++plane) {
-    if (std::all_of(clipped_.begin(), clipped_.end(),
-                    [&](const Corner& c) { return map.distance(plane, c.position) < 0.0; })) {
-      return true;
-    }
-  }
-  return false;
-}
-
+// False: nothing of the polygon is on the map.
 bool MapPolygons::clip(double clip_depth) {
-  const MapVolume volume{view_, clip_depth, kBeyond};
+  const MapVolume map(view_, clip_depth, 0.0), volume(view_, clip_depth, MapVolume::kBeyond);
+  unsigned outside_all = ~0u, outside_some = 0;
+  for (const Corner& corner : clipped_) {
+    outside_all &= map.outside(corner.position);
+    outside_some |= volume.outside(corner.position);
+  }
+  if (outside_all != 0) {
+    return false;
+  }
   for (int plane = 0; plane < MapVolume::kPlanes; ++plane) {
-    const auto distance = [&](const Vec3d& p) { return volume.distance(plane, p); };
-    if (std::any_of(clipped_.begin(), clipped_.end(),
-                    [&](const Corner& c) { return distance(c.position) < 0.0; }) &&
-        !clipConvex(clipped_, scratch_, Corner{{}, plane == 0 ? EdgeKind::kOpen : EdgeKind::kBorder},
-                    distance)) {
+    const Corner cut{{}, plane == MapVolume::kNear ? EdgeKind::kOpen : EdgeKind::kBorder};
+    if ((outside_some >> plane & 1) != 0 &&
+        !clipConvex(clipped_, scratch_, cut, [&](const Vec3d& p) { return volume.distance(plane, p); })) {
       return false;
     }
   }
@@ -180,7 +191,7 @@ void MapPolygons::addGaps(const OccluderSet& set, const Member& member, std::uin
 
 // The part of a segment within the volume.
 bool MapPolygons::clipGap(const Vec3d& from, const Vec3d& to, double clip_depth, Vec3d& a, Vec3d& b) const {
-  const MapVolume volume{view_, clip_depth, kBeyond};
+  const MapVolume volume(view_, clip_depth, MapVolume::kBeyond);
   double first = 0.0, last = 1.0;
   for (int plane = 0; plane < MapVolume::kPlanes; ++plane) {
     const double at_from = volume.distance(plane, from), at_to = volume.distance(plane, to);
@@ -222,17 +233,25 @@ void MapPolygons::setNearness(const Member& member, const RasterSettings& settin
   polygon.along_y = scale * n.y / view_.scale_y;
   polygon.at_origin = scale * (view_.orthographic ? offset : n.z) - polygon.along_x * view_.middle_x -
                       polygon.along_y * view_.middle_y;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  double least = std::numeric_limits<double>::infinity(), most = -least, sums = 0.0;
   for (std::uint32_t i = 0; i < polygon.edge_count; ++i) {
     const MapPoint& p = points[polygon.first_corner + i];
     const double x = polygon.along_x * p.x, y = polygon.along_y * p.y;
-    const double value = polygon.at_origin + x + y;
-    const double rounding = 0x1p-22 * (std::abs(polygon.at_origin) + std::abs(x) + std::abs(y));
-    least = std::min(least, value - rounding);
-    most = std::max(most, value + rounding);
+    least = std::min(least, polygon.at_origin + x + y);
+    most = std::max(most, polygon.at_origin + x + y);
+    sums = std::max(sums, std::abs(x) + std::abs(y));
   }
-  polygon.farthest = static_cast<float>(least);
-  polygon.nearest = static_cast<float>(most);
+  const double slope = std::abs(polygon.along_x) + std::abs(polygon.along_y);
+  const double width = std::abs(polygon.along_x) * (polygon.right - polygon.left);
+  const double rounding = 0x1p-22 * (std::max(std::abs(least), std::abs(most)) + width + 32.0 * slope) +
+                          0x1p-50 * (std::abs(polygon.at_origin) + sums);
+  polygon.farthest = static_cast<float>(least - rounding);
+  polygon.nearest = static_cast<float>(most + rounding);
+  if (settings.coverage == Coverage::kInner) {
+    polygon.at_origin += std::min(polygon.along_x, 0.0) + std::min(polygon.along_y, 0.0) - rounding;
+  } else {
+    polygon.at_origin += 0.5 * (polygon.along_x + polygon.along_y);
+  }
 }
 
 void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double clip_depth,
@@ -252,7 +271,7 @@ void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double
     }
     clipped_.push_back({view_.toCamera(outline.from), kind});
   }
-  if (offMap() || !clip(clip_depth)) {
+  if (!clip(clip_depth)) {
     ++unusable;
     return;
   }

@@ -47,7 +47,9 @@ struct MapPolygon {
   float low = 0.0f, high = 0.0f;                 // of its image
   float left = 0.0f, right = 0.0f;
   float margin = 0.0f;  // the greatest of its edges
-  // Nearness over the map: at_origin + along_x * x + along_y * y.
+  // Nearness in pixel (x, y): at_origin + along_x * x + along_y * y. Inner coverage: at most that of any
+  // point of the polygon in the pixel, by more than the rounding of this sum to single precision. Centre
+  // coverage: at the pixel's centre.
   double at_origin = 0.0, along_x = 0.0, along_y = 0.0;
   float farthest = 0.0f, nearest = 0.0f;  // bounds of nearness over its image
   std::uint32_t group = 0;                // polygons that share sealed edges, directly or not, have the same
@@ -93,7 +95,6 @@ class MapPolygons {
   void addPolygon(const OccluderSet& set, std::uint32_t member, double clip_depth,
                   const RasterSettings& settings);
   bool clip(double clip_depth);
-  bool offMap() const;
   void addGaps(const OccluderSet& set, const Member& member, std::uint32_t edge, std::uint64_t open);
   bool clipGap(const Vec3d& from, const Vec3d& to, double clip_depth, Vec3d& a, Vec3d& b) const;
   void setNearness(const Member& member, const RasterSettings& settings, MapPolygon& polygon) const;

@@ -15,19 +15,33 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes = hn::ScalableTag<float>;
+// As many rows, or pixels, at a time; at most RowRuns::kRows.
+using Lanes = hn::CappedTag<float, RowRuns::kRows>;
 using Vector = hn::Vec<Lanes>;
 
-constexpr float kFar = 1e9f;          // pixels, beyond any map
-constexpr std::uint32_t kChunk = 64;  // rows that are prepared together; a multiple of the lanes
+constexpr float kFar = 1e9f;  // pixels, beyond any map
 constexpr float kUntouched = std::numeric_limits<float>::infinity();
 constexpr float kDead = -std::numeric_limits<float>::max();
 
-// First and last pixels, in the rows from y on, of the squares that come within `margin` of an edge; where
-// there are none the first is beyond the last. No fused operations: they would round differently from one
+HWY_INLINE std::uint32_t laneCount() {
+  return static_cast<std::uint32_t>(hn::Lanes(Lanes()));
+}
+
+// Of the squares in the rows from y on that come within `margin` of an edge, the first and last; where there
+// are none the first is beyond the last. No fused operations: they would round differently from one
 // instruction set to another.
 struct Crossing {
   Vector first, last;
+
+  void store(const RasterBand& band, std::uint32_t row, RowRuns& runs) const {
+    const Lanes d;
+    const hn::RebindToSigned<Lanes> di;
+    const auto width = hn::Set(d, static_cast<float>(band.width));
+    const auto from = hn::Min(hn::Max(first, hn::Zero(d)), width);
+    const auto to = hn::Max(hn::Min(last, hn::Sub(width, hn::Set(d, 1.0f))), hn::Set(d, -1.0f));
+    hn::StoreU(hn::ConvertTo(di, from), di, runs.first + row);
+    hn::StoreU(hn::ConvertTo(di, to), di, runs.last + row);
+  }
 };
 HWY_INLINE Crossing cross(const MapEdge& edge, float margin, Vector y) {
   const Lanes d;
@@ -50,36 +64,42 @@ HWY_INLINE Crossing cross(const MapEdge& edge, float margin, Vector y) {
 }
 
 HWY_INLINE Vector rowsFrom(std::uint32_t y) {
-  const Lanes d;
-  return hn::Iota(d, static_cast<float>(y));
+  return hn::Iota(Lanes(), static_cast<float>(y));
 }
 
-// A polygon's nearness along one row: its farthest in every pixel.
-struct RowNearness {
-  float at_x = 0.0f;  // in pixel `x`
-  float step = 0.0f;
-  float farthest = 0.0f;
-  std::uint32_t x = 0;
-
-  RowNearness(const MapPolygon& polygon, std::uint32_t y, std::uint32_t first, std::uint32_t last) {
-    x = first;
-    step = static_cast<float>(polygon.along_x);
-    farthest = polygon.farthest;
-    const double from = first + (polygon.along_x < 0.0 ? 1.0 : 0.0),
-                 row = y + (polygon.along_y < 0.0 ? 1.0 : 0.0);
-    const double value = polygon.at_origin + polygon.along_x * from + polygon.along_y * row;
-    const double spread = std::abs(polygon.along_x) * (last - first);
-    // Above the rounding of these sums, to single precision, and of the ones in single precision below.
-    const double rounding = 0x1p-22 * (std::abs(value) + spread) +
-                            0x1p-50 * (std::abs(polygon.at_origin) + std::abs(polygon.along_x) * from +
-                                       std::abs(polygon.along_y) * row);
-    at_x = static_cast<float>(value - rounding);
+// The polygon's nearness in the first pixel of each run. In single precision from one pixel near by, so that
+// rounding is below what MapPolygon::at_origin leaves for it.
+void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
+  const Lanes d;
+  const hn::RebindToSigned<Lanes> di;
+  const MapPolygon& polygon = *part.polygon;
+  const std::int32_t x = part.runs.first[0];
+  const auto base =
+      hn::Set(d, static_cast<float>(polygon.at_origin + polygon.along_y * y + polygon.along_x * x));
+  const auto along_x = hn::Set(d, static_cast<float>(polygon.along_x));
+  const auto along_y = hn::Set(d, static_cast<float>(polygon.along_y));
+  for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
+    const auto right = hn::ConvertTo(d, hn::Sub(hn::LoadU(di, part.runs.first + i), hn::Set(di, x)));
+    const auto up = rowsFrom(i);
+    hn::StoreU(hn::Add(base, hn::Add(hn::Mul(along_x, right), hn::Mul(along_y, up))), d, part.at_first + i);
   }
-  // Of pixels at, at + 1, ...
-  HWY_INLINE Vector from(std::uint32_t at) const {
+}
+
+// A polygon's nearness along one row of a part.
+struct RowNearness {
+  float at_first = 0.0f, step = 0.0f, farthest = 0.0f;
+  std::uint32_t first = 0;
+
+  HWY_INLINE RowNearness(const RasterScratch::Part& part, std::uint32_t row)
+      : at_first(part.at_first[row]),
+        step(static_cast<float>(part.polygon->along_x)),
+        farthest(part.polygon->farthest),
+        first(static_cast<std::uint32_t>(part.runs.first[row])) {}
+  // Of pixels x, x + 1, ...
+  HWY_INLINE Vector from(std::uint32_t x) const {
     const Lanes d;
-    const auto offset = hn::Iota(d, static_cast<float>(at - x));
-    return hn::Max(hn::Add(hn::Set(d, at_x), hn::Mul(hn::Set(d, step), offset)), hn::Set(d, farthest));
+    const auto offset = hn::Iota(d, static_cast<float>(x - first));
+    return hn::Max(hn::Add(hn::Set(d, at_first), hn::Mul(hn::Set(d, step), offset)), hn::Set(d, farthest));
   }
 };
 
@@ -87,31 +107,27 @@ struct RowNearness {
 struct Run {
   std::uint32_t first = 1, last = 0;
 
+  static HWY_INLINE Run of(const RowRuns& runs, std::uint32_t row) {
+    const bool some = runs.first[row] <= runs.last[row];
+    return some ? Run{static_cast<std::uint32_t>(runs.first[row]), static_cast<std::uint32_t>(runs.last[row])}
+                : Run{};
+  }
   bool empty() const { return first > last; }
 };
-HWY_INLINE Run runOf(float first, float last, const RasterBand& band) {
-  if (!(first <= last) || last < 0.0f || first >= static_cast<float>(band.width)) {
-    return {};
-  }
-  return {first > 0.0f ? static_cast<std::uint32_t>(first) : 0,
-          std::min(last < kFar ? static_cast<std::uint32_t>(last) : band.width, band.width - 1)};
-}
 
 // Calls body(x, mask) for the vectors of a run.
 template <typename Body>
 HWY_INLINE void forRun(Run run, Body&& body) {
   const Lanes d;
-  const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d));
-  for (std::uint32_t x = run.first; x <= run.last; x += lanes) {
+  for (std::uint32_t x = run.first; x <= run.last; x += laneCount()) {
     body(x, hn::FirstN(d, run.last - x + 1));
   }
 }
 
-// The pixels of each row that lie inside all edges, for `count` rows from y on.
-void insideRows(std::span<const MapEdge> edges, std::uint32_t y, std::uint32_t count, float* first,
-                float* last) {
+// The pixels that lie inside all edges, in RowRuns::kRows rows from y on.
+void insideRows(std::span<const MapEdge> edges, std::uint32_t y, const RasterBand& band, RowRuns& runs) {
   const Lanes d;
-  for (std::uint32_t i = 0; i < count; i += static_cast<std::uint32_t>(hn::Lanes(d))) {
+  for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
     const auto rows = rowsFrom(y + i);
     auto begin = hn::Set(d, -kFar), end = hn::Set(d, kFar);
     for (const MapEdge& edge : edges) {
@@ -125,15 +141,15 @@ void insideRows(std::span<const MapEdge> edges, std::uint32_t y, std::uint32_t c
         end = hn::Min(end, crossing.first);
       }
     }
-    hn::StoreU(hn::Add(begin, hn::Set(d, 1.0f)), d, first + i);
-    hn::StoreU(hn::Sub(end, hn::Set(d, 1.0f)), d, last + i);
+    const auto one = hn::Set(d, 1.0f);
+    Crossing{hn::Add(begin, one), hn::Sub(end, one)}.store(band, i, runs);
   }
 }
 
 bool hiddenRow(const float* row, Run run, float nearest) {
   const Lanes d;
   const auto limit = hn::Set(d, nearest);
-  for (std::uint32_t x = run.first; x <= run.last; x += static_cast<std::uint32_t>(hn::Lanes(d))) {
+  for (std::uint32_t x = run.first; x <= run.last; x += laneCount()) {
     const auto before = hn::Lt(hn::LoadU(d, row + x), limit);
     if (!hn::AllFalse(d, hn::And(before, hn::FirstN(d, run.last - x + 1)))) {
       return false;
@@ -157,33 +173,38 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
                 RasterScratch& scratch) {
   const Rows rows =
       rowsOf(std::ceil(polygon.low + polygon.margin), std::floor(polygon.high - polygon.margin) - 1.0f, band);
-  const std::uint32_t count = rows.end - rows.first;
-  if (count == 0) {
+  if (rows.first == rows.end) {
     return true;
   }
-  scratch.low.resize(std::max<std::size_t>(scratch.low.size(), count + kRowSlack));
-  scratch.high.resize(std::max<std::size_t>(scratch.high.size(), count + kRowSlack));
-  insideRows(polygons.outline(polygon), rows.first, count, scratch.low.data(), scratch.high.data());
-  const auto run_of = [&](std::uint32_t y) {
-    return runOf(scratch.low[y - rows.first], scratch.high[y - rows.first], band);
-  };
+  scratch.insides.clear();
+  for (std::uint32_t y = rows.first; y < rows.end; y += RowRuns::kRows) {
+    RasterScratch::Part& part = scratch.insides.emplace_back();
+    part.polygon = &polygon;
+    insideRows(polygons.outline(polygon), y, band, part.runs);
+  }
   std::uint32_t y = rows.first;
-  while (y < rows.end &&
-         hiddenRow(band.nearness + std::size_t{y} * band.stride, run_of(y), polygon.nearest)) {
+  const auto part_at = [&](std::uint32_t row) -> RasterScratch::Part& {
+    return scratch.insides[(row - rows.first) / RowRuns::kRows];
+  };
+  const auto row_in_part = [&](std::uint32_t row) { return (row - rows.first) % RowRuns::kRows; };
+  while (y < rows.end && hiddenRow(band.nearness + std::size_t{y} * band.stride,
+                                   Run::of(part_at(y).runs, row_in_part(y)), polygon.nearest)) {
     ++y;
   }
   if (y == rows.end) {
     return true;
   }
   const Lanes d;
+  y -= row_in_part(y);
   for (; y < rows.end; ++y) {
-    const Run run = run_of(y);
-    if (run.empty()) {
-      continue;
+    RasterScratch::Part& part = part_at(y);
+    const std::uint32_t in_part = row_in_part(y);
+    if (in_part == 0) {
+      findAtFirst(y, part);
     }
     float* row = band.nearness + std::size_t{y} * band.stride;
-    const RowNearness nearness(polygon, y, run.first, run.last);
-    forRun(run, [&](std::uint32_t x, auto mask) {
+    const RowNearness nearness(part, in_part);
+    forRun(Run::of(part.runs, in_part), [&](std::uint32_t x, auto mask) {
       const auto old = hn::LoadU(d, row + x);
       hn::StoreU(hn::IfThenElse(mask, hn::Max(old, nearness.from(x)), old), d, row + x);
     });
@@ -192,10 +213,10 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
 }
 
 void drawInsidesOf(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band,
-                   RasterScratch& scratch, std::span<std::uint8_t> hidden) {
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (!drawInside(polygons, polygons.polygons[order[i]], band, scratch)) {
-      hidden[i] = 0;
+                   RasterScratch& scratch, std::span<std::uint8_t> drawn) {
+  for (const std::uint32_t p : order) {
+    if (!drawInside(polygons, polygons.polygons[p], band, scratch)) {
+      drawn[p] = 1;
     }
   }
 }
@@ -215,11 +236,8 @@ class SeamDrawer {
 
   void draw() {
     float low = kFar, high = -kFar;
-    std::size_t lists = 0;
     for (const std::uint32_t p : group_) {
-      const MapPolygon& polygon = polygons_.polygons[p];
-      lists += 1 + polygon.edge_count + polygon.gap_count;
-      for (const MapEdge& edge : polygons_.outline(polygon)) {
+      for (const MapEdge& edge : polygons_.outline(polygons_.polygons[p])) {
         if (edge.kind == EdgeKind::kSealed) {
           low = std::min(low, edge.low - edge.margin);
           high = std::max(high, edge.high + edge.margin);
@@ -227,128 +245,165 @@ class SeamDrawer {
       }
     }
     const Rows rows = rowsOf(low, high, band_);
-    scratch_.low.resize(std::max(scratch_.low.size(), lists * kChunk));
-    scratch_.high.resize(std::max(scratch_.high.size(), lists * kChunk));
-    scratch_.seam_row.resize(band_.stride, kUntouched);
-    for (std::uint32_t y = rows.first; y < rows.end; y += kChunk) {
-      chunk_ = {y, std::min(y + kChunk, rows.end)};
-      prepare();
-      for (row_ = chunk_.first; row_ < chunk_.end; ++row_) {
-        drawRow();
+    scratch_.seam_rows.resize(std::size_t{band_.stride} * RowRuns::kRows, kUntouched);
+    for (first_ = rows.first; first_ < rows.end; first_ += RowRuns::kRows) {
+      findSeams();
+      row_count_ = std::min(rows.end - first_, RowRuns::kRows);
+      if (allHidden()) {
+        continue;
       }
+      findEnds();
+      gather();
+      takeEndsAway();
+      commit();
     }
   }
 
  private:
-  // Lists of one number a row of the chunk: for every polygon what it touches, then its edges.
-  void prepare() {
-    const Lanes d;
-    std::size_t list = 0;
+  bool inRows(const MapEdge& edge) const {
+    return edge.high + edge.margin >= static_cast<float>(first_) &&
+           edge.low - edge.margin <= static_cast<float>(first_ + RowRuns::kRows);
+  }
+
+  // What each polygon touches of the pixels that its sealed edges come near.
+  void findSeams() {
+    scratch_.seams.clear();
+    std::fill_n(all_.first, RowRuns::kRows, static_cast<std::int32_t>(band_.width));
+    std::fill_n(all_.last, RowRuns::kRows, -1);
     for (const std::uint32_t p : group_) {
       const MapPolygon& polygon = polygons_.polygons[p];
-      const std::span<const MapEdge> edges = polygons_.outline(polygon);
-      for (std::uint32_t i = 0; i < chunk_.end - chunk_.first;
-           i += static_cast<std::uint32_t>(hn::Lanes(d))) {
-        const auto rows = rowsFrom(chunk_.first + i);
-        auto first = hn::Set(d, kFar), last = hn::Set(d, -kFar);
-        for (const MapEdge& edge : edges) {
-          const Crossing crossing = cross(edge, rounding_, rows);
-          first = hn::Min(first, crossing.first);
-          last = hn::Max(last, crossing.last);
+      bool touched_known = false;
+      RowRuns touched;
+      for (const MapEdge& edge : polygons_.outline(polygon)) {
+        if (edge.kind != EdgeKind::kSealed || !inRows(edge)) {
+          continue;
         }
-        store(list, i, {first, last});
-        std::size_t at = list;
-        for (const MapEdge& edge : edges) {
-          store(++at, i, cross(edge, edge.margin, rows));
+        if (!touched_known) {
+          findTouched(polygon, touched);
+          touched_known = true;
         }
-        for (const MapEdge& edge : polygons_.gaps(polygon)) {
-          store(++at, i, cross(edge, edge.margin, rows));
+        RowRuns crossed;
+        findCrossed(edge, crossed);
+        bool some = false;
+        for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
+          crossed.first[i] = std::max(crossed.first[i], touched.first[i]);
+          crossed.last[i] = std::min(crossed.last[i], touched.last[i]);
+          const bool none = crossed.first[i] > crossed.last[i];
+          some |= !none;
+          all_.first[i] = none ? all_.first[i] : std::min(all_.first[i], crossed.first[i]);
+          all_.last[i] = none ? all_.last[i] : std::max(all_.last[i], crossed.last[i]);
         }
-      }
-      list += 1 + polygon.edge_count + polygon.gap_count;
-    }
-  }
-  HWY_INLINE void store(std::size_t list, std::uint32_t i, const Crossing& crossing) {
-    const Lanes d;
-    hn::StoreU(crossing.first, d, scratch_.low.data() + list * kChunk + i);
-    hn::StoreU(crossing.last, d, scratch_.high.data() + list * kChunk + i);
-  }
-  HWY_INLINE Run run(std::size_t list) const {
-    const std::size_t at = list * kChunk + (row_ - chunk_.first);
-    return runOf(scratch_.low[at], scratch_.high[at], band_);
-  }
-
-  // Calls body(polygon, run) for what each polygon touches of the pixels that its seams come near.
-  template <typename Body>
-  HWY_INLINE void forSeams(Body&& body) const {
-    std::size_t list = 0;
-    for (const std::uint32_t p : group_) {
-      const MapPolygon& polygon = polygons_.polygons[p];
-      const Run touched = run(list);
-      if (!touched.empty()) {
-        for (std::uint32_t e = 0; e < polygon.edge_count; ++e) {
-          if (polygons_.edges[polygon.first_edge + e].kind == EdgeKind::kSealed) {
-            const Run crossed = run(list + 1 + e);
-            const Run both{std::max(crossed.first, touched.first), std::min(crossed.last, touched.last)};
-            if (!crossed.empty() && !both.empty()) {
-              body(polygon, both);
-            }
-          }
+        if (some) {
+          scratch_.seams.push_back({&polygon, crossed, {}});
+          findAtFirst(first_, scratch_.seams.back());
         }
       }
-      list += 1 + polygon.edge_count + polygon.gap_count;
     }
   }
 
-  void drawRow() {
-    const Lanes d;
-    float* seam = scratch_.seam_row.data();
-    Run all{band_.width, 0};
-    forSeams([&](const MapPolygon& polygon, Run run) {
-      const RowNearness nearness(polygon, row_, run.first, run.last);
-      forRun(run, [&](std::uint32_t x, auto mask) {
-        const auto old = hn::LoadU(d, seam + x);
-        hn::StoreU(hn::IfThenElse(mask, hn::Min(old, nearness.from(x)), old), d, seam + x);
-      });
-      all = {std::min(all.first, run.first), std::max(all.last, run.last)};
-    });
-    if (all.empty()) {
-      return;
+  // Whether all that the seams would draw is behind what the map has.
+  bool allHidden() const {
+    for (const RasterScratch::Part& seam : scratch_.seams) {
+      for (std::uint32_t row = 0; row < row_count_; ++row) {
+        const float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
+        if (!hiddenRow(map_row, Run::of(seam.runs, row), seam.polygon->nearest)) {
+          return false;
+        }
+      }
     }
-    killEnds(all);
-    float* row = band_.nearness + std::size_t{row_} * band_.stride;
-    forRun(all, [&](std::uint32_t x, auto mask) {
-      const auto value = hn::LoadU(d, seam + x);
-      const auto old = hn::LoadU(d, row + x);
-      const auto touched = hn::And(mask, hn::Ne(value, hn::Set(d, kUntouched)));
-      hn::StoreU(hn::IfThenElse(touched, hn::Max(old, value), old), d, row + x);
-      hn::StoreU(hn::IfThenElse(mask, hn::Set(d, kUntouched), value), d, seam + x);
-    });
+    return true;
   }
 
-  // Takes the pixels away, of those in `all`, that come near an end of a polygon.
-  void killEnds(Run all) {
+  void findTouched(const MapPolygon& polygon, RowRuns& runs) const {
     const Lanes d;
-    float* seam = scratch_.seam_row.data();
-    std::size_t list = 0;
+    for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
+      const auto rows = rowsFrom(first_ + i);
+      Crossing touched{hn::Set(d, kFar), hn::Set(d, -kFar)};
+      for (const MapEdge& edge : polygons_.outline(polygon)) {
+        const Crossing crossing = cross(edge, rounding_, rows);
+        touched.first = hn::Min(touched.first, crossing.first);
+        touched.last = hn::Max(touched.last, crossing.last);
+      }
+      touched.store(band_, i, runs);
+    }
+  }
+
+  void findCrossed(const MapEdge& edge, RowRuns& runs) const {
+    for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
+      cross(edge, edge.margin, rowsFrom(first_ + i)).store(band_, i, runs);
+    }
+  }
+
+  // The pixels that come near ends of polygons, as far as they may be pixels of seams.
+  void findEnds() {
+    scratch_.ends.clear();
     for (const std::uint32_t p : group_) {
       const MapPolygon& polygon = polygons_.polygons[p];
       const std::uint32_t count = polygon.edge_count + polygon.gap_count;
-      for (std::uint32_t e = 0; e < count; ++e) {
-        if (polygons_.edges[polygon.first_edge + e].kind != EdgeKind::kOpen) {
+      for (const MapEdge& edge : std::span(polygons_.edges).subspan(polygon.first_edge, count)) {
+        if (edge.kind != EdgeKind::kOpen || !inRows(edge)) {
           continue;
         }
-        const Run open = run(list + 1 + e);
-        const Run both{std::max(open.first, all.first), std::min(open.last, all.last)};
-        if (!open.empty() && !both.empty()) {
-          forRun(both, [&](std::uint32_t x, auto mask) {
-            const auto old = hn::LoadU(d, seam + x);
-            const auto touched = hn::And(mask, hn::Ne(old, hn::Set(d, kUntouched)));
-            hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kDead), old), d, seam + x);
-          });
+        RowRuns crossed;
+        findCrossed(edge, crossed);
+        bool some = false;
+        for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
+          crossed.first[i] = std::max(crossed.first[i], all_.first[i]);
+          crossed.last[i] = std::min(crossed.last[i], all_.last[i]);
+          some |= crossed.first[i] <= crossed.last[i];
+        }
+        if (some) {
+          scratch_.ends.push_back(crossed);
         }
       }
-      list += 1 + count;
+    }
+  }
+
+  float* seamRow(std::uint32_t row) { return scratch_.seam_rows.data() + std::size_t{row} * band_.stride; }
+
+  // The farthest of what touches each pixel.
+  void gather() {
+    const Lanes d;
+    for (const RasterScratch::Part& seam : scratch_.seams) {
+      for (std::uint32_t row = 0; row < row_count_; ++row) {
+        float* seam_row = seamRow(row);
+        const RowNearness nearness(seam, row);
+        forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) {
+          const auto old = hn::LoadU(d, seam_row + x);
+          hn::StoreU(hn::IfThenElse(mask, hn::Min(old, nearness.from(x)), old), d, seam_row + x);
+        });
+      }
+    }
+  }
+
+  void takeEndsAway() {
+    const Lanes d;
+    for (const RowRuns& ends : scratch_.ends) {
+      for (std::uint32_t row = 0; row < row_count_; ++row) {
+        float* seam_row = seamRow(row);
+        forRun(Run::of(ends, row), [&](std::uint32_t x, auto mask) {
+          const auto old = hn::LoadU(d, seam_row + x);
+          const auto touched = hn::And(mask, hn::Ne(old, hn::Set(d, kUntouched)));
+          hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kDead), old), d, seam_row + x);
+        });
+      }
+    }
+  }
+
+  void commit() {
+    const Lanes d;
+    for (const RasterScratch::Part& seam : scratch_.seams) {
+      for (std::uint32_t row = 0; row < row_count_; ++row) {
+        float* seam_row = seamRow(row);
+        float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
+        forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) {
+          const auto value = hn::LoadU(d, seam_row + x);
+          const auto old = hn::LoadU(d, map_row + x);
+          const auto touched = hn::And(mask, hn::Ne(value, hn::Set(d, kUntouched)));
+          hn::StoreU(hn::IfThenElse(touched, hn::Max(old, value), old), d, map_row + x);
+          hn::StoreU(hn::IfThenElse(mask, hn::Set(d, kUntouched), value), d, seam_row + x);
+        });
+      }
     }
   }
 
@@ -357,8 +412,9 @@ class SeamDrawer {
   const RasterBand& band_;
   float rounding_;
   RasterScratch& scratch_;
-  Rows chunk_;
-  std::uint32_t row_ = 0;
+  std::uint32_t first_ = 0;      // row of those that are drawn together
+  std::uint32_t row_count_ = 0;  // of them
+  RowRuns all_;                  // from the first seam to the last
 };
 
 void drawSeamsOf(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,
@@ -367,7 +423,7 @@ void drawSeamsOf(const MapPolygons& polygons, std::span<const std::uint32_t> gro
 }
 
 void fillAll(std::span<float> nearness, float value) {
-  const Lanes d;
+  const hn::ScalableTag<float> d;
   const auto v = hn::Set(d, value);
   std::size_t i = 0;
   for (; i + hn::Lanes(d) <= nearness.size(); i += hn::Lanes(d)) {
@@ -390,8 +446,8 @@ HWY_EXPORT(drawSeamsOf);
 HWY_EXPORT(fillAll);
 
 void drawInsides(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band,
-                 RasterScratch& scratch, std::span<std::uint8_t> hidden) {
-  HWY_DYNAMIC_DISPATCH(drawInsidesOf)(polygons, order, band, scratch, hidden);
+                 RasterScratch& scratch, std::span<std::uint8_t> drawn) {
+  HWY_DYNAMIC_DISPATCH(drawInsidesOf)(polygons, order, band, scratch, drawn);
 }
 
 void drawSeams(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,
@@ -413,9 +469,9 @@ void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> ord
                           return;
                         }
                         float* row = band.nearness + std::size_t{y} * band.stride;
-                        const double at_row = polygon.at_origin + polygon.along_y * (y + 0.5);
+                        const double at_row = polygon.at_origin + polygon.along_y * y;
                         for (std::uint32_t x = first; x <= last; ++x) {
-                          const auto value = static_cast<float>(at_row + polygon.along_x * (x + 0.5));
+                          const auto value = static_cast<float>(at_row + polygon.along_x * x);
                           row[x] = std::max(row[x], value);
                         }
                       });

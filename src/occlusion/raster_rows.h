@@ -21,16 +21,31 @@ struct RasterBand {
   std::uint32_t first_row = 0, end_row = 0;  // to be drawn
 };
 
-// Of one thread; kept from one use to the next.
-struct RasterScratch {
-  std::vector<float> low, high;  // by edge and row: first and last pixel
-  std::vector<float> seam_row;   // a row of nearness
+// First and last pixels in some rows; where the first is beyond the last there are none.
+struct RowRuns {
+  static constexpr std::uint32_t kRows = 16;
+
+  std::int32_t first[kRows] = {}, last[kRows] = {};
 };
 
-// Draws the pixels that lie wholly inside each polygon; order: indices into polygons. hidden: a byte for each
-// of `order`, cleared where some of it is before what the band holds.
+// Of one thread; kept from one use to the next.
+struct RasterScratch {
+  // A polygon's pixels in RowRuns::kRows rows, with its nearness in the first one of each row.
+  struct Part {
+    const MapPolygon* polygon = nullptr;
+    RowRuns runs;
+    float at_first[RowRuns::kRows] = {};
+  };
+  std::vector<Part> insides;  // of a polygon, from its lowest row on
+  std::vector<Part> seams;    // of a group, in the same rows
+  std::vector<RowRuns> ends;
+  std::vector<float> seam_rows;  // of nearness: RowRuns::kRows rows
+};
+
+// Draws the pixels that lie wholly inside each polygon; order: indices into polygons. drawn: a byte for each
+// polygon, set where some of it is nearer than what the band had.
 void drawInsides(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band,
-                 RasterScratch& scratch, std::span<std::uint8_t> hidden);
+                 RasterScratch& scratch, std::span<std::uint8_t> drawn);
 
 // Draws the pixels that the seams of a group cross; group: indices into polygons.
 void drawSeams(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,

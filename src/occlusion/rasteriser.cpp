@@ -58,7 +58,7 @@ struct Rasteriser::Impl {
       return;
     }
     drawInsides(polygons, order, band, scratch[begin],
-                std::span(hidden).subspan(begin * order.size(), order.size()));
+                std::span(drawn).subspan(begin * order.size(), order.size()));
     const double rounding = mapRounding(settings.width, settings.height);
     for (std::size_t first = 0, last = 0; first < by_group.size(); first = last) {
       const std::uint32_t group = polygons.polygons[by_group[first]].group;
@@ -72,14 +72,14 @@ struct Rasteriser::Impl {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen, const ParallelFor& parallel_for) {
     polygons.build(view, settings, set, chosen);
     sortPolygons();
-    hidden.assign(order.size() * bands, 1);
+    drawn.assign(order.size() * bands, settings.coverage == Coverage::kCentre ? 1 : 0);
     parallel_for(bands, [this](std::uint32_t begin, std::uint32_t end) { drawBands(begin, end); });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      bool all_hidden = settings.coverage == Coverage::kInner;
+    for (std::size_t p = 0; p < order.size(); ++p) {
+      bool some = false;
       for (std::uint32_t band = 0; band < bands; ++band) {
-        all_hidden = all_hidden && hidden[band * order.size() + i] != 0;
+        some = some || drawn[band * order.size() + p] != 0;
       }
-      stats.hidden += all_hidden ? 1 : 0;
+      stats.hidden += some ? 0 : 1;
     }
     for (const MapPolygon& polygon : polygons.polygons) {
       used.push_back(polygon.occluder);
@@ -94,7 +94,7 @@ struct Rasteriser::Impl {
   PixelView view;
   MapPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
-  std::vector<std::uint8_t> hidden;    // by band and place in the order
+  std::vector<std::uint8_t> drawn;     // by band and polygon
   std::vector<RasterScratch> scratch;  // by the first band of a range
   std::vector<OccluderId> used;
   RasterStats stats;

@@ -51,7 +51,8 @@ struct RasterStats {
   std::uint32_t occluders = 0;  // drawn, or behind what was drawn
   std::uint32_t unusable =
       0;  // chosen, but seen from behind, edge-on, wholly before the near plane, or off the map
-  std::uint32_t hidden = 0;  // of the occluders: behind what was drawn before
+  std::uint32_t hidden =
+      0;  // of the occluders: behind what was drawn before, or without a whole pixel of their own
 };
 
 // Usable alone. A covered pixel promises: from every point of the view's near plane or beyond that projects
