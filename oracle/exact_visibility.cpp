@@ -63,6 +63,7 @@ struct ExactVisibility::Impl {
                  std::uint32_t end, OnHits&& on_hits) const;
   std::optional<Witness> aimAt(const View& view, ObjectId object, std::uint32_t samples,
                                std::vector<RayHit>& hits) const;
+  void lookBeside(const View& view, ObjectId object, std::uint32_t samples, std::vector<Witness>& seen) const;
   // Least parameter in [near, far] where the ray meets the object.
   std::optional<Wide> meets(const WideRay& ray, ObjectId object, Wide near, Wide far) const;
 
@@ -157,6 +158,50 @@ std::vector<Witness> ExactVisibility::pixelsShowing(ObjectId object, const View&
     all.insert(all.end(), row.begin(), row.end());
   }
   return all;
+}
+
+std::vector<Witness> ExactVisibility::visibleBesideEdges(const View& view, std::span<const ObjectId> objects,
+                                                         std::uint32_t samples,
+                                                         const ParallelFor& parallel_for) const {
+  std::vector<std::vector<Witness>> of_object(objects.size());
+  parallel_for(static_cast<std::uint32_t>(objects.size()), [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (impl_->scene.objects[objects[i].value].index_count > 0) {
+        impl_->lookBeside(view, objects[i], samples, of_object[i]);
+      }
+    }
+  });
+  std::vector<Witness> all;
+  for (const std::vector<Witness>& witnesses : of_object) {
+    all.insert(all.end(), witnesses.begin(), witnesses.end());
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Witness& a, const Witness& b) { return a.object < b.object; });
+  const auto same = [](const Witness& a, const Witness& b) { return a.object == b.object; };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  return all;
+}
+
+// Appends a witness for each hit.
+void ExactVisibility::Impl::lookBeside(const View& view, ObjectId object, std::uint32_t sample_count,
+                                       std::vector<Witness>& seen) const {
+  RayScene::Batch batch;
+  std::vector<RayHit> hits;
+  std::uint32_t count = 0;
+  for (std::uint32_t sample = 0; sample < sample_count; ++sample) {
+    const Vec3d point = samples.besideEdge(object, sample, view);
+    if (inVolume(view, point, -1e-6)) {
+      batch[count++] = floatRay(view, rayTo(view, point));
+    }
+    if (count == RayScene::kBatch || (count > 0 && sample + 1 == sample_count)) {
+      hits.clear();
+      rays.trace(batch, count, false, hits);
+      for (const RayHit& hit : hits) {
+        seen.push_back({hit.object, batch[hit.ray].at(hit.t)});
+      }
+      count = 0;
+    }
+  }
 }
 
 std::optional<Witness> ExactVisibility::Impl::aimAt(const View& view, ObjectId object,

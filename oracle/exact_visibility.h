@@ -55,6 +55,14 @@ class ExactVisibility {
                                           std::uint32_t samples,
                                           const ParallelFor& parallel_for = serialFor) const;
 
+  // Objects that show close beside the edges of these: hit by one of `samples` rays for each that pass to the
+  // left or right of an edge of its triangles, by 1e-7 to 1e-2 of the distance (by a seed fixed by object and
+  // eye). So rays go along silhouettes and through narrow gaps, which pixels miss. A point each, ascending by
+  // id.
+  std::vector<Witness> visibleBesideEdges(const View& view, std::span<const ObjectId> objects,
+                                          std::uint32_t samples,
+                                          const ParallelFor& parallel_for = serialFor) const;
+
   // Whether the ray from the eye through the witness's point really reaches the object, beyond what rounding
   // can explain: tested against every triangle in wide precision, edges belonging to triangles. A surface at
   // exactly the same distance does not hide it (ties are visible).

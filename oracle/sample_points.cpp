@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace sightline {
 namespace {
@@ -77,23 +78,39 @@ std::uint32_t SamplePoints::triangleAt(const Object& object, double share) const
   return static_cast<std::uint32_t>(std::min(at, last - 1) - first);
 }
 
+SamplePoints::Triangle SamplePoints::triangle(const Object& object, std::uint32_t index) const {
+  const std::span<const std::uint32_t> corners = scene_.indicesOf(object).subspan(3 * std::size_t{index}, 3);
+  return {Vec3d(scene_.positions[corners[0]]), Vec3d(scene_.positions[corners[1]]),
+          Vec3d(scene_.positions[corners[2]])};
+}
+
 Vec3d SamplePoints::point(ObjectId id, std::uint32_t sample, const View& view) const {
   const Object& object = scene_.objects[id.value];
-  const std::span<const std::uint32_t> indices = scene_.indicesOf(object);
   SplitMix random = generatorFor(id, sample, view.eye);
-  Vec3d a, b, c;
+  Triangle t;
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const std::uint32_t triangle = triangleAt(object, random.unit());
-    a = Vec3d(scene_.positions[indices[3 * triangle]]);
-    b = Vec3d(scene_.positions[indices[3 * triangle + 1]]);
-    c = Vec3d(scene_.positions[indices[3 * triangle + 2]]);
-    const Vec3d direction = view.orthographic ? view.forward : a - view.eye;
-    if (scene_.materialOf(object).double_sided || dot(cross(b - a, c - a), direction) < 0.0) {
+    t = triangle(object, triangleAt(object, random.unit()));
+    const Vec3d direction = view.orthographic ? view.forward : t.a - view.eye;
+    if (scene_.materialOf(object).double_sided || dot(cross(t.b - t.a, t.c - t.a), direction) < 0.0) {
       break;
     }
   }
   const Vec3d weights = barycentric(sample, random);
-  return a * weights.x + b * weights.y + c * weights.z;
+  return t.a * weights.x + t.b * weights.y + t.c * weights.z;
+}
+
+Vec3d SamplePoints::besideEdge(ObjectId id, std::uint32_t sample, const View& view) const {
+  const Object& object = scene_.objects[id.value];
+  SplitMix random = generatorFor(id, ~sample, view.eye);
+  const Triangle t = triangle(object, triangleAt(object, random.unit()));
+  const Vec3d corners[3] = {t.a, t.b, t.c};
+  const auto side = static_cast<std::size_t>(random.unit() * 3.0);
+  const Vec3d from = corners[side], to = corners[(side + 1) % 3];
+  const Vec3d point = from + (to - from) * random.unit();
+  const Vec3d sight = view.orthographic ? view.forward : point - view.eye;
+  const double distance = view.orthographic ? 1.0 : length(sight);
+  const double away = distance * std::pow(10.0, -2.0 - 5.0 * random.unit());
+  return point + normalized(cross(to - from, sight)) * (random.unit() < 0.5 ? away : -away);
 }
 
 }  // namespace sightline

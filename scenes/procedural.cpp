@@ -90,6 +90,15 @@ Result<Scene> makeDemoBuilding(std::string_view query) {
   return status ? Result<Scene>(makeBuilding(options)) : status.error();
 }
 
+Result<Scene> makeDemoBoxes(std::string_view query) {
+  BoxCityOptions options;
+  Key keys[] = {{"buildings", 1, 100000, &options.buildings},
+                {"boxes", 0, 1000000, &options.boxes},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "boxes", keys);
+  return status ? Result<Scene>(makeBoxCity(options)) : status.error();
+}
+
 }  // namespace
 
 bool isDemoUrl(std::string_view url) {
@@ -111,7 +120,10 @@ Result<Scene> makeDemoScene(std::string_view url) {
   if (scene == "building") {
     return makeDemoBuilding(query);
   }
-  return Error{"unknown demo scene '" + std::string(scene) + "'; scenes: city, building"};
+  if (scene == "boxes") {
+    return makeDemoBoxes(query);
+  }
+  return Error{"unknown demo scene '" + std::string(scene) + "'; scenes: city, building, boxes"};
 }
 
 }  // namespace sightline

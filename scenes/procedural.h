@@ -29,8 +29,20 @@ struct BuildingOptions {
 // stairs).
 Scene makeBuilding(const BuildingOptions& options);
 
-// "demo:city?copies=30&seed=1", "demo:building?floors=4&plants=100". An unknown scene or key, or a value out
-// of range, is an error that lists what there is.
+struct BoxCityOptions {
+  std::uint32_t buildings = 10000;
+  std::uint32_t boxes = 50000;  // small ones
+  std::uint32_t seed = 1;
+};
+// Streets between blocks of buildings, each building a closed box of 8 to 60 m height, and small boxes of 0.3
+// to 3 m a side on streets, on pavements and in courtyards, which may overlap each other. Objects: the
+// ground, then the buildings, then the small boxes. Walks: "smooth" (400 frames through the streets), "views"
+// (20 places all over the city, looking along streets in all four directions).
+Scene makeBoxCity(const BoxCityOptions& options);
+
+// "demo:city?copies=30&seed=1", "demo:building?floors=4&plants=100",
+// "demo:boxes?buildings=10000&boxes=50000". An unknown scene or key, or a value out of range, is an error
+// that lists what there is.
 bool isDemoUrl(std::string_view url);
 Result<Scene> makeDemoScene(std::string_view url);
 

@@ -1,8 +1,12 @@
 #include "sightline/culling/culler.h"
 
 #include <chrono>
+#include <optional>
+#include <utility>
 
+#include "culling/adaptive_coverage.h"
 #include "culling/hierarchical_walk.h"
+#include "culling/wide_walk.h"
 
 namespace sightline {
 namespace {
@@ -56,6 +60,8 @@ struct KeptPlanes {
 }  // namespace
 
 struct Culler::Impl {
+  using WalkOptions = culling_detail::WalkOptions;
+
   Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s,
        const OccluderDatabases& d)
       : hierarchy(h),
@@ -67,7 +73,15 @@ struct Culler::Impl {
         search(h, bounds),
         tree(OcclusionTreeSettings{.variant = s.variant}),
         planes(planesSettings(s)),
-        entered(h.nodes.size()) {}
+        entered(h.nodes.size()),
+        coverage(s.coverage_ratio) {
+    if (s.method == CullMethod::kOpacityMap) {
+      opacity_map.emplace(OpacityMapSettings{s.raster, s.depth_comparison, s.tolerance, s.coverage_ratio});
+    } else if (s.method == CullMethod::kDepthPyramid) {
+      pyramid.emplace(DepthPyramidSettings{s.raster});
+      wide_walk.emplace(h, bounds);
+    }
+  }
 
   static SupportingPlanesSettings planesSettings(const CullerSettings& settings) {
     SupportingPlanesSettings planes = settings.supporting_planes;
@@ -79,12 +93,22 @@ struct Culler::Impl {
     return databases.from_eye != nullptr && settings.occluders == OccluderChoice::kDatabase;
   }
 
+  bool usesViewpoints() const {
+    return databases.from_viewpoints != nullptr && (settings.occluders == OccluderChoice::kMinimumSets ||
+                                                    settings.occluders == OccluderChoice::kFirstHit ||
+                                                    settings.occluders == OccluderChoice::kProjectedSize);
+  }
+
   std::span<const OccluderId> chooseOccluders(const View& view, const Frustum& frustum) {
     ChoiceSettings choice;
     choice.count = settings.occluder_count;
     choice.direction = settings.area_angle_direction;
     if (usesDatabase()) {
       return chooser.choose(view, occluders, databases.from_eye->find(view.eye, view.forward), choice);
+    }
+    if (usesViewpoints()) {
+      return chooser.takeFirst(view, occluders, databases.from_viewpoints->find(view.eye, view.forward),
+                               settings.occluder_count);
     }
     return chooseByAreaAngle(view, frustum, choice);
   }
@@ -127,37 +151,97 @@ struct Culler::Impl {
     return jump;
   }
 
-  // Choose, build, walk. build(chosen) makes the structure ready for the view.
-  template <typename Build, typename Structure>
-  void cullWith(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes, Build&& build,
-                Structure&& structure) {
+  // Choose, build, walk. build(chosen) makes the structure ready for the view; walk_with() fills `visible`.
+  template <typename Build, typename Walk>
+  void cullWith(const View& view, const Frustum& frustum, Build&& build, Walk&& walk_with) {
     const Clock::time_point start = Clock::now();
     const std::span<const OccluderId> chosen = chooseOccluders(view, frustum);
     const Clock::time_point chosen_at = Clock::now();
     build(chosen);
     const Clock::time_point built_at = Clock::now();
-    finish(frustum, dynamic_boxes, structure);
+    visible.clear();
+    walk_with();
     stats.choose_us = microseconds(start, chosen_at);
     stats.build_us = microseconds(chosen_at, built_at);
     stats.walk_us = microseconds(built_at, Clock::now());
   }
 
-  void cullWithTree(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+  void cullWithTree(const View& view, const Frustum& frustum) {
     cullWith(
-        view, frustum, dynamic_boxes,
-        [&](std::span<const OccluderId> chosen) { tree.build(view, occluders, chosen); },
-        AskAll{[this](const Box& box) { return tree.classify(box); }});
+        view, frustum, [&](std::span<const OccluderId> chosen) { tree.build(view, occluders, chosen); },
+        [&] {
+          walkWith(frustum, settings.temporal_coherence,
+                   AskAll{[this](const Box& box) { return tree.classify(box); }});
+        });
     stats.occluders = tree.stats().occluders;
     stats.tree_nodes = tree.stats().nodes;
     stats.tree_dropped = tree.stats().dropped;
   }
 
-  void cullWithPlanes(const View& view, const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+  // Supporting planes have temporal coherence of their own, which needs every node's lists.
+  void cullWithPlanes(const View& view, const Frustum& frustum) {
     cullWith(
-        view, frustum, dynamic_boxes,
-        [&](std::span<const OccluderId> chosen) { planes.build(view, occluders, chosen); },
-        KeptPlanes{planes, hierarchy, entered});
+        view, frustum, [&](std::span<const OccluderId> chosen) { planes.build(view, occluders, chosen); },
+        [&] {
+          walkWith(frustum, false, KeptPlanes{planes, hierarchy, entered});
+        });
     stats.occluders = planes.stats().occluders;
+  }
+
+  template <typename Map>
+  void draw(Map& map, const View& view, std::span<const OccluderId> chosen, const OccluderSet* moving) {
+    map.begin(view);
+    map.draw(occluders, chosen, parallel_for);
+    if (moving != nullptr) {
+      all_moving.clear();
+      for (std::size_t i = 0; i < moving->occluders.size(); ++i) {
+        all_moving.push_back(OccluderId(i));
+      }
+      map.draw(*moving, all_moving, parallel_for);
+    }
+  }
+
+  void takeRasterStats(const RasterStats& raster) {
+    stats.occluders = raster.occluders;
+    stats.occluders_hidden = raster.hidden;
+  }
+
+  void cullWithOpacityMap(const View& view, const Frustum& frustum, const OccluderSet* moving) {
+    opacity_map->setCoverageRatio(coverage.ratio());
+    stats.coverage_ratio = coverage.ratio();
+    stats.suspended = coverage.suspended();
+    if (stats.suspended) {
+      cullByFrustum(frustum);
+    } else {
+      cullWith(
+          view, frustum,
+          [&](std::span<const OccluderId> chosen) {
+            draw(*opacity_map, view, chosen, moving);
+            opacity_map->finish();
+          },
+          [&] {
+            walkWith(frustum, false, AskAll{[this](const Box& box) { return opacity_map->classify(box); }});
+          });
+      stats.opacity = opacity_map->stats();
+      takeRasterStats(stats.opacity.raster);
+    }
+    if (settings.triangle_us > 0.0) {
+      coverage.frame(stats.choose_us + stats.build_us + stats.walk_us,
+                     static_cast<double>(stats.hidden_triangles) * settings.triangle_us);
+    }
+  }
+
+  void cullWithPyramid(const View& view, const Frustum& frustum, const OccluderSet* moving) {
+    cullWith(
+        view, frustum,
+        [&](std::span<const OccluderId> chosen) {
+          draw(*pyramid, view, chosen, moving);
+          pyramid->finish(parallel_for);
+        },
+        [&] {
+          wide_walk->run(*pyramid, {settings.min_node_cost, settings.test_objects}, stats, visible);
+        });
+    takeRasterStats(pyramid->stats().raster);
   }
 
   // The second test of what the walk kept: is the eye hidden from the object by occluders near the object?
@@ -193,25 +277,32 @@ struct Culler::Impl {
     stats.detail_us = microseconds(start, Clock::now());
   }
 
-  void cullByFrustum(const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+  void cullByFrustum(const Frustum& frustum) {
     const Clock::time_point start = Clock::now();
-    finish(frustum, dynamic_boxes, seeEverything());
+    visible.clear();
+    walkWith(frustum, settings.temporal_coherence, seeEverything());
     stats.walk_us = microseconds(start, Clock::now());
   }
 
+  WalkOptions walkOptions(bool skip_partial) const {
+    return {settings.min_node_cost, skip_partial, settings.test_objects};
+  }
+
+  // skip_partial: nodes that were partly visible in the last frame.
   template <typename Structure>
-  void finish(const Frustum& frustum, std::span<const Box> dynamic_boxes, Structure&& structure) {
-    visible.clear();
-    // Supporting planes have temporal coherence of their own, which needs every node's lists.
-    const bool skip_partial = settings.temporal_coherence && settings.method != CullMethod::kSupportingPlanes;
-    const WalkOptions options{settings.min_node_cost, skip_partial, settings.test_objects};
-    walk.run(frustum, options, structure, stats, visible);
+  void walkWith(const Frustum& frustum, bool skip_partial, Structure&& structure) {
+    walk.run(frustum, walkOptions(skip_partial), structure, stats, visible);
+  }
+
+  void classifyAll(const Frustum& frustum, std::span<const Box> dynamic_boxes) {
+    const Clock::time_point start = Clock::now();
     dynamic_states.clear();
     for (const Box& box : dynamic_boxes) {
       std::uint8_t cut = kAllFrustumPlanes;
       const bool outside = sightline::classify(frustum, box, cut) == FrustumSide::kOutside;
       dynamic_states.push_back(outside ? Visibility::kHidden : classifyDynamic(box));
     }
+    stats.walk_us += microseconds(start, Clock::now());
   }
 
   Visibility classifyDynamic(const Box& box) {
@@ -220,13 +311,16 @@ struct Culler::Impl {
         return tree.classify(box);
       case CullMethod::kSupportingPlanes:
         return planes.classify(box);
+      case CullMethod::kOpacityMap:
+        return stats.suspended ? Visibility::kVisible : opacity_map->classify(box);
+      case CullMethod::kDepthPyramid:
+        return pyramid->classify(box);
       case CullMethod::kFrustum:
         break;
     }
     return Visibility::kVisible;
   }
 
-  using WalkOptions = culling_detail::WalkOptions;
   // A turn by more than 60 degrees, or a step ten times the last one, is a jump.
   static constexpr double kJumpCosine = 0.5;
   static constexpr double kJumpSteps = 10.0;
@@ -241,7 +335,13 @@ struct Culler::Impl {
   OccluderChooser chooser;
   OcclusionTree tree;
   SupportingPlanes planes;
-  std::vector<bool> entered;  // by node, see KeptPlanes
+  std::vector<bool> entered;              // by node, see KeptPlanes
+  std::optional<OpacityMap> opacity_map;  // with the method
+  std::optional<DepthPyramid> pyramid;    // with the method
+  std::optional<culling_detail::WideWalk> wide_walk;
+  culling_detail::AdaptiveCoverage coverage;
+  ParallelFor parallel_for = serialFor;
+  std::vector<OccluderId> all_moving;
   std::vector<ObjectId> visible, candidates;
   std::vector<Visibility> dynamic_states;
   CullStats stats;
@@ -258,21 +358,28 @@ Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
 
-void Culler::cull(const View& view, std::span<const Box> dynamic_boxes) {
+void Culler::cull(const View& view, std::span<const Box> dynamic_boxes, const OccluderSet* moving) {
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
   const CullMethod method = impl_->settings.method;
   switch (method) {
     case CullMethod::kFrustum:
-      impl_->cullByFrustum(frustum, dynamic_boxes);
+      impl_->cullByFrustum(frustum);
       break;
     case CullMethod::kOcclusionTree:
-      impl_->cullWithTree(view, frustum, dynamic_boxes);
+      impl_->cullWithTree(view, frustum);
       break;
     case CullMethod::kSupportingPlanes:
-      impl_->cullWithPlanes(view, frustum, dynamic_boxes);
+      impl_->cullWithPlanes(view, frustum);
+      break;
+    case CullMethod::kOpacityMap:
+      impl_->cullWithOpacityMap(view, frustum, moving);
+      break;
+    case CullMethod::kDepthPyramid:
+      impl_->cullWithPyramid(view, frustum, moving);
       break;
   }
+  impl_->classifyAll(frustum, dynamic_boxes);
   if (impl_->settings.detail_objects && impl_->databases.from_objects != nullptr &&
       method != CullMethod::kFrustum) {
     impl_->testDetailObjects(view);
@@ -292,6 +399,10 @@ std::span<const OccluderId> Culler::occludersUsed() const {
       return impl_->tree.occluders();
     case CullMethod::kSupportingPlanes:
       return impl_->planes.occluders();
+    case CullMethod::kOpacityMap:
+      return impl_->stats.suspended ? std::span<const OccluderId>() : impl_->opacity_map->occluders();
+    case CullMethod::kDepthPyramid:
+      return impl_->pyramid->occluders();
     case CullMethod::kFrustum:
       break;
   }
@@ -299,6 +410,16 @@ std::span<const OccluderId> Culler::occludersUsed() const {
 }
 const CullStats& Culler::stats() const {
   return impl_->stats;
+}
+DepthMapView Culler::depthMap() const {
+  if (impl_->opacity_map) {
+    return impl_->opacity_map->map();
+  }
+  return impl_->pyramid ? impl_->pyramid->map() : DepthMapView{};
+}
+
+void Culler::setParallelFor(ParallelFor parallel_for) {
+  impl_->parallel_for = std::move(parallel_for);
 }
 
 void Culler::reset() {

@@ -119,6 +119,7 @@ class HierarchicalWalk {
       structure.settled(NodeIndex(entry.node));
     }
     if (state == Visibility::kHidden) {
+      stats.hidden_triangles += node.cost;
       return;
     }
     const bool surely_visible = state == Visibility::kVisible;
@@ -169,6 +170,7 @@ class HierarchicalWalk {
           OccluderList touching;
           const auto item = static_cast<std::uint32_t>(hierarchy_.nodes.size() + leaf.link + i);
           if (structure.classify(box, item, occluders, touching) == Visibility::kHidden) {
+            stats.hidden_triangles += leaf.cost / leaf.leaf_count;
             continue;
           }
         }

@@ -75,6 +75,21 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
   return takeBest(view, set, settings.count);
 }
 
+std::span<const OccluderId> OccluderChooser::takeFirst(const View& view, const OccluderSet& set,
+                                                       std::span<const OccluderId> candidates,
+                                                       std::uint32_t count) {
+  chosen_.clear();
+  const Frustum frustum = frustumOf(view);
+  for (std::size_t i = 0; i < candidates.size() && chosen_.size() < count; ++i) {
+    const Occluder& occluder = set[candidates[i]];
+    if (areaAngle(occluder, view, AreaAngleDirection::kOccluder) > 0.0 &&
+        insideFrustum(frustum, set, occluder)) {
+      chosen_.push_back(candidates[i]);
+    }
+  }
+  return chosen_;
+}
+
 void OccluderChooser::rank(const View& view, const OccluderSet& set, OccluderId id,
                            AreaAngleDirection direction) {
   const double score = areaAngle(set[id], view, direction);

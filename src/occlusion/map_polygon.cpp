@@ -243,7 +243,7 @@ void MapPolygons::setNearness(const Member& member, const RasterSettings& settin
   }
   const double slope = std::abs(polygon.along_x) + std::abs(polygon.along_y);
   const double width = std::abs(polygon.along_x) * (polygon.right - polygon.left);
-  const double rounding = 0x1p-22 * (std::max(std::abs(least), std::abs(most)) + width + 32.0 * slope) +
+  const double rounding = 0x1p-22 * (std::max(std::abs(least), std::abs(most)) + width + 4.0 * slope) +
                           0x1p-50 * (std::abs(polygon.at_origin) + sums);
   polygon.farthest = static_cast<float>(least - rounding);
   polygon.nearest = static_cast<float>(most + rounding);

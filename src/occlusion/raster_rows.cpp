@@ -67,21 +67,13 @@ HWY_INLINE Vector rowsFrom(std::uint32_t y) {
   return hn::Iota(Lanes(), static_cast<float>(y));
 }
 
-// The polygon's nearness in the first pixel of each run. In single precision from one pixel near by, so that
-// rounding is below what MapPolygon::at_origin leaves for it.
+// The polygon's nearness in the first pixel of each run. A row's bits must not depend on where the part
+// begins.
 void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
-  const Lanes d;
-  const hn::RebindToSigned<Lanes> di;
   const MapPolygon& polygon = *part.polygon;
-  const std::int32_t x = part.runs.first[0];
-  const auto base =
-      hn::Set(d, static_cast<float>(polygon.at_origin + polygon.along_y * y + polygon.along_x * x));
-  const auto along_x = hn::Set(d, static_cast<float>(polygon.along_x));
-  const auto along_y = hn::Set(d, static_cast<float>(polygon.along_y));
-  for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
-    const auto right = hn::ConvertTo(d, hn::Sub(hn::LoadU(di, part.runs.first + i), hn::Set(di, x)));
-    const auto up = rowsFrom(i);
-    hn::StoreU(hn::Add(base, hn::Add(hn::Mul(along_x, right), hn::Mul(along_y, up))), d, part.at_first + i);
+  for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
+    part.at_first[i] = static_cast<float>(polygon.at_origin + polygon.along_y * (y + i) +
+                                          polygon.along_x * part.runs.first[i]);
   }
 }
 

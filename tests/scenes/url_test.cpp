@@ -37,12 +37,16 @@ TEST(DemoUrl, GivesTheSceneOfItsOptions) {
   ASSERT_TRUE(building);
   EXPECT_EQ(scene_checks::hashOf(*building),
             scene_checks::hashOf(makeBuilding({.floors = 1, .plants = 3, .seed = 9})));
+  const Result<Scene> boxes = makeDemoScene("demo:boxes?boxes=30&buildings=20&seed=3");
+  ASSERT_TRUE(boxes);
+  EXPECT_EQ(scene_checks::hashOf(*boxes),
+            scene_checks::hashOf(makeBoxCity({.buildings = 20, .boxes = 30, .seed = 3})));
   EXPECT_EQ(errorOf("demo:building"), "");
   EXPECT_EQ(errorOf("demo:building?floors=1&seed=4294967295"), "");
 }
 
 TEST(DemoUrl, AnUnknownSceneIsAnErrorThatListsTheScenes) {
-  expectError("demo:castle", {"castle", "city", "building"});
+  expectError("demo:castle", {"castle", "city", "building", "boxes"});
   expectError("demo:", {"city", "building"});
   expectError("city", {"demo:"});
 }
@@ -50,6 +54,7 @@ TEST(DemoUrl, AnUnknownSceneIsAnErrorThatListsTheScenes) {
 TEST(DemoUrl, AnUnknownKeyIsAnErrorThatListsTheKeys) {
   expectError("demo:city?plants=3", {"plants", "copies", "seed"});
   expectError("demo:building?copies=3", {"copies", "floors", "plants", "seed"});
+  expectError("demo:boxes?floors=3", {"floors", "buildings", "boxes", "seed"});
   expectError("demo:city?copies", {"key=number", "copies"});
 }
 
@@ -61,6 +66,8 @@ TEST(DemoUrl, ABadOrOutOfRangeNumberIsAnErrorWithTheRange) {
   }
   expectError("demo:building?floors=21", {"floors", "1 to 20"});
   expectError("demo:building?plants=10001", {"plants", "0 to 10000"});
+  expectError("demo:boxes?buildings=0", {"buildings", "1 to 100000"});
+  expectError("demo:boxes?boxes=1000001", {"boxes", "0 to 1000000"});
   expectError("demo:city?seed=4294967296", {"seed", "0 to 4294967295"});
 }
 

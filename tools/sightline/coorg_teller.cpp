@@ -304,7 +304,7 @@ Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const SceneAndWalk& input = inputs[i];
     Measured& measured = scenes.emplace_back(
-        Measured{options.scenes[i], input, CullingData(input.scene, threads.parallelFor())});
+        Measured{options.scenes[i], input, CullingData(input.scene, threads.parallelFor(), input.walk)});
     const auto [width, height] = pictureSize(options.picture, input.walk.path);
     Result<Renderer> renderer = Renderer::create(input.scene.view(), width, height);
     measured.record.width = width;

@@ -75,7 +75,7 @@ Result<Setting> singleSetting(const MethodOptions& options) {
 Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, const Scene& scene,
                           const Walk& walk) {
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor());
+  CullingData data(scene, threads.parallelFor(), walk);
   CullRun run{data.makeCuller(setting)};
   std::vector<std::string> frames;
   Totals sum;

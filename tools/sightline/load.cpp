@@ -10,6 +10,7 @@
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
 #include "tools/sightline/json_output.h"
+#include "tools/sightline/names.h"
 #include "tools/sightline/progress_bar.h"
 
 namespace sightline::tool {
@@ -101,8 +102,11 @@ Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOpt
   return SceneAndWalk{std::move(*scene), std::move(*walk)};
 }
 
-CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for)
+CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk)
     : parallel_for_(parallel_for), occluders_(findOccluders(scene.view(), {}, parallel_for)) {
+  for (const std::uint32_t frame : walk.frames) {
+    walk_.push_back(walk.view(frame, scene).eye);
+  }
   for (const Object& object : scene.objects) {
     bounds_.push_back(object.bounds);
     triangles_.push_back(object.triangleCount());
@@ -119,19 +123,47 @@ const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
   return *hierarchy;
 }
 
+namespace {
+
+// build(progress): the database.
+template <typename Database, typename Build>
+std::unique_ptr<CullingData::Timed<Database>> buildTimed(const std::string& what, Build&& build) {
+  ProgressBar progress(what);
+  const auto start = std::chrono::steady_clock::now();
+  Database database = build([&](double done) { progress.update(done); });
+  const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
+  return std::make_unique<CullingData::Timed<Database>>(
+      CullingData::Timed<Database>{std::move(database), time.count()});
+}
+
+}  // namespace
+
 // All settings of one run have the same databases.
 const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool turned_away,
                                                  std::unique_ptr<TimedDatabase>& timed) {
   if (!timed) {
     const Hierarchy& cells = hierarchy(HierarchyKind::kKdTree);
-    ProgressBar progress(turned_away ? "occluder database for detail objects" : "occluder database");
-    const auto start = std::chrono::steady_clock::now();
     OccluderDatabaseSettings settings = setting.database;
     settings.turned_away = turned_away;
-    OccluderDatabase database = OccluderDatabase::build(cells, occluders_, settings, parallel_for_,
-                                                        [&](double done) { progress.update(done); });
-    const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
-    timed = std::make_unique<TimedDatabase>(TimedDatabase{std::move(database), time.count()});
+    timed = buildTimed<OccluderDatabase>(
+        turned_away ? "occluder database for detail objects" : "occluder database",
+        [&](const Progress& progress) {
+          return OccluderDatabase::build(cells, occluders_, settings, parallel_for_, progress);
+        });
+  }
+  return &timed->database;
+}
+
+const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
+  std::unique_ptr<TimedViewpoints>& timed =
+      from_viewpoints_[static_cast<std::size_t>(setting.viewpoints.criterion)];
+  if (!timed) {
+    const Hierarchy& occludees = hierarchy(HierarchyKind::kBvh);
+    timed = buildTimed<ViewpointDatabase>(
+        "occluders by " + nameOf(kOccluderChoices, setting.culler.occluders), [&](const Progress& progress) {
+          return ViewpointDatabase::build(occludees, occluders_, walk_, setting.viewpoints, parallel_for_,
+                                          progress);
+        });
   }
   return &timed->database;
 }
@@ -144,7 +176,12 @@ Culler CullingData::makeCuller(const Setting& setting) {
   if (setting.testsDetailObjects()) {
     databases.from_objects = databaseFor(setting, true, from_objects_);
   }
-  return Culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases);
+  if (setting.usesViewpoints()) {
+    databases.from_viewpoints = viewpointsFor(setting);
+  }
+  Culler culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases);
+  culler.setParallelFor(parallel_for_);
+  return culler;
 }
 
 std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
@@ -170,6 +207,17 @@ void addDatabases(Json& json, const CullingData& data, bool times) {
   };
   add("database", data.database());
   add("detail_database", data.detailDatabase());
+  for (const OccluderChoice choice :
+       {OccluderChoice::kMinimumSets, OccluderChoice::kProjectedSize, OccluderChoice::kFirstHit}) {
+    if (const CullingData::TimedViewpoints* timed = data.viewpoints(criterionOf(choice))) {
+      json["viewpoints"][nameOf(kOccluderChoices, choice)] = {
+          {"points", timed->database.pointCount()},
+          {"directions", timed->database.directionCount()},
+          {"spacing", timed->database.spacing()},
+          {"bytes", timed->database.bytes()},
+          {"build_us", times ? timed->build_us : 0.0}};
+    }
+  }
 }
 
 }  // namespace sightline::tool

@@ -37,17 +37,24 @@ Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOpt
 // What cullers of one scene share.
 class CullingData {
  public:
-  CullingData(const Scene& scene, const ParallelFor& parallel_for);
+  // walk: viewpoint databases are made for it.
+  CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk = {});
 
   Culler makeCuller(const Setting& setting);
   const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
   // The occluder databases of the first setting that uses them; null until a culler needed them.
-  struct TimedDatabase {
-    OccluderDatabase database;
+  template <typename Database>
+  struct Timed {
+    Database database;
     double build_us = 0.0;
   };
+  using TimedDatabase = Timed<OccluderDatabase>;
+  using TimedViewpoints = Timed<ViewpointDatabase>;
   const TimedDatabase* database() const { return from_eye_.get(); }
   const TimedDatabase* detailDatabase() const { return from_objects_.get(); }
+  const TimedViewpoints* viewpoints(OccluderCriterion criterion) const {
+    return from_viewpoints_[static_cast<std::size_t>(criterion)].get();
+  }
   const OccluderSet& occluders() const { return occluders_; }
   std::span<const Box> bounds() const { return bounds_; }
   std::span<const std::uint32_t> triangles() const { return triangles_; }  // of each object
@@ -56,18 +63,22 @@ class CullingData {
  private:
   const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
                                       std::unique_ptr<TimedDatabase>& database);
+  const ViewpointDatabase* viewpointsFor(const Setting& setting);
 
   ParallelFor parallel_for_;
+  std::vector<Vec3d> walk_;  // its viewpoints, scene space
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
   OccluderSet occluders_;
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
+  std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion
 };
 
 Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
-// Adds "database" and "detail_database", {"cells":n,"directions":n,"bytes":n,"build_us":t} each, as far as
-// they were built. times: else 0 for them.
+// Adds "database" and "detail_database", {"cells":n,"directions":n,"bytes":n,"build_us":t} each, and
+// "viewpoints", {"minimum-sets":{"points":n,"directions":n,"spacing":m,"bytes":n,"build_us":t},...}, as far
+// as they were built. times: else 0 for them.
 void addDatabases(Json& json, const CullingData& data, bool times = true);
 
 }  // namespace sightline::tool

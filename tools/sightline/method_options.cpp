@@ -78,6 +78,27 @@ Value decimal(Field<double> field) {
           [field](Setting setting) { return Json(field(setting)); }};
 }
 
+Value resolution(Field<RasterSettings> field) {
+  const auto set = [field](const std::string& text, Setting& setting) {
+    const std::vector<std::string> parts = splitAt(text, 'x');
+    const auto size = [](const std::string& part) {
+      const std::optional<std::uint32_t> pixels = parseWhole(part);
+      return pixels && *pixels >= 1 && *pixels <= kMaxMapSize ? pixels : std::nullopt;
+    };
+    const auto width = size(parts.front()), height = size(parts.back());
+    if (parts.size() != 2 || !width || !height) {
+      return false;
+    }
+    field(setting).width = *width;
+    field(setting).height = *height;
+    return true;
+  };
+  return {": WIDTHxHEIGHT", fmt::format("a size in pixels like 320x180, each from 1 to {}", kMaxMapSize), set,
+          [field](Setting setting) {
+            return Json(fmt::format("{}x{}", field(setting).width, field(setting).height));
+          }};
+}
+
 Value mebibytes(Field<std::size_t> bytes) {
   const auto set = [bytes](const std::string& text, Setting& setting) {
     double value = 0.0;
@@ -104,8 +125,23 @@ bool usesTree(const Setting& setting) {
 bool usesPlanes(const Setting& setting) {
   return setting.culler.method == CullMethod::kSupportingPlanes;
 }
+bool usesMap(const Setting& setting) {
+  return setting.usesMap();
+}
+bool usesOpacityMap(const Setting& setting) {
+  return setting.culler.method == CullMethod::kOpacityMap;
+}
+bool usesViewpoints(const Setting& setting) {
+  return setting.usesViewpoints();
+}
+bool usesSets(const Setting& setting) {
+  return setting.usesViewpoints() && setting.culler.occluders == OccluderChoice::kMinimumSets;
+}
+bool ranksByAreaAngle(const Setting& setting) {
+  return usesOccluders(setting) && !setting.usesViewpoints();
+}
 bool usesAreaAngle(const Setting& setting) {
-  return usesOccluders(setting) && !setting.usesDatabase();
+  return ranksByAreaAngle(setting) && !setting.usesDatabase();
 }
 bool planesThroughBox(const Setting& setting) {
   return setting.planesThroughBox();
@@ -148,6 +184,25 @@ const std::vector<Option>& allOptions() {
       {"variant", usesTree, kList, kHeadline, "of the occlusion tree",
        oneOf(
            kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.culler.variant; })},
+      {"resolution", usesMap, kList, kHeadline, "of the map of occluders",
+       resolution(+[](Setting& s) -> RasterSettings& { return s.culler.raster; })},
+      {"coverage", usesMap, kList, kWhenChanged,
+       "pixels that occluders cover wholly, or at their centres, which culls what can be seen",
+       oneOf(
+           kCoverages, +[](Setting& s) -> Coverage& { return s.culler.raster.coverage; })},
+      {"tolerance", usesOpacityMap, kList, kWhenChanged,
+       "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
+       whole(
+           0, kMaxMapSize * kMaxMapSize, +[](Setting& s) -> std::uint32_t& { return s.culler.tolerance; })},
+      {"coverage-ratio", usesOpacityMap, kList, kWhenChanged,
+       "opacity map: what is covered by less than this part counts as visible with all in it",
+       decimal(+[](Setting& s) -> double& { return s.culler.coverage_ratio; })},
+      {"depth-comparison", usesOpacityMap, kList, kWhenChanged, "opacity map: at peaks only or everywhere",
+       oneOf(
+           kDepthComparisons, +[](Setting& s) -> DepthComparison& { return s.culler.depth_comparison; })},
+      {"triangle-us", usesOpacityMap, kOne, kWhenChanged,
+       "opacity map: microseconds to draw a triangle; the coverage ratio follows measured times; 0: off",
+       decimal(+[](Setting& s) -> double& { return s.culler.triangle_us; })},
       {"occluders", usesOccluders, kList, kWhenChanged, "how occluders are chosen",
        oneOf(
            kOccluderChoices, +[](Setting& s) -> OccluderChoice& { return s.culler.occluders; })},
@@ -167,7 +222,7 @@ const std::vector<Option>& allOptions() {
       {"min-node-cost", usesOccluders, kOne, kWhenChanged, "nodes with fewer triangles are not tested",
        whole(
            0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.culler.min_node_cost; })},
-      {"area-angle", usesOccluders, kOne, kWhenChanged, "direction that ranks occluders",
+      {"area-angle", ranksByAreaAngle, kOne, kWhenChanged, "direction that ranks occluders",
        oneOf(
            kAreaAngleDirections,
            +[](Setting& s) -> AreaAngleDirection& { return s.culler.area_angle_direction; })},
@@ -201,6 +256,23 @@ const std::vector<Option>& allOptions() {
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.database.occluder_count; })},
       {"database-mib", usesDatabase, kOne, kWhenChanged, "occluder database: most memory of its lists",
        mebibytes(+[](Setting& s) -> std::size_t& { return s.database.max_bytes; })},
+      {"viewpoint-spacing", usesViewpoints, kOne, kWhenChanged,
+       "viewpoint database: metres between grid points; 0: chosen",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.spacing; })},
+      {"viewpoint-directions", usesViewpoints, kOne, kWhenChanged,
+       "viewpoint database: directions at a grid point",
+       whole(
+           1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.directions; })},
+      {"viewpoint-pixels", usesViewpoints, kOne, kWhenChanged,
+       "viewpoint database: pixels along the edge of a picture",
+       whole(
+           8, 1024, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.resolution; })},
+      {"set-gain", usesSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.gain; })},
+      {"set-count", usesSets, kOne, kWhenChanged, "minimum sets: weight of the number of occluders",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.count; })},
+      {"set-area", usesSets, kOne, kWhenChanged, "minimum sets: weight of the pixels of occluders",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.area; })},
   };
   return kOptions;
 }
@@ -252,6 +324,22 @@ bool Setting::usesDatabase() const {
   return usesOccluders(*this) && culler.occluders == OccluderChoice::kDatabase;
 }
 
+bool Setting::usesViewpoints() const {
+  const OccluderChoice choice = culler.occluders;
+  return usesOccluders(*this) &&
+         (choice == OccluderChoice::kMinimumSets || choice == OccluderChoice::kFirstHit ||
+          choice == OccluderChoice::kProjectedSize);
+}
+
+bool Setting::usesMap() const {
+  return culler.method == CullMethod::kOpacityMap || culler.method == CullMethod::kDepthPyramid;
+}
+
+bool Setting::approximate() const {
+  return (usesMap() && culler.raster.coverage == Coverage::kCentre) ||
+         (usesOpacityMap(*this) && culler.tolerance > 0);
+}
+
 bool Setting::testsDetailObjects() const {
   return usesOccluders(*this) && culler.detail_objects;
 }
@@ -294,8 +382,15 @@ Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
   }
   for (Setting& setting : settings) {
     setting.database.area_angle_direction = setting.culler.area_angle_direction;
+    setting.viewpoints.criterion = criterionOf(setting.culler.occluders);
   }
   return settings;
+}
+
+OccluderCriterion criterionOf(OccluderChoice choice) {
+  return choice == OccluderChoice::kFirstHit        ? OccluderCriterion::kFirstHit
+         : choice == OccluderChoice::kProjectedSize ? OccluderCriterion::kProjectedSize
+                                                    : OccluderCriterion::kMinimumSets;
 }
 
 std::string methodName(const Setting& setting) {
@@ -314,6 +409,12 @@ std::string optionsText(const Setting& setting) {
   if (usesTree(setting)) {
     text = nameOf(kVariants, setting.culler.variant) + ", " + text;
   }
+  if (usesMap(setting)) {
+    text = fmt::format("{}x{}, {}", setting.culler.raster.width, setting.culler.raster.height, text);
+  }
+  if (setting.approximate()) {
+    text = "APPROXIMATE, " + text;
+  }
   for (const Option& option : allOptions()) {
     const Json value = option.value.get(setting);
     if (!option.headline && option.belongs(setting) && value != option.value.get(Setting{})) {
@@ -329,6 +430,9 @@ Json optionsJson(const Setting& setting) {
     if (option.name != "method" && option.belongs(setting)) {
       json[jsonKey(option.name)] = option.value.get(setting);
     }
+  }
+  if (setting.usesMap()) {
+    json["approximate"] = setting.approximate();
   }
   return json;
 }

@@ -19,8 +19,12 @@ struct Setting {
   HierarchyKind hierarchy = HierarchySettings{}.kind;
   CullerSettings culler{};
   OccluderDatabaseSettings database{};
+  ViewpointDatabaseSettings viewpoints{};
 
   bool usesDatabase() const;
+  bool usesViewpoints() const;
+  bool usesMap() const;      // of occluders, in pixels
+  bool approximate() const;  // may cull what can be seen
   bool testsDetailObjects() const;
   bool planesThroughBox() const;  // which are kept where temporal coherence is on
 };
@@ -36,6 +40,9 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 // All combinations, in the order of the lists; options that a method does not have do not multiply it. Says
 // on stderr which of the given ones no method has.
 Result<std::vector<Setting>> settingsOf(const MethodOptions& options);
+
+// Of the choices that the viewpoint database serves.
+OccluderCriterion criterionOf(OccluderChoice choice);
 
 std::string methodName(const Setting& setting);
 // For people: "FME, 64 occluders, bvh, coherence on", then what is not as usual.

@@ -18,10 +18,12 @@ struct Name {
   T value;
 };
 
-inline constexpr std::array<Name<CullMethod>, 3> kMethods{{
+inline constexpr std::array<Name<CullMethod>, 5> kMethods{{
     {"frustum", CullMethod::kFrustum},
     {"supporting-planes", CullMethod::kSupportingPlanes},
     {"occlusion-tree", CullMethod::kOcclusionTree},
+    {"opacity-map", CullMethod::kOpacityMap},
+    {"depth-pyramid", CullMethod::kDepthPyramid},
 }};
 inline constexpr std::array<Name<OcclusionTreeVariant>, 4> kVariants{{
     {"FSE", OcclusionTreeVariant::kFSE},
@@ -33,9 +35,12 @@ inline constexpr std::array<Name<HierarchyKind>, 2> kHierarchies{{
     {"kd", HierarchyKind::kKdTree},
     {"bvh", HierarchyKind::kBvh},
 }};
-inline constexpr std::array<Name<OccluderChoice>, 2> kOccluderChoices{{
+inline constexpr std::array<Name<OccluderChoice>, 5> kOccluderChoices{{
     {"area-angle", OccluderChoice::kAreaAngle},
     {"database", OccluderChoice::kDatabase},
+    {"minimum-sets", OccluderChoice::kMinimumSets},
+    {"projected-size", OccluderChoice::kProjectedSize},
+    {"first-hit", OccluderChoice::kFirstHit},
 }};
 inline constexpr std::array<Name<AreaAngleDirection>, 2> kAreaAngleDirections{{
     {"occluder", AreaAngleDirection::kOccluder},
@@ -48,6 +53,14 @@ inline constexpr std::array<Name<PlaneForm>, 2> kPlaneForms{{
 inline constexpr std::array<Name<TangentSearch>, 2> kTangentSearches{{
     {"tables", TangentSearch::kTables},
     {"all-vertices", TangentSearch::kAllVertices},
+}};
+inline constexpr std::array<Name<Coverage>, 2> kCoverages{{
+    {"inner", Coverage::kInner},
+    {"centre", Coverage::kCentre},
+}};
+inline constexpr std::array<Name<DepthComparison>, 2> kDepthComparisons{{
+    {"sparse", DepthComparison::kSparse},
+    {"pixelwise", DepthComparison::kPixelwise},
 }};
 inline constexpr std::array<Name<bool>, 2> kSwitch{{{"on", true}, {"off", false}}};
 

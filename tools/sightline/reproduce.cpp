@@ -30,6 +30,10 @@ const std::vector<std::pair<std::string, Paper>>& papers() {
        {"Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997.",
         {"demo:building?plants=100", "demo:city"},
         reproduceCoorgTeller}},
+      {"poon-wang",
+       {"Poon, Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. IV 1999.",
+        {"demo:city"},
+        reproducePoonWang}},
   };
   return kPapers;
 }
@@ -178,6 +182,7 @@ void addReproduce(CLI::App& app, Command& chosen) {
   command->footer(
       "Examples:\n"
       "  sightline reproduce coorg-teller\n"
+      "  sightline reproduce poon-wang -o report\n"
       "  sightline reproduce coorg-teller --short --scene \"demo:city?copies=4\" --json tables.json\n"
       "  sightline reproduce coorg-teller --scene office.glb --path walk.json -o report");
   command->callback([options, command, &chosen] {

@@ -49,5 +49,8 @@ struct Reproduction {
 // Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 6.
 Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
                                           const std::vector<SceneAndWalk>& inputs);
+// Based on: Poon, Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. IV 1999, section 6.
+Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
+                                       const std::vector<SceneAndWalk>& inputs);
 
 }  // namespace sightline::tool

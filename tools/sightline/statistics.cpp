@@ -12,7 +12,31 @@ bool hasDetail(const Setting& setting) {
   return setting.testsDetailObjects();
 }
 
+bool hasMap(const Setting& setting) {
+  return setting.usesMap();
+}
+bool hasOpacity(const Setting& setting) {
+  return setting.culler.method == CullMethod::kOpacityMap;
+}
+bool adapts(const Setting& setting) {
+  return hasOpacity(setting) && setting.culler.triangle_us > 0.0;
+}
+
 constexpr Statistic kStatistics[] = {
+    {"map", "occluders_hidden", "occluders behind others",
+     [](const CullStats& s) -> std::uint64_t { return s.occluders_hidden; }, hasMap},
+    {"map", "overlap_tests", "overlap tests",
+     [](const CullStats& s) -> std::uint64_t { return s.opacity.overlap_tests; }, hasOpacity},
+    {"map", "overlap_failed", "of them failed",
+     [](const CullStats& s) -> std::uint64_t { return s.opacity.overlap_failed; }, hasOpacity},
+    {"map", "given_up", "given up for little coverage",
+     [](const CullStats& s) -> std::uint64_t { return s.opacity.given_up; }, hasOpacity},
+    {"map", "depth_tests", "depth tests",
+     [](const CullStats& s) -> std::uint64_t { return s.opacity.depth_tests; }, hasOpacity},
+    {"map", "depths_compared", "depths compared",
+     [](const CullStats& s) -> std::uint64_t { return s.opacity.depths_compared; }, hasOpacity},
+    {"map", "suspended", "frames without occlusion culling",
+     [](const CullStats& s) -> std::uint64_t { return s.suspended ? 1 : 0; }, adapts},
     {"relations", "reused", "relations reused",
      [](const CullStats& s) -> std::uint64_t { return s.relations.reused; }, hasRelations},
     {"relations", "unchanged", "of them unchanged",

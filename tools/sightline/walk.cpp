@@ -149,6 +149,12 @@ class Walker {
     kept.in_frustum.assign(all.visible().begin(), all.visible().end());
     kept.visible.assign(shown.visible().begin(), shown.visible().end());
     kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
+    const DepthMapView map = shown.depthMap();
+    kept.map.width = map.width;
+    kept.map.height = map.height;
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+      kept.map.nearness.insert(kept.map.nearness.end(), map.row(y).begin(), map.row(y).end());
+    }
     kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
     kept.triangles_visible = data_.trianglesOf(kept.visible);
     chooser_.offer(kept);
@@ -207,7 +213,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
     return made.error();
   }
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor());
+  CullingData data(scene, threads.parallelFor(), walk);
   Result<WalkRecord> record = Walker(scene, walk, data, *renderer, options.folder).run(settings);
   if (!record) {
     return record.error();

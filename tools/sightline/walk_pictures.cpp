@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "tools/sightline/walk_report.h"
 
@@ -73,6 +74,45 @@ Image drawPlanOf(const KeptFrame& frame, const Scene& scene, const OccluderSet& 
   return renderer.drawPlan(plan);
 }
 
+// Of a map, its top row first; shade(nearness): the grey of a pixel.
+template <typename Shade>
+Image mapImage(const KeptMap& map, Shade&& shade) {
+  Image image{map.width, map.height, {}};
+  for (std::uint32_t y = map.height; y-- > 0;) {
+    for (std::uint32_t x = 0; x < map.width; ++x) {
+      const std::uint8_t grey = shade(map.nearness[std::size_t{y} * map.width + x]);
+      image.rgba.insert(image.rgba.end(), {grey, grey, grey, 255});
+    }
+  }
+  return image;
+}
+
+Image coverageImage(const KeptMap& map) {
+  return mapImage(map, [](float nearness) -> std::uint8_t { return nearness > kUncovered ? 255 : 0; });
+}
+
+// From the farthest, dark, to the nearest, white, in equal steps of rank, so that all distances can be told
+// apart.
+Image depthImage(const KeptMap& map) {
+  std::vector<float> sorted;
+  std::copy_if(map.nearness.begin(), map.nearness.end(), std::back_inserter(sorted),
+               [](float nearness) { return nearness > kUncovered; });
+  std::sort(sorted.begin(), sorted.end());
+  return mapImage(map, [&](float nearness) -> std::uint8_t {
+    if (!(nearness > kUncovered)) {
+      return 0;
+    }
+    const auto rank = std::lower_bound(sorted.begin(), sorted.end(), nearness) - sorted.begin();
+    return static_cast<std::uint8_t>(64 + 191 * rank / static_cast<std::ptrdiff_t>(sorted.size()));
+  });
+}
+
+double coveredShare(const KeptMap& map) {
+  const auto covered = std::count_if(map.nearness.begin(), map.nearness.end(),
+                                     [](float nearness) { return nearness > kUncovered; });
+  return static_cast<double>(covered) / static_cast<double>(map.nearness.size());
+}
+
 }  // namespace
 
 PictureChooser::PictureChooser(std::vector<std::uint32_t> frames) {
@@ -122,6 +162,19 @@ Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const 
         frame.frame, true);
     if (!picture || !plan) {
       return picture ? plan.error() : picture.error();
+    }
+    if (!frame.map.nearness.empty()) {
+      const std::string size = fmt::format("{} x {} pixels", frame.map.width, frame.map.height);
+      const Status coverage = add(coverageImage(frame.map), fmt::format("coverage_{:04}.png", frame.frame),
+                                  fmt::format("coverage map, {}: {:.1f} % covered by occluders", size,
+                                              100.0 * coveredShare(frame.map)),
+                                  frame.frame, false);
+      const Status depth =
+          add(depthImage(frame.map), fmt::format("depth_{:04}.png", frame.frame),
+              fmt::format("depth map, {}: white is near, black is not covered", size), frame.frame, false);
+      if (!coverage || !depth) {
+        return coverage ? depth.error() : coverage.error();
+      }
     }
   }
   return pictures;

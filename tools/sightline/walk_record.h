@@ -54,6 +54,12 @@ struct WalkRun {
   }
 };
 
+// A map of occluders, see DepthMapView, without what lies beyond its width.
+struct KeptMap {
+  std::uint32_t width = 0, height = 0;
+  std::vector<float> nearness;
+};
+
 // One frame as it was culled, kept for its pictures.
 struct KeptFrame {
   std::uint32_t frame = 0;
@@ -61,6 +67,7 @@ struct KeptFrame {
   std::vector<ObjectId> in_frustum, visible;
   std::vector<OccluderId> occluders;
   std::uint64_t triangles_in_frustum = 0, triangles_visible = 0;
+  KeptMap map;  // empty where the method has none
 };
 
 // A picture that culling changed.

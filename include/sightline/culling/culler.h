@@ -6,29 +6,52 @@
 #include <memory>
 #include <span>
 
+#include "sightline/base/parallel_for.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
 #include "sightline/occluders/occluder_database.h"
 #include "sightline/occluders/occluder_set.h"
+#include "sightline/occluders/viewpoint_database.h"
+#include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/occlusion/occlusion_tree.h"
+#include "sightline/occlusion/opacity_map.h"
 #include "sightline/occlusion/supporting_planes.h"
 #include "sightline/occlusion/visibility.h"
 #include "sightline/scene/camera.h"
 
 namespace sightline {
 
-enum class CullMethod : std::uint8_t { kFrustum, kOcclusionTree, kSupportingPlanes };
+enum class CullMethod : std::uint8_t {
+  kFrustum,
+  kOcclusionTree,
+  kSupportingPlanes,
+  kOpacityMap,
+  kDepthPyramid,
+};
 
 // Where a frame's occluders come from.
 enum class OccluderChoice : std::uint8_t {
   kAreaAngle,  // ranked anew in every frame, among the objects that the last frame kept
-  kDatabase,   // the database's list for the viewpoint's cell and the nearest direction
+  kDatabase,   // the database's list for the viewpoint's cell and the nearest direction, ranked for the view
+  // The first ones in view of the viewpoint database's list, which has been built by this criterion.
+  kMinimumSets,
+  kFirstHit,
+  kProjectedSize,
 };
 
 struct CullerSettings {
   CullMethod method = CullMethod::kOcclusionTree;
   OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
   SupportingPlanesSettings supporting_planes;  // keep_relations: see temporal_coherence
+  RasterSettings raster;                       // opacity map and depth pyramid
+  // Opacity map, see OpacityMapSettings.
+  DepthComparison depth_comparison = DepthComparison::kSparse;
+  std::uint32_t tolerance = 0;  // other than 0 it is NOT conservative
+  double coverage_ratio = 0.2;
+  // What the renderer takes for a triangle, microseconds; > 0: coverage_ratio follows measured times and may
+  // suspend occlusion culling (adaptive_coverage.h), so that what is kept, always conservative, depends on
+  // them.
+  double triangle_us = 0.0;
   OccluderChoice occluders = OccluderChoice::kAreaAngle;
   std::uint32_t occluder_count = 64;  // at most so many a frame
   AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;
@@ -47,17 +70,22 @@ struct CullerSettings {
 };
 
 struct CullStats {
-  std::uint32_t nodes_visited = 0;   // frustum tests of nodes
-  std::uint32_t nodes_tested = 0;    // nodes asked of the occlusion structure
-  std::uint32_t objects_tested = 0;  // objects asked of it
-  std::uint32_t nodes_skipped = 0;   // by temporal coherence
-  std::uint32_t occluders = 0;       // in the occlusion structure
-  std::uint32_t tree_nodes = 0;      // of the occlusion tree
+  std::uint32_t nodes_visited = 0;     // frustum tests of nodes
+  std::uint32_t nodes_tested = 0;      // nodes asked of the occlusion structure
+  std::uint32_t objects_tested = 0;    // objects asked of it
+  std::uint32_t nodes_skipped = 0;     // by temporal coherence
+  std::uint32_t occluders = 0;         // in the occlusion structure
+  std::uint32_t occluders_hidden = 0;  // of them: behind what the map had already
+  std::uint32_t tree_nodes = 0;        // of the occlusion tree
   std::uint32_t tree_dropped =
       0;                    // occluder fragments that found no room (costs tightness, never correctness)
   RelationStats relations;  // of the supporting planes
-  std::uint32_t detail_tested = 0;  // objects that got the second test
-  std::uint32_t detail_culled = 0;  // and were hidden by it
+  OpacityMapStats opacity;
+  std::uint64_t hidden_triangles = 0;  // of nodes and objects found hidden, about
+  double coverage_ratio = 0.0;         // the opacity map's in this frame
+  bool suspended = false;              // occlusion culling, which did not pay (CullerSettings::triangle_us)
+  std::uint32_t detail_tested = 0;     // objects that got the second test
+  std::uint32_t detail_culled = 0;     // and were hidden by it
   double choose_us = 0.0, build_us = 0.0, walk_us = 0.0, detail_us = 0.0;
   double totalUs() const { return choose_us + build_us + walk_us + detail_us; }
 };
@@ -67,6 +95,9 @@ struct OccluderDatabases {
   const OccluderDatabase* from_eye = nullptr;
   // For detail_objects, OccluderDatabaseSettings::turned_away; without it the second test is left out.
   const OccluderDatabase* from_objects = nullptr;
+  // For OccluderChoice::kMinimumSets, kFirstHit and kProjectedSize; without it occluders are chosen by
+  // area-angle.
+  const ViewpointDatabase* from_viewpoints = nullptr;
 };
 
 class Culler {
@@ -79,8 +110,9 @@ class Culler {
   Culler& operator=(Culler&&) noexcept;
 
   // One frame. dynamic_boxes: moving occludees, classified in the same call. Does not fail, and does not
-  // allocate after a few frames.
-  void cull(const View& view, std::span<const Box> dynamic_boxes = {});
+  // allocate after a few frames. moving: occluders of this frame only (makeOccluders), all of which are used
+  // in addition; opacity map and depth pyramid draw them like others, the other methods leave them out.
+  void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr);
 
   // Answers of the last cull(). Objects that may be seen, ascending.
   std::span<const ObjectId> visible() const;
@@ -89,6 +121,11 @@ class Culler {
   // The occluders that this frame's structure was built from.
   std::span<const OccluderId> occludersUsed() const;
   const CullStats& stats() const;
+  // What the opacity map or the depth pyramid was made of; empty with other methods.
+  DepthMapView depthMap() const;
+
+  // For drawing the maps, from now on; answers do not depend on it. Serial at first.
+  void setParallelFor(ParallelFor parallel_for);
 
   // Forgets the previous frame (after a change of scene).
   void reset();

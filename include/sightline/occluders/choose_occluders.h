@@ -41,6 +41,10 @@ class OccluderChooser {
   std::span<const OccluderId> choose(const View& view, const OccluderSet& set,
                                      std::span<const OccluderId> candidates, const ChoiceSettings& settings);
 
+  // The first of these occluders that may hide something in the view, in their order.
+  std::span<const OccluderId> takeFirst(const View& view, const OccluderSet& set,
+                                        std::span<const OccluderId> candidates, std::uint32_t count);
+
  private:
   void rank(const View& view, const OccluderSet& set, OccluderId id, AreaAngleDirection direction);
   std::span<const OccluderId> takeBest(const View& view, const OccluderSet& set, std::uint32_t count);

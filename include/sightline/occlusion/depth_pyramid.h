@@ -53,6 +53,9 @@ class DepthPyramid {
   // kHidden.
   void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
   Visibility classify(const Box& box) const;
+  // The same with the view's volume alone, as if nothing were drawn: kHidden where wholly outside, kVisible
+  // or kPartial elsewhere.
+  void classifyInView(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
 
   // Of the pyramid, level 0 is the map itself.
   std::uint32_t levels() const;

@@ -1,0 +1,246 @@
+// How much too much do maps of occluders keep, and at what price? One row for each method, size of map and
+// number of occluders: objects kept over objects exactly visible, once of all objects and once of the small
+// boxes alone, and the time of a frame (median us of choice, build and walk, as measured in this run).
+//
+// Exactly visible is what rays through the pixels of 1280 x 720 show, and whatever else in the frustum rays
+// to points of its triangles reach (Embree); "by pixels" is the first part. Every object of demo:boxes fills
+// its box, so that what is kept too much is due to the occluders and the map alone.
+//
+// false: objects that were seen but not kept, confirmed in wide arithmetic, in all views together. It is 0
+// for all but "rays", which is not conservative.
+//
+//   leaks [--benchmark_min_time=SHORT] [SCENE...]
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/benchmark_scene.h"
+#include "bench/map_methods.h"
+#include "bench/ray_depth.h"
+#include "oracle/exact_visibility.h"
+#include "sightline/culling/culler.h"
+
+namespace {
+
+using namespace sightline;
+using namespace sightline::bench;
+
+constexpr std::uint32_t kCounts[] = {32, 64, 128, 256, 512, 1024};
+constexpr std::uint32_t kAimedRays = 64;  // at each object that no pixel shows
+
+// What the eye sees in one view.
+struct Seen {
+  std::vector<Witness> witnesses;  // ascending by id
+  std::size_t by_pixels = 0;
+};
+
+Seen seeExactly(const ExactVisibility& exact, const View& view, std::span<const ObjectId> in_frustum) {
+  Seen seen{exact.visibleThroughPixels(view, 1280, 720)};
+  seen.by_pixels = seen.witnesses.size();
+  std::vector<ObjectId> others;
+  auto next = seen.witnesses.begin();
+  for (const ObjectId object : in_frustum) {
+    while (next != seen.witnesses.end() && next->object.value < object.value) {
+      ++next;
+    }
+    if (next == seen.witnesses.end() || next->object != object) {
+      others.push_back(object);
+    }
+  }
+  const std::vector<Witness> aimed = exact.visibleByAimedRays(view, others, kAimedRays);
+  seen.witnesses.insert(seen.witnesses.end(), aimed.begin(), aimed.end());
+  std::sort(seen.witnesses.begin(), seen.witnesses.end(),
+            [](const Witness& a, const Witness& b) { return a.object.value < b.object.value; });
+  return seen;
+}
+
+// Objects over all views, all of them and the small boxes alone.
+struct Counts {
+  std::uint64_t all = 0, small = 0;
+  double ratioOfAll(const Counts& exact) const {
+    return exact.all == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(exact.all);
+  }
+  double ratioOfSmall(const Counts& exact) const {
+    return exact.small == 0 ? 0.0 : static_cast<double>(small) / static_cast<double>(exact.small);
+  }
+};
+
+struct Row {
+  Counts kept;
+  std::uint64_t false_culls = 0;
+  std::vector<double> us;
+};
+
+class Comparison {
+ public:
+  explicit Comparison(const std::string& name)
+      : scene_(loadScene(name, "leaks")),
+        hierarchy_(buildHierarchy(scene_.bounds, scene_.cost)),
+        occluders_(findOccluders(scene_.scene.view())),
+        exact_(scene_.scene.view()),
+        rays_(scene_.scene.view()),
+        frustum_(hierarchy_, scene_.bounds, occluders_, {.method = CullMethod::kFrustum}) {}
+
+  void run(bool brief) {
+    listMethods(brief);
+    for (const Method& method : methods_) {
+      cullers_.emplace_back(hierarchy_, scene_.bounds, occluders_, method.settings);
+    }
+    rows_.resize(methods_.size());
+    for (const Step& step : stepsOf(scene_, brief ? 2 : 20, 1)) {
+      measure(step);
+      ++steps_;
+    }
+  }
+
+  void print(const std::string& name) const {
+    const auto views = static_cast<double>(rows_[0].us.size());
+    const auto each = [&](std::uint64_t count) { return static_cast<double>(count) / views; };
+    fmt::print("\n{}: {} objects, {} occluders, {} views\n", name, scene_.bounds.size(),
+               occluders_.occluders.size(), views);
+    fmt::print("exactly visible in a view: {:.1f} ({:.1f} by pixels), of them small boxes {:.1f}\n",
+               each(exact_count_.all), each(by_pixels_), each(exact_count_.small));
+    fmt::print("{:<9}{:>9}{:>6} |{:>10}{:>9} |{:>12}{:>9} |{:>7}{:>10}\n", "", "map", "k", "kept", "/ exact",
+               "small boxes", "/ exact", "false", "us");
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      const Method& method = methods_[m];
+      const Row& row = rows_[m];
+      const bool chooses = method.kind == MethodKind::kCuller && method.settings.occluder_count > 0;
+      fmt::print("{:<9}{:>9}{:>6} |{:>10.1f}{:>9.2f} |{:>12.1f}{:>9.2f} |{:>7}{:>10.1f}\n", method.name,
+                 method.sizeText(), chooses ? std::to_string(method.settings.occluder_count) : "",
+                 each(row.kept.all), row.kept.ratioOfAll(exact_count_), each(row.kept.small),
+                 row.kept.ratioOfSmall(exact_count_), row.false_culls, medianOf(row.us));
+    }
+    std::fflush(stdout);
+  }
+
+ private:
+  void listMethods(bool brief) {
+    const auto counts = std::span(kCounts).first(brief ? 2 : std::size(kCounts));
+    methods_.push_back(cullerMethod("frustum", CullMethod::kFrustum, 0));
+    for (const std::uint32_t count : counts) {
+      methods_.push_back(cullerMethod("tree", CullMethod::kOcclusionTree, count));
+    }
+    for (const std::uint32_t count : counts) {
+      methods_.push_back(cullerMethod("planes", CullMethod::kSupportingPlanes, count));
+    }
+    addMapMethods(methods_, std::span(kMapSizes).first(std::size(kMapSizes) - (brief ? 1 : 0)), counts);
+  }
+
+  bool isSmall(ObjectId object) const {
+    return scene_.scene.object_names[object.value].rfind("box ", 0) == 0;
+  }
+  Counts count(std::span<const ObjectId> objects) const {
+    Counts counts{objects.size()};
+    for (const ObjectId object : objects) {
+      counts.small += isSmall(object) ? 1 : 0;
+    }
+    return counts;
+  }
+
+  void measure(const Step& step) {
+    frustum_.cull(step.view);
+    Seen seen;
+    if (step.counted) {
+      seen = seeExactly(exact_, step.view, frustum_.visible());
+      for (const Witness& witness : seen.witnesses) {
+        ++exact_count_.all;
+        exact_count_.small += isSmall(witness.object) ? 1 : 0;
+      }
+      by_pixels_ += seen.by_pixels;
+      confirmed_.clear();
+    }
+    for (std::size_t turn = 0; turn < methods_.size(); ++turn) {
+      const std::size_t m = (turn + steps_) % methods_.size();
+      double us = 0.0;
+      if (methods_[m].kind == MethodKind::kCuller) {
+        cullers_[m].cull(step.view);
+        kept_.assign(cullers_[m].visible().begin(), cullers_[m].visible().end());
+        us = cullers_[m].stats().totalUs();
+      } else if (step.counted) {
+        us = castRays(step.view, methods_[m].size);
+      }
+      if (step.counted) {
+        add(rows_[m], step.view, seen, us);
+      }
+    }
+  }
+
+  // Leaves the objects in kept_.
+  double castRays(const View& view, MapSize size) {
+    const auto start = std::chrono::steady_clock::now();
+    rays_.cast(view, size.width, size.height);
+    frustum_.cull(view);
+    kept_.clear();
+    for (const ObjectId object : frustum_.visible()) {
+      if (rays_.mayShow(scene_.bounds[object.value])) {
+        kept_.push_back(object);
+      }
+    }
+    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  void add(Row& row, const View& view, const Seen& seen, double us) {
+    const Counts kept = count(kept_);
+    row.kept.all += kept.all;
+    row.kept.small += kept.small;
+    row.us.push_back(us);
+    auto next = kept_.begin();
+    for (const Witness& witness : seen.witnesses) {
+      while (next != kept_.end() && next->value < witness.object.value) {
+        ++next;
+      }
+      if (next == kept_.end() || *next != witness.object) {
+        row.false_culls += confirm(view, witness) ? 1 : 0;
+      }
+    }
+  }
+
+  // Once for all methods: wide arithmetic takes its time.
+  bool confirm(const View& view, const Witness& witness) {
+    const auto [at, added] = confirmed_.try_emplace(witness.object.value, false);
+    if (added) {
+      at->second = exact_.confirm(view, witness);
+    }
+    return at->second;
+  }
+
+  BenchmarkScene scene_;
+  Hierarchy hierarchy_;
+  OccluderSet occluders_;
+  ExactVisibility exact_;
+  RayDepth rays_;
+  Culler frustum_;
+  std::vector<Method> methods_;
+  std::vector<Culler> cullers_;
+
+  std::size_t steps_ = 0;
+  std::vector<Row> rows_;
+  Counts exact_count_;
+  std::uint64_t by_pixels_ = 0;
+  std::vector<ObjectId> kept_;               // by the method at hand
+  std::map<std::uint32_t, bool> confirmed_;  // false culls of the view at hand
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Arguments arguments = argumentsOf(argc, argv);
+  std::vector<std::string> scenes = arguments.scenes;
+  if (scenes.empty()) {
+    scenes = {"demo:boxes"};
+  }
+  for (const std::string& scene : scenes) {
+    Comparison comparison(scene);
+    comparison.run(arguments.brief);
+    comparison.print(scene);
+  }
+}

@@ -1,0 +1,224 @@
+// The city of plain boxes: blocks of buildings round a courtyard on a grid of streets, small boxes strewn
+// about, and the walks. Every building and every small box is an object and fills its bounds, so that what a
+// culler keeps too much is due to the culler alone.
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "scenes/mesh_builder.h"
+#include "scenes/procedural.h"
+#include "scenes/random.h"
+#include "scenes/walk.h"
+
+namespace sightline {
+namespace procedural {
+namespace {
+
+// Metres. A block's origin is its south-west corner; the streets south and west of it are its own.
+constexpr double kBlockX = 66.0, kBlockY = 56.0;
+constexpr double kStreet = 16.0;  // from house front to house front
+constexpr double kPavement = 3.0;
+constexpr double kLaneHalf = 1.0;  // in the middle of a street, where nothing stands
+constexpr double kPitchX = kBlockX + kStreet, kPitchY = kBlockY + kStreet;
+constexpr double kDeepest = 15.0, kShallowest = 11.0;  // buildings, from the street to the courtyard
+constexpr double kEyeHeight = 1.7;
+constexpr std::uint32_t kBuildings = 8;  // of a block
+
+enum Palette : std::uint32_t { kGround, kWalls, kMoreWalls, kSmallBoxes };
+
+std::vector<Material> palette() {
+  return {{"ground", Opacity::kOpaque, false, {0.20f, 0.21f, 0.20f, 1.0f}},
+          {"walls", Opacity::kOpaque, false, {0.56f, 0.43f, 0.27f, 1.0f}},
+          {"more walls", Opacity::kOpaque, false, {0.40f, 0.41f, 0.42f, 1.0f}},
+          {"small boxes", Opacity::kOpaque, false, {0.45f, 0.10f, 0.06f, 1.0f}}};
+}
+
+struct BoxGrid {
+  std::uint32_t columns = 1, rows = 1, blocks = 1;
+
+  explicit BoxGrid(std::uint32_t buildings) : blocks((buildings + kBuildings - 1) / kBuildings) {
+    while (columns * columns < blocks) {
+      ++columns;
+    }
+    rows = (blocks + columns - 1) / columns;
+  }
+  Point2 corner(std::uint32_t block) const { return {block % columns * kPitchX, block / columns * kPitchY}; }
+  // The middle of the crossing south-west of a block; parts of a block lie between two of them.
+  static Point2 crossing(double column, double row) {
+    return {column * kPitchX - kStreet / 2, row * kPitchY - kStreet / 2};
+  }
+  double far() const { return length(Point2{columns * kPitchX, rows * kPitchY}) + 300.0; }
+};
+
+// The footprints of a row of buildings that fill [0, kBlockX], most of them wall to wall. Depths are from 0.
+std::array<Rectangle, 3> planRow(Random& random) {
+  std::array<double, 3> width{};
+  double sum = 0.0;
+  for (double& w : width) {
+    w = random.range(0.7, 1.3);
+    sum += w;
+  }
+  std::array<Rectangle, 3> row;
+  double x = 0.0;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double end = i == 2 ? kBlockX : x + width[i] / sum * kBlockX;
+    const double alley = i < 2 && random.chance(0.15) ? random.range(1.0, 3.0) : 0.0;
+    row[i] = {{x, 0.0}, {end - alley, random.range(kShallowest, kDeepest)}};
+    x = end;
+  }
+  return row;
+}
+
+// Footprints of a block's buildings: a row in the south, one in the north, and one building each in the west
+// and in the east between them.
+std::array<Rectangle, kBuildings> planBlock(Random& random) {
+  std::array<Rectangle, kBuildings> plan;
+  const std::array<Rectangle, 3> south = planRow(random), north = planRow(random);
+  for (std::size_t i = 0; i < 3; ++i) {
+    plan[i] = south[i];
+    plan[3 + i] = {{north[i].min.x, kBlockY - north[i].max.y}, {north[i].max.x, kBlockY}};
+  }
+  const auto alley = [&] { return random.chance(0.15) ? random.range(1.0, 3.0) : 0.0; };
+  for (const std::size_t side : {0u, 1u}) {
+    const double low = plan[2 * side].max.y + alley();
+    const double high = plan[3 + 2 * side].min.y - alley();
+    const double depth = random.range(kShallowest, kDeepest);
+    plan[6 + side] =
+        side == 0 ? Rectangle{{0.0, low}, {depth, high}} : Rectangle{{kBlockX - depth, low}, {kBlockX, high}};
+  }
+  return plan;
+}
+
+// Where the small boxes of a block may stand: on its pavements, on both lanes of its two streets, in its
+// courtyard.
+Rectangle placeForSmallBox(Random& random) {
+  constexpr double kKerb = -kPavement, kFarKerb = kPavement - kStreet;
+  constexpr double kLane = -kStreet / 2 + kLaneHalf, kFarLane = -kStreet / 2 - kLaneHalf;
+  static constexpr Rectangle kPavements[] = {{{0, kKerb}, {kBlockX, 0}},
+                                             {{0, kBlockY}, {kBlockX, kBlockY + kPavement}},
+                                             {{kKerb, 0}, {0, kBlockY}},
+                                             {{kBlockX, 0}, {kBlockX + kPavement, kBlockY}}};
+  static constexpr Rectangle kRoads[] = {{{0, kLane}, {kBlockX, kKerb}},
+                                         {{0, kFarKerb}, {kBlockX, kFarLane}},
+                                         {{kLane, 0}, {kKerb, kBlockY}},
+                                         {{kFarKerb, 0}, {kFarLane, kBlockY}}};
+  static constexpr Rectangle kCourtyard{{kDeepest, kDeepest}, {kBlockX - kDeepest, kBlockY - kDeepest}};
+  const double which = random.uniform();
+  const std::uint32_t side = random.below(4);
+  return which < 0.4 ? kPavements[side] : which < 0.65 ? kRoads[side] : kCourtyard;
+}
+
+void addSmallBox(MeshBuilder& mesh, std::uint32_t number, Random& random) {
+  const Rectangle place = placeForSmallBox(random);
+  const double u = random.uniform();
+  const auto side = [&] { return std::max(0.3, (0.3 + 2.7 * u * u) * random.range(0.6, 1.0)); };
+  Vec3d size;
+  Vec3d low;
+  for (int axis = 0; axis < 3; ++axis) {
+    size[axis] = side();
+  }
+  low.x = random.range(place.min.x, place.max.x - size.x);
+  low.y = random.range(place.min.y, place.max.y - size.y);
+  mesh.startObject("box " + std::to_string(number), MaterialId{kSmallBoxes});
+  mesh.box(low, low + size);
+}
+
+// Numbers below the first `block` of all `blocks` when `count` things are spread evenly.
+std::uint32_t before(std::uint32_t block, std::uint32_t blocks, std::uint32_t count) {
+  return static_cast<std::uint32_t>(std::uint64_t{count} * block / blocks);
+}
+
+void addBuildings(MeshBuilder& mesh, const BoxGrid& grid, const BoxCityOptions& options) {
+  for (std::uint32_t block = 0; block < grid.blocks; ++block) {
+    Random random(options.seed, 2 * std::uint64_t{block});
+    const Point2 corner = grid.corner(block);
+    mesh.place({.origin = {corner.x, corner.y, 0.0}});
+    const std::array<Rectangle, kBuildings> plan = planBlock(random);
+    for (std::uint32_t i = 0; i < kBuildings && block * kBuildings + i < options.buildings; ++i) {
+      const double u = random.uniform();
+      mesh.startObject("building " + std::to_string(block * kBuildings + i),
+                       MaterialId{random.chance(0.5) ? kWalls : kMoreWalls});
+      mesh.box({plan[i].min.x, plan[i].min.y, 0.0}, {plan[i].max.x, plan[i].max.y, 8.0 + 52.0 * u * u});
+    }
+  }
+}
+
+void addSmallBoxes(MeshBuilder& mesh, const BoxGrid& grid, const BoxCityOptions& options) {
+  for (std::uint32_t block = 0; block < grid.blocks; ++block) {
+    Random random(options.seed, 2 * std::uint64_t{block} + 1);
+    const Point2 corner = grid.corner(block);
+    mesh.place({.origin = {corner.x, corner.y, 0.0}});
+    const std::uint32_t end = before(block + 1, grid.blocks, options.boxes);
+    for (std::uint32_t i = before(block, grid.blocks, options.boxes); i < end; ++i) {
+      addSmallBox(mesh, i, random);
+    }
+  }
+}
+
+void addGround(MeshBuilder& mesh, const BoxGrid& grid) {
+  constexpr double kMargin = 100.0;
+  const double x = grid.columns * kPitchX + kMargin, y = grid.rows * kPitchY + kMargin;
+  mesh.place({});
+  mesh.startObject("ground", MaterialId{kGround});
+  mesh.quad({-kMargin, -kMargin, 0}, {x, -kMargin, 0}, {x, y, 0}, {-kMargin, y, 0});
+}
+
+// Two corners in the middle of the city.
+CameraPath smoothWalk(const BoxGrid& grid) {
+  const double column = grid.columns / 2, row = grid.rows / 2;
+  std::vector<Vec3d> route;
+  for (const Point2 p : {BoxGrid::crossing(column - 0.5, row), BoxGrid::crossing(column, row),
+                         BoxGrid::crossing(column, row + 1), BoxGrid::crossing(column + 0.5, row + 1)}) {
+    route.emplace_back(p.x, p.y, kEyeHeight);
+  }
+  const WalkOptions options{
+      .name = "smooth", .look_ahead = 4.0, .glance = 0.35, .glance_turns = 5, .far = grid.far()};
+  return walkAlong(roundedRoute(route, 5.0), options);
+}
+
+// Five by four places all over the city, looking east, north, west and south in turn, a little to one side.
+CameraPath views(const BoxGrid& grid, std::uint32_t seed) {
+  constexpr std::uint32_t kAcross = 5, kUp = 4;
+  CameraPath path;
+  path.name = "views";
+  path.far = grid.far();
+  Random random(seed, ~std::uint64_t{0});
+  for (std::uint32_t i = 0; i < kAcross * kUp; ++i) {
+    const std::uint32_t column = (2 * (i % kAcross) + 1) * grid.columns / (2 * kAcross);
+    const std::uint32_t row = (2 * (i / kAcross) + 1) * grid.rows / (2 * kUp);
+    const double along = random.range(0.2, 0.8), aside = random.range(-0.8, 0.8) * kLaneHalf;
+    const bool north = i % 2 == 1;
+    Point2 eye = north ? BoxGrid::crossing(column, row + along) : BoxGrid::crossing(column + along, row);
+    eye = eye + (north ? Point2{aside, 0.0} : Point2{0.0, aside});
+    const Point2 look = unitVector((i % 4) * 0.25 + random.range(-0.04, 0.04));
+    path.frames.push_back(
+        {worldFromPlan({eye.x, eye.y, kEyeHeight}), worldFromPlan({look.x, look.y, 0.0}), {0.0, 1.0, 0.0}});
+  }
+  return path;
+}
+
+}  // namespace
+}  // namespace procedural
+
+Scene makeBoxCity(const BoxCityOptions& options) {
+  using namespace procedural;
+  Scene scene;
+  scene.materials = palette();
+  const BoxGrid grid(options.buildings);
+  const std::size_t boxes = std::size_t{options.buildings} + options.boxes;
+  scene.positions.reserve(boxes * 8 + 4);
+  scene.indices.reserve(boxes * 36 + 6);
+  {
+    MeshBuilder mesh(scene);
+    addGround(mesh, grid);
+    addBuildings(mesh, grid, options);
+    addSmallBoxes(mesh, grid, options);
+  }
+  weldPositions(scene);
+  updateBounds(scene);
+  scene.paths = {smoothWalk(grid), views(grid, options.seed)};
+  return scene;
+}
+
+}  // namespace sightline

@@ -1,0 +1,104 @@
+#include "culling/adaptive_coverage.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sightline::culling_detail {
+namespace {
+
+// Culling pays clearly where it saves so many times what it takes; in between nothing is changed.
+constexpr double kClearGain = 1.5;
+// Where it takes so many times what it saves it is suspended at once.
+constexpr double kHopeless = 4.0;
+
+}  // namespace
+
+AdaptiveCoverage::AdaptiveCoverage(double ratio)
+    : least_ratio_(std::isnan(ratio) ? 0.0 : std::clamp(ratio, 0.0, 1.0)) {}
+
+double AdaptiveCoverage::ratio() const {
+  return least_ratio_ + (1.0 - least_ratio_) * step_ / kSteps;
+}
+
+void AdaptiveCoverage::frame(double culling_us, double saved_us) {
+  if (suspended()) {
+    if (--rest_ == 0) {
+      trial_ = kTrial;
+      step_ = 0;
+    }
+    return;
+  }
+  if (!std::isfinite(culling_us) || !std::isfinite(saved_us)) {
+    return;
+  }
+  if (trial_ > 0) {
+    if (--trial_ == 0) {
+      endTrial(saved_us > kClearGain * culling_us);
+    }
+    return;
+  }
+  culling_us_ += culling_us;
+  saved_us_ += saved_us;
+  if (++frames_ == kWindow) {
+    endWindow();
+    startWindow();
+  }
+}
+
+void AdaptiveCoverage::endTrial(bool pays) {
+  if (!pays) {
+    suspend();
+    return;
+  }
+  startWindow();
+  wait_ = 1;
+  good_ = 0;
+  lowered_ = false;
+}
+
+void AdaptiveCoverage::endWindow() {
+  if (culling_us_ > kHopeless * saved_us_) {
+    suspend();
+  } else if (culling_us_ > saved_us_) {
+    raise();
+  } else {
+    good_ = saved_us_ > kClearGain * culling_us_ ? good_ + 1 : 0;
+    wait_ = lowered_ ? 1 : wait_;
+    lowered_ = false;
+    if (step_ > 0 && good_ >= wait_) {
+      lower();
+    }
+  }
+}
+
+void AdaptiveCoverage::raise() {
+  wait_ = lowered_ ? std::min(2 * wait_, kLongestWait) : wait_;
+  lowered_ = false;
+  good_ = 0;
+  if (step_ == kSteps) {
+    suspend();
+  } else {
+    ++step_;
+  }
+}
+
+void AdaptiveCoverage::lower() {
+  --step_;
+  good_ = 0;
+  lowered_ = true;
+}
+
+void AdaptiveCoverage::suspend() {
+  rest_ = kRest;
+  step_ = kSteps;
+  lowered_ = false;
+  good_ = 0;
+  startWindow();
+}
+
+void AdaptiveCoverage::startWindow() {
+  frames_ = 0;
+  culling_us_ = saved_us_ = 0.0;
+}
+
+}  // namespace sightline::culling_detail

@@ -1,0 +1,58 @@
+#pragma once
+
+// The walk through a hierarchy of many children a node, for a structure that is asked about many boxes at
+// once.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "culling/object_bits.h"
+#include "hierarchy/wide_hierarchy.h"
+#include "sightline/culling/culler.h"
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occlusion/depth_pyramid.h"
+
+namespace sightline::culling_detail {
+
+struct WideWalkOptions {
+  std::uint32_t min_node_cost = 0;  // nodes with fewer triangles are taken as visible past the occluders
+  bool test_objects = true;         // false: objects of nodes that are not hidden meet the view's volume only
+};
+
+class WideWalk {
+ public:
+  // The hierarchy must outlive this; the boxes are copied.
+  WideWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
+      : hierarchy_(hierarchy),
+        wide_(hierarchy_detail::collapse(hierarchy, object_bounds)),
+        visible_(object_bounds.size()) {}
+
+  // Appends the objects that may be seen to out, ascending, and adds to the counts of stats.
+  void run(const DepthPyramid& pyramid, const WideWalkOptions& options, CullStats& stats,
+           std::vector<ObjectId>& out);
+
+  const hierarchy_detail::WideHierarchy& wideHierarchy() const { return wide_; }
+
+ private:
+  struct Entry {
+    std::uint32_t node;
+    bool surely_visible;  // with respect to the occluders
+  };
+
+  void visit(const Entry& entry, const DepthPyramid& pyramid, const WideWalkOptions& options,
+             CullStats& stats);
+  // Answers for children `begin` to before `end` of the node: past the occluders, or for the view's volume
+  // alone.
+  void ask(const DepthPyramid& pyramid, const hierarchy_detail::WideNode& node, std::uint32_t begin,
+           std::uint32_t end, bool view_only);
+  void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
+
+  const Hierarchy& hierarchy_;
+  hierarchy_detail::WideHierarchy wide_;
+  ObjectBits visible_;
+  std::vector<Entry> stack_;
+  std::vector<BoxAnswer> answers_;  // of the children of one node
+};
+
+}  // namespace sightline::culling_detail

@@ -1,0 +1,198 @@
+// Based on: Poon, Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. IV 1999, section 4.
+// Differs from the paper in: the grid points near known viewpoints can be made alone; directions are spread
+// evenly on the sphere (see sphere_directions.cpp). The files minimum_sets.cpp, occluder_stack.cpp and
+// set_selection.cpp say more.
+
+#include "sightline/occluders/viewpoint_database.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "occluders/grid_points.h"
+#include "occluders/sphere_directions.h"
+#include "occluders/viewpoint_lists.h"
+
+namespace sightline {
+
+using namespace viewpoint_detail;
+
+namespace {
+
+constexpr std::uint32_t kMaxLists = 1u << 22;
+
+// A range of Data::ids.
+struct List {
+  std::uint64_t first = 0;
+  std::uint32_t length = 0;
+};
+
+}  // namespace
+
+struct ViewpointDatabase::Data {
+  Data(std::uint32_t direction_count, PointGrid made)
+      : directions(direction_count), grid(std::move(made)), tree(grid.points) {}
+
+  database_detail::SphereDirections directions;
+  PointGrid grid;
+  PointTree tree;
+  std::vector<List> lists;  // by point * directions + direction; equal ones are in the same place
+  std::vector<OccluderId> ids;
+
+  std::size_t bytes() const {
+    return sizeof(Data) + directions.bytes() + grid.points.capacity() * sizeof(Vec3d) + tree.bytes() +
+           lists.capacity() * sizeof(List) + ids.capacity() * sizeof(OccluderId);
+  }
+};
+
+namespace {
+
+// NaN: the default.
+double clampedOr(double value, double low, double high, double otherwise) {
+  return std::isnan(value) ? otherwise : std::clamp(value, low, high);
+}
+
+double usableWeight(double weight) {
+  return std::isfinite(weight) && weight > 0.0 ? std::min(weight, 1e6) : 0.0;
+}
+
+ViewpointDatabaseSettings inRange(ViewpointDatabaseSettings s) {
+  const ViewpointDatabaseSettings defaults;
+  s.directions = std::clamp(s.directions, 1u, database_detail::kMaxDirections);
+  s.max_points = std::clamp(s.max_points, 1u, std::min(65536u, kMaxLists / s.directions));
+  s.occluder_count = std::min(s.occluder_count, 65536u);
+  s.resolution = std::clamp(s.resolution, 8u, kMaxResolution);
+  s.view_angle_deg = clampedOr(s.view_angle_deg, 1.0, 170.0, defaults.view_angle_deg);
+  s.min_occluder_pixels = clampedOr(s.min_occluder_pixels, 0.0, 1e6, defaults.min_occluder_pixels);
+  s.sets_per_occludee = std::min(s.sets_per_occludee, 64u);
+  s.search_limit = std::min(s.search_limit, 1u << 20);
+  s.weights = {usableWeight(s.weights.gain), usableWeight(s.weights.count), usableWeight(s.weights.area)};
+  return s;
+}
+
+// Counts finished pictures and passes their fraction on, one call at a time.
+class PictureProgress {
+ public:
+  PictureProgress(const Progress& progress, std::uint32_t pictures)
+      : progress_(progress), pictures_(pictures) {}
+  void pictureDone() {
+    if (progress_) {
+      const std::lock_guard lock(mutex_);
+      progress_(static_cast<double>(++done_) / pictures_);
+    }
+  }
+
+ private:
+  const Progress& progress_;
+  std::mutex mutex_;
+  std::uint32_t pictures_, done_ = 0;
+};
+
+std::uint64_t hashOf(std::span<const OccluderId> list) {  // FNV-1a
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const OccluderId id : list) {
+    hash = (hash ^ id.value) * 0x100000001b3ull;
+  }
+  return hash;
+}
+
+// Puts the lists one after the other. What is equal to an earlier list refers to that one.
+void pack(std::vector<std::vector<OccluderId>>& made, std::vector<List>& lists,
+          std::vector<OccluderId>& ids) {
+  std::unordered_map<std::uint64_t, List> known;  // by hash
+  for (std::vector<OccluderId>& content : made) {
+    const List next{ids.size(), static_cast<std::uint32_t>(content.size())};
+    const List& found = known.try_emplace(hashOf(content), next).first->second;
+    const auto earlier =
+        std::span<const OccluderId>(ids).subspan(found.first, found.first == next.first ? 0 : found.length);
+    if (found.first < next.first &&
+        std::equal(content.begin(), content.end(), earlier.begin(), earlier.end())) {
+      lists.push_back(found);
+    } else {
+      lists.push_back(next);
+      ids.insert(ids.end(), content.begin(), content.end());
+    }
+    content = {};  // gives its memory back
+  }
+  ids.shrink_to_fit();
+}
+
+}  // namespace
+
+ViewpointDatabase ViewpointDatabase::build(const Hierarchy& hierarchy, const OccluderSet& set,
+                                           std::span<const Vec3d> viewpoints,
+                                           const ViewpointDatabaseSettings& settings,
+                                           const ParallelFor& parallel_for, const Progress& progress) {
+  const PictureSource source(hierarchy, set, inRange(settings));
+  const Box bounds = hierarchy.nodes.empty() ? Box{} : hierarchy.nodes[0].bounds;
+  const auto data = std::make_shared<Data>(
+      source.settings.directions,
+      makeGrid(bounds, viewpoints, source.settings.spacing, source.settings.max_points));
+  const std::uint32_t directions = data->directions.count();
+  const auto pictures = static_cast<std::uint32_t>(data->grid.points.size()) * directions;
+
+  std::vector<std::vector<OccluderId>> made(pictures);
+  PictureProgress picture_progress(progress, pictures);
+  parallel_for(pictures, [&](std::uint32_t begin, std::uint32_t end) {
+    ListMaker maker(source);
+    std::vector<OccluderId> list;
+    for (std::uint32_t picture = begin; picture < end; ++picture) {
+      if (picture == begin || picture % directions == 0) {
+        maker.moveTo(data->grid.points[picture / directions]);
+      }
+      maker.make(data->directions[picture % directions], list);
+      made[picture].assign(list.begin(), list.end());
+      picture_progress.pictureDone();
+    }
+  });
+  data->lists.reserve(pictures);
+  pack(made, data->lists, data->ids);
+
+  ViewpointDatabase database;
+  database.data_ = data;
+  return database;
+}
+
+std::span<const OccluderId> ViewpointDatabase::list(std::uint32_t point, std::uint32_t direction) const {
+  if (!data_) {
+    return {};
+  }
+  const List& list = data_->lists[std::size_t{point} * data_->directions.count() + direction];
+  return std::span<const OccluderId>(data_->ids).subspan(list.first, list.length);
+}
+
+std::uint32_t ViewpointDatabase::pointCount() const {
+  return data_ ? static_cast<std::uint32_t>(data_->grid.points.size()) : 1;
+}
+
+std::uint32_t ViewpointDatabase::directionCount() const {
+  return data_ ? data_->directions.count() : 1;
+}
+
+std::uint32_t ViewpointDatabase::nearestPoint(const Vec3d& viewpoint) const {
+  return data_ ? data_->tree.nearest(viewpoint) : 0;
+}
+
+Vec3d ViewpointDatabase::point(std::uint32_t index) const {
+  return data_ ? data_->grid.points[index] : Vec3d();
+}
+
+std::uint32_t ViewpointDatabase::nearestDirection(const Vec3d& direction) const {
+  return data_ ? data_->directions.nearest(direction) : 0;
+}
+
+Vec3d ViewpointDatabase::direction(std::uint32_t index) const {
+  return data_ ? data_->directions[index] : Vec3d(1, 0, 0);
+}
+
+double ViewpointDatabase::spacing() const {
+  return data_ ? data_->grid.spacing : 0.0;
+}
+
+std::size_t ViewpointDatabase::bytes() const {
+  return sizeof(*this) + (data_ ? data_->bytes() : 0);
+}
+
+}  // namespace sightline

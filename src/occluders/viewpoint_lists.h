@@ -1,0 +1,63 @@
+#pragma once
+
+// The best occluders of one picture, by each criterion.
+
+#include <span>
+#include <vector>
+
+#include "occluders/id_buffer.h"
+#include "occluders/minimum_sets.h"
+#include "occluders/occluder_stack.h"
+#include "occluders/set_selection.h"
+#include "sightline/occluders/viewpoint_database.h"
+
+namespace sightline::viewpoint_detail {
+
+// What all pictures of a database have in common. The settings are in range.
+struct PictureSource {
+  const Hierarchy& hierarchy;
+  const OccluderSet& set;
+  OccluderFilter filter;
+  std::vector<NodeIndex> occludees;
+  ViewpointDatabaseSettings settings;
+  PictureShape shape;
+
+  PictureSource(const Hierarchy& hierarchy_, const OccluderSet& set_,
+                const ViewpointDatabaseSettings& settings_);
+  // The filter's, below which no image has min_occluder_pixels, wherever it is in the picture.
+  double leastSolidAngle() const;
+};
+
+// Keeps its storage from picture to picture. One for each thread.
+class ListMaker {
+ public:
+  explicit ListMaker(const PictureSource& source) : source_(source) {}
+
+  // Until the next call all pictures are from there.
+  void moveTo(const Vec3d& eye);
+  // The list for a viewing direction, best first, ties by id.
+  void make(const Vec3d& direction, std::vector<OccluderId>& list);
+
+ private:
+  std::uint32_t listLength(std::size_t available) const;
+  void byProjectedSize(std::vector<OccluderId>& list);
+  void byFirstHit(std::vector<OccluderId>& list);
+  void byMinimumSets(std::vector<OccluderId>& list);
+
+  const PictureSource& source_;
+  Vec3d eye_;
+  std::vector<NearOccluder> candidates_;
+  OccluderPicture picture_;
+  IdBuffer nearest_;
+  std::vector<std::uint32_t> order_;
+
+  std::vector<Occludee> occludees_;
+  OccluderStack stack_;
+  CombinationTable table_;
+  MinimumSetSearch search_;
+  std::vector<double> cost_of_;
+  SetPool pool_;
+  SetSelection selection_;
+};
+
+}  // namespace sightline::viewpoint_detail

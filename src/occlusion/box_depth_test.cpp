@@ -1,0 +1,225 @@
+#include "occlusion/box_depth_test.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "occlusion/box_outline.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "occlusion/box_depth_test.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion_detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<float, kBlock>;
+
+// Cells of a level, first and last; at most eight along each axis.
+struct CellRange {
+  std::uint32_t x0, y0, x1, y1;
+};
+
+HWY_INLINE CellRange cellsOf(const PixelBox& image, std::uint32_t level) {
+  const std::uint32_t shift = kBlockShift * level;
+  const std::uint32_t x0 = image.x0, y0 = image.y0, x1 = image.x1, y1 = image.y1;
+  return {x0 >> shift, y0 >> shift, x1 >> shift, y1 >> shift};
+}
+
+// Those of a cell of the level above that the image reaches.
+HWY_INLINE CellRange cellsWithin(const PixelBox& image, std::uint32_t level, std::uint32_t x,
+                                 std::uint32_t y) {
+  const CellRange all = cellsOf(image, level);
+  return {std::max(all.x0, x * kBlock), std::max(all.y0, y * kBlock),
+          std::min(all.x1, x * kBlock + kBlock - 1), std::min(all.y1, y * kBlock + kBlock - 1)};
+}
+
+// Where eight cells are read from, so that the range is among them and all lie in the row.
+HWY_INLINE std::uint32_t readFrom(const DepthLevel& level, const CellRange& range) {
+  return std::min(range.x0, level.stride - kBlock);
+}
+
+// Calls row(lane, mask of the range's cells, their positions) for the groups of lanes of eight cells.
+template <typename Use>
+HWY_INLINE void forLanes(const CellRange& range, std::uint32_t from, Use&& use) {
+  const Lanes d;
+  const auto x0 = hn::Set(d, static_cast<float>(range.x0)), x1 = hn::Set(d, static_cast<float>(range.x1));
+  for (std::size_t lane = 0; lane < kBlock; lane += hn::Lanes(d)) {
+    const auto x = hn::Iota(d, static_cast<float>(from + lane));
+    use(lane, hn::And(hn::Ge(x, x0), hn::Le(x, x1)), x);
+  }
+}
+
+HWY_INLINE std::uint32_t bitsOf(hn::Mask<Lanes> mask, std::size_t lane) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Lanes(), mask, bits);
+  return static_cast<std::uint32_t>(bits[0]) << lane;
+}
+
+// Every cell's nearness is greater.
+HWY_INLINE bool allNearer(const DepthLevel& level, const CellRange& range, float than) {
+  const Lanes d;
+  const std::uint32_t from = readFrom(level, range);
+  bool all = true;
+  forLanes(range, from, [&](std::size_t lane, auto in_range, auto) HWY_ATTR {
+    const float* row = level.least + std::size_t{range.y0} * level.stride + from + lane;
+    auto least = hn::LoadU(d, row);
+    for (std::uint32_t y = range.y0; y < range.y1; ++y) {
+      row += level.stride;
+      least = hn::Min(least, hn::LoadU(d, row));
+    }
+    all = all && hn::AllFalse(d, hn::And(in_range, hn::Not(hn::Gt(least, hn::Set(d, than)))));
+  });
+  return all;
+}
+
+// Some pixel of the image's rectangle is nearer.
+bool anyNearer(std::span<const DepthLevel> levels, std::uint32_t level, const PixelBox& image,
+               const CellRange& range, float than) {
+  const Lanes d;
+  const std::uint32_t from = readFrom(levels[level], range), shift = kBlockShift * level;
+  for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
+    const float* row = levels[level].greatest + std::size_t{y} * levels[level].stride + from;
+    std::uint32_t nearer = 0;
+    forLanes(range, from, [&](std::size_t lane, auto in_range, auto) HWY_ATTR {
+      nearer |= bitsOf(hn::And(in_range, hn::Gt(hn::LoadU(d, row + lane), hn::Set(d, than))), lane);
+    });
+    for (; nearer != 0; nearer &= nearer - 1) {
+      const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(nearer));
+      const bool inside = x << shift >= image.x0 && y << shift >= image.y0 &&
+                          ((x + 1) << shift) - 1 <= image.x1 && ((y + 1) << shift) - 1 <= image.y1;
+      if (inside || anyNearer(levels, level - 1, image, cellsWithin(image, level - 1, x, y), than)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// One box, asked cell by cell with its own outline and depth.
+struct Refinement {
+  std::span<const DepthLevel> levels;
+  const PixelBox& image;
+  const BoxOutline& outline;
+
+  // Of the eight cells from `from` in a row, those where the box is not surely hidden.
+  HWY_INLINE std::uint32_t openCells(std::uint32_t level, const CellRange& range, std::uint32_t from,
+                                     std::uint32_t y) const {
+    const Lanes d;
+    const float size = static_cast<float>(1u << (kBlockShift * level));
+    const float y_px = static_cast<float>(y) * size - static_cast<float>(image.y0);
+    const auto x_origin = hn::Set(d, static_cast<float>(image.x0));
+    // The greatest value over a cell, whose lower left corner is at x, y.
+    const auto inRow = [&](const MapFunction& f) HWY_ATTR {
+      const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
+      return f.along_y * y_px + (f.at_origin + growth);
+    };
+    const float* row = levels[level].least + std::size_t{y} * levels[level].stride + from;
+    std::uint32_t open = 0;
+    forLanes(range, from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
+      const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
+      const auto greatest = [&](const MapFunction& f) HWY_ATTR {
+        return hn::Add(hn::Mul(hn::Set(d, f.along_x), x_px), hn::Set(d, inRow(f)));
+      };
+      auto own = hn::Set(d, image.nearest);
+      for (std::uint32_t i = 0; i < outline.face_count; ++i) {
+        own = hn::Min(own, greatest(outline.faces[i]));
+      }
+      auto met = hn::And(in_range, hn::Le(hn::LoadU(d, row + lane), own));
+      for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
+        met = hn::And(met, hn::Ge(greatest(outline.edges[i]), hn::Zero(d)));
+      }
+      open |= bitsOf(met, lane);
+    });
+    return open;
+  }
+
+  // Some pixel below these cells is one where the box is not surely hidden.
+  bool anyOpen(std::uint32_t level, const CellRange& range) const {
+    const std::uint32_t from = readFrom(levels[level], range);
+    for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
+      std::uint32_t open = openCells(level, range, from, y);
+      if (level == 0 && open != 0) {
+        return true;
+      }
+      for (; open != 0; open &= open - 1) {
+        const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(open));
+        if (anyOpen(level - 1, cellsWithin(image, level - 1, x, y))) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+};
+
+// The map in the pixel of the box's centre, which its outline surely meets, is not before its farthest point.
+// Settles most boxes that can be seen.
+HWY_INLINE bool seenAtCentre(const DepthLevel& map, const PixelView& view, const Box& box,
+                             const PixelBox& image) {
+  const Vec3d centre = view.toCamera(center(box) - view.eye);
+  const double x = view.mapX(centre), y = view.mapY(centre);
+  if (!(x >= image.x0 && y >= image.y0 && x < image.x1 + 1.0 && y < image.y1 + 1.0)) {
+    return false;
+  }
+  const std::size_t at = static_cast<std::size_t>(y) * map.stride + static_cast<std::size_t>(x);
+  return !(map.least[at] > image.farthest);
+}
+
+Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                   const PixelBox& image) {
+  if (image.place != BoxPlace::kOnMap) {
+    return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
+  }
+  if (levels.empty()) {
+    return Visibility::kPartial;
+  }
+  std::uint32_t level = 0;
+  CellRange range = cellsOf(image, 0);
+  while (range.x1 - range.x0 >= kBlock || range.y1 - range.y0 >= kBlock) {
+    range = cellsOf(image, ++level);
+  }
+  if (allNearer(levels[level], range, image.nearest)) {
+    return Visibility::kHidden;
+  }
+  if (!anyNearer(levels, level, image, range, image.farthest)) {
+    return Visibility::kVisible;
+  }
+  if (seenAtCentre(levels[0], view, box, image)) {
+    return Visibility::kPartial;
+  }
+  // Cells may begin before the rectangle and end after it.
+  const std::uint32_t size = 1u << (kBlockShift * level);
+  const double reach = std::max(image.x1 - image.x0, image.y1 - image.y0) + 2.0 * size;
+  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reach);
+  const Refinement refinement{levels, image, outline};
+  return refinement.anyOpen(level, range) ? Visibility::kPartial : Visibility::kHidden;
+}
+
+void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+             std::span<const PixelBox> images, std::span<BoxAnswer> answers) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    answers[i] = {testOne(levels, view, boxes[i], images[i]), images[i].whole};
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::occlusion_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion_detail {
+
+HWY_EXPORT(testAll);
+
+void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
+               std::span<const PixelBox> images, std::span<BoxAnswer> answers) {
+  HWY_DYNAMIC_DISPATCH(testAll)(levels, view, boxes, images, answers);
+}
+
+}  // namespace sightline::occlusion_detail
+#endif

@@ -1,0 +1,117 @@
+// In double precision, relative to the eye.
+//
+// A ray through the place (X, Y) of the map has the direction r = tx right + ty up + forward, where
+// tx = (X - middle_x) / scale_x, ty likewise.
+//
+//   Edge along the axis e through the corner a:  the plane through the eye has the normal n = a x e, which
+//     takes no subtraction; the box is where n . r >= 0. Orthographic: n = forward x e, and n . (tx right +
+//     ty up - a) >= 0.
+//   Face at l metres from the eye along the axis e:  1 / depth = (e . r) / l. Orthographic:
+//     -depth = (e . (tx right + ty up) - l) / (e . forward).
+//
+// Each is a sum of three terms, with a few roundings in every one.
+
+#include "occlusion/box_outline.h"
+
+#include <bit>
+#include <cmath>
+
+#include "geometry/box_tangents.h"
+#include "occlusion/eye_box.h"
+
+namespace sightline::occlusion_detail {
+namespace {
+
+constexpr double kWideRounding = 0x1p-48;    // of the terms in double precision, with a factor of 8
+constexpr double kSingleRounding = 0x1p-21;  // of coefficients, products and sums in single precision: 5 u
+constexpr double kTooLarge = 1e30;           // functions beyond this say nothing
+
+struct Origin {
+  double tx, ty;        // where the functions have their origin
+  double per_x, per_y;  // of tx and ty, for a pixel
+  double reach;
+};
+
+// The function x * tx + y * ty + constant. size_x, size_y, size: of the terms that were summed up in each
+// coefficient. False where it says nothing.
+bool bounded(const Origin& o, const Vec3d& f, const Vec3d& sizes, MapFunction& out) {
+  const double along_x = f.x * o.per_x, along_y = f.y * o.per_y;
+  const double at_origin = f.x * o.tx + f.y * o.ty + f.z;
+  const double wide = sizes.x * (std::abs(o.tx) + o.per_x * o.reach) +
+                      sizes.y * (std::abs(o.ty) + o.per_y * o.reach) + sizes.z;
+  const double single = (std::abs(along_x) + std::abs(along_y)) * o.reach + std::abs(at_origin);
+  const double rounding = kWideRounding * wide + kSingleRounding * single;
+  if (!(wide < kTooLarge && single < kTooLarge)) {
+    return false;
+  }
+  out.along_x = static_cast<float>(along_x);
+  out.along_y = static_cast<float>(along_y);
+  // The smallest numbers of single precision are coarse; they are far below any of a scene.
+  out.at_origin = static_cast<float>(at_origin + rounding + 0x1p-120);
+  return true;
+}
+
+// Of the three products of a direction's components.
+double sizeOf(const Vec3d& a, const Vec3d& b) {
+  return dot(abs(a), abs(b));
+}
+
+Vec3d crossedWith(const Vec3d& v, int axis) {
+  return axis == 0 ? Vec3d(0.0, v.z, -v.y) : axis == 1 ? Vec3d(-v.z, 0.0, v.x) : Vec3d(v.y, -v.x, 0.0);
+}
+
+int regionOfEye(const PixelView& view, const EyeBox& box) {
+  if (!view.orthographic) {
+    return geometry_detail::regionOfOrigin(box.min, box.max);
+  }
+  // An eye infinitely far behind.
+  const auto digit = [](double forward) { return forward > 0.0 ? 1 : forward < 0.0 ? 2 : 0; };
+  return digit(view.forward.x) + 3 * digit(view.forward.y) + 9 * digit(view.forward.z);
+}
+
+void addEdge(const PixelView& view, const Origin& origin, const Vec3d& corner, int axis, double sign,
+             BoxOutline& outline) {
+  const Vec3d n = crossedWith(view.orthographic ? view.forward : corner, axis) * sign;
+  Vec3d f(dot(n, view.right), dot(n, view.up), 0.0);
+  Vec3d sizes(sizeOf(n, view.right), sizeOf(n, view.up), 0.0);
+  f.z = view.orthographic ? -dot(n, corner) : dot(n, view.forward);
+  sizes.z = view.orthographic ? sizeOf(n, corner) : sizeOf(n, view.forward);
+  if (bounded(origin, f, sizes, outline.edges[outline.edge_count])) {
+    ++outline.edge_count;
+  }
+}
+
+void addFace(const PixelView& view, const Origin& origin, int axis, double distance, BoxOutline& outline) {
+  const double scale = 1.0 / (view.orthographic ? view.forward[axis] : distance);
+  const Vec3d f =
+      Vec3d(view.right[axis], view.up[axis], view.orthographic ? -distance : view.forward[axis]) * scale;
+  if (bounded(origin, f, abs(f), outline.faces[outline.face_count])) {
+    ++outline.face_count;
+  }
+}
+
+}  // namespace
+
+BoxOutline outlineOf(const PixelView& view, const Box& box, std::uint32_t x, std::uint32_t y, double reach) {
+  const EyeBox eye_box = EyeBox::of(box, view.eye);
+  const Origin origin{(x - view.middle_x) / view.scale_x, (y - view.middle_y) / view.scale_y,
+                      1.0 / view.scale_x, 1.0 / view.scale_y, reach};
+  BoxOutline outline;
+  int region = regionOfEye(view, eye_box);
+  const geometry_detail::Silhouette& loop = geometry_detail::silhouetteFrom(region);
+  for (int i = 0; i < loop.count; ++i) {
+    const auto from = loop.corners[static_cast<std::size_t>(i)];
+    const auto to = loop.corners[static_cast<std::size_t>(i + 1 < loop.count ? i + 1 : 0)];
+    const int axis = std::countr_zero(static_cast<unsigned>(from ^ to));
+    const double sign = to > from ? 1.0 : -1.0;
+    addEdge(view, origin, geometry_detail::cornerOf(eye_box.min, eye_box.max, from), axis, sign, outline);
+  }
+  for (int axis = 0; axis < 3; ++axis, region /= 3) {
+    if (region % 3 != 0) {
+      addFace(view, origin, axis, region % 3 == 1 ? eye_box.min[axis] : eye_box.max[axis], outline);
+    }
+  }
+  return outline;
+}
+
+}  // namespace sightline::occlusion_detail

@@ -1,0 +1,123 @@
+// Based on: Greene, Kass, Miller. Hierarchical Z-Buffer Visibility. SIGGRAPH 1993; Zhang, Manocha, Hudson,
+// Hoff. Visibility Culling Using Hierarchical Occlusion Maps. SIGGRAPH 1997.
+// Differs from the papers in: the map is conservative; a box is compared by its own outline and depth, down
+// to single pixels, before it is called visible; docs/algorithms/depth-pyramid.md has the rest.
+
+#include "sightline/occlusion/depth_pyramid.h"
+
+#include <algorithm>
+
+#include "occlusion/box_depth_test.h"
+#include "occlusion/depth_levels.h"
+#include "occlusion/pixel_boxes.h"
+
+namespace sightline {
+
+using namespace occlusion_detail;
+
+struct DepthPyramid::Impl {
+  explicit Impl(const DepthPyramidSettings& settings) : raster(settings.raster) {}
+
+  Rasteriser raster;
+  DepthLevels levels;
+  bool finished = false;
+  PixelView view;
+  BoxProjection projection;
+  DepthPyramidStats stats;
+
+  std::span<const DepthLevel> usableLevels() const {
+    return finished ? levels.levels() : std::span<const DepthLevel>();
+  }
+};
+
+namespace {
+
+// Boxes whose images are made at once.
+constexpr std::size_t kGroup = 64;
+
+template <typename Use>
+void forGroups(std::size_t count, Use&& use) {
+  for (std::size_t first = 0; first < count; first += kGroup) {
+    use(first, std::min(kGroup, count - first));
+  }
+}
+
+}  // namespace
+
+DepthPyramid::DepthPyramid(const DepthPyramidSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+DepthPyramid::~DepthPyramid() = default;
+DepthPyramid::DepthPyramid(DepthPyramid&&) noexcept = default;
+DepthPyramid& DepthPyramid::operator=(DepthPyramid&&) noexcept = default;
+
+void DepthPyramid::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
+                         const ParallelFor& parallel_for) {
+  begin(view);
+  draw(set, chosen, parallel_for);
+  finish(parallel_for);
+}
+
+void DepthPyramid::begin(const View& view) {
+  const DepthMapView map = impl_->raster.map();
+  impl_->raster.begin(view);
+  impl_->view = PixelView(view, map.width, map.height);
+  impl_->projection = BoxProjection(impl_->view, map.width, map.height);
+  impl_->finished = false;
+  impl_->stats.raster = impl_->raster.stats();
+}
+
+void DepthPyramid::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
+                        const ParallelFor& parallel_for) {
+  impl_->finished = false;
+  impl_->raster.draw(set, chosen, parallel_for);
+  impl_->stats.raster = impl_->raster.stats();
+}
+
+void DepthPyramid::finish(const ParallelFor& parallel_for) {
+  impl_->levels.build(impl_->raster.map(), parallel_for);
+  impl_->finished = true;
+}
+
+void DepthPyramid::classify(std::span<const Box> boxes, std::span<BoxAnswer> answers) const {
+  PixelBox images[kGroup];
+  forGroups(boxes.size(), [&](std::size_t first, std::size_t count) {
+    const std::span<PixelBox> group(images, count);
+    projectBoxes(impl_->projection, boxes.subspan(first, count), group);
+    testBoxes(impl_->usableLevels(), impl_->view, boxes.subspan(first, count), group,
+              answers.subspan(first, count));
+  });
+}
+
+Visibility DepthPyramid::classify(const Box& box) const {
+  BoxAnswer answer;
+  classify({&box, 1}, {&answer, 1});
+  return answer.visibility;
+}
+
+void DepthPyramid::classifyInView(std::span<const Box> boxes, std::span<BoxAnswer> answers) const {
+  PixelBox images[kGroup];
+  forGroups(boxes.size(), [&](std::size_t first, std::size_t count) {
+    projectBoxes(impl_->projection, boxes.subspan(first, count), {images, count});
+    for (std::size_t i = 0; i < count; ++i) {
+      const BoxPlace place = images[i].place;
+      answers[first + i] = {place == BoxPlace::kOutside ? Visibility::kHidden
+                            : place == BoxPlace::kOnMap ? Visibility::kVisible
+                                                        : Visibility::kPartial,
+                            images[i].whole};
+    }
+  });
+}
+
+std::uint32_t DepthPyramid::levels() const {
+  return static_cast<std::uint32_t>(impl_->usableLevels().size());
+}
+DepthMapView DepthPyramid::map() const {
+  return impl_->raster.map();
+}
+const DepthPyramidStats& DepthPyramid::stats() const {
+  return impl_->stats;
+}
+std::span<const OccluderId> DepthPyramid::occluders() const {
+  return impl_->raster.occluders();
+}
+
+}  // namespace sightline

@@ -1,0 +1,133 @@
+// Based on: T. K. Poon, W. Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. 1999,
+// section 5. Differs from the paper in what a covered pixel promises (Coverage::kInner), in rectangles that
+// are rounded outwards, in strict comparisons, and in the last pixel of each row; see
+// docs/algorithms/opacity-map.md.
+
+#include "sightline/occlusion/opacity_map.h"
+
+#include "occlusion/pixel_boxes.h"
+#include "occlusion/sparse_depth.h"
+#include "occlusion/summed_area.h"
+
+namespace sightline {
+
+using occlusion_detail::areaOf;
+using occlusion_detail::BoxPlace;
+using occlusion_detail::PixelBox;
+
+struct OpacityMap::Impl {
+  explicit Impl(const OpacityMapSettings& s)
+      : settings(s), raster(s.raster), coverage_ratio(s.coverage_ratio) {}
+
+  void finish() {
+    const DepthMapView map = raster.map();
+    opacity.build(map);
+    if (settings.depth == DepthComparison::kSparse) {
+      sparse_depth.begin(map);
+    }
+    stats.raster = raster.stats();
+    ready = true;
+  }
+
+  // Some of the rectangle is covered, but not enough to hide the box.
+  bool tooLittle(std::uint32_t covered, std::uint32_t area) const {
+    return static_cast<double>(covered) < coverage_ratio * static_cast<double>(area);
+  }
+
+  bool allNearer(const PixelBox& image) {
+    ++stats.depth_tests;
+    if (settings.depth == DepthComparison::kPixelwise) {
+      return allNearerPixelwise(raster.map(), image, stats.depths_compared);
+    }
+    const std::uint64_t before = sparse_depth.compared();
+    const bool nearer = sparse_depth.allNearer(image);
+    stats.depths_compared += sparse_depth.compared() - before;
+    stats.sparse |= sparse_depth.used();
+    return nearer;
+  }
+
+  Visibility classify(const PixelBox& image) {
+    ++stats.overlap_tests;
+    const std::uint32_t covered = opacity.count(image), area = areaOf(image);
+    if (covered == 0) {
+      ++stats.overlap_failed;
+      return Visibility::kVisible;
+    }
+    if (area - covered > settings.tolerance) {
+      ++stats.overlap_failed;
+      if (!tooLittle(covered, area)) {
+        return Visibility::kPartial;
+      }
+      ++stats.given_up;
+      return Visibility::kVisible;
+    }
+    return allNearer(image) ? Visibility::kHidden : Visibility::kPartial;
+  }
+
+  OpacityMapSettings settings;
+  Rasteriser raster;
+  occlusion_detail::BoxProjection projection;
+  occlusion_detail::SummedArea opacity;
+  occlusion_detail::SparseDepth sparse_depth;
+  double coverage_ratio;
+  bool ready = false;  // the map is finished
+  OpacityMapStats stats;
+};
+
+OpacityMap::OpacityMap(const OpacityMapSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+OpacityMap::~OpacityMap() = default;
+OpacityMap::OpacityMap(OpacityMap&&) noexcept = default;
+OpacityMap& OpacityMap::operator=(OpacityMap&&) noexcept = default;
+
+void OpacityMap::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
+                       const ParallelFor& parallel_for) {
+  begin(view);
+  draw(set, chosen, parallel_for);
+  finish();
+}
+
+void OpacityMap::begin(const View& view) {
+  impl_->ready = false;
+  impl_->stats = {};
+  impl_->raster.begin(view);
+  const DepthMapView map = impl_->raster.map();
+  impl_->projection = {PixelView(view, map.width, map.height), map.width, map.height};
+}
+
+void OpacityMap::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
+                      const ParallelFor& parallel_for) {
+  impl_->ready = false;
+  impl_->raster.draw(set, chosen, parallel_for);
+}
+
+void OpacityMap::finish() {
+  impl_->finish();
+}
+
+Visibility OpacityMap::classify(const Box& box) {
+  if (!impl_->ready) {
+    return Visibility::kVisible;
+  }
+  PixelBox image;
+  occlusion_detail::projectBoxes(impl_->projection, {&box, 1}, {&image, 1});
+  if (image.place == BoxPlace::kOutside) {
+    return Visibility::kHidden;
+  }
+  return image.place == BoxPlace::kOnMap ? impl_->classify(image) : Visibility::kPartial;
+}
+
+void OpacityMap::setCoverageRatio(double ratio) {
+  impl_->coverage_ratio = ratio;
+}
+
+DepthMapView OpacityMap::map() const {
+  return impl_->raster.map();
+}
+const OpacityMapStats& OpacityMap::stats() const {
+  return impl_->stats;
+}
+std::span<const OccluderId> OpacityMap::occluders() const {
+  return impl_->raster.occluders();
+}
+
+}  // namespace sightline

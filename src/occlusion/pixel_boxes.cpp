@@ -1,0 +1,350 @@
+// Images of boxes, in single precision with bounds for all rounding.
+//
+// Let u = 2^-24, and S the sum of the largest magnitudes of a box's coordinates relative to the eye.
+//
+//   d = (corner - eye_high) - eye_low   off by 2 u |d| + eye_rounding: where the first difference is smaller
+//                                       than half of eye_high it is exact
+//   c = axis . d                        off by E = 6 u S + 3 eye_rounding: 2 u of d, u of the axis, u of the
+//                                       products, 2 u of the sums. With what follows kRounding = 10 u is used
+//   q = c.x / c.z                       off by r (1 + |q|), r = E / (z - E); made 1/16 larger for its own
+//                                       square, and 8 u for division and product
+//   X = middle + scale q                off by another 8 u (middle + scale |q|)
+//
+// The bound of q grows more slowly than q itself, so that the extremes over the corners give those of the
+// bounds too.
+
+#include "occlusion/pixel_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// Vectors are members here, which those without a fixed size cannot be.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "occlusion/pixel_boxes.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::occlusion_detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<float, 16>;
+using Vec = hn::Vec<Lanes>;
+using Mask = hn::Mask<Lanes>;
+
+constexpr float kRounding = 0x1.4p-21f;    // of a coordinate in camera space, times S
+constexpr float kMapRounding = 0x1p-21f;   // of a position in the map, relative
+constexpr float kSlackGrowth = 1.0625f;    // for products of two errors
+constexpr float kWellConditioned = 64.0f;  // the least depth, times its error
+constexpr float kLargest = 0x1p60f;        // S of boxes that are looked at
+constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
+
+// The boxes of as many lanes, relative to the eye: [0] the least, [1] the greatest coordinate.
+struct EyeBoxes {
+  Vec x[2], y[2], z[2];
+  Vec reach;  // S
+  Vec error;  // E
+  Mask usable;
+};
+
+// Minima and maxima of one coordinate.
+struct Range {
+  Vec least, greatest;
+};
+
+HWY_INLINE void loadRanges(Lanes d, const float* floats, Range& x, Range& y, Range& z) {
+#if HWY_TARGET == HWY_SCALAR
+  x = {hn::Set(d, floats[0]), hn::Set(d, floats[3])};
+  y = {hn::Set(d, floats[1]), hn::Set(d, floats[4])};
+  z = {hn::Set(d, floats[2]), hn::Set(d, floats[5])};
+#else
+  Vec x_a, y_a, z_a, x_b, y_b, z_b;
+  hn::LoadInterleaved3(d, floats, x_a, y_a, z_a);
+  hn::LoadInterleaved3(d, floats + 3 * hn::Lanes(d), x_b, y_b, z_b);
+  x = {hn::ConcatEven(d, x_b, x_a), hn::ConcatOdd(d, x_b, x_a)};
+  y = {hn::ConcatEven(d, y_b, y_a), hn::ConcatOdd(d, y_b, y_a)};
+  z = {hn::ConcatEven(d, z_b, z_a), hn::ConcatOdd(d, z_b, z_a)};
+#endif
+}
+
+HWY_INLINE EyeBoxes load(Lanes d, const BoxProjection& p, const float* floats) {
+  Range x, y, z;
+  loadRanges(d, floats, x, y, z);
+  const auto toEye = [&](const Range& r, float high, float low, Vec out[2]) HWY_ATTR {
+    out[0] = hn::Sub(hn::Sub(r.least, hn::Set(d, high)), hn::Set(d, low));
+    out[1] = hn::Sub(hn::Sub(r.greatest, hn::Set(d, high)), hn::Set(d, low));
+    return hn::Le(r.least, r.greatest);
+  };
+  EyeBoxes boxes;
+  const Mask x_good = toEye(x, p.eye_high.x, p.eye_low.x, boxes.x);
+  const Mask y_good = toEye(y, p.eye_high.y, p.eye_low.y, boxes.y);
+  const Mask z_good = toEye(z, p.eye_high.z, p.eye_low.z, boxes.z);
+  const auto size = [](const Vec v[2]) HWY_ATTR { return hn::Max(hn::Abs(v[0]), hn::Abs(v[1])); };
+  boxes.reach = hn::Add(hn::Add(size(boxes.x), size(boxes.y)), size(boxes.z));
+  boxes.error = hn::Add(hn::Mul(boxes.reach, hn::Set(d, kRounding)), hn::Set(d, p.eye_rounding));
+  boxes.usable = hn::And(hn::And(x_good, y_good), hn::And(z_good, hn::Le(boxes.reach, hn::Set(d, kLargest))));
+  return boxes;
+}
+
+// One coordinate of the eight corners along an axis.
+struct Corners {
+  Vec xy[4], z[2];
+
+  HWY_INLINE Corners(Lanes d, const EyeBoxes& b, const BoxProjection::Axis& axis) {
+    const Vec ax = hn::Set(d, axis.x), ay = hn::Set(d, axis.y), az = hn::Set(d, axis.z);
+    const Vec x0 = hn::Mul(ax, b.x[0]), x1 = hn::Mul(ax, b.x[1]);
+    const Vec y0 = hn::Mul(ay, b.y[0]), y1 = hn::Mul(ay, b.y[1]);
+    xy[0] = hn::Add(x0, y0);
+    xy[1] = hn::Add(x1, y0);
+    xy[2] = hn::Add(x0, y1);
+    xy[3] = hn::Add(x1, y1);
+    z[0] = hn::Mul(az, b.z[0]);
+    z[1] = hn::Mul(az, b.z[1]);
+  }
+  HWY_INLINE Vec at(std::size_t corner) const { return hn::Add(xy[corner & 3], z[corner >> 2]); }
+  HWY_INLINE Vec least() const {
+    return hn::Add(hn::Min(hn::Min(xy[0], xy[1]), hn::Min(xy[2], xy[3])), hn::Min(z[0], z[1]));
+  }
+  HWY_INLINE Vec greatest() const {
+    return hn::Add(hn::Max(hn::Max(xy[0], xy[1]), hn::Max(xy[2], xy[3])), hn::Max(z[0], z[1]));
+  }
+};
+
+// Of q, the position over the depth (orthographic: the position), before rounding.
+struct Extent {
+  Vec x0, x1, y0, y1;
+};
+
+HWY_INLINE Extent extentOf(Lanes d, const Corners& x, const Corners& y, const Corners& z, bool orthographic) {
+  if (orthographic) {
+    return {x.least(), x.greatest(), y.least(), y.greatest()};
+  }
+  const Vec one = hn::Set(d, 1.0f);
+  Vec inverse = hn::Div(one, z.at(0));
+  Extent e;
+  e.x0 = e.x1 = hn::Mul(x.at(0), inverse);
+  e.y0 = e.y1 = hn::Mul(y.at(0), inverse);
+  for (std::size_t corner = 1; corner < 8; ++corner) {
+    inverse = hn::Div(one, z.at(corner));
+    const Vec qx = hn::Mul(x.at(corner), inverse), qy = hn::Mul(y.at(corner), inverse);
+    e.x0 = hn::Min(e.x0, qx);
+    e.x1 = hn::Max(e.x1, qx);
+    e.y0 = hn::Min(e.y0, qy);
+    e.y1 = hn::Max(e.y1, qy);
+  }
+  return e;
+}
+
+// How far a position in the map may be off. q_error: of q, for |q| = 0; it grows with 1 + |q| in perspective.
+HWY_INLINE Vec mapSlack(Lanes d, Vec q, Vec q_error, float scale, float middle, bool orthographic) {
+  const Vec size = hn::Abs(q), rounding = hn::Set(d, kMapRounding);
+  const Vec grown = orthographic ? q_error : hn::Mul(q_error, hn::Add(hn::Set(d, 1.0f), size));
+  const Vec in_q = hn::Add(grown, hn::Mul(rounding, size));
+  return hn::Add(hn::Mul(hn::Set(d, scale), in_q), hn::Set(d, kMapRounding * middle));
+}
+
+// The box is surely beyond a side of the view's volume: linear functions, so that no depth is divided by.
+HWY_INLINE Mask beyondASide(Lanes d, const EyeBoxes& boxes, const BoxProjection& p) {
+  const Vec error = hn::Mul(boxes.error, hn::Set(d, p.side_size));
+  Mask beyond = hn::Lt(hn::Zero(d), hn::Zero(d));
+  for (const BoxProjection::Axis& side : p.sides) {
+    const Vec greatest = Corners(d, boxes, side).greatest();
+    beyond = hn::Or(beyond, hn::Lt(hn::Add(greatest, error), hn::Zero(d)));
+  }
+  return beyond;
+}
+
+struct Images {
+  HWY_ALIGN std::int32_t place[16], x0[16], y0[16], x1[16], y1[16];
+  HWY_ALIGN float nearest[16], farthest[16];
+};
+
+constexpr std::int32_t kWholeBit = 256;
+
+template <bool orthographic>
+HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Images& out) {
+  const hn::RebindToSigned<Lanes> di;
+  const EyeBoxes boxes = load(d, p, floats);
+  const Corners x(d, boxes, p.right), y(d, boxes, p.up), z(d, boxes, p.forward);
+  const Vec z_least = hn::Sub(z.least(), boxes.error), z_greatest = hn::Add(z.greatest(), boxes.error);
+
+  Mask bounded = hn::And(boxes.usable, hn::Gt(z_least, hn::Set(d, p.near_most)));
+  Vec q_error = boxes.error;
+  if (!orthographic) {
+    bounded = hn::And(bounded, hn::Gt(z_least, hn::Mul(boxes.error, hn::Set(d, kWellConditioned))));
+    q_error =
+        hn::Add(hn::Mul(hn::Div(boxes.error, z_least), hn::Set(d, kSlackGrowth)), hn::Set(d, kMapRounding));
+  }
+  const Extent q = extentOf(d, x, y, z, orthographic);
+  const auto toMap = [&](Vec at, float scale, float middle, bool upwards) HWY_ATTR {
+    const Vec position = hn::Add(hn::Mul(at, hn::Set(d, scale)), hn::Set(d, middle));
+    const Vec slack = mapSlack(d, at, q_error, scale, middle, orthographic);
+    return upwards ? hn::Add(position, slack) : hn::Sub(position, slack);
+  };
+  const Vec x0 = toMap(q.x0, p.scale_x, p.middle_x, false), x1 = toMap(q.x1, p.scale_x, p.middle_x, true);
+  const Vec y0 = toMap(q.y0, p.scale_y, p.middle_y, false), y1 = toMap(q.y1, p.scale_y, p.middle_y, true);
+
+  const Vec zero = hn::Zero(d), width = hn::Set(d, p.width), height = hn::Set(d, p.height);
+  const Mask off_map =
+      hn::Or(hn::Or(hn::Lt(x1, zero), hn::Gt(x0, width)), hn::Or(hn::Lt(y1, zero), hn::Gt(y0, height)));
+  const Mask off_depth =
+      hn::Or(hn::Lt(z_greatest, hn::Set(d, p.near_least)), hn::Gt(z_least, hn::Set(d, p.far_most)));
+  Mask outside =
+      hn::Or(hn::And(boxes.usable, off_depth), hn::And(orthographic ? boxes.usable : bounded, off_map));
+  const Mask unbounded = hn::AndNot(bounded, hn::AndNot(outside, boxes.usable));
+  if (!orthographic && !hn::AllFalse(d, unbounded)) {
+    outside = hn::Or(outside, hn::And(unbounded, beyondASide(d, boxes, p)));
+  }
+  const Mask on_map = hn::AndNot(outside, bounded);
+  const Mask within =
+      hn::And(hn::And(hn::Ge(x0, zero), hn::Le(x1, width)), hn::And(hn::Ge(y0, zero), hn::Le(y1, height)));
+  const Mask whole = hn::And(hn::And(on_map, within), hn::Lt(z_greatest, hn::Set(d, p.far_least)));
+
+  const auto mask = [&](Mask m) HWY_ATTR { return hn::RebindMask(di, m); };
+  auto place = hn::IfThenElse(mask(on_map), hn::Set(di, static_cast<std::int32_t>(BoxPlace::kOnMap)),
+                              hn::Set(di, static_cast<std::int32_t>(BoxPlace::kUnbounded)));
+  place = hn::IfThenElse(mask(outside), hn::Set(di, static_cast<std::int32_t>(BoxPlace::kOutside)), place);
+  hn::Store(hn::Or(place, hn::IfThenElseZero(mask(whole), hn::Set(di, kWholeBit))), di, out.place);
+  const auto storePixel = [&](Vec at, Vec size, std::int32_t* to) HWY_ATTR {
+    const Vec pixel = hn::Min(hn::Max(at, zero), hn::Sub(size, hn::Set(d, 1.0f)));
+    hn::Store(hn::ConvertTo(di, hn::IfThenElseZero(on_map, pixel)), di, to);
+  };
+  storePixel(x0, width, out.x0);
+  storePixel(x1, width, out.x1);
+  storePixel(y0, height, out.y0);
+  storePixel(y1, height, out.y1);
+  const Vec one = hn::Set(d, 1.0f);
+  const Vec nearest = orthographic ? hn::Neg(z_least) : hn::Mul(hn::Div(one, z_least), hn::Set(d, kUp));
+  const Vec farthest =
+      orthographic ? hn::Neg(z_greatest) : hn::Mul(hn::Div(one, z_greatest), hn::Set(d, kDown));
+  hn::Store(hn::IfThenElseZero(on_map, nearest), d, out.nearest);
+  hn::Store(hn::IfThenElseZero(on_map, farthest), d, out.farthest);
+}
+
+void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<PixelBox> images) {
+  static_assert(sizeof(Box) == 6 * sizeof(float));
+  const Lanes d;
+  const std::size_t lanes = hn::Lanes(d);
+  Images out;
+  Box last[16];
+  for (std::size_t first = 0; first < boxes.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, boxes.size() - first);
+    const Box* from = boxes.data() + first;
+    if (count < lanes) {
+      std::copy_n(from, count, last);
+      from = last;
+    }
+    if (p.orthographic) {
+      project<true>(d, p, &from->min.x, out);
+    } else {
+      project<false>(d, p, &from->min.x, out);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      PixelBox& image = images[first + i];
+      image.place = static_cast<BoxPlace>(out.place[i] & 0xff);
+      image.whole = out.place[i] >= kWholeBit;
+      image.x0 = static_cast<std::uint16_t>(out.x0[i]);
+      image.y0 = static_cast<std::uint16_t>(out.y0[i]);
+      image.x1 = static_cast<std::uint16_t>(out.x1[i]);
+      image.y1 = static_cast<std::uint16_t>(out.y1[i]);
+      image.nearest = out.nearest[i];
+      image.farthest = out.farthest[i];
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::occlusion_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion_detail {
+namespace {
+
+HWY_EXPORT(projectAll);
+
+constexpr float kFloatMax = std::numeric_limits<float>::max();
+// Coordinates and sizes beyond this could overflow, or leave nothing of single precision.
+constexpr double kLargestCoordinate = 0x1p60, kLargestScale = 0x1p40;
+
+BoxProjection::Axis rounded(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+// At least, at most the value.
+float roundedUp(double value) {
+  if (!(value <= kFloatMax)) {
+    return std::numeric_limits<float>::infinity();
+  }
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+float roundedDown(double value) {
+  if (!(value <= kFloatMax)) {
+    return kFloatMax;
+  }
+  return std::nextafter(static_cast<float>(value), -std::numeric_limits<float>::infinity());
+}
+
+bool sane(const PixelView& view) {
+  const bool axes = maxComponent(abs(view.right)) < 2.0 && maxComponent(abs(view.up)) < 2.0 &&
+                    maxComponent(abs(view.forward)) < 2.0 && isFinite(view.right) && isFinite(view.up) &&
+                    isFinite(view.forward);
+  const bool scales = view.scale_x < kLargestScale && view.scale_x > 1.0 / kLargestScale &&
+                      view.scale_y < kLargestScale && view.scale_y > 1.0 / kLargestScale;
+  const bool eye = isFinite(view.eye) && maxComponent(abs(view.eye)) < kLargestCoordinate;
+  return axes && scales && eye && view.near > 1.0 / kLargestScale && view.near < kLargestCoordinate &&
+         view.far > view.near;
+}
+
+}  // namespace
+
+BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std::uint32_t map_height)
+    : usable(sane(view) && map_width > 0 && map_height > 0), orthographic(view.orthographic) {
+  if (!usable) {
+    return;
+  }
+  eye_high = rounded(view.eye);
+  eye_low = rounded(view.eye - Vec3d(eye_high.x, eye_high.y, eye_high.z));
+  right = rounded(view.right);
+  up = rounded(view.up);
+  forward = rounded(view.forward);
+  const double tan_x = view.middle_x / view.scale_x, tan_y = view.middle_y / view.scale_y;
+  sides[0] = rounded(view.right + view.forward * tan_x);
+  sides[1] = rounded(view.forward * tan_x - view.right);
+  sides[2] = rounded(view.up + view.forward * tan_y);
+  sides[3] = rounded(view.forward * tan_y - view.up);
+  side_size = roundedUp(1.0 + std::max(tan_x, tan_y));
+  near_least = roundedDown(view.near);
+  near_most = roundedUp(view.near);
+  far_least = roundedDown(view.far);
+  far_most = roundedUp(view.far);
+  scale_x = static_cast<float>(view.scale_x);
+  scale_y = static_cast<float>(view.scale_y);
+  middle_x = static_cast<float>(view.middle_x);
+  middle_y = static_cast<float>(view.middle_y);
+  width = static_cast<float>(map_width);
+  height = static_cast<float>(map_height);
+  // What is left of the eye after two floats, thrice, and what underflows.
+  const Vec3d size = abs(view.eye);
+  eye_rounding = roundedUp(0x1p-46 * (size.x + size.y + size.z) + 0x1p-100);
+}
+
+void projectBoxes(const BoxProjection& projection, std::span<const Box> boxes, std::span<PixelBox> images) {
+  if (!projection.usable) {
+    std::fill_n(images.begin(), boxes.size(), PixelBox{});
+    return;
+  }
+  HWY_DYNAMIC_DISPATCH(projectAll)(projection, boxes, images);
+}
+
+void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t height,
+                  std::span<const Box> boxes, std::span<PixelBox> images) {
+  projectBoxes(BoxProjection(view, width, height), boxes, images);
+}
+
+}  // namespace sightline::occlusion_detail
+#endif

@@ -1,0 +1,134 @@
+#include "occlusion/sparse_depth.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace sightline::occlusion_detail {
+namespace {
+
+// A step from peak to peak takes about as long as comparing this many pixels in vector code.
+constexpr std::uint32_t kWorthwhileStep = 8;
+// Narrower rectangles are compared pixel by pixel.
+constexpr std::uint32_t kWorthwhileWidth = 20;
+// Making a row takes as long as comparing all of it about this many times.
+constexpr std::uint32_t kWorthwhileQuestions = 8;
+
+// Uncovered pixels are nearer than anything.
+float comparable(float nearness) {
+  return nearness > kUncovered ? nearness : std::numeric_limits<float>::infinity();
+}
+
+// Not branching, so that the compiler makes vector code of it.
+std::uint32_t fails(float nearness, float nearest) {
+  return static_cast<std::uint32_t>(!(nearness > nearest)) &
+         static_cast<std::uint32_t>(nearness > kUncovered);
+}
+
+// No early end, for the same reason.
+bool allNearerInRow(const float* first, std::size_t count, float nearest) {
+  std::uint32_t failing = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    failing |= fails(first[i], nearest);
+  }
+  return failing == 0;
+}
+
+}  // namespace
+
+bool allNearerPixelwise(const DepthMapView& map, const PixelBox& rect, std::uint64_t& compared) {
+  const std::size_t width = std::size_t{rect.x1} - rect.x0 + 1;
+  for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
+    compared += width;
+    if (!allNearerInRow(map.row(y).data() + rect.x0, width, rect.nearest)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void SparseDepth::begin(const DepthMapView& map) {
+  if (rest_ > 0) {
+    --rest_;
+  } else if (peaks_ * kWorthwhileStep > made_) {
+    rest_ = kRest;
+  }
+  map_ = map;
+  steps_.resize(std::size_t{map.width} * map.height);
+  rows_.assign(map.height, {});
+  made_ = peaks_ = compared_ = 0;
+  used_ = false;
+}
+
+// From right to left. A row of pixels as near as each other counts as one; its leftmost is the peak.
+void SparseDepth::makeRow(std::uint32_t y) {
+  const std::span<const float> row = map_.row(y);
+  std::uint16_t* steps = &steps_[std::size_t{y} * map_.width];
+  std::uint32_t next = map_.width;  // peak on the right of x, or the row's end
+  std::uint32_t peaks = 0;
+  bool nearer_beyond = false;  // from x + 1 to the right depth falls, or stays and then falls
+  float right = comparable(row[map_.width - 1]);
+  steps[map_.width - 1] = 1;
+  for (std::uint32_t x = map_.width - 1; x-- > 0;) {
+    const float here = comparable(row[x]);
+    if (here > right && nearer_beyond) {
+      next = x + 1;
+      ++peaks;
+    }
+    nearer_beyond = here < right || (here == right && nearer_beyond);
+    steps[x] = static_cast<std::uint16_t>(next - x);
+    right = here;
+  }
+  made_ += map_.width;
+  peaks_ += peaks;
+  rows_[y].state = peaks * kWorthwhileStep > map_.width ? RowState::kTooManyPeaks : RowState::kSteps;
+}
+
+// The paper leaves out what happens where the next peak lies beyond the rectangle: depth may rise up to the
+// last pixel, which is looked at in the end.
+bool SparseDepth::nearerAtPeaks(const PixelBox& rect, std::uint32_t y) {
+  const float* row = map_.row(y).data();
+  const std::uint16_t* steps = &steps_[std::size_t{y} * map_.width];
+  for (std::uint32_t x = rect.x0; x < rect.x1; x += steps[x]) {
+    ++compared_;
+    if (fails(row[x], rect.nearest) != 0) {
+      return false;
+    }
+  }
+  ++compared_;
+  return fails(row[rect.x1], rect.nearest) == 0;
+}
+
+SparseDepth::RowState SparseDepth::stateOf(std::uint32_t y, std::uint32_t asked) {
+  Row& row = rows_[y];
+  if (row.state == RowState::kNotMade) {
+    if (row.compared < kWorthwhileQuestions * map_.width) {
+      row.compared += asked;
+    } else {
+      makeRow(y);
+    }
+  }
+  return row.state;
+}
+
+bool SparseDepth::allNearer(const PixelBox& rect) {
+  const std::uint32_t width = rect.x1 - rect.x0 + 1u;
+  if (rest_ > 0 || width < kWorthwhileWidth) {
+    return allNearerPixelwise(map_, rect, compared_);
+  }
+  for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
+    bool nearer;
+    if (stateOf(y, width) == RowState::kSteps) {
+      used_ = true;
+      nearer = nearerAtPeaks(rect, y);
+    } else {
+      compared_ += width;
+      nearer = allNearerInRow(map_.row(y).data() + rect.x0, width, rect.nearest);
+    }
+    if (!nearer) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace sightline::occlusion_detail

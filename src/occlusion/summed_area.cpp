@@ -1,0 +1,34 @@
+#include "occlusion/summed_area.h"
+
+#include <algorithm>
+
+namespace sightline::occlusion_detail {
+namespace {
+
+// Written apart so that the compiler makes vector code of it.
+void addCovered(const float* nearness, std::size_t width, std::uint32_t* columns) {
+  for (std::size_t x = 0; x < width; ++x) {
+    columns[x] += nearness[x] > kUncovered ? 1u : 0u;
+  }
+}
+
+}  // namespace
+
+void SummedArea::build(const DepthMapView& map) {
+  stride_ = std::size_t{map.width} + 1;
+  sums_.resize(stride_ * (std::size_t{map.height} + 1));
+  columns_.assign(map.width, 0);
+  std::fill_n(sums_.begin(), stride_, 0u);
+  for (std::uint32_t y = 0; y < map.height; ++y) {
+    addCovered(map.row(y).data(), map.width, columns_.data());
+    std::uint32_t* sums = &sums_[(std::size_t{y} + 1) * stride_];
+    std::uint32_t sum = 0;
+    sums[0] = 0;
+    for (std::size_t x = 0; x < map.width; ++x) {
+      sum += columns_[x];
+      sums[x + 1] = sum;
+    }
+  }
+}
+
+}  // namespace sightline::occlusion_detail

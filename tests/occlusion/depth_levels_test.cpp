@@ -1,0 +1,399 @@
+#include "occlusion/depth_levels.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "occlusion/box_depth_test.h"
+#include "tests/occlusion/random_views.h"
+
+namespace sightline::occlusion_detail {
+namespace {
+
+using test::randomBox, test::randomView, test::ViewRandom;
+
+// A map of the test's own, with rubbish beyond its width.
+struct TestMap {
+  std::uint32_t width, height, stride;
+  std::vector<float> nearness;
+
+  TestMap(std::uint32_t w, std::uint32_t h, std::uint32_t s)
+      : width(w),
+        height(h),
+        stride(s),
+        nearness(std::size_t{s} * h, std::numeric_limits<float>::quiet_NaN()) {
+    for (std::uint32_t y = 0; y < h; ++y) {
+      std::fill_n(nearness.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * s), w, kUncovered);
+    }
+  }
+  float& at(std::uint32_t x, std::uint32_t y) { return nearness[std::size_t{y} * stride + x]; }
+  DepthMapView view() const { return {nearness, width, height, stride}; }
+};
+
+void forCutRanges(std::uint32_t count, const RangeBody& body) {
+  // From the last to the first.
+  for (std::uint32_t i = count; i > 0; --i) {
+    body(i - 1, i);
+  }
+}
+
+TEST(DepthLevels, HoldTheLeastAndTheGreatestOfEachBlock) {
+  const std::uint32_t sizes[][3] = {{1, 1, 1},    {7, 3, 9},       {8, 8, 8},      {9, 9, 16},  {64, 65, 64},
+                                    {65, 9, 100}, {320, 180, 320}, {513, 40, 520}, {3, 700, 24}};
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  for (const auto& size : sizes) {
+    ViewRandom random(size[0]);
+    TestMap map(size[0], size[1], size[2]);
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+      for (std::uint32_t x = 0; x < map.width; ++x) {
+        map.at(x, y) = random.below(5) == 0 ? kUncovered : static_cast<float>(random.in(-3.0, 3.0));
+      }
+    }
+    for (const std::int64_t target : targets) {
+      hwy::SetSupportedTargetsForTest(target);
+      DepthLevels levels;
+      levels.build(map.view(), target == targets.front() ? ParallelFor(forCutRanges) : serialFor);
+      hwy::SetSupportedTargetsForTest(0);
+      const std::span<const DepthLevel> all = levels.levels();
+      ASSERT_FALSE(all.empty());
+      EXPECT_LE(std::max(all.back().width, all.back().height), kBlock);
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        const std::uint32_t side = 1u << (kBlockShift * k);
+        ASSERT_EQ(all[k].width, (map.width + side - 1) / side);
+        ASSERT_EQ(all[k].height, (map.height + side - 1) / side);
+        for (std::uint32_t y = 0; y < all[k].height; ++y) {
+          for (std::uint32_t x = 0; x < all[k].width; ++x) {
+            float least = INFINITY, greatest = -INFINITY;
+            for (std::uint32_t j = y * side; j < std::min(map.height, (y + 1) * side); ++j) {
+              for (std::uint32_t i = x * side; i < std::min(map.width, (x + 1) * side); ++i) {
+                least = std::min(least, map.at(i, j));
+                greatest = std::max(greatest, map.at(i, j));
+              }
+            }
+            const std::size_t cell = std::size_t{y} * all[k].stride + x;
+            ASSERT_EQ(all[k].least[cell], least) << hwy::TargetName(target) << " level " << k;
+            ASSERT_EQ(all[k].greatest[cell], greatest) << hwy::TargetName(target) << " level " << k;
+          }
+        }
+      }
+    }
+  }
+}
+
+// ---- Boxes, pixel by pixel
+
+struct Place {
+  double x, y;
+};
+
+// A box's image in the plain way: its hull from the corners, its depth from rays and planes.
+class PlainBox {
+ public:
+  PlainBox(const PixelView& view, const Box& box) : view_(view), box_(box) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Vec3d d;
+      for (int axis = 0; axis < 3; ++axis) {
+        d[axis] =
+            static_cast<double>((corner >> axis & 1u) != 0 ? box.max[axis] : box.min[axis]) - view.eye[axis];
+      }
+      const Vec3d camera = view.toCamera(d);
+      corners_.push_back({view.mapX(camera), view.mapY(camera)});
+    }
+    makeHull();
+  }
+
+  // How far the hull is from the square of a pixel, negative inside: the best separating axis, pixels.
+  double distanceTo(std::uint32_t x, std::uint32_t y) const {
+    double distance = -INFINITY;
+    const auto separate = [&](double nx, double ny) {
+      const double length = std::hypot(nx, ny);
+      if (length == 0.0) {
+        return;
+      }
+      double hull_least = INFINITY, square_most = -INFINITY;
+      for (const Place& p : hull_) {
+        hull_least = std::min(hull_least, (nx * p.x + ny * p.y) / length);
+      }
+      for (unsigned i = 0; i < 4; ++i) {
+        square_most = std::max(square_most, (nx * (x + (i & 1u)) + ny * (y + (i >> 1))) / length);
+      }
+      distance = std::max(distance, hull_least - square_most);
+    };
+    for (const auto& [nx, ny] :
+         {std::pair(1.0, 0.0), std::pair(-1.0, 0.0), std::pair(0.0, 1.0), std::pair(0.0, -1.0)}) {
+      separate(nx, ny);
+    }
+    for (std::size_t i = 0; i < hull_.size(); ++i) {
+      const Place &a = hull_[i], &b = hull_[(i + 1) % hull_.size()];
+      separate(a.y - b.y, b.x - a.x);
+      separate(b.y - a.y, a.x - b.x);
+    }
+    return distance;
+  }
+
+  // The least over the faces that are seen of the greatest nearness of its plane over the pixel's square.
+  double nearnessIn(std::uint32_t x, std::uint32_t y) const {
+    double own = INFINITY;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::optional<double> face = seenFace(axis);
+      if (!face) {
+        continue;
+      }
+      double most = -INFINITY;
+      for (unsigned i = 0; i < 4; ++i) {
+        const double tx = (x + (i & 1u) - view_.middle_x) / view_.scale_x;
+        const double ty = (y + (i >> 1) - view_.middle_y) / view_.scale_y;
+        const Vec3d across = view_.right * tx + view_.up * ty;
+        const double depth_or_inverse = view_.orthographic ? -(*face - across[axis]) / view_.forward[axis]
+                                                           : (across + view_.forward)[axis] / *face;
+        most = std::max(most, depth_or_inverse);
+      }
+      own = std::min(own, most);
+    }
+    return own;
+  }
+
+ private:
+  // Of one axis, its position relative to the eye.
+  std::optional<double> seenFace(int axis) const {
+    const double low = static_cast<double>(box_.min[axis]) - view_.eye[axis];
+    const double high = static_cast<double>(box_.max[axis]) - view_.eye[axis];
+    const double from = view_.orthographic ? -view_.forward[axis] : 0.0;
+    if (view_.orthographic) {
+      return from < 0.0 ? std::optional(low) : from > 0.0 ? std::optional(high) : std::nullopt;
+    }
+    return low > 0.0 ? std::optional(low) : high < 0.0 ? std::optional(high) : std::nullopt;
+  }
+
+  void makeHull() {
+    std::vector<Place> p = corners_;
+    std::sort(p.begin(), p.end(),
+              [](const Place& a, const Place& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    const auto turn = [](const Place& a, const Place& b, const Place& c) {
+      return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    };
+    for (int pass = 0; pass < 2; ++pass) {
+      const std::size_t begin = hull_.size();
+      for (const Place& q : p) {
+        while (hull_.size() >= begin + 2 && turn(hull_[hull_.size() - 2], hull_.back(), q) <= 0.0) {
+          hull_.pop_back();
+        }
+        hull_.push_back(q);
+      }
+      hull_.pop_back();
+      std::reverse(p.begin(), p.end());
+    }
+    if (hull_.empty()) {
+      hull_.push_back(p[0]);
+    }
+  }
+
+  const PixelView& view_;
+  Box box_;
+  std::vector<Place> corners_, hull_;
+};
+
+struct Bed {
+  explicit Bed(std::uint64_t seed) : random(seed), map(1, 1, 1) {
+    const std::uint32_t sizes[][3] = {
+        {320, 180, 320}, {100, 70, 104}, {17, 23, 21}, {64, 64, 64}, {640, 24, 640}};
+    const auto& size = sizes[random.below(5)];
+    map = TestMap(size[0], size[1], size[2]);
+    eye_view = randomView(random);
+    view = PixelView(eye_view, map.width, map.height);
+    box = randomBox(random, eye_view);
+    projectBoxes(view, map.width, map.height, {&box, 1}, {&image, 1});
+  }
+  // Rounding of the rectangle's and the outline's borders, pixels.
+  double pixelTolerance() const {
+    const double depth = view.orthographic ? 1.0 : 1.0 / image.nearest;
+    const Vec3d farthest = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
+    const double in_rectangle =
+        0x1p-19 * std::max(view.scale_x, view.scale_y) * maxComponent(farthest) / depth;
+    return 1e-3 + 1e-5 * std::max(map.width, map.height) + 3.0 * in_rectangle * (1.0 + spread());
+  }
+  // The largest tangent of the view.
+  double spread() const {
+    return view.orthographic ? 0.0 : std::max(view.middle_x / view.scale_x, view.middle_y / view.scale_y);
+  }
+  BoxAnswer ask() const {
+    DepthLevels levels;
+    levels.build(map.view());
+    BoxAnswer answer;
+    testBoxes(levels.levels(), view, {&box, 1}, {&image, 1}, {&answer, 1});
+    return answer;
+  }
+
+  ViewRandom random;
+  TestMap map;
+  View eye_view;
+  PixelView view;
+  Box box;
+  PixelBox image;
+};
+
+// Draws into the map what is a little nearer than the box in every pixel that it meets, and nothing (or
+// something farther) elsewhere; then opens some pixels.
+void drawAround(Bed& bed, const PlainBox& plain, int opened) {
+  const double range = std::abs(static_cast<double>(bed.image.nearest) - bed.image.farthest);
+  const double ahead =
+      bed.random.sized(1e-4, 0.3) * range + 1e-4 * std::abs(static_cast<double>(bed.image.nearest));
+  for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
+    for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
+      if (plain.distanceTo(x, y) < bed.pixelTolerance()) {
+        const double own = std::min<double>(plain.nearnessIn(x, y), bed.image.nearest);
+        bed.map.at(x, y) = static_cast<float>(own + ahead);
+      }
+    }
+  }
+  for (int i = 0; i < opened; ++i) {
+    const auto x =
+        bed.image.x0 + static_cast<std::uint32_t>(bed.random.below(bed.image.x1 - bed.image.x0 + 1u));
+    const auto y =
+        bed.image.y0 + static_cast<std::uint32_t>(bed.random.below(bed.image.y1 - bed.image.y0 + 1u));
+    const double own = std::min<double>(plain.nearnessIn(x, y), bed.image.nearest);
+    bed.map.at(x, y) = bed.random.below(2) == 0 ? kUncovered : static_cast<float>(own - ahead);
+  }
+}
+
+TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
+  int hidden = 0, refined = 0, open = 0, visible = 0;
+  for (std::uint64_t seed = 1; seed <= 6000; ++seed) {
+    Bed bed(seed);
+    if (bed.image.place != BoxPlace::kOnMap) {
+      EXPECT_EQ(bed.ask().visibility,
+                bed.image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial);
+      continue;
+    }
+    const PlainBox plain(bed.view, bed.box);
+    drawAround(bed, plain, static_cast<int>(bed.random.below(3)));
+    bool surely_open = false, maybe_open = false, before = false, rectangle_hides = true;
+    const double tolerance = bed.pixelTolerance();
+    for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
+      for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
+        const double at = bed.map.at(x, y), distance = plain.distanceTo(x, y);
+        const double own = std::min<double>(plain.nearnessIn(x, y), bed.image.nearest);
+        const double slack = 2e-5 * std::abs(own);
+        surely_open |= distance < -tolerance && at <= own - slack;
+        maybe_open |= distance < tolerance && at <= own + slack;
+        before |= at > bed.image.farthest;
+        rectangle_hides &= at > bed.image.nearest;
+      }
+    }
+    const Visibility answer = bed.ask().visibility;
+    EXPECT_FALSE(surely_open && answer == Visibility::kHidden) << "seed " << seed;
+    EXPECT_FALSE(!maybe_open && answer == Visibility::kPartial) << "seed " << seed;
+    if (answer != Visibility::kHidden) {
+      EXPECT_EQ(answer == Visibility::kVisible, !before) << "seed " << seed;
+    }
+    hidden += answer == Visibility::kHidden ? 1 : 0;
+    refined += answer == Visibility::kHidden && !rectangle_hides ? 1 : 0;
+    open += answer == Visibility::kPartial ? 1 : 0;
+    visible += answer == Visibility::kVisible ? 1 : 0;
+  }
+  EXPECT_GT(hidden, 500);
+  EXPECT_GT(refined, 300);
+  EXPECT_GT(open, 500);
+  EXPECT_GT(visible, 20);
+}
+
+// From the promise alone: a point of the box is hidden where the map is nearer than it.
+TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
+  int hidden = 0, points = 0;
+  for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+    Bed bed(seed);
+    if (bed.image.place == BoxPlace::kOnMap) {
+      const PlainBox plain(bed.view, bed.box);
+      drawAround(bed, plain, seed % 3 == 0 ? 1 : 0);
+    }
+    if (bed.ask().visibility != Visibility::kHidden) {
+      continue;
+    }
+    ++hidden;
+    for (int i = 0; i < 200; ++i) {
+      Vec3d p;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double t =
+            bed.random.below(3) == 0 ? static_cast<double>(bed.random.below(2)) : bed.random.in(0, 1);
+        p[axis] = bed.box.min[axis] * (1.0 - t) + bed.box.max[axis] * t;
+      }
+      const Vec3d camera = bed.view.toCamera(p - bed.view.eye);
+      const double x = camera.z > 0.0 || bed.view.orthographic ? bed.view.mapX(camera) : -1.0;
+      const double y = camera.z > 0.0 || bed.view.orthographic ? bed.view.mapY(camera) : -1.0;
+      const double margin = 1e-9 * bed.map.width;
+      if (camera.z < bed.view.near || camera.z > bed.view.far ||
+          !(x > margin && x < bed.map.width - margin) || !(y > margin && y < bed.map.height - margin)) {
+        continue;
+      }
+      ++points;
+      EXPECT_GT(bed.map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
+                bed.view.nearness(camera.z) - 1e-12)
+          << "seed " << seed;
+    }
+  }
+  EXPECT_GT(hidden, 500);
+  EXPECT_GT(points, 20000);
+}
+
+TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  int hidden = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Bed bed(seed);
+    if (bed.image.place == BoxPlace::kOnMap) {
+      drawAround(bed, PlainBox(bed.view, bed.box), static_cast<int>(seed % 2));
+    }
+    // The box itself, and parts of it, which are hidden more often.
+    std::vector<Box> boxes{bed.box};
+    for (int i = 0; i < 30; ++i) {
+      boxes.push_back(randomBox(bed.random, bed.eye_view));
+      Box part;
+      for (int c = 0; c < 2; ++c) {
+        Vec3f p;
+        for (int axis = 0; axis < 3; ++axis) {
+          p[axis] = static_cast<float>(bed.random.in(bed.box.min[axis], bed.box.max[axis]));
+        }
+        part.extend(p);
+      }
+      boxes.push_back(part);
+    }
+    std::vector<PixelBox> images(boxes.size());
+    projectBoxes(bed.view, bed.map.width, bed.map.height, boxes, images);
+    DepthLevels levels;
+    levels.build(bed.map.view());
+    std::vector<BoxAnswer> all(boxes.size());
+    testBoxes(levels.levels(), bed.view, boxes, images, all);
+    const auto same = [&](const std::vector<BoxAnswer>& answers) {
+      return std::ranges::equal(all, answers, [](const BoxAnswer& a, const BoxAnswer& b) {
+        return a.visibility == b.visibility && a.within_view == b.within_view;
+      });
+    };
+    for (const std::int64_t target : targets) {
+      hwy::SetSupportedTargetsForTest(target);
+      std::vector<BoxAnswer> answers(boxes.size());
+      testBoxes(levels.levels(), bed.view, boxes, images, answers);
+      hwy::SetSupportedTargetsForTest(0);
+      EXPECT_TRUE(same(answers)) << hwy::TargetName(target) << ", seed " << seed;
+    }
+    std::vector<BoxAnswer> parts(boxes.size());
+    for (std::size_t first = 0; first < boxes.size();) {
+      const std::size_t count = std::min<std::size_t>(1 + bed.random.below(9), boxes.size() - first);
+      testBoxes(levels.levels(), bed.view, std::span(boxes).subspan(first, count),
+                std::span(images).subspan(first, count), std::span(parts).subspan(first, count));
+      first += count;
+    }
+    EXPECT_TRUE(same(parts)) << "seed " << seed;
+    for (const BoxAnswer& answer : all) {
+      hidden += answer.visibility == Visibility::kHidden ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hidden, 1000);
+}
+
+}  // namespace
+}  // namespace sightline::occlusion_detail

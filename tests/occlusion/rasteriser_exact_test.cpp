@@ -1,0 +1,483 @@
+// Maps of the rasteriser against exact arithmetic, on scenes with small integer coordinates: many ties.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <sstream>
+
+#include "sightline/occlusion/rasteriser.h"
+#include "tests/occlusion/exact_coverage.h"
+
+namespace sightline {
+namespace {
+
+using exact::Point;
+using exact::Polygon;
+
+struct Scene {
+  std::string kind;
+  exact::Camera camera;
+  std::vector<Polygon> polygons;
+  bool mesh = false;  // triangles, from which findOccluders makes the set
+};
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  std::int64_t in(std::int64_t low, std::int64_t high) {
+    return low + static_cast<std::int64_t>(engine_() % static_cast<std::uint64_t>(high - low + 1));
+  }
+  bool once(std::int64_t in_how_many) { return in(1, in_how_many) == 1; }
+  // Mostly in view of a perspective camera of 90 degrees.
+  Point point() { return {in(-24, 24), in(-24, 24), in(6, 30)}; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+Point operator+(const Point& a, const Point& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Point operator-(const Point& a, const Point& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Point operator*(const Point& a, std::int64_t s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+
+// Turned towards the camera, mostly.
+Polygon facing(const exact::Camera& camera, Random& random, std::vector<Point> vertices) {
+  Polygon polygon{std::move(vertices), random.once(3)};
+  if (!exact::imageOf(camera, {polygon.vertices, false}) && !random.once(10)) {
+    std::reverse(polygon.vertices.begin(), polygon.vertices.end());
+  }
+  return polygon;
+}
+
+// A convex polygon on the lattice of two random vectors.
+std::vector<Point> latticePolygon(Random& random) {
+  static const std::vector<std::vector<std::pair<int, int>>> kShapes = {
+      {{0, 0}, {1, 0}, {0, 1}},
+      {{0, 0}, {2, 0}, {2, 2}, {0, 2}},
+      {{0, 0}, {2, 0}, {2, 1}, {1, 2}, {0, 2}},
+      {{1, 0}, {2, 0}, {3, 1}, {3, 2}, {2, 3}, {1, 3}, {0, 2}, {0, 1}},
+      {{0, 0}, {3, 1}, {2, 2}, {0, 1}}};
+  const auto& shape = kShapes[static_cast<std::size_t>(random.in(0, 4))];
+  const Point at{random.in(-20, 4), random.in(-20, 4), random.in(8, 24)};
+  const Point u{random.in(2, 14), random.in(-6, 6), random.in(-3, 3)};
+  const Point v{random.in(-6, 6), random.in(2, 14), random.in(-3, 3)};
+  std::vector<Point> vertices;
+  for (const auto& [i, j] : shape) {
+    vertices.push_back(at + u * i + v * j);
+  }
+  return vertices;
+}
+
+void addPolygons(Scene& scene, Random& random) {
+  scene.kind = "polygons";
+  for (std::int64_t i = random.in(1, 4); i > 0; --i) {
+    scene.polygons.push_back(facing(scene.camera, random,
+                                    random.once(3)
+                                        ? std::vector<Point>{random.point(), random.point(), random.point()}
+                                        : latticePolygon(random)));
+  }
+}
+
+// Two or three triangles with a common edge: about half of them fold over, and lie on one side of it.
+void addPair(Scene& scene, Random& random) {
+  scene.kind = "pair";
+  const Point p = random.point(), q = random.point();
+  for (std::int64_t i = random.once(3) ? 3 : 2; i > 0; --i) {
+    scene.polygons.push_back(facing(scene.camera, random, {p, q, random.point()}));
+  }
+}
+
+// Two triangles whose images share an edge that they do not share themselves: a gap.
+void addTouching(Scene& scene, Random& random) {
+  scene.kind = "touching";
+  const Point p = random.point(), q = random.point(), behind{0, 0, random.in(1, 9)};
+  const auto farther = [&](const Point& a) { return scene.camera.orthographic ? a + behind : a * 2; };
+  scene.polygons.push_back(facing(scene.camera, random, {p, q, random.point()}));
+  scene.polygons.push_back(facing(scene.camera, random, {farther(p), farther(q), farther(random.point())}));
+}
+
+constexpr std::pair<int, int> kDirections[] = {{8, 0},  {6, 5},   {0, 8},  {-5, 6},
+                                               {-8, 1}, {-6, -6}, {1, -8}, {5, -5}};
+
+// Triangles round a vertex, all of them or some.
+void addFan(Scene& scene, Random& random) {
+  scene.kind = "fan";
+  const Point middle{random.in(-5, 5), random.in(-5, 5), random.in(8, 20)};
+  std::vector<Point> ring;
+  for (const auto& [x, y] : kDirections) {
+    const std::int64_t size = random.in(1, 4);
+    ring.push_back({middle.x + x * size / 2, middle.y + y * size / 2, random.in(8, 20)});
+  }
+  const std::size_t missing = static_cast<std::size_t>(random.in(0, 15));
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (i != missing) {
+      scene.polygons.push_back(facing(scene.camera, random, {middle, ring[i], ring[(i + 1) % 8]}));
+    }
+  }
+}
+
+// Upright walls in a row, which fold over where they come back.
+void addStrip(Scene& scene, Random& random) {
+  scene.kind = "strip";
+  Point at{-20, -10, random.in(8, 20)};
+  for (int i = 0; i < 5; ++i) {
+    const Point next{at.x + random.in(random.once(3) ? -5 : 2, 12), at.y, random.in(8, 20)};
+    const Point up{0, 20, 0};
+    if (!(next == at)) {
+      scene.polygons.push_back(facing(scene.camera, random, {at, next, next + up, at + up}));
+    }
+    at = next;
+  }
+}
+
+// A wall of triangles over a grid with random depths.
+void addGrid(Scene& scene, Random& random) {
+  scene.kind = "grid";
+  const std::int64_t n = random.in(2, 4), step = random.in(4, 9), rough = random.in(0, 3);
+  std::vector<Point> points;
+  for (std::int64_t i = 0; i < (n + 1) * (n + 1); ++i) {
+    points.push_back({(i % (n + 1) - n / 2) * step, (i / (n + 1) - n / 2) * step, 16 + random.in(0, rough)});
+  }
+  for (std::int64_t y = 0; y < n; ++y) {
+    for (std::int64_t x = 0; x < n; ++x) {
+      const auto at = [&](std::int64_t i, std::int64_t j) {
+        return points[static_cast<std::size_t>((y + j) * (n + 1) + x + i)];
+      };
+      scene.polygons.push_back({{at(0, 0), at(1, 0), at(1, 1)}, false});
+      scene.polygons.push_back({{at(0, 0), at(1, 1), at(0, 1)}, false});
+    }
+  }
+}
+
+// A wall whose long upper edge two or three others adjoin, which lean towards each other or apart.
+void addTJunction(Scene& scene, Random& random) {
+  scene.kind = "T-junction";
+  scene.mesh = true;
+  const std::int64_t parts = random.in(2, 3);
+  const Point a{random.in(-22, -10), random.in(-6, 6), random.in(8, 20)};
+  const Point step{random.in(6, 12), random.in(-3, 3), random.in(-1, 1)};
+  const Point down{random.in(-3, 3), random.in(-12, -4), random.in(-2, 2)};
+  std::vector<Point> edge;
+  for (std::int64_t i = 0; i <= parts; ++i) {
+    edge.push_back(a + step * i);
+  }
+  const auto add = [&](const Point& p, const Point& q, const Point& r) {
+    scene.polygons.push_back({{p, q, r}, false});
+  };
+  for (std::size_t i = 0; i + 1 < edge.size(); ++i) {
+    add(edge.front() + down, edge[i + 1], edge[i]);
+    const Point lean{random.in(-6, 6), random.in(random.once(6) ? -6 : 2, 14), random.in(-6, 6)};
+    if (random.once(8)) {
+      continue;  // open here
+    }
+    add(edge[i], edge[i + 1], edge[i] + lean);
+    if (random.once(2)) {
+      add(edge[i + 1], edge[i + 1] + lean, edge[i] + lean);
+    }
+  }
+  add(edge.front() + down, edge.back() + down, edge.back());
+}
+
+// Polygons of any kind with corners on both sides of the near plane, on it, and behind the eye.
+void addNear(Scene& scene, Random& random) {
+  scene.kind = "near plane";
+  scene.camera.near = random.in(1, 4);
+  const auto point = [&] { return Point{random.in(-12, 12), random.in(-12, 12), random.in(-8, 12)}; };
+  const Point p = point(), q = point();
+  scene.polygons.push_back(facing(scene.camera, random, {p, q, point()}));
+  scene.polygons.push_back(facing(scene.camera, random, {p, q, point()}));
+  const Point floor{-20, random.in(-6, -1), random.in(-6, 6)};
+  scene.polygons.push_back(
+      facing(scene.camera, random,
+             {floor, floor + Point{40, 0, 0}, floor + Point{40, 0, 30}, floor + Point{0, 0, 30}}));
+}
+
+Scene randomScene(std::uint64_t seed) {
+  Random random(seed);
+  Scene scene;
+  scene.camera.width = random.once(8) ? 1 : random.in(1, 16);
+  scene.camera.height = random.once(8) ? 1 : random.in(1, 12);
+  scene.camera.orthographic = random.once(3);
+  const std::int64_t g = std::int64_t{1} << random.in(0, 1);
+  scene.camera.gx = scene.camera.orthographic ? 16 * g : g;
+  scene.camera.gy = scene.camera.orthographic ? 16 : 1;
+  constexpr void (*kKinds[])(Scene&, Random&) = {addPolygons, addPair, addTouching, addFan,
+                                                 addStrip,    addGrid, addNear,     addTJunction};
+  kKinds[seed % std::size(kKinds)](scene, random);
+  return scene;
+}
+
+std::string describe(const Scene& scene, std::uint64_t seed) {
+  std::ostringstream text;
+  const exact::Camera& c = scene.camera;
+  text << "seed " << seed << ", " << scene.kind << (c.orthographic ? ", orthographic" : "") << ", " << c.width
+       << " x " << c.height << ", g " << c.gx << " " << c.gy << ", near " << c.near << "\n";
+  for (const Polygon& polygon : scene.polygons) {
+    text << (polygon.double_sided ? "  both" : "  front");
+    for (const Point& p : polygon.vertices) {
+      text << " (" << p.x << " " << p.y << " " << p.z << ")";
+    }
+    text << "\n";
+  }
+  return text.str();
+}
+
+// An axis-aligned camera somewhere, and the scene before it.
+struct Placed {
+  Placed(const Scene& scene, std::uint64_t seed) {
+    constexpr int kForward[] = {-3, 1, -2};  // along -z, x, -y
+    const int way = kForward[seed % 3];
+    view.forward = way == -3 ? Vec3d(0, 0, -1) : way == 1 ? Vec3d(1, 0, 0) : Vec3d(0, -1, 0);
+    view.up = way == -2 ? Vec3d(0, 0, -1) : Vec3d(0, 1, 0);
+    view.right = cross(view.forward, view.up);
+    view.eye = seed % 2 == 0 ? Vec3d(0, 0, 0) : Vec3d(100, -1000, 10000);
+    const exact::Camera& c = scene.camera;
+    view.orthographic = c.orthographic;
+    view.near = static_cast<double>(c.near);
+    view.far = 1e4;
+    const auto gx = static_cast<double>(c.gx), gy = static_cast<double>(c.gy);
+    view.tan_half_fovy = 1.0 / gy;
+    view.ortho_height = 2.0 * gy;
+    view.aspect = c.orthographic ? gx / gy : gy / gx;
+    std::vector<OccluderPolygon> input;
+    std::vector<std::vector<Vec3f>> vertices;
+    for (const Polygon& polygon : scene.polygons) {
+      vertices.emplace_back();
+      for (const Point& p : polygon.vertices) {
+        vertices.back().push_back(Vec3f(view.eye + view.right * static_cast<double>(p.x) +
+                                        view.up * static_cast<double>(p.y) +
+                                        view.forward * static_cast<double>(p.z)));
+      }
+    }
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      input.push_back({vertices[i], scene.polygons[i].double_sided, ObjectId(0u)});
+    }
+    set = scene.mesh ? exact::setOfMesh(vertices) : makeOccluders(input);
+    for (std::size_t i = 0; i < set.occluders.size(); ++i) {
+      chosen.push_back(OccluderId(i));
+    }
+  }
+  DepthMapView draw(const exact::Camera& camera, Coverage coverage) {
+    rasteriser = Rasteriser(
+        {static_cast<std::uint32_t>(camera.width), static_cast<std::uint32_t>(camera.height), coverage});
+    rasteriser.begin(view);
+    rasteriser.draw(set, chosen);
+    return rasteriser.map();
+  }
+
+  View view;
+  OccluderSet set;
+  std::vector<OccluderId> chosen;
+  Rasteriser rasteriser;
+};
+
+// Calls look(x, y, stored) for all pixels; stored is kUncovered or the nearness.
+template <typename Look>
+void forEachPixel(const DepthMapView& map, Look&& look) {
+  for (std::uint32_t y = 0; y < map.height; ++y) {
+    for (std::uint32_t x = 0; x < map.width; ++x) {
+      look(std::int64_t{x}, std::int64_t{y}, map.at(x, y));
+    }
+  }
+}
+
+TEST(ExactCoverage, TellsSurfacesGapsAndDepthsApart) {
+  // Pixels are four metres wide at depth 8.
+  const exact::Camera camera{.width = 4, .height = 4};
+  const auto quad = [](std::int64_t x0, std::int64_t x1, std::int64_t z0, std::int64_t z1) {
+    return Polygon{{{x0, -500, z0}, {x1, -500, z1}, {x1, 500, z1}, {x0, 500, z0}}, false};
+  };
+  const auto hides = [&](const std::vector<Polygon>& polygons, double nearness) {
+    bool any = false;
+    for (const exact::Surface& surface : exact::surfacesOf(camera, polygons)) {
+      any |= exact::hides(surface, exact::pixel(2, 1), nearness);
+    }
+    return any;
+  };
+  EXPECT_TRUE(hides({quad(0, 4, 8, 8)}, 0.125));
+  EXPECT_FALSE(hides({quad(0, 4, 8, 8)}, std::nextafter(0.125, 1.0)));
+  EXPECT_FALSE(hides({quad(0, 3, 8, 8)}, 0.0));
+  EXPECT_TRUE(hides({quad(0, 2, 8, 8), quad(2, 9, 8, 8)}, 0.125));
+  EXPECT_FALSE(hides({quad(0, 200, 800, 800), quad(201, 900, 800, 800)}, 0.0));  // a gap
+  EXPECT_FALSE(hides({quad(0, 2, 8, 8), quad(4, 9, 16, 16)}, 0.0));              // not connected
+  EXPECT_TRUE(hides({quad(0, 2, 8, 6), quad(2, 12, 6, 12)}, 1.0 / 8.0 - 1e-9));
+  EXPECT_FALSE(hides({quad(0, 2, 8, 6), quad(2, 12, 6, 12)}, 1.0 / 8.0 + 1e-9));
+  // Folded: the nearer of two that overlap is only so near where it is.
+  EXPECT_FALSE(hides({quad(0, 30, 8, 8), quad(0, 1, 8, 4)}, 0.15));
+  EXPECT_TRUE(hides({quad(0, 30, 8, 8), quad(0, 1, 8, 4)}, 0.124));
+  EXPECT_FALSE(hides({{{{0, -500, 8}, {0, 500, 8}, {4, 500, 8}, {4, -500, 8}}, false}}, 0.0));  // a back
+}
+
+constexpr std::uint64_t kScenes = 200000;
+
+TEST(RasteriserExact, CoversOnlyPixelsThatOneSurfaceHidesWhollyAndNoNearerThanItIs) {
+  int covered = 0, failures = 0, across = 0;
+  for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
+    const Scene scene = randomScene(seed);
+    const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
+    Placed placed(scene, seed);
+    forEachPixel(placed.draw(scene.camera, Coverage::kInner), [&](std::int64_t x, std::int64_t y,
+                                                                  float stored) {
+      if (!(stored > kUncovered)) {
+        return;
+      }
+      ++covered;
+      const exact::Part pixel = exact::pixel(x, y);
+      bool hidden = false, by_one = false;
+      for (const exact::Surface& surface : surfaces) {
+        hidden |= exact::hides(surface, pixel, static_cast<double>(stored));
+        for (const exact::Image& image : surface.images) {
+          by_one |= exact::contains(image.part, pixel);
+        }
+      }
+      across += by_one ? 0 : 1;
+      if (!hidden && failures < 5) {
+        ++failures;
+        ADD_FAILURE() << "pixel " << x << " " << y << " stored " << stored << "\n" << describe(scene, seed);
+      }
+    });
+  }
+  EXPECT_GT(covered, 20000);
+  EXPECT_GT(across, 2000);  // by several polygons together
+}
+
+// Whether the rasteriser is expected to use a polygon in full: no sharp corner, not seen at a grazing angle,
+// not in the near plane itself.
+bool isWellShaped(const exact::Camera& camera, const Polygon& polygon) {
+  const auto toVec = [](const Point& p) {
+    return Vec3d(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+  };
+  if (std::ranges::all_of(polygon.vertices, [&](const Point& p) { return p.z <= camera.near; })) {
+    return false;
+  }
+  const std::size_t n = polygon.vertices.size();
+  Vec3d normal;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3d u = normalized(toVec(polygon.vertices[(i + 1) % n] - polygon.vertices[i]));
+    const Vec3d v = normalized(toVec(polygon.vertices[(i + n - 1) % n] - polygon.vertices[i]));
+    if (length(cross(u, v)) < 0.1) {
+      return false;
+    }
+    normal = normalized(cross(u, v));
+  }
+  for (const Point& p : polygon.vertices) {
+    const Vec3d line = camera.orthographic ? Vec3d(0, 0, 1) : normalized(toVec(p));
+    if (std::abs(dot(normal, line)) < 0.02) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// As near as an exact map would have it, but for one hundredth.
+bool isNear(float stored, double exact) {
+  return stored > kUncovered && static_cast<double>(stored) >= exact - 0.01 * std::abs(exact);
+}
+
+TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
+  int within = 0, failures = 0;
+  for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
+    const Scene scene = randomScene(seed);
+    const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
+    Placed placed(scene, seed);
+    forEachPixel(placed.draw(scene.camera, Coverage::kInner),
+                 [&](std::int64_t x, std::int64_t y, float stored) {
+                   for (const exact::Surface& surface : surfaces) {
+                     for (const exact::Image& image : surface.images) {
+                       if (!isWellShaped(scene.camera, scene.polygons[image.polygon]) ||
+                           !exact::contains(image.part, exact::pixel(x, y, 10))) {
+                         continue;
+                       }
+                       ++within;
+                       const double nearness = image.leastNearness(exact::pixel(x, y));
+                       if (!isNear(stored, nearness) && failures++ < 5) {
+                         ADD_FAILURE() << "pixel " << x << " " << y << " within polygon " << image.polygon
+                                       << " stored " << stored << " exact " << nearness << "\n"
+                                       << describe(scene, seed);
+                       }
+                     }
+                   }
+                 });
+  }
+  EXPECT_GT(within, 20000);
+}
+
+// No leaks where polygons join.
+TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
+  int within = 0, failures = 0;
+  for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
+    const Scene scene = randomScene(seed);
+    const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
+    Placed placed(scene, seed);
+    const DepthMapView map = placed.draw(scene.camera, Coverage::kInner);
+    for (const exact::Surface& surface : surfaces) {
+      const bool well_shaped = std::ranges::all_of(surface.images, [&](const exact::Image& image) {
+        return isWellShaped(scene.camera, scene.polygons[image.polygon]);
+      });
+      if (!surface.sheet || surface.tie || surface.images.size() < 2 || !well_shaped) {
+        continue;
+      }
+      forEachPixel(map, [&](std::int64_t x, std::int64_t y, float stored) {
+        if (!exact::covers(surface, exact::pixel(x, y, 4))) {
+          return;
+        }
+        ++within;
+        const double nearness = exact::leastNearnessOfPlanes(surface, x, y);
+        if (!isNear(stored, nearness) && failures++ < 5) {
+          ADD_FAILURE() << "pixel " << x << " " << y << " stored " << stored << " exact " << nearness << "\n"
+                        << describe(scene, seed);
+        }
+      });
+    }
+  }
+  EXPECT_GT(within, 5000);
+}
+
+TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthThere) {
+  int covered = 0, failures = 0;
+  for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
+    const Scene scene = randomScene(seed);
+    const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
+    const bool well_shaped = std::ranges::all_of(
+        scene.polygons, [&](const Polygon& polygon) { return isWellShaped(scene.camera, polygon); });
+    Placed placed(scene, seed);
+    forEachPixel(placed.draw(scene.camera, Coverage::kCentre), [&](std::int64_t x, std::int64_t y,
+                                                                   float stored) {
+      const exact::Triple centre{2 * x + 1, 2 * y + 1, 2};
+      double nearest = -INFINITY;
+      for (const exact::Surface& surface : surfaces) {
+        for (const exact::Image& image : surface.images) {
+          bool inside = true;
+          for (const exact::Triple& line : image.part) {
+            const exact::Wide value = dot(line, centre);
+            if (value == 0) {
+              return;  // a tie
+            }
+            inside &= value > 0;
+          }
+          nearest = inside ? std::max(nearest, image.nearnessAt(centre)) : nearest;
+        }
+      }
+      const bool is_covered = stored > kUncovered, should = nearest > -INFINITY;
+      // Polygons that are not well shaped may be left out, but nothing may be invented.
+      const bool right_depth = std::abs(static_cast<double>(stored) - nearest) <= 1e-5 * std::abs(nearest);
+      const bool wrong =
+          well_shaped ? is_covered != should || (should && !right_depth) : is_covered && !should;
+      covered += is_covered ? 1 : 0;
+      if (wrong && failures++ < 5) {
+        ADD_FAILURE() << "pixel " << x << " " << y << " stored " << stored << " exact " << nearest << "\n"
+                      << describe(scene, seed);
+      }
+    });
+  }
+  EXPECT_GT(covered, 50000);
+}
+
+}  // namespace
+}  // namespace sightline
