@@ -106,48 +106,61 @@ struct Refinement {
   const PixelBox& image;
   const BoxOutline& outline;
 
-  // Of the eight cells from `from` in a row, those where the box is not surely hidden.
-  HWY_INLINE std::uint32_t openCells(std::uint32_t level, const CellRange& range, std::uint32_t from,
-                                     std::uint32_t y) const {
+  // Of eight cells in a row: bit i for the one at `from` + i.
+  struct Row {
+    std::uint32_t open = 0;    // those where the box is not surely hidden
+    bool surely_open = false;  // in some pixel below one of them it surely is not
+  };
+
+  HWY_INLINE Row ask(std::uint32_t level, const CellRange& range, std::uint32_t from, std::uint32_t y) const {
     const Lanes d;
     const float size = static_cast<float>(1u << (kBlockShift * level));
     const float y_px = static_cast<float>(y) * size - static_cast<float>(image.y0);
     const auto x_origin = hn::Set(d, static_cast<float>(image.x0));
-    // The greatest value over a cell, whose lower left corner is at x, y.
-    const auto inRow = [&](const MapFunction& f) HWY_ATTR {
-      const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
-      return f.along_y * y_px + (f.at_origin + growth);
-    };
-    const float* row = levels[level].least + std::size_t{y} * levels[level].stride + from;
-    std::uint32_t open = 0;
+    const float* least_row = levels[level].least + std::size_t{y} * levels[level].stride + from;
+    Row row;
     forLanes(range, from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
+      // The greatest value over a cell, whose lower left corner is at x, y.
       const auto greatest = [&](const MapFunction& f) HWY_ATTR {
-        return hn::Add(hn::Mul(hn::Set(d, f.along_x), x_px), hn::Set(d, inRow(f)));
+        const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
+        const float in_row = f.along_y * y_px + (f.at_origin + growth);
+        return hn::Add(hn::Mul(hn::Set(d, f.along_x), x_px), hn::Set(d, in_row));
       };
       auto own = hn::Set(d, image.nearest);
       for (std::uint32_t i = 0; i < outline.face_count; ++i) {
         own = hn::Min(own, greatest(outline.faces[i]));
       }
-      auto met = hn::And(in_range, hn::Le(hn::LoadU(d, row + lane), own));
-      for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-        met = hn::And(met, hn::Ge(greatest(outline.edges[i]), hn::Zero(d)));
+      const auto least = hn::LoadU(d, least_row + lane);
+      auto met = hn::And(in_range, hn::Le(least, own));
+      if (hn::AllFalse(d, met)) {
+        return;
       }
-      open |= bitsOf(met, lane);
+      // All of the cell lies in the outline, and a pixel of it is not before the box's farthest point.
+      auto surely = hn::Le(least, hn::Set(d, image.farthest));
+      for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
+        const MapFunction& f = outline.edges[i];
+        const auto value = greatest(f);
+        met = hn::And(met, hn::Ge(value, hn::Zero(d)));
+        surely =
+            hn::And(surely, hn::Ge(value, hn::Set(d, (std::abs(f.along_x) + std::abs(f.along_y)) * size)));
+      }
+      row.open |= bitsOf(met, lane);
+      row.surely_open = row.surely_open || !hn::AllFalse(d, hn::And(met, surely));
     });
-    return open;
+    return row;
   }
 
   // Some pixel below these cells is one where the box is not surely hidden.
   bool anyOpen(std::uint32_t level, const CellRange& range) const {
     const std::uint32_t from = readFrom(levels[level], range);
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-      std::uint32_t open = openCells(level, range, from, y);
-      if (level == 0 && open != 0) {
+      Row row = ask(level, range, from, y);
+      if (row.surely_open || (level == 0 && row.open != 0)) {
         return true;
       }
-      for (; open != 0; open &= open - 1) {
-        const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(open));
+      for (; row.open != 0; row.open &= row.open - 1) {
+        const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(row.open));
         if (anyOpen(level - 1, cellsWithin(image, level - 1, x, y))) {
           return true;
         }

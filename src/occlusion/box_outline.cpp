@@ -26,34 +26,41 @@ constexpr double kWideRounding = 0x1p-48;    // of the terms in double precision
 constexpr double kSingleRounding = 0x1p-21;  // of coefficients, products and sums in single precision: 5 u
 constexpr double kTooLarge = 1e30;           // functions beyond this say nothing
 
+// Where the functions have their origin, and how far from it they are asked.
 struct Origin {
-  double tx, ty;        // where the functions have their origin
+  double tx, ty;        // there
   double per_x, per_y;  // of tx and ty, for a pixel
-  double reach;
+  double reach;         // pixels
+  double extent;        // of tx, ty and 1 together, at most, within reach
 };
 
-// The function x * tx + y * ty + constant. size_x, size_y, size: of the terms that were summed up in each
-// coefficient. False where it says nothing.
-bool bounded(const Origin& o, const Vec3d& f, const Vec3d& sizes, MapFunction& out) {
+Origin originAt(const PixelView& view, std::uint32_t x, std::uint32_t y, double reach) {
+  Origin o;
+  o.per_x = 1.0 / view.scale_x;
+  o.per_y = 1.0 / view.scale_y;
+  o.tx = (x - view.middle_x) * o.per_x;
+  o.ty = (y - view.middle_y) * o.per_y;
+  o.reach = reach;
+  o.extent = std::abs(o.tx) + std::abs(o.ty) + (o.per_x + o.per_y) * reach + 1.0;
+  return o;
+}
+
+// The function f.x tx + f.y ty + f.z. size: bounds the sum of the terms in each of the three. False where it
+// says nothing.
+bool bounded(const Origin& o, const Vec3d& f, double size, MapFunction& out) {
   const double along_x = f.x * o.per_x, along_y = f.y * o.per_y;
   const double at_origin = f.x * o.tx + f.y * o.ty + f.z;
-  const double wide = sizes.x * (std::abs(o.tx) + o.per_x * o.reach) +
-                      sizes.y * (std::abs(o.ty) + o.per_y * o.reach) + sizes.z;
+  const double wide = size * o.extent;
   const double single = (std::abs(along_x) + std::abs(along_y)) * o.reach + std::abs(at_origin);
-  const double rounding = kWideRounding * wide + kSingleRounding * single;
   if (!(wide < kTooLarge && single < kTooLarge)) {
     return false;
   }
+  const double rounding = kWideRounding * wide + kSingleRounding * single;
   out.along_x = static_cast<float>(along_x);
   out.along_y = static_cast<float>(along_y);
   // The smallest numbers of single precision are coarse; they are far below any of a scene.
   out.at_origin = static_cast<float>(at_origin + rounding + 0x1p-120);
   return true;
-}
-
-// Of the three products of a direction's components.
-double sizeOf(const Vec3d& a, const Vec3d& b) {
-  return dot(abs(a), abs(b));
 }
 
 Vec3d crossedWith(const Vec3d& v, int axis) {
@@ -72,11 +79,11 @@ int regionOfEye(const PixelView& view, const EyeBox& box) {
 void addEdge(const PixelView& view, const Origin& origin, const Vec3d& corner, int axis, double sign,
              BoxOutline& outline) {
   const Vec3d n = crossedWith(view.orthographic ? view.forward : corner, axis) * sign;
-  Vec3d f(dot(n, view.right), dot(n, view.up), 0.0);
-  Vec3d sizes(sizeOf(n, view.right), sizeOf(n, view.up), 0.0);
-  f.z = view.orthographic ? -dot(n, corner) : dot(n, view.forward);
-  sizes.z = view.orthographic ? sizeOf(n, corner) : sizeOf(n, view.forward);
-  if (bounded(origin, f, sizes, outline.edges[outline.edge_count])) {
+  const Vec3d f(dot(n, view.right), dot(n, view.up),
+                view.orthographic ? -dot(n, corner) : dot(n, view.forward));
+  // The axes are unit vectors.
+  const double size = magnitude(n) * (view.orthographic ? 1.0 + magnitude(corner) : 1.0);
+  if (bounded(origin, f, size, outline.edges[outline.edge_count])) {
     ++outline.edge_count;
   }
 }
@@ -85,7 +92,7 @@ void addFace(const PixelView& view, const Origin& origin, int axis, double dista
   const double scale = 1.0 / (view.orthographic ? view.forward[axis] : distance);
   const Vec3d f =
       Vec3d(view.right[axis], view.up[axis], view.orthographic ? -distance : view.forward[axis]) * scale;
-  if (bounded(origin, f, abs(f), outline.faces[outline.face_count])) {
+  if (bounded(origin, f, maxComponent(abs(f)), outline.faces[outline.face_count])) {
     ++outline.face_count;
   }
 }
@@ -94,8 +101,7 @@ void addFace(const PixelView& view, const Origin& origin, int axis, double dista
 
 BoxOutline outlineOf(const PixelView& view, const Box& box, std::uint32_t x, std::uint32_t y, double reach) {
   const EyeBox eye_box = EyeBox::of(box, view.eye);
-  const Origin origin{(x - view.middle_x) / view.scale_x, (y - view.middle_y) / view.scale_y,
-                      1.0 / view.scale_x, 1.0 / view.scale_y, reach};
+  const Origin origin = originAt(view, x, y, reach);
   BoxOutline outline;
   int region = regionOfEye(view, eye_box);
   const geometry_detail::Silhouette& loop = geometry_detail::silhouetteFrom(region);

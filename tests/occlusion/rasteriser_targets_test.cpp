@@ -207,13 +207,38 @@ TEST(RasteriserBits, DoNotChangeWhenTheSameIsDrawnAgain) {
   });
 }
 
+// What crosses the near plane is cut at one depth a call, which depends on all that cross it.
+bool crossesNearPlane(const View& view, const OraclePolygon& polygon) {
+  bool before = false, beyond = false;
+  for (const Vec3f& vertex : polygon.vertices) {
+    const double depth = dot(view.forward, Vec3d(vertex) - view.eye);
+    before |= depth < 2.0 * view.near;
+    beyond |= depth > view.near;
+  }
+  return before && beyond;
+}
+
 TEST(RasteriserBits, AreTheSameWhenWhatIsNotConnectedIsDrawnInSeveralCalls) {
+  int scenes = 0;
   for (const Family& family : kFamilies) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-      const RandomScene scene(family, seed);
+      RandomScene scene(family, seed);
+      std::size_t singles = 8;  // the others are connected
+      for (std::size_t i = singles; i > 0; --i) {
+        if (crossesNearPlane(scene.view, scene.polygons[i - 1])) {
+          scene.polygons.erase(scene.polygons.begin() + static_cast<std::ptrdiff_t>(i - 1));
+          --singles;
+        }
+      }
       const std::span polygons(scene.polygons);
+      if (std::ranges::any_of(polygons.subspan(singles), [&](const OraclePolygon& polygon) {
+            return crossesNearPlane(scene.view, polygon);
+          })) {
+        continue;
+      }
+      ++scenes;
       const OccluderSet together = setOf(polygons);
-      const OccluderSet single = setOf(polygons.first(8)), connected = setOf(polygons.subspan(8));
+      const OccluderSet single = setOf(polygons.first(singles)), connected = setOf(polygons.subspan(singles));
       for (const Coverage coverage : {Coverage::kInner, Coverage::kCentre}) {
         const RasterSettings settings{65, 43, coverage};
         const Look first = drawn(scene.view, together, all(together), settings);
@@ -232,6 +257,7 @@ TEST(RasteriserBits, AreTheSameWhenWhatIsNotConnectedIsDrawnInSeveralCalls) {
       }
     }
   }
+  EXPECT_GT(scenes, 100);
 }
 
 TEST(RasteriserBits, AreTheSameInAMovedRasteriser) {

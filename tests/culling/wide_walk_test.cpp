@@ -1,0 +1,190 @@
+#include "culling/wide_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/culling/demo_frames.h"
+#include "tests/occlusion/small_scenes.h"
+
+namespace sightline::culling_detail {
+namespace {
+
+using demo_frames::nameOf;
+
+struct Answer {
+  std::vector<ObjectId> kept;
+  CullStats stats;
+};
+
+Answer walked(WideWalk& walk, const DepthPyramid& pyramid, const WideWalkOptions& options = {}) {
+  Answer answer;
+  walk.run(pyramid, options, answer.stats, answer.kept);
+  return answer;
+}
+
+// Box by box.
+std::vector<ObjectId> notHidden(const DepthPyramid& pyramid, std::span<const Box> boxes) {
+  std::vector<ObjectId> kept;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (pyramid.classify(boxes[i]) != Visibility::kHidden) {
+      kept.push_back(ObjectId(i));
+    }
+  }
+  return kept;
+}
+
+std::vector<ObjectId> inView(const DepthPyramid& pyramid, std::span<const Box> boxes) {
+  std::vector<BoxAnswer> answers(boxes.size());
+  pyramid.classifyInView(boxes, answers);
+  std::vector<ObjectId> kept;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (answers[i].visibility != Visibility::kHidden) {
+      kept.push_back(ObjectId(i));
+    }
+  }
+  return kept;
+}
+
+struct Bed {
+  explicit Bed(const test::Family& family, std::uint64_t seed, std::size_t count) : scene(family, seed) {
+    for (std::size_t i = 0; i < count; ++i) {
+      boxes.push_back(scene.randomBox());
+    }
+    const OccluderSet set = test::setOf(scene.polygons);
+    pyramid.build(scene.view, set, test::all(set));
+  }
+
+  test::RandomScene scene;
+  std::vector<Box> boxes;
+  DepthPyramid pyramid{{.raster = {.width = 160, .height = 120}}};
+};
+
+TEST(WideWalk, KeepsWhatAskingBoxByBoxKeeps) {
+  std::size_t kept = 0, hidden = 0;
+  for (const test::Family& family : test::kFamilies) {
+    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+      const Bed bed(family, seed, 20 + 15 * seed);
+      const std::vector<ObjectId> expected = notHidden(bed.pyramid, bed.boxes);
+      const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+      WideWalk walk(bvh, bed.boxes);
+      EXPECT_EQ(walked(walk, bed.pyramid).kept, expected) << family.name << ", seed " << seed;
+      EXPECT_EQ(walked(walk, bed.pyramid).kept, expected) << "again: " << family.name << ", seed " << seed;
+      kept += expected.size();
+      hidden += inView(bed.pyramid, bed.boxes).size() - expected.size();
+    }
+  }
+  EXPECT_GT(kept, 1000u);
+  EXPECT_GT(hidden, 100u) << "by the map";
+}
+
+TEST(WideWalk, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
+  int judged = 0;
+  for (const test::Family& family : test::kFamilies) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      Bed bed(family, seed, 80);
+      const std::vector<ObjectId> in_view = inView(bed.pyramid, bed.boxes);
+      const std::vector<ObjectId> alone = notHidden(bed.pyramid, bed.boxes);
+      for (const HierarchyKind kind : demo_frames::kKinds) {
+        const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = kind});
+        WideWalk walk(hierarchy, bed.boxes);
+        const std::vector<ObjectId> kept = walked(walk, bed.pyramid).kept;
+        EXPECT_TRUE(std::ranges::is_sorted(kept));
+        EXPECT_TRUE(std::ranges::includes(alone, kept)) << family.name << ", seed " << seed;
+        for (const ObjectId object : in_view) {
+          if (std::ranges::binary_search(kept, object)) {
+            continue;
+          }
+          ++judged;
+          const test::Sight sight = test::lookAt(bed.boxes[object.value], bed.scene.view, bed.scene.polygons,
+                                                 200, bed.scene.random.engine);
+          EXPECT_FALSE(sight.seen) << nameOf(kind) << ", " << family.name << ", seed " << seed << ", object "
+                                   << object.value;
+        }
+      }
+    }
+  }
+  EXPECT_GT(judged, 200);
+}
+
+TEST(WideWalk, OptionsKeepMoreAndNeverMoreThanTheView) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Bed bed(test::kFamilies[0], seed, 600);
+    const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
+    WideWalk walk(hierarchy, bed.boxes);
+    const Answer plain = walked(walk, bed.pyramid);
+    const std::vector<ObjectId> in_view = inView(bed.pyramid, bed.boxes);
+    for (const std::uint32_t cost : {0u, 20u, 100u, 100000u}) {
+      for (const bool test_objects : {false, true}) {
+        const Answer some = walked(walk, bed.pyramid, {.min_node_cost = cost, .test_objects = test_objects});
+        EXPECT_TRUE(std::ranges::includes(some.kept, plain.kept)) << "seed " << seed;
+        EXPECT_TRUE(std::ranges::includes(in_view, some.kept)) << "seed " << seed;
+        EXPECT_LE(some.stats.nodes_tested, plain.stats.nodes_tested) << "seed " << seed;
+        EXPECT_LE(some.stats.nodes_tested, some.stats.nodes_visited);
+        if (!test_objects) {
+          EXPECT_EQ(some.stats.objects_tested, 0u);
+        }
+        if (cost == 100000u) {
+          EXPECT_EQ(some.stats.nodes_tested + some.stats.objects_tested, 0u);
+          EXPECT_EQ(some.kept, in_view) << "seed " << seed;
+        }
+      }
+    }
+  }
+}
+
+TEST(WideWalk, KeepsObjectsWhoseBoxesAreNotWellFormed) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  // A wall before everything.
+  const OccluderSet set = test::setOf(std::vector<test::OraclePolygon>{test::wall(-90, 90, -90, 90, -2)});
+  DepthPyramid pyramid;
+  pyramid.build(test::kLookingBack, set, test::all(set));
+  std::vector<Box> boxes(200, Box{{-1, -1, -9}, {1, 1, -8}});
+  boxes[3] = Box{};
+  boxes[77] = {{nan, 0, -9}, {1, 1, -8}};
+  boxes[150] = {{0, 0, -9}, {1, inf, -8}};
+  for (const HierarchyKind kind : demo_frames::kKinds) {
+    const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = kind});
+    WideWalk walk(hierarchy, boxes);
+    EXPECT_EQ(walked(walk, pyramid).kept, (std::vector{ObjectId(3u), ObjectId(77u), ObjectId(150u)}))
+        << nameOf(kind);
+  }
+}
+
+TEST(WideWalk, OfNothingKeepsNothing) {
+  const Hierarchy hierarchy = buildHierarchy({}, {});
+  WideWalk walk(hierarchy, {});
+  EXPECT_TRUE(walked(walk, DepthPyramid()).kept.empty());
+}
+
+// Occluders of the scene itself, as the culler chooses them.
+TEST(WideWalk, OfDemoScenesKeepsWhatAskingBoxByBoxKeeps) {
+  std::size_t hidden = 0, asked = 0, objects = 0;
+  for (const demo_frames::DemoScene* demo : {&demo_frames::smallCity(), &demo_frames::smallBuilding()}) {
+    WideWalk walk(demo->bvh, demo->bounds);
+    DepthPyramid pyramid;
+    std::vector<OccluderId> occluders(demo->occluders.occluders.size());
+    for (std::size_t i = 0; i < occluders.size(); ++i) {
+      occluders[i] = OccluderId(i);
+    }
+    for (const CameraPath& path : demo->scene.paths) {
+      for (std::size_t frame = 0; frame < path.frames.size(); frame += path.frames.size() / 5 + 1) {
+        const View view = path.view(frame, demo->scene.origin);
+        pyramid.build(view, demo->occluders, occluders);
+        const Answer answer = walked(walk, pyramid);
+        EXPECT_EQ(answer.kept, notHidden(pyramid, demo->bounds)) << path.name << " frame " << frame;
+        asked += answer.stats.nodes_tested + answer.stats.objects_tested;
+        objects += demo->bounds.size();
+        hidden += inView(pyramid, demo->bounds).size() - answer.kept.size();
+      }
+    }
+  }
+  EXPECT_GT(hidden, 1000u);
+  EXPECT_LT(asked, objects / 2);
+}
+
+}  // namespace
+}  // namespace sightline::culling_detail
