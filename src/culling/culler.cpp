@@ -306,6 +306,9 @@ struct Culler::Impl {
   }
 
   Visibility classifyDynamic(const Box& box) {
+    if (!box.wellFormed()) {
+      return Visibility::kVisible;
+    }
     switch (settings.method) {
       case CullMethod::kOcclusionTree:
         return tree.classify(box);

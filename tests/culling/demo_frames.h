@@ -19,7 +19,7 @@ struct NamedSettings {
   CullerSettings settings;
 };
 
-// Every structure: the variants of the occlusion tree, and the forms of the supporting planes.
+// Every structure: the variants of the occlusion tree, the forms of the supporting planes, and maps.
 constexpr NamedSettings kStructures[] = {
     {"FSE", {.variant = OcclusionTreeVariant::kFSE}},
     {"FSC", {.variant = OcclusionTreeVariant::kFSC}},
@@ -33,9 +33,12 @@ constexpr NamedSettings kStructures[] = {
     {"planes through the box, no joint occlusion",
      {.method = CullMethod::kSupportingPlanes,
       .supporting_planes = {.joint_occlusion = false, .form = PlaneForm::kThroughBox}}},
+    {"opacity map", {.method = CullMethod::kOpacityMap, .raster = {.width = 64, .height = 36}}},
+    {"depth pyramid", {.method = CullMethod::kDepthPyramid}},
 };
 // One of each method.
-constexpr NamedSettings kMethods[] = {kStructures[2], kStructures[4], kStructures[5]};
+constexpr NamedSettings kMethods[] = {kStructures[2], kStructures[4], kStructures[5], kStructures[8],
+                                      kStructures[9]};
 
 struct DemoScene {
   Scene scene;

@@ -29,17 +29,26 @@ TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
 
 TEST(Tool, UnknownNamesAreAnsweredWithThoseThatExist) {
   expectRefused({"info", "demo:nothing"}, "city");
-  expectRefused({"cull", kCity, "--method", "opacity-map"}, "frustum, supporting-planes, occlusion-tree");
+  expectRefused({"cull", kCity, "--method", "visibility"},
+                "frustum, supporting-planes, occlusion-tree, opacity-map");
   expectRefused({"cull", kCity, "--method", ""}, "frustum, supporting-planes, occlusion-tree");
   expectRefused({"verify", kCity, "--method", "frustum,,frustum"},
                 "frustum, supporting-planes, occlusion-tree");
   expectRefused({"cull", kCity, "--variant", "fse"}, "FSE, FSC, FME, FMC");
   expectRefused({"cull", kCity, "--hierarchy", "octree"}, "kd, bvh");
   expectRefused({"cull", kCity, "--coherence", "maybe"}, "on, off");
-  expectRefused({"cull", kCity, "--occluders", "projected-size"}, "area-angle, database");
+  expectRefused({"cull", kCity, "--occluders", "largest"}, "area-angle, database, minimum-sets");
   expectRefused({"cull", kCity, "--area-angle", "x"}, "occluder, view");
+  expectRefused({"cull", kCity, "--coverage", "outer"}, "inner, centre");
   expectRefused({"cull", kCity, "--path", "nowhere"}, "smooth");
   expectRefused({"cull", kCity, "--method", "frustum,occlusion-tree"}, "one value");
+}
+
+TEST(Tool, SizesOfMapsOutOfRangeAreRefused) {
+  for (const std::string bad :
+       {"", "320", "x180", "320x", "0x180", "320x0", "320x180x2", "8193x8", "-3x4", "axb"}) {
+    expectRefused({"cull", kCity, "--method", "depth-pyramid", "--resolution", bad}, "--resolution");
+  }
 }
 
 TEST(Tool, NumbersOutOfRangeAreRefused) {
