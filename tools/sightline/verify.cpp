@@ -298,7 +298,9 @@ void addVerify(CLI::App& app, Command& chosen) {
   command->add_option("--height", options->height, "rows of rays")
       ->check(CLI::Range(1u, 16384u))
       ->capture_default_str();
-  command->add_option("--aimed-rays", options->aimed_rays, "rays aimed at points of each object that no pixel shows")
+  command
+      ->add_option("--aimed-rays", options->aimed_rays,
+                   "rays aimed at points of each object that no pixel shows")
       ->check(CLI::Range(0u, 4096u))
       ->capture_default_str();
   command
