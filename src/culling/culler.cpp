@@ -89,6 +89,12 @@ struct Culler::Impl {
     return planes;
   }
 
+  // Maps draw a convex body as one.
+  bool drawsBodies() const {
+    return (settings.method == CullMethod::kOpacityMap || settings.method == CullMethod::kDepthPyramid) &&
+           settings.raster.coverage == Coverage::kInner;
+  }
+
   bool usesDatabase() const {
     return databases.from_eye != nullptr && settings.occluders == OccluderChoice::kDatabase;
   }
@@ -103,7 +109,9 @@ struct Culler::Impl {
     ChoiceSettings choice;
     choice.count = settings.occluder_count;
     choice.direction = settings.area_angle_direction;
+    choice.bodies = drawsBodies();
     if (usesDatabase()) {
+      choice.bodies = false;  // a list may name any of their faces
       return chooser.choose(view, occluders, databases.from_eye->find(view.eye, view.forward), choice);
     }
     if (usesViewpoints()) {
@@ -118,7 +126,7 @@ struct Culler::Impl {
   // holds is looked through; a search that found little is not repeated for a while.
   std::span<const OccluderId> chooseByAreaAngle(const View& view, const Frustum& frustum,
                                                 ChoiceSettings choice) {
-    const bool jump = jumped(view);
+    const bool jump = view_jumped;
     choice.max_distance = jump ? 0.0 : settings.lambda_steps * last_step;
     std::span<const OccluderId> chosen;
     if (!jump) {
@@ -192,6 +200,7 @@ struct Culler::Impl {
   void draw(Map& map, const View& view, std::span<const OccluderId> chosen, const OccluderSet* moving) {
     map.begin(view);
     map.draw(occluders, chosen, parallel_for);
+    used_count = map.occluders().size();  // what moves has ids of its own
     if (moving != nullptr) {
       all_moving.clear();
       for (std::size_t i = 0; i < moving->occluders.size(); ++i) {
@@ -232,15 +241,16 @@ struct Culler::Impl {
   }
 
   void cullWithPyramid(const View& view, const Frustum& frustum, const OccluderSet* moving) {
+    if (view_jumped) {
+      wide_walk->forget();
+    }
     cullWith(
         view, frustum,
         [&](std::span<const OccluderId> chosen) {
           draw(*pyramid, view, chosen, moving);
           pyramid->finish(parallel_for);
         },
-        [&] {
-          wide_walk->run(*pyramid, {settings.min_node_cost, settings.test_objects}, stats, visible);
-        });
+        [&] { wide_walk->run(*pyramid, walkOptions(settings.temporal_coherence), stats, visible); });
     takeRasterStats(pyramid->stats().raster);
   }
 
@@ -345,10 +355,12 @@ struct Culler::Impl {
   culling_detail::AdaptiveCoverage coverage;
   ParallelFor parallel_for = serialFor;
   std::vector<OccluderId> all_moving;
+  std::size_t used_count = 0;  // of the map's occluders those of the culler's own set
   std::vector<ObjectId> visible, candidates;
   std::vector<Visibility> dynamic_states;
   CullStats stats;
   bool has_previous = false;
+  bool view_jumped = true;  // the last view has little to do with the one before
   Vec3d previous_eye, previous_forward;
   double last_step = 0.0;
   std::uint32_t frames_since_search = 0, frames_between_searches = 0;
@@ -364,6 +376,7 @@ Culler& Culler::operator=(Culler&&) noexcept = default;
 void Culler::cull(const View& view, std::span<const Box> dynamic_boxes, const OccluderSet* moving) {
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
+  impl_->view_jumped = impl_->jumped(view);
   const CullMethod method = impl_->settings.method;
   switch (method) {
     case CullMethod::kFrustum:
@@ -403,9 +416,10 @@ std::span<const OccluderId> Culler::occludersUsed() const {
     case CullMethod::kSupportingPlanes:
       return impl_->planes.occluders();
     case CullMethod::kOpacityMap:
-      return impl_->stats.suspended ? std::span<const OccluderId>() : impl_->opacity_map->occluders();
+      return impl_->stats.suspended ? std::span<const OccluderId>()
+                                    : impl_->opacity_map->occluders().first(impl_->used_count);
     case CullMethod::kDepthPyramid:
-      return impl_->pyramid->occluders();
+      return impl_->pyramid->occluders().first(impl_->used_count);
     case CullMethod::kFrustum:
       break;
   }
@@ -430,6 +444,9 @@ void Culler::reset() {
   impl_->last_step = 0.0;
   impl_->frames_between_searches = 0;
   impl_->walk.forget();
+  if (impl_->wide_walk) {
+    impl_->wide_walk->forget();
+  }
   impl_->planes.forgetAll();
   impl_->entered.assign(impl_->entered.size(), false);
 }

@@ -6,7 +6,12 @@ namespace sightline::culling_detail {
 
 using hierarchy_detail::WideNode;
 
-void WideWalk::run(const DepthPyramid& pyramid, const WideWalkOptions& options, CullStats& stats,
+namespace {
+// Views that a box is kept without a question after it was found not hidden; up to three more.
+constexpr std::uint8_t kLeastRest = 2;
+}  // namespace
+
+void WideWalk::run(const DepthPyramid& pyramid, const WalkOptions& options, CullStats& stats,
                    std::vector<ObjectId>& out) {
   stack_.clear();
   if (!wide_.nodes.empty()) {
@@ -21,7 +26,7 @@ void WideWalk::run(const DepthPyramid& pyramid, const WideWalkOptions& options, 
   visible_.drainInto(out);
 }
 
-void WideWalk::visit(const Entry& entry, const DepthPyramid& pyramid, const WideWalkOptions& options,
+void WideWalk::visit(const Entry& entry, const DepthPyramid& pyramid, const WalkOptions& options,
                      CullStats& stats) {
   const WideNode& node = wide_.nodes[entry.node];
   const std::uint32_t children = node.child_end - node.first_child;
@@ -33,11 +38,11 @@ void WideWalk::visit(const Entry& entry, const DepthPyramid& pyramid, const Wide
   const bool test_objects = !entry.surely_visible && options.test_objects;
   answers_.resize(std::max<std::size_t>(answers_.size(), children));
   if (asked == node.node_count && test_objects) {
-    ask(pyramid, node, 0, children, false);
+    ask(pyramid, node, 0, children, false, options.temporal_coherence);
   } else {
-    ask(pyramid, node, 0, asked, false);
-    ask(pyramid, node, asked, node.node_count, true);
-    ask(pyramid, node, node.node_count, children, !test_objects);
+    ask(pyramid, node, 0, asked, false, options.temporal_coherence);
+    ask(pyramid, node, asked, node.node_count, true, false);
+    ask(pyramid, node, node.node_count, children, !test_objects, options.temporal_coherence);
   }
   stats.nodes_visited += node.node_count;
   stats.nodes_tested += asked;
@@ -54,7 +59,7 @@ void WideWalk::visit(const Entry& entry, const DepthPyramid& pyramid, const Wide
 }
 
 void WideWalk::ask(const DepthPyramid& pyramid, const WideNode& node, std::uint32_t begin, std::uint32_t end,
-                   bool view_only) {
+                   bool view_only, bool skip_seen) {
   const std::span<const Box> boxes = std::span(wide_.boxes).subspan(node.first_child + begin, end - begin);
   const std::span<BoxAnswer> answers = std::span(answers_).subspan(begin, end - begin);
   if (boxes.empty()) {
@@ -62,8 +67,19 @@ void WideWalk::ask(const DepthPyramid& pyramid, const WideNode& node, std::uint3
   }
   if (view_only) {
     pyramid.classifyInView(boxes, answers);
-  } else {
-    pyramid.classify(boxes, answers);
+    return;
+  }
+  BoxHints hints;
+  const std::span<std::uint8_t> rest = std::span(rest_).subspan(node.first_child + begin, end - begin);
+  if (skip_seen) {
+    hints.seen = rest;
+  }
+  hints.plain_from = node.node_count > begin ? node.node_count - begin : 0;
+  pyramid.classify(boxes, answers, hints);
+  for (std::size_t i = 0; skip_seen && i < rest.size(); ++i) {
+    const bool hidden = answers[i].visibility == Visibility::kHidden;
+    // Of many that come into view together not all are asked about again in the same view.
+    rest[i] = static_cast<std::uint8_t>(hidden ? 0u : rest[i] != 0 ? rest[i] - 1u : kLeastRest + (i & 3));
   }
 }
 

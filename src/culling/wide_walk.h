@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "culling/hierarchical_walk.h"
 #include "culling/object_bits.h"
 #include "hierarchy/wide_hierarchy.h"
 #include "sightline/culling/culler.h"
@@ -15,24 +16,23 @@
 
 namespace sightline::culling_detail {
 
-struct WideWalkOptions {
-  std::uint32_t min_node_cost = 0;  // nodes with fewer triangles are taken as visible past the occluders
-  bool test_objects = true;         // false: objects of nodes that are not hidden meet the view's volume only
-};
-
 class WideWalk {
  public:
   // The hierarchy must outlive this; the boxes are copied.
   WideWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
       : hierarchy_(hierarchy),
         wide_(hierarchy_detail::collapse(hierarchy, object_bounds)),
-        visible_(object_bounds.size()) {}
+        visible_(object_bounds.size()),
+        rest_(wide_.boxes.size(), 0) {}
 
-  // Appends the objects that may be seen to out, ascending, and adds to the counts of stats.
-  void run(const DepthPyramid& pyramid, const WideWalkOptions& options, CullStats& stats,
+  // Appends the objects that may be seen to out, ascending, and adds to the counts of stats. With
+  // options.temporal_coherence what was not hidden is not asked about again for a few views (it is kept
+  // unless it leaves the view).
+  void run(const DepthPyramid& pyramid, const WalkOptions& options, CullStats& stats,
            std::vector<ObjectId>& out);
 
-  const hierarchy_detail::WideHierarchy& wideHierarchy() const { return wide_; }
+  // The next view has nothing to do with the last one.
+  void forget() { std::fill(rest_.begin(), rest_.end(), std::uint8_t{0}); }
 
  private:
   struct Entry {
@@ -40,12 +40,11 @@ class WideWalk {
     bool surely_visible;  // with respect to the occluders
   };
 
-  void visit(const Entry& entry, const DepthPyramid& pyramid, const WideWalkOptions& options,
-             CullStats& stats);
+  void visit(const Entry& entry, const DepthPyramid& pyramid, const WalkOptions& options, CullStats& stats);
   // Answers for children `begin` to before `end` of the node: past the occluders, or for the view's volume
   // alone.
   void ask(const DepthPyramid& pyramid, const hierarchy_detail::WideNode& node, std::uint32_t begin,
-           std::uint32_t end, bool view_only);
+           std::uint32_t end, bool view_only, bool skip_seen);
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
   const Hierarchy& hierarchy_;
@@ -53,6 +52,7 @@ class WideWalk {
   ObjectBits visible_;
   std::vector<Entry> stack_;
   std::vector<BoxAnswer> answers_;  // of the children of one node
+  std::vector<std::uint8_t> rest_;  // by child: so many views it is not asked about
 };
 
 }  // namespace sightline::culling_detail

@@ -18,6 +18,25 @@ bool insideFrustum(const Frustum& frustum, const OccluderSet& set, const Occlude
   return true;
 }
 
+// The same of all its corners, by the box around it.
+bool insideFrustum(const Frustum& frustum, const Box& box) {
+  std::uint8_t cut = kAllFrustumPlanes;
+  return classify(frustum, box, cut) != FrustumSide::kOutside;
+}
+
+// Of a body: of the sides of the box around it.
+double areaAngle(const Box& box, const View& view, AreaAngleDirection direction) {
+  const Vec3d to_center = center(box) - view.eye;
+  const double squared = view.orthographic ? 1.0 : dot(to_center, to_center);
+  if (!(squared > 0.0)) {
+    return 0.0;
+  }
+  const bool along_view = view.orthographic || direction == AreaAngleDirection::kView;
+  const Vec3d v = abs(along_view ? view.forward : to_center / std::sqrt(squared));
+  const Vec3d size = Vec3d(box.max) - Vec3d(box.min);
+  return (size.y * size.z * v.x + size.x * size.z * v.y + size.x * size.y * v.z) / squared;
+}
+
 double squaredDistance(const Box& box, const Vec3d& point) {
   const Vec3d nearest = max(Vec3d(box.min), min(Vec3d(box.max), point));
   return dot(nearest - point, nearest - point);
@@ -59,10 +78,10 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
       continue;
     }
     for (const OccluderId id : set.occludersOf(object)) {
-      rank(view, set, id, settings.direction);
+      rank(view, set, id, settings);
     }
   }
-  return takeBest(view, set, settings.count);
+  return takeBest(view, set, settings);
 }
 
 std::span<const OccluderId> OccluderChooser::choose(const View& view, const OccluderSet& set,
@@ -70,9 +89,9 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
                                                     const ChoiceSettings& settings) {
   ranked_.clear();
   for (const OccluderId id : candidates) {
-    rank(view, set, id, settings.direction);
+    rank(view, set, id, settings);
   }
-  return takeBest(view, set, settings.count);
+  return takeBest(view, set, settings);
 }
 
 std::span<const OccluderId> OccluderChooser::takeFirst(const View& view, const OccluderSet& set,
@@ -91,21 +110,31 @@ std::span<const OccluderId> OccluderChooser::takeFirst(const View& view, const O
 }
 
 void OccluderChooser::rank(const View& view, const OccluderSet& set, OccluderId id,
-                           AreaAngleDirection direction) {
-  const double score = areaAngle(set[id], view, direction);
+                           const ChoiceSettings& settings) {
+  const OccluderBody* body = settings.bodies ? set.bodyOf(id) : nullptr;
+  if (body != nullptr && set.facesOf(*body).front().occluder != id) {
+    return;
+  }
+  const double score = body != nullptr ? areaAngle(body->bounds, view, settings.direction)
+                                       : areaAngle(set[id], view, settings.direction);
   if (score > 0.0) {
     ranked_.emplace_back(score, id);
   }
 }
 
 std::span<const OccluderId> OccluderChooser::takeBest(const View& view, const OccluderSet& set,
-                                                      std::uint32_t count) {
+                                                      const ChoiceSettings& settings) {
   chosen_.clear();
+  const std::uint32_t count = settings.count;
   const auto better = [](const auto& a, const auto& b) {
     return a.first > b.first || (a.first == b.first && a.second < b.second);
   };
   // Best first; the frustum test is made only for those that come into question.
   const Frustum frustum = frustumOf(view);
+  const auto inside = [&](OccluderId id) {
+    const OccluderBody* body = settings.bodies ? set.bodyOf(id) : nullptr;
+    return body != nullptr ? insideFrustum(frustum, body->bounds) : insideFrustum(frustum, set, set[id]);
+  };
   auto begin = ranked_.begin();
   while (chosen_.size() < count && begin != ranked_.end()) {
     const auto wanted = static_cast<std::ptrdiff_t>(count - chosen_.size());
@@ -113,7 +142,7 @@ std::span<const OccluderId> OccluderChooser::takeBest(const View& view, const Oc
     std::nth_element(begin, begin + (part - 1), ranked_.end(), better);
     std::sort(begin, begin + part, better);
     for (auto it = begin; it != begin + part && chosen_.size() < count; ++it) {
-      if (insideFrustum(frustum, set, set[it->second])) {
+      if (inside(it->second)) {
         chosen_.push_back(it->second);
       }
     }

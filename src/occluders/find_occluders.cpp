@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
 
+#include "occluders/bodies.h"
 #include "occluders/links.h"
 #include "occluders/polygon_merge.h"
 #include "sightline/occluders/occluder_set.h"
@@ -44,6 +48,11 @@ ObjectResult findInObject(const SceneView& scene, const Object& object, std::uin
     }
   }
   result.report.degenerate = object.triangleCount() - in_polygons;
+  std::vector<FoundPolygon*> pointers;
+  for (FoundPolygon& polygon : result.polygons) {
+    pointers.push_back(&polygon);
+  }
+  occluder_detail::findBodies(scene.positions, pointers, tolerance);
   return result;
 }
 
@@ -74,12 +83,18 @@ std::vector<RankedPolygon> rank(const SceneView& scene, std::vector<ObjectResult
   const std::size_t limit = settings.max_occluders != 0 ? settings.max_occluders : all.size();
   double area_before = 0.0;
   std::size_t kept = 0;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> kept_bodies;  // object, body
   for (RankedPolygon& candidate : all) {
     const double area = candidate.polygon.area;
+    const std::pair body(candidate.object.value, candidate.polygon.body);
+    const bool in_body = candidate.polygon.body != FoundPolygon::kNoBody;
     const bool large = area_before < settings.area_fraction * total_area && area >= settings.min_area;
     const bool marked = scene.objects[candidate.object.value].mark == OccluderMark::kOccluder;
     area_before += area;
-    if ((large || marked) && kept < limit) {
+    if ((large || marked || (in_body && kept_bodies.contains(body))) && kept < limit) {
+      if (in_body) {
+        kept_bodies.insert(body);
+      }
       std::swap(all[kept++], candidate);
     } else {
       report.too_small += candidate.polygon.triangle_count;
@@ -124,6 +139,7 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
   std::vector<RankedPolygon> ranked;
   OccluderSet set;
   std::size_t first = 0, object_count = 0;
+  double largest_of_all = 0.0;
   for (const OccluderPolygon& polygon : polygons) {
     FoundPolygon found;
     found.double_sided = polygon.double_sided;
@@ -153,11 +169,20 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
       ++set.report.degenerate;
       continue;
     }
+    largest_of_all = std::max(largest_of_all, largest);
     ranked.push_back({std::move(found), polygon.object});
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const RankedPolygon& a, const RankedPolygon& b) {
     return a.polygon.area > b.polygon.area;
   });
+  std::map<std::uint32_t, std::vector<FoundPolygon*>> by_object;
+  for (RankedPolygon& polygon : ranked) {
+    by_object[polygon.object.value].push_back(&polygon.polygon);
+  }
+  for (const auto& [object, of_object] : by_object) {
+    occluder_detail::findBodies(corners.positions, of_object,
+                                occluder_detail::roundingTolerance(largest_of_all));
+  }
   occluder_detail::assembleSet(corners.positions, ranked, object_count, set);
   return set;
 }

@@ -82,7 +82,10 @@ PointGrid gridNear(std::span<const Vec3d> viewpoints, double extent, double spac
 PointGrid gridIn(const Vec3d& low, const Vec3d& high, double spacing, std::uint32_t max_points) {
   const Vec3d size = high - low;
   const double extent = extentOf(low, high);
-  PointGrid grid{{}, spacing > 0.0 ? spacing : extent > 0.0 ? extent / max_points : 1.0};
+  PointGrid grid{{},
+                 spacing > 0.0  ? std::max(spacing, extent * 0x1p-50)
+                 : extent > 0.0 ? extent / max_points
+                                : 1.0};
   const auto countAlong = [&](int axis) { return std::max(1.0, std::floor(size[axis] / grid.spacing)); };
   while (countAlong(0) * countAlong(1) * countAlong(2) > max_points) {
     grid.spacing *= std::sqrt(std::sqrt(kGrowth));

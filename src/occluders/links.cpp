@@ -9,6 +9,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "occluders/bodies.h"
+
 namespace sightline::occluder_detail {
 namespace {
 
@@ -310,6 +312,7 @@ void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon
   set.edges.resize(set.vertices.size());
   Linker(positions, polygons, set).run();
   listByObject(object_count, set);
+  assembleBodies(positions, polygons, set);
 }
 
 }  // namespace sightline::occluder_detail

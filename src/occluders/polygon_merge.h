@@ -22,6 +22,10 @@ struct FoundPolygon {
   double slack = 0.0;
   std::uint32_t triangle_count = 0;
   bool double_sided = false;
+
+  static constexpr std::uint32_t kNoBody = 0xffffffffu;
+  std::uint32_t body = kNoBody;  // of the object's bodies, see bodies.h
+  std::uint32_t body_size = 0;   // polygons that it has
 };
 
 // Geometry is equal when it differs by no more than this: eight units in the last place of single-precision

@@ -184,7 +184,7 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& map, const PixelView& view, const
 }
 
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                   const PixelBox& image) {
+                   const PixelBox& image, bool plain) {
   if (image.place != BoxPlace::kOnMap) {
     return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
   }
@@ -199,7 +199,7 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   if (allNearer(levels[level], range, image.nearest)) {
     return Visibility::kHidden;
   }
-  if (!anyNearer(levels, level, image, range, image.farthest)) {
+  if (!plain && !anyNearer(levels, level, image, range, image.farthest)) {
     return Visibility::kVisible;
   }
   if (seenAtCentre(levels[0], view, box, image)) {
@@ -210,13 +210,24 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   const double reach = std::max(image.x1 - image.x0, image.y1 - image.y0) + 2.0 * size;
   const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reach);
   const Refinement refinement{levels, image, outline};
-  return refinement.anyOpen(level, range) ? Visibility::kPartial : Visibility::kHidden;
+  if (refinement.anyOpen(level, range)) {
+    return Visibility::kPartial;
+  }
+  // What the map does not hide at all is told from what it hides, whether asked plainly or not.
+  return plain && !anyNearer(levels, level, image, range, image.farthest) ? Visibility::kVisible
+                                                                          : Visibility::kHidden;
 }
 
 void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
-             std::span<const PixelBox> images, std::span<BoxAnswer> answers) {
+             std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    answers[i] = {testOne(levels, view, boxes[i], images[i]), images[i].whole};
+    const PixelBox& image = images[i];
+    if (!hints.seen.empty() && hints.seen[i] != 0) {
+      answers[i].visibility = image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
+    } else {
+      answers[i].visibility = testOne(levels, view, boxes[i], image, i >= hints.plain_from);
+    }
+    answers[i].within_view = image.whole;
   }
 }
 
@@ -230,8 +241,8 @@ namespace sightline::occlusion_detail {
 HWY_EXPORT(testAll);
 
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
-               std::span<const PixelBox> images, std::span<BoxAnswer> answers) {
-  HWY_DYNAMIC_DISPATCH(testAll)(levels, view, boxes, images, answers);
+               std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
+  HWY_DYNAMIC_DISPATCH(testAll)(levels, view, boxes, images, answers, hints);
 }
 
 }  // namespace sightline::occlusion_detail

@@ -18,6 +18,6 @@ namespace sightline::occlusion_detail {
 // nearer than its farthest point, and partial otherwise. Without levels nothing on the map is hidden. Every
 // instruction set gives the same answers.
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
-               std::span<const PixelBox> images, std::span<BoxAnswer> answers);
+               std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 
 }  // namespace sightline::occlusion_detail

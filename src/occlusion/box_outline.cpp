@@ -1,7 +1,7 @@
 // In double precision, relative to the eye.
 //
 // A ray through the place (X, Y) of the map has the direction r = tx right + ty up + forward, where
-// tx = (X - middle_x) / scale_x, ty likewise.
+// tx = (X - middle_x) / scale_x, ty likewise; right, up and forward are PixelView's unit_x, unit_y, unit_z.
 //
 //   Edge along the axis e through the corner a:  the plane through the eye has the normal n = a x e, which
 //     takes no subtraction; the box is where n . r >= 0. Orthographic: n = forward x e, and n . (tx right +
@@ -73,15 +73,15 @@ int regionOfEye(const PixelView& view, const EyeBox& box) {
   }
   // An eye infinitely far behind.
   const auto digit = [](double forward) { return forward > 0.0 ? 1 : forward < 0.0 ? 2 : 0; };
-  return digit(view.forward.x) + 3 * digit(view.forward.y) + 9 * digit(view.forward.z);
+  return digit(view.unit_z.x) + 3 * digit(view.unit_z.y) + 9 * digit(view.unit_z.z);
 }
 
 void addEdge(const PixelView& view, const Origin& origin, const Vec3d& corner, int axis, double sign,
              BoxOutline& outline) {
-  const Vec3d n = crossedWith(view.orthographic ? view.forward : corner, axis) * sign;
-  const Vec3d f(dot(n, view.right), dot(n, view.up),
-                view.orthographic ? -dot(n, corner) : dot(n, view.forward));
-  // The axes are unit vectors.
+  const Vec3d n = crossedWith(view.orthographic ? view.unit_z : corner, axis) * sign;
+  const Vec3d f(dot(n, view.unit_x), dot(n, view.unit_y),
+                view.orthographic ? -dot(n, corner) : dot(n, view.unit_z));
+  // The axes are as good as unit vectors.
   const double size = magnitude(n) * (view.orthographic ? 1.0 + magnitude(corner) : 1.0);
   if (bounded(origin, f, size, outline.edges[outline.edge_count])) {
     ++outline.edge_count;
@@ -89,9 +89,9 @@ void addEdge(const PixelView& view, const Origin& origin, const Vec3d& corner, i
 }
 
 void addFace(const PixelView& view, const Origin& origin, int axis, double distance, BoxOutline& outline) {
-  const double scale = 1.0 / (view.orthographic ? view.forward[axis] : distance);
+  const double scale = 1.0 / (view.orthographic ? view.unit_z[axis] : distance);
   const Vec3d f =
-      Vec3d(view.right[axis], view.up[axis], view.orthographic ? -distance : view.forward[axis]) * scale;
+      Vec3d(view.unit_x[axis], view.unit_y[axis], view.orthographic ? -distance : view.unit_z[axis]) * scale;
   if (bounded(origin, f, maxComponent(abs(f)), outline.faces[outline.face_count])) {
     ++outline.face_count;
   }

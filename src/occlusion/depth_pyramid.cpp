@@ -77,13 +77,16 @@ void DepthPyramid::finish(const ParallelFor& parallel_for) {
   impl_->finished = true;
 }
 
-void DepthPyramid::classify(std::span<const Box> boxes, std::span<BoxAnswer> answers) const {
+void DepthPyramid::classify(std::span<const Box> boxes, std::span<BoxAnswer> answers,
+                            const BoxHints& hints) const {
   PixelBox images[kGroup];
   forGroups(boxes.size(), [&](std::size_t first, std::size_t count) {
     const std::span<PixelBox> group(images, count);
     projectBoxes(impl_->projection, boxes.subspan(first, count), group);
     testBoxes(impl_->usableLevels(), impl_->view, boxes.subspan(first, count), group,
-              answers.subspan(first, count));
+              answers.subspan(first, count),
+              {hints.seen.empty() ? hints.seen : hints.seen.subspan(first, count),
+               hints.plain_from > first ? hints.plain_from - first : 0});
   });
 }
 

@@ -81,16 +81,33 @@ std::uint32_t MapPolygons::rootOf(std::uint32_t member) {
   return member;
 }
 
-void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId> chosen) {
+// Bodies are drawn at once, all others become members.
+void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId> chosen,
+                              const RasterSettings& settings) {
   members_.clear();
   member_of_.resize(std::max(member_of_.size(), set.occluders.size()), kNone);
+  body_state_.resize(std::max(body_state_.size(), set.bodies.size()), BodyState::kUnknown);
   for (const OccluderId id : chosen) {
     if (id.value >= set.occluders.size() || member_of_[id.value] != kNone) {
       continue;
     }
+    const std::uint32_t body =
+        settings.coverage == Coverage::kInner ? set.body_of[id.value] : OccluderSet::kNoBody;
+    if (body != OccluderSet::kNoBody) {
+      if (body_state_[body] == BodyState::kUnknown) {
+        bodies_met_.push_back(body);
+        body_state_[body] =
+            addBody(set, id, set.bodies[body], settings) ? BodyState::kDone : BodyState::kByFaces;
+      }
+      if (body_state_[body] == BodyState::kDone) {
+        continue;
+      }
+    }
     const std::optional<EyeOccluder> seen = faceOccluder(eye_, set, id);
     const double inset = seen ? (32.0 * seen->deviation + kEdgeMargin * seen->reach) / seen->grazing : 0.0;
-    if (!seen || !keepsShape(set[id], inset)) {
+    // What it may be off must be less than what is drawn beyond the map.
+    if (!seen || !keepsShape(set[id], inset) ||
+        !(marginAt(inset, std::max(seen->nearest, view_.near)) < std::min(view_.middle_x, view_.middle_y))) {
       ++unusable;
       continue;
     }
@@ -98,6 +115,95 @@ void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId
     member_of_[id.value] = index;
     members_.push_back({*seen, inset, index});
   }
+  for (const std::uint32_t body : bodies_met_) {
+    body_state_[body] = BodyState::kUnknown;
+  }
+  bodies_met_.clear();
+}
+
+// The edges between faces that are seen and faces that are not, as one loop in clipped_.
+bool MapPolygons::findSilhouette(const OccluderSet& set, const OccluderBody& body, std::uint64_t seen) {
+  std::uint8_t next[kMaxBodyVertices];
+  std::uint32_t count = 0, used = 0, first = 0;  // used: vertices, a bit each
+  for (const BodyEdge& edge : set.edgesOf(body)) {
+    const bool left = (seen >> edge.left & 1) != 0, right = (seen >> edge.right & 1) != 0;
+    if (left == right) {
+      continue;
+    }
+    first = left ? edge.from : edge.to;
+    next[first] = left ? edge.to : edge.from;
+    used |= 1u << first;
+    ++count;
+  }
+  clipped_.clear();
+  std::uint32_t vertex = first;
+  for (; (used >> vertex & 1) != 0; vertex = next[vertex]) {
+    used &= ~(1u << vertex);
+    clipped_.push_back({body_corners_[vertex], EdgeKind::kOpen});
+  }
+  return vertex == first && clipped_.size() == count && count >= 3;
+}
+
+// A body wholly beyond the near plane, each of whose faces is clearly seen or clearly turned away.
+bool MapPolygons::addBody(const OccluderSet& set, OccluderId id, const OccluderBody& body,
+                          const RasterSettings& settings) {
+  const std::span<const Vec3f> vertices = set.verticesOf(body);
+  Vec3d relative[kMaxBodyVertices];
+  double reach = 0.0, farthest = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    relative[i] = Vec3d(vertices[i]) - eye_.position;
+    body_corners_[i] = view_.toCamera(relative[i]);
+    reach = std::max(reach, magnitude(relative[i]));
+    farthest = std::max(farthest, dot(relative[i], relative[i]));
+    nearest = std::min(nearest, body_corners_[i].z);
+  }
+  farthest = eye_.orthographic ? 1.0 : std::sqrt(farthest);
+  std::uint64_t seen = 0;
+  struct Face {
+    Plane support;
+    double depth_slack = 0.0;  // see EyeOccluder
+  };
+  Face faces[MapPolygon::kMaxPlanes];
+  std::uint32_t face_count = 0, number = 0;
+  double inset = 0.0, depth_slack = 0.0;
+  for (const BodyFace& face : set.facesOf(body)) {
+    const double height = -dot(face.plane.normal, relative[face.vertex]);
+    const double grazing = (eye_.orthographic ? -dot(face.plane.normal, eye_.forward) : height) / farthest;
+    if (!(std::abs(grazing) > kGrazingSine)) {
+      return false;
+    }
+    if (grazing > 0.0) {
+      if (face_count == MapPolygon::kMaxPlanes) {
+        return false;
+      }
+      const double face_inset = (32.0 * body.slack + kEdgeMargin * reach) / grazing;
+      if (!keepsShape(set[face.occluder], face_inset)) {
+        return false;
+      }
+      const double face_slack = (4.0 * body.slack + kDepthMargin * 0x1p-8 * reach) / grazing;
+      faces[face_count++] = {{face.plane.normal, height}, face_slack};
+      seen |= std::uint64_t{1} << number;
+      inset = std::max(inset, face_inset);
+      depth_slack = std::max(depth_slack, face_slack);
+    }
+    ++number;
+  }
+  const double clip_depth = eye_.near + depth_slack + kDepthMargin * (eye_.near + reach);
+  if (face_count == 0 || !std::isfinite(reach) || !(nearest > clip_depth) ||
+      !findSilhouette(set, body, seen)) {
+    return false;
+  }
+  if (!clip(clip_depth)) {
+    ++unusable;
+    return true;
+  }
+  MapPolygon polygon;
+  startPolygon(id, inset, polygon);
+  for (std::uint32_t i = 0; i < face_count; ++i) {
+    addNearness(faces[i].support, faces[i].depth_slack + 4.0 * kDepthMargin * reach, settings, polygon);
+  }
+  polygons.push_back(polygon);
+  return true;
 }
 
 // Polygons that share a seam must be cut at the same depth, else one of them would have an end there that the
@@ -107,7 +213,7 @@ double MapPolygons::commonClipDepth() const {
   for (bool raised = true; raised;) {
     raised = false;
     for (const Member& member : members_) {
-      if (member.seen.nearest < depth && member.seen.clip_depth > depth) {
+      if (member.seen.nearest < member.seen.clip_depth && member.seen.clip_depth > depth) {
         depth = member.seen.clip_depth;
         raised = true;
       }
@@ -146,7 +252,11 @@ std::uint64_t MapPolygons::openElementsOf(const OccluderSet& set, std::uint32_t 
 
 // False: nothing of the polygon is on the map.
 bool MapPolygons::clip(double clip_depth) {
-  const MapVolume map(view_, clip_depth, 0.0), volume(view_, clip_depth, MapVolume::kBeyond);
+  // The mesh may go on a little beyond a seam: then it is on the map although the polygon is not.
+  const bool sealed = std::any_of(clipped_.begin(), clipped_.end(),
+                                  [](const Corner& corner) { return corner.kind == EdgeKind::kSealed; });
+  const MapVolume volume(view_, clip_depth, MapVolume::kBeyond);
+  const MapVolume map = sealed ? volume : MapVolume(view_, clip_depth, 0.0);
   unsigned outside_all = ~0u, outside_some = 0;
   for (const Corner& corner : clipped_) {
     outside_all &= map.outside(corner.position);
@@ -210,47 +320,70 @@ bool MapPolygons::clipGap(const Vec3d& from, const Vec3d& to, double clip_depth,
 }
 
 // How far, in pixels on the map, something may appear from where it is that is off by twice the inset.
-float MapPolygons::marginAt(const Member& member, double depth) const {
-  if (!view_.orthographic && !(member.inset < 0.1 * depth)) {
+float MapPolygons::marginAt(double inset, double depth) const {
+  if (!view_.orthographic && !(inset < 0.1 * depth)) {
     return kWholeMap;
   }
   const double stretch_x = view_.orthographic ? view_.scale_x : (view_.scale_x + view_.middle_x) / depth;
   const double stretch_y = view_.orthographic ? view_.scale_y : (view_.scale_y + view_.middle_y) / depth;
-  return static_cast<float>(4.0 * rounding_ + 2.25 * member.inset * std::max(stretch_x, stretch_y));
+  return static_cast<float>(4.0 * rounding_ + 2.25 * inset * std::max(stretch_x, stretch_y));
 }
 
 // The plane is moved away by what triangles may lie behind it.
-void MapPolygons::setNearness(const Member& member, const RasterSettings& settings,
+void MapPolygons::addNearness(const Plane& support, double slack, const RasterSettings& settings,
                               MapPolygon& polygon) const {
-  const Plane& support = member.seen.support;
-  const Vec3d n = view_.toCamera(support.normal);
-  double offset = support.offset;
-  if (settings.coverage == Coverage::kInner) {
-    offset += member.seen.depth_slack + 4.0 * kDepthMargin * member.seen.reach;
-  }
+  const Vec3d n = view_.normalToCamera(support.normal);
+  const double offset = support.offset + (settings.coverage == Coverage::kInner ? slack : 0.0);
   const double scale = view_.orthographic ? 1.0 / n.z : -1.0 / offset;
-  polygon.along_x = scale * n.x / view_.scale_x;
-  polygon.along_y = scale * n.y / view_.scale_y;
-  polygon.at_origin = scale * (view_.orthographic ? offset : n.z) - polygon.along_x * view_.middle_x -
-                      polygon.along_y * view_.middle_y;
+  NearnessPlane plane;
+  plane.along_x = scale * n.x / view_.scale_x;
+  plane.along_y = scale * n.y / view_.scale_y;
+  plane.at_origin = scale * (view_.orthographic ? offset : n.z) - plane.along_x * view_.middle_x -
+                    plane.along_y * view_.middle_y;
   double least = std::numeric_limits<double>::infinity(), most = -least, sums = 0.0;
   for (std::uint32_t i = 0; i < polygon.edge_count; ++i) {
     const MapPoint& p = points[polygon.first_corner + i];
-    const double x = polygon.along_x * p.x, y = polygon.along_y * p.y;
-    least = std::min(least, polygon.at_origin + x + y);
-    most = std::max(most, polygon.at_origin + x + y);
+    const double x = plane.along_x * p.x, y = plane.along_y * p.y;
+    least = std::min(least, plane.at_origin + x + y);
+    most = std::max(most, plane.at_origin + x + y);
     sums = std::max(sums, std::abs(x) + std::abs(y));
   }
-  const double slope = std::abs(polygon.along_x) + std::abs(polygon.along_y);
-  const double width = std::abs(polygon.along_x) * (polygon.right - polygon.left);
+  const double slope = std::abs(plane.along_x) + std::abs(plane.along_y);
+  const double width = std::abs(plane.along_x) * (polygon.right - polygon.left);
   const double rounding = 0x1p-22 * (std::max(std::abs(least), std::abs(most)) + width + 4.0 * slope) +
-                          0x1p-50 * (std::abs(polygon.at_origin) + sums);
-  polygon.farthest = static_cast<float>(least - rounding);
-  polygon.nearest = static_cast<float>(most + rounding);
+                          0x1p-50 * (std::abs(plane.at_origin) + sums);
+  polygon.farthest = std::min(polygon.farthest, static_cast<float>(least - rounding));
+  polygon.nearest = std::min(polygon.nearest, static_cast<float>(most + rounding));
   if (settings.coverage == Coverage::kInner) {
-    polygon.at_origin += std::min(polygon.along_x, 0.0) + std::min(polygon.along_y, 0.0) - rounding;
+    plane.at_origin += std::min(plane.along_x, 0.0) + std::min(plane.along_y, 0.0) - rounding;
   } else {
-    polygon.at_origin += 0.5 * (polygon.along_x + polygon.along_y);
+    plane.at_origin += 0.5 * (plane.along_x + plane.along_y);
+  }
+  polygon.planes[polygon.plane_count++] = plane;
+}
+
+// Its outline: the corners in clipped_.
+void MapPolygons::startPolygon(OccluderId occluder, double inset, MapPolygon& polygon) {
+  polygon.occluder = occluder;
+  polygon.first_edge = static_cast<std::uint32_t>(edges.size());
+  polygon.first_corner = static_cast<std::uint32_t>(points.size());
+  polygon.edge_count = static_cast<std::uint32_t>(clipped_.size());
+  polygon.low = polygon.left = polygon.farthest = polygon.nearest = std::numeric_limits<float>::max();
+  polygon.high = polygon.right = -std::numeric_limits<float>::max();
+  for (const Corner& corner : clipped_) {
+    points.push_back({view_.mapX(corner.position), view_.mapY(corner.position)});
+  }
+  for (std::size_t i = 0; i < clipped_.size(); ++i) {
+    const std::size_t next = i + 1 < clipped_.size() ? i + 1 : 0;
+    const double depth = std::min(clipped_[i].position.z, clipped_[next].position.z);
+    const MapEdge edge = edgeBetween(points[polygon.first_corner + i], points[polygon.first_corner + next],
+                                     clipped_[i].kind, marginAt(inset, depth));
+    edges.push_back(edge);
+    polygon.low = std::min(polygon.low, edge.low);
+    polygon.high = std::max(polygon.high, edge.high);
+    polygon.left = std::min(polygon.left, edge.left);
+    polygon.right = std::max(polygon.right, edge.right);
+    polygon.margin = std::max(polygon.margin, edge.margin);
   }
 }
 
@@ -276,37 +409,18 @@ void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double
     return;
   }
   MapPolygon polygon;
-  polygon.occluder = member.seen.id;
+  startPolygon(member.seen.id, member.inset, polygon);
   polygon.group = index;
-  polygon.first_edge = static_cast<std::uint32_t>(edges.size());
-  polygon.first_corner = static_cast<std::uint32_t>(points.size());
-  polygon.edge_count = static_cast<std::uint32_t>(clipped_.size());
-  polygon.low = polygon.left = std::numeric_limits<float>::max();
-  polygon.high = polygon.right = -std::numeric_limits<float>::max();
-  for (const Corner& corner : clipped_) {
-    points.push_back({view_.mapX(corner.position), view_.mapY(corner.position)});
-  }
-  for (std::size_t i = 0; i < clipped_.size(); ++i) {
-    const std::size_t next = i + 1 < clipped_.size() ? i + 1 : 0;
-    const double depth = std::min(clipped_[i].position.z, clipped_[next].position.z);
-    const MapEdge edge = edgeBetween(points[polygon.first_corner + i], points[polygon.first_corner + next],
-                                     clipped_[i].kind, marginAt(member, depth));
-    edges.push_back(edge);
-    polygon.low = std::min(polygon.low, edge.low);
-    polygon.high = std::max(polygon.high, edge.high);
-    polygon.left = std::min(polygon.left, edge.left);
-    polygon.right = std::max(polygon.right, edge.right);
-    polygon.margin = std::max(polygon.margin, edge.margin);
-  }
   for (const auto& [from, to] : gaps_) {
     Vec3d a, b;
     if (clipGap(from, to, clip_depth, a, b)) {
       edges.push_back(edgeBetween({view_.mapX(a), view_.mapY(a)}, {view_.mapX(b), view_.mapY(b)},
-                                  EdgeKind::kOpen, marginAt(member, std::min(a.z, b.z))));
+                                  EdgeKind::kOpen, marginAt(member.inset, std::min(a.z, b.z))));
       ++polygon.gap_count;
     }
   }
-  setNearness(member, settings, polygon);
+  addNearness(member.seen.support, member.seen.depth_slack + 4.0 * kDepthMargin * member.seen.reach, settings,
+              polygon);
   polygons.push_back(polygon);
 }
 
@@ -322,13 +436,13 @@ void MapPolygons::build(const PixelView& view, const RasterSettings& settings, c
   edges.clear();
   points.clear();
   unusable = 0;
-  takeMembers(set, chosen);
+  takeMembers(set, chosen, settings);
   const double clip_depth = commonClipDepth();
   for (std::uint32_t i = 0; i < members_.size(); ++i) {
     addPolygon(set, i, clip_depth, settings);
   }
   for (MapPolygon& polygon : polygons) {
-    polygon.group = rootOf(polygon.group);
+    polygon.group = polygon.group == MapPolygon::kNoGroup ? polygon.group : rootOf(polygon.group);
   }
   for (const Member& member : members_) {
     member_of_[member.seen.id.value] = kNone;

@@ -39,20 +39,31 @@ struct MapEdge {
   bool flat() const { return low == high; }
 };
 
+// Nearness in pixel (x, y): at_origin + along_x * x + along_y * y. Inner coverage: at most that of any point
+// of the plane in the pixel, by more than the rounding of this sum to single precision. Centre coverage: at
+// the pixel's centre.
+struct NearnessPlane {
+  double at_origin = 0.0, along_x = 0.0, along_y = 0.0;
+};
+
+// Of an occluder, or of a convex body: the outline of all its faces that are seen.
 struct MapPolygon {
-  OccluderId occluder;
+  static constexpr std::uint32_t kMaxPlanes = 4;
+
+  OccluderId occluder;                           // of a body: the face that was chosen
   std::uint32_t first_edge = 0, edge_count = 0;  // of its outline
   std::uint32_t gap_count = 0;                   // edges after those: the open parts of sealed edges
   std::uint32_t first_corner = 0;                // as many as edges
   float low = 0.0f, high = 0.0f;                 // of its image
   float left = 0.0f, right = 0.0f;
   float margin = 0.0f;  // the greatest of its edges
-  // Nearness in pixel (x, y): at_origin + along_x * x + along_y * y. Inner coverage: at most that of any
-  // point of the polygon in the pixel, by more than the rounding of this sum to single precision. Centre
-  // coverage: at the pixel's centre.
-  double at_origin = 0.0, along_x = 0.0, along_y = 0.0;
+  // Its nearness is the least of these.
+  NearnessPlane planes[kMaxPlanes];
+  std::uint32_t plane_count = 0;
   float farthest = 0.0f, nearest = 0.0f;  // bounds of nearness over its image
-  std::uint32_t group = 0;                // polygons that share sealed edges, directly or not, have the same
+  // Polygons that share sealed edges, directly or not, have the same.
+  static constexpr std::uint32_t kNoGroup = 0xffffffffu;  // bodies
+  std::uint32_t group = kNoGroup;
 };
 
 // Storage is kept from one use to the next.
@@ -83,22 +94,32 @@ class MapPolygons {
     Vec3d position;
     EdgeKind kind = EdgeKind::kOpen;
   };
+  static constexpr std::uint32_t kMaxBodyVertices = 32;
   struct Member {
     EyeOccluder seen;
     double inset = 0.0;  // metres in its plane by which it is smaller than its outline
     std::uint32_t group = 0;
   };
 
-  void takeMembers(const OccluderSet& set, std::span<const OccluderId> chosen);
+  void takeMembers(const OccluderSet& set, std::span<const OccluderId> chosen,
+                   const RasterSettings& settings);
   double commonClipDepth() const;
   std::uint64_t openElementsOf(const OccluderSet& set, std::uint32_t member, const Outline& outline);
   void addPolygon(const OccluderSet& set, std::uint32_t member, double clip_depth,
                   const RasterSettings& settings);
+  // As the occluder `id`. False: its faces are to be drawn one by one.
+  bool addBody(const OccluderSet& set, OccluderId id, const OccluderBody& body,
+               const RasterSettings& settings);
+  bool findSilhouette(const OccluderSet& set, const OccluderBody& body, std::uint64_t seen);
+  // Of the corners in clipped_.
+  void startPolygon(OccluderId occluder, double inset, MapPolygon& polygon);
   bool clip(double clip_depth);
   void addGaps(const OccluderSet& set, const Member& member, std::uint32_t edge, std::uint64_t open);
   bool clipGap(const Vec3d& from, const Vec3d& to, double clip_depth, Vec3d& a, Vec3d& b) const;
-  void setNearness(const Member& member, const RasterSettings& settings, MapPolygon& polygon) const;
-  float marginAt(const Member& member, double depth) const;
+  // support: relative to the eye, unit normal towards it; slack: metres that it is moved away.
+  void addNearness(const Plane& support, double slack, const RasterSettings& settings,
+                   MapPolygon& polygon) const;
+  float marginAt(double inset, double depth) const;
   std::uint32_t rootOf(std::uint32_t member);
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -107,7 +128,11 @@ class MapPolygons {
   double rounding_ = 0.0;  // pixels
   std::vector<Member> members_;
   std::vector<std::uint32_t> member_of_;  // by OccluderId, kNone between builds
+  enum class BodyState : std::uint8_t { kUnknown, kDone, kByFaces };
+  std::vector<BodyState> body_state_;  // by body, kUnknown between builds
+  std::vector<std::uint32_t> bodies_met_;
   std::vector<Corner> clipped_, scratch_;
+  Vec3d body_corners_[kMaxBodyVertices];       // of the body that is being added, camera space
   std::vector<std::pair<Vec3d, Vec3d>> gaps_;  // of the polygon that is being added, camera space
 };
 

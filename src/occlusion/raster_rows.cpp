@@ -70,28 +70,45 @@ HWY_INLINE Vector rowsFrom(std::uint32_t y) {
 // The polygon's nearness in the first pixel of each run. A row's bits must not depend on where the part
 // begins.
 void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
-  const MapPolygon& polygon = *part.polygon;
-  for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
-    part.at_first[i] = static_cast<float>(polygon.at_origin + polygon.along_y * (y + i) +
-                                          polygon.along_x * part.runs.first[i]);
+  for (std::uint32_t p = 0; p < part.polygon->plane_count; ++p) {
+    const NearnessPlane& plane = part.polygon->planes[p];
+    for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
+      part.at_first[p][i] =
+          static_cast<float>(plane.at_origin + plane.along_y * (y + i) + plane.along_x * part.runs.first[i]);
+    }
   }
 }
 
 // A polygon's nearness along one row of a part.
 struct RowNearness {
-  float at_first = 0.0f, step = 0.0f, farthest = 0.0f;
-  std::uint32_t first = 0;
+  float at_first[MapPolygon::kMaxPlanes], step[MapPolygon::kMaxPlanes];
+  float farthest = 0.0f;
+  std::uint32_t planes = 0, first = 0;
 
   HWY_INLINE RowNearness(const RasterScratch::Part& part, std::uint32_t row)
-      : at_first(part.at_first[row]),
-        step(static_cast<float>(part.polygon->along_x)),
-        farthest(part.polygon->farthest),
-        first(static_cast<std::uint32_t>(part.runs.first[row])) {}
+      : farthest(part.polygon->farthest),
+        planes(part.polygon->plane_count),
+        first(static_cast<std::uint32_t>(part.runs.first[row])) {
+    for (std::uint32_t p = 0; p < planes; ++p) {
+      at_first[p] = part.at_first[p][row];
+      step[p] = static_cast<float>(part.polygon->planes[p].along_x);
+    }
+  }
   // Of pixels x, x + 1, ...
   HWY_INLINE Vector from(std::uint32_t x) const {
     const Lanes d;
     const auto offset = hn::Iota(d, static_cast<float>(x - first));
-    return hn::Max(hn::Add(hn::Set(d, at_first), hn::Mul(hn::Set(d, step), offset)), hn::Set(d, farthest));
+    auto least = along(0, offset);
+    for (std::uint32_t p = 1; p < planes; ++p) {
+      least = hn::Min(least, along(p, offset));
+    }
+    return hn::Max(least, hn::Set(d, farthest));
+  }
+
+ private:
+  HWY_INLINE Vector along(std::uint32_t p, Vector offset) const {
+    const Lanes d;
+    return hn::Add(hn::Set(d, at_first[p]), hn::Mul(hn::Set(d, step[p]), offset));
   }
 };
 
@@ -104,7 +121,6 @@ struct Run {
     return some ? Run{static_cast<std::uint32_t>(runs.first[row]), static_cast<std::uint32_t>(runs.last[row])}
                 : Run{};
   }
-  bool empty() const { return first > last; }
 };
 
 // Calls body(x, mask) for the vectors of a run.
@@ -215,7 +231,8 @@ void drawInsidesOf(const MapPolygons& polygons, std::span<const std::uint32_t> o
 
 // Seams. A pixel is covered by the group where some of its polygons touch it, and nothing that comes near it
 // is an end of one of them: then one goes on beyond each edge that crosses the pixel, and together they cover
-// all of it (docs/conservative.md). What is farthest of all that touch it counts.
+// all of it (docs/conservative.md). What is farthest counts, of all whose seams come near: the mesh's seam
+// may lie on either side of the polygons' edge, by less than the margin.
 class SeamDrawer {
  public:
   SeamDrawer(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,
@@ -274,20 +291,22 @@ class SeamDrawer {
           findTouched(polygon, touched);
           touched_known = true;
         }
-        RowRuns crossed;
-        findCrossed(edge, crossed);
+        RasterScratch::Part& seam = scratch_.seams.emplace_back();
+        seam.polygon = &polygon;
+        findCrossed(edge, seam.runs);
         bool some = false;
         for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
-          crossed.first[i] = std::max(crossed.first[i], touched.first[i]);
-          crossed.last[i] = std::min(crossed.last[i], touched.last[i]);
-          const bool none = crossed.first[i] > crossed.last[i];
+          seam.own.first[i] = std::max(seam.runs.first[i], touched.first[i]);
+          seam.own.last[i] = std::min(seam.runs.last[i], touched.last[i]);
+          const bool none = seam.runs.first[i] > seam.runs.last[i];
           some |= !none;
-          all_.first[i] = none ? all_.first[i] : std::min(all_.first[i], crossed.first[i]);
-          all_.last[i] = none ? all_.last[i] : std::max(all_.last[i], crossed.last[i]);
+          all_.first[i] = none ? all_.first[i] : std::min(all_.first[i], seam.runs.first[i]);
+          all_.last[i] = none ? all_.last[i] : std::max(all_.last[i], seam.runs.last[i]);
         }
         if (some) {
-          scratch_.seams.push_back({&polygon, crossed, {}});
-          findAtFirst(first_, scratch_.seams.back());
+          findAtFirst(first_, seam);
+        } else {
+          scratch_.seams.pop_back();
         }
       }
     }
@@ -298,7 +317,7 @@ class SeamDrawer {
     for (const RasterScratch::Part& seam : scratch_.seams) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
         const float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
-        if (!hiddenRow(map_row, Run::of(seam.runs, row), seam.polygon->nearest)) {
+        if (!hiddenRow(map_row, Run::of(seam.own, row), seam.polygon->nearest)) {
           return false;
         }
       }
@@ -353,7 +372,7 @@ class SeamDrawer {
 
   float* seamRow(std::uint32_t row) { return scratch_.seam_rows.data() + std::size_t{row} * band_.stride; }
 
-  // The farthest of what touches each pixel.
+  // The farthest of what comes near each pixel.
   void gather() {
     const Lanes d;
     for (const RasterScratch::Part& seam : scratch_.seams) {
@@ -386,16 +405,18 @@ class SeamDrawer {
     const Lanes d;
     for (const RasterScratch::Part& seam : scratch_.seams) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
-        float* seam_row = seamRow(row);
+        const float* seam_row = seamRow(row);
         float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
-        forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) {
-          const auto value = hn::LoadU(d, seam_row + x);
+        forRun(Run::of(seam.own, row), [&](std::uint32_t x, auto mask) {
           const auto old = hn::LoadU(d, map_row + x);
-          const auto touched = hn::And(mask, hn::Ne(value, hn::Set(d, kUntouched)));
-          hn::StoreU(hn::IfThenElse(touched, hn::Max(old, value), old), d, map_row + x);
-          hn::StoreU(hn::IfThenElse(mask, hn::Set(d, kUntouched), value), d, seam_row + x);
+          hn::StoreU(hn::IfThenElse(mask, hn::Max(old, hn::LoadU(d, seam_row + x)), old), d, map_row + x);
         });
       }
+    }
+    for (std::uint32_t row = 0; row < row_count_; ++row) {
+      float* seam_row = seamRow(row);
+      forRun(Run::of(all_, row),
+             [&](std::uint32_t x, auto) { hn::StoreU(hn::Set(d, kUntouched), d, seam_row + x); });
     }
   }
 
@@ -461,9 +482,10 @@ void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> ord
                           return;
                         }
                         float* row = band.nearness + std::size_t{y} * band.stride;
-                        const double at_row = polygon.at_origin + polygon.along_y * y;
+                        const NearnessPlane& plane = polygon.planes[0];
+                        const double at_row = plane.at_origin + plane.along_y * y;
                         for (std::uint32_t x = first; x <= last; ++x) {
-                          const auto value = static_cast<float>(at_row + polygon.along_x * x);
+                          const auto value = static_cast<float>(at_row + plane.along_x * x);
                           row[x] = std::max(row[x], value);
                         }
                       });

@@ -30,11 +30,12 @@ struct RowRuns {
 
 // Of one thread; kept from one use to the next.
 struct RasterScratch {
-  // A polygon's pixels in RowRuns::kRows rows, with its nearness in the first one of each row.
+  // A polygon's pixels in RowRuns::kRows rows, with the nearness of its planes in the first one of each row.
   struct Part {
     const MapPolygon* polygon = nullptr;
     RowRuns runs;
-    float at_first[RowRuns::kRows] = {};
+    RowRuns own;  // seams: those of them that the polygon touches
+    float at_first[MapPolygon::kMaxPlanes][RowRuns::kRows];
   };
   std::vector<Part> insides;  // of a polygon, from its lowest row on
   std::vector<Part> seams;    // of a group, in the same rows

@@ -40,6 +40,8 @@ struct Rasteriser::Impl {
       return p.nearest != q.nearest ? p.nearest > q.nearest : p.occluder < q.occluder;
     });
     by_group = order;
+    std::erase_if(by_group,
+                  [this](std::uint32_t p) { return polygons.polygons[p].group == MapPolygon::kNoGroup; });
     std::sort(by_group.begin(), by_group.end(), [this](std::uint32_t a, std::uint32_t b) {
       const MapPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
       return p.group != q.group ? p.group < q.group : a < b;

@@ -16,6 +16,9 @@ namespace sightline {
 struct PixelView {
   Vec3d eye;
   Vec3d right, up, forward;
+  // What camera space's unit vectors are in scene space: the same but for what the axes lack of being
+  // orthonormal, which a caller's single precision makes visible on a large map.
+  Vec3d unit_x, unit_y, unit_z;
   bool orthographic = false;
   double near = 0.0, far = 0.0;
   double scale_x = 0.0,
@@ -36,8 +39,15 @@ struct PixelView {
     const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
     scale_x = middle_x / (half_height * view.aspect);
     scale_y = middle_y / half_height;
+    const Vec3d across = cross(up, forward);
+    const double volume = dot(right, across);
+    unit_x = across / volume;
+    unit_y = cross(forward, right) / volume;
+    unit_z = cross(right, up) / volume;
   }
 
+  // Of a plane's normal.
+  Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
   // Of a direction, or of a point relative to the eye.
   Vec3d toCamera(const Vec3d& r) const { return {dot(right, r), dot(up, r), dot(forward, r)}; }
   // Of a point in camera space; perspective: z > 0.

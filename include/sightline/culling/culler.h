@@ -118,7 +118,7 @@ class Culler {
   std::span<const ObjectId> visible() const;
   // One state a dynamic box: hidden also means outside the frustum.
   std::span<const Visibility> dynamicStates() const;
-  // The occluders that this frame's structure was built from.
+  // The occluders that this frame's structure was built from; without those that move.
   std::span<const OccluderId> occludersUsed() const;
   const CullStats& stats() const;
   // What the opacity map or the depth pyramid was made of; empty with other methods.

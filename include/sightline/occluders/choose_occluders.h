@@ -22,6 +22,7 @@ struct ChoiceSettings {
   std::uint32_t count = 64;  // k
   AreaAngleDirection direction = AreaAngleDirection::kOccluder;
   double max_distance = 0.0;  // metres from the eye to an object's box (lambda); 0: no limit
+  bool bodies = false;        // convex bodies count as one, named by their first face
 };
 
 // Area-angle of an occluder (Coorg and Teller 1997; Bittner et al. 1998, eq. 1): larger is better, 0 when it
@@ -46,8 +47,9 @@ class OccluderChooser {
                                         std::span<const OccluderId> candidates, std::uint32_t count);
 
  private:
-  void rank(const View& view, const OccluderSet& set, OccluderId id, AreaAngleDirection direction);
-  std::span<const OccluderId> takeBest(const View& view, const OccluderSet& set, std::uint32_t count);
+  void rank(const View& view, const OccluderSet& set, OccluderId id, const ChoiceSettings& settings);
+  std::span<const OccluderId> takeBest(const View& view, const OccluderSet& set,
+                                       const ChoiceSettings& settings);
 
   std::vector<std::pair<double, OccluderId>> ranked_;
   std::vector<OccluderId> chosen_;

@@ -9,6 +9,7 @@
 
 #include "sightline/base/ids.h"
 #include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
 #include "sightline/math/plane.h"
 #include "sightline/scene/scene.h"
 
@@ -43,6 +44,24 @@ struct EdgeCover {
   std::uint32_t element = 0;  // which mesh edge of the chain, from 0
 };
 
+// A convex solid of one object that occluders enclose: seen from outside, all of its image hides.
+struct OccluderBody {
+  std::uint32_t first_vertex = 0, first_edge = 0, first_face = 0;  // into OccluderSet::body_...
+  std::uint8_t vertex_count = 0, edge_count = 0, face_count = 0;
+  float slack = 0.0f;  // metres, as of an occluder; of all faces
+  Box bounds;
+};
+// From vertex `from` to vertex `to`, with face `left` on its left as seen from outside, `right` on its right;
+// numbers within the body.
+struct BodyEdge {
+  std::uint8_t from = 0, to = 0, left = 0, right = 0;
+};
+struct BodyFace {
+  Plane plane;  // the occluder's
+  OccluderId occluder;
+  std::uint8_t vertex = 0;  // on the plane, number within the body
+};
+
 // Why triangles are in no occluder: one count each, in triangles.
 struct OccluderReport {
   std::uint64_t used = 0;          // in occluders
@@ -55,7 +74,7 @@ struct OccluderReport {
 struct OccluderSettings {
   std::uint32_t max_vertices = 16;  // of a polygon, 3 to 64
   // The largest polygons that together hold this fraction of the area of all polygons are kept, whatever the
-  // scene's scale; those of objects marked as occluders always.
+  // scene's scale; those of objects marked as occluders always. The faces of a convex body are kept together.
   double area_fraction = 0.98;
   double min_area = 0.0;            // square metres, in addition
   std::uint32_t max_occluders = 0;  // in addition; 0: no limit
@@ -71,6 +90,12 @@ struct OccluderSet {
   std::vector<Vec3f> joints;                   // mesh vertices along edges, between the corners
   std::vector<std::uint32_t> first_of_object;  // object_count + 1 entries into of_object
   std::vector<OccluderId> of_object;           // occluders by object
+  static constexpr std::uint32_t kNoBody = 0xffffffffu;
+  std::vector<OccluderBody> bodies;
+  std::vector<Vec3f> body_vertices;  // scene space
+  std::vector<BodyEdge> body_edges;
+  std::vector<BodyFace> body_faces;    // of a body: ascending by occluder
+  std::vector<std::uint32_t> body_of;  // by OccluderId: into bodies, or kNoBody
   OccluderReport report;
   double area = 0.0;  // of all occluders, square metres
 
@@ -83,6 +108,19 @@ struct OccluderSet {
   }
   std::span<const EdgeCover> coversOf(const OccluderEdge& e) const {
     return std::span(covers).subspan(e.first_cover, e.cover_count);
+  }
+  const OccluderBody* bodyOf(OccluderId id) const {
+    const std::uint32_t body = body_of[id.value];
+    return body == kNoBody ? nullptr : &bodies[body];
+  }
+  std::span<const Vec3f> verticesOf(const OccluderBody& b) const {
+    return std::span(body_vertices).subspan(b.first_vertex, b.vertex_count);
+  }
+  std::span<const BodyEdge> edgesOf(const OccluderBody& b) const {
+    return std::span(body_edges).subspan(b.first_edge, b.edge_count);
+  }
+  std::span<const BodyFace> facesOf(const OccluderBody& b) const {
+    return std::span(body_faces).subspan(b.first_face, b.face_count);
   }
   std::span<const OccluderId> occludersOf(ObjectId object) const {
     if (object.value + 1 >= first_of_object.size()) {

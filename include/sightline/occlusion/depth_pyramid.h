@@ -27,6 +27,15 @@ struct BoxAnswer {
   bool within_view = false;  // all of it surely lies in the view's volume
 };
 
+// What a caller who asks about the same boxes view after view knows of them.
+struct BoxHints {
+  // As many as boxes, or none. Not 0: the box was not hidden a short while ago, and is not looked for again:
+  // kPartial unless it is wholly outside the view.
+  std::span<const std::uint8_t> seen;
+  // Of the boxes from this one on it does not matter whether they are kVisible or kPartial.
+  std::size_t plain_from = static_cast<std::size_t>(-1);
+};
+
 // Usable alone: build() from any occluders, then classify() any boxes at any time. With Coverage::kInner
 // answers are conservative: kHidden only where no point of the box can be seen from the view's eye. kVisible
 // where nothing in the map is before any part of the box. A box is compared by its own outline and depth in
@@ -51,7 +60,7 @@ class DepthPyramid {
   // Of boxes in scene space, as seen in the last view; one answer for each. Boxes that are not well formed,
   // and those that reach the near plane, are kPartial or kVisible. What is wholly outside the view is
   // kHidden.
-  void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
+  void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers, const BoxHints& hints = {}) const;
   Visibility classify(const Box& box) const;
   // The same with the view's volume alone, as if nothing were drawn: kHidden where wholly outside, kVisible
   // or kPartial elsewhere.

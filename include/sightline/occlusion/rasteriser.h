@@ -77,7 +77,8 @@ class Rasteriser {
   const RasterSettings& settings() const;
   DepthMapView map() const;
   const RasterStats& stats() const;  // since begin()
-  // Those of the chosen ones that were drawn or are behind what was drawn, since begin().
+  // Those of the chosen ones that were drawn or are behind what was drawn, since begin(), draw by draw; of a
+  // convex body that was drawn as one the first face that was chosen.
   std::span<const OccluderId> occluders() const;
 
  private:

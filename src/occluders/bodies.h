@@ -1,0 +1,26 @@
+#pragma once
+
+// Convex bodies among the polygons of an object: what encloses a convex solid hides as a whole, so that
+// structures in image space need its outline only.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "occluders/links.h"
+#include "occluders/polygon_merge.h"
+#include "sightline/occluders/occluder_set.h"
+
+namespace sightline::occluder_detail {
+
+// Numbers the bodies among the polygons of one object from 0, and fills FoundPolygon::body and body_size.
+// Polygons make a body where each edge is, mesh edge by mesh edge, an edge of one other, and no vertex lies
+// before any of the planes by more than the tolerance.
+void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const> polygons, double tolerance);
+
+// Fills the bodies of a set whose occluders are these polygons. Bodies of which a polygon is missing are left
+// out.
+void assembleBodies(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+                    OccluderSet& set);
+
+}  // namespace sightline::occluder_detail
