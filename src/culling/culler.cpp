@@ -80,6 +80,13 @@ struct Culler::Impl {
     } else if (s.method == CullMethod::kDepthPyramid) {
       pyramid.emplace(DepthPyramidSettings{s.raster});
       wide_walk.emplace(h, bounds);
+      if (s.focus.magnification > 1.0 && s.raster.coverage == Coverage::kInner) {
+        const DepthMapView map = pyramid->map();
+        window.emplace(s.focus, map.width, map.height);
+        RasterSettings fine = s.focus.raster;
+        fine.coverage = s.raster.coverage;
+        fine_pyramid.emplace(DepthPyramidSettings{fine});
+      }
     }
   }
 
@@ -210,6 +217,30 @@ struct Culler::Impl {
     }
   }
 
+  // The finer map: of the first one's occluders, and of those that the last frame kept in the window.
+  void drawFocus(std::span<const OccluderId> chosen, const OccluderSet* moving) {
+    candidates.clear();
+    for (const ObjectId object : visible) {
+      if (window->mayShow(object_bounds[object.value])) {
+        candidates.push_back(object);
+      }
+    }
+    fine_chosen.clear();
+    for (const OccluderId id : chosen) {
+      const OccluderBody* body = occluders.bodyOf(id);
+      if (body == nullptr || window->mayShow(body->bounds)) {
+        fine_chosen.push_back(id);
+      }
+    }
+    const ChoiceSettings choice{.count = settings.focus.occluder_count, .bodies = true};
+    const auto more = fine_chooser.choose(window->view(), occluders, candidates, object_bounds, choice);
+    fine_chosen.insert(fine_chosen.end(), more.begin(), more.end());
+    const std::size_t used = used_count;
+    draw(*fine_pyramid, window->view(), fine_chosen, moving);
+    used_count = used;
+    fine_pyramid->finish(parallel_for);
+  }
+
   void takeRasterStats(const RasterStats& raster) {
     stats.occluders = raster.occluders;
     stats.occluders_hidden = raster.hidden;
@@ -249,8 +280,19 @@ struct Culler::Impl {
         [&](std::span<const OccluderId> chosen) {
           draw(*pyramid, view, chosen, moving);
           pyramid->finish(parallel_for);
+          if (window) {
+            window->begin(view, !view_jumped);
+            stats.focused = window->found();
+            if (stats.focused) {
+              drawFocus(chosen, moving);
+            }
+          }
         },
-        [&] { wide_walk->run(*pyramid, walkOptions(settings.temporal_coherence), stats, visible); });
+        [&] {
+          const culling_detail::WalkMaps maps{*pyramid, window ? &*window : nullptr,
+                                              stats.focused ? &*fine_pyramid : nullptr};
+          wide_walk->run(maps, walkOptions(settings.temporal_coherence), stats, visible);
+        });
     takeRasterStats(pyramid->stats().raster);
   }
 
@@ -352,6 +394,10 @@ struct Culler::Impl {
   std::optional<OpacityMap> opacity_map;  // with the method
   std::optional<DepthPyramid> pyramid;    // with the method
   std::optional<culling_detail::WideWalk> wide_walk;
+  std::optional<culling_detail::FocusWindow> window;  // with the settings
+  std::optional<DepthPyramid> fine_pyramid;           // of the window
+  OccluderChooser fine_chooser;
+  std::vector<OccluderId> fine_chosen;
   culling_detail::AdaptiveCoverage coverage;
   ParallelFor parallel_for = serialFor;
   std::vector<OccluderId> all_moving;

@@ -184,7 +184,7 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& map, const PixelView& view, const
 }
 
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                   const PixelBox& image, bool plain) {
+                   const PixelBox& image, bool plain, bool quick) {
   if (image.place != BoxPlace::kOnMap) {
     return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
   }
@@ -198,6 +198,9 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   }
   if (allNearer(levels[level], range, image.nearest)) {
     return Visibility::kHidden;
+  }
+  if (quick) {
+    return Visibility::kPartial;
   }
   if (!plain && !anyNearer(levels, level, image, range, image.farthest)) {
     return Visibility::kVisible;
@@ -222,12 +225,12 @@ void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::spa
              std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const PixelBox& image = images[i];
-    if (!hints.seen.empty() && hints.seen[i] != 0) {
-      answers[i].visibility = image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
-    } else {
-      answers[i].visibility = testOne(levels, view, boxes[i], image, i >= hints.plain_from);
-    }
-    answers[i].within_view = image.whole;
+    const bool quick = image.x0 >= hints.window_x0 && image.x1 <= hints.window_x1 &&
+                       image.y0 >= hints.window_y0 && image.y1 <= hints.window_y1;
+    const bool skipped = !hints.seen.empty() && hints.seen[i] != 0;
+    answers[i] = image.answer(!skipped ? testOne(levels, view, boxes[i], image, i >= hints.plain_from, quick)
+                              : image.place == BoxPlace::kOutside ? Visibility::kHidden
+                                                                  : Visibility::kPartial);
   }
 }
 

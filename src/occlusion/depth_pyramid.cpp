@@ -33,7 +33,7 @@ struct DepthPyramid::Impl {
 namespace {
 
 // Boxes whose images are made at once.
-constexpr std::size_t kGroup = 64;
+constexpr std::size_t kGroup = 16;
 
 template <typename Use>
 void forGroups(std::size_t count, Use&& use) {
@@ -84,9 +84,7 @@ void DepthPyramid::classify(std::span<const Box> boxes, std::span<BoxAnswer> ans
     const std::span<PixelBox> group(images, count);
     projectBoxes(impl_->projection, boxes.subspan(first, count), group);
     testBoxes(impl_->usableLevels(), impl_->view, boxes.subspan(first, count), group,
-              answers.subspan(first, count),
-              {hints.seen.empty() ? hints.seen : hints.seen.subspan(first, count),
-               hints.plain_from > first ? hints.plain_from - first : 0});
+              answers.subspan(first, count), hints.from(first, count));
   });
 }
 
@@ -102,10 +100,9 @@ void DepthPyramid::classifyInView(std::span<const Box> boxes, std::span<BoxAnswe
     projectBoxes(impl_->projection, boxes.subspan(first, count), {images, count});
     for (std::size_t i = 0; i < count; ++i) {
       const BoxPlace place = images[i].place;
-      answers[first + i] = {place == BoxPlace::kOutside ? Visibility::kHidden
-                            : place == BoxPlace::kOnMap ? Visibility::kVisible
-                                                        : Visibility::kPartial,
-                            images[i].whole};
+      answers[first + i] = images[i].answer(place == BoxPlace::kOutside ? Visibility::kHidden
+                                            : place == BoxPlace::kOnMap ? Visibility::kVisible
+                                                                        : Visibility::kPartial);
     }
   });
 }

@@ -107,7 +107,8 @@ void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId
     const double inset = seen ? (32.0 * seen->deviation + kEdgeMargin * seen->reach) / seen->grazing : 0.0;
     // What it may be off must be less than what is drawn beyond the map.
     if (!seen || !keepsShape(set[id], inset) ||
-        !(marginAt(inset, std::max(seen->nearest, view_.near)) < std::min(view_.middle_x, view_.middle_y))) {
+        !(marginAt(inset, 1.0 / std::max(seen->nearest, view_.near)) <
+          std::min(view_.middle_x, view_.middle_y))) {
       ++unusable;
       continue;
     }
@@ -320,13 +321,15 @@ bool MapPolygons::clipGap(const Vec3d& from, const Vec3d& to, double clip_depth,
 }
 
 // How far, in pixels on the map, something may appear from where it is that is off by twice the inset.
-float MapPolygons::marginAt(double inset, double depth) const {
-  if (!view_.orthographic && !(inset < 0.1 * depth)) {
+float MapPolygons::marginAt(double inset, double inverse_depth) const {
+  if (!view_.orthographic && !(inset * inverse_depth < 0.1)) {
     return kWholeMap;
   }
-  const double stretch_x = view_.orthographic ? view_.scale_x : (view_.scale_x + view_.middle_x) / depth;
-  const double stretch_y = view_.orthographic ? view_.scale_y : (view_.scale_y + view_.middle_y) / depth;
-  return static_cast<float>(4.0 * rounding_ + 2.25 * inset * std::max(stretch_x, stretch_y));
+  const double stretch =
+      view_.orthographic
+          ? std::max(view_.scale_x, view_.scale_y)
+          : std::max(view_.scale_x + view_.middle_x, view_.scale_y + view_.middle_y) * inverse_depth;
+  return static_cast<float>(4.0 * rounding_ + 2.25 * inset * stretch);
 }
 
 // The plane is moved away by what triangles may lie behind it.
@@ -370,14 +373,19 @@ void MapPolygons::startPolygon(OccluderId occluder, double inset, MapPolygon& po
   polygon.edge_count = static_cast<std::uint32_t>(clipped_.size());
   polygon.low = polygon.left = polygon.farthest = polygon.nearest = std::numeric_limits<float>::max();
   polygon.high = polygon.right = -std::numeric_limits<float>::max();
+  inverse_depths_.clear();
   for (const Corner& corner : clipped_) {
-    points.push_back({view_.mapX(corner.position), view_.mapY(corner.position)});
+    const Vec3d& c = corner.position;
+    const double inverse = view_.orthographic ? 1.0 : 1.0 / c.z;
+    inverse_depths_.push_back(inverse);
+    points.push_back(
+        {view_.middle_x + view_.scale_x * c.x * inverse, view_.middle_y + view_.scale_y * c.y * inverse});
   }
   for (std::size_t i = 0; i < clipped_.size(); ++i) {
     const std::size_t next = i + 1 < clipped_.size() ? i + 1 : 0;
-    const double depth = std::min(clipped_[i].position.z, clipped_[next].position.z);
+    const double inverse_depth = std::max(inverse_depths_[i], inverse_depths_[next]);
     const MapEdge edge = edgeBetween(points[polygon.first_corner + i], points[polygon.first_corner + next],
-                                     clipped_[i].kind, marginAt(inset, depth));
+                                     clipped_[i].kind, marginAt(inset, inverse_depth));
     edges.push_back(edge);
     polygon.low = std::min(polygon.low, edge.low);
     polygon.high = std::max(polygon.high, edge.high);
@@ -415,7 +423,7 @@ void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double
     Vec3d a, b;
     if (clipGap(from, to, clip_depth, a, b)) {
       edges.push_back(edgeBetween({view_.mapX(a), view_.mapY(a)}, {view_.mapX(b), view_.mapY(b)},
-                                  EdgeKind::kOpen, marginAt(member.inset, std::min(a.z, b.z))));
+                                  EdgeKind::kOpen, marginAt(member.inset, 1.0 / std::min(a.z, b.z))));
       ++polygon.gap_count;
     }
   }

@@ -119,7 +119,7 @@ class MapPolygons {
   // support: relative to the eye, unit normal towards it; slack: metres that it is moved away.
   void addNearness(const Plane& support, double slack, const RasterSettings& settings,
                    MapPolygon& polygon) const;
-  float marginAt(double inset, double depth) const;
+  float marginAt(double inset, double inverse_depth) const;
   std::uint32_t rootOf(std::uint32_t member);
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -132,6 +132,7 @@ class MapPolygons {
   std::vector<BodyState> body_state_;  // by body, kUnknown between builds
   std::vector<std::uint32_t> bodies_met_;
   std::vector<Corner> clipped_, scratch_;
+  std::vector<double> inverse_depths_;         // of clipped_; orthographic: 1
   Vec3d body_corners_[kMaxBodyVertices];       // of the body that is being added, camera space
   std::vector<std::pair<Vec3d, Vec3d>> gaps_;  // of the polygon that is being added, camera space
 };

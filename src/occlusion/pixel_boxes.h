@@ -7,6 +7,7 @@
 
 #include "scene/pixel_view.h"
 #include "sightline/math/box.h"
+#include "sightline/occlusion/depth_pyramid.h"
 
 namespace sightline::occlusion_detail {
 
@@ -25,6 +26,11 @@ struct PixelBox {
                 y1 = 0;                   // first and last pixels, cut at the map's borders; for kOnMap
   float nearest = 0.0f, farthest = 0.0f;  // nearness, see PixelView; for kOnMap
   friend bool operator==(const PixelBox&, const PixelBox&) = default;
+
+  BoxAnswer answer(Visibility visibility) const {
+    return {visibility, whole, place == BoxPlace::kOnMap, static_cast<std::uint16_t>((x0 + x1) / 2),
+            static_cast<std::uint16_t>((y0 + y1) / 2)};
+  }
 };
 
 // What the projection of boxes takes from a view and a map's size, made once a view.

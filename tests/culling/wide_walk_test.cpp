@@ -23,7 +23,7 @@ struct Answer {
 Answer walked(WideWalk& walk, const DepthPyramid& pyramid,
               const WalkOptions& options = {.temporal_coherence = false}) {
   Answer answer;
-  walk.run(pyramid, options, answer.stats, answer.kept);
+  walk.run({pyramid}, options, answer.stats, answer.kept);
   return answer;
 }
 

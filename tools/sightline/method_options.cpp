@@ -128,6 +128,13 @@ bool usesPlanes(const Setting& setting) {
 bool usesMap(const Setting& setting) {
   return setting.usesMap();
 }
+bool hasFocus(const Setting& setting) {
+  return setting.culler.method == CullMethod::kDepthPyramid &&
+         setting.culler.raster.coverage == Coverage::kInner;
+}
+bool focuses(const Setting& setting) {
+  return hasFocus(setting) && setting.culler.focus.magnification > 1.0;
+}
 bool usesOpacityMap(const Setting& setting) {
   return setting.culler.method == CullMethod::kOpacityMap;
 }
@@ -147,7 +154,7 @@ bool planesThroughBox(const Setting& setting) {
   return setting.planesThroughBox();
 }
 bool hasCoherence(const Setting& setting) {
-  return usesTree(setting) || planesThroughBox(setting);
+  return usesTree(setting) || planesThroughBox(setting) || setting.culler.method == CullMethod::kDepthPyramid;
 }
 bool keepsRelations(const Setting& setting) {
   return planesThroughBox(setting) && setting.culler.temporal_coherence;
@@ -190,6 +197,18 @@ const std::vector<Option>& allOptions() {
        "pixels that occluders cover wholly, or at their centres, which culls what can be seen",
        oneOf(
            kCoverages, +[](Setting& s) -> Coverage& { return s.culler.raster.coverage; })},
+      {"focus", hasFocus, kList, kWhenChanged,
+       "depth pyramid: magnification of a second map where the first one hides least; 0: none",
+       decimal(+[](Setting& s) -> double& { return s.culler.focus.magnification; })},
+      {"focus-resolution", focuses, kOne, kWhenChanged, "of that second map",
+       resolution(+[](Setting& s) -> RasterSettings& { return s.culler.focus.raster; })},
+      {"focus-occluder-count", focuses, kOne, kWhenChanged, "most occluders that only the second map has",
+       whole(
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.focus.occluder_count; })},
+      {"focus-objects", focuses, kOne, kWhenChanged,
+       "the second map is made where the first one leaves so many objects",
+       whole(
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.focus.least_objects; })},
       {"tolerance", usesOpacityMap, kList, kWhenChanged,
        "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
        whole(
@@ -266,7 +285,7 @@ const std::vector<Option>& allOptions() {
       {"viewpoint-pixels", usesViewpoints, kOne, kWhenChanged,
        "viewpoint database: pixels along the edge of a picture",
        whole(
-           8, 1024, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.resolution; })},
+           8, 512, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.resolution; })},
       {"set-gain", usesSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.gain; })},
       {"set-count", usesSets, kOne, kWhenChanged, "minimum sets: weight of the number of occluders",

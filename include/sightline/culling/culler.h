@@ -39,11 +39,21 @@ enum class OccluderChoice : std::uint8_t {
   kProjectedSize,
 };
 
+// Depth pyramid: a second, finer map around the direction in which the first one hides least. Perspective
+// views and inner coverage only; the occluders are what the last frame kept there.
+struct FocusSettings {
+  double magnification = 8.0;  // its pixels along the side of one of the first map's; 1 or less: no such map
+  RasterSettings raster{.width = 128, .height = 64};  // coverage: as the first map's
+  std::uint32_t occluder_count = 64;  // at most so many, in addition to those of the first map
+  std::uint32_t least_objects = 256;  // that the first map does not hide there, for it to be made
+};
+
 struct CullerSettings {
   CullMethod method = CullMethod::kOcclusionTree;
   OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
   SupportingPlanesSettings supporting_planes;  // keep_relations: see temporal_coherence
   RasterSettings raster;                       // opacity map and depth pyramid
+  FocusSettings focus;
   // Opacity map, see OpacityMapSettings.
   DepthComparison depth_comparison = DepthComparison::kSparse;
   std::uint32_t tolerance = 0;  // other than 0 it is NOT conservative
@@ -60,7 +70,7 @@ struct CullerSettings {
   double lambda_steps = 0.0;
   std::uint32_t min_node_cost = 0;  // a node with fewer triangles is taken as visible without a test
   // Occlusion tree: nodes found partial are not tested in the next frame. Supporting planes: relations are
-  // kept from frame to frame.
+  // kept from frame to frame. Depth pyramid: what was kept is not tested for two to five frames.
   bool temporal_coherence = true;
   bool test_objects = true;  // objects of partly visible leaves are tested by their own boxes
   // Objects that the walk kept are tested once more, with the occluders near themselves; not dynamic boxes,
@@ -70,6 +80,7 @@ struct CullerSettings {
 };
 
 struct CullStats {
+  bool focused = false;                // see FocusSettings
   std::uint32_t nodes_visited = 0;     // frustum tests of nodes
   std::uint32_t nodes_tested = 0;      // nodes asked of the occlusion structure
   std::uint32_t objects_tested = 0;    // objects asked of it

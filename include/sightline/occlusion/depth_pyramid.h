@@ -24,7 +24,9 @@ struct DepthPyramidStats {
 
 struct BoxAnswer {
   Visibility visibility = Visibility::kVisible;
-  bool within_view = false;  // all of it surely lies in the view's volume
+  bool within_view = false;    // all of it surely lies in the view's volume
+  bool on_map = false;         // its rectangle in the map is known
+  std::uint16_t x = 0, y = 0;  // then the middle of it, pixels
 };
 
 // What a caller who asks about the same boxes view after view knows of them.
@@ -34,6 +36,17 @@ struct BoxHints {
   std::span<const std::uint8_t> seen;
   // Of the boxes from this one on it does not matter whether they are kVisible or kPartial.
   std::size_t plain_from = static_cast<std::size_t>(-1);
+  // First and last pixels of a window of which there is a better map. A box whose rectangle lies in it is
+  // kPartial unless a short test hides it.
+  std::uint16_t window_x0 = 1, window_y0 = 1, window_x1 = 0, window_y1 = 0;
+
+  // The same for so many of the boxes.
+  BoxHints from(std::size_t first, std::size_t count) const {
+    BoxHints part = *this;
+    part.seen = seen.empty() ? seen : seen.subspan(first, count);
+    part.plain_from = plain_from > first ? plain_from - first : 0;
+    return part;
+  }
 };
 
 // Usable alone: build() from any occluders, then classify() any boxes at any time. With Coverage::kInner
