@@ -9,6 +9,9 @@
 // false: objects that were seen but not kept, confirmed in wide arithmetic, in all views together. It is 0
 // for all but "rays", which is not conservative.
 //
+// "focused": the depth pyramid with its finer map; "small too": with the small boxes among the occluders, and a
+// finer map of 128 x 64 and of 256 x 128 pixels.
+//
 //   leaks [--benchmark_min_time=SHORT] [SCENE...]
 
 #include <fmt/format.h>
@@ -33,7 +36,9 @@ namespace {
 using namespace sightline;
 using namespace sightline::bench;
 
-constexpr std::uint32_t kCounts[] = {32, 64, 128, 256, 512, 1024};
+constexpr std::uint32_t kCounts[] = {32, 64, 256, 1024};
+// Enough of the occluders' area for the small boxes to be among them.
+constexpr double kSmallToo = 0.999;
 constexpr std::uint32_t kAimedRays = 64;  // at each object that no pixel shows
 
 // What the eye sees in one view.
@@ -85,6 +90,7 @@ class Comparison {
       : scene_(loadScene(name, "leaks")),
         hierarchy_(buildHierarchy(scene_.bounds, scene_.cost)),
         occluders_(findOccluders(scene_.scene.view())),
+        small_too_(findOccluders(scene_.scene.view(), {.area_fraction = kSmallToo})),
         exact_(scene_.scene.view()),
         rays_(scene_.scene.view()),
         frustum_(hierarchy_, scene_.bounds, occluders_, {.method = CullMethod::kFrustum}) {}
@@ -92,7 +98,8 @@ class Comparison {
   void run(bool brief) {
     listMethods(brief);
     for (const Method& method : methods_) {
-      cullers_.emplace_back(hierarchy_, scene_.bounds, occluders_, method.settings);
+      cullers_.emplace_back(hierarchy_, scene_.bounds, method.small_occluders ? small_too_ : occluders_,
+                            method.settings);
     }
     rows_.resize(methods_.size());
     for (const Step& step : stepsOf(scene_, brief ? 2 : 20, 1)) {
@@ -132,7 +139,17 @@ class Comparison {
     for (const std::uint32_t count : counts) {
       methods_.push_back(cullerMethod("planes", CullMethod::kSupportingPlanes, count));
     }
-    addMapMethods(methods_, std::span(kMapSizes).first(std::size(kMapSizes) - (brief ? 1 : 0)), counts);
+    const auto sizes = std::span(kMapSizes).first(std::size(kMapSizes) - (brief ? 1 : 0));
+    addMapMethods(methods_, sizes, counts);
+    for (const MapSize size : sizes) {
+      for (const std::uint32_t width : {128u, 256u}) {
+        FocusSettings focus;
+        focus.raster = {.width = width, .height = width / 2};
+        focus.occluder_count = 2 * width;
+        methods_.push_back(focusedMethod("small too", 64, size, focus));
+        methods_.back().small_occluders = true;
+      }
+    }
   }
 
   bool isSmall(ObjectId object) const {
@@ -215,7 +232,7 @@ class Comparison {
 
   BenchmarkScene scene_;
   Hierarchy hierarchy_;
-  OccluderSet occluders_;
+  OccluderSet occluders_, small_too_;
   ExactVisibility exact_;
   RayDepth rays_;
   Culler frustum_;

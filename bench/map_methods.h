@@ -31,6 +31,7 @@ struct Method {
   MethodKind kind = MethodKind::kCuller;
   MapSize size{0, 0};  // of those that have a map
   CullerSettings settings;
+  bool small_occluders = false;  // of a set in which the small boxes are, too
 
   bool hasMap() const { return size.width > 0; }
   std::string sizeText() const { return hasMap() ? fmt::format("{}x{}", size.width, size.height) : ""; }
@@ -40,6 +41,7 @@ inline Method cullerMethod(std::string name, CullMethod method, std::uint32_t oc
                            MapSize size = {0, 0}) {
   Method made{.name = std::move(name), .size = size, .settings = {.method = method}};
   made.settings.occluder_count = occluder_count;
+  made.settings.focus.magnification = 0.0;
   if (made.hasMap()) {
     made.settings.raster.width = size.width;
     made.settings.raster.height = size.height;
@@ -47,12 +49,24 @@ inline Method cullerMethod(std::string name, CullMethod method, std::uint32_t oc
   return made;
 }
 
-// Both maps with these sizes and counts, and rays with these sizes.
+// A depth pyramid with its finer map, whatever the number of objects it pays for.
+inline Method focusedMethod(std::string name, std::uint32_t occluder_count, MapSize size,
+                            const FocusSettings& focus) {
+  Method made = cullerMethod(std::move(name), CullMethod::kDepthPyramid, occluder_count, size);
+  made.settings.focus = focus;
+  made.settings.focus.least_objects = 0;
+  return made;
+}
+
+// Both maps with these sizes and counts, the first also with a finer map, and rays with these sizes.
 inline void addMapMethods(std::vector<Method>& methods, std::span<const MapSize> sizes,
                           std::span<const std::uint32_t> counts) {
   for (const MapSize size : sizes) {
     for (const std::uint32_t count : counts) {
       methods.push_back(cullerMethod("pyramid", CullMethod::kDepthPyramid, count, size));
+    }
+    for (const std::uint32_t count : counts) {
+      methods.push_back(focusedMethod("focused", count, size, {}));
     }
     for (const std::uint32_t count : counts) {
       methods.push_back(cullerMethod("opacity", CullMethod::kOpacityMap, count, size));
@@ -70,7 +84,7 @@ struct Step {
 // counted. A culler takes the first for a jump and finds its occluders anew; the others are as any frame of a
 // walk. Otherwise the first frames of the scene's walk, of which the first ten prepare.
 inline std::vector<Step> stepsOf(const BenchmarkScene& loaded, std::size_t most, std::size_t counted) {
-  constexpr std::size_t kWarmUp = 10, kUncounted = 2;
+  constexpr std::size_t kWarmUp = 10, kUncounted = 10;
   std::vector<Step> steps;
   for (const CameraPath& path : loaded.scene.paths) {
     for (std::size_t i = 0; path.name == "views" && i < std::min(most, path.frames.size()); ++i) {

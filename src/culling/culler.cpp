@@ -291,7 +291,7 @@ struct Culler::Impl {
         [&] {
           const culling_detail::WalkMaps maps{*pyramid, window ? &*window : nullptr,
                                               stats.focused ? &*fine_pyramid : nullptr};
-          wide_walk->run(maps, walkOptions(settings.temporal_coherence), stats, visible);
+          wide_walk->run(maps, walkOptions(settings.temporal_coherence), stats, visible, parallel_for);
         });
     takeRasterStats(pyramid->stats().raster);
   }

@@ -4,6 +4,7 @@
 
 namespace sightline::culling_detail {
 
+using hierarchy_detail::kWideChildren;
 using hierarchy_detail::WideNode;
 
 namespace {
@@ -11,77 +12,142 @@ namespace {
 constexpr std::uint8_t kLeastRest = 4;
 }  // namespace
 
+class WideWalk::Walker {
+ public:
+  Walker(WideWalk& walk, const WalkMaps& maps, const WalkOptions& options, Found& found)
+      : hierarchy_(walk.hierarchy_),
+        wide_(walk.wide_),
+        rest_(walk.rest_),
+        maps_(maps),
+        options_(options),
+        found_(found) {}
+
+  // Nodes that are to be visited next go to found.stack.
+  void visit(const Entry& entry);
+
+ private:
+  // Answers for children `begin` to before `end` of the node: past the occluders, or for the view's volume
+  // alone.
+  void ask(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
+  void askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end);
+  void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
+
+  const Hierarchy& hierarchy_;
+  const hierarchy_detail::WideHierarchy& wide_;
+  std::span<std::uint8_t> rest_;
+  const WalkMaps& maps_;
+  const WalkOptions& options_;
+  Found& found_;
+};
+
 void WideWalk::run(const WalkMaps& maps, const WalkOptions& options, CullStats& stats,
-                   std::vector<ObjectId>& out) {
-  stack_.clear();
+                   std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
+  entries_.clear();
   if (!wide_.nodes.empty()) {
     // Of the root only the children are asked about; so it must be cheap by its own count.
-    stack_.push_back({0, wide_.nodes[0].cost < options.min_node_cost});
+    entries_.push_back({0, wide_.nodes[0].cost < options.min_node_cost});
   }
-  while (!stack_.empty()) {
-    const Entry entry = stack_.back();
-    stack_.pop_back();
-    visit(entry, maps, options, stats);
+  // Level by level until there is enough to share.
+  Found& first = found_[0];
+  std::size_t next = 0;
+  while (next < entries_.size() && entries_.size() - next < kMostRanges - kWideChildren) {
+    Walker(*this, maps, options, first).visit(entries_[next++]);
+    entries_.insert(entries_.end(), first.stack.begin(), first.stack.end());
+    first.stack.clear();
+  }
+  take(first, maps, stats);
+  entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(next));
+  const auto count = static_cast<std::uint32_t>(entries_.size());
+  // One reference is captured: more would be put on the heap.
+  const auto walk_range = [&](std::uint32_t begin, std::uint32_t end) {
+    Found& found = found_[begin];
+    Walker walker(*this, maps, options, found);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      found.stack.push_back(entries_[i]);
+      while (!found.stack.empty()) {
+        const Entry entry = found.stack.back();
+        found.stack.pop_back();
+        walker.visit(entry);
+      }
+    }
+  };
+  parallel_for(count, [&walk_range](std::uint32_t begin, std::uint32_t end) { walk_range(begin, end); });
+  for (std::uint32_t i = 0; i < count; ++i) {
+    take(found_[i], maps, stats);
   }
   visible_.drainInto(out);
 }
 
-void WideWalk::visit(const Entry& entry, const WalkMaps& maps, const WalkOptions& options, CullStats& stats) {
+void WideWalk::take(Found& found, const WalkMaps& maps, CullStats& stats) {
+  for (const ObjectId object : found.kept) {
+    visible_.insert(object);
+  }
+  for (const Shown& shown : found.shown) {
+    maps.window->add(shown.x, shown.y, shown.objects);
+  }
+  stats.nodes_visited += found.nodes_visited;
+  stats.nodes_tested += found.nodes_tested;
+  stats.objects_tested += found.objects_tested;
+  found.kept.clear();
+  found.shown.clear();
+  found.nodes_visited = found.nodes_tested = found.objects_tested = 0;
+}
+
+void WideWalk::Walker::visit(const Entry& entry) {
   const WideNode& node = wide_.nodes[entry.node];
   const std::uint32_t children = node.child_end - node.first_child;
   // Children that are nodes lie in the order of their cost: first those to be asked about.
   std::uint32_t asked = entry.surely_visible ? 0 : node.node_count;
-  while (asked > 0 && wide_.nodes[node.first_node + asked - 1].cost < options.min_node_cost) {
+  while (asked > 0 && wide_.nodes[node.first_node + asked - 1].cost < options_.min_node_cost) {
     --asked;
   }
-  const bool test_objects = !entry.surely_visible && options.test_objects;
-  answers_.resize(std::max<std::size_t>(answers_.size(), children));
+  const bool test_objects = !entry.surely_visible && options_.test_objects;
+  found_.answers.resize(std::max<std::size_t>(found_.answers.size(), children));
   if (asked == node.node_count && test_objects) {
-    ask(maps, node, 0, children, false, options.temporal_coherence);
+    ask(node, 0, children, false);
   } else {
-    ask(maps, node, 0, asked, false, options.temporal_coherence);
-    ask(maps, node, asked, node.node_count, true, false);
-    ask(maps, node, node.node_count, children, !test_objects, options.temporal_coherence);
+    ask(node, 0, asked, false);
+    ask(node, asked, node.node_count, true);
+    ask(node, node.node_count, children, !test_objects);
   }
-  stats.nodes_visited += node.node_count;
-  stats.nodes_tested += asked;
-  stats.objects_tested += test_objects ? children - node.node_count : 0;
+  found_.nodes_visited += node.node_count;
+  found_.nodes_tested += asked;
+  found_.objects_tested += test_objects ? children - node.node_count : 0;
 
   for (std::uint32_t i = 0; i < node.node_count; ++i) {
-    keepNode(node.first_node + i, answers_[i], i >= asked);
+    keepNode(node.first_node + i, found_.answers[i], i >= asked);
   }
   for (std::uint32_t i = node.node_count; i < children; ++i) {
-    if (answers_[i].visibility != Visibility::kHidden) {
-      visible_.insert(wide_.object[node.first_child + i]);
+    if (found_.answers[i].visibility != Visibility::kHidden) {
+      found_.kept.push_back(wide_.object[node.first_child + i]);
     }
   }
 }
 
-void WideWalk::ask(const WalkMaps& maps, const WideNode& node, std::uint32_t begin, std::uint32_t end,
-                   bool view_only, bool skip_seen) {
+void WideWalk::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only) {
   const std::span<const Box> boxes = std::span(wide_.boxes).subspan(node.first_child + begin, end - begin);
-  const std::span<BoxAnswer> answers = std::span(answers_).subspan(begin, end - begin);
+  const std::span<BoxAnswer> answers = std::span(found_.answers).subspan(begin, end - begin);
   if (boxes.empty()) {
     return;
   }
   if (view_only) {
-    maps.map.classifyInView(boxes, answers);
+    maps_.map.classifyInView(boxes, answers);
     return;
   }
   BoxHints hints;
-  const std::span<std::uint8_t> rest = std::span(rest_).subspan(node.first_child + begin, end - begin);
-  if (skip_seen) {
+  const std::span<std::uint8_t> rest = rest_.subspan(node.first_child + begin, end - begin);
+  if (options_.temporal_coherence) {
     hints.seen = rest;
   }
   hints.plain_from = node.node_count > begin ? node.node_count - begin : 0;
-  if (maps.fine != nullptr) {
-    maps.window->tell(hints);
+  if (maps_.fine != nullptr) {
+    maps_.window->tell(hints);
   }
-  maps.map.classify(boxes, answers, hints);
-  if (maps.window != nullptr) {
-    askFineMap(maps, node, begin, end);
+  maps_.map.classify(boxes, answers, hints);
+  if (maps_.window != nullptr) {
+    askFineMap(node, begin, end);
   }
-  for (std::size_t i = 0; skip_seen && i < rest.size(); ++i) {
+  for (std::size_t i = 0; options_.temporal_coherence && i < rest.size(); ++i) {
     const bool hidden = answers[i].visibility == Visibility::kHidden;
     // Of many that come into view together not all are asked about again in the same view.
     rest[i] = static_cast<std::uint8_t>(hidden ? 0u : rest[i] != 0 ? rest[i] - 1u : kLeastRest + (i & 3));
@@ -89,54 +155,55 @@ void WideWalk::ask(const WalkMaps& maps, const WideNode& node, std::uint32_t beg
 }
 
 // Of children that the map does not hide, those that the window's may.
-void WideWalk::askFineMap(const WalkMaps& maps, const WideNode& node, std::uint32_t begin,
-                          std::uint32_t end) {
-  asked_again_.clear();
-  asked_child_.clear();
+void WideWalk::Walker::askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end) {
+  found_.asked_again.clear();
+  found_.asked_child.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
-    const BoxAnswer& answer = answers_[i];
+    const BoxAnswer& answer = found_.answers[i];
     if (answer.visibility == Visibility::kHidden || !answer.on_map) {
       continue;
     }
     if (i >= node.node_count) {
-      maps.window->add(answer.x, answer.y, 1);
+      found_.shown.push_back({answer.x, answer.y, 1});
     }
     const bool rests = rest_[node.first_child + i] != 0;
-    if (maps.fine != nullptr && !rests && maps.window->about(answer.x, answer.y)) {
-      asked_again_.push_back(wide_.boxes[node.first_child + i]);
-      asked_child_.push_back(i);
+    if (maps_.fine != nullptr && !rests && maps_.window->about(answer.x, answer.y)) {
+      found_.asked_again.push_back(wide_.boxes[node.first_child + i]);
+      found_.asked_child.push_back(i);
     }
   }
-  if (asked_again_.empty()) {
+  if (found_.asked_again.empty()) {
     return;
   }
-  second_answers_.resize(std::max(second_answers_.size(), asked_again_.size()));
-  maps.fine->classify(asked_again_, std::span(second_answers_).first(asked_again_.size()), {.plain_from = 0});
-  for (std::size_t i = 0; i < asked_again_.size(); ++i) {
-    const BoxAnswer& second = second_answers_[i];
+  found_.second_answers.resize(std::max(found_.second_answers.size(), found_.asked_again.size()));
+  maps_.fine->classify(found_.asked_again, std::span(found_.second_answers).first(found_.asked_again.size()),
+                       {.plain_from = 0});
+  for (std::size_t i = 0; i < found_.asked_again.size(); ++i) {
+    const BoxAnswer& second = found_.second_answers[i];
     if (second.within_view && second.visibility == Visibility::kHidden) {
-      answers_[asked_child_[i]].visibility = Visibility::kHidden;
-      const std::uint32_t child = asked_child_[i];
+      found_.answers[found_.asked_child[i]].visibility = Visibility::kHidden;
+      const std::uint32_t child = found_.asked_child[i];
       if (child < node.node_count) {
         const WideNode& hidden = wide_.nodes[node.first_node + child];
-        maps.window->add(answers_[child].x, answers_[child].y, hidden.object_end - hidden.first_object);
+        const BoxAnswer& answer = found_.answers[child];
+        found_.shown.push_back({answer.x, answer.y, hidden.object_end - hidden.first_object});
       }
     }
   }
 }
 
-void WideWalk::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {
+void WideWalk::Walker::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {
   if (answer.visibility == Visibility::kHidden) {
     return;
   }
   const bool surely_visible = view_only || answer.visibility == Visibility::kVisible;
   if (!surely_visible || !answer.within_view) {
-    stack_.push_back({node, surely_visible});
+    found_.stack.push_back({node, surely_visible});
     return;
   }
   const WideNode& whole = wide_.nodes[node];
   for (std::uint32_t i = whole.first_object; i < whole.object_end; ++i) {
-    visible_.insert(hierarchy_.objects[i]);
+    found_.kept.push_back(hierarchy_.objects[i]);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "culling/hierarchical_walk.h"
 #include "culling/object_bits.h"
 #include "hierarchy/wide_hierarchy.h"
+#include "sightline/base/parallel_for.h"
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/depth_pyramid.h"
@@ -31,40 +32,52 @@ class WideWalk {
       : hierarchy_(hierarchy),
         wide_(hierarchy_detail::collapse(hierarchy, object_bounds)),
         visible_(object_bounds.size()),
-        rest_(wide_.boxes.size(), 0) {}
+        rest_(wide_.boxes.size(), 0),
+        found_(kMostRanges) {}
 
   // Appends the objects that may be seen to out, ascending, and adds to the counts of stats. With
   // options.temporal_coherence what was not hidden is not asked about again for a few views (it is kept
-  // unless it leaves the view).
-  void run(const WalkMaps& maps, const WalkOptions& options, CullStats& stats, std::vector<ObjectId>& out);
+  // unless it leaves the view). Nothing depends on parallel_for.
+  void run(const WalkMaps& maps, const WalkOptions& options, CullStats& stats, std::vector<ObjectId>& out,
+           const ParallelFor& parallel_for = serialFor);
 
   // The next view has nothing to do with the last one.
   void forget() { std::fill(rest_.begin(), rest_.end(), std::uint8_t{0}); }
 
  private:
+  static constexpr std::uint32_t kMostRanges = 64;
+
   struct Entry {
     std::uint32_t node;
     bool surely_visible;  // with respect to the occluders
   };
 
-  void visit(const Entry& entry, const WalkMaps& maps, const WalkOptions& options, CullStats& stats);
-  // Answers for children `begin` to before `end` of the node: past the occluders, or for the view's volume
-  // alone.
-  void ask(const WalkMaps& maps, const hierarchy_detail::WideNode& node, std::uint32_t begin,
-           std::uint32_t end, bool view_only, bool skip_seen);
-  void askFineMap(const WalkMaps& maps, const hierarchy_detail::WideNode& node, std::uint32_t begin,
-                  std::uint32_t end);
-  void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
+  // Objects about a pixel that the map does not hide, see FocusWindow::add.
+  struct Shown {
+    std::uint16_t x, y;
+    std::uint32_t objects;
+  };
+  // One of several that walk at the same time, with what it needs and what it finds.
+  class Walker;
+  struct Found {
+    std::vector<Entry> stack;        // nodes to be visited
+    std::vector<BoxAnswer> answers;  // of the children of one node
+    std::vector<Box> asked_again;    // of the finer map
+    std::vector<std::uint32_t> asked_child;
+    std::vector<BoxAnswer> second_answers;
+    std::vector<ObjectId> kept;
+    std::vector<Shown> shown;
+    std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
+  };
+
+  void take(Found& found, const WalkMaps& maps, CullStats& stats);
 
   const Hierarchy& hierarchy_;
   hierarchy_detail::WideHierarchy wide_;
   ObjectBits visible_;
-  std::vector<Entry> stack_;
-  std::vector<BoxAnswer> answers_;  // of the children of one node
-  std::vector<Box> asked_again_;
-  std::vector<std::uint32_t> asked_child_;
-  std::vector<BoxAnswer> second_answers_;
   std::vector<std::uint8_t> rest_;  // by child: so many views it is not asked about
+  std::vector<Entry> entries_;      // below which several may walk
+  std::vector<Found> found_;        // by the first entry of a range
 };
 
 }  // namespace sightline::culling_detail

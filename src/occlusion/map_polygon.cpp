@@ -86,40 +86,44 @@ void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId
                               const RasterSettings& settings) {
   members_.clear();
   member_of_.resize(std::max(member_of_.size(), set.occluders.size()), kNone);
-  body_state_.resize(std::max(body_state_.size(), set.bodies.size()), BodyState::kUnknown);
+  body_met_.resize(std::max(body_met_.size(), set.bodies.size()), false);
   for (const OccluderId id : chosen) {
     if (id.value >= set.occluders.size() || member_of_[id.value] != kNone) {
       continue;
     }
     const std::uint32_t body =
         settings.coverage == Coverage::kInner ? set.body_of[id.value] : OccluderSet::kNoBody;
-    if (body != OccluderSet::kNoBody) {
-      if (body_state_[body] == BodyState::kUnknown) {
-        bodies_met_.push_back(body);
-        body_state_[body] =
-            addBody(set, id, set.bodies[body], settings) ? BodyState::kDone : BodyState::kByFaces;
-      }
-      if (body_state_[body] == BodyState::kDone) {
-        continue;
+    if (body == OccluderSet::kNoBody) {
+      addMember(set, id, id);
+    } else if (!body_met_[body]) {
+      body_met_[body] = true;
+      bodies_met_.push_back(body);
+      if (!addBody(set, id, set.bodies[body], settings)) {
+        for (const BodyFace& face : set.facesOf(set.bodies[body])) {
+          addMember(set, face.occluder, id);
+        }
       }
     }
-    const std::optional<EyeOccluder> seen = faceOccluder(eye_, set, id);
-    const double inset = seen ? (32.0 * seen->deviation + kEdgeMargin * seen->reach) / seen->grazing : 0.0;
-    // What it may be off must be less than what is drawn beyond the map.
-    if (!seen || !keepsShape(set[id], inset) ||
-        !(marginAt(inset, 1.0 / std::max(seen->nearest, view_.near)) <
-          std::min(view_.middle_x, view_.middle_y))) {
-      ++unusable;
-      continue;
-    }
-    const auto index = static_cast<std::uint32_t>(members_.size());
-    member_of_[id.value] = index;
-    members_.push_back({*seen, inset, index});
   }
   for (const std::uint32_t body : bodies_met_) {
-    body_state_[body] = BodyState::kUnknown;
+    body_met_[body] = false;
   }
   bodies_met_.clear();
+}
+
+void MapPolygons::addMember(const OccluderSet& set, OccluderId id, OccluderId chosen) {
+  const std::optional<EyeOccluder> seen = faceOccluder(eye_, set, id);
+  const double inset = seen ? (32.0 * seen->deviation + kEdgeMargin * seen->reach) / seen->grazing : 0.0;
+  // What it may be off must be less than what is drawn beyond the map.
+  if (!seen || !keepsShape(set[id], inset) ||
+      !(marginAt(inset, 1.0 / std::max(seen->nearest, view_.near)) <
+        std::min(view_.middle_x, view_.middle_y))) {
+    ++unusable;
+    return;
+  }
+  const auto index = static_cast<std::uint32_t>(members_.size());
+  member_of_[id.value] = index;
+  members_.push_back({*seen, chosen, inset, index});
 }
 
 // The edges between faces that are seen and faces that are not, as one loop in clipped_.
@@ -417,7 +421,7 @@ void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double
     return;
   }
   MapPolygon polygon;
-  startPolygon(member.seen.id, member.inset, polygon);
+  startPolygon(member.chosen, member.inset, polygon);
   polygon.group = index;
   for (const auto& [from, to] : gaps_) {
     Vec3d a, b;

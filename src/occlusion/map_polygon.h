@@ -97,12 +97,14 @@ class MapPolygons {
   static constexpr std::uint32_t kMaxBodyVertices = 32;
   struct Member {
     EyeOccluder seen;
+    OccluderId chosen;   // of a body that is drawn by its faces: the one that stands for it
     double inset = 0.0;  // metres in its plane by which it is smaller than its outline
     std::uint32_t group = 0;
   };
 
   void takeMembers(const OccluderSet& set, std::span<const OccluderId> chosen,
                    const RasterSettings& settings);
+  void addMember(const OccluderSet& set, OccluderId id, OccluderId chosen);
   double commonClipDepth() const;
   std::uint64_t openElementsOf(const OccluderSet& set, std::uint32_t member, const Outline& outline);
   void addPolygon(const OccluderSet& set, std::uint32_t member, double clip_depth,
@@ -128,8 +130,7 @@ class MapPolygons {
   double rounding_ = 0.0;  // pixels
   std::vector<Member> members_;
   std::vector<std::uint32_t> member_of_;  // by OccluderId, kNone between builds
-  enum class BodyState : std::uint8_t { kUnknown, kDone, kByFaces };
-  std::vector<BodyState> body_state_;  // by body, kUnknown between builds
+  std::vector<bool> body_met_;            // by body, false between builds
   std::vector<std::uint32_t> bodies_met_;
   std::vector<Corner> clipped_, scratch_;
   std::vector<double> inverse_depths_;         // of clipped_; orthographic: 1

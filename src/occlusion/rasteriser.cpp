@@ -83,8 +83,12 @@ struct Rasteriser::Impl {
       }
       stats.hidden += some ? 0 : 1;
     }
+    const std::size_t before = used.size();
     for (const MapPolygon& polygon : polygons.polygons) {
-      used.push_back(polygon.occluder);
+      // The faces of a body follow each other.
+      if (used.size() == before || used.back() != polygon.occluder) {
+        used.push_back(polygon.occluder);
+      }
     }
     stats.occluders = static_cast<std::uint32_t>(used.size());
     stats.unusable += polygons.unusable;

@@ -135,7 +135,7 @@ class Culler {
   // What the opacity map or the depth pyramid was made of; empty with other methods.
   DepthMapView depthMap() const;
 
-  // For drawing the maps, from now on; answers do not depend on it. Serial at first.
+  // For drawing the maps and for the depth pyramid's walk, from now on; answers do not depend on it. Serial at first.
   void setParallelFor(ParallelFor parallel_for);
 
   // Forgets the previous frame (after a change of scene).
