@@ -9,7 +9,8 @@
 //             box that the frustum holds against it, pixel by pixel. Not conservative. Build: the rays. Walk:
 //             the boxes.
 //
-// The order of the methods rotates from frame to frame. us: medians of the frames. kept: objects, means.
+// Each method has a few frames in a row, so that it finds its own data in the caches; the order of the
+// methods rotates. us: medians of the frames. kept: objects, means.
 // "/ tree" and "/ rays" are of the totals, the rays being those of the same size.
 //
 //   image_space [--benchmark_min_time=SHORT] [SCENE...]    SCENE: a file with walk.path.json beside it, or
@@ -17,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <span>
 #include <string>
@@ -32,7 +34,9 @@ namespace {
 using namespace sightline;
 using namespace sightline::bench;
 
-constexpr std::uint32_t kCounts[] = {32, 64, 128, 256};
+constexpr std::uint32_t kCounts[] = {16, 32, 64, 256};
+constexpr std::size_t kCountedViews = 3;
+constexpr std::size_t kStepsInTurn = kUncounted + kCountedViews;  // a view of a path of views
 
 double microseconds(const auto& function) {
   const auto start = std::chrono::steady_clock::now();
@@ -95,19 +99,24 @@ std::vector<Measured> measure(Prepared& scene, std::span<const Method> methods, 
     cullers.emplace_back(scene.hierarchy, scene.scene.bounds, scene.occluders, method.settings);
   }
   std::vector<Measured> measured(methods.size());
-  for (std::size_t frame = 0; frame < steps.size(); ++frame) {
-    for (std::size_t turn = 0; turn < methods.size(); ++turn) {
-      const std::size_t m = (frame + turn) % methods.size();
-      if (methods[m].kind == MethodKind::kRays) {
-        if (steps[frame].counted) {
-          castRays(scene, methods[m], steps[frame], measured[m]);
-        }
-        continue;
+  const auto frame = [&](std::size_t m, const Step& step) {
+    if (methods[m].kind == MethodKind::kRays) {
+      if (step.counted) {
+        castRays(scene, methods[m], step, measured[m]);
       }
-      cullers[m].cull(steps[frame].view);
-      if (steps[frame].counted) {
-        const CullStats& stats = cullers[m].stats();
-        measured[m].add(stats.choose_us, stats.build_us, stats.walk_us, cullers[m].visible().size());
+      return;
+    }
+    cullers[m].cull(step.view);
+    if (step.counted) {
+      const CullStats& stats = cullers[m].stats();
+      measured[m].add(stats.choose_us, stats.build_us, stats.walk_us, cullers[m].visible().size());
+    }
+  };
+  for (std::size_t first = 0, group = 0; first < steps.size(); first += kStepsInTurn, ++group) {
+    for (std::size_t turn = 0; turn < methods.size(); ++turn) {
+      const std::size_t m = (group + turn) % methods.size();
+      for (std::size_t i = first; i < std::min(first + kStepsInTurn, steps.size()); ++i) {
+        frame(m, steps[i]);
       }
     }
   }
@@ -127,7 +136,7 @@ double raysOf(std::span<const Method> methods, std::span<const Measured> measure
 void printScene(const std::string& name, bool brief) {
   Prepared scene(name);
   const std::vector<Method> methods = methodsOf(brief);
-  const std::vector<Step> steps = stepsOf(scene.scene, brief ? 4 : 60, 3);
+  const std::vector<Step> steps = stepsOf(scene.scene, brief ? 4 : 60, kCountedViews);
   const std::vector<Measured> measured = measure(scene, methods, steps);
   const Measured& tree = measured[0];
   fmt::print("\n{}: {} objects, {} occluders, {} views\n", name, scene.scene.bounds.size(),

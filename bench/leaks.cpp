@@ -9,8 +9,8 @@
 // false: objects that were seen but not kept, confirmed in wide arithmetic, in all views together. It is 0
 // for all but "rays", which is not conservative.
 //
-// "focused": the depth pyramid with its finer map; "small too": with the small boxes among the occluders, and a
-// finer map of 128 x 64 and of 256 x 128 pixels.
+// "focused": the depth pyramid with its finer map; "small too": with the small boxes among the occluders, and
+// a finer map of 128 x 64 and of 256 x 128 pixels.
 //
 //   leaks [--benchmark_min_time=SHORT] [SCENE...]
 

@@ -75,6 +75,9 @@ inline void addMapMethods(std::vector<Method>& methods, std::span<const MapSize>
   }
 }
 
+// Of each view of a path of views, before those that are counted: until coherence has settled.
+inline constexpr std::size_t kUncounted = 10;
+
 struct Step {
   View view;
   bool counted = false;  // others prepare for it
@@ -84,7 +87,7 @@ struct Step {
 // counted. A culler takes the first for a jump and finds its occluders anew; the others are as any frame of a
 // walk. Otherwise the first frames of the scene's walk, of which the first ten prepare.
 inline std::vector<Step> stepsOf(const BenchmarkScene& loaded, std::size_t most, std::size_t counted) {
-  constexpr std::size_t kWarmUp = 10, kUncounted = 10;
+  constexpr std::size_t kWarmUp = 10;
   std::vector<Step> steps;
   for (const CameraPath& path : loaded.scene.paths) {
     for (std::size_t i = 0; path.name == "views" && i < std::min(most, path.frames.size()); ++i) {
