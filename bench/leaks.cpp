@@ -39,7 +39,8 @@ using namespace sightline::bench;
 constexpr std::uint32_t kCounts[] = {32, 64, 256, 1024};
 // Enough of the occluders' area for the small boxes to be among them.
 constexpr double kSmallToo = 0.999;
-constexpr std::uint32_t kAimedRays = 64;  // at each object that no pixel shows
+constexpr std::size_t kStepsInTurn = kUncounted + 1;  // a view of a path of views
+constexpr std::uint32_t kAimedRays = 64;              // at each object that no pixel shows
 
 // What the eye sees in one view.
 struct Seen {
@@ -102,9 +103,10 @@ class Comparison {
                             method.settings);
     }
     rows_.resize(methods_.size());
-    for (const Step& step : stepsOf(scene_, brief ? 2 : 20, 1)) {
-      measure(step);
-      ++steps_;
+    const std::vector<Step> steps = stepsOf(scene_, brief ? 2 : 20, 1);
+    for (std::size_t first = 0; first < steps.size(); first += kStepsInTurn) {
+      measure(std::span(steps).subspan(first, std::min(kStepsInTurn, steps.size() - first)));
+      ++groups_;
     }
   }
 
@@ -163,32 +165,44 @@ class Comparison {
     return counts;
   }
 
-  void measure(const Step& step) {
-    frustum_.cull(step.view);
-    Seen seen;
-    if (step.counted) {
-      seen = seeExactly(exact_, step.view, frustum_.visible());
-      for (const Witness& witness : seen.witnesses) {
-        ++exact_count_.all;
-        exact_count_.small += isSmall(witness.object) ? 1 : 0;
+  // Each method has all the steps in a row, so that it finds its own data in the caches.
+  void measure(std::span<const Step> steps) {
+    std::vector<Seen> seen(steps.size());
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (steps[i].counted) {
+        seen[i] = see(steps[i].view);
       }
-      by_pixels_ += seen.by_pixels;
-      confirmed_.clear();
     }
+    confirmed_.clear();
+    confirmed_.resize(steps.size());
     for (std::size_t turn = 0; turn < methods_.size(); ++turn) {
-      const std::size_t m = (turn + steps_) % methods_.size();
-      double us = 0.0;
-      if (methods_[m].kind == MethodKind::kCuller) {
-        cullers_[m].cull(step.view);
-        kept_.assign(cullers_[m].visible().begin(), cullers_[m].visible().end());
-        us = cullers_[m].stats().totalUs();
-      } else if (step.counted) {
-        us = castRays(step.view, methods_[m].size);
-      }
-      if (step.counted) {
-        add(rows_[m], step.view, seen, us);
+      const std::size_t m = (turn + groups_) % methods_.size();
+      for (std::size_t i = 0; i < steps.size(); ++i) {
+        const Step& step = steps[i];
+        double us = 0.0;
+        if (methods_[m].kind == MethodKind::kCuller) {
+          cullers_[m].cull(step.view);
+          kept_.assign(cullers_[m].visible().begin(), cullers_[m].visible().end());
+          us = cullers_[m].stats().totalUs();
+        } else if (step.counted) {
+          us = castRays(step.view, methods_[m].size);
+        }
+        if (step.counted) {
+          add(rows_[m], step.view, seen[i], confirmed_[i], us);
+        }
       }
     }
+  }
+
+  Seen see(const View& view) {
+    frustum_.cull(view);
+    Seen seen = seeExactly(exact_, view, frustum_.visible());
+    for (const Witness& witness : seen.witnesses) {
+      ++exact_count_.all;
+      exact_count_.small += isSmall(witness.object) ? 1 : 0;
+    }
+    by_pixels_ += seen.by_pixels;
+    return seen;
   }
 
   // Leaves the objects in kept_.
@@ -205,7 +219,9 @@ class Comparison {
     return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
   }
 
-  void add(Row& row, const View& view, const Seen& seen, double us) {
+  using Confirmed = std::map<std::uint32_t, bool>;  // objects seen but not kept, of one view
+
+  void add(Row& row, const View& view, const Seen& seen, Confirmed& confirmed, double us) {
     const Counts kept = count(kept_);
     row.kept.all += kept.all;
     row.kept.small += kept.small;
@@ -216,14 +232,14 @@ class Comparison {
         ++next;
       }
       if (next == kept_.end() || *next != witness.object) {
-        row.false_culls += confirm(view, witness) ? 1 : 0;
+        row.false_culls += confirm(view, witness, confirmed) ? 1 : 0;
       }
     }
   }
 
   // Once for all methods: wide arithmetic takes its time.
-  bool confirm(const View& view, const Witness& witness) {
-    const auto [at, added] = confirmed_.try_emplace(witness.object.value, false);
+  bool confirm(const View& view, const Witness& witness, Confirmed& confirmed) const {
+    const auto [at, added] = confirmed.try_emplace(witness.object.value, false);
     if (added) {
       at->second = exact_.confirm(view, witness);
     }
@@ -239,12 +255,12 @@ class Comparison {
   std::vector<Method> methods_;
   std::vector<Culler> cullers_;
 
-  std::size_t steps_ = 0;
+  std::size_t groups_ = 0;  // of steps
   std::vector<Row> rows_;
   Counts exact_count_;
   std::uint64_t by_pixels_ = 0;
-  std::vector<ObjectId> kept_;               // by the method at hand
-  std::map<std::uint32_t, bool> confirmed_;  // false culls of the view at hand
+  std::vector<ObjectId> kept_;        // by the method at hand
+  std::vector<Confirmed> confirmed_;  // by step of the group at hand
 };
 
 }  // namespace

@@ -27,8 +27,8 @@ class AdaptiveCoverage {
   double ratio() const;
   bool suspended() const { return rest_ > 0; }
 
-  // What a frame with these settings took and saved. culling_us: microseconds of occlusion culling, beyond
-  // what frustum culling would have taken. saved_us: microseconds that drawing what it removed beyond frustum
+  // What a frame with these settings took and saved. culling_us: microseconds of the whole culling, its
+  // frustum tests included. saved_us: microseconds that drawing what it removed beyond frustum
   // culling would have taken. Of frames while suspended both are ignored. Frames with times that are not
   // finite count as not measured.
   void frame(double culling_us, double saved_us);

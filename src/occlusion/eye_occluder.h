@@ -1,7 +1,7 @@
 #pragma once
 
 // An occluder as one eye sees it: whether it can be used from there, with which margins, and which of its
-// edges may be sealed. What every occlusion structure in object space starts from.
+// edges may be sealed. What every occlusion structure starts from.
 
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-// Based on: T. K. Poon, W. Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. 1999,
+// Based on: Poon Chun Ho, W. Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. 1999,
 // section 5. Differs from the paper in what a covered pixel promises (Coverage::kInner), in rectangles that
 // are rounded outwards, in strict comparisons, and in the last pixel of each row; see
 // docs/algorithms/opacity-map.md.

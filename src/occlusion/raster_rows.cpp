@@ -21,7 +21,6 @@ using Vector = hn::Vec<Lanes>;
 
 constexpr float kFar = 1e9f;  // pixels, beyond any map
 constexpr float kUntouched = std::numeric_limits<float>::infinity();
-constexpr float kDead = -std::numeric_limits<float>::max();
 
 HWY_INLINE std::uint32_t laneCount() {
   return static_cast<std::uint32_t>(hn::Lanes(Lanes()));
@@ -395,7 +394,7 @@ class SeamDrawer {
         forRun(Run::of(ends, row), [&](std::uint32_t x, auto mask) {
           const auto old = hn::LoadU(d, seam_row + x);
           const auto touched = hn::And(mask, hn::Ne(old, hn::Set(d, kUntouched)));
-          hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kDead), old), d, seam_row + x);
+          hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kUncovered), old), d, seam_row + x);
         });
       }
     }

@@ -92,7 +92,7 @@ struct CullStats {
       0;                    // occluder fragments that found no room (costs tightness, never correctness)
   RelationStats relations;  // of the supporting planes
   OpacityMapStats opacity;
-  std::uint64_t hidden_triangles = 0;  // of nodes and objects found hidden, about
+  std::uint64_t hidden_triangles = 0;  // of nodes and objects found hidden, about; not with the depth pyramid
   double coverage_ratio = 0.0;         // the opacity map's in this frame
   bool suspended = false;              // occlusion culling, which did not pay (CullerSettings::triangle_us)
   std::uint32_t detail_tested = 0;     // objects that got the second test
@@ -135,7 +135,8 @@ class Culler {
   // What the opacity map or the depth pyramid was made of; empty with other methods.
   DepthMapView depthMap() const;
 
-  // For drawing the maps and for the depth pyramid's walk, from now on; answers do not depend on it. Serial at first.
+  // For drawing the maps and for the depth pyramid's walk, from now on; answers do not depend on it. Serial
+  // at first.
   void setParallelFor(ParallelFor parallel_for);
 
   // Forgets the previous frame (after a change of scene).

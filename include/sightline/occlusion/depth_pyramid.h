@@ -52,8 +52,9 @@ struct BoxHints {
 // Usable alone: build() from any occluders, then classify() any boxes at any time. With Coverage::kInner
 // answers are conservative: kHidden only where no point of the box can be seen from the view's eye. kVisible
 // where nothing in the map is before any part of the box. A box is compared by its own outline and depth in
-// each pixel wherever its rectangle leaves doubt. Not safe to share between threads; allocates nothing once
-// its storage has grown to what a few builds need.
+// each pixel wherever its rectangle leaves doubt. Between begin() and finish(), and before the first view,
+// nothing is hidden but what lies outside the view. After finish() several threads may ask; drawing is for
+// one at a time. Allocates nothing once its storage has grown to what a few builds need.
 class DepthPyramid {
  public:
   explicit DepthPyramid(const DepthPyramidSettings& settings = {});

@@ -18,12 +18,12 @@ enum class Coverage : std::uint8_t {
   // Its
   // depth is their farthest over the whole pixel.
   kInner,
-  // A pixel is covered where its centre is, with the depth there (Poon and Wang 1999). NOT conservative: what
-  // is
-  // seen through a gap between centres is hidden. For comparison only.
+  // A pixel is covered where its centre is, with the depth there (Poon and Wang 1999). NOT conservative:
+  // what is seen through a gap between centres is hidden. For comparison only.
   kCentre,
 };
 
+// Values out of range are clamped.
 struct RasterSettings {
   std::uint32_t width = 320,
                 height = 180;  // pixels, 1 to kMaxMapSize each; any aspect: pixels need not be square
@@ -55,10 +55,10 @@ struct RasterStats {
       0;  // of the occluders: behind what was drawn before, or without a whole pixel of their own
 };
 
-// Usable alone. A covered pixel promises: from every point of the view's near plane or beyond that projects
-// into it, and is farther than the stored depth, the eye is hidden by triangles of the occluders. Every
-// instruction set and any number of threads give the same bits. Not safe to share between threads; allocates
-// nothing once its storage has grown to what a few frames need.
+// Usable alone. With Coverage::kInner a covered pixel promises: from every point of the view's near plane or
+// beyond that projects into it, and is farther than the stored depth, the eye is hidden by triangles of the
+// occluders. Every instruction set and any number of threads give the same bits. Not safe to share between
+// threads; allocates nothing once its storage has grown to what a few frames need.
 class Rasteriser {
  public:
   explicit Rasteriser(const RasterSettings& settings = {});
