@@ -281,7 +281,7 @@ struct Culler::Impl {
           draw(*pyramid, view, chosen, moving);
           pyramid->finish(parallel_for);
           if (window) {
-            window->begin(view, !view_jumped);
+            window->begin(view, !view_jumped && settings.occluder_count > 0);
             stats.focused = window->found();
             if (stats.focused) {
               drawFocus(chosen, moving);

@@ -66,15 +66,22 @@ struct Mates {
   }
 };
 
+// Convex, with some thickness below each face.
 bool isConvex(std::span<const Vec3f> positions, std::span<const FoundPolygon* const> faces,
               double tolerance) {
   for (const FoundPolygon* face : faces) {
+    double least = 0.0;
     for (const FoundPolygon* other : faces) {
       for (const std::uint32_t corner : other->corners) {
-        if (face->plane.evaluate(Vec3d(positions[other->loop[corner]])) > tolerance) {
+        const double height = face->plane.evaluate(Vec3d(positions[other->loop[corner]]));
+        if (height > tolerance) {
           return false;
         }
+        least = std::min(least, height);
       }
+    }
+    if (!(least < -4.0 * tolerance)) {
+      return false;  // flat: a sheet may have a notch
     }
   }
   return true;

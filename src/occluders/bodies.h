@@ -15,7 +15,7 @@ namespace sightline::occluder_detail {
 
 // Numbers the bodies among the polygons of one object from 0, and fills FoundPolygon::body and body_size.
 // Polygons make a body where each edge is, mesh edge by mesh edge, an edge of one other, and no vertex lies
-// before any of the planes by more than the tolerance.
+// before any of the planes by more than the tolerance, and some clearly behind it.
 void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const> polygons, double tolerance);
 
 // Fills the bodies of a set whose occluders are these polygons. Bodies of which a polygon is missing are left
