@@ -317,6 +317,8 @@ void addVerify(CLI::App& app, Command& chosen) {
       "  sightline verify demo:building --variant FSE,FSC,FME,FMC --hierarchy kd,bvh --coherence on,off\n"
       "  sightline verify demo:city --method supporting-planes --joint on,off --occluders "
       "area-angle,database\n"
+      "  sightline verify demo:boxes --method depth-pyramid --resolution 64x36,320x180 --focus 0,8 --frames "
+      "0:400:50\n"
       "  sightline verify demo:city --frames 0:400:20 --width 3840 --height 2160 --aimed-rays 64 --json "
       "verify.json");
   command->callback([options, &chosen] { chosen = [options] { return runVerify(*options); }; });

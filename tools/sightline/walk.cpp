@@ -264,6 +264,8 @@ void addWalk(CLI::App& app, Command& chosen) {
       "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"
       "  sightline walk demo:city --method occlusion-tree,supporting-planes --hierarchy kd "
       "--occluders area-angle,database -o report\n"
+      "  sightline walk demo:city --method opacity-map,depth-pyramid --occluders area-angle,minimum-sets -o "
+      "report\n"
       "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
   command->callback([options, command, &chosen] {
     options->command_line = commandLine(*command);
