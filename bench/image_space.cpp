@@ -19,13 +19,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bench/benchmark_scene.h"
 #include "bench/map_methods.h"
+#include "bench/measuring.h"
 #include "bench/ray_depth.h"
 #include "sightline/culling/culler.h"
 
@@ -37,12 +37,6 @@ using namespace sightline::bench;
 constexpr std::uint32_t kCounts[] = {16, 32, 64, 256};
 constexpr std::size_t kCountedViews = 3;
 constexpr std::size_t kStepsInTurn = kUncounted + kCountedViews;  // a view of a path of views
-
-double microseconds(const auto& function) {
-  const auto start = std::chrono::steady_clock::now();
-  function();
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-}
 
 // One method over all frames.
 struct Measured {
@@ -64,6 +58,7 @@ struct Prepared {
   OccluderSet occluders;
   RayDepth rays;
   Culler frustum;
+  std::vector<ObjectId> kept_by_rays{};
 
   explicit Prepared(const std::string& name)
       : scene(loadScene(name, "image_space")),
@@ -81,16 +76,9 @@ std::vector<Method> methodsOf(bool brief) {
 }
 
 void castRays(Prepared& scene, const Method& method, const Step& step, Measured& measured) {
-  const double rays_us =
-      microseconds([&] { scene.rays.cast(step.view, method.size.width, method.size.height); });
-  std::size_t kept = 0;
-  const double boxes_us = microseconds([&] {
-    scene.frustum.cull(step.view);
-    for (const ObjectId object : scene.frustum.visible()) {
-      kept += scene.rays.mayShow(scene.scene.bounds[object.value]) ? 1 : 0;
-    }
-  });
-  measured.add(0.0, rays_us, boxes_us, kept);
+  const RayTimes times = cullByRays(scene.rays, scene.frustum, scene.scene.bounds, step.view,
+                                    method.size.width, method.size.height, scene.kept_by_rays);
+  measured.add(0.0, times.rays_us, times.boxes_us, scene.kept_by_rays.size());
 }
 
 std::vector<Measured> measure(Prepared& scene, std::span<const Method> methods, std::span<const Step> steps) {
@@ -162,7 +150,7 @@ void printScene(const std::string& name, bool brief) {
 
 int main(int argc, char** argv) {
   const Arguments arguments = argumentsOf(argc, argv);
-  std::vector<std::string> scenes = arguments.scenes;
+  std::vector<std::string> scenes = arguments.words;
   if (scenes.empty()) {
     scenes = {"demo:boxes?buildings=1333&boxes=6667", "demo:boxes?buildings=8333&boxes=41667", "demo:city"};
     if (!arguments.brief) {

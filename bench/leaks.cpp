@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -27,6 +26,7 @@
 
 #include "bench/benchmark_scene.h"
 #include "bench/map_methods.h"
+#include "bench/measuring.h"
 #include "bench/ray_depth.h"
 #include "oracle/exact_visibility.h"
 #include "sightline/culling/culler.h"
@@ -185,7 +185,10 @@ class Comparison {
           kept_.assign(cullers_[m].visible().begin(), cullers_[m].visible().end());
           us = cullers_[m].stats().totalUs();
         } else if (step.counted) {
-          us = castRays(step.view, methods_[m].size);
+          const MapSize size = methods_[m].size;
+          const RayTimes times =
+              cullByRays(rays_, frustum_, scene_.bounds, step.view, size.width, size.height, kept_);
+          us = times.rays_us + times.boxes_us;
         }
         if (step.counted) {
           add(rows_[m], step.view, seen[i], confirmed_[i], us);
@@ -203,20 +206,6 @@ class Comparison {
     }
     by_pixels_ += seen.by_pixels;
     return seen;
-  }
-
-  // Leaves the objects in kept_.
-  double castRays(const View& view, MapSize size) {
-    const auto start = std::chrono::steady_clock::now();
-    rays_.cast(view, size.width, size.height);
-    frustum_.cull(view);
-    kept_.clear();
-    for (const ObjectId object : frustum_.visible()) {
-      if (rays_.mayShow(scene_.bounds[object.value])) {
-        kept_.push_back(object);
-      }
-    }
-    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
   }
 
   using Confirmed = std::map<std::uint32_t, bool>;  // objects seen but not kept, of one view
@@ -267,7 +256,7 @@ class Comparison {
 
 int main(int argc, char** argv) {
   const Arguments arguments = argumentsOf(argc, argv);
-  std::vector<std::string> scenes = arguments.scenes;
+  std::vector<std::string> scenes = arguments.words;
   if (scenes.empty()) {
     scenes = {"demo:boxes"};
   }

@@ -1,18 +1,15 @@
 #pragma once
 
-// What the benchmarks of image-space culling share: the methods that they compare, and the frames that they
-// measure.
+// The methods that the benchmarks of image-space culling compare.
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "bench/benchmark_scene.h"
 #include "sightline/culling/culler.h"
 
 namespace sightline::bench {
@@ -73,66 +70,6 @@ inline void addMapMethods(std::vector<Method>& methods, std::span<const MapSize>
     }
     methods.push_back({.name = "rays", .kind = MethodKind::kRays, .size = size});
   }
-}
-
-// Of each view of a path of views, before those that are counted: until coherence has settled.
-inline constexpr std::size_t kUncounted = 10;
-
-struct Step {
-  View view;
-  bool counted = false;  // others prepare for it
-};
-
-// The views of a scene that has a path of that name: each one several times, the last `counted` times
-// counted. A culler takes the first for a jump and finds its occluders anew; the others are as any frame of a
-// walk. Otherwise the first frames of the scene's walk, of which the first ten prepare.
-inline std::vector<Step> stepsOf(const BenchmarkScene& loaded, std::size_t most, std::size_t counted) {
-  constexpr std::size_t kWarmUp = 10;
-  std::vector<Step> steps;
-  for (const CameraPath& path : loaded.scene.paths) {
-    for (std::size_t i = 0; path.name == "views" && i < std::min(most, path.frames.size()); ++i) {
-      for (std::size_t time = 0; time < kUncounted + counted; ++time) {
-        steps.push_back({path.view(i, loaded.scene.origin), time >= kUncounted});
-      }
-    }
-  }
-  if (steps.empty()) {
-    for (std::size_t i = 0; i < std::min(most + kWarmUp, loaded.path.frames.size()); ++i) {
-      steps.push_back({loaded.path.view(i, loaded.scene.origin), i >= kWarmUp});
-    }
-  }
-  return steps;
-}
-
-inline double medianOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0.0 : values[values.size() / 2];
-}
-
-inline double meanOf(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) {
-    sum += value;
-  }
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-struct Arguments {
-  std::vector<std::string> scenes;
-  bool brief = false;  // --benchmark_min_time=...
-};
-
-inline Arguments argumentsOf(int argc, char** argv) {
-  Arguments arguments;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument.rfind("--benchmark_min_time", 0) == 0) {
-      arguments.brief = true;
-    } else if (argument.rfind("--", 0) != 0) {
-      arguments.scenes.push_back(argument);
-    }
-  }
-  return arguments;
 }
 
 }  // namespace sightline::bench

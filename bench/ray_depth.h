@@ -7,8 +7,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "bench/measuring.h"
+#include "sightline/culling/culler.h"
 #include "sightline/scene/scene.h"
 
 namespace sightline::bench {
@@ -55,9 +59,16 @@ class RayDepth {
     }
   }
 
-  // Whether in some pixel of the box's rectangle nothing is nearer than the box. Boxes that reach the near
-  // plane may show.
-  bool mayShow(const Box& box) const {
+  // Of the last cast: metres along forward, row after row, the lowest first.
+  std::span<const float> depth() const { return depth_; }
+
+  // Pixels x0 to x1 of rows y0 to y1, and the nearest depth of the box.
+  struct Rectangle {
+    int x0, x1, y0, y1;
+    double nearest;
+  };
+  // In the view of the last cast. None: the box reaches the near plane.
+  std::optional<Rectangle> rectangleOf(const Box& box) const {
     // Of the lower and the upper end of each axis: its part of a corner's place to the right, up and forward.
     Vec3d part[3][2];
     for (int axis = 0; axis < 3; ++axis) {
@@ -69,7 +80,7 @@ class RayDepth {
     for (unsigned i = 0; i < 8; ++i) {
       const Vec3d corner = part[0][i & 1] + part[1][i >> 1 & 1] + part[2][i >> 2];
       if (corner.z <= view_.near) {
-        return true;
+        return std::nullopt;
       }
       const double per_depth = 1.0 / corner.z, x = corner.x * per_depth, y = corner.y * per_depth;
       low_x = std::min(low_x, x), high_x = std::max(high_x, x);
@@ -77,8 +88,18 @@ class RayDepth {
       nearest = std::min(nearest, corner.z);
     }
     const double half_height = view_.tan_half_fovy, half_width = half_height * view_.aspect;
-    const int x0 = pixel(low_x / half_width, width_), x1 = pixel(high_x / half_width, width_);
-    const int y0 = pixel(low_y / half_height, height_), y1 = pixel(high_y / half_height, height_);
+    return Rectangle{pixel(low_x / half_width, width_), pixel(high_x / half_width, width_),
+                     pixel(low_y / half_height, height_), pixel(high_y / half_height, height_), nearest};
+  }
+
+  // Whether in some pixel of the box's rectangle nothing is nearer than the box. Boxes that reach the near
+  // plane may show.
+  bool mayShow(const Box& box) const {
+    const std::optional<Rectangle> rectangle = rectangleOf(box);
+    if (!rectangle) {
+      return true;
+    }
+    const auto [x0, x1, y0, y1, nearest] = *rectangle;
     for (int y = y0; y <= y1; ++y) {
       const float* row = &depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_)];
       for (int x = x0; x <= x1; ++x) {
@@ -135,5 +156,28 @@ class RayDepth {
   int width_ = 0, height_ = 0;
   std::vector<float> depth_;  // metres along forward, the lowest row first
 };
+
+struct RayTimes {
+  double rays_us = 0.0, boxes_us = 0.0;
+};
+
+// A frame by rays: casts them and keeps what the frustum holds and may show. rays: a RayDepth, or what casts
+// and answers as it does. frustum: a culler that does nothing else.
+template <typename Rays>
+RayTimes cullByRays(Rays& rays, Culler& frustum, std::span<const Box> bounds, const View& view,
+                    std::uint32_t width, std::uint32_t height, std::vector<ObjectId>& kept) {
+  RayTimes times;
+  times.rays_us = microseconds([&] { rays.cast(view, width, height); });
+  times.boxes_us = microseconds([&] {
+    frustum.cull(view);
+    kept.clear();
+    for (const ObjectId object : frustum.visible()) {
+      if (rays.mayShow(bounds[object.value])) {
+        kept.push_back(object);
+      }
+    }
+  });
+  return times;
+}
 
 }  // namespace sightline::bench

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "bench/benchmark_scene.h"
+#include "bench/measuring.h"
 #include "sightline/culling/culler.h"
 
 namespace {
@@ -54,19 +55,6 @@ constexpr Structure kStructures[] = {
       .temporal_coherence = false}},
 };
 constexpr std::size_t kStructureCount = std::size(kStructures);
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.empty() ? 0.0 : values[values.size() / 2];
-}
-
-double mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) {
-    sum += value;
-  }
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
 
 // One structure over all frames.
 struct Measured {
@@ -128,9 +116,9 @@ void printStructures(const std::string& name, std::size_t frames) {
     for (std::size_t s = 0; s < kStructureCount; ++s) {
       const Measured& m = measured[s];
       fmt::print("{:>9}  {:<12}{:>10.1f}{:>10.1f}{:>10.1f}{:>8.2f}{:>9.1f}{:>8.3f}{:>9.0f}\n", count,
-                 kStructures[s].name, median(m.build_us), median(m.walk_us), median(m.total_us),
-                 median(m.total_us) / median(fme.total_us), mean(m.kept), mean(m.kept) / mean(fme.kept),
-                 mean(m.tests));
+                 kStructures[s].name, medianOf(m.build_us), medianOf(m.walk_us), medianOf(m.total_us),
+                 medianOf(m.total_us) / medianOf(fme.total_us), meanOf(m.kept),
+                 meanOf(m.kept) / meanOf(fme.kept), meanOf(m.tests));
     }
     std::fflush(stdout);
   }
@@ -166,16 +154,7 @@ void printMemory(std::uint32_t copies, std::size_t frames) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> scenes;
-  bool brief = false;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument.rfind("--benchmark_min_time", 0) == 0) {
-      brief = true;
-    } else if (argument.rfind("--", 0) != 0) {
-      scenes.push_back(argument);
-    }
-  }
+  const auto [scenes, brief] = argumentsOf(argc, argv);
   const std::size_t frames = brief ? kWarmUp + 30 : 400;
   for (const std::string& scene :
        scenes.empty() ? std::vector<std::string>{"demo:city", "demo:building"} : scenes) {

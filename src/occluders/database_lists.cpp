@@ -30,6 +30,8 @@
 #include <limits>
 #include <numbers>
 
+#include "occluders/occluder_radius.h"
+
 namespace sightline::database_detail {
 namespace {
 
@@ -47,15 +49,6 @@ bool better(const std::pair<double, OccluderId>& a, const std::pair<double, Occl
   return a.first > b.first || (a.first == b.first && a.second < b.second);
 }
 
-double radiusOf(const OccluderSet& set, const Occluder& occluder) {
-  double squared = 0.0;
-  for (const Vec3f& vertex : set.verticesOf(occluder)) {
-    const Vec3d d = Vec3d(vertex) - Vec3d(occluder.centroid);
-    squared = std::max(squared, dot(d, d));
-  }
-  return std::sqrt(squared);
-}
-
 }  // namespace
 
 CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
@@ -63,7 +56,7 @@ CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < set.occluders.size(); ++i) {
     const Occluder& o = set.occluders[i];
-    const double radius = radiusOf(set, o);
+    const double radius = occluder_detail::radiusOf(set, o);
     if (isFinite(o.centroid) && std::isfinite(radius) && std::isfinite(o.area) && o.area > 0.0f) {
       usable.push_back({Vec3d(o.centroid), turned_away ? o.plane.flipped() : o.plane, o.area, radius,
                         OccluderId(i), o.double_sided});
@@ -101,7 +94,7 @@ CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
   }
 }
 
-ListFinder::ListFinder(const CandidateTree& tree, const SphereDirections& directions,
+ListFinder::ListFinder(const CandidateTree& tree, const occluder_detail::SphereDirections& directions,
                        const ListSettings& settings)
     : tree_(tree), directions_(directions), settings_(settings), best_(directions.count()) {
   const double view_angle = settings.view_angle_deg > 0.0 ? std::min(settings.view_angle_deg, 360.0) : 0.0;

@@ -60,7 +60,8 @@ struct ListSettings {
 // Keeps its storage from cell to cell. One for each thread.
 class ListFinder {
  public:
-  ListFinder(const CandidateTree& tree, const SphereDirections& directions, const ListSettings& settings);
+  ListFinder(const CandidateTree& tree, const occluder_detail::SphereDirections& directions,
+             const ListSettings& settings);
 
   // Exactly the k best by score for each direction, best first, ties by id: those of direction d are written
   // to ids[d * k], ..., and their number to counts[d]. ids: directions * k entries; counts: directions.
@@ -99,7 +100,7 @@ class ListFinder {
   void insert(const Ranked& entry, std::vector<Ranked>& list) const;
 
   const CandidateTree& tree_;
-  const SphereDirections& directions_;
+  const occluder_detail::SphereDirections& directions_;
   ListSettings settings_;
   double cos_cone_ = 0.0, sin_cone_ = 0.0;          // of the half angle in which occluders count
   double cos_covering_ = 0.0, sin_covering_ = 0.0;  // of the directions' covering angle

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 
+#include "occluders/group_by_key.h"
+
 namespace sightline::viewpoint_detail {
 namespace {
 
@@ -103,30 +105,22 @@ void MinimumSetSearch::prepare(const CombinationTable& table, std::span<const do
 // Fills the lists of members by slot and of slots by member. An occluder is promising when it hits many slots
 // for its cost; ties by number.
 void MinimumSetSearch::orderMembers(const CombinationTable& table) {
-  const auto member_count = static_cast<std::uint32_t>(number_of_.size());
   ordered_.clear();
   first_of_slot_.assign(1, 0);
-  first_of_member_.assign(member_count + 1, 0);
   for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
     for (const std::uint32_t number : table.slot(s)) {
       const auto at = std::lower_bound(number_of_.begin(), number_of_.end(), number);
-      const auto member = static_cast<std::uint32_t>(at - number_of_.begin());
-      ordered_.push_back(member);
-      ++first_of_member_[member + 1];
+      ordered_.push_back(static_cast<std::uint32_t>(at - number_of_.begin()));
     }
     first_of_slot_.push_back(static_cast<std::uint32_t>(ordered_.size()));
   }
-  for (std::uint32_t m = 0; m < member_count; ++m) {
-    first_of_member_[m + 1] += first_of_member_[m];
-  }
-  slots_of_.resize(ordered_.size());
-  std::vector<std::uint32_t>& next = picked_;  // not in use yet
-  next.assign(first_of_member_.begin(), first_of_member_.end() - 1);
-  for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
-    for (std::uint32_t i = first_of_slot_[s]; i < first_of_slot_[s + 1]; ++i) {
-      slots_of_[next[ordered_[i]]++] = s;
+  groupByKey(static_cast<std::uint32_t>(number_of_.size()), slots_of_, first_of_member_, [&](auto&& body) {
+    for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
+      for (std::uint32_t i = first_of_slot_[s]; i < first_of_slot_[s + 1]; ++i) {
+        body(ordered_[i], s);
+      }
     }
-  }
+  });
   const auto slotsFor = [this](std::uint32_t m) {
     return static_cast<double>(first_of_member_[m + 1] - first_of_member_[m]) / cost_of_[m];
   };

@@ -8,6 +8,7 @@
 
 #include "occluders/id_buffer.h"
 #include "occluders/minimum_sets.h"
+#include "occluders/occluder_picture.h"
 #include "sightline/hierarchy/hierarchy.h"
 
 namespace sightline::viewpoint_detail {

@@ -7,32 +7,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "occluders/group_by_key.h"
 
 namespace sightline::viewpoint_detail {
 namespace {
 
 constexpr double kLeastCost = 1e-6;  // for weights of zero
 
-// From pairs to lists: values of key k are at [first[k], first[k + 1]), in the order of the pairs.
-// for_each_pair(body) calls body(key, value) for all pairs, each time it is called the same ones.
-template <typename ForEachPair>
-void groupByKey(std::uint32_t keys, std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& first,
-                ForEachPair&& for_each_pair) {
-  first.assign(keys + 1, 0);
-  for_each_pair([&](std::uint32_t key, std::uint32_t) { ++first[key + 1]; });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  values.resize(first.back());
-  // While it fills, first[k] is where the next value of k goes; afterwards that is the beginning of k + 1.
-  for_each_pair([&](std::uint32_t key, std::uint32_t value) { values[first[key]++] = value; });
-  std::copy_backward(first.begin(), first.end() - 1, first.end());
-  first[0] = 0;
-}
-
 }  // namespace
 
 double costOf(const ShownOccluder& occluder, std::uint32_t picture_pixels, const MinimumSetWeights& weights) {
   return weights.count + weights.area * occluder.area / picture_pixels;
+}
+
+void costsOf(const OccluderPicture& picture, const MinimumSetWeights& weights, std::vector<double>& costs) {
+  costs.clear();
+  for (const ShownOccluder& occluder : picture.occluders()) {
+    costs.push_back(costOf(occluder, picture.pixelCount(), weights));
+  }
 }
 
 void SetPool::clear() {
@@ -149,10 +142,7 @@ void SetSelection::prepare(const OccluderPicture& picture, const SetPool& pool,
                            std::span<const Occludee> occludees, const MinimumSetWeights& weights) {
   const auto occluder_count = static_cast<std::uint32_t>(picture.occluders().size());
   const auto occludee_count = static_cast<std::uint32_t>(occludees.size());
-  cost_of_.clear();
-  for (const ShownOccluder& occluder : picture.occluders()) {
-    cost_of_.push_back(costOf(occluder, picture.pixelCount(), weights));
-  }
+  costsOf(picture, weights, cost_of_);
   worth_of_.clear();
   for (std::uint32_t gain = 0; gain <= occludee_count; ++gain) {
     worth_of_.push_back(std::pow(static_cast<double>(gain), weights.gain));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "occluders/id_buffer.h"
+#include "occluders/occluder_picture.h"
 #include "occluders/occluder_stack.h"
 #include "sightline/occluders/viewpoint_database.h"
 
@@ -15,6 +16,9 @@ namespace sightline::viewpoint_detail {
 
 // Of one occluder, with weights >= 0. A set's cost is the sum.
 double costOf(const ShownOccluder& occluder, std::uint32_t picture_pixels, const MinimumSetWeights& weights);
+
+// Of all occluders of a picture, by number.
+void costsOf(const OccluderPicture& picture, const MinimumSetWeights& weights, std::vector<double>& costs);
 
 // The minimum sets of all occludees of a picture. Equal ones are one set; its gain is the number of occludees
 // that it hides, and what a subset of it hides it hides too. Keeps its storage.

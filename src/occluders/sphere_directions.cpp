@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sightline::database_detail {
+namespace sightline::occluder_detail {
 namespace {
 
 constexpr double kCosGoldenAngle = -0.7373688780783197;
@@ -174,4 +174,4 @@ std::size_t SphereDirections::bytes() const {
          candidates_.capacity() * sizeof(std::uint16_t);
 }
 
-}  // namespace sightline::database_detail
+}  // namespace sightline::occluder_detail

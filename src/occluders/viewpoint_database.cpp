@@ -7,27 +7,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
-#include <unordered_map>
 #include <vector>
 
 #include "occluders/grid_points.h"
+#include "occluders/packed_lists.h"
 #include "occluders/sphere_directions.h"
+#include "occluders/step_progress.h"
 #include "occluders/viewpoint_lists.h"
 
 namespace sightline {
 
 using namespace viewpoint_detail;
+using occluder_detail::ListPacker;
+using occluder_detail::PackedLists;
+using occluder_detail::SphereDirections;
+using occluder_detail::StepProgress;
 
 namespace {
 
 constexpr std::uint32_t kMaxLists = 1u << 22;
-
-// A range of Data::ids.
-struct List {
-  std::uint64_t first = 0;
-  std::uint32_t length = 0;
-};
 
 }  // namespace
 
@@ -35,15 +33,14 @@ struct ViewpointDatabase::Data {
   Data(std::uint32_t direction_count, PointGrid made)
       : directions(direction_count), grid(std::move(made)), tree(grid.points) {}
 
-  database_detail::SphereDirections directions;
+  SphereDirections directions;
   PointGrid grid;
   PointTree tree;
-  std::vector<List> lists;  // by point * directions + direction; equal ones are in the same place
-  std::vector<OccluderId> ids;
+  PackedLists lists;  // by point * directions + direction
 
   std::size_t bytes() const {
     return sizeof(Data) + directions.bytes() + grid.points.capacity() * sizeof(Vec3d) + tree.bytes() +
-           lists.capacity() * sizeof(List) + ids.capacity() * sizeof(OccluderId);
+           lists.bytes();
   }
 };
 
@@ -60,7 +57,7 @@ double usableWeight(double weight) {
 
 ViewpointDatabaseSettings inRange(ViewpointDatabaseSettings s) {
   const ViewpointDatabaseSettings defaults;
-  s.directions = std::clamp(s.directions, 1u, database_detail::kMaxDirections);
+  s.directions = std::clamp(s.directions, 1u, occluder_detail::kMaxDirections);
   s.max_points = std::clamp(s.max_points, 1u, std::min(65536u, kMaxLists / s.directions));
   s.occluder_count = std::min(s.occluder_count, 65536u);
   s.resolution = std::clamp(s.resolution, 8u, kMaxResolution);
@@ -72,51 +69,18 @@ ViewpointDatabaseSettings inRange(ViewpointDatabaseSettings s) {
   return s;
 }
 
-// Counts finished pictures and passes their fraction on, one call at a time.
-class PictureProgress {
- public:
-  PictureProgress(const Progress& progress, std::uint32_t pictures)
-      : progress_(progress), pictures_(pictures) {}
-  void pictureDone() {
-    if (progress_) {
-      const std::lock_guard lock(mutex_);
-      progress_(static_cast<double>(++done_) / pictures_);
-    }
+// Empties the lists.
+PackedLists packed(std::vector<std::vector<OccluderId>>& lists) {
+  std::size_t entries = 0;
+  for (const std::vector<OccluderId>& list : lists) {
+    entries += list.size();
   }
-
- private:
-  const Progress& progress_;
-  std::mutex mutex_;
-  std::uint32_t pictures_, done_ = 0;
-};
-
-std::uint64_t hashOf(std::span<const OccluderId> list) {  // FNV-1a
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const OccluderId id : list) {
-    hash = (hash ^ id.value) * 0x100000001b3ull;
+  ListPacker packer(lists.size(), entries);
+  for (std::vector<OccluderId>& list : lists) {
+    packer.add(list);
+    list = std::vector<OccluderId>();  // gives its memory back
   }
-  return hash;
-}
-
-// Puts the lists one after the other. What is equal to an earlier list refers to that one.
-void pack(std::vector<std::vector<OccluderId>>& made, std::vector<List>& lists,
-          std::vector<OccluderId>& ids) {
-  std::unordered_map<std::uint64_t, List> known;  // by hash
-  for (std::vector<OccluderId>& content : made) {
-    const List next{ids.size(), static_cast<std::uint32_t>(content.size())};
-    const List& found = known.try_emplace(hashOf(content), next).first->second;
-    const auto earlier =
-        std::span<const OccluderId>(ids).subspan(found.first, found.first == next.first ? 0 : found.length);
-    if (found.first < next.first &&
-        std::equal(content.begin(), content.end(), earlier.begin(), earlier.end())) {
-      lists.push_back(found);
-    } else {
-      lists.push_back(next);
-      ids.insert(ids.end(), content.begin(), content.end());
-    }
-    content = {};  // gives its memory back
-  }
-  ids.shrink_to_fit();
+  return packer.finish();
 }
 
 }  // namespace
@@ -134,7 +98,7 @@ ViewpointDatabase ViewpointDatabase::build(const Hierarchy& hierarchy, const Occ
   const auto pictures = static_cast<std::uint32_t>(data->grid.points.size()) * directions;
 
   std::vector<std::vector<OccluderId>> made(pictures);
-  PictureProgress picture_progress(progress, pictures);
+  StepProgress picture_progress(progress, pictures);
   parallel_for(pictures, [&](std::uint32_t begin, std::uint32_t end) {
     ListMaker maker(source);
     std::vector<OccluderId> list;
@@ -144,11 +108,10 @@ ViewpointDatabase ViewpointDatabase::build(const Hierarchy& hierarchy, const Occ
       }
       maker.make(data->directions[picture % directions], list);
       made[picture].assign(list.begin(), list.end());
-      picture_progress.pictureDone();
+      picture_progress.stepDone();
     }
   });
-  data->lists.reserve(pictures);
-  pack(made, data->lists, data->ids);
+  data->lists = packed(made);
 
   ViewpointDatabase database;
   database.data_ = data;
@@ -159,8 +122,7 @@ std::span<const OccluderId> ViewpointDatabase::list(std::uint32_t point, std::ui
   if (!data_) {
     return {};
   }
-  const List& list = data_->lists[std::size_t{point} * data_->directions.count() + direction];
-  return std::span<const OccluderId>(data_->ids).subspan(list.first, list.length);
+  return data_->lists[std::size_t{point} * data_->directions.count() + direction];
 }
 
 std::uint32_t ViewpointDatabase::pointCount() const {

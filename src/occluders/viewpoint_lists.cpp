@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace sightline::viewpoint_detail {
 namespace {
@@ -62,40 +63,38 @@ void ListMaker::make(const Vec3d& direction, std::vector<OccluderId>& list) {
   }
 }
 
-std::uint32_t ListMaker::listLength(std::size_t available) const {
-  return static_cast<std::uint32_t>(std::min<std::size_t>(available, source_.settings.occluder_count));
+// The list from the occluders in order_, which ascend: those with the largest key(number) first.
+template <typename Key>
+void ListMaker::rankBy(Key&& key, std::vector<OccluderId>& list) {
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) > key(b); });
+  order_.resize(std::min<std::size_t>(order_.size(), source_.settings.occluder_count));
+  for (const std::uint32_t o : order_) {
+    list.push_back(picture_.occluders()[o].id);
+  }
 }
 
 void ListMaker::byProjectedSize(std::vector<OccluderId>& list) {
-  const auto shown = picture_.occluders();
-  order_.clear();
-  for (std::uint32_t o = 0; o < shown.size(); ++o) {
-    order_.push_back(o);
-  }
-  std::stable_sort(order_.begin(), order_.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return shown[a].area > shown[b].area; });
-  for (std::uint32_t i = 0; i < listLength(order_.size()); ++i) {
-    list.push_back(shown[order_[i]].id);
-  }
+  order_.resize(picture_.occluders().size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  rankBy([this](std::uint32_t o) { return picture_.occluders()[o].area; }, list);
 }
 
 void ListMaker::byFirstHit(std::vector<OccluderId>& list) {
-  const auto shown = picture_.occluders();
-  nearest_.clear(picture_);
-  for (std::uint32_t o = 0; o < shown.size(); ++o) {
-    nearest_.draw(picture_, o);
-  }
+  drawNearest();
   order_.clear();
-  for (std::uint32_t o = 0; o < shown.size(); ++o) {
+  for (std::uint32_t o = 0; o < picture_.occluders().size(); ++o) {
     if (nearest_.pixelsOf(o) > 0) {
       order_.push_back(o);
     }
   }
-  std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return nearest_.pixelsOf(a) > nearest_.pixelsOf(b);
-  });
-  for (std::uint32_t i = 0; i < listLength(order_.size()); ++i) {
-    list.push_back(shown[order_[i]].id);
+  rankBy([this](std::uint32_t o) { return nearest_.pixelsOf(o); }, list);
+}
+
+void ListMaker::drawNearest() {
+  nearest_.clear(picture_);
+  for (std::uint32_t o = 0; o < picture_.occluders().size(); ++o) {
+    nearest_.draw(picture_, o);
   }
 }
 
@@ -104,12 +103,8 @@ void ListMaker::byMinimumSets(std::vector<OccluderId>& list) {
   const auto shown = picture_.occluders();
   occludeesInPicture(source_.hierarchy, source_.occludees, picture_.view(), picture_.resolution(),
                      occludees_);
-  nearest_.clear(picture_);
-  cost_of_.clear();
-  for (std::uint32_t o = 0; o < shown.size(); ++o) {
-    nearest_.draw(picture_, o);
-    cost_of_.push_back(costOf(shown[o], picture_.pixelCount(), settings.weights));
-  }
+  drawNearest();
+  costsOf(picture_, settings.weights, cost_of_);
   stack_.build(picture_, nearest_, occludees_);
   pool_.clear();
   for (const std::uint32_t occludee : stack_.hidden()) {

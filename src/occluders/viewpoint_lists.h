@@ -7,6 +7,8 @@
 
 #include "occluders/id_buffer.h"
 #include "occluders/minimum_sets.h"
+#include "occluders/occluder_filter.h"
+#include "occluders/occluder_picture.h"
 #include "occluders/occluder_stack.h"
 #include "occluders/set_selection.h"
 #include "sightline/occluders/viewpoint_database.h"
@@ -39,10 +41,12 @@ class ListMaker {
   void make(const Vec3d& direction, std::vector<OccluderId>& list);
 
  private:
-  std::uint32_t listLength(std::size_t available) const;
+  template <typename Key>
+  void rankBy(Key&& key, std::vector<OccluderId>& list);
   void byProjectedSize(std::vector<OccluderId>& list);
   void byFirstHit(std::vector<OccluderId>& list);
   void byMinimumSets(std::vector<OccluderId>& list);
+  void drawNearest();
 
   const PictureSource& source_;
   Vec3d eye_;

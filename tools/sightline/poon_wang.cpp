@@ -24,13 +24,12 @@ constexpr const char* kRoutes[] = {"best", "average", "worst"};
 constexpr OccluderChoice kCriteria[] = {OccluderChoice::kProjectedSize, OccluderChoice::kMinimumSets,
                                         OccluderChoice::kFirstHit};
 constexpr std::uint32_t kCounts[] = {16, 32, 64, 96, 128, 192, 256, 384, 512};
-constexpr std::uint32_t kOccluders = 64;  // on the routes
-constexpr std::uint32_t kPicture = 512;   // pixels, both ways
-constexpr std::uint32_t kPictures[] = {512, 768, 1024};
-constexpr std::uint32_t kMap = 128;          // pixels, both ways
-constexpr std::size_t kVisibleWanted = 400;  // of figure 6's viewpoint
-constexpr std::size_t kRepeats = 15;         // of its frame
-constexpr std::size_t kFewer = 10;           // --short: one frame of so many
+constexpr std::uint32_t kOccluders = 64;         // on the routes
+constexpr std::uint32_t kPicture = 512;          // pixels, both ways, unless the user says how many
+constexpr double kPictures[] = {1.0, 1.5, 2.0};  // of figure 10, times that
+constexpr std::uint32_t kMap = 128;              // pixels, both ways
+constexpr std::size_t kVisibleWanted = 400;      // of figure 6's viewpoint
+constexpr std::size_t kRepeats = 15;             // of its frame
 
 Setting frustumSetting() {
   Setting setting;
@@ -48,26 +47,44 @@ Setting opacitySetting(OccluderChoice criterion, std::uint32_t occluders) {
   return setting;
 }
 
-CameraPath inSquarePictures(CameraPath path) {
-  path.width = path.height = kPicture;
-  return path;
+PictureOptions pictureOf(const ReproduceOptions& options) {
+  CameraPath square;
+  square.width = square.height = kPicture;
+  return pictureSize(options.picture, square);
 }
 
-// The scene's routes, or the walk that was asked for where it has none of their names.
-std::vector<Walk> routesOf(const SceneAndWalk& input, bool fewer) {
+PictureOptions scaled(const PictureOptions& picture, double factor) {
+  return {static_cast<std::uint32_t>(picture.width * factor),
+          static_cast<std::uint32_t>(picture.height * factor)};
+}
+
+std::string sizeText(const PictureOptions& picture) {
+  return fmt::format("{} x {}", picture.width, picture.height);
+}
+
+Walk inPictures(Walk walk, const PictureOptions& picture) {
+  walk.path.width = picture.width;
+  walk.path.height = picture.height;
+  return walk;
+}
+
+// The scene's routes; the walk that was asked for where the user names it or the scene has no routes.
+Result<std::vector<Walk>> routesOf(const SceneAndWalk& input, const ReproduceOptions& options) {
   std::vector<Walk> routes;
   for (const char* name : kRoutes) {
     for (const CameraPath& path : input.scene.paths) {
-      if (path.name == name) {
-        routes.push_back({inSquarePictures(path)});
-        for (std::size_t i = 0; i < path.frames.size(); i += fewer ? kFewer : 1) {
-          routes.back().frames.push_back(static_cast<std::uint32_t>(i));
+      if (path.name == name && options.path.path.empty()) {
+        const Result<std::vector<std::uint32_t>> frames =
+            chooseFrames(options.path.frames, path.frames.size());
+        if (!frames) {
+          return Error{fmt::format("route {}: {}", name, frames.error().message)};
         }
+        routes.push_back(inPictures({path, fewerFrames(options, *frames)}, pictureOf(options)));
       }
     }
   }
   if (routes.empty()) {
-    routes.push_back({inSquarePictures(input.walk.path), input.walk.frames});
+    routes.push_back(inPictures(input.walk, pictureOf(options)));
   }
   return routes;
 }
@@ -86,7 +103,8 @@ Viewpoint viewpointOf(const SceneAndWalk& input, const Walk& walk, const Paralle
   const std::size_t step = std::max<std::size_t>(walk.frames.size() / 10, 1);
   for (std::size_t i = 0; i < walk.frames.size(); i += step) {
     const View view = walk.view(walk.frames[i], input.scene);
-    const std::size_t objects = oracle.visibleThroughPixels(view, kPicture, kPicture, parallel_for).size();
+    const std::size_t objects =
+        oracle.visibleThroughPixels(view, walk.path.width, walk.path.height, parallel_for).size();
     if (i == 0 || away(objects) < away(best.objects)) {
       best = {walk.frames[i], objects};
     }
@@ -124,19 +142,21 @@ double medianOf(std::vector<double> values) {
 // All that is measured on one scene.
 class Experiments {
  public:
-  Experiments(const std::string& name, const SceneAndWalk& input, const ReproduceOptions& options,
-              const ParallelFor& parallel_for)
+  // routes: at least one.
+  Experiments(const std::string& name, const SceneAndWalk& input, std::vector<Walk> routes,
+              const ReproduceOptions& options, const ParallelFor& parallel_for)
       : name_(name),
         input_(input),
         options_(options),
-        routes_(routesOf(input, options.fewer_frames)),
-        walk_{inSquarePictures(input.walk.path), input.walk.frames},
+        picture_(pictureOf(options)),
+        routes_(std::move(routes)),
+        walk_(inPictures(input.walk, picture_)),
         viewpoint_(viewpointOf(input, walk_, parallel_for)),
         data_(input.scene, parallel_for, allViewpoints()) {
     for (std::uint32_t o = 0; o < input.scene.objects.size(); ++o) {
       everything_.push_back(ObjectId(o));
     }
-    useRenderer(kPicture);
+    useRenderer(picture_);
   }
 
   bool drawn() const { return renderer_.has_value(); }
@@ -180,8 +200,8 @@ class Experiments {
     return all;
   }
 
-  void useRenderer(std::uint32_t pixels) {
-    Result<Renderer> renderer = Renderer::create(input_.scene.view(), pixels, pixels);
+  void useRenderer(const PictureOptions& picture) {
+    Result<Renderer> renderer = Renderer::create(input_.scene.view(), picture.width, picture.height);
     renderer_.reset();
     if (renderer) {
       renderer_.emplace(std::move(*renderer));
@@ -343,18 +363,19 @@ class Experiments {
   // Figure 10, on the first route.
   void pictureSizes(Experiment& experiment) {
     std::vector<Measured> all;
-    for (const std::uint32_t pixels : kPictures) {
-      if (drawn() && pixels != kPicture) {
-        useRenderer(pixels);
+    for (const double factor : kPictures) {
+      const PictureOptions picture = scaled(picture_, factor);
+      if (drawn() && factor != 1.0) {
+        useRenderer(picture);
       }
       const std::vector<Measured> measured =
           walkRoute(routes_.front(), {"VF", "OM"},
                     {frustumSetting(), opacitySetting(OccluderChoice::kMinimumSets, kOccluders)}, false);
       for (const Measured& one : measured) {
         experiment.rows.push_back(row(one, measured[0]));
-        experiment.rows.back()["picture"] = fmt::format("{0} x {0}", pixels);
+        experiment.rows.back()["picture"] = sizeText(picture);
         all.push_back(one);
-        all.back().name += fmt::format(", {0} x {0}", pixels);
+        all.back().name += ", " + sizeText(picture);
       }
     }
     addPlot("Figure 10: frame time by picture size, route " + routes_.front().path.name, "ms", all);
@@ -363,6 +384,7 @@ class Experiments {
   const std::string& name_;
   const SceneAndWalk& input_;
   const ReproduceOptions& options_;
+  PictureOptions picture_;
   std::vector<Walk> routes_;
   Walk walk_;  // the one that was asked for
   Viewpoint viewpoint_;
@@ -373,7 +395,7 @@ class Experiments {
   std::vector<Plot> plots_;
 };
 
-std::vector<Experiment> emptyExperiments() {
+std::vector<Experiment> emptyExperiments(const PictureOptions& picture) {
   const auto columns = [](std::vector<Column> first) {
     first.insert(first.begin(), {"scene", "scene"});
     first.insert(first.end(), {{"culling", "culling"},
@@ -390,10 +412,9 @@ std::vector<Experiment> emptyExperiments() {
        "minimum sets reach the best culling, 94 %, with 192 occluders, first-hit with 384; projected size "
        "reaches 93 % with 512.",
        columns({{"occluders", "occluders", 0}})},
-      {"routes", "Figure 8. Routes of three depth complexities, 64 occluders, 512 x 512",
+      {"routes", "Figure 8. Routes of three depth complexities, 64 occluders, " + sizeText(picture),
        "speed-ups over view-frustum culling (VF) of 14.6, 4.4 and 0.7; pixelwise comparison (PC) 17.7, 19.4 "
-       "and "
-       "28.8 frames/s against 25.5, 26.7 and 34.6 of the opacity map (OM).",
+       "and 28.8 frames/s against 25.5, 26.7 and 34.6 of the opacity map (OM).",
        columns({{"route", "route"}})},
       {"criteria", "Figure 9. Criteria of choosing occluders, best route, 64 occluders",
        "25.5 frames/s with minimum sets, 24.5 with first-hit, 5.4 with projected size.",
@@ -409,9 +430,18 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
                                        const std::vector<SceneAndWalk>& inputs) {
   const Threads threads(options.output.threads);
   Reproduction result;
-  result.experiments = emptyExperiments();
+  result.experiments = emptyExperiments(pictureOf(options));
+  std::vector<std::vector<Walk>> routes;
+  for (const SceneAndWalk& input : inputs) {  // all of them before the work
+    Result<std::vector<Walk>> of_scene = routesOf(input, options);
+    if (!of_scene) {
+      return of_scene.error();
+    }
+    routes.push_back(std::move(*of_scene));
+  }
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    Experiments experiments(options.scenes[i], inputs[i], options, threads.parallelFor());
+    Experiments experiments(options.scenes[i], inputs[i], std::move(routes[i]), options,
+                            threads.parallelFor());
     experiments.run(result.experiments);
     if (!experiments.drawn()) {
       result.notes.push_back(

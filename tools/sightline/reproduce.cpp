@@ -15,8 +15,6 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kFewerFrames = 10;  // one in so many, with --short
-
 struct Paper {
   const char* title;
   std::vector<std::string> scenes;  // unless the user names others
@@ -63,13 +61,7 @@ Result<std::vector<SceneAndWalk>> loadAll(const ReproduceOptions& options) {
     if (!input) {
       return input.error();
     }
-    if (options.fewer_frames && options.path.frames.empty()) {
-      std::vector<std::uint32_t> fewer;
-      for (std::size_t i = 0; i < input->walk.frames.size(); i += kFewerFrames) {
-        fewer.push_back(input->walk.frames[i]);
-      }
-      input->walk.frames = fewer;
-    }
+    input->walk.frames = fewerFrames(options, input->walk.frames);
     inputs.push_back(std::move(*input));
   }
   return inputs;
@@ -174,12 +166,17 @@ void addReproduce(CLI::App& app, Command& chosen) {
   addOutputOptions(*command, options->output);
   addPathOptions(*command, options->path);
   addPictureOptions(*command, options->picture);
+  for (const char* name : {"--width", "--height"}) {
+    command->get_option(name)->description("of the pictures, in pixels (default: the paper's or the path's)");
+  }
   command->add_flag(
       "--short", options->fewer_frames,
       "few frames, unless --frames says which; experiments on stretches of the path have their own");
   command->add_option("-o,--output", options->folder,
                       "folder of the tables and a report for each scene; made if needed");
   command->footer(
+      "poon-wang has routes of its own where the scene has walks best, average and worst; --path takes the "
+      "place of them.\n"
       "Examples:\n"
       "  sightline reproduce coorg-teller\n"
       "  sightline reproduce poon-wang -o report\n"

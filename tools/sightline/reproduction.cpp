@@ -7,6 +7,8 @@
 namespace sightline::tool {
 namespace {
 
+constexpr std::size_t kFewerFrames = 10;  // one in so many, with --short
+
 std::string cellText(const Json& row, const Column& column) {
   if (!row.contains(column.key) || row[column.key].is_null()) {
     return "-";
@@ -17,6 +19,18 @@ std::string cellText(const Json& row, const Column& column) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
+                                       const std::vector<std::uint32_t>& frames) {
+  if (!options.fewer_frames || !options.path.frames.empty()) {
+    return frames;
+  }
+  std::vector<std::uint32_t> fewer;
+  for (std::size_t i = 0; i < frames.size(); i += kFewerFrames) {
+    fewer.push_back(frames[i]);
+  }
+  return fewer;
+}
 
 std::string toText(const Experiment& experiment) {
   TextTable table;

@@ -2,6 +2,7 @@
 
 // What reproducing a paper yields, whichever paper it is.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct ReproduceOptions {
   std::string folder;  // of the reports; empty: none
   std::string command_line;
 };
+
+// One frame in ten where the options ask for few and do not say which; otherwise all.
+std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
+                                       const std::vector<std::uint32_t>& frames);
 
 // How one value of the rows is printed.
 struct Column {

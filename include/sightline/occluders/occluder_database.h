@@ -38,7 +38,8 @@ class OccluderDatabase {
   // split first until one more would not fit. One cell is always made, with the directions and the k asked
   // for, however small max_bytes is. A hierarchy of the other kind, or an empty one, is one cell. Equal lists
   // are stored once, so that bytes() may be far below max_bytes. While it builds it takes up to twice as
-  // much, and for each range of cells handed to a thread the lists of one cell at full length.
+  // much as with all lists at full length, about 50 bytes more for each list, and for each range of cells
+  // handed to a thread the lists of one cell at full length.
   //
   // A list holds exactly the k best occluders by a score that is never smaller than the area-angle at any
   // viewpoint in the cell, for any viewing direction whose nearest stored one is the list's, both capped at 2

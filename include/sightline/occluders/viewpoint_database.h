@@ -69,7 +69,8 @@ class ViewpointDatabase {
   // many as max_points allows. One point is always made. A point within a solid does no harm.
   //
   // hierarchy: the occludees of minimum sets; nothing of it is kept. The lists take 4 bytes an entry, equal
-  // ones once; while it builds, up to twice as much, and for each range handed to a thread some pictures.
+  // ones once, and 16 each. While it builds, equal lists lie apart: it takes up to 8 bytes for an entry of
+  // any list, about 100 for each list, and for each range handed to a thread some pictures.
   // Where points times directions would be more than 2^22, fewer points are made. The result does not depend
   // on the threads. progress: one step a picture.
   // Source: Poon, Wang 1999, section 4.

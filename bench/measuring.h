@@ -1,0 +1,49 @@
+#pragma once
+
+// What most benchmarks share: a stopwatch, averages, the command line.
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace sightline::bench {
+
+double microseconds(const auto& function) {
+  const auto start = std::chrono::steady_clock::now();
+  function();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+inline double medianOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? 0.0 : values[values.size() / 2];
+}
+
+inline double meanOf(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) {
+    sum += value;
+  }
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+struct Arguments {
+  std::vector<std::string> words;  // without the options: scenes, as a rule
+  bool brief = false;              // --benchmark_min_time=...
+};
+
+inline Arguments argumentsOf(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.rfind("--benchmark_min_time", 0) == 0) {
+      arguments.brief = true;
+    } else if (argument.rfind("--", 0) != 0) {
+      arguments.words.push_back(argument);
+    }
+  }
+  return arguments;
+}
+
+}  // namespace sightline::bench

@@ -1,0 +1,56 @@
+#pragma once
+
+// Lists of occluders one after the other in one array, equal ones stored once.
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "sightline/base/ids.h"
+
+namespace sightline::occluder_detail {
+
+// Does not change once a ListPacker has made it.
+class PackedLists {
+ public:
+  std::size_t size() const { return lists_.size(); }
+  // In the order in which they were added. index < size().
+  std::span<const OccluderId> operator[](std::size_t index) const {
+    return std::span(ids_).subspan(lists_[index].first, lists_[index].length);
+  }
+
+  std::size_t bytes() const;  // beside the object itself
+  // That a list takes beside its entries.
+  static constexpr std::size_t bytesPerList() { return sizeof(List); }
+
+ private:
+  friend class ListPacker;
+
+  // A range of ids_.
+  struct List {
+    std::uint64_t first = 0;
+    std::uint32_t length = 0;
+  };
+  std::vector<List> lists_;  // equal ones are the same range
+  std::vector<OccluderId> ids_;
+};
+
+// Lists of neighbouring cells, points and directions often agree: what is equal to an earlier list refers to
+// it.
+class ListPacker {
+ public:
+  // Room for so many lists with so many entries together, none of them equal. With it nothing moves while
+  // they are added.
+  ListPacker(std::size_t lists, std::size_t entries);
+
+  void add(std::span<const OccluderId> list);
+  // Takes no more than is needed, and leaves this empty.
+  PackedLists finish();
+
+ private:
+  PackedLists packed_;
+  std::unordered_map<std::uint64_t, std::size_t> first_of_hash_;  // the number of a list
+};
+
+}  // namespace sightline::occluder_detail

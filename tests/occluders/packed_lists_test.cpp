@@ -1,0 +1,3 @@
+#include "occluders/packed_lists.h"
+
+#include <gtest/gtest.h>
