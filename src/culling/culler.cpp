@@ -118,7 +118,6 @@ struct Culler::Impl {
     choice.direction = settings.area_angle_direction;
     choice.bodies = drawsBodies();
     if (usesDatabase()) {
-      choice.bodies = false;  // a list may name any of their faces
       return chooser.choose(view, occluders, databases.from_eye->find(view.eye, view.forward), choice);
     }
     if (usesViewpoints()) {

@@ -77,7 +77,7 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
     if (limit > 0.0 && squaredDistance(object_bounds[object.value], view.eye) > limit) {
       continue;
     }
-    for (const OccluderId id : set.occludersOf(object)) {
+    for (const OccluderId id : settings.bodies ? set.unitsOf(object) : set.occludersOf(object)) {
       rank(view, set, id, settings);
     }
   }
@@ -88,10 +88,12 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
                                                     std::span<const OccluderId> candidates,
                                                     const ChoiceSettings& settings) {
   ranked_.clear();
+  ChoiceSettings each = settings;
+  each.bodies = false;
   for (const OccluderId id : candidates) {
-    rank(view, set, id, settings);
+    rank(view, set, id, each);
   }
-  return takeBest(view, set, settings);
+  return takeBest(view, set, each);
 }
 
 std::span<const OccluderId> OccluderChooser::takeFirst(const View& view, const OccluderSet& set,
@@ -112,9 +114,6 @@ std::span<const OccluderId> OccluderChooser::takeFirst(const View& view, const O
 void OccluderChooser::rank(const View& view, const OccluderSet& set, OccluderId id,
                            const ChoiceSettings& settings) {
   const OccluderBody* body = settings.bodies ? set.bodyOf(id) : nullptr;
-  if (body != nullptr && set.facesOf(*body).front().occluder != id) {
-    return;
-  }
   const double score = body != nullptr ? areaAngle(body->bounds, view, settings.direction)
                                        : areaAngle(set[id], view, settings.direction);
   if (score > 0.0) {

@@ -273,16 +273,21 @@ bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   return true;
 }
 
-void listByObject(std::size_t object_count, OccluderSet& set) {
-  set.first_of_object.assign(object_count + 1, 0);
-  for (const Occluder& occluder : set.occluders) {
-    ++set.first_of_object[occluder.object.value + 1];
+// Those that listed(id) says, in the order of their ids.
+template <typename Listed>
+void listByObject(std::size_t object_count, std::span<const Occluder> occluders, Listed&& listed,
+                  std::vector<std::uint32_t>& first, std::vector<OccluderId>& ids) {
+  first.assign(object_count + 1, 0);
+  for (std::size_t o = 0; o < occluders.size(); ++o) {
+    first[occluders[o].object.value + 1] += listed(OccluderId(o)) ? 1u : 0u;
   }
-  std::partial_sum(set.first_of_object.begin(), set.first_of_object.end(), set.first_of_object.begin());
-  std::vector<std::uint32_t> next(set.first_of_object.begin(), set.first_of_object.end() - 1);
-  set.of_object.resize(set.occluders.size());
-  for (std::size_t o = 0; o < set.occluders.size(); ++o) {
-    set.of_object[next[set.occluders[o].object.value]++] = OccluderId(o);
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  ids.resize(first.back());
+  for (std::size_t o = 0; o < occluders.size(); ++o) {
+    if (listed(OccluderId(o))) {
+      ids[next[occluders[o].object.value]++] = OccluderId(o);
+    }
   }
 }
 
@@ -311,8 +316,14 @@ void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon
   }
   set.edges.resize(set.vertices.size());
   Linker(positions, polygons, set).run();
-  listByObject(object_count, set);
   assembleBodies(positions, polygons, set);
+  listByObject(
+      object_count, set.occluders, [](OccluderId) { return true; }, set.first_of_object, set.of_object);
+  const auto stands_for_all = [&](OccluderId id) {
+    const OccluderBody* body = set.bodyOf(id);
+    return body == nullptr || set.facesOf(*body).front().occluder == id;
+  };
+  listByObject(object_count, set.occluders, stands_for_all, set.first_unit_of_object, set.unit_of_object);
 }
 
 }  // namespace sightline::occluder_detail

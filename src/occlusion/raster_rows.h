@@ -11,9 +11,6 @@
 
 namespace sightline::occlusion_detail {
 
-// Rows of a map have so many more floats than their width, so that whole vectors may be written.
-inline constexpr std::uint32_t kRowSlack = 64;
-
 // Some rows of a map.
 struct RasterBand {
   float* nearness = nullptr;  // of the whole map
@@ -27,6 +24,9 @@ struct RowRuns {
 
   std::int32_t first[kRows] = {}, last[kRows] = {};
 };
+
+// Rows of a map have so many more floats than their width, so that whole vectors may be written.
+inline constexpr std::uint32_t kRowSlack = RowRuns::kRows;
 
 // Of one thread; kept from one use to the next.
 struct RasterScratch {

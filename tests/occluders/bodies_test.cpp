@@ -329,14 +329,17 @@ TEST(Bodies, CountAsOneWhereTheyAreChosenAsOne) {
     all.push_back(OccluderId(i));
   }
   OccluderChooser chooser;
-  const auto chosen = chooser.choose(view, set, all, {.count = 64, .bodies = true});
+  const ObjectId objects[] = {ObjectId(0u), ObjectId(1u)};
+  const Box bounds[] = {set.bodies[0].bounds, set.bodies[1].bounds};
+  const auto chosen = chooser.choose(view, set, objects, bounds, {.count = 64, .bodies = true});
   ASSERT_EQ(chosen.size(), 2u);
   EXPECT_NE(set.bodyOf(chosen[0]), set.bodyOf(chosen[1]));
   for (const OccluderId id : chosen) {
     EXPECT_EQ(set.facesOf(*set.bodyOf(id)).front().occluder, id);
   }
-  EXPECT_EQ(chooser.choose(view, set, all, {.count = 1, .bodies = true}).size(), 1u);
-  EXPECT_GT(chooser.choose(view, set, all, {.count = 64, .bodies = false}).size(), 2u);
+  EXPECT_EQ(chooser.choose(view, set, objects, bounds, {.count = 1, .bodies = true}).size(), 1u);
+  EXPECT_GT(chooser.choose(view, set, objects, bounds, {.count = 64}).size(), 2u);
+  EXPECT_GT(chooser.choose(view, set, all, {.count = 64, .bodies = true}).size(), 2u);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct ChoiceSettings {
   std::uint32_t count = 64;  // k
   AreaAngleDirection direction = AreaAngleDirection::kOccluder;
   double max_distance = 0.0;  // metres from the eye to an object's box (lambda); 0: no limit
-  bool bodies = false;        // convex bodies count as one, named by their first face
+  bool bodies = false;        // convex bodies count as one; of an object they are named by their first face
 };
 
 // Area-angle of an occluder (Coorg and Teller 1997; Bittner et al. 1998, eq. 1): larger is better, 0 when it
@@ -38,7 +38,8 @@ class OccluderChooser {
                                      std::span<const ObjectId> objects, std::span<const Box> object_bounds,
                                      const ChoiceSettings& settings);
 
-  // The best of these occluders (each named at most once), in the same way; max_distance is not regarded.
+  // The best of these occluders (each named at most once), in the same way; max_distance and bodies are not
+  // regarded.
   std::span<const OccluderId> choose(const View& view, const OccluderSet& set,
                                      std::span<const OccluderId> candidates, const ChoiceSettings& settings);
 

@@ -90,6 +90,9 @@ struct OccluderSet {
   std::vector<Vec3f> joints;                   // mesh vertices along edges, between the corners
   std::vector<std::uint32_t> first_of_object;  // object_count + 1 entries into of_object
   std::vector<OccluderId> of_object;           // occluders by object
+  // The same without the faces of bodies but the first one, which stands for the body.
+  std::vector<std::uint32_t> first_unit_of_object;
+  std::vector<OccluderId> unit_of_object;
   static constexpr std::uint32_t kNoBody = 0xffffffffu;
   std::vector<OccluderBody> bodies;
   std::vector<Vec3f> body_vertices;  // scene space
@@ -123,11 +126,19 @@ struct OccluderSet {
     return std::span(body_faces).subspan(b.first_face, b.face_count);
   }
   std::span<const OccluderId> occludersOf(ObjectId object) const {
-    if (object.value + 1 >= first_of_object.size()) {
+    return listOf(object, first_of_object, of_object);
+  }
+  std::span<const OccluderId> unitsOf(ObjectId object) const {
+    return listOf(object, first_unit_of_object, unit_of_object);
+  }
+
+ private:
+  static std::span<const OccluderId> listOf(ObjectId object, std::span<const std::uint32_t> first,
+                                            std::span<const OccluderId> ids) {
+    if (object.value + 1 >= first.size()) {
       return {};
     }
-    const std::uint32_t first = first_of_object[object.value];
-    return std::span(of_object).subspan(first, first_of_object[object.value + 1] - first);
+    return ids.subspan(first[object.value], first[object.value + 1] - first[object.value]);
   }
 };
 
