@@ -99,6 +99,16 @@ Result<Scene> makeDemoBoxes(std::string_view query) {
   return status ? Result<Scene>(makeBoxCity(options)) : status.error();
 }
 
+Result<Scene> makeDemoShip(std::string_view query) {
+  ShipOptions options;
+  Key keys[] = {{"decks", 3, 12, &options.decks},
+                {"rooms", 4, 16, &options.rooms},
+                {"machinery", 0, 1000, &options.machinery},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "ship", keys);
+  return status ? Result<Scene>(makeShip(options)) : status.error();
+}
+
 }  // namespace
 
 bool isDemoUrl(std::string_view url) {
@@ -123,7 +133,10 @@ Result<Scene> makeDemoScene(std::string_view url) {
   if (scene == "boxes") {
     return makeDemoBoxes(query);
   }
-  return Error{"unknown demo scene '" + std::string(scene) + "'; scenes: city, building, boxes"};
+  if (scene == "ship") {
+    return makeDemoShip(query);
+  }
+  return Error{"unknown demo scene '" + std::string(scene) + "'; scenes: city, building, boxes, ship"};
 }
 
 }  // namespace sightline

@@ -40,9 +40,21 @@ struct BoxCityOptions {
 // (20 places all over the city, looking along streets in all four directions).
 Scene makeBoxCity(const BoxCityOptions& options);
 
+struct ShipOptions {
+  std::uint32_t decks = 6;       // with rooms, 3 or more: two in the hull, the others above the main deck
+  std::uint32_t rooms = 7;       // 4 or more, on each side of a deck's corridor
+  std::uint32_t machinery = 60;  // machines round the main engine, or as many as there are places for
+  std::uint32_t seed = 1;
+};
+// A tanker of 180 m: hull with double bottom and bulkheads, holds with tanks, pipes on deck, decks with a
+// corridor between furnished rooms, stairs, engine room. Every object is a closed solid, walls and slabs are
+// boxes. Walks: "walk" (400 frames: corridor, rooms, down the stairs to the engine room; the default, first),
+// "random" (200 places in rooms, in corridors and on deck, looking anywhere).
+Scene makeShip(const ShipOptions& options);
+
 // "demo:city?copies=30&seed=1", "demo:building?floors=4&plants=100",
-// "demo:boxes?buildings=10000&boxes=50000". An unknown scene or key, or a value out of range, is an error
-// that lists what there is.
+// "demo:boxes?buildings=10000&boxes=50000", "demo:ship?decks=6&rooms=7&machinery=60". An unknown scene or
+// key, or a value out of range, is an error that lists what there is.
 bool isDemoUrl(std::string_view url);
 Result<Scene> makeDemoScene(std::string_view url);
 

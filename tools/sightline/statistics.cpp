@@ -15,6 +15,9 @@ bool hasDetail(const Setting& setting) {
 bool hasMap(const Setting& setting) {
   return setting.usesMap();
 }
+bool hasPyramid(const Setting& setting) {
+  return setting.culler.method == CullMethod::kDepthPyramid;
+}
 bool hasOpacity(const Setting& setting) {
   return setting.culler.method == CullMethod::kOpacityMap;
 }
@@ -25,6 +28,8 @@ bool adapts(const Setting& setting) {
 constexpr Statistic kStatistics[] = {
     {"map", "occluders_hidden", "occluders behind others",
      [](const CullStats& s) -> std::uint64_t { return s.occluders_hidden; }, hasMap},
+    {"map", "focused", "frames with a finer map",
+     [](const CullStats& s) -> std::uint64_t { return s.focused ? 1 : 0; }, hasPyramid},
     {"map", "overlap_tests", "overlap tests",
      [](const CullStats& s) -> std::uint64_t { return s.opacity.overlap_tests; }, hasOpacity},
     {"map", "overlap_failed", "of them failed",

@@ -22,7 +22,7 @@ struct ChoiceSettings {
   std::uint32_t count = 64;  // k
   AreaAngleDirection direction = AreaAngleDirection::kOccluder;
   double max_distance = 0.0;  // metres from the eye to an object's box (lambda); 0: no limit
-  bool bodies = false;  // of objects: convex bodies count as one, and are named by their first face
+  bool bodies = false;        // of objects: convex bodies count as one, and are named by their first face
 };
 
 // Area-angle of an occluder (Coorg and Teller 1997; Bittner et al. 1998, eq. 1): larger is better, 0 when it
