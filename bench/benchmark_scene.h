@@ -56,7 +56,7 @@ inline BenchmarkScene loadScene(const std::string& name, std::string_view progra
 }
 
 // Of each view of a path of views, before those that are counted: until coherence has settled.
-inline constexpr std::size_t kUncounted = 10;
+inline constexpr std::size_t kUncounted = 12;
 
 struct Step {
   View view;

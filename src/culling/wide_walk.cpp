@@ -9,7 +9,7 @@ using hierarchy_detail::WideNode;
 
 namespace {
 // Views that a box is kept without a question after it was found not hidden; up to three more.
-constexpr std::uint8_t kLeastRest = 4;
+constexpr std::uint8_t kLeastRest = 6;
 }  // namespace
 
 class WideWalk::Walker {

@@ -70,7 +70,7 @@ struct CullerSettings {
   double lambda_steps = 0.0;
   std::uint32_t min_node_cost = 0;  // a node with fewer triangles is taken as visible without a test
   // Occlusion tree: nodes found partial are not tested in the next frame. Supporting planes: relations are
-  // kept from frame to frame. Depth pyramid: what was kept is not tested for two to five frames.
+  // kept from frame to frame. Depth pyramid: what was kept is not tested for six to nine frames.
   bool temporal_coherence = true;
   bool test_objects = true;  // objects of partly visible leaves are tested by their own boxes
   // Objects that the walk kept are tested once more, with the occluders near themselves; not dynamic boxes,
