@@ -86,11 +86,15 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
   for (const double sx : {-1.0, 1.0}) {
     for (const double sy : {-1.0, 1.0}) {
       const Vec3d corner = window_.forward + window_.right * (sx * tan_x) + window_.up * (sy * tan_y);
-      cosine = std::min(cosine, dot(corner, view.forward) / length(corner));
+      const double of_corner = dot(corner, view.forward) / length(corner);
+      if (!(of_corner > kLeastCosine)) {
+        return false;
+      }
+      cosine = std::min(cosine, of_corner);
     }
   }
   const Vec3d c = map.toCamera(window_.forward);
-  if (!(cosine > kLeastCosine) || !(tan_half_diagonal_ < 1.0)) {
+  if (!map.sane() || !(tan_half_diagonal_ < 1.0)) {
     return false;
   }
   window_.near = view.near / cosine * kNearMargin;

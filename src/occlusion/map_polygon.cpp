@@ -91,15 +91,19 @@ void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId
     if (id.value >= set.occluders.size() || member_of_[id.value] != kNone) {
       continue;
     }
-    const std::uint32_t body =
-        settings.coverage == Coverage::kInner ? set.body_of[id.value] : OccluderSet::kNoBody;
-    if (body == OccluderSet::kNoBody) {
+    const OccluderBody* body = settings.coverage == Coverage::kInner ? set.bodyOf(id) : nullptr;
+    if (body == nullptr) {
+      ++considered;
       addMember(set, id, id);
-    } else if (!body_met_[body]) {
-      body_met_[body] = true;
-      bodies_met_.push_back(body);
-      if (!addBody(set, id, set.bodies[body], settings)) {
-        for (const BodyFace& face : set.facesOf(set.bodies[body])) {
+      continue;
+    }
+    const auto number = static_cast<std::uint32_t>(body - set.bodies.data());
+    if (!body_met_[number]) {
+      ++considered;
+      body_met_[number] = true;
+      bodies_met_.push_back(number);
+      if (!addBody(set, id, *body, settings)) {
+        for (const BodyFace& face : set.facesOf(*body)) {
           addMember(set, face.occluder, id);
         }
       }
@@ -118,7 +122,6 @@ void MapPolygons::addMember(const OccluderSet& set, OccluderId id, OccluderId ch
   if (!seen || !keepsShape(set[id], inset) ||
       !(marginAt(inset, 1.0 / std::max(seen->nearest, view_.near)) <
         std::min(view_.middle_x, view_.middle_y))) {
-    ++unusable;
     return;
   }
   const auto index = static_cast<std::uint32_t>(members_.size());
@@ -199,7 +202,6 @@ bool MapPolygons::addBody(const OccluderSet& set, OccluderId id, const OccluderB
     return false;
   }
   if (!clip(clip_depth)) {
-    ++unusable;
     return true;
   }
   MapPolygon polygon;
@@ -417,7 +419,6 @@ void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double
     clipped_.push_back({view_.toCamera(outline.from), kind});
   }
   if (!clip(clip_depth)) {
-    ++unusable;
     return;
   }
   MapPolygon polygon;
@@ -447,7 +448,11 @@ void MapPolygons::build(const PixelView& view, const RasterSettings& settings, c
   polygons.clear();
   edges.clear();
   points.clear();
-  unusable = 0;
+  considered = 0;
+  if (!view.sane()) {
+    considered = static_cast<std::uint32_t>(chosen.size());
+    return;
+  }
   takeMembers(set, chosen, settings);
   const double clip_depth = commonClipDepth();
   for (std::uint32_t i = 0; i < members_.size(); ++i) {

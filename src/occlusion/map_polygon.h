@@ -86,7 +86,7 @@ class MapPolygons {
   std::vector<MapPolygon> polygons;
   std::vector<MapEdge> edges;
   std::vector<MapPoint> points;
-  std::uint32_t unusable = 0;
+  std::uint32_t considered = 0;  // of the chosen ones, each and each body once; not all have polygons
 
  private:
   // A corner in camera space with the edge that starts at it.

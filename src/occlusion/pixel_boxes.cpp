@@ -268,9 +268,6 @@ namespace {
 HWY_EXPORT(projectAll);
 
 constexpr float kFloatMax = std::numeric_limits<float>::max();
-// Coordinates and sizes beyond this could overflow, or leave nothing of single precision.
-constexpr double kLargestCoordinate = 0x1p60, kLargestScale = 0x1p40;
-
 BoxProjection::Axis rounded(const Vec3d& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
@@ -289,21 +286,10 @@ float roundedDown(double value) {
   return std::nextafter(static_cast<float>(value), -std::numeric_limits<float>::infinity());
 }
 
-bool sane(const PixelView& view) {
-  const bool axes = maxComponent(abs(view.right)) < 2.0 && maxComponent(abs(view.up)) < 2.0 &&
-                    maxComponent(abs(view.forward)) < 2.0 && isFinite(view.right) && isFinite(view.up) &&
-                    isFinite(view.forward);
-  const bool scales = view.scale_x < kLargestScale && view.scale_x > 1.0 / kLargestScale &&
-                      view.scale_y < kLargestScale && view.scale_y > 1.0 / kLargestScale;
-  const bool eye = isFinite(view.eye) && maxComponent(abs(view.eye)) < kLargestCoordinate;
-  return axes && scales && eye && view.near > 1.0 / kLargestScale && view.near < kLargestCoordinate &&
-         view.far > view.near;
-}
-
 }  // namespace
 
 BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std::uint32_t map_height)
-    : usable(sane(view) && map_width > 0 && map_height > 0), orthographic(view.orthographic) {
+    : usable(view.sane() && map_width > 0 && map_height > 0), orthographic(view.orthographic) {
   if (!usable) {
     return;
   }

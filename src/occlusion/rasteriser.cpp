@@ -76,22 +76,25 @@ struct Rasteriser::Impl {
     sortPolygons();
     drawn.assign(order.size() * bands, settings.coverage == Coverage::kCentre ? 1 : 0);
     parallel_for(bands, [this](std::uint32_t begin, std::uint32_t end) { drawBands(begin, end); });
-    for (std::size_t p = 0; p < order.size(); ++p) {
+    count();
+  }
+
+  void count() {
+    const std::size_t before = used.size(), size = polygons.polygons.size();
+    for (std::size_t p = 0; p < size;) {
+      const OccluderId occluder = polygons.polygons[p].occluder;
+      used.push_back(occluder);
       bool some = false;
-      for (std::uint32_t band = 0; band < bands; ++band) {
-        some = some || drawn[band * order.size() + p] != 0;
+      // The faces of a body follow each other.
+      for (; p < size && polygons.polygons[p].occluder == occluder; ++p) {
+        for (std::uint32_t band = 0; band < bands; ++band) {
+          some = some || drawn[band * size + p] != 0;
+        }
       }
       stats.hidden += some ? 0 : 1;
     }
-    const std::size_t before = used.size();
-    for (const MapPolygon& polygon : polygons.polygons) {
-      // The faces of a body follow each other.
-      if (used.size() == before || used.back() != polygon.occluder) {
-        used.push_back(polygon.occluder);
-      }
-    }
     stats.occluders = static_cast<std::uint32_t>(used.size());
-    stats.unusable += polygons.unusable;
+    stats.unusable += polygons.considered - static_cast<std::uint32_t>(used.size() - before);
   }
 
   RasterSettings settings;

@@ -46,6 +46,16 @@ struct PixelView {
     unit_z = cross(right, up) / volume;
   }
 
+  // Finite, and of sizes that neither overflow nor leave nothing of single precision. With other views
+  // nothing can be said: maps stay empty, and boxes have no place in them.
+  bool sane() const {
+    constexpr double kLargestCoordinate = 0x1p60, kLargestScale = 0x1p40;
+    const auto axis = [](const Vec3d& v) { return isFinite(v) && maxComponent(abs(v)) < 2.0; };
+    const auto scale = [](double s) { return s < kLargestScale && s > 1.0 / kLargestScale; };
+    return axis(right) && axis(up) && axis(forward) && axis(unit_x) && axis(unit_y) && axis(unit_z) &&
+           scale(scale_x) && scale(scale_y) && isFinite(eye) && maxComponent(abs(eye)) < kLargestCoordinate &&
+           near > 1.0 / kLargestScale && near < kLargestCoordinate && far > near;
+  }
   // Of a plane's normal.
   Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
   // Of a direction, or of a point relative to the eye.

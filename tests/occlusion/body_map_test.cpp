@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -491,6 +492,44 @@ TEST(BodyMap, OneFaceThatIsChosenDrawsTheWholeBody) {
   for (const OccluderId id : ids) {
     EXPECT_TRUE(bitsOf(scene, set, std::span(&id, 1), serialFor) == whole) << id.value;
   }
+}
+
+TEST(BodyMap, ViewsThatAreNotFiniteLeaveTheMapEmpty) {
+  const OccluderSet set = setOfSolids(std::vector{block({-2, -1, -9}, {1, 3, -5})});
+  const std::vector<OccluderId> ids = all(set);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                   kInf = std::numeric_limits<double>::infinity();
+  for (const double bad : {kNan, kInf, -kInf}) {
+    for (int what = 0; what < 7; ++what) {
+      View view = viewFrom({4, 5, 0}, {-0.6, -0.6, -1});
+      double* const fields[] = {&view.aspect, &view.right.x, &view.up.y,         &view.forward.z,
+                                &view.eye.x,  &view.near,    &view.tan_half_fovy};
+      *fields[what] = bad;
+      Rasteriser rasteriser({.width = 32, .height = 32});
+      rasteriser.begin(view);
+      rasteriser.draw(set, ids);
+      const DepthMapView map = rasteriser.map();
+      for (std::uint32_t y = 0; y < map.height; ++y) {
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+          ASSERT_FALSE(map.covered(x, y)) << "field " << what << " " << bad;
+        }
+      }
+      EXPECT_EQ(rasteriser.stats().occluders, 0u);
+    }
+  }
+}
+
+TEST(BodyMap, ABodyCountsAsOneOccluder) {
+  const OccluderSet set =
+      setOfSolids(std::vector{block({-2, -1, -9}, {1, 3, -5}), block({-3, -2, -30}, {2, 4, -20}),
+                              block({-0.5f, -0.5f, -1}, {0.5f, 0.5f, 1})});
+  Rasteriser rasteriser({.width = 32, .height = 32});
+  rasteriser.begin(viewFrom({0.25, 0.25, 0}, {0, 0, -1}));  // within the last one
+  rasteriser.draw(set, all(set));
+  EXPECT_EQ(rasteriser.stats().occluders, 2u);
+  EXPECT_EQ(rasteriser.stats().unusable, 1u);
+  EXPECT_EQ(rasteriser.stats().hidden, 1u);
+  EXPECT_EQ(rasteriser.occluders().size(), 2u);
 }
 
 }  // namespace

@@ -80,7 +80,8 @@ struct OccluderSettings {
   std::uint32_t max_occluders = 0;  // in addition; 0: no limit
 };
 
-// Ranked by area, largest first: a smaller OccluderId is a larger polygon.
+// Ranked by area, largest first: a smaller OccluderId is a larger polygon. Made by the functions below and
+// not to be changed by hand: bodies have corners and planes of their own.
 struct OccluderSet {
   std::vector<Occluder> occluders;
   std::vector<Vec3f> vertices;              // corners of all occluders, scene space
@@ -113,7 +114,7 @@ struct OccluderSet {
     return std::span(covers).subspan(e.first_cover, e.cover_count);
   }
   const OccluderBody* bodyOf(OccluderId id) const {
-    const std::uint32_t body = body_of[id.value];
+    const std::uint32_t body = id.value < body_of.size() ? body_of[id.value] : kNoBody;
     return body == kNoBody ? nullptr : &bodies[body];
   }
   std::span<const Vec3f> verticesOf(const OccluderBody& b) const {
