@@ -1,6 +1,7 @@
 // The stairs: two flights and a landing between them in each storey but the last.
 
 #include "scenes/building_parts.h"
+#include "scenes/stairs.h"
 
 namespace sightline::procedural {
 namespace {
@@ -10,26 +11,11 @@ constexpr double kRise = kStorey / (2 * kRisers), kTread = 0.3;
 constexpr double kRun = kTread * (kRisers - 1);
 constexpr double kWidth = 2.0;
 
-// Side view of a flight: steps above, a sloped soffit below.
-std::vector<Point2> flightProfile() {
-  constexpr double kThickness = 0.2;
-  const double top = kRise * (kRisers - 1);
-  std::vector<Point2> profile = {
-      {0, 0}, {kThickness * kTread / kRise, 0}, {kRun, top - kThickness}, {kRun, top}};
-  for (std::uint32_t step = kRisers - 1; step > 0; --step) {
-    profile.push_back({kTread * (step - 1), kRise * step});
-    if (step > 1) {
-      profile.push_back({kTread * (step - 1), kRise * (step - 1)});
-    }
-  }
-  return profile;
-}
-
 // origin: at the foot; the flight rises along the placement's x, its width is along z.
 void addFlight(MeshBuilder& mesh, const Placement& at, double rail_z, const std::string& name) {
   mesh.place(at);
   mesh.startObject(name, id(BuildingMaterial::kStairs));
-  mesh.prism(flightProfile(), 0.0, kWidth);
+  mesh.prism(flightProfile(kRisers, kRise, kTread), 0.0, kWidth);
   mesh.startObject(name + " rail", id(BuildingMaterial::kRail));
   const double top = kRise * (kRisers - 1);
   const Point2 rail[] = {{0, 0.95}, {kRun, top + 0.95}, {kRun, top + 1.02}, {0, 1.02}};

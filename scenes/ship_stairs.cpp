@@ -1,6 +1,7 @@
 // The stairwell: two flights and a landing in each storey from the engine room to the uppermost deck.
 
 #include "scenes/ship_parts.h"
+#include "scenes/stairs.h"
 
 namespace sightline::procedural::ship {
 namespace {
@@ -11,27 +12,12 @@ constexpr double kTread = (kStairLanding - kStairFoot) / (kRisers - 1);
 constexpr double kRun = kTread * (kRisers - 1);
 constexpr double kFlightWidth = 2.0, kHalfWidth = kFlightWidth * 0.5;
 
-// Side view of a flight: steps above, a sloped soffit below.
-std::vector<Point2> flightProfile() {
-  constexpr double kThickness = 0.2;
-  const double top = kRise * (kRisers - 1);
-  std::vector<Point2> profile = {
-      {0, 0}, {kThickness * kTread / kRise, 0}, {kRun, top - kThickness}, {kRun, top}};
-  for (std::uint32_t step = kRisers - 1; step > 0; --step) {
-    profile.push_back({kTread * (step - 1), kRise * step});
-    if (step > 1) {
-      profile.push_back({kTread * (step - 1), kRise * (step - 1)});
-    }
-  }
-  return profile;
-}
-
 // Rises along the placement's x from its origin; its width is along z, with a rail on both sides.
 void addFlight(MeshBuilder& mesh, const Placement& at, const std::string& name) {
   const double top = kRise * (kRisers - 1);
   mesh.place(at);
   mesh.startObject(name, id(Paint::kStairs));
-  mesh.prism(flightProfile(), 0.0, kFlightWidth);
+  mesh.prism(flightProfile(kRisers, kRise, kTread), 0.0, kFlightWidth);
   for (const double z : {0.02, kFlightWidth - 0.07}) {
     const std::string rail = name + (z < 1.0 ? " rail 0" : " rail 1");
     const Point2 outline[] = {{0, 0.95}, {kRun, top + 0.95}, {kRun, top + 1.02}, {0, 1.02}};

@@ -202,11 +202,13 @@ struct Culler::Impl {
     stats.occluders = planes.stats().occluders;
   }
 
+  // Returns how many of the map's occluders are of the culler's own set: what moves has ids of its own.
   template <typename Map>
-  void draw(Map& map, const View& view, std::span<const OccluderId> chosen, const OccluderSet* moving) {
+  std::size_t draw(Map& map, const View& view, std::span<const OccluderId> chosen,
+                   const OccluderSet* moving) {
     map.begin(view);
     map.draw(occluders, chosen, parallel_for);
-    used_count = map.occluders().size();  // what moves has ids of its own
+    const std::size_t own = map.occluders().size();
     if (moving != nullptr) {
       all_moving.clear();
       for (std::size_t i = 0; i < moving->occluders.size(); ++i) {
@@ -214,6 +216,7 @@ struct Culler::Impl {
       }
       map.draw(*moving, all_moving, parallel_for);
     }
+    return own;
   }
 
   // The finer map: of the first one's occluders, and of those that the last frame kept in the window.
@@ -234,9 +237,7 @@ struct Culler::Impl {
     const ChoiceSettings choice{.count = settings.focus.occluder_count, .bodies = true};
     const auto more = fine_chooser.choose(window->view(), occluders, candidates, object_bounds, choice);
     fine_chosen.insert(fine_chosen.end(), more.begin(), more.end());
-    const std::size_t used = used_count;
     draw(*fine_pyramid, window->view(), fine_chosen, moving);
-    used_count = used;
     fine_pyramid->finish(parallel_for);
   }
 
@@ -255,7 +256,7 @@ struct Culler::Impl {
       cullWith(
           view, frustum,
           [&](std::span<const OccluderId> chosen) {
-            draw(*opacity_map, view, chosen, moving);
+            used_count = draw(*opacity_map, view, chosen, moving);
             opacity_map->finish();
           },
           [&] {
@@ -277,7 +278,7 @@ struct Culler::Impl {
     cullWith(
         view, frustum,
         [&](std::span<const OccluderId> chosen) {
-          draw(*pyramid, view, chosen, moving);
+          used_count = draw(*pyramid, view, chosen, moving);
           pyramid->finish(parallel_for);
           if (window) {
             window->begin(view, !view_jumped && settings.occluder_count > 0);

@@ -1,9 +1,9 @@
 #include "occluders/bodies.h"
 
 #include <algorithm>
-#include <numeric>
-#include <optional>
 #include <tuple>
+
+#include "occluders/union_find.h"
 
 namespace sightline::occluder_detail {
 namespace {
@@ -155,26 +155,17 @@ class BodyMaker {
 void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const> polygons, double tolerance) {
   const std::vector<const FoundPolygon*> read(polygons.begin(), polygons.end());
   const Mates mates(read);
-  // Components of polygons that share edges; each is named by its first polygon.
-  std::vector<std::uint32_t> parent(polygons.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t p) {
-    while (parent[p] != p) {
-      p = parent[p] = parent[parent[p]];
-    }
-    return p;
-  };
+  UnionFind components(polygons.size());  // of polygons that share edges
   for (std::size_t i = 0; i + 1 < mates.chains.size(); ++i) {
     if (mates.chains[i].key() == mates.chains[i + 1].key()) {
-      const std::uint32_t a = root(mates.chains[i].owner), b = root(mates.chains[i + 1].owner);
-      parent[std::max(a, b)] = std::min(a, b);
+      components.unite(mates.chains[i].owner, mates.chains[i + 1].owner);
     }
   }
   std::vector<std::vector<const FoundPolygon*>> component(polygons.size());
   std::vector<bool> closed(polygons.size(), true);
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    component[root(p)].push_back(read[p]);
-    closed[root(p)] = closed[root(p)] && mates.mated[p];
+    component[components.root(p)].push_back(read[p]);
+    closed[components.root(p)] = closed[components.root(p)] && mates.mated[p];
   }
   std::uint32_t next = 0;
   std::vector<std::uint32_t> number(polygons.size(), FoundPolygon::kNoBody);
@@ -192,8 +183,8 @@ void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const>
     }
   }
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    polygons[p]->body = number[root(p)];
-    polygons[p]->body_size = static_cast<std::uint32_t>(component[root(p)].size());
+    polygons[p]->body = number[components.root(p)];
+    polygons[p]->body_size = static_cast<std::uint32_t>(component[components.root(p)].size());
   }
 }
 

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "occluders/bodies.h"
+#include "occluders/union_find.h"
 
 namespace sightline::occluder_detail {
 namespace {
@@ -19,22 +20,6 @@ struct Use {
   std::uint32_t low, high;  // vertex ids
   std::uint32_t edge;       // into OccluderSet::edges
   std::uint32_t element;    // of the chain
-};
-
-struct UnionFind {
-  std::vector<std::uint32_t> parent;
-  explicit UnionFind(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent[i] != i) {
-      i = parent[i] = parent[parent[i]];
-    }
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
 };
 
 double distanceToLine(const Vec3d& point, const Vec3d& p, const Vec3d& q) {

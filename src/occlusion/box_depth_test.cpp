@@ -175,9 +175,8 @@ struct Refinement {
 HWY_INLINE bool seenAtCentre(const DepthLevel& map, const PixelView& view, const Box& box,
                              const PixelBox& image) {
   const Vec3d centre = view.toCamera(center(box) - view.eye);
-  const double inverse = view.orthographic ? 1.0 : 1.0 / centre.z;
-  const double x = view.middle_x + view.scale_x * centre.x * inverse;
-  const double y = view.middle_y + view.scale_y * centre.y * inverse;
+  const double inverse = view.inverseDepth(centre);
+  const double x = view.mapX(centre, inverse), y = view.mapY(centre, inverse);
   if (!(x >= image.x0 && y >= image.y0 && x < image.x1 + 1.0 && y < image.y1 + 1.0)) {
     return false;
   }

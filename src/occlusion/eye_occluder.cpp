@@ -78,9 +78,8 @@ std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, 
     return std::nullopt;
   }
   seen.deviation = occluder.slack;
-  // What kEdgeMargin allows sideways becomes depth where the plane is seen at a grazing angle.
-  seen.depth_slack = (4.0 * seen.deviation + kDepthMargin * 0x1p-8 * seen.reach) / seen.grazing;
-  seen.clip_depth = eye.near + seen.depth_slack + kDepthMargin * (eye.near + seen.reach);
+  seen.depth_slack = depthSlack(seen.deviation, seen.reach, seen.grazing);
+  seen.clip_depth = clipDepth(eye.near, seen.depth_slack, seen.reach);
   if (!(deepest > seen.clip_depth)) {
     return std::nullopt;
   }
@@ -96,8 +95,6 @@ std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, O
   if (!seen) {
     return std::nullopt;
   }
-  // How far a point that is off by the slack may appear to move in the polygon's plane; a sharp corner of a
-  // neighbour of three degrees costs a factor of twenty.
   double smallest_sine = 1.0;
   for (std::uint32_t side = 0; side < set[id].vertex_count; ++side) {
     double sine = 0.0;
@@ -105,8 +102,7 @@ std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, O
     eye.shadowPlane(outline.from, outline.to, sine);
     smallest_sine = std::min(smallest_sine, sine);
   }
-  seen->inset =
-      (32.0 * seen->deviation + kEdgeMargin * seen->reach * (1.0 + 0x1p-8 / smallest_sine)) / seen->grazing;
+  seen->inset = outlineInset(seen->deviation, seen->reach * (1.0 + 0x1p-8 / smallest_sine), seen->grazing);
   if (!(smallest_sine > kShortestEdgeSine) || !keepsShape(set[id], seen->inset)) {
     return std::nullopt;
   }

@@ -43,6 +43,21 @@ struct EyeOccluder {
   Vec3d centroid;            // of the unclipped polygon, relative to the eye
 };
 
+// Metres in its plane by which the outline of an occluder is drawn in: what a point that is off by the slack
+// may appear to move there, with room for sharp corners of three degrees. slack, reach: metres, as in
+// EyeOccluder.
+inline double outlineInset(double slack, double reach, double grazing) {
+  return (32.0 * slack + kEdgeMargin * reach) / grazing;
+}
+// EyeOccluder::depth_slack: what kEdgeMargin allows sideways becomes depth at a grazing angle.
+inline double depthSlack(double slack, double reach, double grazing) {
+  return (4.0 * slack + kDepthMargin * 0x1p-8 * reach) / grazing;
+}
+// EyeOccluder::clip_depth.
+inline double clipDepth(double near, double depth_slack, double reach) {
+  return near + depth_slack + kDepthMargin * (near + reach);
+}
+
 // Without the inset, which depends on the structure. Nothing where the occluder is of no use from here: seen
 // from behind, edge-on, wholly before the near plane.
 std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, OccluderId id);

@@ -117,7 +117,7 @@ void MapPolygons::takeMembers(const OccluderSet& set, std::span<const OccluderId
 
 void MapPolygons::addMember(const OccluderSet& set, OccluderId id, OccluderId chosen) {
   const std::optional<EyeOccluder> seen = faceOccluder(eye_, set, id);
-  const double inset = seen ? (32.0 * seen->deviation + kEdgeMargin * seen->reach) / seen->grazing : 0.0;
+  const double inset = seen ? outlineInset(seen->deviation, seen->reach, seen->grazing) : 0.0;
   // What it may be off must be less than what is drawn beyond the map.
   if (!seen || !keepsShape(set[id], inset) ||
       !(marginAt(inset, 1.0 / std::max(seen->nearest, view_.near)) <
@@ -184,11 +184,11 @@ bool MapPolygons::addBody(const OccluderSet& set, OccluderId id, const OccluderB
       if (face_count == MapPolygon::kMaxPlanes) {
         return false;
       }
-      const double face_inset = (32.0 * body.slack + kEdgeMargin * reach) / grazing;
+      const double face_inset = outlineInset(body.slack, reach, grazing);
       if (!keepsShape(set[face.occluder], face_inset)) {
         return false;
       }
-      const double face_slack = (4.0 * body.slack + kDepthMargin * 0x1p-8 * reach) / grazing;
+      const double face_slack = depthSlack(body.slack, reach, grazing);
       faces[face_count++] = {{face.plane.normal, height}, face_slack};
       seen |= std::uint64_t{1} << number;
       inset = std::max(inset, face_inset);
@@ -196,7 +196,7 @@ bool MapPolygons::addBody(const OccluderSet& set, OccluderId id, const OccluderB
     }
     ++number;
   }
-  const double clip_depth = eye_.near + depth_slack + kDepthMargin * (eye_.near + reach);
+  const double clip_depth = clipDepth(eye_.near, depth_slack, reach);
   if (face_count == 0 || !std::isfinite(reach) || !(nearest > clip_depth) ||
       !findSilhouette(set, body, seen)) {
     return false;
@@ -382,10 +382,9 @@ void MapPolygons::startPolygon(OccluderId occluder, double inset, MapPolygon& po
   inverse_depths_.clear();
   for (const Corner& corner : clipped_) {
     const Vec3d& c = corner.position;
-    const double inverse = view_.orthographic ? 1.0 : 1.0 / c.z;
+    const double inverse = view_.inverseDepth(c);
     inverse_depths_.push_back(inverse);
-    points.push_back(
-        {view_.middle_x + view_.scale_x * c.x * inverse, view_.middle_y + view_.scale_y * c.y * inverse});
+    points.push_back({view_.mapX(c, inverse), view_.mapY(c, inverse)});
   }
   for (std::size_t i = 0; i < clipped_.size(); ++i) {
     const std::size_t next = i + 1 < clipped_.size() ? i + 1 : 0;

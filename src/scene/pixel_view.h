@@ -60,6 +60,10 @@ struct PixelView {
   Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
   // Of a direction, or of a point relative to the eye.
   Vec3d toCamera(const Vec3d& r) const { return {dot(right, r), dot(up, r), dot(forward, r)}; }
+  // What turns camera space's x and y into the map's: 1 / z, orthographic 1.
+  double inverseDepth(const Vec3d& c) const { return orthographic ? 1.0 : 1.0 / c.z; }
+  double mapX(const Vec3d& c, double inverse_depth) const { return middle_x + scale_x * c.x * inverse_depth; }
+  double mapY(const Vec3d& c, double inverse_depth) const { return middle_y + scale_y * c.y * inverse_depth; }
   // Of a point in camera space; perspective: z > 0.
   double mapX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
   double mapY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
