@@ -19,7 +19,8 @@
 #include <cmath>
 #include <limits>
 
-// Vectors are members here, which those without a fixed size cannot be.
+// Vectors are members here, which those without a fixed size cannot be. Machines with these instruction sets
+// take the best one that is left; no test is left out, all run on every set that is left.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "occlusion/pixel_boxes.cpp"
