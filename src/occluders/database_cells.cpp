@@ -158,4 +158,63 @@ CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::ui
   return cells;
 }
 
+void CellTree::save(ByteWriter& writer) const {
+  Box all;
+  for (const Box& region : regions) {
+    all.extend(region);
+  }
+  for (const Vec3f& corner : {all.min, all.max}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      writer.add(corner[axis]);
+    }
+  }
+  for (const CellNode& node : nodes) {
+    writer.add(static_cast<std::uint8_t>(node.axis));
+    if (node.axis != CellNode::kCell) {
+      writer.add(node.plane);
+      writer.add(node.link);
+    }
+  }
+}
+
+Result<CellTree> loadCells(ByteReader& reader, std::uint32_t cells) {
+  const std::uint32_t count = 2 * cells - 1;
+  CellTree tree;
+  tree.nodes.resize(count);
+  tree.regions.reserve(cells);
+  std::vector<Box> region_of_node(count);  // empty: no parent was found
+  for (Vec3f* corner : {&region_of_node[0].min, &region_of_node[0].max}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      (*corner)[axis] = reader.read<float>();
+    }
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    CellNode& node = tree.nodes[i];
+    const Box& region = region_of_node[i];
+    node.axis = reader.read<std::uint8_t>();
+    if (!region.wellFormed() || node.axis > CellNode::kCell) {
+      return Error{"has cells that are not a tree of finite boxes"};
+    }
+    if (node.axis == CellNode::kCell) {
+      node.link = tree.count();
+      tree.regions.push_back(region);
+      continue;
+    }
+    node.plane = reader.read<float>();
+    node.link = reader.read<std::uint32_t>();
+    const auto axis = static_cast<int>(node.axis);
+    // Up to this one all have a region by now. So children have greater numbers than their parent and one
+    // parent: all of it is one tree.
+    if (node.link >= count - 1 || !region_of_node[node.link].empty() ||
+        !region_of_node[node.link + 1].empty() || !(node.plane > region.min[axis]) ||
+        !(node.plane < region.max[axis])) {
+      return Error{"has a cell that is not divided into two"};
+    }
+    Box &left = region_of_node[node.link], &right = region_of_node[node.link + 1];
+    left = right = region;
+    left.max[axis] = right.min[axis] = node.plane;
+  }
+  return tree;
+}
+
 }  // namespace sightline::database_detail

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/byte_stream.h"
+#include "sightline/base/result.h"
 #include "sightline/hierarchy/hierarchy.h"
 
 namespace sightline::database_detail {
@@ -18,6 +20,8 @@ struct CellNode {
   std::uint32_t axis = kCell;
   std::uint32_t link = 0;
 };
+
+inline constexpr std::uint32_t kMaxCells = 1u << 30;
 
 // For each cell: a tree of n cells has 2 n - 1 nodes.
 inline constexpr std::size_t kBytesPerCell = 2 * sizeof(CellNode) + sizeof(Box);
@@ -32,6 +36,10 @@ struct CellTree {
   // Every point is in one cell. At most as many comparisons as the hierarchy has levels.
   std::uint32_t cellOf(const Vec3d& point) const;
   std::size_t bytes() const;  // beside the object itself
+
+  // The box of the root (six of 32 bits), then for each node its axis (8 bits) and, if it is not a cell, its
+  // plane and its link (32 each). Cells are numbered in the order of their nodes.
+  void save(ByteWriter& writer) const;
 };
 
 // Splits the cell with the longest diagonal (of equal ones, the one made first) as the kd-tree does, until
@@ -39,5 +47,8 @@ struct CellTree {
 // leaf) is one cell, and so is what is not a kd-tree; objects with a broken box do not count.
 // default_bounds: the region where the tree has no finite box of its own.
 CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::uint32_t max_cells);
+
+// So many cells (at least 1, at most kMaxCells), for which the caller has to know that the bytes are enough.
+Result<CellTree> loadCells(ByteReader& reader, std::uint32_t cells);
 
 }  // namespace sightline::database_detail

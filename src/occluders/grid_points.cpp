@@ -76,6 +76,7 @@ PointGrid gridNear(std::span<const Vec3d> viewpoints, double extent, double spac
        grid.points = pointsNear(viewpoints, grid.spacing, limit)) {
     grid.spacing *= kGrowth;
   }
+  grid.points.shrink_to_fit();
   return grid;
 }
 
@@ -99,6 +100,7 @@ PointGrid gridIn(const Vec3d& low, const Vec3d& high, double spacing, std::uint3
       }
     }
   }
+  grid.points.shrink_to_fit();
   return grid;
 }
 
@@ -125,6 +127,34 @@ PointGrid makeGrid(const Box& bounds, std::span<const Vec3d> viewpoints, double 
     usable.push_back(0.5 * (low + high));
   }
   return gridNear(usable, std::max(extentOf(low, high), extentOf(lowest, highest)), wanted, max_points);
+}
+
+void saveGrid(ByteWriter& writer, const PointGrid& grid) {
+  writer.add(grid.spacing);
+  for (const Vec3d& point : grid.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      writer.add(point[axis]);
+    }
+  }
+}
+
+Result<PointGrid> loadGrid(ByteReader& reader, std::uint32_t points) {
+  PointGrid grid;
+  grid.spacing = reader.read<double>();
+  reader.expect(points, 3 * sizeof(double));
+  if (!reader.ok() || !std::isfinite(grid.spacing) || !(grid.spacing > 0.0)) {
+    return Error{"has no spacing of its points"};
+  }
+  grid.points.resize(points);
+  for (Vec3d& point : grid.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = reader.read<double>();
+    }
+    if (!isFinite(point)) {
+      return Error{"has a point that is not finite"};
+    }
+  }
+  return grid;
 }
 
 PointTree::PointTree(std::span<const Vec3d> points) {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/byte_stream.h"
+#include "sightline/base/result.h"
 #include "sightline/math/box.h"
 
 namespace sightline::viewpoint_detail {
@@ -20,6 +22,11 @@ struct PointGrid {
 // not positive: chosen.
 PointGrid makeGrid(const Box& bounds, std::span<const Vec3d> viewpoints, double spacing,
                    std::uint32_t max_points);
+
+// The spacing, then x, y, z of each point (64 bits each).
+void saveGrid(ByteWriter& writer, const PointGrid& grid);
+// So many points, all finite.
+Result<PointGrid> loadGrid(ByteReader& reader, std::uint32_t points);
 
 // Finds the nearest of some points. Does not change once it is made.
 class PointTree {

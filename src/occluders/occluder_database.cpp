@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "occluders/database_bytes.h"
 #include "occluders/database_cells.h"
 #include "occluders/database_lists.h"
 #include "occluders/packed_lists.h"
@@ -19,22 +22,30 @@
 namespace sightline {
 
 using namespace database_detail;
+using occluder_detail::DatabaseKind;
 using occluder_detail::ListPacker;
 using occluder_detail::PackedLists;
 using occluder_detail::SphereDirections;
 using occluder_detail::StepProgress;
 
 struct OccluderDatabase::Data {
-  explicit Data(std::uint32_t direction_count) : directions(direction_count) {}
+  Data(std::uint32_t direction_count, std::uint32_t occluders)
+      : occluder_count(occluders), directions(direction_count) {}
 
+  std::uint32_t occluder_count = 0;  // of the set
   SphereDirections directions;
   CellTree cells;
   PackedLists lists;  // by cell * directions + direction
 
   std::size_t bytes() const { return sizeof(Data) + directions.bytes() + cells.bytes() + lists.bytes(); }
+
+  // An error lacks its subject.
+  static Result<std::shared_ptr<const Data>> load(ByteReader& reader, std::uint32_t occluder_count);
 };
 
 namespace {
+
+constexpr DatabaseKind kKind{"occluder database", "occd"};
 
 // So many cells fit when all lists are of full length and different; at least 1.
 std::uint32_t cellLimit(std::size_t max_bytes, std::size_t bytes_without_cells, std::size_t directions,
@@ -42,7 +53,7 @@ std::uint32_t cellLimit(std::size_t max_bytes, std::size_t bytes_without_cells, 
   const std::size_t a_list = list_length * sizeof(OccluderId) + PackedLists::bytesPerList();
   const std::size_t a_cell = kBytesPerCell + directions * a_list;
   const std::size_t available = max_bytes > bytes_without_cells ? max_bytes - bytes_without_cells : 0;
-  return static_cast<std::uint32_t>(std::clamp<std::size_t>(available / a_cell, 1, 1u << 30));
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(available / a_cell, 1, kMaxCells));
 }
 
 // By cell * directions + direction.
@@ -76,7 +87,8 @@ PackedLists findLists(const CandidateTree& candidates, const SphereDirections& d
 OccluderDatabase OccluderDatabase::build(const Hierarchy& kd_tree, const OccluderSet& set,
                                          const OccluderDatabaseSettings& settings,
                                          const ParallelFor& parallel_for, const Progress& progress) {
-  const auto data = std::make_shared<Data>(settings.directions);
+  const auto data =
+      std::make_shared<Data>(settings.directions, static_cast<std::uint32_t>(set.occluders.size()));
   const CandidateTree candidates(set, settings.turned_away);
   const std::uint32_t directions = data->directions.count();
   const std::size_t length = std::min(settings.occluder_count, candidates.count());
@@ -130,6 +142,63 @@ double OccluderDatabase::coveringAngle() const {
 
 std::size_t OccluderDatabase::bytes() const {
   return sizeof(*this) + (data_ ? data_->bytes() : 0);
+}
+
+std::vector<std::byte> OccluderDatabase::save() const {
+  ByteWriter writer;
+  if (!data_) {
+    addDatabaseHead(writer, kKind, {});
+    return writer.take();
+  }
+  addDatabaseHead(writer, kKind, {data_->directions.count(), data_->occluder_count});
+  writer.add(data_->cells.count());
+  data_->cells.save(writer);
+  data_->lists.save(writer);
+  return writer.take();
+}
+
+// Null: of a default-constructed database. Directions come last, because their tables take more memory than
+// their number in the bytes justifies; the lists do.
+Result<std::shared_ptr<const OccluderDatabase::Data>> OccluderDatabase::Data::load(
+    ByteReader& reader, std::uint32_t occluder_count) {
+  using Loaded = std::shared_ptr<const Data>;
+  const Result<std::uint32_t> directions = readDatabaseHead(reader, kKind, occluder_count);
+  if (!directions) {
+    return directions.error();
+  }
+  if (*directions == 0) {
+    return Loaded();
+  }
+  const auto cell_count =
+      reader.readCount<std::uint32_t>(std::size_t{*directions} * PackedLists::savedBytesPerList());
+  if (cell_count == 0 || cell_count > kMaxCells) {
+    return Error{"has " + std::to_string(cell_count) + " cells"};
+  }
+  Result<CellTree> cells = loadCells(reader, cell_count);
+  if (!cells) {
+    return cells.error();
+  }
+  Result<PackedLists> lists =
+      PackedLists::load(reader, std::uint64_t{cell_count} * *directions, occluder_count);
+  if (!lists) {
+    return lists.error();
+  }
+  const auto data = std::make_shared<Data>(*directions, occluder_count);
+  data->cells = std::move(*cells);
+  data->lists = std::move(*lists);
+  return Loaded(data);
+}
+
+Result<OccluderDatabase> OccluderDatabase::load(std::span<const std::byte> bytes,
+                                                std::uint32_t occluder_count) {
+  ByteReader reader(bytes);
+  Result<std::shared_ptr<const Data>> data = Data::load(reader, occluder_count);
+  if (!data || !reader.atEnd()) {
+    return databaseError(kKind, reader, data ? nullptr : &data.error());
+  }
+  OccluderDatabase database;
+  database.data_ = std::move(*data);
+  return database;
 }
 
 }  // namespace sightline

@@ -7,11 +7,13 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/byte_stream.h"
 #include "sightline/base/ids.h"
+#include "sightline/base/result.h"
 
 namespace sightline::occluder_detail {
 
-// Does not change once a ListPacker has made it.
+// Does not change once a ListPacker has made it, or load.
 class PackedLists {
  public:
   std::size_t size() const { return lists_.size(); }
@@ -19,6 +21,13 @@ class PackedLists {
   std::span<const OccluderId> operator[](std::size_t index) const {
     return std::span(ids_).subspan(lists_[index].first, lists_[index].length);
   }
+
+  // The different lists that are not empty, in the order in which they first occur: their number (64 bits)
+  // and lengths (32); for each list 0 if it is empty, else which of those it is, from 1 (64); their ids (32).
+  void save(ByteWriter& writer) const;
+  // So many lists of ids < occluder_count. Takes no more memory than some times the bytes.
+  static Result<PackedLists> load(ByteReader& reader, std::uint64_t lists, std::uint32_t occluder_count);
+  static constexpr std::size_t savedBytesPerList() { return sizeof(std::uint64_t); }  // at least
 
   std::size_t bytes() const;  // beside the object itself
   // That a list takes beside its entries.
@@ -32,6 +41,9 @@ class PackedLists {
     std::uint64_t first = 0;
     std::uint32_t length = 0;
   };
+  static Result<std::vector<List>> loadRanges(ByteReader& reader, std::uint64_t lists,
+                                              std::uint64_t& entries);
+
   std::vector<List> lists_;  // equal ones are the same range
   std::vector<OccluderId> ids_;
 };

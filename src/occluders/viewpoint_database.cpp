@@ -7,8 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "occluders/database_bytes.h"
 #include "occluders/grid_points.h"
 #include "occluders/packed_lists.h"
 #include "occluders/sphere_directions.h"
@@ -18,6 +21,7 @@
 namespace sightline {
 
 using namespace viewpoint_detail;
+using occluder_detail::DatabaseKind;
 using occluder_detail::ListPacker;
 using occluder_detail::PackedLists;
 using occluder_detail::SphereDirections;
@@ -25,14 +29,17 @@ using occluder_detail::StepProgress;
 
 namespace {
 
+constexpr std::uint32_t kMaxPoints = 65536;
 constexpr std::uint32_t kMaxLists = 1u << 22;
+constexpr DatabaseKind kKind{"viewpoint database", "vptd"};
 
 }  // namespace
 
 struct ViewpointDatabase::Data {
-  Data(std::uint32_t direction_count, PointGrid made)
-      : directions(direction_count), grid(std::move(made)), tree(grid.points) {}
+  Data(std::uint32_t direction_count, std::uint32_t occluders, PointGrid made)
+      : occluder_count(occluders), directions(direction_count), grid(std::move(made)), tree(grid.points) {}
 
+  std::uint32_t occluder_count = 0;  // of the set
   SphereDirections directions;
   PointGrid grid;
   PointTree tree;
@@ -42,6 +49,9 @@ struct ViewpointDatabase::Data {
     return sizeof(Data) + directions.bytes() + grid.points.capacity() * sizeof(Vec3d) + tree.bytes() +
            lists.bytes();
   }
+
+  // An error lacks its subject.
+  static Result<std::shared_ptr<const Data>> load(ByteReader& reader, std::uint32_t occluder_count);
 };
 
 namespace {
@@ -58,7 +68,7 @@ double usableWeight(double weight) {
 ViewpointDatabaseSettings inRange(ViewpointDatabaseSettings s) {
   const ViewpointDatabaseSettings defaults;
   s.directions = std::clamp(s.directions, 1u, occluder_detail::kMaxDirections);
-  s.max_points = std::clamp(s.max_points, 1u, std::min(65536u, kMaxLists / s.directions));
+  s.max_points = std::clamp(s.max_points, 1u, std::min(kMaxPoints, kMaxLists / s.directions));
   s.occluder_count = std::min(s.occluder_count, 65536u);
   s.resolution = std::clamp(s.resolution, 8u, kMaxResolution);
   s.view_angle_deg = clampedOr(s.view_angle_deg, 1.0, 170.0, defaults.view_angle_deg);
@@ -92,7 +102,7 @@ ViewpointDatabase ViewpointDatabase::build(const Hierarchy& hierarchy, const Occ
   const PictureSource source(hierarchy, set, inRange(settings));
   const Box bounds = hierarchy.nodes.empty() ? Box{} : hierarchy.nodes[0].bounds;
   const auto data = std::make_shared<Data>(
-      source.settings.directions,
+      source.settings.directions, static_cast<std::uint32_t>(set.occluders.size()),
       makeGrid(bounds, viewpoints, source.settings.spacing, source.settings.max_points));
   const std::uint32_t directions = data->directions.count();
   const auto pictures = static_cast<std::uint32_t>(data->grid.points.size()) * directions;
@@ -155,6 +165,61 @@ double ViewpointDatabase::spacing() const {
 
 std::size_t ViewpointDatabase::bytes() const {
   return sizeof(*this) + (data_ ? data_->bytes() : 0);
+}
+
+std::vector<std::byte> ViewpointDatabase::save() const {
+  ByteWriter writer;
+  if (!data_) {
+    addDatabaseHead(writer, kKind, {});
+    return writer.take();
+  }
+  addDatabaseHead(writer, kKind, {data_->directions.count(), data_->occluder_count});
+  writer.add(pointCount());
+  saveGrid(writer, data_->grid);
+  data_->lists.save(writer);
+  return writer.take();
+}
+
+// Null: of a default-constructed database. Directions come last, because their tables take more memory than
+// their number in the bytes justifies; the lists do.
+Result<std::shared_ptr<const ViewpointDatabase::Data>> ViewpointDatabase::Data::load(
+    ByteReader& reader, std::uint32_t occluder_count) {
+  using Loaded = std::shared_ptr<const Data>;
+  const Result<std::uint32_t> directions = readDatabaseHead(reader, kKind, occluder_count);
+  if (!directions) {
+    return directions.error();
+  }
+  if (*directions == 0) {
+    return Loaded();
+  }
+  const auto points =
+      reader.readCount<std::uint32_t>(std::size_t{*directions} * PackedLists::savedBytesPerList());
+  if (points == 0 || points > std::min(kMaxPoints, kMaxLists / *directions)) {
+    return Error{"has " + std::to_string(points) + " points"};
+  }
+  Result<PointGrid> grid = loadGrid(reader, points);
+  if (!grid) {
+    return grid.error();
+  }
+  Result<PackedLists> lists = PackedLists::load(reader, std::uint64_t{points} * *directions, occluder_count);
+  if (!lists) {
+    return lists.error();
+  }
+  const auto data = std::make_shared<Data>(*directions, occluder_count, std::move(*grid));
+  data->lists = std::move(*lists);
+  return Loaded(data);
+}
+
+Result<ViewpointDatabase> ViewpointDatabase::load(std::span<const std::byte> bytes,
+                                                  std::uint32_t occluder_count) {
+  ByteReader reader(bytes);
+  Result<std::shared_ptr<const Data>> data = Data::load(reader, occluder_count);
+  if (!data || !reader.atEnd()) {
+    return databaseError(kKind, reader, data ? nullptr : &data.error());
+  }
+  ViewpointDatabase database;
+  database.data_ = std::move(*data);
+  return database;
 }
 
 }  // namespace sightline

@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sightline/base/parallel_for.h"
 #include "sightline/base/progress.h"
+#include "sightline/base/result.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
 #include "sightline/occluders/occluder_set.h"
@@ -81,6 +83,12 @@ class OccluderDatabase {
   double coveringAngle() const;
 
   std::size_t bytes() const;  // in memory, all of it
+
+  // All of it as bytes, for baked files: little-endian, the same for equal databases.
+  std::vector<std::byte> save() const;
+  // What save() gave, checked so far that any bytes are safe. occluder_count: of the OccluderSet whose ids it
+  // holds. An error says what is wrong with the bytes.
+  static Result<OccluderDatabase> load(std::span<const std::byte> bytes, std::uint32_t occluder_count);
 
  private:
   struct Data;
