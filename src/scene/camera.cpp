@@ -1,6 +1,7 @@
 #include "sightline/scene/camera.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace sightline {
@@ -69,6 +70,17 @@ Frustum frustumOf(const View& view) {
   frustum.planes[4] = through(view.forward, view.eye + view.forward * view.near);
   frustum.planes[5] = through(-view.forward, view.eye + view.forward * view.far);
   return frustum;
+}
+
+double nearDistance(const View& view) {
+  if (view.orthographic) {
+    // Its eyes are as far away as one likes.
+    return std::numeric_limits<double>::infinity();
+  }
+  // A corner lies at forward + x right + y up, times near. Rounded up.
+  const double y = view.tan_half_fovy;
+  const double x = view.tan_half_fovy * view.aspect;
+  return view.near * std::sqrt(1.0 + x * x + y * y) * (1.0 + 0x1p-48);
 }
 
 View CameraPath::view(std::size_t frame, const Vec3d& scene_origin) const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/repository/source_tree.h"
@@ -16,8 +17,9 @@ namespace sightline::repository {
 namespace {
 
 // From the bottom to the top.
-constexpr std::array<std::string_view, 10> kRooms{"base",      "math",      "geometry", "scene", "hierarchy",
-                                                  "occluders", "occlusion", "culling",  "io",    "render"};
+constexpr std::array<std::string_view, 11> kRooms{"base",      "math",      "geometry",  "scene",
+                                                  "hierarchy", "occluders", "occlusion", "culling",
+                                                  "pvs",       "io",        "render"};
 constexpr std::size_t kRuntimeRooms = 8;  // the first of them make sightline::runtime
 
 std::optional<std::size_t> levelOf(std::string_view room) {
@@ -145,6 +147,21 @@ TEST(IncludeDirections, PublicHeadersNameNoOtherLibrary) {
       if (file.is_public && !include.quoted) {
         EXPECT_TRUE(standardHeader(include))
             << where(include) << "a caller would need that library's headers";
+      }
+    }
+  }
+}
+
+// The baker and the look-up share the plain data of the file, and no code.
+TEST(IncludeDirections, TheBakerAndTheLookUpShareOnlyTheFormat) {
+  for (const RoomFile& file : roomFiles()) {
+    for (const Include& include : includesOf(file.file)) {
+      for (const auto& [from, to] :
+           {std::pair("pvs/bake/", "pvs/query/"), std::pair("pvs/query/", "pvs/bake/"),
+            std::pair("pvs/format/", "pvs/bake/"), std::pair("pvs/format/", "pvs/query/")}) {
+        EXPECT_FALSE(file.file.find(from) != std::string::npos &&
+                     include.target.find(to) != std::string::npos)
+            << where(include) << "through pvs/format only";
       }
     }
   }

@@ -137,6 +137,30 @@ TEST(Camera, CornersOfThePictureProjectToTheCornersOfClipSpace) {
   EXPECT_NEAR(clip.z, 0.0, 1e-12) << "half way between near and far";
 }
 
+TEST(Camera, NearDistanceReachesTheCornersOfTheNearPlane) {
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    View view = randomView(random);
+    view.orthographic = false;
+    // From clip space back: the corner (1, 1) of the near plane.
+    const Vec3d corner = view.forward * view.near +
+                         view.right * (view.near * view.tan_half_fovy * view.aspect) +
+                         view.up * (view.near * view.tan_half_fovy);
+    const Clip clip = project(clipFromScene(view), view.eye + corner);
+    EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-9) << "seed " << seed;
+    EXPECT_NEAR(clip.y / clip.w, 1.0, 1e-9) << "seed " << seed;
+    EXPECT_NEAR(clip.z / clip.w, -1.0, 1e-9) << "seed " << seed;
+    EXPECT_GE(nearDistance(view), length(corner)) << "seed " << seed;
+    EXPECT_LE(nearDistance(view), length(corner) * (1.0 + 1e-12)) << "seed " << seed;
+  }
+}
+
+TEST(Camera, NearDistanceOfAnOrthographicViewIsInfinite) {
+  View view;
+  view.orthographic = true;
+  EXPECT_TRUE(std::isinf(nearDistance(view)));
+}
+
 TEST(CameraPath, ViewsAreInSceneSpace) {
   CameraPath path;
   path.fovy_deg = 90.0;

@@ -31,6 +31,10 @@ Mat4 clipFromScene(const View& view);
 // The six planes of the view's visible volume, scene space.
 Frustum frustumOf(const View& view);
 
+// How far from the eye the farthest point lies that the near plane of a perspective view clips away: a corner
+// of it. Metres, rounded up. Of an orthographic view: infinite, since its rays start anywhere.
+double nearDistance(const View& view);
+
 struct CameraFrame {
   Vec3d eye;      // world space
   Vec3d forward;  // any length > 0

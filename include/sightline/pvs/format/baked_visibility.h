@@ -1,0 +1,54 @@
+#pragma once
+
+// All that a .sight file holds, in memory.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sightline/hierarchy/box_tree.h"
+#include "sightline/pvs/format/scene_id.h"
+#include "sightline/pvs/format/visibility_octree.h"
+
+namespace sightline {
+
+// How a file came to be; part of it, for people and for --resume.
+struct BakeRecord {
+  double near_distance = 0.0;  // metres, BakeSettings::near_distance
+  std::uint64_t triangle_budget = 0;
+  std::uint32_t max_depth = 0;
+  std::string settings;  // all of them as JSON, one line
+
+  friend bool operator==(const BakeRecord&, const BakeRecord&) = default;
+};
+
+// Sets of nodes of a BoxTree, equal ones once. Each ascending, none below another.
+struct NodeSets {
+  std::vector<std::uint64_t> first{0};  // one more than there are sets, into nodes
+  std::vector<std::uint32_t> nodes;
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(first.size() - 1); }
+  std::span<const std::uint32_t> operator[](std::uint32_t set) const {
+    return std::span(nodes).subspan(first[set], first[set + 1] - first[set]);
+  }
+};
+
+// What OccluderDatabase::save and ViewpointDatabase::save give.
+struct DatabaseBlob {
+  std::string name;         // "area-angle", "detail", "minimum-sets", "first-hit", "projected-size"
+  std::uint64_t occluders;  // hash of the OccluderSet whose ids it names
+  std::vector<std::byte> bytes;
+};
+
+struct BakedVisibility {
+  SceneId scene;
+  BakeRecord record;
+  BoxTree boxes;
+  VisibilityOctree octree;
+  NodeSets sets;  // that the octree's leaves name
+  std::vector<DatabaseBlob> databases;
+};
+
+}  // namespace sightline

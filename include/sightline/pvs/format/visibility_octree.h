@@ -1,0 +1,130 @@
+#pragma once
+
+// The visibility octree as plain data: cells of space, each with the set of what may be seen from it.
+// Source: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sightline/math/vec3.h"
+
+namespace sightline {
+
+inline constexpr std::uint32_t kMaxOctreeDepth = 20;
+
+// Why a cell was not divided (section 3.2, and past it: merging).
+enum class StopReason : std::uint8_t {
+  kBudgetMet,      // few enough triangles
+  kNothingGained,  // neither smaller cells nor a larger search box would hide more
+  kMaxDepth,
+  kMerged,   // eight cells with like sets were made one
+  kOutside,  // no viewers are there
+};
+inline constexpr std::uint32_t kStopReasons = 5;
+
+// A plane that divides a cell, with the solid that it stands for: eyes with dot(normal, eye) >= front are
+// before it, those with dot(normal, eye) <= back behind it, the others in it or so near that they may look
+// through it. back <= front.
+//
+// The dot product is computed in double precision, x, then y, then z, by whoever looks up: it is off by less
+// than 2^-50 of the coordinates' size, the largest absolute value in the octree's box. So that this does no
+// harm, the sets of both sides hold for sides that are larger by m = 2^-40 of that size: front_set for all
+// eyes of the cell with dot(normal, eye) >= front - m, back_set for those with dot(normal, eye) <= back + m.
+// Whoever makes planes sees to it.
+struct CellPlane {
+  Vec3d normal;  // unit length
+  double front = 0.0, back = 0.0;
+
+  friend bool operator==(const CellPlane&, const CellPlane&) = default;
+};
+
+// Each belongs to one node. 16 bytes.
+struct OctreeLeaf {
+  static constexpr std::uint32_t kNoPlane = 0xffffffffu;
+
+  std::uint32_t set = 0;           // seen from anywhere in the cell; with a plane: from between its sides
+  std::uint32_t plane = kNoPlane;  // into planes
+  std::uint32_t front_set = 0, back_set = 0;  // with a plane only
+
+  friend bool operator==(const OctreeLeaf&, const OctreeLeaf&) = default;
+};
+static_assert(sizeof(OctreeLeaf) == 16);
+
+// An inner node: the index of the first of its eight children, which follow each other; child number i is the
+// upper half in x, y, z where bit 0, 1, 2 of i is set. A leaf: kOctreeLeaf and the index of the leaf.
+using OctreeLink = std::uint32_t;
+inline constexpr OctreeLink kOctreeLeaf = 0x80000000u;
+
+struct OctreeView {
+  Vec3d min, max;                     // scene space, of the root
+  std::span<const OctreeLink> nodes;  // [0] is the root; children have greater indices than their parent
+  std::span<const OctreeLeaf> leaves;
+  std::span<const std::uint8_t> depths;   // by leaf
+  std::span<const std::uint8_t> reasons;  // by leaf, StopReason
+  std::span<const CellPlane> planes;
+};
+
+struct VisibilityOctree {
+  Vec3d min, max;
+  std::vector<OctreeLink> nodes;
+  std::vector<OctreeLeaf> leaves;
+  std::vector<std::uint8_t> depths, reasons;
+  std::vector<CellPlane> planes;
+
+  OctreeView view() const { return {min, max, nodes, leaves, depths, reasons, planes}; }
+};
+
+// One cell of the grid of a level: 2^level cells along each axis.
+struct OctreeCell {
+  std::uint32_t level = 0;
+  std::array<std::uint32_t, 3> at{};
+
+  OctreeCell child(std::uint32_t i) const {
+    return {level + 1, {at[0] * 2 + (i & 1), at[1] * 2 + (i >> 1 & 1), at[2] * 2 + (i >> 2 & 1)}};
+  }
+  friend bool operator==(const OctreeCell&, const OctreeCell&) = default;
+};
+
+// Where the grid line `at` of a level crosses an axis. The same real place has the same bits on every level:
+// this one function places the baker's cells and finds the viewer's.
+inline double gridLine(double min, double max, std::uint32_t level, std::uint32_t at) {
+  return min + (max - min) * (static_cast<double>(at) / static_cast<double>(1u << level));
+}
+inline Vec3d cellMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
+  return {gridLine(min.x, max.x, c.level, c.at[0]), gridLine(min.y, max.y, c.level, c.at[1]),
+          gridLine(min.z, max.z, c.level, c.at[2])};
+}
+inline Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
+  return {gridLine(min.x, max.x, c.level, c.at[0] + 1), gridLine(min.y, max.y, c.level, c.at[1] + 1),
+          gridLine(min.z, max.z, c.level, c.at[2] + 1)};
+}
+
+// Calls visit(leaf index, cell) for all leaves, depth first, children in their order.
+template <typename Visit>
+void forEachLeaf(const OctreeView& octree, Visit&& visit) {
+  struct Entry {
+    std::uint32_t node;
+    OctreeCell cell;
+  };
+  std::vector<Entry> stack;
+  if (!octree.nodes.empty()) {
+    stack.push_back({0, {}});
+  }
+  while (!stack.empty()) {
+    const Entry entry = stack.back();
+    stack.pop_back();
+    const OctreeLink link = octree.nodes[entry.node];
+    if ((link & kOctreeLeaf) != 0) {
+      visit(link & ~kOctreeLeaf, entry.cell);
+      continue;
+    }
+    for (std::uint32_t i = 8; i-- > 0;) {
+      stack.push_back({link + i, entry.cell.child(i)});
+    }
+  }
+}
+
+}  // namespace sightline

@@ -1,0 +1,58 @@
+#pragma once
+
+// What a bake knows of its scene: objects, occluders, and trees to find them by. Does not change.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pvs/bake/cell_region.h"
+#include "pvs/bake/convex_occluder.h"
+#include "pvs/bake/runs.h"
+#include "sightline/hierarchy/box_tree.h"
+#include "sightline/pvs/bake/bake.h"
+
+namespace sightline::bake_detail {
+
+struct BakeScene {
+  // settings: usable ones. root: where viewers are.
+  BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& settings,
+            const CellBox& root);
+  BakeScene(const BakeScene&) = delete;
+  BakeScene& operator=(const BakeScene&) = delete;
+
+  BakeSettings settings;
+  CellBox region;
+  CellBox root;   // a cube
+  BoxTree boxes;  // of the objects; sets are made of its nodes
+  ShadowTree shadow_tree;
+  TriangleCounts triangles;
+  std::vector<std::uint32_t> position_of;  // by object, into BoxTree::objects
+  ConvexOccluders occluders;
+  double side_margin = 0.0;  // metres, of the root
+  double reach = 0.0;        // metres, from any viewer to any box
+
+  CellBox boxOf(const OctreeCell& cell) const {
+    return {cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
+  }
+  // Appends, ascending, the occluders that meet the box and are of use to cells of this level.
+  void findOccluders(const CellBox& box, std::uint32_t level, std::vector<std::uint32_t>& found) const;
+  // Appends the faces that meet the box.
+  void findFaces(const CellBox& box, std::vector<DividingFace>& found) const;
+  // Whether no occluder is of use to any cell and outside the box.
+  bool holdsAllOccluders(const CellBox& box) const;
+
+ private:
+  std::vector<ConvexEdge> face_edges_;
+  std::vector<DividingFace> faces_;  // of all occluders, also of those of bodies
+  BoxTree face_tree_;
+  // Of the occluders that are of use to cells of one level: large enough for their size.
+  struct LevelOccluders {
+    std::vector<std::uint32_t> occluders;  // ascending
+    BoxTree tree;                          // its objects are numbers into `occluders`
+  };
+  LevelOccluders occludersFor(std::uint32_t level) const;
+  std::vector<LevelOccluders> levels_;
+};
+
+}  // namespace sightline::bake_detail

@@ -1,0 +1,235 @@
+#include "pvs/bake/cell_region.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "geometry/clip_convex.h"
+
+namespace sightline::bake_detail {
+namespace {
+
+// Corners that differ in one coordinate.
+struct BoxEdge {
+  std::uint32_t from, to;
+  int axis;
+};
+// A plane that faces cover less of divides no cell.
+constexpr double kLeastCoverage = 0.5;
+constexpr std::size_t kMostTried = 16;  // planes
+
+constexpr std::array<BoxEdge, 12> kBoxEdges{{{0, 1, 0},
+                                             {2, 3, 0},
+                                             {4, 5, 0},
+                                             {6, 7, 0},
+                                             {0, 2, 1},
+                                             {1, 3, 1},
+                                             {4, 6, 1},
+                                             {5, 7, 1},
+                                             {0, 4, 2},
+                                             {1, 5, 2},
+                                             {2, 6, 2},
+                                             {3, 7, 2}}};
+
+// Where the plane dot(normal, x) = level crosses the edge, kept on it. Its ends lie on different sides.
+Vec3d crossing(const CellBox& cell, const BoxEdge& edge, const Vec3d& normal, double level) {
+  Vec3d point = cell.corner(edge.from);
+  const Vec3d end = cell.corner(edge.to);
+  const double from = dot(normal, point) - level, to = dot(normal, end) - level;
+  const double low = point[edge.axis], high = end[edge.axis];
+  point[edge.axis] = std::clamp(low + (high - low) * (from / (from - to)), low, high);
+  return point;
+}
+
+// The plane's cross-section with the cell, in no order. Empty: it passes the cell by.
+std::vector<Vec3d> crossSection(const CellBox& cell, const Vec3d& normal, double level) {
+  std::vector<Vec3d> points;
+  for (const BoxEdge& edge : kBoxEdges) {
+    const double from = dot(normal, cell.corner(edge.from)) - level;
+    const double to = dot(normal, cell.corner(edge.to)) - level;
+    if ((from < 0.0 && to > 0.0) || (from > 0.0 && to < 0.0)) {
+      points.push_back(crossing(cell, edge, normal, level));
+    }
+  }
+  return points;
+}
+
+struct Corner {
+  Vec3d position;
+};
+
+double areaOf(std::span<const Corner> polygon) {
+  Vec3d twice;
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    twice += cross(polygon[i - 1].position - polygon[0].position, polygon[i].position - polygon[0].position);
+  }
+  return 0.5 * length(twice);
+}
+
+// Keeps what of the polygon is in the cell.
+void clipTo(const CellBox& cell, std::vector<Corner>& polygon) {
+  std::vector<Corner> scratch;
+  for (int axis = 0; axis < 3; ++axis) {
+    clipConvex(polygon, scratch, Corner{}, [&](const Vec3d& p) { return p[axis] - cell.min[axis]; }) &&
+        clipConvex(polygon, scratch, Corner{}, [&](const Vec3d& p) { return cell.max[axis] - p[axis]; });
+  }
+}
+
+// The plane's cross-section with the cell: a square on the plane that is larger than the cell, clipped.
+double sectionArea(const CellBox& cell, const Vec3d& normal, double level) {
+  const Vec3d centre = cell.centre() + normal * (level - dot(normal, cell.centre()));
+  const int axis = std::abs(normal.x) < 0.5 ? 0 : 1;
+  Vec3d other;
+  other[axis] = 1.0;
+  const double reach = length(cell.extent());
+  const Vec3d u = normalized(cross(normal, other)) * reach, v = cross(normal, u);
+  std::vector<Corner> square{{centre + u + v}, {centre - u + v}, {centre - u - v}, {centre + u - v}};
+  clipTo(cell, square);
+  return areaOf(square);
+}
+
+// Metres along its normal from the origin.
+double levelOf(const DividingFace& face) {
+  return -face.plane.offset;
+}
+
+// A face that lies in the cell, or just outside.
+struct FaceInCell {
+  const DividingFace* face = nullptr;
+  double area = 0.0;     // of it, in the cell
+  double section = 0.0;  // of its plane, in the cell
+};
+
+// Metres from the plane of a face within which viewers count as between its sides.
+struct Clearance {
+  double near_distance, side_margin;
+
+  double of(const DividingFace& face) const {
+    return near_distance * (1.0 + 0x1p-20) + 4.0 * face.margin + 4.0 * side_margin;
+  }
+};
+
+// Of a face whose plane passes just outside: as if it lay where viewers begin to be before it.
+FaceInCell measured(const CellBox& cell, const DividingFace& face, const Clearance& clearance) {
+  const Vec3d& normal = face.plane.normal;
+  FaceInCell found{&face, 0.0, 0.0};
+  for (const double moved : {0.0, clearance.of(face)}) {
+    found.section = sectionArea(cell, normal, levelOf(face) + moved);
+    if (found.section > 0.0) {
+      std::vector<Corner> polygon;
+      for (const ConvexEdge& edge : face.edges) {
+        polygon.push_back({edge.from + normal * moved});
+      }
+      clipTo(cell, polygon);
+      found.area = areaOf(polygon);
+      return found;
+    }
+  }
+  return found;
+}
+
+bool inOnePlane(const DividingFace& a, const DividingFace& b) {
+  return dot(a.plane.normal, b.plane.normal) > 1.0 - 1e-9 &&
+         std::abs(levelOf(a) - levelOf(b)) <= 4.0 * (a.margin + b.margin);
+}
+
+// How much of its plane's cross-section with the cell a face covers together with all others in its plane.
+double coverage(const FaceInCell& face, std::span<const FaceInCell> faces) {
+  double area = 0.0;
+  for (const FaceInCell& other : faces) {
+    area += inOnePlane(*face.face, *other.face) ? other.area : 0.0;
+  }
+  return area / face.section;
+}
+
+}  // namespace
+
+double CellBox::smallestFace() const {
+  const Vec3d e = extent();
+  return std::min({e.x * e.y, e.y * e.z, e.z * e.x});
+}
+
+std::vector<Vec3d> cornersOf(const CellBox& cell) {
+  std::vector<Vec3d> corners;
+  // Opposite ones first: what an occluder hides from both is little, if anything.
+  for (const std::uint32_t i : {0, 7, 3, 4, 5, 2, 1, 6}) {
+    corners.push_back(cell.corner(i));
+  }
+  return corners;
+}
+
+std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double least) {
+  std::vector<Vec3d> corners;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    if (dot(normal, cell.corner(i)) >= least) {
+      corners.push_back(cell.corner(i));
+    }
+  }
+  if (!corners.empty() && corners.size() < 8) {
+    const std::vector<Vec3d> cut = crossSection(cell, normal, least);
+    corners.insert(corners.end(), cut.begin(), cut.end());
+  }
+  return corners;
+}
+
+double sideMargin(const CellBox& cell) {
+  const Vec3d reach = max(abs(cell.min), abs(cell.max));
+  return 0x1p-40 * (reach.x + reach.y + reach.z);
+}
+
+std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const DividingFace> faces,
+                                       double near_distance, double side_margin) {
+  const Clearance clearance{near_distance, side_margin};
+  std::vector<FaceInCell> inside;
+  for (const DividingFace& face : faces) {
+    const FaceInCell found = measured(cell, face, clearance);
+    if (found.area > 0.0) {
+      inside.push_back(found);
+    }
+  }
+  // Filled to the last corner or nearly so is the same; of such planes the one nearest to the centre.
+  const Vec3d centre = cell.centre();
+  const FaceInCell* best = nullptr;
+  std::pair<double, double> best_rank;
+  std::vector<const DividingFace*> covering;
+  // What covers half of a section has tiles among the largest.
+  const std::size_t tried = std::min(inside.size(), kMostTried);
+  std::partial_sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(tried), inside.end(),
+                    [](const FaceInCell& a, const FaceInCell& b) {
+                      return a.area != b.area ? a.area > b.area : a.face < b.face;
+                    });
+  for (const FaceInCell& face : std::span(inside).first(tried)) {
+    const double covered = coverage(face, inside);
+    if (covered < kLeastCoverage) {
+      continue;
+    }
+    covering.push_back(face.face);
+    const std::pair rank(-std::min(covered, 0.999), std::abs(face.face->plane.evaluate(centre)));
+    if (best == nullptr || rank < best_rank) {
+      best = &face;
+      best_rank = rank;
+    }
+  }
+  if (best == nullptr) {
+    return std::nullopt;
+  }
+  const DividingFace& front = *best->face;
+  const Vec3d& normal = front.plane.normal;
+  double back_level = levelOf(front);
+  bool looks_back = front.double_sided;
+  for (const DividingFace* face : covering) {
+    const double level = -levelOf(*face);
+    if (dot(face->plane.normal, normal) < -1.0 + 1e-9 && level <= levelOf(front) &&
+        (!looks_back || level > back_level)) {
+      back_level = level;
+      looks_back = true;
+    }
+  }
+  const CellPlane plane{normal, levelOf(front) + clearance.of(front), back_level - clearance.of(front)};
+  const bool some_before = !cornersBefore(cell, normal, plane.front).empty();
+  const bool some_behind = !cornersBefore(cell, -normal, -plane.back).empty();
+  return some_before || some_behind ? std::optional(plane) : std::nullopt;
+}
+
+}  // namespace sightline::bake_detail

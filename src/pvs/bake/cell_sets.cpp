@@ -1,0 +1,210 @@
+// Based on: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999, section 3.2.
+// Differs from the paper in: the search box is the cell, grown on all sides, so that all of its corners look
+// at the same occluders; whether dividing helps is asked of points within the cell too, since what the
+// corners of a large cell see says little about what its parts will; occluders are closed to viewers that
+// come nearer than their near planes.
+
+#include "pvs/bake/cell_sets.h"
+
+#include <algorithm>
+
+namespace sightline::bake_detail {
+
+void ObjectMask::reset(std::uint32_t count) {
+  count_ = count;
+  words_.assign((count + 63) / 64, 0);
+}
+
+void ObjectMask::resetWithout(std::span<const ObjectRun> runs, std::uint32_t count) {
+  reset(count);
+  std::uint32_t begin = 0;
+  for (const ObjectRun& run : runs) {
+    addRun({begin, run.begin});
+    begin = run.end;
+  }
+  addRun({begin, count});
+}
+
+void ObjectMask::add(std::span<const ObjectRun> runs) {
+  for (const ObjectRun& run : runs) {
+    addRun(run);
+  }
+}
+
+void ObjectMask::addRun(const ObjectRun& run) {
+  if (run.begin == run.end) {
+    return;
+  }
+  const std::uint32_t first = run.begin / 64, last = (run.end - 1) / 64;
+  const std::uint64_t low = ~std::uint64_t{0} << run.begin % 64;
+  const std::uint64_t high = ~std::uint64_t{0} >> (63 - (run.end - 1) % 64);
+  if (first == last) {
+    words_[first] |= low & high;
+    return;
+  }
+  words_[first] |= low;
+  std::fill(words_.begin() + first + 1, words_.begin() + last, ~std::uint64_t{0});
+  words_[last] |= high;
+}
+
+void ObjectMask::complement(Runs& out) const {
+  out.clear();
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    if (i % 64 == 0 && words_[i / 64] == ~std::uint64_t{0}) {
+      i += 63;
+    } else if (!contains(i)) {
+      if (!out.empty() && out.back().end == i) {
+        out.back().end = i + 1;
+      } else {
+        out.push_back({i, i + 1});
+      }
+    }
+  }
+}
+
+CellBaker::CellBaker(const BakeScene& scene)
+    : scene_(scene), samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes) {}
+
+CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) const {
+  const CellBox box = scene_.boxOf(cell);
+  const Vec3d grown{search_distance, search_distance, search_distance};
+  return {box.min - grown, box.max + grown};
+}
+
+bool CellBaker::searchedAll(const OctreeCell& cell, double search_distance) const {
+  return scene_.holdsAllOccluders(searchBox(cell, search_distance));
+}
+
+void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level) {
+  chosen_.clear();
+  scene_.findOccluders(searchBox(cell, search_distance), level, chosen_);
+  const CellBox box = scene_.boxOf(cell);
+  const Vec3d extent = box.extent();
+  ranked_.clear();
+  for (const std::uint32_t i : chosen_) {
+    const ConvexOccluder& occluder = scene_.occluders[i];
+    const Vec3d gap =
+        max(max(Vec3d(occluder.bounds.min) - box.max, box.min - Vec3d(occluder.bounds.max)), {});
+    ranked_.emplace_back(-occluder.area / (dot(gap, gap) + dot(extent, extent)), i);
+  }
+  std::sort(ranked_.begin(), ranked_.end());
+  std::transform(ranked_.begin(), ranked_.end(), chosen_.begin(), [](const auto& r) { return r.second; });
+}
+
+CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance) {
+  const CellBox box = scene_.boxOf(cell);
+  const double near = 2.0 * scene_.settings.near_distance;
+  faces_.clear();
+  scene_.findFaces({box.min - Vec3d{near, near, near}, box.max + Vec3d{near, near, near}}, faces_);
+  CellSets sets;
+  const Runs everything{{0, static_cast<std::uint32_t>(scene_.boxes.objects.size())}};
+  sets.whole = everything;
+  sets.plane = dividingPlane(box, faces_, scene_.settings.near_distance, scene_.side_margin);
+  if (sets.plane) {
+    sets.front = sets.back = everything;
+  }
+  chooseOccluders(cell, search_distance, cell.level);
+  hideFromAll(box, sets);
+  return sets;
+}
+
+void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
+  chooseOccluders(cell, search_distance, cell.level);
+  const CellBox known = searchBox(cell, searched);
+  std::erase_if(chosen_, [&](std::uint32_t i) {
+    const Box& bounds = scene_.occluders[i].bounds;
+    return meet(known, {Vec3d(bounds.min), Vec3d(bounds.max)});
+  });
+  hideFromAll(scene_.boxOf(cell), sets);
+}
+
+void CellBaker::hideFromAll(const CellBox& box, CellSets& sets) {
+  hideFromRegion(cornersOf(box), sets.whole);
+  if (sets.plane) {
+    const CellPlane& plane = *sets.plane;
+    const double margin = 2.0 * scene_.side_margin;
+    hideFromRegion(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
+    hideFromRegion(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
+  }
+}
+
+// An occluder whose object is hidden by one of those before it hides nothing more: its shadow lies within
+// that one's, from every viewpoint.
+void CellBaker::hideFromRegion(std::span<const Vec3d> corners, Runs& seen) {
+  if (corners.empty()) {
+    seen.clear();  // nobody is there
+    return;
+  }
+  hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
+  std::vector<Sample*> samples;
+  for (const Vec3d& corner : corners) {
+    samples.push_back(&samples_.at(corner));
+  }
+  for (const std::uint32_t i : chosen_) {
+    const ConvexOccluder& occluder = scene_.occluders[i];
+    if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
+        separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
+        hiddenFromAll(i, samples)) {
+      hidden_.add(common_);
+    }
+  }
+  hidden_.complement(seen);
+}
+
+// Fills common_ with what this one occluder hides from all corners: the intersection is taken for each
+// occluder, the union of all occluders comes after. (The other way round would be wrong: from between the
+// corners one may see past what hides from each.) false: nothing.
+bool CellBaker::hiddenFromAll(std::uint32_t occluder, std::span<Sample* const> corners) {
+  const std::span<const ObjectRun> first = samples_.hidden(*corners[0], occluder);
+  common_.assign(first.begin(), first.end());
+  for (std::size_t i = 1; i < corners.size() && !common_.empty(); ++i) {
+    intersect(common_, samples_.hidden(*corners[i], occluder), scratch_);
+    common_.swap(scratch_);
+  }
+  return !common_.empty();
+}
+
+std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets) {
+  return sets.plane ? std::max(scene.triangles.of(sets.front), scene.triangles.of(sets.back))
+                    : scene.triangles.of(sets.whole);
+}
+
+std::uint64_t CellBaker::trianglesSeenFrom(const Vec3d& eye) {
+  hidden_.reset(static_cast<std::uint32_t>(scene_.boxes.objects.size()));
+  Sample& sample = samples_.at(eye);
+  for (const std::uint32_t i : chosen_) {
+    const ConvexOccluder& occluder = scene_.occluders[i];
+    if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
+        separated(scene_.occluders, occluder, std::span(&eye, 1), scene_.settings.near_distance)) {
+      hidden_.add(samples_.hidden(sample, i));
+    }
+  }
+  hidden_.complement(scratch_);
+  return scene_.triangles.of(scratch_);
+}
+
+bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets) {
+  const CellBox box = scene_.boxOf(cell);
+  chooseOccluders(cell, search_distance, scene_.settings.max_depth);
+  std::vector<Vec3d> points{box.centre()};
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    points.push_back(scene_.boxOf(cell.child(i)).centre());
+  }
+  const std::vector<Vec3d> corners = cornersOf(box);
+  points.insert(points.end(), corners.begin(), corners.end());
+  return std::any_of(points.begin(), points.end(), [&](const Vec3d& point) {
+    const Runs* side = &sets.whole;
+    if (sets.plane) {
+      const double at = dot(sets.plane->normal, point);
+      side = at >= sets.plane->front ? &sets.front : at <= sets.plane->back ? &sets.back : nullptr;
+    }
+    if (side == nullptr) {
+      return false;
+    }
+    const double cell_triangles = static_cast<double>(scene_.triangles.of(*side));
+    return static_cast<double>(trianglesSeenFrom(point)) <
+           (1.0 - scene_.settings.similarity) * cell_triangles;
+  });
+}
+
+}  // namespace sightline::bake_detail

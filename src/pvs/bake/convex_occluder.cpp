@@ -1,0 +1,248 @@
+#include "pvs/bake/convex_occluder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "sightline/geometry/tolerance.h"
+
+namespace sightline::bake_detail {
+namespace {
+
+// Of the coordinates' size: in a margin, above all rounding of corners that are drawn in (2^-49).
+constexpr double kMarginRounding = 0x1p-44;
+// Of the coordinates' size: the rounding of a height above a plane, and of a drawn-in corner.
+constexpr double kHeightRounding = 0x1p-47;
+// What shrinks by more than this part is not used.
+constexpr double kMostShrinking = 0.25;
+constexpr double kRoundUp = 1.0 + 0x1p-30, kRoundDown = 1.0 - 0x1p-30;
+
+// The lesser one; not a number where either is none.
+double lesser(double a, double b) {
+  return b < a || std::isnan(b) ? b : a;
+}
+
+// At least |x| + |y| + |z| of all these points.
+double sizeOf(std::span<const Vec3f> points) {
+  Vec3d most;
+  for (const Vec3f& point : points) {
+    most = max(most, abs(Vec3d(point)));
+  }
+  return magnitude(most) * kRoundUp;
+}
+
+Vec3d meanOf(std::span<const Vec3f> points) {
+  Vec3d sum;
+  for (const Vec3f& point : points) {
+    sum += Vec3d(point);
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+// The part by which a shape must shrink to lose `margin` where its centre is `depth` deep.
+double shrinking(double margin, double depth) {
+  return margin / depth * kRoundUp;
+}
+
+// Least distance of the centre, which is on the plane, from the lines of a convex polygon's edges.
+double depthIn(std::span<const Vec3d> corners, const Vec3d& normal, const Vec3d& centre) {
+  double least = INFINITY;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3d along = corners[(i + 1) % corners.size()] - corners[i];
+    least = lesser(least, dot(cross(normal, along), centre - corners[i]) / length(along));
+  }
+  return least;
+}
+
+Box boundsOf(std::span<const Vec3f> points) {
+  Box bounds;
+  for (const Vec3f& point : points) {
+    bounds.extend(point);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+bool ConvexOccluders::addPolygon(const OccluderSet& set, OccluderId id) {
+  const Occluder& polygon = set[id];
+  const std::span<const Vec3f> vertices = set.verticesOf(polygon);
+  const Vec3d normal = polygon.plane.normal, mean = meanOf(vertices);
+  const Vec3d centre = mean - normal * polygon.plane.evaluate(mean);
+  const double size = sizeOf(vertices);
+  std::array<Vec3d, 64> flat;  // the corners, moved onto the plane
+  if (vertices.size() < 3 || vertices.size() > flat.size()) {
+    return false;
+  }
+  double off_plane = 0.0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const double height = dot(normal, Vec3d(vertices[i]) - centre);
+    off_plane = std::max(off_plane, std::abs(height));
+    flat[i] = Vec3d(vertices[i]) - normal * height;
+  }
+  const std::span<const Vec3d> corners(flat.data(), vertices.size());
+  ConvexOccluder occluder;
+  occluder.margin = 2.0 * static_cast<double>(polygon.slack) + off_plane + kMarginRounding * size;
+  const double shrink = shrinking(occluder.margin, depthIn(corners, normal, centre));
+  if (!(shrink > 0.0 && shrink <= kMostShrinking)) {
+    return false;
+  }
+  occluder.first_edge = static_cast<std::uint32_t>(edges_.size());
+  occluder.first_face = static_cast<std::uint32_t>(faces_.size());
+  occluder.edge_count = static_cast<std::uint16_t>(vertices.size());
+  occluder.face_count = 1;
+  occluder.double_sided = polygon.double_sided;
+  occluder.id = id;
+  occluder.object = polygon.object;
+  occluder.bounds = boundsOf(vertices);
+  occluder.area = static_cast<double>(polygon.area);
+  occluder.size = size + occluder.margin;
+  const auto drawn = [&](std::size_t i) {
+    return centre + (corners[i % corners.size()] - centre) * (1.0 - shrink);
+  };
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    edges_.push_back({drawn(i), drawn(i + 1) - drawn(i)});
+  }
+  const double rounding = kHeightRounding * size;
+  faces_.push_back({polygon.plane, centre, -rounding, rounding});
+  occluders_.push_back(occluder);
+  return true;
+}
+
+bool ConvexOccluders::addBody(const OccluderSet& set, const OccluderBody& body) {
+  const std::span<const Vec3f> vertices = set.verticesOf(body);
+  const std::span<const BodyFace> faces = set.facesOf(body);
+  const Vec3d centre = meanOf(vertices);
+  const double size = sizeOf(vertices);
+  double depth = INFINITY, outside = 0.0;  // of the centre in the faces' planes; of corners before them
+  for (const BodyFace& face : faces) {
+    depth = lesser(depth, -face.plane.evaluate(centre));
+    for (const Vec3f& vertex : vertices) {
+      outside = std::max(outside, face.plane.evaluate(Vec3d(vertex)));
+    }
+  }
+  ConvexOccluder occluder;
+  occluder.margin = 2.0 * static_cast<double>(body.slack) + kMarginRounding * size;
+  const double shrink = shrinking(occluder.margin + outside, depth);
+  if (!(shrink > 0.0 && shrink <= kMostShrinking)) {
+    return false;
+  }
+  occluder.first_edge = static_cast<std::uint32_t>(edges_.size());
+  occluder.first_face = static_cast<std::uint32_t>(faces_.size());
+  occluder.edge_count = body.edge_count;
+  occluder.face_count = body.face_count;
+  occluder.body = true;
+  occluder.id = faces.front().occluder;
+  occluder.object = set[occluder.id].object;
+  occluder.bounds = body.bounds;
+  occluder.size = size + occluder.margin;
+  const auto drawn = [&](std::uint8_t vertex) {
+    return centre + (Vec3d(vertices[vertex]) - centre) * (1.0 - shrink);
+  };
+  for (const BodyFace& face : faces) {
+    const auto area = static_cast<double>(set[face.occluder].area);
+    occluder.area = std::max(occluder.area, area);
+    occluder.volume -= area * face.plane.evaluate(centre) / 3.0;
+    faces_.push_back({face.plane, drawn(face.vertex)});
+  }
+  // Every corner of a face is the start or the end of an edge of it.
+  const std::span<DrawnFace> drawn_faces = std::span(faces_).subspan(occluder.first_face);
+  for (const BodyEdge& edge : set.edgesOf(body)) {
+    edges_.push_back({drawn(edge.from), drawn(edge.to) - drawn(edge.from), edge.left, edge.right});
+    for (const std::uint8_t side : {edge.left, edge.right}) {
+      DrawnFace& face = drawn_faces[side];
+      for (const std::uint8_t vertex : {edge.from, edge.to}) {
+        const double height = dot(face.plane.normal, drawn(vertex) - face.base);
+        face.least = std::min(face.least, height);
+        face.most = std::max(face.most, height);
+      }
+    }
+  }
+  for (DrawnFace& face : drawn_faces) {
+    face.least -= kHeightRounding * size;
+    face.most += kHeightRounding * size;
+  }
+  occluders_.push_back(occluder);
+  return true;
+}
+
+ConvexOccluders::ConvexOccluders(const OccluderSet& set) {
+  std::vector<bool> in_body(set.occluders.size(), false);
+  for (const OccluderBody& body : set.bodies) {
+    if (addBody(set, body)) {
+      for (const BodyFace& face : set.facesOf(body)) {
+        in_body[face.occluder.value] = true;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < set.occluders.size(); ++i) {
+    if (!in_body[i]) {
+      addPolygon(set, OccluderId(i));
+    }
+  }
+  std::sort(occluders_.begin(), occluders_.end(), [](const ConvexOccluder& a, const ConvexOccluder& b) {
+    return std::tuple(-a.area, a.id.value) < std::tuple(-b.area, b.id.value);
+  });
+  // In the same order, so that neighbours are near each other in memory.
+  std::vector<DrawnEdge> edges;
+  std::vector<DrawnFace> faces;
+  edges.reserve(edges_.size());
+  faces.reserve(faces_.size());
+  for (ConvexOccluder& occluder : occluders_) {
+    const std::span<const DrawnEdge> its_edges = edgesOf(occluder);
+    const std::span<const DrawnFace> its_faces = facesOf(occluder);
+    occluder.first_edge = static_cast<std::uint32_t>(edges.size());
+    occluder.first_face = static_cast<std::uint32_t>(faces.size());
+    edges.insert(edges.end(), its_edges.begin(), its_edges.end());
+    faces.insert(faces.end(), its_faces.begin(), its_faces.end());
+  }
+  edges_ = std::move(edges);
+  faces_ = std::move(faces);
+}
+
+namespace {
+
+// Least height of the points above a plane, less its rounding.
+double leastHeight(const Plane& plane, double size, std::span<const Vec3d> points) {
+  double least = INFINITY;
+  for (const Vec3d& point : points) {
+    least = lesser(least, plane.evaluate(point) - kHeightRounding * (magnitude(point) + size));
+  }
+  return least;
+}
+
+// How far the points are from a box along each axis; negative where they overlap.
+Vec3d gapsBetween(const Box& box, std::span<const Vec3d> points) {
+  Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
+  for (const Vec3d& point : points) {
+    low = min(low, point);
+    high = max(high, point);
+  }
+  return max(low - Vec3d(box.max), Vec3d(box.min) - high);
+}
+
+}  // namespace
+
+bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::span<const Vec3d> corners,
+               double near_distance) {
+  if (corners.empty() || !std::ranges::all_of(corners, [](const Vec3d& p) { return isFinite(p); })) {
+    return false;
+  }
+  const Vec3d gaps = gapsBetween(occluder.bounds, corners);
+  double gap = -INFINITY;  // of the best separating plane
+  for (const DrawnFace& face : all.facesOf(occluder)) {
+    gap = std::max(gap, leastHeight(face.plane, occluder.size, corners));
+    if (occluder.double_sided) {
+      gap = std::max(gap, leastHeight(face.plane.flipped(), occluder.size, corners));
+    }
+  }
+  if (occluder.body) {
+    gap = std::max(gap, maxComponent(gaps) * kRoundDown);
+  }
+  // The margin is more than what triangles lie off the planes, and out of the bounds.
+  const double apart = std::max(gap, length(max(gaps, Vec3d())) * kRoundDown);
+  return gap > occluder.margin && apart - occluder.margin > near_distance;
+}
+
+}  // namespace sightline::bake_detail

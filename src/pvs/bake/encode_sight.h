@@ -1,0 +1,32 @@
+#pragma once
+
+// From baked data to the bytes of a .sight file.
+
+#include <cstddef>
+#include <vector>
+
+#include "pvs/format/sight_view.h"
+#include "sightline/base/result.h"
+#include "sightline/pvs/format/baked_visibility.h"
+
+namespace sightline::sight_bake {
+
+// The chunks of sets and databases, compressed.
+struct EncodedChunks {
+  std::vector<sight_format::Chunk> chunks;  // without checksums: sightBytes fills them in
+  std::uint32_t set_chunks = 0;             // the first of them
+  std::vector<sight_format::SetPlace> sets;
+  std::vector<sight_format::DatabaseEntry> databases;  // names are those of the baked data
+  std::vector<std::byte> payload;
+};
+
+// Checks nothing.
+EncodedChunks encodeChunks(const BakedVisibility& baked);
+
+// What sightBytes makes a file of; both must outlive it.
+sight_format::SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded);
+
+// The bytes of the whole file. An error where the data is not sound (no reader would take it) or too large.
+Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked);
+
+}  // namespace sightline::sight_bake

@@ -1,0 +1,44 @@
+#pragma once
+
+// Sets of objects as runs of BoxTree::objects: ascending, neither empty nor touching each other. Objects that
+// are near each other in space are near each other there, so that sets are few runs.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pvs/bake/shadow_tree.h"
+#include "sightline/hierarchy/box_tree.h"
+
+namespace sightline::bake_detail {
+
+using Runs = std::vector<ObjectRun>;
+
+// out: what is in both. out is neither a nor b.
+void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
+// out: what is in either. out is neither a nor b.
+void unite(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
+// out: what of the first `count` objects is not in a. out is not a.
+void complement(std::span<const ObjectRun> a, std::uint32_t count, Runs& out);
+bool contains(std::span<const ObjectRun> runs, std::uint32_t position);
+
+// Appends the nodes whose objects are all in the set and whose parents' are not: ascending.
+void appendNodes(const BoxTreeView& tree, std::span<const ObjectRun> runs, std::vector<std::uint32_t>& nodes);
+
+// How many triangles a set has.
+class TriangleCounts {
+ public:
+  explicit TriangleCounts(const BoxTreeView& tree);
+  std::uint64_t of(std::span<const ObjectRun> runs) const {
+    std::uint64_t sum = 0;
+    for (const ObjectRun& run : runs) {
+      sum += before_[run.end] - before_[run.begin];
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<std::uint64_t> before_;  // by position: triangles of all objects before it
+};
+
+}  // namespace sightline::bake_detail

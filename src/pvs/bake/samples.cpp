@@ -1,0 +1,106 @@
+#include "pvs/bake/samples.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace sightline::bake_detail {
+namespace {
+
+// Finalizer of SplitMix64.
+std::uint64_t mixed(std::uint64_t v) {
+  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
+  v = (v ^ (v >> 27)) * 0x94d049bb133111ebu;
+  return v ^ (v >> 31);
+}
+
+}  // namespace
+
+std::size_t Sample::slotOf(std::uint32_t occluder) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = mixed(occluder) & mask;
+  while (slots_[slot].occluder != kFree && slots_[slot].occluder != occluder) {
+    slot = (slot + 1) & mask;
+  }
+  return slot;
+}
+
+const ObjectRun* Sample::find(std::uint32_t occluder, std::uint32_t& count) const {
+  if (slots_.empty()) {
+    return nullptr;
+  }
+  const Slot& slot = slots_[slotOf(occluder)];
+  count = slot.count;
+  return slot.occluder == occluder ? runs_.data() + slot.first : nullptr;
+}
+
+void Sample::add(std::uint32_t occluder, std::span<const ObjectRun> runs) {
+  if (4 * (used_ + 1) > 3 * slots_.size()) {
+    grow();
+  }
+  slots_[slotOf(occluder)] = {occluder, static_cast<std::uint32_t>(runs_.size()),
+                              static_cast<std::uint32_t>(runs.size())};
+  runs_.insert(runs_.end(), runs.begin(), runs.end());
+  ++used_;
+}
+
+void Sample::grow() {
+  std::vector<Slot> old(slots_.empty() ? 16 : slots_.size() * 2);
+  old.swap(slots_);
+  for (const Slot& slot : old) {
+    if (slot.occluder != kFree) {
+      slots_[slotOf(slot.occluder)] = slot;
+    }
+  }
+}
+
+std::size_t SampleStore::KeyHash::operator()(const Key& k) const {
+  return static_cast<std::size_t>(mixed(k.x + mixed(k.y + mixed(k.z))));
+}
+
+Sample& SampleStore::at(const Vec3d& eye) {
+  // + 0.0: the two zeros are one place.
+  const Key key{std::bit_cast<std::uint64_t>(eye.x + 0.0), std::bit_cast<std::uint64_t>(eye.y + 0.0),
+                std::bit_cast<std::uint64_t>(eye.z + 0.0)};
+  const auto [place, is_new] = places_.try_emplace(key);
+  if (is_new) {
+    samples_.emplace_front(eye);
+    place->second = samples_.begin();
+    bytes_ += samples_.front().bytes();
+    stats_.samples += 1;
+  } else {
+    samples_.splice(samples_.begin(), samples_, place->second);
+  }
+  return samples_.front();
+}
+
+std::span<const ObjectRun> SampleStore::hidden(Sample& sample, std::uint32_t occluder) {
+  std::uint32_t count = 0;
+  if (const ObjectRun* known = sample.find(occluder, count)) {
+    return {known, count};
+  }
+  scratch_.clear();
+  if (makeShadow(occluders_, occluders_[occluder], sample.eye(), reach_, shadow_)) {
+    tree_.hiddenBy(shadow_, scratch_);
+  }
+  stats_.shadows += 1;
+  const std::size_t before = sample.bytes();
+  sample.add(occluder, scratch_);
+  bytes_ += sample.bytes() - before;
+  stats_.most_sample_bytes = std::max(stats_.most_sample_bytes, bytes_);
+  const ObjectRun* added = sample.find(occluder, count);
+  return {added, count};
+}
+
+void SampleStore::forgetOldest() {
+  while (bytes_ > max_bytes_ && !samples_.empty()) {
+    const Sample& oldest = samples_.back();
+    const Vec3d& eye = oldest.eye();
+    bytes_ -= oldest.bytes();
+    places_.erase({std::bit_cast<std::uint64_t>(eye.x + 0.0), std::bit_cast<std::uint64_t>(eye.y + 0.0),
+                   std::bit_cast<std::uint64_t>(eye.z + 0.0)});
+    samples_.pop_back();
+    stats_.forgotten += 1;
+  }
+}
+
+}  // namespace sightline::bake_detail

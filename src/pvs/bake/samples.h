@@ -1,0 +1,82 @@
+#pragma once
+
+// What is hidden from single viewpoints, occluder by occluder: computed when it is asked for, shared by all
+// cells that have the viewpoint as a corner, forgotten when memory runs out. (The paper's list of samples.)
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "pvs/bake/runs.h"
+#include "pvs/bake/shadow.h"
+#include "sightline/pvs/bake/bake.h"
+
+namespace sightline::bake_detail {
+
+// One viewpoint's answers, by occluder.
+class Sample {
+ public:
+  explicit Sample(const Vec3d& eye) : eye_(eye) {}
+
+  const Vec3d& eye() const { return eye_; }
+  // Null: not computed yet. Valid until the next add().
+  const ObjectRun* find(std::uint32_t occluder, std::uint32_t& count) const;
+  void add(std::uint32_t occluder, std::span<const ObjectRun> runs);
+  std::size_t bytes() const {
+    return sizeof(Sample) + slots_.capacity() * sizeof(Slot) + runs_.capacity() * sizeof(ObjectRun);
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xffffffffu;
+  struct Slot {
+    std::uint32_t occluder = kFree, first = 0, count = 0;  // runs_[first, first + count)
+  };
+  // Where the occluder is, or the free slot where it goes.
+  std::size_t slotOf(std::uint32_t occluder) const;
+  void grow();
+
+  Vec3d eye_;
+  std::vector<Slot> slots_;  // open addressing, a power of two
+  std::uint32_t used_ = 0;
+  Runs runs_;
+};
+
+class SampleStore {
+ public:
+  // All views outlive this. reach: of makeShadow.
+  SampleStore(const ConvexOccluders& occluders, const ShadowTree& tree, double reach, std::size_t max_bytes)
+      : occluders_(occluders), tree_(tree), reach_(reach), max_bytes_(max_bytes) {}
+
+  // The sample of a viewpoint; of equal viewpoints it is one. Stays until forgetOldest().
+  Sample& at(const Vec3d& eye);
+  // What the occluder hides from there. Valid until the next call for this sample.
+  std::span<const ObjectRun> hidden(Sample& sample, std::uint32_t occluder);
+
+  // Drops the least recently used ones while they take more than the limit.
+  void forgetOldest();
+  const BakeStats& stats() const { return stats_; }
+
+ private:
+  struct Key {
+    std::uint64_t x, y, z;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& k) const;
+  };
+
+  const ConvexOccluders& occluders_;
+  const ShadowTree& tree_;
+  double reach_;
+  std::size_t max_bytes_, bytes_ = 0;
+  std::list<Sample> samples_;  // most recently used first
+  std::unordered_map<Key, std::list<Sample>::iterator, KeyHash> places_;
+  Shadow shadow_;
+  Runs scratch_;
+  BakeStats stats_;
+};
+
+}  // namespace sightline::bake_detail

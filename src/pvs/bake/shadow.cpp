@@ -1,0 +1,125 @@
+#include "pvs/bake/shadow.h"
+
+#include "sightline/geometry/tolerance.h"
+
+// Why what is behind all planes is hidden. Take any faces F of a convex set, each with the eye before all its
+// corners, and the closed loops of edges that bound F. Let x be strictly inside the planes through the eye
+// and each edge of these loops. Seen along the line from the eye to x, each edge turns round it the same way,
+// so the loops wind round the line, and the surface of F meets it: in a point y of some face, that is, of the
+// convex set. If x is behind each face of F, y is between the eye and x. So x is hidden, whatever faces F was
+// made of, and no face needs to be exactly flat: faces that the eye sees at a grazing angle are left out.
+//
+// Of a polygon, both sets drawn in must hide x. Where the eye is over the inner side of an edge, the plane
+// through the edge of the farther set has that of the nearer one behind it, for all x behind the farther
+// set, and otherwise the other way round. In doubt both are taken.
+//
+// Rounding, u = 2^-53. A = edge - eye is known up to u |A| + 16 u size (corners drawn in are rounded), its
+// direction D up to u |D| + 32 u size. So D x A is off by at most
+//     16 u |A| |D| + 32 u size (|A| + |D|),
+// which counts times |x - eye| <= reach, and the value of the plane at x by 16 u |D x A| reach.
+
+namespace sightline::bake_detail {
+namespace {
+
+constexpr double kRounding = 0x1p-48;  // 32 u
+
+class ShadowMaker {
+ public:
+  ShadowMaker(const ConvexOccluder& occluder, const Vec3d& eye, double reach, Shadow& shadow)
+      : size_(occluder.size), eye_(eye), reach_(reach), shadow_(shadow) {
+    shadow_.eye = eye;
+    shadow_.count = 0;
+  }
+
+  Vec3d fromEye(const Vec3d& point) const { return point - eye_; }
+  // Of a height of something at this place over a plane with a unit normal.
+  double heightRounding(const Vec3d& from_eye) const { return kRounding * (magnitude(from_eye) + size_); }
+
+  // Through the eye and an edge; what is hidden lies on its left, seen from the eye.
+  void addEdge(const Vec3d& from_eye, const Vec3d& along) {
+    const Vec3d normal = cross(along, from_eye);
+    const double from_size = magnitude(from_eye), along_size = magnitude(along);
+    const double rounding = magnitude(normal) + from_size * along_size + size_ * (from_size + along_size);
+    add(normal, kRounding * rounding * reach_);
+  }
+  // x must be deeper than this along a unit normal.
+  void addDepth(const Vec3d& normal, double depth) { add(normal, depth + kRounding * reach_); }
+
+  // Whether there were few enough planes, and all can be trusted.
+  bool done() const { return usable_ && shadow_.count > 0; }
+
+ private:
+  void add(const Vec3d& normal, double offset) {
+    usable_ = usable_ && shadow_.count < kMostShadowPlanes && offset > 0.0;
+    if (usable_) {
+      shadow_.nx[shadow_.count] = normal.x;
+      shadow_.ny[shadow_.count] = normal.y;
+      shadow_.nz[shadow_.count] = normal.z;
+      shadow_.offset[shadow_.count++] = offset;
+    }
+  }
+
+  double size_;
+  Vec3d eye_;
+  double reach_;
+  Shadow& shadow_;
+  bool usable_ = true;
+};
+
+bool shadowOfPolygon(const ConvexOccluders& all, const ConvexOccluder& occluder, ShadowMaker& maker) {
+  const DrawnFace& face = all.facesOf(occluder).front();
+  const Vec3d base = maker.fromEye(face.base);
+  const double depth = dot(face.plane.normal, base), rounding = maker.heightRounding(base);
+  const double least = occluder.margin + face.most + rounding;
+  if (!(depth < -least || (occluder.double_sided && depth > least))) {
+    return false;
+  }
+  // Of the side that the eye is on, where edges run counter-clockwise.
+  const double side = depth < 0.0 ? 1.0 : -1.0;
+  const Vec3d outwards = face.plane.normal * side;
+  maker.addDepth(-outwards, std::abs(depth) + occluder.margin + face.most + rounding);
+  const Vec3d across = outwards * occluder.margin;
+  for (const DrawnEdge& edge : all.edgesOf(occluder)) {
+    const Vec3d from = maker.fromEye(edge.from), along = edge.along * side;
+    const double over = -dot(cross(outwards, along), from);  // positive: the eye is over the inner side
+    const double doubt = maker.heightRounding(from) * magnitude(along);
+    if (!(over < -doubt)) {
+      maker.addEdge(from - across, along);
+    }
+    if (!(over > doubt)) {
+      maker.addEdge(from + across, along);
+    }
+  }
+  return maker.done();
+}
+
+bool shadowOfBody(const ConvexOccluders& all, const ConvexOccluder& occluder, ShadowMaker& maker) {
+  std::uint32_t front = 0;  // bit i: the eye is clearly before face i
+  const std::span<const DrawnFace> faces = all.facesOf(occluder);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const DrawnFace& face = faces[i];
+    const Vec3d base = maker.fromEye(face.base);
+    const double depth = -dot(face.plane.normal, base), rounding = maker.heightRounding(base);
+    if (depth - face.most > rounding) {
+      front |= 1u << i;
+      maker.addDepth(-face.plane.normal, depth - face.least + rounding);
+    }
+  }
+  for (const DrawnEdge& edge : all.edgesOf(occluder)) {
+    const bool left = ((front >> edge.left) & 1u) != 0, right = ((front >> edge.right) & 1u) != 0;
+    if (left != right) {
+      maker.addEdge(maker.fromEye(edge.from), left ? edge.along : -edge.along);
+    }
+  }
+  return front != 0 && maker.done();
+}
+
+}  // namespace
+
+bool makeShadow(const ConvexOccluders& all, const ConvexOccluder& occluder, const Vec3d& eye, double reach,
+                Shadow& shadow) {
+  ShadowMaker maker(occluder, eye, reach, shadow);
+  return occluder.body ? shadowOfBody(all, occluder, maker) : shadowOfPolygon(all, occluder, maker);
+}
+
+}  // namespace sightline::bake_detail

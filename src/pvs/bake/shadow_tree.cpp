@@ -1,0 +1,268 @@
+#include "pvs/bake/shadow_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pvs/bake/shadow_tree.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::bake_detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// No fused operations: they would round differently from one instruction set to another. A box's least and
+// greatest value over a plane are known up to 2^-50 of the reach, for which the shadow's offset has room.
+class Walk {
+ public:
+  Walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs)
+      : tree_(tree), shadow_(shadow), runs_(runs), first_run_(runs.size()) {}
+
+  // Nodes first ... first + count - 1, whose parent is behind all planes but these.
+  void visit(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
+             std::uint32_t plane_count) {
+    const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d_));
+    for (std::uint32_t i = 0; i < count; i += lanes) {
+      visitLanes(first + i, std::min(count - i, lanes), planes, plane_count);
+    }
+  }
+
+ private:
+  void visitLanes(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
+                  std::uint32_t plane_count) {
+    std::array<std::uint8_t, kMostShadowPlanes> behind;  // by plane: the lanes that are behind it
+    const std::uint32_t lit = classify(first, count, planes, plane_count, behind.data());
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      if (((lit >> lane) & 1u) != 0) {
+        continue;
+      }
+      std::array<std::uint8_t, kMostShadowPlanes> left;
+      std::uint32_t left_count = 0;
+      for (std::uint32_t p = 0; p < plane_count; ++p) {
+        left[left_count] = planes[p];
+        left_count += ((behind[p] >> lane) & 1u) ^ 1u;
+      }
+      const ShadowTree::Node& node = tree_.nodes[first + lane];
+      if (left_count == 0) {
+        append(node.objects);
+      } else if (node.child_count > 0) {
+        visit(node.first_child, node.child_count, left.data(), left_count);
+      }
+    }
+  }
+
+  // The lanes with nothing below that is behind all planes: for some plane, no leaf reaches far enough.
+  std::uint32_t classify(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
+                         std::uint32_t plane_count, std::uint8_t* behind) const {
+    const auto x = hn::Sub(hn::LoadU(d_, tree_.cx.data() + first), hn::Set(d_, shadow_.eye.x));
+    const auto y = hn::Sub(hn::LoadU(d_, tree_.cy.data() + first), hn::Set(d_, shadow_.eye.y));
+    const auto z = hn::Sub(hn::LoadU(d_, tree_.cz.data() + first), hn::Set(d_, shadow_.eye.z));
+    const auto hx = hn::LoadU(d_, tree_.hx.data() + first);
+    const auto hy = hn::LoadU(d_, tree_.hy.data() + first);
+    const auto hz = hn::LoadU(d_, tree_.hz.data() + first);
+    const auto rx = hn::LoadU(d_, tree_.rx.data() + first);
+    const auto ry = hn::LoadU(d_, tree_.ry.data() + first);
+    const auto rz = hn::LoadU(d_, tree_.rz.data() + first);
+    auto lit = hn::Not(hn::FirstN(d_, count));
+    for (std::uint32_t i = 0; i < plane_count; ++i) {
+      const std::uint8_t p = planes[i];
+      const auto nx = hn::Set(d_, shadow_.nx[p]), ny = hn::Set(d_, shadow_.ny[p]);
+      const auto nz = hn::Set(d_, shadow_.nz[p]), offset = hn::Set(d_, shadow_.offset[p]);
+      const auto middle = hn::Add(hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)), hn::Mul(nz, z));
+      const auto ax = hn::Abs(nx), ay = hn::Abs(ny), az = hn::Abs(nz);
+      const auto half = hn::Add(hn::Add(hn::Mul(ax, hx), hn::Mul(ay, hy)), hn::Mul(az, hz));
+      const auto room = hn::Add(hn::Add(hn::Mul(ax, rx), hn::Mul(ay, ry)), hn::Mul(az, rz));
+      lit = hn::Or(lit, hn::Lt(hn::Add(middle, room), offset));
+      if (hn::AllTrue(d_, lit)) {
+        break;
+      }
+      behind[i] = bitsOf(hn::Ge(hn::Sub(middle, half), offset));
+    }
+    return bitsOf(lit);
+  }
+
+  using Lanes = hn::CappedTag<double, 8>;
+  static std::uint8_t bitsOf(hn::Mask<Lanes> mask) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(Lanes(), mask, bits);
+    return bits[0];
+  }
+
+  void append(const ObjectRun& run) {
+    if (runs_.size() > first_run_ && runs_.back().end == run.begin) {
+      runs_.back().end = run.end;
+    } else {
+      runs_.push_back(run);
+    }
+  }
+
+  static constexpr Lanes d_{};
+  const ShadowTree::Arrays& tree_;
+  const Shadow& shadow_;
+  std::vector<ObjectRun>& runs_;
+  std::size_t first_run_;
+};
+
+void walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs) {
+  std::array<std::uint8_t, kMostShadowPlanes> planes;
+  for (std::uint32_t p = 0; p < shadow.count; ++p) {
+    planes[p] = static_cast<std::uint8_t>(p);
+  }
+  if (shadow.count > 0 && !tree.nodes.empty()) {
+    Walk(tree, shadow, runs).visit(0, 1, planes.data(), shadow.count);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::bake_detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::bake_detail {
+namespace {
+
+HWY_EXPORT(walk);
+
+constexpr std::size_t kFewestChildren = 8;  // inner nodes are dissolved until there are about so many
+constexpr std::uint32_t kMostDepth = 64;  // below, a node's children are all its leaves: bounds the recursion
+constexpr std::size_t kPadding = 8;       // lanes
+
+// Not well formed itself, or something below it.
+std::vector<bool> brokenNodes(const BoxTreeView& tree) {
+  std::vector<bool> broken(tree.nodes.size());
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    bool all_well = tree.nodes[i].bounds.wellFormed();
+    for (std::uint32_t child = static_cast<std::uint32_t>(i) + 1; child < tree.nodes[i].end;
+         child = tree.nodes[child].end) {
+      all_well = all_well && !broken[child];
+    }
+    broken[i] = !all_well;
+  }
+  return broken;
+}
+
+std::vector<std::uint32_t> childrenOf(const BoxTreeView& tree, std::uint32_t node) {
+  std::vector<std::uint32_t> children;
+  for (std::uint32_t child = node + 1; child < tree.nodes[node].end; child = tree.nodes[child].end) {
+    children.push_back(child);
+  }
+  return children;
+}
+
+// Dissolves the largest inner nodes among them in their children, while there are few. Stays in order.
+void widen(const BoxTreeView& tree, std::vector<std::uint32_t>& children) {
+  while (children.size() < kFewestChildren) {
+    double largest = -1.0;
+    std::size_t chosen = children.size();
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const double area = surfaceArea(tree.nodes[children[i]].bounds);
+      if (!tree.leaf(children[i]) && !(area <= largest)) {
+        largest = area;
+        chosen = i;
+      }
+    }
+    if (chosen == children.size()) {
+      return;
+    }
+    const std::vector<std::uint32_t> below = childrenOf(tree, children[chosen]);
+    if (children.size() - 1 + below.size() > kFewestChildren) {
+      return;
+    }
+    const auto at = children.erase(children.begin() + static_cast<std::ptrdiff_t>(chosen));
+    children.insert(at, below.begin(), below.end());
+  }
+}
+
+std::vector<std::uint32_t> leavesBelow(const BoxTreeView& tree, std::uint32_t node) {
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t i = node + 1; i < tree.nodes[node].end; ++i) {
+    if (tree.leaf(i)) {
+      leaves.push_back(i);
+    }
+  }
+  return leaves;
+}
+
+// What of a node's box the shadow tree holds.
+struct NodeBox {
+  Vec3d centre, half, room;
+};
+
+// By node. Nodes that are not well formed, or have such a node below them, count as boxes without bounds.
+std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Vec3d infinite(kInfinity, kInfinity, kInfinity);
+  const std::vector<bool> broken = brokenNodes(tree);
+  std::vector<NodeBox> boxes(tree.nodes.size(), NodeBox{{}, infinite, infinite});
+  std::vector<Vec3d> least(tree.nodes.size(), infinite);  // half extents of leaves below that may be hidden
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    const auto node = static_cast<std::uint32_t>(i);
+    NodeBox& box = boxes[i];
+    if (!broken[i]) {
+      const Vec3d low(tree.nodes[i].bounds.min), high(tree.nodes[i].bounds.max);
+      box.centre = center(tree.nodes[i].bounds);
+      box.half = max(high - box.centre, box.centre - low) * (1.0 + 0x1p-50);
+      least[i] = tree.leaf(node) ? box.half : least[i];
+    }
+    for (std::uint32_t child = node + 1; child < tree.nodes[i].end; child = tree.nodes[child].end) {
+      least[i] = min(least[i], least[child]);
+    }
+    if (!broken[i]) {
+      box.room = box.half - least[i] * 2.0;
+    }
+  }
+  return boxes;
+}
+
+}  // namespace
+
+ShadowTree::ShadowTree(const BoxTreeView& tree) {
+  if (tree.nodes.empty()) {
+    return;
+  }
+  const std::vector<NodeBox> boxes = nodeBoxes(tree);
+  std::vector<std::uint32_t> from{0}, depth{0};  // by new number: the old one, and the depth
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const BoxNode& old = tree.nodes[from[i]];
+    std::vector<std::uint32_t> children;
+    if (depth[i] + 1 < kMostDepth) {
+      children = childrenOf(tree, from[i]);
+      widen(tree, children);
+    } else {
+      children = leavesBelow(tree, from[i]);
+    }
+    arrays_.nodes.push_back({static_cast<std::uint32_t>(from.size()),
+                             static_cast<std::uint32_t>(children.size()),
+                             {old.first_object, old.first_object + old.object_count}});
+    depth.insert(depth.end(), children.size(), depth[i] + 1);
+    from.insert(from.end(), children.begin(), children.end());
+  }
+  const auto fill = [&](std::vector<double>& values, Vec3d NodeBox::*part, int axis) {
+    values.reserve(from.size() + kPadding);
+    for (const std::uint32_t node : from) {
+      values.push_back((boxes[node].*part)[axis]);
+    }
+    values.resize(from.size() + kPadding, 0.0);
+  };
+  fill(arrays_.cx, &NodeBox::centre, 0);
+  fill(arrays_.cy, &NodeBox::centre, 1);
+  fill(arrays_.cz, &NodeBox::centre, 2);
+  fill(arrays_.hx, &NodeBox::half, 0);
+  fill(arrays_.hy, &NodeBox::half, 1);
+  fill(arrays_.hz, &NodeBox::half, 2);
+  fill(arrays_.rx, &NodeBox::room, 0);
+  fill(arrays_.ry, &NodeBox::room, 1);
+  fill(arrays_.rz, &NodeBox::room, 2);
+}
+
+void ShadowTree::hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const {
+  HWY_DYNAMIC_DISPATCH(walk)(arrays_, shadow, runs);
+}
+
+}  // namespace sightline::bake_detail
+#endif

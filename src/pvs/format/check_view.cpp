@@ -1,0 +1,105 @@
+#include <cmath>
+#include <string>
+
+#include "pvs/format/set_code.h"
+#include "pvs/format/sight_view.h"
+#include "pvs/format/structure.h"
+
+namespace sightline::sight_format {
+namespace {
+
+// Chunks follow each other and make up the payload.
+Status checkChunks(const SightView& view) {
+  std::uint64_t at = 0;
+  for (const Chunk& chunk : view.chunks) {
+    if (chunk.offset != at || chunk.bytes == 0 || chunk.bytes > view.payload.size() - at) {
+      return Error{"its chunks do not make up its payload"};
+    }
+    at += chunk.bytes;
+  }
+  return at == view.payload.size() ? Status(Success{})
+                                   : Status(Error{"its chunks do not make up its payload"});
+}
+
+// All chunks of sets are named, in order, from their first byte on, and none is longer than its sets may be.
+Status checkSets(const SightView& view) {
+  if (view.set_chunks > view.chunks.size()) {
+    return Error{"chunks of sets are missing"};
+  }
+  std::uint32_t chunks_begun = 0;
+  std::size_t sets_in_chunk = 0;
+  for (std::size_t set = 0; set < view.sets.size(); ++set) {
+    const auto [chunk, offset] = view.sets[set];
+    const bool begins = chunk == chunks_begun && offset == 0;
+    const bool goes_on = chunk + 1 == chunks_begun && sets_in_chunk > 0 && offset > view.sets[set - 1].offset;
+    if (!(begins || goes_on) || chunk >= view.set_chunks || offset >= view.chunks[chunk].raw_bytes) {
+      return Error{"the index of sets is not sound (set " + std::to_string(set) + ")"};
+    }
+    chunks_begun += begins ? 1 : 0;
+    sets_in_chunk = begins ? 1 : sets_in_chunk + 1;
+    const std::uint64_t most =
+        sets_in_chunk > 1
+            ? kMostSetChunkBytes
+            : std::max<std::uint64_t>(kMostSetChunkBytes, mostSetBytes(view.boxes.nodes.size()));
+    if (view.chunks[chunk].raw_bytes > most) {
+      return Error{"a chunk of sets claims more bytes than sets can have (set " + std::to_string(set) + ")"};
+    }
+  }
+  return chunks_begun == view.set_chunks ? Status(Success{}) : Status(Error{"a chunk holds no set"});
+}
+
+Status checkDatabases(const SightView& view) {
+  if (view.databases.size() > kMostDatabases) {
+    return Error{"it claims more occluder databases than there can be"};
+  }
+  std::uint64_t next_chunk = view.set_chunks;
+  for (std::size_t i = 0; i < view.databases.size(); ++i) {
+    const DatabaseEntry& entry = view.databases[i];
+    if (entry.first_chunk != next_chunk || entry.chunk_count > view.chunks.size() - next_chunk) {
+      return Error{"an occluder database's chunks are missing"};
+    }
+    std::uint64_t raw_bytes = 0;
+    for (const Chunk& chunk : view.chunks.subspan(entry.first_chunk, entry.chunk_count)) {
+      raw_bytes += chunk.raw_bytes;
+      if (chunk.raw_bytes > kDatabaseChunkBytes) {
+        return Error{"an occluder database's chunk claims more bytes than it can have"};
+      }
+    }
+    if (raw_bytes != entry.raw_bytes || raw_bytes > kMostDatabaseBytes) {
+      return Error{"an occluder database claims more bytes than it has, or can have"};
+    }
+    for (std::size_t other = 0; other < i; ++other) {
+      if (view.databases[other].name == entry.name) {
+        return Error{"two occluder databases have one name"};
+      }
+    }
+    next_chunk += entry.chunk_count;
+  }
+  return next_chunk == view.chunks.size() ? Status(Success{}) : Status(Error{"a chunk belongs to nothing"});
+}
+
+}  // namespace
+
+Status checkView(const SightView& view) {
+  if (!(view.near_distance >= 0.0) || !std::isfinite(view.near_distance)) {
+    return Error{"its near distance is negative or not finite"};
+  }
+  if (view.scene.objects != view.boxes.objects.size()) {
+    return Error{"its hierarchy does not hold the objects of its scene"};
+  }
+  if (Status status = checkBoxTree(view.boxes); !status) {
+    return status;
+  }
+  if (Status status = checkOctree(view.octree, view.sets.size()); !status) {
+    return status;
+  }
+  if (Status status = checkChunks(view); !status) {
+    return status;
+  }
+  if (Status status = checkSets(view); !status) {
+    return status;
+  }
+  return checkDatabases(view);
+}
+
+}  // namespace sightline::sight_format

@@ -1,0 +1,41 @@
+#pragma once
+
+// XXH3, the checksum of .sight files and the hash of scenes: the same on every machine. XXH_INLINE_ALL is
+// defined where this is compiled: the header is all that is needed then.
+
+#include <xxhash.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+namespace sightline::sight_format {
+
+inline std::uint64_t checksumOf(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+// The same of bytes that come one after the other.
+class Checksum {
+ public:
+  Checksum() { XXH3_64bits_reset(&state_); }
+
+  void add(std::span<const std::byte> bytes) {
+    if (!bytes.empty()) {
+      XXH3_64bits_update(&state_, bytes.data(), bytes.size());
+    }
+  }
+  // Of a number without padding, or of an array of them.
+  template <typename T>
+  void addValue(const T& value) {
+    static_assert(std::has_unique_object_representations_v<T>);
+    add(std::as_bytes(std::span(&value, 1)));
+  }
+  std::uint64_t value() const { return XXH3_64bits_digest(&state_); }
+
+ private:
+  XXH3_state_t state_;
+};
+
+}  // namespace sightline::sight_format

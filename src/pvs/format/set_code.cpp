@@ -1,0 +1,86 @@
+#include "pvs/format/set_code.h"
+
+namespace sightline::sight_format {
+namespace {
+
+void appendNumber(std::vector<std::byte>& bytes, std::uint32_t value) {
+  for (; value >= 0x80; value >>= 7) {
+    bytes.push_back(static_cast<std::byte>((value & 0x7f) | 0x80));
+  }
+  bytes.push_back(static_cast<std::byte>(value));
+}
+
+// Moves `at` past the number. false: it does not end, or has more than 32 bits.
+bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value) {
+  std::uint64_t number = 0;
+  for (std::uint32_t shift = 0; shift < 35 && at != end; shift += 7) {
+    const auto byte = static_cast<std::uint64_t>(*at++);
+    number |= (byte & 0x7f) << shift;
+    if (byte < 0x80) {
+      value = static_cast<std::uint32_t>(number);
+      return number <= 0xffffffffu;
+    }
+  }
+  return false;
+}
+
+// The numbers of the nodes, below `limit`, from their distances.
+bool readNodes(const std::byte* at, const std::byte* end, std::uint64_t limit,
+               std::span<std::uint32_t> nodes) {
+  std::uint64_t next = 0;  // the least that the next node may be
+  for (std::uint32_t& node : nodes) {
+    std::uint32_t distance = 0;
+    if (!readNumber(at, end, distance)) {
+      return false;
+    }
+    next += distance;
+    if (next >= limit) {
+      return false;
+    }
+    node = static_cast<std::uint32_t>(next++);
+  }
+  return at == end;
+}
+
+}  // namespace
+
+void appendSet(std::vector<std::byte>& bytes, std::span<const std::uint32_t> nodes) {
+  appendNumber(bytes, static_cast<std::uint32_t>(nodes.size()));
+  std::uint32_t next = 0;
+  for (const std::uint32_t node : nodes) {
+    appendNumber(bytes, node - next);
+    next = node + 1;
+  }
+}
+
+bool soundSet(std::span<const std::uint32_t> nodes, std::span<const BoxNode> tree) {
+  bool sound = nodes.empty() || nodes.back() < tree.size();
+  for (std::size_t i = 0; sound && i + 1 < nodes.size(); ++i) {
+    sound = nodes[i] < nodes[i + 1];
+  }
+  for (std::size_t i = 0; sound && i + 1 < nodes.size(); ++i) {
+    sound = tree[nodes[i]].end <= nodes[i + 1];
+  }
+  return sound;
+}
+
+bool decodeSet(std::span<const std::byte> bytes, std::span<const BoxNode> tree,
+               std::vector<std::uint32_t>& nodes) {
+  const std::byte* at = bytes.data();
+  const std::byte* end = at + bytes.size();
+  std::uint32_t count = 0;
+  // Each node takes a byte at least, so that no count asks for more memory than the bytes are worth.
+  if (!readNumber(at, end, count) || count > static_cast<std::size_t>(end - at)) {
+    return false;
+  }
+  const std::size_t before = nodes.size();
+  nodes.resize(before + count);
+  const std::span<std::uint32_t> added = std::span(nodes).subspan(before);
+  if (!readNodes(at, end, tree.size(), added) || !soundSet(added, tree)) {
+    nodes.resize(before);
+    return false;
+  }
+  return true;
+}
+
+}  // namespace sightline::sight_format

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pvs/format/sight_view.h"
+
+struct ZSTD_DCtx_s;
+
+namespace sightline::sight_query {
+
+// Decompresses the chunks of a checked view and remembers the last one of sets. For one thread at a time, and
+// always with one view.
+class ChunkDecoder {
+ public:
+  ChunkDecoder();
+  ~ChunkDecoder();
+  ChunkDecoder(ChunkDecoder&&) noexcept;
+  ChunkDecoder& operator=(ChunkDecoder&&) noexcept;
+
+  // Appends the nodes of a set, set < view.sets.size(). false, with nothing appended: its chunk is broken.
+  // Allocates nothing of its own once it has seen the longest chunk.
+  bool readSet(const sight_format::SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
+
+  // Appends what a chunk holds. false, with nothing appended: it is broken.
+  bool decompress(const sight_format::SightView& view, const sight_format::Chunk& chunk,
+                  std::vector<std::byte>& raw);
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  struct Free {
+    void operator()(ZSTD_DCtx_s* context) const;
+  };
+  std::unique_ptr<ZSTD_DCtx_s, Free> context_;
+  std::vector<std::byte> raw_;  // of the last chunk
+  std::uint32_t last_chunk_ = kNone;
+};
+
+}  // namespace sightline::sight_query

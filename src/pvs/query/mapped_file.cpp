@@ -1,0 +1,78 @@
+#include "pvs/query/mapped_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace sightline::sight_query {
+namespace {
+
+// Closes the file.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) {
+      ::close(number_);
+    }
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+Error unreadable() {
+  return Error{std::string("cannot be read: ") + std::strerror(errno)};
+}
+
+}  // namespace
+
+MappedFile::~MappedFile() {
+  if (begin_ != nullptr) {
+    ::munmap(const_cast<std::byte*>(begin_), size_);
+  }
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : begin_(std::exchange(other.begin_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
+  std::swap(begin_, other.begin_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+Result<MappedFile> MappedFile::open(const std::string& file) {
+  // Not waiting: a pipe that nobody writes to would hold it up for ever.
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat status {};
+  if (descriptor.number() < 0 || ::fstat(descriptor.number(), &status) != 0) {
+    return unreadable();
+  }
+  if (!S_ISREG(status.st_mode)) {
+    return Error{"cannot be read: it is not a regular file"};
+  }
+  MappedFile mapped;
+  if (status.st_size == 0) {
+    return mapped;
+  }
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* begin = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor.number(), 0);
+  if (begin == MAP_FAILED) {
+    return unreadable();
+  }
+  mapped.begin_ = static_cast<const std::byte*>(begin);
+  mapped.size_ = size;
+  return mapped;
+}
+
+}  // namespace sightline::sight_query

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pvs/format/sight_view.h"
+#include "pvs/query/mapped_file.h"
+#include "sightline/pvs/query/sight_file.h"
+
+namespace sightline {
+
+struct SightFile::Data {
+  std::string name;  // for errors, one line
+  sight_query::MappedFile mapped;
+  std::vector<std::uint64_t> copied;  // of bytes that came from elsewhere and were not aligned
+  std::span<const std::byte> bytes;   // in one of these, or the caller's
+  BakeRecord record;
+  sight_format::SightView view;  // of bytes
+};
+
+}  // namespace sightline

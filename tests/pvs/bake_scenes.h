@@ -1,0 +1,152 @@
+#pragma once
+
+// Small scenes for the baker, and exact judgement of what it bakes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "oracle/exact_visibility.h"
+#include "sightline/pvs/bake/bake.h"
+#include "tests/support/solids.h"
+
+namespace sightline::test {
+
+// Each solid is an object.
+inline Scene sceneOf(const std::vector<Solid>& solids) {
+  Scene scene;
+  scene.materials.emplace_back();
+  for (const Solid& solid : solids) {
+    Object object;
+    object.first_index = static_cast<std::uint32_t>(scene.indices.size());
+    object.material = MaterialId(0u);
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    scene.positions.insert(scene.positions.end(), solid.points.begin(), solid.points.end());
+    for (const std::vector<std::uint32_t>& face : solid.faces) {
+      for (std::size_t i = 1; i + 1 < face.size(); ++i) {
+        for (const std::uint32_t corner : {face[0], face[i], face[i + 1]}) {
+          scene.indices.push_back(first + corner);
+        }
+      }
+    }
+    object.index_count = static_cast<std::uint32_t>(scene.indices.size()) - object.first_index;
+    scene.objects.push_back(object);
+    scene.object_names.emplace_back("solid");
+  }
+  weldPositions(scene);
+  updateBounds(scene);
+  return scene;
+}
+
+inline OccluderSet allOccluders(const Scene& scene) {
+  return findOccluders(scene.view(), {.area_fraction = 1.0});
+}
+
+inline BakedVisibility baked(const Scene& scene, const BakeSettings& settings) {
+  const OccluderSet occluders = allOccluders(scene);
+  Result<BakedVisibility> result = bakeVisibility(scene.view(), occluders, settings);
+  EXPECT_TRUE(result) << (result ? "" : result.error().message);
+  return result ? std::move(*result) : BakedVisibility{};
+}
+
+// By ObjectId.
+inline std::vector<bool> membersOf(const BakedVisibility& baked, std::uint32_t set) {
+  std::vector<bool> members(baked.boxes.objects.size(), false);
+  for (const std::uint32_t node : baked.sets[set]) {
+    for (const ObjectId object : baked.boxes.view().objectsBelow(node)) {
+      members[object.value] = true;
+    }
+  }
+  return members;
+}
+
+// What the leaf says of viewers at this place, which is in its cell.
+inline std::uint32_t setAt(const OctreeView& octree, std::uint32_t leaf, const Vec3d& eye) {
+  const OctreeLeaf& l = octree.leaves[leaf];
+  if (l.plane == OctreeLeaf::kNoPlane) {
+    return l.set;
+  }
+  const CellPlane& plane = octree.planes[l.plane];
+  const double at = dot(plane.normal, eye);
+  return at >= plane.front ? l.front_set : at <= plane.back ? l.back_set : l.set;
+}
+
+// Viewers in every step-th cell: anywhere, at faces, edges and corners; all that rays reach must be in their
+// sets. near: of the views, metres along their axes.
+class BakeJudge {
+ public:
+  BakeJudge(const Scene& scene, const BakedVisibility& baked) : exact_(scene.view()), baked_(baked) {}
+
+  void judge(std::uint32_t views, std::uint32_t step, double near, std::uint32_t seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    const OctreeView octree = baked_.octree.view();
+    std::uint32_t count = 0;
+    forEachLeaf(octree, [&](std::uint32_t leaf, const OctreeCell& cell) {
+      const auto reason = static_cast<StopReason>(octree.reasons[leaf]);
+      if (count++ % step != 0 || reason == StopReason::kOutside) {
+        return;
+      }
+      for (std::uint32_t i = 0; i < views; ++i) {
+        judgeView(leaf, placeIn(cell, random), near, random);
+      }
+    });
+  }
+
+  std::size_t seen = 0,
+              hidden = 0;  // objects that rays reached; pairs of a view and an object not in its set
+
+ private:
+  // One coordinate in four is on a border of the cell.
+  Vec3d placeIn(const OctreeCell& cell, std::mt19937& random) const {
+    const Vec3d low = cellMin(baked_.octree.min, baked_.octree.max, cell);
+    const Vec3d high = cellMax(baked_.octree.min, baked_.octree.max, cell);
+    Vec3d place;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double t = std::uniform_real_distribution<double>(0.0, 1.0)(random);
+      const std::uint32_t border = random() % 8;
+      place[axis] = border == 0   ? low[axis]
+                    : border == 1 ? high[axis]
+                                  : low[axis] + (high[axis] - low[axis]) * t;
+    }
+    return place;
+  }
+
+  void judgeView(std::uint32_t leaf, const Vec3d& eye, double near, std::mt19937& random) {
+    View view;
+    view.eye = eye;
+    const auto part = [&] { return std::normal_distribution<double>()(random); };
+    setOrientation(view, {part(), part(), part()}, {0, 1, 0});
+    view.tan_half_fovy = 1.0;
+    view.aspect = 1.0;
+    view.near = near / std::sqrt(3.0);
+    view.far = 1e4;
+    const std::vector<bool> members = membersOf(baked_, setAt(baked_.octree.view(), leaf, eye));
+    std::vector<ObjectId> missing;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      if (!members[i]) {
+        missing.push_back(ObjectId(i));
+      }
+    }
+    hidden += missing.size();
+    std::vector<Witness> witnesses = exact_.visibleThroughPixels(view, 48, 48);
+    seen += witnesses.size();
+    const std::vector<Witness> aimed = exact_.visibleByAimedRays(view, missing, 6);
+    witnesses.insert(witnesses.end(), aimed.begin(), aimed.end());
+    for (const Witness& witness : witnesses) {
+      if (!members[witness.object.value] && exact_.confirm(view, witness)) {
+        ADD_FAILURE() << "object " << witness.object.value << " is seen at " << witness.point.x << " "
+                      << witness.point.y << " " << witness.point.z << " from " << eye.x << " " << eye.y << " "
+                      << eye.z << " in leaf " << leaf << ", but is not in its set";
+      }
+    }
+  }
+
+  ExactVisibility exact_;
+  const BakedVisibility& baked_;
+};
+
+}  // namespace sightline::test

@@ -1,0 +1,317 @@
+#include "sightline/pvs/bake/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "scenes/procedural.h"
+#include "tests/pvs/bake_scenes.h"
+
+namespace sightline {
+namespace {
+
+using test::allOccluders;
+using test::baked;
+using test::BakeJudge;
+using test::block;
+using test::membersOf;
+using test::sceneOf;
+using test::Solid;
+
+bool same(const BakedVisibility& a, const BakedVisibility& b) {
+  return a.scene == b.scene && a.record == b.record && a.octree.nodes == b.octree.nodes &&
+         a.octree.leaves == b.octree.leaves && a.octree.depths == b.octree.depths &&
+         a.octree.reasons == b.octree.reasons && a.octree.planes == b.octree.planes &&
+         a.sets.first == b.sets.first && a.sets.nodes == b.sets.nodes && a.boxes.objects == b.boxes.objects;
+}
+
+std::map<StopReason, int> reasonsOf(const BakedVisibility& baked) {
+  std::map<StopReason, int> reasons;
+  for (const std::uint8_t reason : baked.octree.reasons) {
+    ++reasons[static_cast<StopReason>(reason)];
+  }
+  return reasons;
+}
+
+// Walls, pillars and crates at random; some touch, some stand on one plane.
+Scene randomScene(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto whole = [&](int low, int high) {
+    return static_cast<float>(std::uniform_int_distribution<int>(low, high)(random));
+  };
+  std::vector<Solid> solids{block({-1, -1, -1}, {33, 0, 33})};
+  for (int i = 0; i < 25; ++i) {
+    const bool along = random() % 2 != 0;
+    const Vec3f at(whole(0, 28), 0, whole(0, 28));
+    const Vec3f size =
+        along ? Vec3f(whole(2, 12), whole(2, 6), 0.25f) : Vec3f(0.25f, whole(2, 6), whole(2, 12));
+    solids.push_back(block(at, at + size));
+  }
+  for (int i = 0; i < 60; ++i) {
+    const Vec3f at(whole(0, 60) / 2, 0, whole(0, 60) / 2);
+    solids.push_back(block(at, at + Vec3f(0.5f, whole(1, 4) / 2, 0.5f)));
+  }
+  return sceneOf(solids);
+}
+
+TEST(Bake, LeavesOutNothingThatIsSeenFromAnywhereInACell) {
+  std::size_t hidden = 0, seen = 0;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const Scene scene = randomScene(seed);
+    const BakedVisibility result = baked(scene, {.max_depth = 4, .near_distance = 0.05});
+    BakeJudge judge(scene, result);
+    judge.judge(2, 5, 0.05, seed);
+    hidden += judge.hidden;
+    seen += judge.seen;
+  }
+  EXPECT_GT(seen, 1000u);
+  EXPECT_GT(hidden, seen) << "the test would prove little";
+}
+
+TEST(Bake, LeavesOutNothingThatIsSeenInABuilding) {
+  const Scene scene = makeBuilding({.floors = 2});
+  const BakedVisibility result = baked(scene, {.max_depth = 5, .near_distance = 0.1});
+  BakeJudge judge(scene, result);
+  judge.judge(1, 29, 0.1, 7);
+  EXPECT_GT(judge.hidden, judge.seen / 4);
+}
+
+TEST(Bake, LeavesOutNothingThatIsSeenOnAShip) {
+  const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
+  const BakedVisibility result =
+      baked(scene, {.triangle_budget = 2000, .max_depth = 5, .near_distance = 0.1});
+  BakeJudge judge(scene, result);
+  judge.judge(1, 13, 0.1, 8);
+  EXPECT_GT(judge.hidden, judge.seen);
+}
+
+TEST(Bake, HidesWhatIsBehindAWallFromACellBeforeIt) {
+  // The wall is at x = 10; crates before and behind it.
+  const Scene scene = sceneOf(
+      {block({10, 0, 0}, {10.5f, 16, 16}), block({3, 1, 7}, {4, 2, 8}), block({14, 7, 7}, {15, 8, 8})});
+  const BakedVisibility result = baked(
+      scene, {.max_depth = 1, .near_distance = 0.1, .region = {{0, 0, 0}, {8, 16, 16}}, .similarity = 0.0});
+  forEachLeaf(result.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
+    if (cell.level > 0 && cell.at[0] == 0) {
+      const std::vector<bool> members = membersOf(result, result.octree.leaves[leaf].set);
+      EXPECT_TRUE(members[0]);
+      EXPECT_TRUE(members[1]);
+      EXPECT_FALSE(members[2]);
+    }
+  });
+}
+
+TEST(Bake, DoesNotCombineWhatDifferentOccludersHideFromDifferentCorners) {
+  // Two screens with a gap between them. Every corner of the cell looks at the crate through neither, but its
+  // middle does: whatever corners see, the crate stays in the set.
+  const Scene scene = sceneOf({block({10, 0, 0}, {10.25f, 16, 7.5f}), block({10, 0, 8.5f}, {10.25f, 16, 16}),
+                               block({15, 7.5f, 7.75f}, {15.5f, 8.5f, 8.25f})});
+  const BakedVisibility result =
+      baked(scene, {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {8, 8, 16}}});
+  ASSERT_EQ(result.octree.leaves.size(), 1u);
+  EXPECT_TRUE(membersOf(result, result.octree.leaves[0].set)[2]);
+}
+
+TEST(Bake, KeepsWhatAViewersNearPlaneMayCutOpen) {
+  const Scene scene = sceneOf(
+      {block({8.5f, -8, -8}, {9, 24, 24}), block({12, 7, 7}, {13, 8, 8}), block({1, 1, 1}, {2, 2, 2})});
+  const Box region{{0, 0, 0}, {8, 8, 8}};
+  const auto hides = [&](double near_distance) {
+    const BakedVisibility result =
+        baked(scene, {.max_depth = 0, .near_distance = near_distance, .region = region});
+    return !membersOf(result, result.octree.leaves[0].set)[1];
+  };
+  EXPECT_TRUE(hides(0.4));
+  EXPECT_FALSE(hides(0.6));
+}
+
+TEST(Bake, DividesACellAtAWallThatFillsIt) {
+  const Scene scene = sceneOf(
+      {block({3, -1, -1}, {3.5f, 9, 9}), block({0.5f, 3, 3}, {1, 4, 4}), block({6, 3, 3}, {7, 4, 4})});
+  const BakedVisibility result =
+      baked(scene, {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {8, 8, 8}}});
+  const OctreeView octree = result.octree.view();
+  ASSERT_EQ(octree.leaves.size(), 1u);
+  ASSERT_NE(octree.leaves[0].plane, OctreeLeaf::kNoPlane);
+  const auto sees = [&](const Vec3d& eye, std::uint32_t object) -> bool {
+    return membersOf(result, test::setAt(octree, 0, eye))[object];
+  };
+  EXPECT_TRUE(sees({1, 4, 4}, 1));
+  EXPECT_FALSE(sees({1, 4, 4}, 2));
+  EXPECT_FALSE(sees({7, 4, 4}, 1));
+  EXPECT_TRUE(sees({7, 4, 4}, 2));
+  EXPECT_TRUE(sees({2.95, 4, 4}, 2)) << "its near plane may cut the wall open";
+  EXPECT_TRUE(sees({3.2, 4, 4}, 1) && sees({3.2, 4, 4}, 2));
+}
+
+TEST(Bake, StopsWhereTheBudgetIsMet) {
+  const Scene scene = randomScene(3);
+  const BakedVisibility all = baked(scene, {.triangle_budget = scene.triangleCount(), .max_depth = 4});
+  EXPECT_EQ(all.octree.leaves.size(), 1u);
+  EXPECT_EQ(reasonsOf(all)[StopReason::kBudgetMet], 1);
+  const std::uint64_t budget = scene.triangleCount() / 2;
+  const BakedVisibility half =
+      baked(scene, {.triangle_budget = budget, .max_depth = 4, .merge_tolerance = 0.0});
+  std::size_t met = 0;
+  forEachLeaf(half.octree.view(), [&](std::uint32_t leaf, const OctreeCell&) {
+    std::uint64_t triangles = 0;
+    for (const std::uint32_t node : half.sets[half.octree.leaves[leaf].set]) {
+      triangles += half.boxes.nodes[node].triangles;
+    }
+    const bool whole = half.octree.leaves[leaf].plane == OctreeLeaf::kNoPlane;
+    if (whole && half.octree.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kBudgetMet)) {
+      EXPECT_LE(triangles, budget);
+      ++met;
+    }
+  });
+  EXPECT_GT(met, 0u);
+}
+
+TEST(Bake, StopsInOpenAirAndMergesIt) {
+  // Nothing hides anything: one glance is enough.
+  const Scene open = sceneOf({block({0, 0, 0}, {1, 1, 1}), block({60, 60, 60}, {61, 61, 61})});
+  const BakedVisibility result = baked(open, {.max_depth = 5});
+  EXPECT_LE(result.octree.leaves.size(), 64u);
+  EXPECT_GT(reasonsOf(result)[StopReason::kNothingGained] + reasonsOf(result)[StopReason::kMerged], 0);
+  EXPECT_EQ(reasonsOf(result)[StopReason::kMaxDepth], 0);
+}
+
+TEST(Bake, NeverGoesBelowItsDepthAndSaysSo) {
+  const BakedVisibility result = baked(randomScene(5), {.max_depth = 3});
+  const OctreeView octree = result.octree.view();
+  for (std::size_t leaf = 0; leaf < octree.leaves.size(); ++leaf) {
+    EXPECT_LE(octree.depths[leaf], 3);
+    if (octree.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kMaxDepth)) {
+      EXPECT_EQ(octree.depths[leaf], 3);
+    }
+  }
+  EXPECT_GT(reasonsOf(result)[StopReason::kMaxDepth], 0);
+}
+
+TEST(Bake, MergesSiblingsWithLikeSets) {
+  const Scene scene = randomScene(6);
+  const BakedVisibility none = baked(scene, {.max_depth = 4, .merge_tolerance = 0.0});
+  const BakedVisibility some = baked(scene, {.max_depth = 4, .merge_tolerance = 0.3});
+  EXPECT_LT(some.octree.leaves.size(), none.octree.leaves.size());
+  EXPECT_GT(reasonsOf(some)[StopReason::kMerged], 0);
+  BakeJudge judge(scene, some);
+  judge.judge(1, 3, 0.25, 6);
+}
+
+TEST(Bake, CellsThatNoViewerIsInHoldEverything) {
+  const Scene scene = randomScene(2);
+  const BakedVisibility result = baked(scene, {.max_depth = 3, .region = {{0, 0, 0}, {32, 2, 4}}});
+  const OctreeView octree = result.octree.view();
+  int outside = 0;
+  forEachLeaf(octree, [&](std::uint32_t leaf, const OctreeCell& cell) {
+    const Vec3d low = cellMin(octree.min, octree.max, cell);
+    const bool beyond = low.y > 2.0 || low.z > 4.0;
+    EXPECT_EQ(octree.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kOutside), beyond);
+    if (beyond) {
+      ++outside;
+      const std::vector<bool> members = membersOf(result, octree.leaves[leaf].set);
+      EXPECT_EQ(std::count(members.begin(), members.end(), true), static_cast<long>(members.size()));
+    }
+  });
+  EXPECT_GT(outside, 0);
+}
+
+TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
+  const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
+  const OccluderSet occluders = allOccluders(scene);
+  const BakeSettings settings{.max_depth = 4};
+  const Result<Bake> bake = Bake::plan(scene.view(), occluders, settings);
+  ASSERT_TRUE(bake);
+  BakeSettings small = settings;
+  small.sample_bytes = 1;
+  const Result<Bake> forgetful = Bake::plan(scene.view(), occluders, small);
+  ASSERT_TRUE(forgetful);
+  EXPECT_EQ(bake->hash(), forgetful->hash());
+  ASSERT_GT(bake->partCount(), 1u);
+  std::vector<BakedPart> forwards(bake->partCount()), backwards(bake->partCount()), poor(bake->partCount());
+  Bake::Worker one(*bake), third(*forgetful);
+  for (std::uint32_t i = 0; i < bake->partCount(); ++i) {
+    forwards[i] = one.bake(i);
+    poor[i] = third.bake(i);
+  }
+  for (std::uint32_t i = bake->partCount(); i-- > 0;) {
+    backwards[i] = Bake::Worker(*bake).bake(i);
+  }
+  EXPECT_GT(third.stats().forgotten, one.stats().forgotten);
+  EXPECT_GT(third.stats().shadows, one.stats().shadows);
+  const Result<BakedVisibility> a = bake->assemble(forwards), b = bake->assemble(backwards),
+                                c = bake->assemble(poor);
+  ASSERT_TRUE(a && b && c);
+  EXPECT_TRUE(same(*a, *b));
+  EXPECT_TRUE(same(*a, *c));
+  EXPECT_TRUE(same(*a, baked(scene, settings)));
+}
+
+TEST(Bake, RefusesPartsOfAnotherPlanAndBrokenOnes) {
+  const Scene scene = randomScene(1);
+  const OccluderSet occluders = allOccluders(scene);
+  const Result<Bake> bake = Bake::plan(scene.view(), occluders, {.max_depth = 3});
+  const Result<Bake> other = Bake::plan(scene.view(), occluders, {.max_depth = 3, .near_distance = 0.5});
+  ASSERT_TRUE(bake && other);
+  EXPECT_NE(bake->hash(), other->hash());
+  std::vector<BakedPart> parts(bake->partCount());
+  Bake::Worker worker(*bake), stranger(*other);
+  for (std::uint32_t i = 0; i < bake->partCount(); ++i) {
+    parts[i] = worker.bake(i);
+    EXPECT_GT(Bake::summaryOf(parts[i]).leaves, 0u);
+  }
+  ASSERT_TRUE(bake->assemble(parts));
+  EXPECT_FALSE(bake->assemble(std::span(parts).first(parts.size() - 1)));
+  std::vector<BakedPart> foreign = parts;
+  foreign[0] = stranger.bake(0);
+  EXPECT_FALSE(bake->assemble(foreign));
+  std::vector<BakedPart> swapped = parts;
+  std::swap(swapped[0], swapped[1]);
+  EXPECT_FALSE(bake->assemble(swapped));
+  for (std::size_t length = 0; length < parts[0].size(); length += 1 + length / 16) {
+    std::vector<BakedPart> torn = parts;
+    torn[0].resize(length);
+    EXPECT_FALSE(bake->assemble(torn)) << length << " bytes";
+  }
+}
+
+TEST(Bake, RefusesSettingsThatMakeNoSense) {
+  const Scene scene = randomScene(1);
+  const OccluderSet occluders = allOccluders(scene);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<BakeSettings> bad{
+      {.max_depth = kMaxOctreeDepth + 1},
+      {.near_distance = -1.0},
+      {.near_distance = kNan},
+      {.search_distance = -1.0},
+      {.occluder_size = kNan},
+      {.similarity = 2.0},
+      {.least_gain = -0.1},
+      {.merge_tolerance = -1.0},
+      {.region = {{0, 0, 0}, {std::numeric_limits<float>::infinity(), 1, 1}}}};
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    const Result<Bake> bake = Bake::plan(scene.view(), occluders, bad[i]);
+    ASSERT_FALSE(bake) << i;
+    EXPECT_EQ(bake.error().message.find("bake: "), 0u);
+  }
+  EXPECT_FALSE(Bake::plan({}, {}, {})) << "nothing to see";
+}
+
+TEST(Bake, TakesBrokenBoxesFlatScenesAndNoOccluders) {
+  Scene scene =
+      sceneOf({{{{0, 0, 0}, {4, 0, 0}, {4, 0, 4}, {0, 0, 4}}, {{0, 3, 2, 1}}}, block({1, 0, 1}, {2, 0, 2})});
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects.back().bounds = Box{};
+  const BakedVisibility result = baked(scene, {.max_depth = 2});
+  for (const OctreeLeaf& leaf : result.octree.leaves) {
+    EXPECT_TRUE(membersOf(result, leaf.set)[2]) << "nothing is known of it";
+  }
+  const Result<BakedVisibility> blind = bakeVisibility(scene.view(), OccluderSet{}, {.max_depth = 2});
+  ASSERT_TRUE(blind);
+  EXPECT_EQ(blind->sets.count(), 1u);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,156 @@
+// Counts what operator new hands out in this program: a look-up must not allocate once its sets are decoded.
+
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC takes the replaced operators below, which allocate by malloc, for a mismatch where it has inlined only
+// one.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "sightline/pvs/query/set_query.h"
+#include "tests/pvs/sight_checks.h"
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+void* countedOrNull(std::size_t size, std::size_t alignment) noexcept {
+  ++allocations;
+  const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
+  return alignment <= alignof(std::max_align_t) ? std::malloc(size == 0 ? 1 : size)
+                                                : std::aligned_alloc(alignment, rounded);
+}
+
+void* counted(std::size_t size, std::size_t alignment) {
+  void* memory = countedOrNull(size, alignment);
+  if (memory == nullptr) {
+    throw std::bad_alloc();
+  }
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size, 1);
+}
+void* operator new[](std::size_t size) {
+  return counted(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return countedOrNull(size, 1);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return countedOrNull(size, 1);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace sightline::sight_test {
+namespace {
+
+std::size_t allocationsIn(SetQuery& query, std::span<const Vec3d> eyes) {
+  const std::size_t before = allocations;
+  for (const Vec3d& eye : eyes) {
+    query.find(eye, 0.25);
+  }
+  return allocations - before;
+}
+
+std::vector<Vec3d> eyesIn(const VisibilityOctree& octree) {
+  made::Random random(1);
+  const Vec3d margin = (octree.max - octree.min) * 0.05;
+  std::vector<Vec3d> eyes(3000);
+  for (Vec3d& eye : eyes) {
+    eye = made::point(random, octree.min - margin, octree.max + margin);
+  }
+  return eyes;
+}
+
+TEST(SetQueryAllocations, AreCountedByThisTest) {
+  const BakedVisibility baked = made::visibility();
+  const Bytes bytes = bytesOf(baked);
+  SetQuery query(*opened(bytes));
+  EXPECT_GT(allocationsIn(query, eyesIn(baked.octree)), 0u);
+}
+
+TEST(SetQueryAllocations, DoNotHappenOnceAllSetsAreDecoded) {
+  const BakedVisibility baked =
+      made::visibility({.objects = 2000, .leaves = 300, .sets = 100, .set_nodes = 50});
+  const Bytes bytes = bytesOf(baked);
+  SetQuery query(*opened(bytes));
+  const std::vector<Vec3d> eyes = eyesIn(baked.octree);
+  allocationsIn(query, eyes);
+  const std::uint64_t decoded = query.stats().decoded;
+  EXPECT_GT(decoded, 50u);
+  EXPECT_EQ(allocationsIn(query, eyes), 0u);
+  EXPECT_EQ(query.stats().decoded, decoded);
+}
+
+// Sets of one size: what one leaves behind, the next one takes.
+TEST(SetQueryAllocations, DoNotHappenWhenSetsTakeEachOthersPlaces) {
+  BakedVisibility baked = made::visibility({.objects = 2000, .leaves = 300, .sets = 100});
+  std::vector<std::uint32_t> leaves;
+  for (std::uint32_t node = 0; node < baked.boxes.nodes.size(); ++node) {
+    if (baked.boxes.view().leaf(node)) {
+      leaves.push_back(node);
+    }
+  }
+  baked.sets = {};
+  for (std::uint32_t set = 0; set < 100; ++set) {
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      baked.sets.nodes.push_back(leaves[set + i * 45]);
+    }
+    baked.sets.first.push_back(baked.sets.nodes.size());
+  }
+  const Bytes bytes = bytesOf(baked);
+  SetQuery query(*opened(bytes), {.cache_bytes = 20 * 160});
+  const std::vector<Vec3d> eyes = eyesIn(baked.octree);
+  allocationsIn(query, eyes);
+  const std::uint64_t decoded = query.stats().decoded;
+  EXPECT_EQ(allocationsIn(query, eyes), 0u);
+  EXPECT_GT(query.stats().decoded, decoded + 500);
+}
+
+}  // namespace
+}  // namespace sightline::sight_test

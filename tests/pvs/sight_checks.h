@@ -1,0 +1,55 @@
+#pragma once
+
+// What the tests of .sight files share.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "pvs/bake/encode_sight.h"
+#include "sightline/pvs/query/sight_file.h"
+#include "tests/support/made_visibility.h"
+
+namespace sightline::sight_test {
+
+using Bytes = std::vector<std::byte>;
+
+inline Bytes bytesOf(const BakedVisibility& baked) {
+  Result<Bytes> bytes = sight_bake::encodeSight(baked);
+  EXPECT_TRUE(bytes) << bytes.error().message;
+  return bytes ? *bytes : Bytes{};
+}
+
+inline Result<SightFile> opened(std::span<const std::byte> bytes) {
+  return SightFile::fromBytes(bytes, "made.sight");
+}
+
+inline bool oneLine(const std::string& text) {
+  return !text.empty() && text.find('\n') == std::string::npos;
+}
+
+// The answer, or what the error says.
+inline std::string errorOf(const Status& status) {
+  return status ? "" : status.error().message;
+}
+inline std::string errorOf(const Result<SightFile>& file) {
+  return file ? "" : file.error().message;
+}
+
+template <typename T>
+bool sameBytes(std::span<const T> a, std::span<const T> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+inline bool sameTree(const BoxTreeView& a, const BoxTreeView& b) {
+  return sameBytes(a.nodes, b.nodes) && sameBytes(a.objects, b.objects);
+}
+
+inline bool sameOctree(const OctreeView& a, const OctreeView& b) {
+  return a.min == b.min && a.max == b.max && sameBytes(a.nodes, b.nodes) && sameBytes(a.leaves, b.leaves) &&
+         sameBytes(a.depths, b.depths) && sameBytes(a.reasons, b.reasons) && sameBytes(a.planes, b.planes);
+}
+
+}  // namespace sightline::sight_test

@@ -1,0 +1,150 @@
+#include "sightline/pvs/bake/write_sight.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/pvs/sight_checks.h"
+
+namespace sightline::sight_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "sightline-write-XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::string contentOf(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+using Names = std::vector<std::string>;
+
+TEST(WriteSight, WritesWhatCanBeOpened) {
+  const Folder folder;
+  const BakedVisibility baked = made::visibility();
+  ASSERT_EQ(errorOf(writeSight(folder.file("a.sight"), baked)), "");
+  const Result<SightFile> file = SightFile::open(folder.file("a.sight"));
+  ASSERT_TRUE(file) << errorOf(file);
+  EXPECT_TRUE(file->verifyAll());
+  EXPECT_TRUE(sameOctree(file->octree(), baked.octree.view()));
+  EXPECT_EQ(folder.names(), Names{"a.sight"});
+}
+
+TEST(WriteSight, WritesTheSameBytesAgain) {
+  const Folder folder;
+  for (const char* name : {"a", "b"}) {
+    ASSERT_EQ(errorOf(writeSight(folder.file(name), made::visibility())), "");
+  }
+  EXPECT_EQ(contentOf(folder.file("a")), contentOf(folder.file("b")));
+}
+
+TEST(WriteSight, ReplacesAFileThatSomebodyReads) {
+  const Folder folder;
+  const std::string name = folder.file("a.sight");
+  const BakedVisibility before = made::visibility({.seed = 1});
+  const BakedVisibility after = made::visibility({.seed = 2, .objects = 77});
+  ASSERT_EQ(errorOf(writeSight(name, before)), "");
+  const Result<SightFile> file = SightFile::open(name);
+  ASSERT_TRUE(file);
+  ASSERT_EQ(errorOf(writeSight(name, after)), "");
+  EXPECT_TRUE(sameTree(file->boxes(), before.boxes.view()));
+  EXPECT_TRUE(file->verifyAll());
+  EXPECT_TRUE(SightFile::open(name)->matches(after.scene));
+}
+
+TEST(WriteSight, LeavesNothingInAFolderThatIsNotThere) {
+  const Folder folder;
+  const std::string name = folder.file("none/a.sight");
+  const std::string error = errorOf(writeSight(name, made::visibility()));
+  EXPECT_NE(error.find(name), std::string::npos) << error;
+  EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
+  EXPECT_TRUE(folder.names().empty());
+}
+
+// A folder of that name: all goes well until the new file is to be renamed.
+TEST(WriteSight, RemovesTheUnfinishedFileWhenItCannotBeRenamed) {
+  const Folder folder;
+  fs::create_directories(folder.file("a.sight/child"));
+  const std::string error = errorOf(writeSight(folder.file("a.sight"), made::visibility()));
+  EXPECT_NE(error.find("directory"), std::string::npos) << error;
+  EXPECT_EQ(folder.names(), Names{"a.sight"});
+}
+
+// No file may grow beyond a limit for a while, as on a full disk.
+TEST(WriteSight, LeavesTheOldFileUntouchedWhenTheDiskIsFull) {
+  const Folder folder;
+  const std::string name = folder.file("a.sight");
+  ASSERT_EQ(errorOf(writeSight(name, made::visibility())), "");
+  const std::string before = contentOf(name);
+
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{1000, limit.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string error = errorOf(writeSight(name, made::visibility({.seed = 5})));
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+
+  EXPECT_NE(error.find("File too large"), std::string::npos) << error;
+  EXPECT_EQ(contentOf(name), before);
+  EXPECT_EQ(folder.names(), Names{"a.sight"});
+}
+
+TEST(WriteSight, WritesNothingThatNoReaderWouldTake) {
+  const Folder folder;
+  using Damage = void (*)(BakedVisibility&);
+  const std::vector<std::pair<const char*, Damage>> damages{
+      {"no hierarchy", [](BakedVisibility& b) { b.boxes = {}; }},
+      {"no octree", [](BakedVisibility& b) { b.octree = {}; }},
+      {"another number of objects", [](BakedVisibility& b) { ++b.scene.objects; }},
+      {"a set that is not there", [](BakedVisibility& b) { b.octree.leaves[0].set = b.sets.count(); }},
+      {"a node that is not there", [](BakedVisibility& b) { b.sets.nodes.back() = 1'000'000; }},
+      {"a set that descends", [](BakedVisibility& b) { std::swap(b.sets.nodes[0], b.sets.nodes[1]); }},
+      {"a node below another", [](BakedVisibility& b) { b.sets.nodes[0] = 0; }},
+      {"sets without end", [](BakedVisibility& b) { b.sets.first.pop_back(); }},
+      {"sets beyond their nodes", [](BakedVisibility& b) { b.sets.first.back() += 1; }},
+      {"sets that go back", [](BakedVisibility& b) { b.sets.first[3] = 1'000'000; }},
+      {"no near distance", [](BakedVisibility& b) { b.record.near_distance = std::nan(""); }},
+      {"two databases of one name", [](BakedVisibility& b) { b.databases[1].name = b.databases[0].name; }}};
+  for (const auto& [what, apply] : damages) {
+    BakedVisibility baked = made::visibility();
+    apply(baked);
+    const std::string error = errorOf(writeSight(folder.file("a.sight"), baked));
+    EXPECT_TRUE(oneLine(error)) << what;
+    EXPECT_NE(error.find("a.sight"), std::string::npos) << error;
+  }
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace sightline::sight_test
