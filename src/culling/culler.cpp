@@ -6,6 +6,9 @@
 
 #include "culling/adaptive_coverage.h"
 #include "culling/hierarchical_walk.h"
+#include "culling/kept_planes.h"
+#include "culling/set_members.h"
+#include "culling/set_walk.h"
 #include "culling/wide_walk.h"
 
 namespace sightline {
@@ -18,44 +21,12 @@ double microseconds(Clock::time_point from, Clock::time_point to) {
 }
 
 using culling_detail::AskAll;
+using culling_detail::KeptPlanes;
+using culling_detail::SetMembers;
 
 auto seeEverything() {
   return AskAll{[](const Box&) { return Visibility::kVisible; }};
 }
-
-// The supporting planes as the walk asks them: relations of what lies below a node go when the walk ends at
-// it. They stay while it is merely outside the frustum.
-struct KeptPlanes {
-  SupportingPlanes& planes;
-  const Hierarchy& hierarchy;
-  std::vector<bool>& entered;  // by node: the walk went on below it, and what is there may have relations
-
-  OccluderList start() const { return planes.all(); }
-  Visibility classify(const Box& box, std::uint32_t item, OccluderList among, OccluderList& touching) {
-    const Visibility state = planes.classify(box, item, among, touching);
-    if (item < entered.size() && state == Visibility::kPartial) {
-      entered[item] = true;
-    }
-    return state;
-  }
-  void settled(NodeIndex node) {
-    if (!entered[node.value]) {
-      return;
-    }
-    entered[node.value] = false;
-    const HierarchyNode& n = hierarchy.nodes[node.value];
-    if (n.leaf()) {
-      for (std::uint32_t i = 0; i < n.leaf_count; ++i) {
-        planes.forget(static_cast<std::uint32_t>(hierarchy.nodes.size()) + n.link + i);
-      }
-    } else {
-      for (const NodeIndex child : {hierarchy.left(node), hierarchy.right(node)}) {
-        planes.forget(child.value);
-        settled(child);
-      }
-    }
-  }
-};
 
 }  // namespace
 
@@ -63,7 +34,7 @@ struct Culler::Impl {
   using WalkOptions = culling_detail::WalkOptions;
 
   Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s,
-       const OccluderDatabases& d)
+       const OccluderDatabases& d, VisibleSets* sets)
       : hierarchy(h),
         object_bounds(bounds),
         occluders(o),
@@ -74,7 +45,9 @@ struct Culler::Impl {
         tree(OcclusionTreeSettings{.variant = s.variant}),
         planes(planesSettings(s)),
         entered(h.nodes.size()),
-        coverage(s.coverage_ratio) {
+        coverage(s.coverage_ratio),
+        members(h, bounds.size(), usesSets(s) ? sets : nullptr, marksFor(s)),
+        set_walk(s.method == CullMethod::kVisibilityOctree ? bounds.size() : 0) {
     if (s.method == CullMethod::kOpacityMap) {
       opacity_map.emplace(OpacityMapSettings{s.raster, s.depth_comparison, s.tolerance, s.coverage_ratio});
     } else if (s.method == CullMethod::kDepthPyramid) {
@@ -94,6 +67,30 @@ struct Culler::Impl {
     SupportingPlanesSettings planes = settings.supporting_planes;
     planes.keep_relations = settings.temporal_coherence;
     return planes;
+  }
+
+  static bool usesSets(const CullerSettings& settings) {
+    return settings.method == CullMethod::kVisibilityOctree ||
+           (settings.visible_sets && settings.method != CullMethod::kFrustum);
+  }
+  static SetMembers::Marks marksFor(const CullerSettings& settings) {
+    return settings.method == CullMethod::kVisibilityOctree ? SetMembers::Marks::kNone
+                                                            : SetMembers::Marks::kAll;
+  }
+
+  // The set of the eye's cell, before all else.
+  void lookUp(const View& view) {
+    if (!usesSets(settings)) {
+      return;
+    }
+    const Clock::time_point start = Clock::now();
+    const bool another = members.find(view);
+    if (another && wide_walk) {
+      wide_walk->restrictTo(members.objects());
+    }
+    stats.set_nodes = static_cast<std::uint32_t>(members.nodes().size());
+    stats.set_objects = members.objectCount();
+    stats.look_up_us = microseconds(start, Clock::now());
   }
 
   // Maps draw a convex body as one.
@@ -142,7 +139,8 @@ struct Culler::Impl {
     if (jump || (few && frames_since_search >= frames_between_searches)) {
       candidates.clear();
       CullStats ignored;
-      search.run(frustum, {.temporal_coherence = false}, seeEverything(), ignored, candidates);
+      search.run(frustum, {.temporal_coherence = false, .members = membersOrNull()}, seeEverything(), ignored,
+                 candidates);
       const std::size_t before = chosen.size();
       chosen = chooser.choose(view, occluders, candidates, object_bounds, choice);
       frames_between_searches = chosen.size() > 2 * before ? 0 : kSearchPause;
@@ -336,8 +334,22 @@ struct Culler::Impl {
     stats.walk_us = microseconds(start, Clock::now());
   }
 
+  // No more than the set of the eye's cell, as far as it meets the frustum.
+  void cullBySet(const Frustum& frustum) {
+    if (members.everything()) {
+      cullByFrustum(frustum);
+      return;
+    }
+    const Clock::time_point start = Clock::now();
+    visible.clear();
+    set_walk.run(frustum, members.boxes(), members.nodes(), stats, visible);
+    stats.walk_us = microseconds(start, Clock::now());
+  }
+
+  const SetMembers* membersOrNull() const { return members.everything() ? nullptr : &members; }
+
   WalkOptions walkOptions(bool skip_partial) const {
-    return {settings.min_node_cost, skip_partial, settings.test_objects};
+    return {settings.min_node_cost, skip_partial, settings.test_objects, membersOrNull()};
   }
 
   // skip_partial: nodes that were partly visible in the last frame.
@@ -371,6 +383,7 @@ struct Culler::Impl {
       case CullMethod::kDepthPyramid:
         return pyramid->classify(box);
       case CullMethod::kFrustum:
+      case CullMethod::kVisibilityOctree:  // sets know nothing of what moves
         break;
     }
     return Visibility::kVisible;
@@ -399,6 +412,8 @@ struct Culler::Impl {
   OccluderChooser fine_chooser;
   std::vector<OccluderId> fine_chosen;
   culling_detail::AdaptiveCoverage coverage;
+  SetMembers members;
+  culling_detail::SetWalk set_walk;  // with the method
   ParallelFor parallel_for = serialFor;
   std::vector<OccluderId> all_moving;
   std::size_t used_count = 0;  // of the map's occluders those of the culler's own set
@@ -413,8 +428,8 @@ struct Culler::Impl {
 };
 
 Culler::Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
-               const CullerSettings& settings, const OccluderDatabases& databases)
-    : impl_(std::make_unique<Impl>(hierarchy, object_bounds, occluders, settings, databases)) {}
+               const CullerSettings& settings, const OccluderDatabases& databases, VisibleSets* sets)
+    : impl_(std::make_unique<Impl>(hierarchy, object_bounds, occluders, settings, databases, sets)) {}
 Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
@@ -423,6 +438,7 @@ void Culler::cull(const View& view, std::span<const Box> dynamic_boxes, const Oc
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
   impl_->view_jumped = impl_->jumped(view);
+  impl_->lookUp(view);
   const CullMethod method = impl_->settings.method;
   switch (method) {
     case CullMethod::kFrustum:
@@ -440,10 +456,13 @@ void Culler::cull(const View& view, std::span<const Box> dynamic_boxes, const Oc
     case CullMethod::kDepthPyramid:
       impl_->cullWithPyramid(view, frustum, moving);
       break;
+    case CullMethod::kVisibilityOctree:
+      impl_->cullBySet(frustum);
+      break;
   }
   impl_->classifyAll(frustum, dynamic_boxes);
   if (impl_->settings.detail_objects && impl_->databases.from_objects != nullptr &&
-      method != CullMethod::kFrustum) {
+      method != CullMethod::kFrustum && method != CullMethod::kVisibilityOctree) {
     impl_->testDetailObjects(view);
   }
   impl_->stats.relations = impl_->planes.stats().relations;
@@ -467,6 +486,7 @@ std::span<const OccluderId> Culler::occludersUsed() const {
     case CullMethod::kDepthPyramid:
       return impl_->pyramid->occluders().first(impl_->used_count);
     case CullMethod::kFrustum:
+    case CullMethod::kVisibilityOctree:
       break;
   }
   return {};
@@ -489,6 +509,7 @@ void Culler::reset() {
   impl_->has_previous = false;
   impl_->last_step = 0.0;
   impl_->frames_between_searches = 0;
+  impl_->members.forget();
   impl_->walk.forget();
   if (impl_->wide_walk) {
     impl_->wide_walk->forget();

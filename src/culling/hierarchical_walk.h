@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "culling/object_bits.h"
+#include "culling/set_members.h"
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/math/frustum.h"
@@ -46,6 +47,7 @@ struct WalkOptions {
   std::uint32_t min_node_cost = 0;
   bool temporal_coherence = true;
   bool test_objects = true;
+  const SetMembers* members = nullptr;  // with marks; what is not in it is left out. Null: all are in it
 };
 
 class HierarchicalWalk {
@@ -90,6 +92,11 @@ class HierarchicalWalk {
   template <typename Structure>
   void visit(const Entry& entry, const Frustum& frustum, const WalkOptions& options, Structure&& structure,
              CullStats& stats) {
+    if (options.members != nullptr && !options.members->hasNode(entry.node)) {
+      // That says nothing of what can be seen, now or then: neither of the node nor of its parent.
+      partial_[entry.node] = false;
+      return;
+    }
     const HierarchyNode& node = hierarchy_.nodes[entry.node];
     std::uint8_t planes = entry.planes;
     if (planes != 0) {
@@ -125,11 +132,12 @@ class HierarchicalWalk {
     const bool surely_visible = state == Visibility::kVisible;
     if (surely_visible && planes == 0) {
       for (const ObjectId object : hierarchy_.objectsBelow(NodeIndex(entry.node))) {
-        visible_.insert(object);
+        if (isMember(object, options)) {
+          visible_.insert(object);
+        }
       }
     } else if (node.leaf()) {
-      const bool test_objects = !surely_visible && options.test_objects;
-      keepLeaf(node, frustum, planes, test_objects, occluders, structure, stats);
+      keepLeaf(node, frustum, planes, surely_visible, options, occluders, structure, stats);
     } else {
       if (!surely_visible) {
         partial_[entry.node] = true;
@@ -149,11 +157,19 @@ class HierarchicalWalk {
     }
   }
 
+  static bool isMember(ObjectId object, const WalkOptions& options) {
+    return options.members == nullptr || options.members->hasObject(object);
+  }
+
   template <typename Structure>
-  void keepLeaf(const HierarchyNode& leaf, const Frustum& frustum, std::uint8_t planes, bool test_objects,
-                OccluderList occluders, Structure&& structure, CullStats& stats) {
+  void keepLeaf(const HierarchyNode& leaf, const Frustum& frustum, std::uint8_t planes, bool surely_visible,
+                const WalkOptions& options, OccluderList occluders, Structure&& structure, CullStats& stats) {
+    const bool test_objects = !surely_visible && options.test_objects;
     for (std::uint32_t i = 0; i < leaf.leaf_count; ++i) {
       const ObjectId object = hierarchy_.objects[leaf.link + i];
+      if (!isMember(object, options)) {
+        continue;
+      }
       const Box& box = object_bounds_[object.value];
       const bool is_the_node = box == leaf.bounds;
       if (!is_the_node) {

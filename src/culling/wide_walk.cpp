@@ -18,6 +18,8 @@ class WideWalk::Walker {
       : hierarchy_(walk.hierarchy_),
         wide_(walk.wide_),
         rest_(walk.rest_),
+        in_set_(walk.in_set_),
+        child_marks_(walk.child_marks_ ? walk.child_marks_->marks() : std::span<const std::uint8_t>()),
         maps_(maps),
         options_(options),
         found_(found) {}
@@ -26,15 +28,21 @@ class WideWalk::Walker {
   void visit(const Entry& entry);
 
  private:
-  // Answers for children `begin` to before `end` of the node: past the occluders, or for the view's volume
-  // alone.
+  // Of children `begin` to before `end` of the node: how many are in the set.
+  std::uint32_t members(const WideNode& node, std::uint32_t begin, std::uint32_t end) const;
+  // Their answers: past the occluders, or for the view's volume alone. What is not in the set is hidden.
   void ask(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
+  void askMembers(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
+  void askMap(std::span<const Box> boxes, std::span<const std::uint8_t> rest, std::size_t plain_from,
+              bool view_only, std::span<BoxAnswer> answers);
   void askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end);
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
   const Hierarchy& hierarchy_;
   const hierarchy_detail::WideHierarchy& wide_;
   std::span<std::uint8_t> rest_;
+  ObjectSet in_set_;
+  std::span<const std::uint8_t> child_marks_;  // unless everything is in the set
   const WalkMaps& maps_;
   const WalkOptions& options_;
   Found& found_;
@@ -78,6 +86,38 @@ void WideWalk::run(const WalkMaps& maps, const WalkOptions& options, CullStats& 
   visible_.drainInto(out);
 }
 
+TreeMarks WideWalk::marksOfChildren() const {
+  std::vector<std::uint32_t> parents(wide_.boxes.size(), TreeMarks::kTop);
+  std::vector<TreeMarks::Place> places;
+  for (const WideNode& node : wide_.nodes) {
+    for (std::uint32_t child = node.first_child; child < node.child_end; ++child) {
+      const std::uint32_t i = child - node.first_child;
+      if (i >= node.node_count) {
+        places.push_back({wide_.object[child], child});
+        continue;
+      }
+      const WideNode& below = wide_.nodes[node.first_node + i];
+      std::fill(parents.begin() + below.first_child, parents.begin() + below.child_end, child);
+    }
+  }
+  return {std::move(parents), places, object_count_};
+}
+
+void WideWalk::restrictTo(const ObjectSet& objects) {
+  in_set_ = objects;
+  if (objects.everything()) {
+    return;
+  }
+  if (!child_marks_) {
+    child_marks_.emplace(marksOfChildren());
+  }
+  child_marks_->mark(objects.list);
+  // What was found of a child before it left the set says nothing of when it comes back.
+  for (std::size_t child = 0; child < rest_.size(); ++child) {
+    rest_[child] &= child_marks_->marks()[child];
+  }
+}
+
 void WideWalk::take(Found& found, const WalkMaps& maps, CullStats& stats) {
   for (const ObjectId object : found.kept) {
     visible_.insert(object);
@@ -110,9 +150,9 @@ void WideWalk::Walker::visit(const Entry& entry) {
     ask(node, asked, node.node_count, true);
     ask(node, node.node_count, children, !test_objects);
   }
-  found_.nodes_visited += node.node_count;
-  found_.nodes_tested += asked;
-  found_.objects_tested += test_objects ? children - node.node_count : 0;
+  found_.nodes_visited += members(node, 0, node.node_count);
+  found_.nodes_tested += members(node, 0, asked);
+  found_.objects_tested += test_objects ? members(node, node.node_count, children) : 0;
 
   for (std::uint32_t i = 0; i < node.node_count; ++i) {
     keepNode(node.first_node + i, found_.answers[i], i >= asked);
@@ -125,25 +165,20 @@ void WideWalk::Walker::visit(const Entry& entry) {
 }
 
 void WideWalk::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only) {
-  const std::span<const Box> boxes = std::span(wide_.boxes).subspan(node.first_child + begin, end - begin);
-  const std::span<BoxAnswer> answers = std::span(found_.answers).subspan(begin, end - begin);
-  if (boxes.empty()) {
+  if (begin == end) {
     return;
+  }
+  const std::span<BoxAnswer> answers = std::span(found_.answers).subspan(begin, end - begin);
+  const std::span<std::uint8_t> rest = rest_.subspan(node.first_child + begin, end - begin);
+  if (members(node, begin, end) == end - begin) {
+    const std::span<const Box> boxes = std::span(wide_.boxes).subspan(node.first_child + begin, end - begin);
+    askMap(boxes, rest, node.node_count > begin ? node.node_count - begin : 0, view_only, answers);
+  } else {
+    askMembers(node, begin, end, view_only);
   }
   if (view_only) {
-    maps_.map.classifyInView(boxes, answers);
     return;
   }
-  BoxHints hints;
-  const std::span<std::uint8_t> rest = rest_.subspan(node.first_child + begin, end - begin);
-  if (options_.temporal_coherence) {
-    hints.seen = rest;
-  }
-  hints.plain_from = node.node_count > begin ? node.node_count - begin : 0;
-  if (maps_.fine != nullptr) {
-    maps_.window->tell(hints);
-  }
-  maps_.map.classify(boxes, answers, hints);
   if (maps_.window != nullptr) {
     askFineMap(node, begin, end);
   }
@@ -151,6 +186,59 @@ void WideWalk::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint3
     const bool hidden = answers[i].visibility == Visibility::kHidden;
     // Of many that come into view together not all are asked about again in the same view.
     rest[i] = static_cast<std::uint8_t>(hidden ? 0u : rest[i] != 0 ? rest[i] - 1u : kLeastRest + (i & 3));
+  }
+}
+
+void WideWalk::Walker::askMap(std::span<const Box> boxes, std::span<const std::uint8_t> rest,
+                              std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
+  if (view_only) {
+    maps_.map.classifyInView(boxes, answers);
+    return;
+  }
+  BoxHints hints;
+  if (options_.temporal_coherence) {
+    hints.seen = rest;
+  }
+  hints.plain_from = plain_from;
+  if (maps_.fine != nullptr) {
+    maps_.window->tell(hints);
+  }
+  maps_.map.classify(boxes, answers, hints);
+}
+
+std::uint32_t WideWalk::Walker::members(const WideNode& node, std::uint32_t begin, std::uint32_t end) const {
+  if (in_set_.everything()) {
+    return end - begin;
+  }
+  std::uint32_t count = 0;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    count += child_marks_[node.first_child + i] != 0 ? 1 : 0;
+  }
+  return count;
+}
+
+void WideWalk::Walker::askMembers(const WideNode& node, std::uint32_t begin, std::uint32_t end,
+                                  bool view_only) {
+  found_.members.clear();
+  found_.member_rest.clear();
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::uint32_t child = node.first_child + i;
+    if (child_marks_[child] != 0) {
+      found_.members.push_back(wide_.boxes[child]);
+      found_.member_rest.push_back(rest_[child]);
+    }
+  }
+  const std::size_t count = found_.members.size();
+  found_.member_answers.resize(std::max(found_.member_answers.size(), count));
+  const std::span<BoxAnswer> answers = std::span(found_.member_answers).first(count);
+  if (count > 0) {
+    const std::uint32_t nodes_end = std::clamp<std::uint32_t>(node.node_count, begin, end);
+    askMap(found_.members, found_.member_rest, members(node, begin, nodes_end), view_only, answers);
+  }
+  std::size_t next = 0;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const bool member = child_marks_[node.first_child + i] != 0;
+    found_.answers[i] = member ? answers[next++] : BoxAnswer{.visibility = Visibility::kHidden};
   }
 }
 
@@ -203,7 +291,10 @@ void WideWalk::Walker::keepNode(std::uint32_t node, const BoxAnswer& answer, boo
   }
   const WideNode& whole = wide_.nodes[node];
   for (std::uint32_t i = whole.first_object; i < whole.object_end; ++i) {
-    found_.kept.push_back(hierarchy_.objects[i]);
+    const ObjectId object = hierarchy_.objects[i];
+    if (in_set_.has(object)) {
+      found_.kept.push_back(object);
+    }
   }
 }
 

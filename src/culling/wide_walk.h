@@ -4,12 +4,14 @@
 // once.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "culling/focus_window.h"
 #include "culling/hierarchical_walk.h"
 #include "culling/object_bits.h"
+#include "culling/tree_marks.h"
 #include "hierarchy/wide_hierarchy.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/culling/culler.h"
@@ -31,6 +33,7 @@ class WideWalk {
   WideWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
       : hierarchy_(hierarchy),
         wide_(hierarchy_detail::collapse(hierarchy, object_bounds)),
+        object_count_(object_bounds.size()),
         visible_(object_bounds.size()),
         rest_(wide_.boxes.size(), 0),
         found_(kMostRanges) {}
@@ -40,6 +43,10 @@ class WideWalk {
   // unless it leaves the view). Nothing depends on parallel_for.
   void run(const WalkMaps& maps, const WalkOptions& options, CullStats& stats, std::vector<ObjectId>& out,
            const ParallelFor& parallel_for = serialFor);
+
+  // From now on only objects of the set are kept, and only they are asked about. To be called again whenever
+  // what it views changes.
+  void restrictTo(const ObjectSet& objects);
 
   // The next view has nothing to do with the last one.
   void forget() { std::fill(rest_.begin(), rest_.end(), std::uint8_t{0}); }
@@ -62,7 +69,10 @@ class WideWalk {
   struct Found {
     std::vector<Entry> stack;        // nodes to be visited
     std::vector<BoxAnswer> answers;  // of the children of one node
-    std::vector<Box> asked_again;    // of the finer map
+    std::vector<Box> members;        // of children: those in the set, where some are not
+    std::vector<std::uint8_t> member_rest;
+    std::vector<BoxAnswer> member_answers;
+    std::vector<Box> asked_again;  // of the finer map
     std::vector<std::uint32_t> asked_child;
     std::vector<BoxAnswer> second_answers;
     std::vector<ObjectId> kept;
@@ -71,13 +81,17 @@ class WideWalk {
   };
 
   void take(Found& found, const WalkMaps& maps, CullStats& stats);
+  TreeMarks marksOfChildren() const;
 
   const Hierarchy& hierarchy_;
   hierarchy_detail::WideHierarchy wide_;
+  std::size_t object_count_;
   ObjectBits visible_;
   std::vector<std::uint8_t> rest_;  // by child: so many views it is not asked about
-  std::vector<Entry> entries_;      // below which several may walk
-  std::vector<Found> found_;        // by the first entry of a range
+  ObjectSet in_set_;
+  std::optional<TreeMarks> child_marks_;  // by child: some of it is in the set; after the first one
+  std::vector<Entry> entries_;            // below which several may walk
+  std::vector<Found> found_;              // by the first entry of a range
 };
 
 }  // namespace sightline::culling_detail

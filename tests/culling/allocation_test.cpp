@@ -14,6 +14,7 @@
 #include <string>
 
 #include "tests/culling/demo_frames.h"
+#include "tests/culling/fake_sets.h"
 
 namespace {
 
@@ -134,6 +135,38 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
         EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u) << name << " " << nameOf(kind);
       }
     }
+  }
+}
+
+TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
+  const DemoScene& demo = smallCity();
+  const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 24);
+  std::vector<NamedSettings> all = allSettings();
+  all.push_back({"visibility octree", {.method = CullMethod::kVisibilityOctree}});
+  for (auto& [name, settings] : all) {
+    settings.visible_sets = true;
+    fake_sets::FakeSets sets(demo.bounds);
+    std::mt19937_64 random(3);
+    std::vector<std::vector<bool>> members;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      members.push_back(fake_sets::randomMembers(sets.boxes(), random));
+    }
+    Culler culler(demo.bvh, demo.bounds, demo.occluders, settings, {&demo.database, &demo.detail_database},
+                  &sets);
+    std::size_t counted = 0;
+    for (int round = 0; round < 3; ++round) {
+      counted = 0;
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        // Now and then the same as before, and everything.
+        if (v % 8 == 7) {
+          sets.useEverything();
+        } else if (v % 4 != 3) {
+          sets.use(static_cast<std::uint32_t>(v), members[v]);
+        }
+        counted += allocationsIn(culler, std::span(views).subspan(v, 1), {});
+      }
+    }
+    EXPECT_EQ(counted, 0u) << name;
   }
 }
 

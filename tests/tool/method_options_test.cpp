@@ -198,6 +198,119 @@ TEST(MethodOptions, SupportingPlanesHideNothingVisible) {
   }
 }
 
+TEST(MethodOptions, WhatNeedsABakedFileSaysHowToMakeOne) {
+  const std::string remedy = "--baked F.sight; make one with: sightline bake SCENE -o F.sight";
+  for (const std::string command : {"cull", "verify"}) {
+    expectRefused({command, kCity, "--method", "visibility-octree"}, "--method visibility-octree: ");
+    expectRefused({command, kCity, "--method", "visibility-octree"}, remedy);
+    expectRefused({command, kCity, "--visible-sets", "on"}, "--visible-sets on: ");
+    expectRefused({command, kCity, "--visible-sets", "on"}, remedy);
+  }
+  expectRefused({"verify", kCity, "--method", "frustum,visibility-octree"}, remedy);
+  expectRefused({"cull", kCity, "--path", "cells"}, "--baked");
+  EXPECT_EQ(runTool({"cull", kCity, "--frames", "0", "--visible-sets", "off"}).code, 0);
+}
+
+TEST(MethodOptions, ABakedFileThatIsNoneIsRefused) {
+  const TemporaryFolder folder;
+  const std::string none = folder.file("none.sight"), text = folder.write("text.sight", "hello");
+  expectRefused({"cull", kCity, "--baked", none}, none);
+  expectRefused({"verify", kCity, "--baked", text}, text);
+}
+
+// A baked building, made once.
+class BakedMethods : public ::testing::Test {
+ protected:
+  static constexpr const char* kScene = "demo:building?floors=1";
+
+  static const std::string& file() {
+    static const TemporaryFolder folder;
+    static const std::string made = [] {
+      const std::string name = folder.file("building.sight");
+      const Outcome outcome =
+          runTool({"bake", kScene, "-o", name, "--depth", "3", "--databases", "area-angle,minimum-sets"});
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      return name;
+    }();
+    return made;
+  }
+  static json culled(std::vector<std::string> options) {
+    options.insert(options.begin(), {"cull", kScene, "--baked", file(), "--json", "-"});
+    const Outcome outcome = runTool(options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return parse(outcome.out);
+  }
+};
+
+TEST_F(BakedMethods, TheOctreeTellsOfItsSets) {
+  const json cull = culled({"--method", "visibility-octree", "--frames", "0:400:50"});
+  EXPECT_EQ(keysOf(cull["options"]), (std::vector<std::string>{"hierarchy"}));
+  for (const json& frame : cull["frames"]) {
+    EXPECT_GE(frame["sets"]["nodes"], 1);
+    EXPECT_GE(frame["sets"]["objects"], frame["visible"].size());
+    EXPECT_GT(frame["sets"]["look_up_ns"], 0);
+    EXPECT_EQ(frame["occluders"], 0);
+  }
+  const json without_times = culled({"--method", "visibility-octree", "--frames", "0:400:50", "--no-times"});
+  for (const json& frame : without_times["frames"]) {
+    EXPECT_EQ(frame["sets"]["look_up_ns"], 0);
+  }
+}
+
+TEST_F(BakedMethods, VisibleSetsAreAnOptionOfTheOtherMethods) {
+  const Outcome outcome =
+      runTool({"verify", kScene, "--baked", file(), "--frames", "0", "--width", "64", "--height", "36",
+               "--aimed-rays", "1", "--method", "frustum,occlusion-tree,depth-pyramid,visibility-octree",
+               "--visible-sets", "on,off", "--json", "-"});
+  const json runs = parse(outcome.out)["runs"];
+  ASSERT_EQ(runs.size(), 1u + 2u + 2u + 1u) << outcome.err;
+  for (const json& run : runs) {
+    const bool has = run["method"] == "occlusion-tree" || run["method"] == "depth-pyramid";
+    EXPECT_EQ(run["options"].contains("visible_sets"), has) << run["method"];
+  }
+  const std::string text =
+      runTool({"cull", kScene, "--baked", file(), "--frames", "0", "--visible-sets", "on"}).out;
+  EXPECT_NE(text.find(", visible-sets on)"), std::string::npos) << text;
+}
+
+TEST_F(BakedMethods, DatabasesOfTheFileAreNotBuiltAgain) {
+  // They hold the same, but that the file's minimum sets were not made for one walk.
+  const json with = culled({"--occluders", "database", "--frames", "0:40:10", "--no-times"});
+  const Outcome built = runTool(
+      {"cull", kScene, "--occluders", "database", "--frames", "0:40:10", "--no-times", "--json", "-"});
+  EXPECT_EQ(with["database"]["bytes"], parse(built.out)["database"]["bytes"]);
+  EXPECT_EQ(with["frames"], parse(built.out)["frames"]);
+  EXPECT_GT(culled({"--occluders", "minimum-sets", "--frames", "0"})["viewpoints"]["minimum-sets"]["points"],
+            0);
+}
+
+TEST_F(BakedMethods, AFileOfAnotherSceneIsRefused) {
+  expectRefused({"cull", kCity, "--baked", file()}, "building.sight");
+}
+
+TEST_F(BakedMethods, TheCellsAreAPath) {
+  const json cull = culled({"--method", "visibility-octree", "--path", "cells"});
+  EXPECT_GE(cull["frames"].size(), 8u);
+  const json some = culled({"--method", "visibility-octree", "--path", "cells", "--frames", "1:8:3"});
+  ASSERT_EQ(some["frames"].size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(some["frames"][i]["visible"], cull["frames"][1 + 3 * i]["visible"]);
+  }
+}
+
+TEST_F(BakedMethods, HideNothingVisibleAtTheBordersOfCells) {
+  const Outcome outcome =
+      runTool({"verify", kScene, "--baked", file(), "--path", "cells", "--frames", "0:500:5", "--width",
+               "320", "--height", "180", "--method",
+               "visibility-octree,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
+               "--visible-sets", "on", "--json", "-"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const json& run : parse(outcome.out)["runs"]) {
+    EXPECT_EQ(run["false_culls"], 0) << run["method"] << " " << run["witnesses"];
+  }
+}
+
 TEST(MethodOptions, BadValuesAreRefused) {
   for (const std::string option :
        {"joint", "detail-objects", "planes", "tangents", "occluders", "coherence"}) {

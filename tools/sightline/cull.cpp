@@ -30,6 +30,10 @@ struct Totals {
   std::map<std::string, double> statistics{};  // by their texts
 };
 
+std::uint64_t valueOf(const Statistic& statistic, const CullStats& stats, bool times) {
+  return statistic.time && !times ? 0 : statistic.of(stats);
+}
+
 std::string frameJson(std::uint32_t frame, const CullRun& run, const Setting& setting, double tested_share,
                       bool times) {
   std::vector<std::uint32_t> ids;
@@ -43,7 +47,7 @@ std::string frameJson(std::uint32_t frame, const CullRun& run, const Setting& se
                {"nodes_tested", stats.nodes_tested},
                {"nodes_tested_share", tested_share},
                {"occluders", stats.occluders}};
-  addStatistics(json, setting, [&](const Statistic& statistic) { return statistic.of(stats); });
+  addStatistics(json, setting, [&](const Statistic& statistic) { return valueOf(statistic, stats, times); });
   return dump(json);
 }
 
@@ -72,10 +76,10 @@ Result<Setting> singleSetting(const MethodOptions& options) {
   return settings->front();
 }
 
-Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, const Scene& scene,
-                          const Walk& walk) {
+Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, const SceneAndWalk& input) {
+  const auto& [scene, walk, baked] = input;
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor(), walk);
+  CullingData data(scene, threads.parallelFor(), walk, baked);
   CullRun run{data.makeCuller(setting)};
   std::vector<std::string> frames;
   Totals sum;
@@ -94,7 +98,7 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
     sum.tested_share += tested_share;
     sum.occluders += stats.occluders;
     for (const Statistic& statistic : statisticsOf(setting)) {
-      sum.statistics[statistic.text] += static_cast<double>(statistic.of(stats));
+      sum.statistics[statistic.text] += static_cast<double>(valueOf(statistic, stats, !options.no_times));
     }
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
   }
@@ -115,11 +119,11 @@ Result<ExitCode> runCull(const CullOptions& options) {
   if (!setting) {
     return setting.error();
   }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path);
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path, options.method.baked);
   if (!input) {
     return input.error();
   }
-  return cullWalk(options, *setting, input->scene, input->walk);
+  return cullWalk(options, *setting, *input);
 }
 
 }  // namespace
@@ -136,7 +140,8 @@ void addCull(CLI::App& app, Command& chosen) {
       "  sightline cull city.glb --path walk.json --json visible.json\n"
       "  sightline cull demo:city --path worst --variant FSE --occluder-count 32 --json -\n"
       "  sightline cull demo:building --method supporting-planes --hierarchy kd --occluders database\n"
-      "  sightline cull demo:building --method frustum --frames 0:400:10");
+      "  sightline cull demo:building --method frustum --frames 0:400:10\n"
+      "  sightline cull demo:ship --method visibility-octree --baked ship.sight");
   command->callback([options, &chosen] { chosen = [options] { return runCull(*options); }; });
 }
 

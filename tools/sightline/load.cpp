@@ -9,6 +9,8 @@
 #include "scenes/procedural.h"
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
+#include "sightline/pvs/format/scene_id.h"
+#include "tools/sightline/cell_path.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/names.h"
 #include "tools/sightline/progress_bar.h"
@@ -37,8 +39,10 @@ Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
     return readCameraPath(name);
   }
   const std::string walks = pathNames(scene);
-  return Error{fmt::format("--path {}: there is no such file, and {}", name,
-                           walks.empty() ? "the scene has no walks" : "the scene's walks are: " + walks)};
+  return Error{fmt::format(
+      "--path {}: there is no such file, and {}{}", name,
+      walks.empty() ? "the scene has no walks" : "the scene's walks are: " + walks,
+      name == kCellsPath ? "; the cells of a baked file are walked when it is given with --baked" : "")};
 }
 
 Result<CameraPath> defaultPath(const std::string& scene_name, const Scene& scene) {
@@ -71,9 +75,27 @@ Result<Scene> loadScene(const std::string& name) {
   return scene;
 }
 
-Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene) {
-  Result<CameraPath> path =
-      options.path.empty() ? defaultPath(scene_name, scene) : namedPath(options.path, scene);
+Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene) {
+  if (file.empty()) {
+    return std::optional<SightFile>();
+  }
+  Result<SightFile> baked = SightFile::open(file);
+  if (!baked) {
+    return baked.error();
+  }
+  if (const Status same = baked->matches(sceneId(scene.view())); !same) {
+    return same.error();
+  }
+  return std::optional<SightFile>(std::move(*baked));
+}
+
+Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene,
+                      const std::optional<SightFile>& baked) {
+  const bool cells = baked && options.path == kCellsPath;
+  CellPath at_cells = cells ? cellPath(*baked, scene) : CellPath{};
+  Result<CameraPath> path = cells                  ? Result<CameraPath>(std::move(at_cells.path))
+                            : options.path.empty() ? defaultPath(scene_name, scene)
+                                                   : namedPath(options.path, scene);
   if (!path) {
     return path.error();
   }
@@ -84,10 +106,11 @@ Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name,
   if (!frames) {
     return frames.error();
   }
-  return Walk{std::move(*path), std::move(*frames)};
+  return Walk{std::move(*path), std::move(*frames), std::move(at_cells.eyes)};
 }
 
-Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path) {
+Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path,
+                                      const std::string& baked) {
   if (const Status ok = checkOutput(common.json); !ok) {
     return ok.error();
   }
@@ -95,15 +118,22 @@ Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOpt
   if (!scene) {
     return scene.error();
   }
-  Result<Walk> walk = loadWalk(path, common.scene, *scene);
+  Result<std::optional<SightFile>> file = loadBaked(baked, *scene);
+  if (!file) {
+    return file.error();
+  }
+  Result<Walk> walk = loadWalk(path, common.scene, *scene, *file);
   if (!walk) {
     return walk.error();
   }
-  return SceneAndWalk{std::move(*scene), std::move(*walk)};
+  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file)};
 }
 
-CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk)
-    : parallel_for_(parallel_for), occluders_(findOccluders(scene.view(), {}, parallel_for)) {
+CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk,
+                         std::optional<SightFile> baked)
+    : parallel_for_(parallel_for),
+      occluders_(findOccluders(scene.view(), {}, parallel_for)),
+      baked_(std::move(baked)) {
   for (const std::uint32_t frame : walk.frames) {
     walk_.push_back(walk.view(frame, scene).eye);
   }
@@ -138,9 +168,43 @@ std::unique_ptr<CullingData::Timed<Database>> buildTimed(const std::string& what
 
 }  // namespace
 
+template <typename Database>
+std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const std::string& name) const {
+  if (!baked_) {
+    return nullptr;
+  }
+  const std::vector<std::string> names = baked_->databaseNames();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    return nullptr;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const Result<DatabaseBlob> blob = baked_->readDatabase(name);
+  std::string unusable;
+  if (!blob) {
+    unusable = blob.error().message;
+  } else if (blob->occluders != occluderSetHash(occluders_)) {
+    unusable = "it was made for other occluders";
+  } else {
+    const auto count = static_cast<std::uint32_t>(occluders_.occluders.size());
+    Result<Database> database = Database::load(blob->bytes, count);
+    if (database) {
+      const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
+      return std::make_unique<Timed<Database>>(Timed<Database>{std::move(*database), time.count()});
+    }
+    unusable = database.error().message;
+  }
+  fmt::print(stderr,
+             "sightline: the occluder database '{}' of the baked file is not used ({}); building one\n", name,
+             unusable);
+  return nullptr;
+}
+
 // All settings of one run have the same databases.
 const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool turned_away,
                                                  std::unique_ptr<TimedDatabase>& timed) {
+  if (!timed) {
+    timed = bakedDatabase<OccluderDatabase>(turned_away ? "detail" : "area-angle");
+  }
   if (!timed) {
     const Hierarchy& cells = hierarchy(HierarchyKind::kKdTree);
     OccluderDatabaseSettings settings = setting.database;
@@ -157,6 +221,9 @@ const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool tu
 const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
   std::unique_ptr<TimedViewpoints>& timed =
       from_viewpoints_[static_cast<std::size_t>(setting.viewpoints.criterion)];
+  if (!timed) {
+    timed = bakedDatabase<ViewpointDatabase>(nameOf(kOccluderChoices, setting.culler.occluders));
+  }
   if (!timed) {
     const Hierarchy& occludees = hierarchy(HierarchyKind::kBvh);
     timed = buildTimed<ViewpointDatabase>(
@@ -179,7 +246,12 @@ Culler CullingData::makeCuller(const Setting& setting) {
   if (setting.usesViewpoints()) {
     databases.from_viewpoints = viewpointsFor(setting);
   }
-  Culler culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases);
+  VisibleSets* sets = nullptr;
+  if (baked_ && setting.usesVisibleSets()) {
+    queries_.push_back(std::make_unique<SetQuery>(*baked_));
+    sets = queries_.back().get();
+  }
+  Culler culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases, sets);
   culler.setParallelFor(parallel_for_);
   return culler;
 }

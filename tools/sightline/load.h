@@ -4,11 +4,14 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/occluder_set.h"
+#include "sightline/pvs/query/set_query.h"
+#include "sightline/pvs/query/sight_file.h"
 #include "sightline/scene/scene.h"
 #include "tools/sightline/method_options.h"
 #include "tools/sightline/options.h"
@@ -18,35 +21,49 @@ namespace sightline::tool {
 // A file or a demo:NAME?...
 Result<Scene> loadScene(const std::string& name);
 
+// A .sight file, which must have been baked from this scene. No name: none.
+Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene);
+
 struct Walk {
   CameraPath path;
   std::vector<std::uint32_t> frames{};  // chosen ones, ascending
+  std::vector<Vec3d> eyes{};            // by frame, scene space, where the path's are not exact; else none
 
-  View view(std::uint32_t frame, const Scene& scene) const { return path.view(frame, scene.origin); }
+  View view(std::uint32_t frame, const Scene& scene) const {
+    View view = path.view(frame, scene.origin);
+    view.eye = eyes.empty() ? view.eye : eyes[frame];
+    return view;
+  }
 };
-// Says on stderr when it took a file that the user did not name.
-Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene);
+// baked: for kCellsPath. Says on stderr when it took a file that the user did not name.
+Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene,
+                      const std::optional<SightFile>& baked = {});
 
 // What a command along a walk begins with. Asks first whether its output can be written, before the work.
 struct SceneAndWalk {
   Scene scene;
   Walk walk;
+  std::optional<SightFile> baked{};
 };
-Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path);
+// baked: a .sight file, or empty.
+Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path,
+                                      const std::string& baked = "");
 
 // What cullers of one scene share.
 class CullingData {
  public:
-  // walk: viewpoint databases are made for it.
-  CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk = {});
+  // walk: viewpoint databases are made for it. baked: sets of settings that use them, and databases.
+  CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk = {},
+              std::optional<SightFile> baked = {});
 
+  // Says on stderr where a database of the baked file is of no use.
   Culler makeCuller(const Setting& setting);
   const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
   // The occluder databases of the first setting that uses them; null until a culler needed them.
   template <typename Database>
   struct Timed {
     Database database;
-    double build_us = 0.0;
+    double build_us = 0.0;  // or to read it from the baked file
   };
   using TimedDatabase = Timed<OccluderDatabase>;
   using TimedViewpoints = Timed<ViewpointDatabase>;
@@ -64,6 +81,9 @@ class CullingData {
   const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
                                       std::unique_ptr<TimedDatabase>& database);
   const ViewpointDatabase* viewpointsFor(const Setting& setting);
+  // That of the baked file; null where it has none for these occluders.
+  template <typename Database>
+  std::unique_ptr<Timed<Database>> bakedDatabase(const std::string& name) const;
 
   ParallelFor parallel_for_;
   std::vector<Vec3d> walk_;  // its viewpoints, scene space
@@ -73,6 +93,8 @@ class CullingData {
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
   std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion
+  std::optional<SightFile> baked_;
+  std::vector<std::unique_ptr<SetQuery>> queries_;  // one a culler that has sets
 };
 
 Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}

@@ -117,7 +117,11 @@ bool always(const Setting&) {
   return true;
 }
 bool usesOccluders(const Setting& setting) {
-  return setting.culler.method != CullMethod::kFrustum;
+  return setting.culler.method != CullMethod::kFrustum &&
+         setting.culler.method != CullMethod::kVisibilityOctree;
+}
+bool mayUseSets(const Setting& setting) {
+  return setting.baked && usesOccluders(setting);
 }
 bool usesTree(const Setting& setting) {
   return setting.culler.method == CullMethod::kOcclusionTree;
@@ -141,7 +145,7 @@ bool usesOpacityMap(const Setting& setting) {
 bool usesViewpoints(const Setting& setting) {
   return setting.usesViewpoints();
 }
-bool usesSets(const Setting& setting) {
+bool usesMinimumSets(const Setting& setting) {
   return setting.usesViewpoints() && setting.culler.occluders == OccluderChoice::kMinimumSets;
 }
 bool ranksByAreaAngle(const Setting& setting) {
@@ -188,6 +192,10 @@ const std::vector<Option>& allOptions() {
       {"hierarchy", always, kList, kHeadline, "over the objects",
        oneOf(
            kHierarchies, +[](Setting& s) -> HierarchyKind& { return s.hierarchy; })},
+      {"visible-sets", mayUseSets, kList, kWhenChanged,
+       "before the method, all that is not in the baked set of the viewpoint's cell is left out",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.visible_sets; })},
       {"variant", usesTree, kList, kHeadline, "of the occlusion tree",
        oneOf(
            kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.culler.variant; })},
@@ -286,11 +294,11 @@ const std::vector<Option>& allOptions() {
        "viewpoint database: pixels along the edge of a picture",
        whole(
            8, 512, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.resolution; })},
-      {"set-gain", usesSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
+      {"set-gain", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.gain; })},
-      {"set-count", usesSets, kOne, kWhenChanged, "minimum sets: weight of the number of occluders",
+      {"set-count", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of the number of occluders",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.count; })},
-      {"set-area", usesSets, kOne, kWhenChanged, "minimum sets: weight of the pixels of occluders",
+      {"set-area", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of the pixels of occluders",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.area; })},
   };
   return kOptions;
@@ -319,6 +327,26 @@ Result<std::vector<std::string>> valuesOf(const Option& option, const std::strin
     }
   }
   return values;
+}
+
+// Whether what needs a baked file has one.
+Status checkBaked(const MethodOptions& options, const std::vector<Setting>& settings) {
+  constexpr const char* kRemedy =
+      "give the baked file with --baked F.sight; make one with: sightline bake SCENE -o F.sight";
+  if (!options.baked.empty()) {
+    return Success{};
+  }
+  for (const Setting& setting : settings) {
+    if (setting.culler.method == CullMethod::kVisibilityOctree) {
+      return Error{fmt::format("--method {}: {}", methodName(setting), kRemedy)};
+    }
+  }
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    if (allOptions()[i].belongs == mayUseSets && options.texts[i] != MethodOptions().texts[i]) {
+      return Error{fmt::format("--{} {}: {}", allOptions()[i].name, options.texts[i], kRemedy)};
+    }
+  }
+  return Success{};
 }
 
 std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option& option,
@@ -363,6 +391,10 @@ bool Setting::testsDetailObjects() const {
   return usesOccluders(*this) && culler.detail_objects;
 }
 
+bool Setting::usesVisibleSets() const {
+  return culler.method == CullMethod::kVisibilityOctree || (usesOccluders(*this) && culler.visible_sets);
+}
+
 bool Setting::planesThroughBox() const {
   return usesPlanes(*this) && culler.supporting_planes.form == PlaneForm::kThroughBox;
 }
@@ -380,10 +412,15 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
         option.help + option.value.help + (lists && option.list ? " (several: a,b,c)" : "");
     command.add_option("--" + option.name, options.texts[i], help)->capture_default_str();
   }
+  command.add_option("--baked", options.baked,
+                     "a .sight file of the scene: its visible sets, and its occluder databases in place of "
+                     "those that would be built");
 }
 
 Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
-  std::vector<Setting> settings{Setting{}};
+  Setting usual;
+  usual.baked = !options.baked.empty();
+  std::vector<Setting> settings{usual};
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
     const Option& option = allOptions()[i];
     const Result<std::vector<std::string>> values = valuesOf(option, options.texts[i]);
@@ -391,6 +428,9 @@ Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
       return values.error();
     }
     settings = multiply(settings, option, *values);
+  }
+  if (const Status served = checkBaked(options, settings); !served) {
+    return served.error();
   }
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
     const Option& option = allOptions()[i];

@@ -20,12 +20,14 @@ struct Setting {
   CullerSettings culler{};
   OccluderDatabaseSettings database{};
   ViewpointDatabaseSettings viewpoints{};
+  bool baked = false;  // there is a baked file
 
   bool usesDatabase() const;
   bool usesViewpoints() const;
   bool usesMap() const;      // of occluders, in pixels
   bool approximate() const;  // may cull what can be seen
   bool testsDetailObjects() const;
+  bool usesVisibleSets() const;
   bool planesThroughBox() const;  // which are kept where temporal coherence is on
 };
 
@@ -34,11 +36,13 @@ struct MethodOptions {
   MethodOptions();  // the library's defaults
 
   std::vector<std::string> texts;
+  std::string baked;  // a .sight file; empty: none
 };
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 
 // All combinations, in the order of the lists; options that a method does not have do not multiply it. Says
-// on stderr which of the given ones no method has.
+// on stderr which of the given ones no method has. An error where one of them needs a baked file and there is
+// none.
 Result<std::vector<Setting>> settingsOf(const MethodOptions& options);
 
 // Of the choices that the viewpoint database serves.

@@ -18,12 +18,13 @@ struct Name {
   T value;
 };
 
-inline constexpr std::array<Name<CullMethod>, 5> kMethods{{
+inline constexpr std::array<Name<CullMethod>, 6> kMethods{{
     {"frustum", CullMethod::kFrustum},
     {"supporting-planes", CullMethod::kSupportingPlanes},
     {"occlusion-tree", CullMethod::kOcclusionTree},
     {"opacity-map", CullMethod::kOpacityMap},
     {"depth-pyramid", CullMethod::kDepthPyramid},
+    {"visibility-octree", CullMethod::kVisibilityOctree},
 }};
 inline constexpr std::array<Name<OcclusionTreeVariant>, 4> kVariants{{
     {"FSE", OcclusionTreeVariant::kFSE},

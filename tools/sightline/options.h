@@ -27,9 +27,12 @@ struct CommonOptions : OutputOptions {
 };
 void addCommonOptions(CLI::App& command, CommonOptions& options);
 
+// The path through all cells of a baked file, see cellPath.
+inline constexpr const char* kCellsPath = "cells";
+
 // What commands take that walk a path.
 struct PathOptions {
-  std::string path;    // a file or the name of one of the scene's walks; empty: the default
+  std::string path;    // a file, the name of one of the scene's walks, or kCellsPath; empty: the default
   std::string frames;  // A:B[:STEP]; empty: all
 };
 void addPathOptions(CLI::App& command, PathOptions& options);

@@ -12,6 +12,10 @@ bool hasDetail(const Setting& setting) {
   return setting.testsDetailObjects();
 }
 
+bool hasSets(const Setting& setting) {
+  return setting.usesVisibleSets();
+}
+
 bool hasMap(const Setting& setting) {
   return setting.usesMap();
 }
@@ -26,6 +30,13 @@ bool adapts(const Setting& setting) {
 }
 
 constexpr Statistic kStatistics[] = {
+    {"sets", "nodes", "nodes of the set", [](const CullStats& s) -> std::uint64_t { return s.set_nodes; },
+     hasSets},
+    {"sets", "objects", "objects of the set",
+     [](const CullStats& s) -> std::uint64_t { return s.set_objects; }, hasSets},
+    {"sets", "look_up_ns", "look-up, ns",
+     [](const CullStats& s) -> std::uint64_t { return static_cast<std::uint64_t>(s.look_up_us * 1e3); },
+     hasSets, true},
     {"map", "occluders_hidden", "occluders behind others",
      [](const CullStats& s) -> std::uint64_t { return s.occluders_hidden; }, hasMap},
     {"map", "focused", "frames with a finer map",

@@ -15,6 +15,7 @@ struct Statistic {
   const char* text;   // "relations reused"
   std::uint64_t (*of)(const CullStats& stats);
   bool (*belongs)(const Setting& setting);
+  bool time = false;  // differs from run to run
 };
 
 // Those that mean something for the setting.

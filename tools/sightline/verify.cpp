@@ -243,9 +243,10 @@ void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const S
 }
 
 Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Setting>& settings,
-                            const Scene& scene, const Walk& walk) {
+                            const SceneAndWalk& input) {
+  const auto& [scene, walk, baked] = input;
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor(), walk);
+  CullingData data(scene, threads.parallelFor(), walk, baked);
   std::vector<VerifyRun> runs;
   for (const Setting& setting : settings) {
     runs.push_back({setting, data.makeCuller(setting), {}, {}, 0});
@@ -276,11 +277,11 @@ Result<ExitCode> runVerify(const VerifyOptions& options) {
   if (!settings) {
     return settings.error();
   }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path);
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path, options.method.baked);
   if (!input) {
     return input.error();
   }
-  return verifyWalk(options, *settings, input->scene, input->walk);
+  return verifyWalk(options, *settings, *input);
 }
 
 }  // namespace
@@ -319,6 +320,8 @@ void addVerify(CLI::App& app, Command& chosen) {
       "area-angle,database\n"
       "  sightline verify demo:boxes --method depth-pyramid --resolution 64x36,320x180 --focus 0,8 --frames "
       "0:400:50\n"
+      "  sightline verify demo:ship --baked ship.sight --path cells --method visibility-octree,depth-pyramid "
+      "--visible-sets on,off\n"
       "  sightline verify demo:city --frames 0:400:20 --width 3840 --height 2160 --aimed-rays 64 --json "
       "verify.json");
   command->callback([options, &chosen] { chosen = [options] { return runVerify(*options); }; });

@@ -203,7 +203,8 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
 }
 
 Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting>& settings,
-                           const Scene& scene, const Walk& walk) {
+                           const SceneAndWalk& input) {
+  const auto& [scene, walk, baked] = input;
   const auto [width, height] = pictureSize(options.picture, walk.path);
   Result<Renderer> renderer = Renderer::create(scene.view(), width, height);
   if (!renderer) {
@@ -213,15 +214,15 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
     return made.error();
   }
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor(), walk);
+  CullingData data(scene, threads.parallelFor(), walk, baked);
   Result<WalkRecord> record = Walker(scene, walk, data, *renderer, options.folder).run(settings);
   if (!record) {
     return record.error();
   }
   record->width = width;
   record->height = height;
-  const WalkInput input{options.common.scene, scene, walk, data};
-  if (const Status written = writeAll(options, input, *record, *renderer); !written) {
+  const WalkInput walked{options.common.scene, scene, walk, data};
+  if (const Status written = writeAll(options, walked, *record, *renderer); !written) {
     return written.error();
   }
   if (options.common.textOnStdout()) {
@@ -236,11 +237,11 @@ Result<ExitCode> runWalk(const WalkOptions& options) {
   if (!settings) {
     return settings.error();
   }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path);
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path, options.method.baked);
   if (!input) {
     return input.error();
   }
-  return walkScene(options, withBaseline(*settings), input->scene, input->walk);
+  return walkScene(options, withBaseline(*settings), *input);
 }
 
 }  // namespace
@@ -266,6 +267,8 @@ void addWalk(CLI::App& app, Command& chosen) {
       "--occluders area-angle,database -o report\n"
       "  sightline walk demo:city --method opacity-map,depth-pyramid --occluders area-angle,minimum-sets -o "
       "report\n"
+      "  sightline walk demo:ship --baked ship.sight --method visibility-octree,depth-pyramid --visible-sets "
+      "on,off -o report\n"
       "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
   command->callback([options, command, &chosen] {
     options->command_line = commandLine(*command);

@@ -17,6 +17,7 @@
 #include "sightline/occlusion/opacity_map.h"
 #include "sightline/occlusion/supporting_planes.h"
 #include "sightline/occlusion/visibility.h"
+#include "sightline/occlusion/visible_sets.h"
 #include "sightline/scene/camera.h"
 
 namespace sightline {
@@ -27,6 +28,9 @@ enum class CullMethod : std::uint8_t {
   kSupportingPlanes,
   kOpacityMap,
   kDepthPyramid,
+  // The potentially visible set of the eye's cell, as far as it meets the frustum. No occluders: the bake has
+  // done their work.
+  kVisibilityOctree,
 };
 
 // Where a frame's occluders come from.
@@ -72,9 +76,12 @@ struct CullerSettings {
   // Occlusion tree: nodes found partial are not tested in the next frame. Supporting planes: relations are
   // kept from frame to frame. Depth pyramid: what was kept is not tested for six to nine frames.
   bool temporal_coherence = true;
+  // Only what is in the potentially visible set of the eye's cell is asked about, and kept; not with
+  // kFrustum.
+  bool visible_sets = false;
   bool test_objects = true;  // objects of partly visible leaves are tested by their own boxes
   // Objects that the walk kept are tested once more, with the occluders near themselves; not dynamic boxes,
-  // and not with kFrustum.
+  // and not with kFrustum and kVisibilityOctree.
   bool detail_objects = false;
   std::uint32_t detail_occluder_count = 8;  // for each of them
 };
@@ -97,8 +104,11 @@ struct CullStats {
   bool suspended = false;              // occlusion culling, which did not pay (CullerSettings::triangle_us)
   std::uint32_t detail_tested = 0;     // objects that got the second test
   std::uint32_t detail_culled = 0;     // and were hidden by it
+  std::uint32_t set_nodes = 0;         // of the potentially visible set, 1 where that is everything; else 0
+  std::uint32_t set_objects = 0;       // below them
+  double look_up_us = 0.0;             // finding the set; in another cell also marking what it leaves
   double choose_us = 0.0, build_us = 0.0, walk_us = 0.0, detail_us = 0.0;
-  double totalUs() const { return choose_us + build_us + walk_us + detail_us; }
+  double totalUs() const { return look_up_us + choose_us + build_us + walk_us + detail_us; }
 };
 
 struct OccluderDatabases {
@@ -113,16 +123,20 @@ struct OccluderDatabases {
 
 class Culler {
  public:
-  // Views of the caller's data, which must outlive this.
+  // Views of the caller's data, which must outlive this. sets: for kVisibilityOctree and visible_sets, used
+  // by this culler alone. Without them, where they are of other objects, and for orthographic views,
+  // everything is in the set.
   Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
-         const CullerSettings& settings = {}, const OccluderDatabases& databases = {});
+         const CullerSettings& settings = {}, const OccluderDatabases& databases = {},
+         VisibleSets* sets = nullptr);
   ~Culler();
   Culler(Culler&&) noexcept;
   Culler& operator=(Culler&&) noexcept;
 
-  // One frame. dynamic_boxes: moving occludees, classified in the same call. Does not fail, and does not
-  // allocate after a few frames. moving: occluders of this frame only (makeOccluders), all of which are used
-  // in addition; opacity map and depth pyramid draw them like others, the other methods leave them out.
+  // One frame. dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them.
+  // Does not fail, and does not allocate after a few frames. moving: occluders of this frame only
+  // (makeOccluders), all of which are used in addition; opacity map and depth pyramid draw them like others,
+  // the other methods leave them out.
   void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr);
 
   // Answers of the last cull(). Objects that may be seen, ascending.

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occlusion/supporting_planes.h"
+
+namespace sightline::culling_detail {
+
+// The supporting planes as the walk asks them: relations of what lies below a node go when the walk ends at
+// it. They stay while it is merely outside the frustum.
+struct KeptPlanes {
+  SupportingPlanes& planes;
+  const Hierarchy& hierarchy;
+  std::vector<bool>& entered;  // by node: the walk went on below it, and what is there may have relations
+
+  OccluderList start() const { return planes.all(); }
+  Visibility classify(const Box& box, std::uint32_t item, OccluderList among, OccluderList& touching) {
+    const Visibility state = planes.classify(box, item, among, touching);
+    if (item < entered.size() && state == Visibility::kPartial) {
+      entered[item] = true;
+    }
+    return state;
+  }
+  void settled(NodeIndex node) {
+    if (!entered[node.value]) {
+      return;
+    }
+    entered[node.value] = false;
+    const HierarchyNode& n = hierarchy.nodes[node.value];
+    if (n.leaf()) {
+      for (std::uint32_t i = 0; i < n.leaf_count; ++i) {
+        planes.forget(static_cast<std::uint32_t>(hierarchy.nodes.size()) + n.link + i);
+      }
+    } else {
+      for (const NodeIndex child : {hierarchy.left(node), hierarchy.right(node)}) {
+        planes.forget(child.value);
+        settled(child);
+      }
+    }
+  }
+};
+
+}  // namespace sightline::culling_detail

@@ -1,0 +1,45 @@
+#pragma once
+
+// Hierarchical frustum culling of a potentially visible set.
+//
+// Based on: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999, section 3.3.
+// Differs from the paper in: nodes above those of the set are tested too, so that one test may end many.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "culling/object_bits.h"
+#include "sightline/culling/culler.h"
+#include "sightline/hierarchy/box_tree.h"
+#include "sightline/math/frustum.h"
+
+namespace sightline::culling_detail {
+
+class SetWalk {
+ public:
+  explicit SetWalk(std::size_t object_count) : visible_(object_count) {}
+
+  // set: nodes of the tree, see VisibleSet::nodes. Appends the objects below them whose boxes are not outside
+  // the frustum to out, ascending; adds to the counts of stats.
+  void run(const Frustum& frustum, const BoxTreeView& tree, std::span<const std::uint32_t> set,
+           CullStats& stats, std::vector<ObjectId>& out);
+
+ private:
+  struct Entry {
+    std::uint32_t node;
+    std::uint32_t begin, end;  // of the set: the nodes at or below this one; none: all that is below it
+    std::uint8_t planes;       // of the frustum that still cut it
+  };
+
+  void visit(const Entry& entry, const Frustum& frustum, const BoxTreeView& tree,
+             std::span<const std::uint32_t> set, CullStats& stats);
+  void keep(std::span<const ObjectId> objects);
+  void pushChildren(const Entry& parent, std::uint8_t planes, const BoxTreeView& tree,
+                    std::span<const std::uint32_t> set);
+
+  ObjectBits visible_;
+  std::vector<Entry> stack_;
+};
+
+}  // namespace sightline::culling_detail
