@@ -19,5 +19,7 @@ void addWalk(CLI::App& app, Command& chosen);
 void addCull(CLI::App& app, Command& chosen);
 void addVerify(CLI::App& app, Command& chosen);
 void addReproduce(CLI::App& app, Command& chosen);
+void addBake(CLI::App& app, Command& chosen);
+void addQuery(CLI::App& app, Command& chosen);
 
 }  // namespace sightline::tool

@@ -1,10 +1,11 @@
-// sightline info: what is in a scene, and what culling can make of it.
+// sightline info: what is in a scene, and what culling can make of it; what is in a baked file.
 
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "tools/sightline/commands.h"
+#include "tools/sightline/info_sight.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
 #include "tools/sightline/names.h"
@@ -210,6 +211,10 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
   if (const Status ok = checkOutput(options.common.json); !ok) {
     return ok.error();
   }
+  if (isSightFile(options.common.scene)) {
+    const Status ok = informOnSight(options.common.scene, options.common.json);
+    return ok ? Result<ExitCode>(kOk) : ok.error();
+  }
   const Result<Scene> scene = loadScene(options.common.scene);
   if (!scene) {
     return scene.error();
@@ -231,13 +236,16 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
 
 void addInfo(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
-      "info", "counts, bounds, materials, what can occlude and why the rest cannot, hierarchies");
+      "info",
+      "counts, bounds, materials, what can occlude and why the rest cannot, hierarchies; of a baked file "
+      "(F.sight in place of SCENE) its cells and sets");
   const auto options = std::make_shared<InfoOptions>();
   addCommonOptions(*command, options->common);
   command->footer(
       "Examples:\n"
       "  sightline info city.glb\n"
-      "  sightline info \"demo:city?copies=30&seed=1\" --json city.json");
+      "  sightline info \"demo:city?copies=30&seed=1\" --json city.json\n"
+      "  sightline info city.sight");
   command->callback([options, &chosen] { chosen = [options] { return runInfo(*options); }; });
 }
 

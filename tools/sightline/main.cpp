@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
 #include "tools/sightline/commands.h"
+#include "tools/sightline/mpi_world.h"
 
 namespace sightline::tool {
 namespace {
@@ -16,6 +18,11 @@ int fail(std::string message) {
   }
   fmt::print(stderr, "sightline: {}\n", message);
   return kBadUsage;
+}
+
+// Of all processes of one bake, the first speaks, and fails: mpirun ends the rest as soon as one has failed.
+bool speaks(int argc, char** argv) {
+  return !(argc > 1 && std::string_view(argv[1]) == "bake" && isOtherMpiProcess());
 }
 
 std::string commandNames(const CLI::App& app) {
@@ -46,6 +53,8 @@ int run(int argc, char** argv) {
   addCull(app, chosen);
   addVerify(app, chosen);
   addReproduce(app, chosen);
+  addBake(app, chosen);
+  addQuery(app, chosen);
   if (const std::string word = argc > 1 ? argv[1] : "";
       !word.empty() && word[0] != '-' && !isCommand(app, word)) {
     return fail(fmt::format("there is no command '{}'; choose from: {}", word, commandNames(app)));
@@ -53,9 +62,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    return speaks(argc, argv) ? app.exit(help) : kOk;
   } catch (const CLI::ParseError& error) {
-    return fail(std::string(error.what()) + " (see sightline --help)");
+    return speaks(argc, argv) ? fail(std::string(error.what()) + " (see sightline --help)") : kOk;
   }
   const Result<ExitCode> result = chosen();
   return result ? *result : fail(result.error().message);

@@ -21,8 +21,12 @@ std::string remaining(double seconds) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string stage)
-    : stage_(std::move(stage)), terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+ProgressBar::ProgressBar(std::string stage, double begun)
+    : stage_(std::move(stage)),
+      begun_(begun),
+      terminal_(isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
+      last_(start_) {}
 
 ProgressBar::~ProgressBar() {
   if (shown_) {
@@ -31,7 +35,12 @@ ProgressBar::~ProgressBar() {
   }
 }
 
-void ProgressBar::update(double done) {
+void ProgressBar::say(const std::string& line) {
+  fmt::print(stderr, "{}sightline: {}\n", shown_ ? "\r\033[K" : "", line);
+  shown_ = false;
+}
+
+void ProgressBar::update(double done, const std::string& note) {
   if (!terminal_) {
     return;
   }
@@ -44,9 +53,11 @@ void ProgressBar::update(double done) {
   shown_ = true;
   done = std::clamp(done, 0.0, 1.0);
   const int filled = static_cast<int>(done * kWidth);
-  const std::string left = done > 0.0 ? remaining(elapsed * (1.0 - done) / done) + " left" : "";
+  std::string right =
+      done > begun_ ? remaining(elapsed * (1.0 - done) / (done - begun_)) + " left" : std::string();
+  right += note.empty() || right.empty() ? note : ", " + note;
   fmt::print(stderr, "\r\033[K{} [{:#<{}}{:.<{}}] {:3.0f} % {}", stage_, "", filled, "", kWidth - filled,
-             100.0 * done, left);
+             100.0 * done, right);
   std::fflush(stderr);
 }
 

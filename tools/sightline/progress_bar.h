@@ -9,18 +9,22 @@ namespace sightline::tool {
 // destroyed.
 class ProgressBar {
  public:
-  explicit ProgressBar(std::string stage);
+  // begun: the fraction that was done before, which says nothing about the remaining time.
+  explicit ProgressBar(std::string stage, double begun = 0.0);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // done: fraction in [0, 1]. Cheap: writes at most ten times a second.
-  void update(double done);
+  // done: fraction in [0, 1]. note: behind the bar. Cheap: writes at most ten times a second.
+  void update(double done, const std::string& note = "");
+  // A line on stderr that stays, whether or not this is a terminal.
+  void say(const std::string& line);
 
  private:
   using Clock = std::chrono::steady_clock;
 
   std::string stage_;
+  double begun_ = 0.0;
   bool terminal_ = false, shown_ = false;
   Clock::time_point start_, last_;
 };

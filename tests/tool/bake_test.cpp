@@ -1,0 +1,265 @@
+// `bake`: the same file however it is spread, and what it refuses.
+
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/io/import.h"
+#include "sightline/occluders/occluder_database.h"
+#include "sightline/occluders/viewpoint_database.h"
+#include "sightline/pvs/query/sight_file.h"
+#include "tests/tool/start_tool.h"
+#include "tools/sightline/checkpoint.h"
+
+namespace sightline::tool_test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kShip = "demo:ship?decks=3&rooms=4&machinery=0";
+// Two walls, one behind the other, far from zero.
+const std::string kWalls =
+    "v 500000 0 0\nv 500010 0 0\nv 500010 5 0\nv 500000 5 0\n"
+    "v 500002 1 -8\nv 500006 1 -8\nv 500006 3 -8\nf 1 2 3\nf 1 3 4\no behind\nf 5 6 7\n";
+
+std::vector<std::string> bakeArguments(const std::string& scene, const std::string& output,
+                                       const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"bake", scene, "-o", output, "--depth", "4"};
+  if (scene == kShip && std::find(more.begin(), more.end(), "--triangle-budget") == more.end()) {
+    arguments.insert(arguments.end(), {"--triangle-budget", "300"});  // so few that there are many parts
+  }
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+// The tool's own lines; mpirun adds some when a process fails.
+std::ptrdiff_t ownLines(const std::string& text) {
+  std::ptrdiff_t lines = 0;
+  for (std::size_t at = text.find("sightline: "); at != std::string::npos;
+       at = text.find("sightline: ", at + 1)) {
+    lines += at == 0 || text[at - 1] == '\n' ? 1 : 0;
+  }
+  return lines;
+}
+
+// 16 hexadecimal digits.
+std::uint64_t planOf(const json& report) {
+  return std::stoull(report["plan"].get<std::string>(), nullptr, 16);
+}
+
+TEST(Bake, GivesTheSameBytesWithAnyThreads) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("1.sight");
+  const Outcome one = runTool(bakeArguments(kShip, file, {"--threads", "1"}));
+  ASSERT_EQ(one.code, 0) << one.err;
+  EXPECT_EQ(folder.entries(), 1u) << "nothing is left but the file";
+  const Outcome two =
+      runTool(bakeArguments(kShip, folder.file("2.sight"), {"--threads", "2", "--sample-memory", "1"}));
+  ASSERT_EQ(two.code, 0) << two.err;
+  EXPECT_TRUE(contents(file) == contents(folder.file("2.sight")));
+}
+
+TEST(Bake, GivesTheSameBytesWithAnyProcesses) {
+  if (!haveMpirun()) {
+    GTEST_SKIP() << "no mpirun here";
+  }
+  const TemporaryFolder folder;
+  ASSERT_EQ(runTool(bakeArguments(kShip, folder.file("0.sight"))).code, 0);
+  const std::string expected = contents(folder.file("0.sight"));
+  for (int processes = 1; processes <= 3; ++processes) {
+    const std::string file = folder.file(std::to_string(processes) + ".sight");
+    const Outcome outcome =
+        Started(toolWords(processes, bakeArguments(kShip, file, {"--threads", "2", "--json", "-"}))).wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_TRUE(contents(file) == expected) << processes << " processes";
+    const json report = parse(outcome.out);
+    EXPECT_EQ(report["processes"], processes) << outcome.out;
+    EXPECT_GE(report["all_peak_bytes"], report["peak_bytes"]);
+  }
+  EXPECT_EQ(folder.entries(), 4u);
+}
+
+TEST(Bake, EndsAllProcessesWithOneLine) {
+  if (!haveMpirun()) {
+    GTEST_SKIP() << "no mpirun here";
+  }
+  const TemporaryFolder folder;
+  const std::string file = folder.file("F.sight");
+  for (const std::vector<std::string>& bad :
+       {bakeArguments(folder.file("missing.glb"), file), bakeArguments(kShip, folder.file("")),
+        bakeArguments(kShip, file, {"--databases", "bogus"}), bakeArguments(kShip, file, {"--bogus"})}) {
+    const Outcome outcome = Started(toolWords(3, bad)).wait();
+    EXPECT_EQ(outcome.code, 2) << ::testing::PrintToString(bad);
+    EXPECT_EQ(ownLines(outcome.err), 1) << outcome.err;
+    EXPECT_EQ(folder.entries(), 0u);
+  }
+}
+
+TEST(Bake, ReportsWhatItMade) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("F.sight"), report_file = folder.file("report.json");
+  const Outcome outcome =
+      runTool(bakeArguments(kShip, file, {"--json", report_file, "--triangle-budget", "77"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("budget        77 triangles"), std::string::npos) << outcome.out;
+  const json report = parse(contents(report_file));
+  const Result<SightFile> sight = SightFile::open(file);
+  ASSERT_TRUE(sight) << sight.error().message;
+  EXPECT_TRUE(sight->verifyAll());
+  EXPECT_EQ(report["bytes"], std::filesystem::file_size(file));
+  EXPECT_EQ(report["cells"], sight->octree().leaves.size());
+  EXPECT_EQ(report["different_sets"], sight->setCount());
+  EXPECT_EQ(report["settings"]["triangle_budget"], 77);
+  EXPECT_EQ(report["databases"], json::array());
+  EXPECT_EQ(sight->record().triangle_budget, 77u);
+  EXPECT_EQ(sight->record().max_depth, 4u);
+  EXPECT_EQ(report["parts_before"], 0);
+  EXPECT_GT(report["parts"], 1);
+  std::uint64_t reasons = 0;
+  for (const auto& [reason, count] : report["stop_reasons"].items()) {
+    reasons += count.get<std::uint64_t>();
+  }
+  EXPECT_EQ(reasons, sight->octree().leaves.size());
+}
+
+TEST(Bake, StoresTheDatabasesThatAreAskedForAsTheLibraryBuildsThem) {
+  const TemporaryFolder folder;
+  const std::string scene_file = folder.write("walls.obj", kWalls), file = folder.file("F.sight");
+  const Outcome outcome = runTool(bakeArguments(
+      scene_file, file, {"--databases", "first-hit,detail,area-angle,detail", "--threads", "2"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Result<SightFile> sight = SightFile::open(file);
+  ASSERT_TRUE(sight) << sight.error().message;
+  EXPECT_EQ(sight->databaseNames(), (std::vector<std::string>{"area-angle", "detail", "first-hit"}));
+  const Result<Scene> scene = importScene(scene_file);
+  ASSERT_TRUE(scene);
+  // The occluders that `cull` finds, not the many that the bake considers.
+  const OccluderSet set = findOccluders(scene->view());
+  const std::vector<Box> bounds{scene->objects[0].bounds, scene->objects[1].bounds};
+  const std::vector<std::uint32_t> triangles{2, 1};
+  HierarchySettings kd;
+  kd.kind = HierarchyKind::kKdTree;
+  const Hierarchy cells = buildHierarchy(bounds, triangles, kd);
+  for (const std::string name : {"area-angle", "detail"}) {
+    const Result<DatabaseBlob> blob = sight->readDatabase(name);
+    ASSERT_TRUE(blob) << blob.error().message;
+    EXPECT_EQ(blob->occluders, occluderSetHash(set));
+    OccluderDatabaseSettings settings;
+    settings.turned_away = name == "detail";
+    EXPECT_TRUE(blob->bytes == OccluderDatabase::build(cells, set, settings).save()) << name;
+  }
+  const Result<DatabaseBlob> blob = sight->readDatabase("first-hit");
+  ASSERT_TRUE(blob) << blob.error().message;
+  const auto count = static_cast<std::uint32_t>(set.occluders.size());
+  EXPECT_TRUE(ViewpointDatabase::load(blob->bytes, count));
+}
+
+TEST(Bake, ChoosesABudgetAndSaysIt) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls);
+  const Outcome outcome = runTool(bakeArguments(scene, folder.file("F.sight")));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1000 triangles a cell (chosen"), std::string::npos) << outcome.out;
+}
+
+TEST(Bake, TakesAndAnswersPointsInWorldSpace) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls), file = folder.file("F.sight");
+  ASSERT_EQ(runTool(bakeArguments(scene, file, {"--region", "500000,0,-4,500010,5,4"})).code, 0);
+  const json info = parse(runTool({"info", file, "--json", "-"}).out);
+  // The octree may be larger than the region, to be a cube.
+  EXPECT_LE(info["min"][0].get<double>(), 500000.0);
+  EXPECT_GE(info["min"][0].get<double>(), 499990.0);
+  EXPECT_GE(info["max"][0].get<double>(), 500010.0);
+  EXPECT_LE(info["max"][0].get<double>(), 500020.0);
+  EXPECT_GE(info["max"][2].get<double>(), 4.0);
+  const json inside = parse(runTool({"query", file, "--points", "500005,2,3.9", "--json", "-"}).out);
+  EXPECT_TRUE(inside["points"][0]["cell"].is_number());
+  const json outside = parse(runTool({"query", file, "--points", "500005,2,30", "--json", "-"}).out);
+  EXPECT_TRUE(outside["points"][0]["cell"].is_null());
+  EXPECT_EQ(outside["points"][0]["visible"], json::array({0, 1}));
+}
+
+TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("F.sight"), parts = file + ".parts";
+  const Outcome first = runTool(bakeArguments(kShip, file, {"--json", "-", "--resume"}));
+  ASSERT_EQ(first.code, 0) << first.err;
+  const std::string expected = contents(file);
+  const json report = parse(first.out);
+  const auto leave = [&](std::uint64_t plan) {
+    Result<tool::Checkpoint> left = tool::Checkpoint::open(parts, tool::CheckpointUse::kRestart);
+    ASSERT_TRUE(left);
+    ASSERT_TRUE(left->begin(plan, report["parts"].get<std::uint32_t>()));
+  };
+  leave(planOf(report));
+  const std::string left = contents(parts);
+  expectRefused(bakeArguments(kShip, file), "--resume");
+  expectRefused(bakeArguments(kShip, file, {"--resume", "--near-distance", "0.3"}), "--restart");
+  expectRefused(bakeArguments(kShip, file, {"--resume", "--triangle-budget", "99"}), "--restart");
+  expectRefused(bakeArguments("demo:ship?decks=3&rooms=5&machinery=0", file, {"--resume"}), "--restart");
+  EXPECT_EQ(contents(parts), left) << "a refused bake leaves the checkpoint as it is";
+  EXPECT_TRUE(contents(file) == expected) << "and the old file";
+  EXPECT_EQ(runTool(bakeArguments(kShip, file, {"--resume", "--threads", "2"})).code, 0);
+  EXPECT_FALSE(std::filesystem::exists(parts));
+  leave(planOf(report) + 1);
+  EXPECT_EQ(runTool(bakeArguments(kShip, file, {"--restart"})).code, 0);
+  EXPECT_TRUE(contents(file) == expected);
+  EXPECT_EQ(folder.entries(), 1u);
+  folder.write("F.sight.parts", "not a checkpoint");
+  expectRefused(bakeArguments(kShip, file, {"--resume"}), "F.sight.parts");
+}
+
+TEST(Bake, RefusesOutputsThatCannotBe) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls);
+  expectRefused(bakeArguments(scene, folder.file("")), folder.file(""));
+  expectRefused(bakeArguments(scene, folder.file("no/such.sight")), "such.sight");
+  expectRefused(bakeArguments(scene, "/dev/null"), "/dev/null");
+  expectRefused(bakeArguments(scene, "-"), "--output");
+  expectRefused(bakeArguments(scene, ""), "--output");
+  expectRefused(bakeArguments(scene, scene), "the scene itself");
+  expectRefused(bakeArguments(scene, folder.file("F.sight"), {"--json", folder.file("no/such.json")}),
+                "such.json");
+  std::filesystem::create_directory(folder.file("G.sight.parts"));
+  expectRefused(bakeArguments(scene, folder.file("G.sight")), "G.sight.parts");
+  EXPECT_EQ(contents(scene), kWalls);
+  EXPECT_EQ(folder.entries(), 2u);
+  expectRefused({"bake", scene}, "--output");
+  expectRefused({"bake"}, "SCENE");
+}
+
+TEST(Bake, RefusesValuesOutOfRange) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> bad = {
+      {"--triangle-budget", {"0", "-1", "x", "1e3", "99999999999999999999", ""}},
+      {"--depth", {"21", "-1", "x", ""}},
+      {"--near-distance", {"-1", "nan", "inf", "1e999", "x", ""}},
+      {"--search-distance", {"-1", "nan"}},
+      {"--occluder-size", {"-1", "nan"}},
+      {"--similarity", {"-0.1", "1.5", "nan"}},
+      {"--least-gain", {"-0.1", "1.5", "nan"}},
+      {"--merge-tolerance", {"-0.1", "nan"}},
+      {"--sample-memory", {"0", "-1", "x"}},
+      {"--region",
+       {"1,2,3", "0,0,0,0,1,1", "1,1,1,0,0,0", "a,b,c,d,e,f", "0,0,0,1,1,nan", "0,0,0,1,1,inf", ",,,,,"}},
+      {"--databases", {"bogus", "area-angle,,detail", ","}},
+      {"--threads", {"0", "-1"}},
+  };
+  for (const auto& [option, values] : bad) {
+    for (const std::string& value : values) {
+      expectRefused(bakeArguments(scene, folder.file("F.sight"), {option, value}), option);
+    }
+  }
+  expectRefused(bakeArguments(scene, folder.file("F.sight"), {"--resume", "--restart"}), "--restart");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(Bake, HelpSaysHowToGoOnAndHowToSpread) {
+  const Outcome help = runTool({"bake", "--help"});
+  EXPECT_EQ(help.code, 0);
+  for (const std::string word : {"--resume", "--restart", "mpirun", "sightline bake ", "projected-size"}) {
+    EXPECT_NE(help.out.find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace
+}  // namespace sightline::tool_test

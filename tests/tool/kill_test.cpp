@@ -1,0 +1,144 @@
+// A bake that is killed at any moment leaves no broken file, and goes on to the same bytes.
+
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "tests/tool/start_tool.h"
+
+namespace sightline::tool_test {
+namespace {
+
+constexpr std::uint32_t kSeed = 20261;
+constexpr int kKills = 4;  // of each kind
+
+void nap() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+std::uintmax_t sizeOf(const std::string& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  return error ? 0 : size;
+}
+
+class KilledBake : public ::testing::Test {
+ protected:
+  std::vector<std::string> arguments(const std::string& output, const std::string& threads) const {
+    return {"bake",
+            "demo:ship?decks=3&rooms=4&machinery=0",
+            "-o",
+            output,
+            "--depth",
+            "5",
+            "--triangle-budget",
+            "300",
+            "--threads",
+            threads,
+            "--resume"};
+  }
+
+  void SetUp() override {
+    const std::string file = folder_.file("reference.sight");
+    Started bake(toolWords(0, arguments(file, "1")));
+    while (bake.running()) {
+      most_ = std::max(most_, sizeOf(file + ".parts"));
+      nap();
+    }
+    const Outcome outcome = bake.wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    reference_ = contents(file);
+    ASSERT_FALSE(reference_.empty());
+  }
+
+  // When the checkpoint has a random part of its final size, or a random time after.
+  void waitForSomeMoment(Started& bake, const std::string& file) {
+    const std::uintmax_t size = std::uniform_int_distribution<std::uintmax_t>(0, most_)(random_);
+    const auto after = std::chrono::microseconds(std::uniform_int_distribution<int>(0, 20000)(random_));
+    while (bake.running() && sizeOf(file + ".parts") < size && sizeOf(file) == 0) {
+      nap();
+    }
+    std::this_thread::sleep_for(after);
+  }
+
+  void expectAbsentOrWhole(const std::string& file) {
+    if (std::filesystem::exists(file)) {
+      EXPECT_EQ(contents(file), reference_) << "seed " << kSeed;
+    }
+  }
+
+  void expectResumes(const std::string& file, int processes) {
+    const Outcome outcome = Started(toolWords(processes, arguments(file, "2"))).wait();
+    EXPECT_EQ(outcome.code, 0) << outcome.err << " seed " << kSeed;
+    EXPECT_TRUE(contents(file) == reference_) << "seed " << kSeed;
+    EXPECT_FALSE(std::filesystem::exists(file + ".parts"));
+  }
+
+  TemporaryFolder folder_;
+  std::mt19937 random_{kSeed};
+  std::string reference_;
+  std::uintmax_t most_ = 0;  // bytes of a checkpoint, about
+};
+
+TEST_F(KilledBake, GoesOnToTheSameBytesAfterEachKillOfItsOnlyProcess) {
+  for (int i = 0; i < kKills; ++i) {
+    const std::string file = folder_.file("once" + std::to_string(i));
+    Started bake(toolWords(0, arguments(file, "2")));
+    waitForSomeMoment(bake, file);
+    bake.kill(SIGKILL);
+    bake.wait();
+    expectAbsentOrWhole(file);
+    expectResumes(file, 0);
+  }
+}
+
+TEST_F(KilledBake, GoesOnAfterManyKillsOneAfterTheOther) {
+  const std::string file = folder_.file("often");
+  for (int i = 0; i < kKills; ++i) {
+    Started bake(toolWords(0, arguments(file, i % 2 == 0 ? "1" : "2")));
+    waitForSomeMoment(bake, file);
+    bake.kill(SIGKILL);
+    bake.wait();
+    expectAbsentOrWhole(file);
+  }
+  expectResumes(file, 0);
+}
+
+TEST_F(KilledBake, GoesOnAfterOneOfTwoProcessesIsKilled) {
+  if (!haveMpirun()) {
+    GTEST_SKIP() << "no mpirun here";
+  }
+  for (int i = 0; i < kKills; ++i) {
+    const std::string file = folder_.file("mpi" + std::to_string(i));
+    Started bake(toolWords(2, arguments(file, "1")));
+    waitForSomeMoment(bake, file);
+    if (const std::vector<pid_t> processes = bake.children(); !processes.empty()) {
+      ::kill(processes[random_() % processes.size()], SIGKILL);
+    }
+    bake.wait();
+    expectAbsentOrWhole(file);
+    expectResumes(file, i % 2 == 0 ? 0 : 2);
+  }
+}
+
+TEST_F(KilledBake, SaysHowToGoOnWhenToldToEnd) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const std::string file = folder_.file("told" + std::to_string(signal));
+    Started bake(toolWords(0, arguments(file, "2")));
+    while (bake.running() && sizeOf(file + ".parts") <= most_ / 4 && sizeOf(file) == 0) {
+      nap();
+    }
+    bake.kill(signal);
+    const Outcome outcome = bake.wait();
+    if (outcome.code != 0 && outcome.code != -1) {  // neither ready already nor about to write
+      EXPECT_EQ(outcome.code, 128 + signal);
+      EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
+      EXPECT_EQ(outcome.out, "");
+    }
+    expectAbsentOrWhole(file);
+    expectResumes(file, 0);
+  }
+}
+
+}  // namespace
+}  // namespace sightline::tool_test
