@@ -178,14 +178,17 @@ Result<SightFacts> factsOf(const SightFile& file) {
     }
     const OctreeLeaf& leaf = octree.leaves[index];
     const bool divided = leaf.plane != OctreeLeaf::kNoPlane;
+    std::vector<std::uint32_t> sides{leaf.set};
+    if (divided) {
+      sides = {leaf.front_set, leaf.back_set};
+      // From a side with an empty set nobody looks.
+      std::erase_if(sides, [&](std::uint32_t set) { return (*sets)[set].objects == 0.0; });
+    }
     double triangles = 0.0;
-    for (const std::uint32_t set : {divided ? leaf.front_set : leaf.set, leaf.back_set}) {
+    for (const std::uint32_t set : sides) {
       levels[cell.level].add((*sets)[set]);
       all.add((*sets)[set]);
-      triangles += (*sets)[set].triangles / (divided ? 2.0 : 1.0);
-      if (!divided) {
-        break;
-      }
+      triangles += (*sets)[set].triangles / static_cast<double>(sides.size());
     }
     const double part = std::ldexp(1.0, -3 * static_cast<int>(cell.level));
     facts.mean_triangles_by_volume += triangles * part;
