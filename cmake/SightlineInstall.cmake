@@ -1,5 +1,5 @@
-# cmake --install: sightline::runtime, its headers, and the package that find_package(sightline) reads.
-# The other libraries serve the tool and are not installed.
+# cmake --install: sightline::runtime and, where it is built, sightline::pvs, their headers, and the package that
+# find_package(sightline) reads. The other libraries serve the tool and are not installed.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -12,6 +12,16 @@ foreach(room base math geometry scene hierarchy occluders occlusion culling)
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT runtime FILES_MATCHING PATTERN "*.h")
 endforeach()
 install(EXPORT sightlineTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT runtime)
+
+if(TARGET sightline_pvs)
+  install(TARGETS sightline_pvs EXPORT sightlinePvsTargets COMPONENT pvs
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT pvs)
+  foreach(room pvs/format pvs/query)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline/${room}
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline/pvs COMPONENT pvs FILES_MATCHING PATTERN "*.h")
+  endforeach()
+  install(EXPORT sightlinePvsTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT pvs)
+endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightlineConfig.cmake.in
   ${PROJECT_BINARY_DIR}/sightlineConfig.cmake INSTALL_DESTINATION ${package_dir})

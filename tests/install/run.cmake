@@ -1,4 +1,4 @@
-# Installs the runtime under a fresh prefix, builds the consumer against it, runs it.
+# Installs the runtime and the look-up under a fresh prefix, builds the consumer against them, runs it.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -12,20 +12,29 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component runtime)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component pvs)
 
 # The package alone is looked at: neither a package registry nor the build folder may help.
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${WORK}/consumer -G ${GENERATOR}
   -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${FLAGS}
   -D CMAKE_PREFIX_PATH=${WORK}/prefix -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
-  -D EXAMPLE=${SOURCE}/examples/cull_a_frame.cpp)
+  -D EXAMPLES=${SOURCE}/examples)
 run(${CMAKE_COMMAND} --build ${WORK}/consumer)
 run(${WORK}/consumer/consumer)
 if(NOT output STREQUAL "visible: 0\nvisible: 5\n")
   message(FATAL_ERROR "the consumer printed:\n${output}")
 endif()
 
+if(TOOL)
+  run(${TOOL} bake demo:building?floors=1 -o ${WORK}/building.sight --depth 2)
+  run(${WORK}/consumer/look_up ${WORK}/building.sight 5 1.7 -5)
+  if(NOT output MATCHES "^[0-9]+ of [0-9]+ objects may be seen from there\n[0-9]+ of them in this view\n$")
+    message(FATAL_ERROR "the look-up printed:\n${output}")
+  endif()
+endif()
+
 # The tool's own libraries stay at home.
-foreach(room io render)
+foreach(room io render pvs/bake)
   if(EXISTS ${WORK}/prefix/include/sightline/${room})
     message(FATAL_ERROR "headers of ${room} were installed with the runtime")
   endif()
