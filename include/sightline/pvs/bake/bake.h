@@ -49,9 +49,9 @@ struct PartSummary {
 };
 
 struct BakeStats {
-  std::uint64_t samples = 0;     // viewpoints from which something was computed
-  std::uint64_t shadows = 0;     // occluders seen from a viewpoint
-  std::uint64_t forgotten = 0;   // samples, for want of memory
+  std::uint64_t samples = 0;    // viewpoints from which something was computed
+  std::uint64_t shadows = 0;    // occluders seen from a viewpoint
+  std::uint64_t forgotten = 0;  // samples, for want of memory
   std::size_t most_sample_bytes = 0;
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };
