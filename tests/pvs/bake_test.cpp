@@ -200,6 +200,16 @@ TEST(Bake, MergesSiblingsWithLikeSets) {
   judge.judge(1, 3, 0.25, 6);
 }
 
+TEST(Bake, OfASmallRegionLooksAsFarAsOfALargeOne) {
+  const Scene scene = sceneOf({block({-20, -20, 10}, {20, 20, 10.5f}), block({0, 0, 20}, {1, 1, 21})});
+  for (const float size : {8.0f, 0.5f, 0.0f}) {
+    const BakedVisibility result = baked(
+        scene,
+        {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {size, size, size}}, .least_gain = 0.0});
+    EXPECT_FALSE(membersOf(result, result.octree.leaves[0].set)[1]) << size;
+  }
+}
+
 TEST(Bake, CellsThatNoViewerIsInHoldEverything) {
   const Scene scene = randomScene(2);
   const BakedVisibility result = baked(scene, {.max_depth = 3, .region = {{0, 0, 0}, {32, 2, 4}}});

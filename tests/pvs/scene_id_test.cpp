@@ -42,6 +42,7 @@ TEST(SceneId, ChangesWithWhateverDecidesWhatIsVisible) {
       {"glass that became opaque", [](Scene& s) { s.materials[1].opacity = Opacity::kOpaque; }},
       {"double-sidedness", [](Scene& s) { s.materials[0].double_sided = true; }},
       {"an object's material", [](Scene& s) { s.objects[1].material = MaterialId(0u); }},
+      {"a box", [](Scene& s) { s.objects[0].bounds.max.x += 1.0f; }},
       {"a mark", [](Scene& s) { s.objects[0].mark = OccluderMark::kNever; }}};
   const SceneId before = sceneId(smallScene().view());
   for (const auto& [what, change] : changes) {
@@ -105,6 +106,23 @@ TEST(OccluderSetHash, ChangesWithWhateverAnOccluderIs) {
   EXPECT_NE(hashOf({polygon(moved), polygon(triangle)}), before);
   EXPECT_NE(hashOf({polygon(square, 1), polygon(triangle)}), before);
   EXPECT_NE(hashOf({polygon(square), polygon(triangle, 0, true)}), before);
+}
+
+TEST(OccluderSetHash, ChangesWithSlackPlanesAndBodies) {
+  const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 1});
+  const OccluderSet before = findOccluders(scene.view());
+  ASSERT_FALSE(before.bodies.empty());
+  const std::vector<std::function<void(OccluderSet&)>> changes{
+      [](OccluderSet& s) { s.occluders[3].slack += 0.01f; },
+      [](OccluderSet& s) { s.occluders[3].plane.offset += 0.01; },
+      [](OccluderSet& s) { s.bodies[0].slack += 0.01f; },
+      [](OccluderSet& s) { s.body_vertices[0].x += 0.01f; },
+      [](OccluderSet& s) { s.body_of[0] = s.body_of[0] == OccluderSet::kNoBody ? 0 : OccluderSet::kNoBody; }};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    OccluderSet set = before;
+    changes[i](set);
+    EXPECT_NE(occluderSetHash(set), occluderSetHash(before)) << i;
+  }
 }
 
 TEST(OccluderSetHash, ChangesWithTheirOrder) {

@@ -14,7 +14,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr double kMostMetres = 1e6;
+constexpr double kMostMetres = 1e6, kLeastNear = 1e-6;
 constexpr std::uint32_t kMostMib = 1u << 20;
 constexpr std::uint64_t kLeastBudget = 1000, kBudgetShare = 50;
 
@@ -85,7 +85,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("--depth", settings.max_depth, "of the octree: a cell is halved so often at most")
       ->check(CLI::Range(0u, kMaxOctreeDepth))
       ->capture_default_str();
-  addDecimal(command, "--near-distance", settings.near_distance, 0.0, kMostMetres,
+  addDecimal(command, "--near-distance", settings.near_distance, kLeastNear, kMostMetres,
              "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
              "tan(fovy / 2)^2 * (1 + aspect^2))");
   command.add_option("--region", options.region,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <array>
 
 #include <algorithm>
 #include <chrono>
@@ -38,22 +39,28 @@ extern "C" void noteSignal(int signal) {
   told_to_end = signal;
 }
 
-// While it lives, SIGINT and SIGTERM are noted.
+// While it lives, SIGINT and SIGTERM are noted, but for what the process was started to ignore.
 class SignalGuard {
  public:
   SignalGuard() {
     struct sigaction action {};
     action.sa_handler = noteSignal;
-    sigaction(SIGINT, &action, &old_[0]);
-    sigaction(SIGTERM, &action, &old_[1]);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      sigaction(kSignals[i], nullptr, &old_[i]);
+      if (old_[i].sa_handler != SIG_IGN) {
+        sigaction(kSignals[i], &action, nullptr);
+      }
+    }
   }
   ~SignalGuard() {
-    sigaction(SIGINT, &old_[0], nullptr);
-    sigaction(SIGTERM, &old_[1], nullptr);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      sigaction(kSignals[i], &old_[i], nullptr);
+    }
   }
 
  private:
-  struct sigaction old_[2];
+  static constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
+  std::array<struct sigaction, 2> old_;
 };
 
 void add(BakeStats& sum, const BakeStats& stats) {

@@ -74,7 +74,8 @@ Result<Checkpoint> Checkpoint::open(const std::string& file, CheckpointUse use) 
     ::close(std::exchange(checkpoint.descriptor_, -1));  // it is the other's, also where it is empty
     return Error{fmt::format("{}: another bake to the same file is running; wait for it or end it", file)};
   }
-  if (use == CheckpointUse::kNew && facts.st_size > 0) {
+  // A header alone was left by a bake that had finished nothing yet.
+  if (use == CheckpointUse::kNew && facts.st_size > static_cast<off_t>(sizeof(Header))) {
     return Error{fmt::format(
         "{}: an unfinished bake left its parts here; go on with --resume, or begin anew with --restart",
         file)};

@@ -102,6 +102,7 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
     }
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
   }
+  data.noteUnknownSets();
   Json head = {
       {"scene", sceneJson(scene)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
   addDatabases(head, data, !options.no_times);

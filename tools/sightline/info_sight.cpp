@@ -119,7 +119,7 @@ void print(const std::string& name, const SightFile& file, const SightFacts& fac
   fmt::print("              to   {:.3f} {:.3f} {:.3f}\n", max.x, max.y, max.z);
   fmt::print("              for viewers whose near plane clips nothing beyond {} m of the eye\n",
              record.near_distance);
-  fmt::print("settings      {}\n", record.settings);
+  fmt::print("settings      {}\n", dump(recordedSettings(record)));
   fmt::print("{}", factsText(facts));
   fmt::print("sets          {} different ones, of a tree of {} boxes\n", file.setCount(),
              file.boxes().nodes.size());

@@ -256,6 +256,25 @@ Culler CullingData::makeCuller(const Setting& setting) {
   return culler;
 }
 
+void CullingData::noteUnknownSets() const {
+  SetQueryStats sum;
+  for (const std::unique_ptr<SetQuery>& query : queries_) {
+    const SetQueryStats& stats = query->stats();
+    sum.finds += stats.finds;
+    sum.outside += stats.outside;
+    sum.beyond_near += stats.beyond_near;
+    sum.broken += stats.broken;
+  }
+  if (sum.outside + sum.beyond_near + sum.broken > 0) {
+    fmt::print(
+        stderr,
+        "sightline: {} of {} look-ups in the baked file gave everything: {} outside its cells, {} with a "
+        "near plane that clips beyond its {} m, {} broken\n",
+        sum.outside + sum.beyond_near + sum.broken, sum.finds, sum.outside, sum.beyond_near,
+        baked_->record().near_distance, sum.broken);
+  }
+}
+
 std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
   std::uint64_t sum = 0;
   for (const ObjectId object : objects) {

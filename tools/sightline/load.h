@@ -58,6 +58,8 @@ class CullingData {
 
   // Says on stderr where a database of the baked file is of no use.
   Culler makeCuller(const Setting& setting);
+  // Says on stderr how many look-ups in the baked file found nothing better than everything, and why.
+  void noteUnknownSets() const;
   const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
   // The occluder databases of the first setting that uses them; null until a culler needed them.
   template <typename Database>

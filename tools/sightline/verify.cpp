@@ -267,6 +267,7 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
   if (options.common.textOnStdout()) {
     print(runs, verifier, scene);
   }
+  data.noteUnknownSets();
   const bool clean =
       std::all_of(runs.begin(), runs.end(), [](const auto& run) { return run.false_culls.empty(); });
   return clean ? kOk : kCheckFailed;

@@ -75,9 +75,9 @@ std::optional<CellBox> regionOf(const SceneView& scene, const BakeSettings& sett
   return CellBox{Vec3d(bounds.min), Vec3d(bounds.max)};
 }
 
-// An eighth of the diagonal: a few rooms, a few streets.
-double firstSearchDistance(const BakeSettings& settings, const CellBox& region) {
-  return settings.search_distance > 0.0 ? settings.search_distance : 0.125 * length(region.extent());
+// An eighth of all there is: a few rooms, a few streets.
+double firstSearchDistance(const BakeScene& scene) {
+  return scene.settings.search_distance > 0.0 ? scene.settings.search_distance : 0.125 * scene.reach;
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,
@@ -128,7 +128,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   const auto data = std::make_shared<Data>(scene, occluders, settings, *region);
   data->hash = hashOf(data->scene_id, occluders, settings, *region);
   CellBaker baker(data->scene);
-  data->top = bakeTop(baker, data->scene, {{}, firstSearchDistance(settings, *region)}, data->parts);
+  data->top = bakeTop(baker, data->scene, {{}, firstSearchDistance(data->scene)}, data->parts);
   Bake bake;
   bake.data_ = data;
   return bake;

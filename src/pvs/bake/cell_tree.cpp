@@ -42,7 +42,7 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
       baker.lookFarther(task.cell, distance, 2.0 * distance, sets);
       distance *= 2.0;
       const double less = static_cast<double>(triangles) - static_cast<double>(trianglesOf(scene, sets));
-      gained = less >= settings.least_gain * static_cast<double>(triangles);
+      gained = less > 0.0 && less >= settings.least_gain * static_cast<double>(triangles);
     }
     if (!gained) {
       return {

@@ -24,13 +24,13 @@ std::size_t Sample::slotOf(std::uint32_t occluder) const {
   return slot;
 }
 
-const ObjectRun* Sample::find(std::uint32_t occluder, std::uint32_t& count) const {
+std::optional<std::span<const ObjectRun>> Sample::find(std::uint32_t occluder) const {
   if (slots_.empty()) {
-    return nullptr;
+    return std::nullopt;
   }
   const Slot& slot = slots_[slotOf(occluder)];
-  count = slot.count;
-  return slot.occluder == occluder ? runs_.data() + slot.first : nullptr;
+  return slot.occluder == occluder ? std::optional(std::span(runs_).subspan(slot.first, slot.count))
+                                   : std::nullopt;
 }
 
 void Sample::add(std::uint32_t occluder, std::span<const ObjectRun> runs) {
@@ -74,9 +74,8 @@ Sample& SampleStore::at(const Vec3d& eye) {
 }
 
 std::span<const ObjectRun> SampleStore::hidden(Sample& sample, std::uint32_t occluder) {
-  std::uint32_t count = 0;
-  if (const ObjectRun* known = sample.find(occluder, count)) {
-    return {known, count};
+  if (const auto known = sample.find(occluder)) {
+    return *known;
   }
   scratch_.clear();
   if (makeShadow(occluders_, occluders_[occluder], sample.eye(), reach_, shadow_)) {
@@ -87,8 +86,7 @@ std::span<const ObjectRun> SampleStore::hidden(Sample& sample, std::uint32_t occ
   sample.add(occluder, scratch_);
   bytes_ += sample.bytes() - before;
   stats_.most_sample_bytes = std::max(stats_.most_sample_bytes, bytes_);
-  const ObjectRun* added = sample.find(occluder, count);
-  return {added, count};
+  return *sample.find(occluder);
 }
 
 void SampleStore::forgetOldest() {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <list>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -22,8 +23,8 @@ class Sample {
   explicit Sample(const Vec3d& eye) : eye_(eye) {}
 
   const Vec3d& eye() const { return eye_; }
-  // Null: not computed yet. Valid until the next add().
-  const ObjectRun* find(std::uint32_t occluder, std::uint32_t& count) const;
+  // Nothing: not computed yet. Valid until the next add().
+  std::optional<std::span<const ObjectRun>> find(std::uint32_t occluder) const;
   void add(std::uint32_t occluder, std::span<const ObjectRun> runs);
   std::size_t bytes() const {
     return sizeof(Sample) + slots_.capacity() * sizeof(Slot) + runs_.capacity() * sizeof(ObjectRun);

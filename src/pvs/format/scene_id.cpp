@@ -17,6 +17,7 @@ SceneId sceneId(const SceneView& scene) {
     hash.addValue(std::array<std::uint32_t, 5>{
         object.first_index, object.index_count, static_cast<std::uint32_t>(material.opacity),
         material.double_sided ? 1u : 0u, static_cast<std::uint32_t>(object.mark)});
+    hash.add(std::as_bytes(std::span(&object.bounds, 1)));
   }
   return {hash.value(), scene.objects.size(), scene.indices.size() / 3};
 }
@@ -27,6 +28,14 @@ std::uint64_t occluderSetHash(const OccluderSet& set) {
     hash.addValue(std::array<std::uint32_t, 3>{occluder.vertex_count, occluder.double_sided ? 1u : 0u,
                                                occluder.object.value});
     hash.add(std::as_bytes(set.verticesOf(occluder)));
+    hash.add(std::as_bytes(std::span(&occluder.slack, 1)));
+    hash.add(std::as_bytes(std::span(&occluder.plane, 1)));
+  }
+  hash.add(std::as_bytes(std::span(set.body_of)));
+  for (const OccluderBody& body : set.bodies) {
+    hash.add(std::as_bytes(set.verticesOf(body)));
+    hash.add(std::as_bytes(set.edgesOf(body)));
+    hash.add(std::as_bytes(std::span(&body.slack, 1)));
   }
   return hash.value();
 }

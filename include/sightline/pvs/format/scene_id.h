@@ -16,8 +16,8 @@ struct SceneId {
   friend bool operator==(const SceneId&, const SceneId&) = default;
 };
 
-// Of positions, triangles, objects, and of materials and marks as far as they decide what occludes. Not of
-// names, colours or where the origin lies.
+// Of positions, triangles, objects with their boxes, and of materials and marks as far as they decide what
+// occludes. Not of names, colours or where the origin lies.
 SceneId sceneId(const SceneView& scene);
 
 // Of all that its OccluderIds mean: databases of occluders hold for equal sets alone.
