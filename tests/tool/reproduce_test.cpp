@@ -1,5 +1,9 @@
 // The experiments of the papers, on scenes that take a moment.
 
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -98,6 +102,135 @@ TEST(Reproduce, APathThatStandsStillHasNoSpeeds) {
   const json result = parse(outcome.out);
   EXPECT_TRUE(result["experiments"]["visibility_time"]["rows"].empty());
   EXPECT_NE(result["notes"].dump().find("too short"), std::string::npos);
+}
+
+constexpr const char* kShip = "demo:ship?decks=3&rooms=4&machinery=8";
+
+std::vector<std::string> tinyShip(std::vector<std::string> more) {
+  std::vector<std::string> arguments{"reproduce", "saona-vazquez", "--scene", kShip, "--depth",  "4",
+                                     "--frames",  "0:200:50",      "--width", "160", "--height", "90"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+json reproducedShip(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = tinyShip(more);
+  arguments.insert(arguments.end(), {"--json", "-"});
+  const Outcome outcome = runTool(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  return parse(outcome.out);
+}
+
+TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
+  const json result = reproducedShip();
+  const std::vector<std::string> spread{"mean", "deviation", "min", "max"};
+  const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
+      {"leaves", spread},
+      {"levels", spread},
+      {"histograms", {"level", "to_10", "to_100"}},
+      {"uniform_grid", {"leaves", "with_viewers", "voxels_in_box", "voxels_in_root", "percent"}},
+      {"polygons_sent", {"navigation", "culling", "mean", "deviation", "percent_of_frustum"}},
+      {"frame_rate", {}},  // none without OpenGL
+      {"look_up", {"frustum_us", "octree_us", "look_up_us", "first_find_us", "find_ns"}},
+      {"bake", {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file"}}};
+  EXPECT_EQ(result["experiments"].size(), tables.size());
+  for (const auto& [name, keys] : tables) {
+    const json& table = result["experiments"][name];
+    EXPECT_TRUE(table["title"].is_string() && table["claim"].is_string()) << name;
+    EXPECT_TRUE(keys.empty() || !table["rows"].empty()) << name;
+    for (const json& row : table["rows"]) {
+      for (const std::string& key : keys) {
+        EXPECT_TRUE(row.contains(key)) << name << " has no " << key;
+      }
+    }
+  }
+}
+
+TEST(Reproduce, TheOctreeIsTheOneThatBakeMakes) {
+  const json result = reproducedShip({"--triangle-budget", "3000"});
+  // The near plane's corner: 0.1 m, 60 degrees, 16 : 9.
+  const double near_distance = 0.1 * std::sqrt(1.0 + (1.0 + 256.0 / 81.0) / 3.0);
+  const TemporaryFolder folder;
+  const Outcome bake =
+      runTool({"bake", kShip, "-o", folder.file("F.sight"), "--depth", "4", "--triangle-budget", "3000",
+               "--near-distance", std::to_string(near_distance + 1e-6), "--json", "-"});
+  ASSERT_EQ(bake.code, 0) << bake.err;
+  const json baked = parse(bake.out);
+  const json& tables = result["experiments"];
+  const json& grid = tables["uniform_grid"]["rows"][0];
+  EXPECT_EQ(grid["leaves"], baked["cells"]);
+  EXPECT_EQ(grid["with_viewers"], baked["cells"].get<int>() - baked["stop_reasons"]["outside"].get<int>());
+  EXPECT_EQ(grid["voxels_in_root"], baked["grid_cells"]);
+  EXPECT_EQ(grid["different_sets"], baked["different_sets"]);
+  std::map<std::string, int> reasons;
+  int leaves = 0;
+  for (const json& row : tables["levels"]["rows"]) {
+    const json& level = baked["levels"][row["level"].get<std::size_t>()]["sets"]["triangles"];
+    for (const char* key : {"mean", "deviation", "min", "max"}) {
+      EXPECT_DOUBLE_EQ(row[key], level[key]) << row;
+    }
+    for (const char* key : {"budget_met", "nothing_gained", "max_depth", "merged"}) {
+      reasons[key] += row[key].get<int>();
+    }
+    leaves += row["leaves"].get<int>();
+  }
+  EXPECT_EQ(leaves, grid["with_viewers"]);
+  for (const auto& [key, count] : reasons) {
+    EXPECT_EQ(count, baked["stop_reasons"][key]) << key;
+  }
+}
+
+TEST(Reproduce, TheOctreeSendsFewerPolygonsOnEveryNavigation) {
+  const json result = reproducedShip();
+  const json& rows = result["experiments"]["polygons_sent"]["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  for (std::size_t navigation = 0; navigation < 2; ++navigation) {
+    const json &frustum = rows[2 * navigation], &octree = rows[2 * navigation + 1];
+    EXPECT_EQ(frustum["navigation"], navigation == 0 ? "walk" : "random");
+    EXPECT_EQ(octree["navigation"], frustum["navigation"]);
+    EXPECT_EQ(frustum["percent_of_frustum"], 100.0);
+    EXPECT_LT(octree["mean"], frustum["mean"]);
+    EXPECT_LE(octree["max"], frustum["max"]);
+  }
+}
+
+TEST(Reproduce, ThreadsMakeTheSameOctree) {
+  const json one = reproducedShip(), three = reproducedShip({"--threads", "3"});
+  for (const char* table : {"leaves", "levels", "histograms", "uniform_grid", "polygons_sent"}) {
+    EXPECT_EQ(one["experiments"][table], three["experiments"][table]);
+  }
+}
+
+TEST(Reproduce, TheBakedFileIsGoneAfterwards) {
+  const TemporaryFolder folder;
+  const char* const before = std::getenv("TMPDIR");
+  const std::string old = before != nullptr ? before : "";
+  setenv("TMPDIR", folder.file("").c_str(), 1);
+  const Outcome outcome = runTool(tinyShip({"-o", folder.file("report")}));
+  before != nullptr ? setenv("TMPDIR", old.c_str(), 1) : unsetenv("TMPDIR");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(folder.entries(), 1u) << "the report alone";
+  const std::string html = contents(folder.file("report/1-demo-ship-decks-3-rooms-4-machinery-8/index.html"));
+  EXPECT_NE(html.find("Leaves by depth"), std::string::npos);
+  EXPECT_NE(html.find("Triangles that may be seen, by depth"), std::string::npos);
+}
+
+TEST(Reproduce, ShortTakesASmallShipAndFewFrames) {
+  const Outcome outcome =
+      runTool({"reproduce", "saona-vazquez", "--short", "--width", "64", "--height", "36", "--json", "-"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json result = parse(outcome.out);
+  EXPECT_EQ(result["experiments"]["bake"]["rows"][0]["depth"], 4);
+  EXPECT_EQ(result["scenes"], json::array({"demo:ship?decks=3&rooms=4&machinery=8"}));
+  EXPECT_EQ(result["experiments"]["look_up"]["rows"][1]["frames"], 20);
+}
+
+TEST(Reproduce, OptionsOfABakeAreOfPapersThatBake) {
+  expectRefused({"reproduce", "coorg-teller", "--depth", "4"}, "coorg-teller");
+  expectRefused({"reproduce", "poon-wang", "--triangle-budget", "1000"}, "poon-wang");
+  expectRefused({"reproduce", "saona-vazquez", "--depth", "21"}, "--depth");
+  expectRefused({"reproduce", "saona-vazquez", "--frames", "9:1"}, "--frames");
 }
 
 TEST(Reproduce, WhatIsNotThereIsRefused) {

@@ -70,21 +70,11 @@ Walk inPictures(Walk walk, const PictureOptions& picture) {
 
 // The scene's routes; the walk that was asked for where the user names it or the scene has no routes.
 Result<std::vector<Walk>> routesOf(const SceneAndWalk& input, const ReproduceOptions& options) {
-  std::vector<Walk> routes;
-  for (const char* name : kRoutes) {
-    for (const CameraPath& path : input.scene.paths) {
-      if (path.name == name && options.path.path.empty()) {
-        const Result<std::vector<std::uint32_t>> frames =
-            chooseFrames(options.path.frames, path.frames.size());
-        if (!frames) {
-          return Error{fmt::format("route {}: {}", name, frames.error().message)};
-        }
-        routes.push_back(inPictures({path, fewerFrames(options, *frames)}, pictureOf(options)));
-      }
+  Result<std::vector<Walk>> routes = namedWalks(input, options, kRoutes);
+  if (routes) {
+    for (Walk& route : *routes) {
+      route = inPictures(std::move(route), pictureOf(options));
     }
-  }
-  if (routes.empty()) {
-    routes.push_back(inPictures(input.walk, pictureOf(options)));
   }
   return routes;
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "sightline/io/file.h"
+#include "sightline/pvs/format/visibility_octree.h"
 #include "tools/sightline/command_line.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
@@ -19,6 +21,8 @@ struct Paper {
   const char* title;
   std::vector<std::string> scenes;  // unless the user names others
   Result<Reproduction> (*reproduce)(const ReproduceOptions&, const std::vector<SceneAndWalk>&);
+  bool bakes = false;
+  std::vector<std::string> short_scenes{};  // with --short; none: the same
 };
 
 // The papers, by the names they have on the command line.
@@ -32,6 +36,14 @@ const std::vector<std::pair<std::string, Paper>>& papers() {
        {"Poon, Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. IV 1999.",
         {"demo:city"},
         reproducePoonWang}},
+      {"saona-vazquez",
+       {"Saona-Vazquez, Navazo, Brunet. The Visibility Octree: A Data Structure for 3D Navigation. Computers "
+        "& "
+        "Graphics 1999.",
+        {"demo:ship"},
+        reproduceSaonaVazquez,
+        true,
+        {"demo:ship?decks=3&rooms=4&machinery=8"}}},
   };
   return kPapers;
 }
@@ -137,8 +149,12 @@ Result<ExitCode> runReproduce(ReproduceOptions options) {
     return found.error();
   }
   const Paper& paper = **found;
+  if (!paper.bakes && (options.depth > 0 || options.triangle_budget > 0)) {
+    return Error{
+        fmt::format("--depth and --triangle-budget: {} bakes nothing; leave them out", options.paper)};
+  }
   if (options.scenes.empty()) {
-    options.scenes = paper.scenes;
+    options.scenes = options.fewer_frames && !paper.short_scenes.empty() ? paper.short_scenes : paper.scenes;
   }
   const Result<std::vector<SceneAndWalk>> inputs = loadAll(options);
   if (!inputs) {
@@ -171,15 +187,24 @@ void addReproduce(CLI::App& app, Command& chosen) {
   }
   command->add_flag(
       "--short", options->fewer_frames,
-      "few frames, unless --frames says which; experiments on stretches of the path have their own");
+      "few frames, unless --frames says which; experiments on stretches of the path have their own; of "
+      "saona-vazquez a small ship and depth 4 as well, unless --scene and --depth say others");
+  command->add_option("--depth", options->depth, "saona-vazquez: of the octree (default: 6)")
+      ->check(CLI::Range(1u, kMaxOctreeDepth));
+  command
+      ->add_option("--triangle-budget", options->triangle_budget,
+                   "saona-vazquez: of a leaf (default: that of `sightline bake`)")
+      ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max() / 2));
   command->add_option("-o,--output", options->folder,
                       "folder of the tables and a report for each scene; made if needed");
   command->footer(
-      "poon-wang has routes of its own where the scene has walks best, average and worst; --path takes the "
-      "place of them.\n"
+      "poon-wang has routes of its own where the scene has walks best, average and worst, saona-vazquez "
+      "where "
+      "it has walk and random; --path takes the place of them.\n"
       "Examples:\n"
       "  sightline reproduce coorg-teller\n"
       "  sightline reproduce poon-wang -o report\n"
+      "  sightline reproduce saona-vazquez --threads 8 -o report\n"
       "  sightline reproduce coorg-teller --short --scene \"demo:city?copies=4\" --json tables.json\n"
       "  sightline reproduce coorg-teller --scene office.glb --path walk.json -o report");
   command->callback([options, command, &chosen] {

@@ -32,6 +32,27 @@ std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
   return fewer;
 }
 
+Result<std::vector<Walk>> namedWalks(const SceneAndWalk& input, const ReproduceOptions& options,
+                                     std::span<const char* const> names) {
+  std::vector<Walk> walks;
+  for (const char* name : names) {
+    for (const CameraPath& path : input.scene.paths) {
+      if (path.name == name && options.path.path.empty()) {
+        const Result<std::vector<std::uint32_t>> frames =
+            chooseFrames(options.path.frames, path.frames.size());
+        if (!frames) {
+          return Error{fmt::format("route {}: {}", name, frames.error().message)};
+        }
+        walks.push_back({path, fewerFrames(options, *frames)});
+      }
+    }
+  }
+  if (walks.empty()) {
+    walks.push_back(input.walk);
+  }
+  return walks;
+}
+
 std::string toText(const Experiment& experiment) {
   TextTable table;
   table.left = 0;

@@ -3,6 +3,7 @@
 // What reproducing a paper yields, whichever paper it is.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,20 @@ struct ReproduceOptions {
   std::vector<std::string> scenes;
   bool fewer_frames = false;
   std::string folder;  // of the reports; empty: none
+  // Of papers that bake; 0: chosen.
+  std::uint32_t depth = 0;
+  std::uint64_t triangle_budget = 0;
   std::string command_line;
 };
 
 // One frame in ten where the options ask for few and do not say which; otherwise all.
 std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
                                        const std::vector<std::uint32_t>& frames);
+
+// The scene's walks of these names, in this order; the walk that was asked for where the user names one or
+// the scene has none of them. At least one.
+Result<std::vector<Walk>> namedWalks(const SceneAndWalk& input, const ReproduceOptions& options,
+                                     std::span<const char* const> names);
 
 // How one value of the rows is printed.
 struct Column {
@@ -57,5 +66,9 @@ Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
 // Based on: Poon, Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. IV 1999, section 6.
 Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
                                        const std::vector<SceneAndWalk>& inputs);
+// Based on: Saona-Vazquez, Navazo, Brunet. The Visibility Octree: A Data Structure for 3D Navigation.
+// Computers & Graphics 1999, section 4.
+Result<Reproduction> reproduceSaonaVazquez(const ReproduceOptions& options,
+                                           const std::vector<SceneAndWalk>& inputs);
 
 }  // namespace sightline::tool

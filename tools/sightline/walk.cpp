@@ -219,6 +219,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   if (!record) {
     return record.error();
   }
+  data.noteUnknownSets();
   record->width = width;
   record->height = height;
   const WalkInput walked{options.common.scene, scene, walk, data};

@@ -1,0 +1,275 @@
+// The experiments of Saona-Vazquez, Navazo and Brunet 1999, section 4: tables 2 to 5 and the histograms.
+//
+// Differs from the paper in: scenes, machine and renderer are those of today. Leaves where no viewer can be
+// count for the size of the octree only. A leaf that a plane divides has a set on either side; each counts.
+
+#include "tools/sightline/saona_vazquez.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "sightline/pvs/bake/write_sight.h"
+#include "tools/sightline/bake_options.h"
+#include "tools/sightline/bake_run.h"
+#include "tools/sightline/progress_bar.h"
+#include "tools/sightline/threads.h"
+#include "tools/sightline/walk_runs.h"
+
+namespace sightline::tool {
+
+using namespace saona_vazquez;
+
+namespace {
+
+constexpr const char* kNavigations[] = {"walk", "random"};
+constexpr std::uint32_t kShortDepth = 4;
+constexpr std::size_t kLeastFinds = 100'000;  // for the time of one
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+// Through a file that is gone afterwards: the memory map outlives its name.
+Result<SightFile> written(const BakedVisibility& baked) {
+  std::error_code error;
+  std::string folder = (std::filesystem::temp_directory_path(error) / "sightline-XXXXXX").string();
+  if (error || mkdtemp(folder.data()) == nullptr) {
+    return Error{
+        fmt::format("{}: no such folder can be made; set TMPDIR to one that can be written", folder)};
+  }
+  const std::string name = folder + "/baked.sight";
+  const Status status = writeSight(name, baked);
+  Result<SightFile> file = status ? SightFile::open(name) : Result<SightFile>(status.error());
+  std::filesystem::remove_all(folder, error);
+  return file;
+}
+
+void add(const BakeStats& more, BakeStats& sum) {
+  sum.samples += more.samples;
+  sum.shadows += more.shadows;
+  sum.forgotten += more.forgotten;
+  sum.most_sample_bytes += more.most_sample_bytes;
+}
+
+// Each thread takes the next part as long as there is one.
+std::vector<BakedPart> bakeParts(const Bake& bake, std::uint32_t threads, const ParallelFor& parallel_for,
+                                 BakeStats& stats) {
+  std::vector<BakedPart> parts(bake.partCount());
+  std::vector<BakeStats> of_thread(threads);
+  std::atomic<std::uint32_t> next = 0;
+  ProgressBar progress("baking");
+  parallel_for(threads, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t thread = begin; thread < end; ++thread) {
+      Bake::Worker worker(bake);
+      for (std::uint32_t part = next++; part < parts.size(); part = next++) {
+        parts[part] = worker.bake(part);
+        if (thread == 0) {
+          progress.update(static_cast<double>(part + 1) / static_cast<double>(parts.size()));
+        }
+      }
+      of_thread[thread] = worker.stats();
+    }
+  });
+  for (const BakeStats& one : of_thread) {
+    add(one, stats);
+  }
+  return parts;
+}
+
+// Those of `sightline bake`, for viewers with these cameras.
+BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigations,
+                         const ReproduceOptions& options) {
+  BakeOptions bake;
+  bake.common.threads = options.output.threads;
+  bake.settings.triangle_budget = options.triangle_budget;
+  if (options.depth > 0 || options.fewer_frames) {
+    bake.settings.max_depth = options.depth > 0 ? options.depth : kShortDepth;
+  }
+  bake.settings.near_distance = 0.0;
+  for (const Walk& walk : navigations) {
+    const double near = nearDistance(walk.view(walk.frames.front(), scene));
+    if (std::isfinite(near)) {  // an orthographic view gets everything, however it was baked
+      bake.settings.near_distance = std::max(bake.settings.near_distance, near);
+    }
+  }
+  return bakeSettings(bake, scene);
+}
+
+Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, std::uint32_t threads,
+                        const ParallelFor& parallel_for) {
+  Effort effort;
+  const Stopwatch plan_watch;
+  const OccluderSet occluders = findOccluders(scene.view(), {.area_fraction = 1.0}, parallel_for);
+  const Result<Bake> bake = Bake::plan(scene.view(), occluders, settings);
+  if (!bake) {
+    return bake.error();
+  }
+  effort.plan_s = plan_watch.seconds();
+  effort.occluders = bake->occluderCount();
+  const Stopwatch bake_watch;
+  const std::vector<BakedPart> parts = bakeParts(*bake, threads, parallel_for, effort.stats);
+  Result<BakedVisibility> baked = bake->assemble(parts);
+  if (!baked) {
+    return baked.error();
+  }
+  effort.bake_s = bake_watch.seconds();
+  baked->record.settings = settingsJson(settings, scene.origin).dump();
+  Result<SightFile> file = written(*baked);
+  if (!file) {
+    return file.error();
+  }
+  effort.peak_bytes = peakBytes();
+  return Baked{std::move(*file), effort};
+}
+
+Leaves leavesOf(const SightFile& file) {
+  const OctreeView octree = file.octree();
+  Leaves leaves;
+  leaves.reasons.resize(kMaxOctreeDepth + 1);
+  forEachLeaf(octree, [&](std::uint32_t leaf, const OctreeCell& cell) {
+    if (static_cast<StopReason>(octree.reasons[leaf]) != StopReason::kOutside) {
+      leaves.depths.push_back(cell.level);
+      leaves.reasons[cell.level][octree.reasons[leaf]] += 1;
+    }
+  });
+  return leaves;
+}
+
+// Look-ups alone: the first time along the path, with sets that have to be decoded, and when all are.
+void timeFinds(const SightFile& file, const Scene& scene, Navigation& navigation) {
+  std::vector<View> views;
+  for (const std::uint32_t frame : navigation.walk.frames) {
+    views.push_back(navigation.walk.view(frame, scene));
+  }
+  const double near = nearDistance(views.front());
+  SetQuery query(file, {.cache_bytes = std::size_t{1} << 30});
+  const auto round = [&] {
+    for (const View& view : views) {
+      query.find(view.eye, near);
+    }
+  };
+  const auto finds = static_cast<double>(views.size());
+  const Stopwatch first;
+  round();
+  navigation.first_find_us = 1e6 * first.seconds() / finds;
+  const std::size_t rounds = kLeastFinds / views.size() + 1;
+  const Stopwatch watch;
+  for (std::size_t i = 0; i < rounds; ++i) {
+    round();
+  }
+  navigation.find_ns = 1e9 * watch.seconds() / (finds * static_cast<double>(rounds));
+}
+
+std::vector<Setting> settingsToCompare() {
+  std::vector<Setting> settings(2);
+  settings[0].culler.method = CullMethod::kFrustum;
+  settings[1].culler.method = CullMethod::kVisibilityOctree;
+  for (Setting& setting : settings) {
+    setting.baked = true;
+  }
+  return settings;
+}
+
+// renderer: null where there is none, and nothing is drawn.
+void navigate(Measured& measured, Navigation& navigation, Renderer* renderer) {
+  const Walk& walk = navigation.walk;
+  navigation.record.runs = makeRuns(settingsToCompare(), measured.data);
+  navigation.record.device = renderer != nullptr ? renderer->device() : "";
+  navigation.record.width = walk.path.width;
+  navigation.record.height = walk.path.height;
+  ProgressBar progress("walking " + walk.path.name);
+  for (std::size_t i = 0; i < walk.frames.size(); ++i) {
+    const View view = walk.view(walk.frames[i], measured.scene);
+    cullFrame(navigation.record.runs, measured.data, walk.frames[i], view);
+    if (renderer != nullptr) {
+      drawFrame(navigation.record.runs, view, *renderer, nullptr);
+    }
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(walk.frames.size()));
+  }
+  timeFinds(measured.baked.file, measured.scene, navigation);
+}
+
+// In the pictures that are asked for.
+Result<std::vector<Walk>> navigationsOf(const SceneAndWalk& input, const ReproduceOptions& options) {
+  Result<std::vector<Walk>> walks = namedWalks(input, options, kNavigations);
+  if (walks) {
+    for (Walk& walk : *walks) {
+      const PictureOptions picture = pictureSize(options.picture, walk.path);
+      walk.path.width = picture.width;
+      walk.path.height = picture.height;
+    }
+  }
+  return walks;
+}
+
+Result<Measured> bakeAndMeasure(const std::string& name, const Scene& scene, const std::vector<Walk>& walks,
+                                const ReproduceOptions& options, const ParallelFor& parallel_for) {
+  Result<Baked> baked =
+      bakeScene(scene, settingsFor(scene, walks, options), options.output.threads, parallel_for);
+  if (!baked) {
+    return baked.error();
+  }
+  const Result<SightFacts> facts = factsOf(baked->file);
+  if (!facts) {
+    return facts.error();
+  }
+  const SightFile file = baked->file;
+  return Measured{name,   scene,          std::move(*baked),
+                  *facts, leavesOf(file), CullingData(scene, parallel_for, {}, file)};
+}
+
+void navigateAll(Measured& measured, const std::vector<Walk>& walks, std::vector<std::string>& notes) {
+  for (const Walk& walk : walks) {
+    Result<Renderer> renderer = Renderer::create(measured.scene.view(), walk.path.width, walk.path.height);
+    if (!renderer) {
+      notes.push_back(fmt::format("{}, {}: nothing was drawn: {}", measured.name, walk.path.name,
+                                  renderer.error().message));
+    }
+    measured.navigations.push_back({walk});
+    navigate(measured, measured.navigations.back(), renderer ? &*renderer : nullptr);
+  }
+}
+
+}  // namespace
+
+Result<Reproduction> reproduceSaonaVazquez(const ReproduceOptions& options,
+                                           const std::vector<SceneAndWalk>& inputs) {
+  const Threads threads(options.output.threads);
+  std::vector<std::vector<Walk>> walks;
+  for (const SceneAndWalk& input : inputs) {  // all of them before the work
+    Result<std::vector<Walk>> of_scene = navigationsOf(input, options);
+    if (!of_scene) {
+      return of_scene.error();
+    }
+    walks.push_back(std::move(*of_scene));
+  }
+  Reproduction result;
+  std::vector<Measured> scenes;
+  scenes.reserve(inputs.size());  // cullers hold on to their scene's data
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    Result<Measured> measured =
+        bakeAndMeasure(options.scenes[i], inputs[i].scene, walks[i], options, threads.parallelFor());
+    if (!measured) {
+      return measured.error();
+    }
+    navigateAll(scenes.emplace_back(std::move(*measured)), walks[i], result.notes);
+  }
+  result.experiments = tablesOf(scenes);
+  for (const Measured& measured : scenes) {
+    result.reports.push_back(reportOf(measured, result.experiments, options));
+  }
+  return result;
+}
+
+}  // namespace sightline::tool
