@@ -15,7 +15,7 @@ cpp_files = find include src scenes oracle tools bench fuzz tests examples -name
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo                   walk the built-in city and building; opens the way to the reports"
+	@echo "make demo                   bake and walk the built-in city and building; opens the way to the reports"
 	@echo "make demo SCENE=path.glb    walk your own scene (CAMERA=path.json: along your own path)"
 	@echo "make test                   build, then run all tests"
 	@echo "make bench                  build, then run the benchmarks (SHORT=1: briefly)"
