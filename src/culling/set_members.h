@@ -28,7 +28,7 @@ class SetMembers {
   // The next set counts as another one.
   void forget() { known_ = false; }
 
-  // Of the last find(). Everything may be seen: there is no set, or one of all objects.
+  // Of the last find(). Everything may be seen: there is no set, or the sets know nothing of the view.
   bool everything() const { return id_ == VisibleSet::kEverything; }
   // Of sets.boxes(); until the next find(). Empty where there is no set.
   std::span<const std::uint32_t> nodes() const { return nodes_; }

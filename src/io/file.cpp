@@ -47,8 +47,11 @@ Result<std::string> readFile(const std::string& file) {
 }
 
 Status writeFile(const std::string& file, std::string_view bytes) {
-  const std::string unfinished = fmt::format("{}.{}.unfinished", file, ::getpid());
   std::error_code code;
+  const fs::file_status status = fs::status(file, code);
+  // A device or a pipe is written to, not replaced.
+  const bool in_place = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+  const std::string unfinished = in_place ? file : fmt::format("{}.{}.unfinished", file, ::getpid());
   {
     std::ofstream stream(unfinished, std::ios::binary | std::ios::trunc);
     if (!stream) {
@@ -58,9 +61,14 @@ Status writeFile(const std::string& file, std::string_view bytes) {
     stream.close();
     if (!stream) {
       const std::string reason = std::strerror(errno);
-      fs::remove(unfinished, code);
+      if (!in_place) {
+        fs::remove(unfinished, code);
+      }
       return failure("{}: could not be written completely: {}", file, reason);
     }
+  }
+  if (in_place) {
+    return Success{};
   }
   fs::rename(unfinished, file, code);
   if (code) {

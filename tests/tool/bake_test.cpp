@@ -184,12 +184,15 @@ TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
   ASSERT_EQ(first.code, 0) << first.err;
   const std::string expected = contents(file);
   const json report = parse(first.out);
-  const auto leave = [&](std::uint64_t plan) {
+  const auto leave = [&](std::uint64_t plan, bool with_a_part = false) {
     Result<tool::Checkpoint> left = tool::Checkpoint::open(parts, tool::CheckpointUse::kRestart);
     ASSERT_TRUE(left);
     ASSERT_TRUE(left->begin(plan, report["parts"].get<std::uint32_t>()));
+    if (with_a_part) {
+      ASSERT_TRUE(left->append(0, BakedPart(100)));
+    }
   };
-  leave(planOf(report));
+  leave(planOf(report), true);
   const std::string left = contents(parts);
   expectRefused(bakeArguments(kShip, file), "--resume");
   expectRefused(bakeArguments(kShip, file, {"--resume", "--near-distance", "0.3"}), "--restart");
@@ -197,7 +200,15 @@ TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
   expectRefused(bakeArguments("demo:ship?decks=3&rooms=5&machinery=0", file, {"--resume"}), "--restart");
   EXPECT_EQ(contents(parts), left) << "a refused bake leaves the checkpoint as it is";
   EXPECT_TRUE(contents(file) == expected) << "and the old file";
-  EXPECT_EQ(runTool(bakeArguments(kShip, file, {"--resume", "--threads", "2"})).code, 0);
+  // What had finished nothing yet is in nobody's way.
+  for (const char* option : {"--resume", "--restart", ""}) {
+    leave(planOf(report));
+    std::vector<std::string> options{"--threads", "2"};
+    if (*option != 0) {
+      options.emplace_back(option);
+    }
+    EXPECT_EQ(runTool(bakeArguments(kShip, file, options)).code, 0) << option;
+  }
   EXPECT_FALSE(std::filesystem::exists(parts));
   leave(planOf(report) + 1);
   EXPECT_EQ(runTool(bakeArguments(kShip, file, {"--restart"})).code, 0);
@@ -215,7 +226,10 @@ TEST(Bake, RefusesOutputsThatCannotBe) {
   expectRefused(bakeArguments(scene, "/dev/null"), "/dev/null");
   expectRefused(bakeArguments(scene, "-"), "--output");
   expectRefused(bakeArguments(scene, ""), "--output");
-  expectRefused(bakeArguments(scene, scene), "the scene itself");
+  expectRefused(bakeArguments(scene, scene), "the input itself");
+  expectRefused(bakeArguments(scene, folder.file("F.sight"), {"--json", folder.file("F.sight")}),
+                "the output itself");
+  expectRefused({"info", scene, "--json", scene}, "the input itself");
   expectRefused(bakeArguments(scene, folder.file("F.sight"), {"--json", folder.file("no/such.json")}),
                 "such.json");
   std::filesystem::create_directory(folder.file("G.sight.parts"));

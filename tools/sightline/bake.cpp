@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "sightline/pvs/bake/write_sight.h"
 #include "tools/sightline/bake_databases.h"
@@ -15,23 +16,11 @@
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
+#include "tools/sightline/stopwatch.h"
 #include "tools/sightline/threads.h"
 
 namespace sightline::tool {
 namespace {
-
-class Stopwatch {
- public:
-  // Microseconds since the last call.
-  double lap() {
-    const Clock::time_point now = Clock::now();
-    return std::chrono::duration<double, std::micro>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 // What a process bakes with.
 struct Planned {
@@ -50,7 +39,7 @@ CheckpointUse useOf(const BakeOptions& options) {
 // Before the work, by the process that writes.
 Result<Checkpoint> openOutputs(const BakeOptions& options) {
   for (const std::string& target : {options.output, options.common.json}) {
-    if (const Status ok = checkOutput(target); !ok) {
+    if (const Status ok = checkOutput(target, options.common.scene); !ok) {
       return ok.error();
     }
   }
@@ -62,8 +51,8 @@ Result<Checkpoint> openOutputs(const BakeOptions& options) {
       !std::filesystem::is_regular_file(options.output, ignored)) {
     return Error{fmt::format("{}: is not a file; name another output", options.output)};
   }
-  if (std::filesystem::equivalent(options.output, options.common.scene, ignored)) {
-    return Error{fmt::format("{}: is the scene itself; name another output", options.output)};
+  if (options.output == options.common.json) {
+    return Error{fmt::format("--json {}: is the output itself; name another file", options.output)};
   }
   return Checkpoint::open(options.partsFile(), useOf(options));
 }
@@ -195,12 +184,10 @@ void addBake(CLI::App& app, Command& chosen) {
   addBakeOptions(*command, *options);
   command->footer(
       "Finished parts are kept in F.sight.parts until F.sight is written. What an interrupted bake left "
-      "there "
-      "is only used with --resume and only removed with --restart; without either it is an error. --resume "
-      "may always be given.\n"
+      "there is only used with --resume and only removed with --restart; without either it is an error. "
+      "--resume may always be given.\n"
       "The file is the same bit for bit, whatever the threads and processes. --threads and --sample-memory "
-      "are "
-      "of each process.\n"
+      "are of each process.\n"
       "Examples:\n"
       "  sightline bake city.glb -o city.sight --threads 8\n"
       "  sightline bake city.glb -o city.sight --threads 8 --resume\n"

@@ -14,7 +14,8 @@
 namespace sightline::tool {
 namespace {
 
-constexpr double kMostMetres = 1e6, kLeastNear = 1e-6;
+constexpr double kMost = 1e6;        // metres, or a factor
+constexpr double kLeastNear = 1e-6;  // metres
 constexpr std::uint32_t kMostMib = 1u << 20;
 constexpr std::uint64_t kLeastBudget = 1000, kBudgetShare = 50;
 
@@ -85,21 +86,23 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("--depth", settings.max_depth, "of the octree: a cell is halved so often at most")
       ->check(CLI::Range(0u, kMaxOctreeDepth))
       ->capture_default_str();
-  addDecimal(command, "--near-distance", settings.near_distance, kLeastNear, kMostMetres,
+  addDecimal(command, "--near-distance", settings.near_distance, kLeastNear, kMost,
              "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
              "tan(fovy / 2)^2 * (1 + aspect^2))");
   command.add_option("--region", options.region,
                      "viewers are in this box, world space: MINX,MINY,MINZ,MAXX,MAXY,MAXZ (default: the "
                      "scene's bounds)");
-  addDecimal(command, "--search-distance", settings.search_distance, 0.0, kMostMetres,
+  addDecimal(command, "--search-distance", settings.search_distance, 0.0, kMost,
              "occluders are looked for within so many metres at first; 0: chosen");
-  addDecimal(command, "--occluder-size", settings.occluder_size, 0.0, kMostMetres,
-             "an occluder is of use where it is so many times as large as a cell's smallest face");
+  addDecimal(
+      command, "--occluder-size", settings.occluder_size, 0.0, kMost,
+      "an occluder is of use to a cell when its area is so many times that of the cell's smallest face, or "
+      "its volume so many times the cell's");
   addDecimal(command, "--similarity", settings.similarity, 0.0, 1.0,
-             "a cell is divided where one of its corners sees less than the cell by this part");
+             "a cell is divided where some point of it sees less than the cell by this part");
   addDecimal(command, "--least-gain", settings.least_gain, 0.0, 1.0,
-             "occluders are looked for twice as far where that hid this part of the triangles");
-  addDecimal(command, "--merge-tolerance", settings.merge_tolerance, 0.0, kMostMetres,
+             "occluders are looked for twice as far as long as that hides this part of the triangles");
+  addDecimal(command, "--merge-tolerance", settings.merge_tolerance, 0.0, kMost,
              "eight cells become one that sees at most this part more than each");
   command
       .add_option("--sample-memory", options.sample_mib,

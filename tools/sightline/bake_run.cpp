@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <array>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -62,13 +62,6 @@ class SignalGuard {
   static constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
   std::array<struct sigaction, 2> old_;
 };
-
-void add(BakeStats& sum, const BakeStats& stats) {
-  sum.samples += stats.samples;
-  sum.shadows += stats.shadows;
-  sum.forgotten += stats.forgotten;
-  sum.most_sample_bytes += stats.most_sample_bytes;
-}
 
 // The baking threads of this process.
 class BakeThreads {
@@ -362,6 +355,13 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
   MessageWriter totals;
   totals.number(stats.samples).number(stats.shadows).number(stats.forgotten).number(stats.most_sample_bytes);
   world.send(0, kTotals, totals.number(peakBytes()).bytes());
+}
+
+void add(BakeStats& sum, const BakeStats& stats) {
+  sum.samples += stats.samples;
+  sum.shadows += stats.shadows;
+  sum.forgotten += stats.forgotten;
+  sum.most_sample_bytes += stats.most_sample_bytes;
 }
 
 std::uint64_t peakBytes() {

@@ -35,6 +35,9 @@ Result<std::vector<BakedPart>> bakeAsFirst(const Bake& bake, MpiWorld& world, st
 // The others: bake what the first process gives them, until there is no more.
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads);
 
+// Of several workers together.
+void add(BakeStats& sum, const BakeStats& stats);
+
 std::uint64_t peakBytes();  // of this process so far
 
 }  // namespace sightline::tool

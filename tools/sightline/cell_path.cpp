@@ -86,7 +86,7 @@ std::optional<Vec3d> atPlane(const CellBox& cell, const Vec3d& normal, double of
   return std::nullopt;
 }
 
-// Every seventh cell is looked at from its middle parts, the others from borders.
+// Every seventh cell is looked at from anywhere in it, the others from borders.
 Vec3d viewpoint(std::uint32_t leaf, const CellBox& cell, Random& random) {
   const std::uint32_t turn = leaf % 7;
   return atBorder(cell, static_cast<int>((turn + 1) / 2), turn % 2 == 1, random);

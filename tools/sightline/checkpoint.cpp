@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -74,6 +75,11 @@ Result<Checkpoint> Checkpoint::open(const std::string& file, CheckpointUse use) 
     ::close(std::exchange(checkpoint.descriptor_, -1));  // it is the other's, also where it is empty
     return Error{fmt::format("{}: another bake to the same file is running; wait for it or end it", file)};
   }
+  char magic[sizeof(kMagic)] = {};
+  const ssize_t read = ::pread(descriptor, magic, sizeof(magic), 0);
+  if (read > 0 && std::memcmp(magic, kMagic, static_cast<std::size_t>(read)) != 0) {
+    return Error{fmt::format("{}: is not what a bake leaves; remove it, or name another output", file)};
+  }
   // A header alone was left by a bake that had finished nothing yet.
   if (use == CheckpointUse::kNew && facts.st_size > static_cast<off_t>(sizeof(Header))) {
     return Error{fmt::format(
@@ -115,9 +121,6 @@ Result<std::vector<std::optional<BakedPart>>> Checkpoint::begin(std::uint64_t pl
     }
     // A file that ends within the header was left by a bake that had baked nothing yet.
     const std::string_view start = std::string_view(*bytes).substr(0, sizeof(header));
-    if (start.substr(0, sizeof(kMagic)) != wanted.substr(0, std::min(start.size(), sizeof(kMagic)))) {
-      return Error{fmt::format("{}: is not what a bake leaves; remove it, or name another output", file_)};
-    }
     if (start.size() == sizeof(header)) {
       if (start != wanted) {
         return Error{fmt::format(

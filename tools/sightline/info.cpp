@@ -208,7 +208,7 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
 }
 
 Result<ExitCode> runInfo(const InfoOptions& options) {
-  if (const Status ok = checkOutput(options.common.json); !ok) {
+  if (const Status ok = checkOutput(options.common.json, options.common.scene); !ok) {
     return ok.error();
   }
   if (isSightFile(options.common.scene)) {

@@ -23,7 +23,7 @@ std::string dumpWithList(const Json& head, const std::string& key, const std::ve
   return text + "]}";
 }
 
-Status checkOutput(const std::string& target) {
+Status checkOutput(const std::string& target, const std::string& input) {
   if (target.empty() || target == "-") {
     return Success{};
   }
@@ -31,6 +31,9 @@ Status checkOutput(const std::string& target) {
   const std::filesystem::path path(target);
   if (std::filesystem::is_directory(path, ignored)) {
     return Error{fmt::format("{}: is a folder; give the name of a file", target)};
+  }
+  if (!input.empty() && std::filesystem::equivalent(path, input, ignored)) {
+    return Error{fmt::format("{}: is the input itself; name another output", target)};
   }
   const std::filesystem::path folder =
       path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");

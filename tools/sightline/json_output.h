@@ -16,7 +16,8 @@ std::string dump(const Json& json);
 std::string dumpWithList(const Json& head, const std::string& key, const std::vector<std::string>& items);
 
 // Whether output can go there, to be asked before the work: "" and "-" can, a file in an existing folder.
-Status checkOutput(const std::string& target);
+// input: a file that is read, and must not be written over; empty for none.
+Status checkOutput(const std::string& target, const std::string& input = {});
 
 // Makes the folder, and those above it, where there is none.
 Status makeFolder(const std::string& folder);

@@ -86,6 +86,9 @@ Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene&
   if (const Status same = baked->matches(sceneId(scene.view())); !same) {
     return same.error();
   }
+  if (const Status whole = baked->verifyAll(); !whole) {
+    return whole.error();
+  }
   return std::optional<SightFile>(std::move(*baked));
 }
 
@@ -111,7 +114,7 @@ Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name,
 
 Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path,
                                       const std::string& baked) {
-  if (const Status ok = checkOutput(common.json); !ok) {
+  if (const Status ok = checkOutput(common.json, common.scene); !ok) {
     return ok.error();
   }
   Result<Scene> scene = loadScene(common.scene);

@@ -67,6 +67,9 @@ int run(int argc, char** argv) {
     return speaks(argc, argv) ? fail(std::string(error.what()) + " (see sightline --help)") : kOk;
   }
   const Result<ExitCode> result = chosen();
+  if (result && std::fflush(stdout) != 0) {
+    return fail("cannot write to standard output");
+  }
   return result ? *result : fail(result.error().message);
 }
 

@@ -14,7 +14,7 @@ namespace sightline::tool {
 // Whether this process is one that an MPI launcher started and that is not the first: it prints nothing.
 bool isOtherMpiProcess();
 
-// Messages between processes. By the main thread only; there is one World at a time. Sending may wait for
+// Messages between processes. By the main thread only; there is one MpiWorld at a time. Sending may wait for
 // the receiver; receiving never waits, so that waiting costs no core.
 class MpiWorld {
  public:

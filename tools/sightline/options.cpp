@@ -33,8 +33,7 @@ void addPathOptions(CLI::App& command, PathOptions& options) {
       "--path", options.path,
       "camera path: a JSON file or the name of a walk of the scene (default: walk.path.json beside the "
       "scene's file, or else the scene's first walk or camera); cells: with --baked, a view from each cell "
-      "of "
-      "the file, most of them from the cell's borders");
+      "of the file, most of them from the cell's borders");
   command.add_option("--frames", options.frames,
                      "only frames A, A+STEP, ... before B, as A:B[:STEP]; or one frame's number");
 }

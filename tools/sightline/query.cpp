@@ -100,9 +100,8 @@ Result<std::vector<Vec3d>> allPoints(const std::vector<std::string>& texts) {
   return points;
 }
 
-const char* sideOf(const CellPlane& plane, const Vec3d& eye) {
-  const double distance = dot(plane.normal, eye);
-  return distance >= plane.front ? "front" : distance <= plane.back ? "back" : "between";
+const char* nameOf(CellSide side) {
+  return side == CellSide::kFront ? "front" : side == CellSide::kBack ? "back" : "between";
 }
 
 PointAnswer answerOf(const Vec3d& point, const Vec3d& origin, const SightFile& file, SetQuery& query) {
@@ -110,7 +109,7 @@ PointAnswer answerOf(const Vec3d& point, const Vec3d& origin, const SightFile& f
   PointAnswer answer{point, query.locate(eye)};
   const OctreeView octree = file.octree();
   if (!answer.outside() && octree.leaves[answer.place.leaf].plane != OctreeLeaf::kNoPlane) {
-    answer.side = sideOf(octree.planes[octree.leaves[answer.place.leaf].plane], eye);
+    answer.side = nameOf(sideOf(octree.planes[octree.leaves[answer.place.leaf].plane], eye));
   }
   const BoxTreeView boxes = query.boxes();
   for (const std::uint32_t node : query.find(eye, file.record().near_distance).nodes) {
@@ -187,7 +186,7 @@ void print(const SightFile& file, const std::vector<PointAnswer>& answers) {
 }
 
 Result<ExitCode> runQuery(const QueryOptions& options) {
-  if (const Status ok = checkOutput(options.json); !ok) {
+  if (const Status ok = checkOutput(options.json, options.file); !ok) {
     return ok.error();
   }
   const Result<std::vector<Vec3d>> points = allPoints(options.points);

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -18,6 +17,7 @@
 #include "tools/sightline/bake_options.h"
 #include "tools/sightline/bake_run.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/stopwatch.h"
 #include "tools/sightline/threads.h"
 #include "tools/sightline/walk_runs.h"
 
@@ -30,15 +30,6 @@ namespace {
 constexpr const char* kNavigations[] = {"walk", "random"};
 constexpr std::uint32_t kShortDepth = 4;
 constexpr std::size_t kLeastFinds = 100'000;  // for the time of one
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 // Through a file that is gone afterwards: the memory map outlives its name.
 Result<SightFile> written(const BakedVisibility& baked) {
@@ -53,13 +44,6 @@ Result<SightFile> written(const BakedVisibility& baked) {
   Result<SightFile> file = status ? SightFile::open(name) : Result<SightFile>(status.error());
   std::filesystem::remove_all(folder, error);
   return file;
-}
-
-void add(const BakeStats& more, BakeStats& sum) {
-  sum.samples += more.samples;
-  sum.shadows += more.shadows;
-  sum.forgotten += more.forgotten;
-  sum.most_sample_bytes += more.most_sample_bytes;
 }
 
 // Each thread takes the next part as long as there is one.
@@ -82,7 +66,7 @@ std::vector<BakedPart> bakeParts(const Bake& bake, std::uint32_t threads, const 
     }
   });
   for (const BakeStats& one : of_thread) {
-    add(one, stats);
+    add(stats, one);
   }
   return parts;
 }
@@ -109,21 +93,20 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
 Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, std::uint32_t threads,
                         const ParallelFor& parallel_for) {
   Effort effort;
-  const Stopwatch plan_watch;
+  Stopwatch watch;
   const OccluderSet occluders = findOccluders(scene.view(), {.area_fraction = 1.0}, parallel_for);
   const Result<Bake> bake = Bake::plan(scene.view(), occluders, settings);
   if (!bake) {
     return bake.error();
   }
-  effort.plan_s = plan_watch.seconds();
+  effort.plan_s = 1e-6 * watch.lap();
   effort.occluders = bake->occluderCount();
-  const Stopwatch bake_watch;
   const std::vector<BakedPart> parts = bakeParts(*bake, threads, parallel_for, effort.stats);
   Result<BakedVisibility> baked = bake->assemble(parts);
   if (!baked) {
     return baked.error();
   }
-  effort.bake_s = bake_watch.seconds();
+  effort.bake_s = 1e-6 * watch.lap();
   baked->record.settings = settingsJson(settings, scene.origin).dump();
   Result<SightFile> file = written(*baked);
   if (!file) {
@@ -160,15 +143,14 @@ void timeFinds(const SightFile& file, const Scene& scene, Navigation& navigation
     }
   };
   const auto finds = static_cast<double>(views.size());
-  const Stopwatch first;
+  Stopwatch watch;
   round();
-  navigation.first_find_us = 1e6 * first.seconds() / finds;
+  navigation.first_find_us = watch.lap() / finds;
   const std::size_t rounds = kLeastFinds / views.size() + 1;
-  const Stopwatch watch;
   for (std::size_t i = 0; i < rounds; ++i) {
     round();
   }
-  navigation.find_ns = 1e9 * watch.seconds() / (finds * static_cast<double>(rounds));
+  navigation.find_ns = 1e3 * watch.lap() / (finds * static_cast<double>(rounds));
 }
 
 std::vector<Setting> settingsToCompare() {

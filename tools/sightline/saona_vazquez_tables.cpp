@@ -159,7 +159,7 @@ Experiment gridTable(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
-// Calls row_of(run, its row) for each culling on each navigation.
+// Calls add_to(scene, navigation, run, the row so far) for each culling on each navigation.
 template <typename AddTo>
 void forEachRun(const std::vector<Measured>& scenes, AddTo&& add_to) {
   for (const Measured& measured : scenes) {

@@ -1,8 +1,7 @@
 #include "sightline/pvs/bake/bake.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -106,6 +105,7 @@ BakedCell bakeTop(CellBaker& baker, const BakeScene& scene, const CellTask& task
     return cell;
   }
   CellOutcome outcome = decide(baker, scene, task);
+  baker.forgetOldest();
   if (!outcome.divide) {
     return std::move(outcome.leaf);
   }

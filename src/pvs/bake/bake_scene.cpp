@@ -21,16 +21,12 @@ std::vector<std::uint32_t> trianglesOf(const SceneView& scene) {
   return triangles;
 }
 
-bool meets(const CellBox& box, const Box& bounds) {
-  return meet(box, {Vec3d(bounds.min), Vec3d(bounds.max)});
-}
-
 // Calls visit(number of the box) for all boxes that meet this one, ascending.
 template <typename Visit>
 void forEachMeeting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
   for (std::uint32_t n = 0; n < tree.nodes.size();) {
     const BoxNode& node = tree.nodes[n];
-    if (!meets(box, node.bounds)) {
+    if (!meet(box, node.bounds)) {
       n = node.end;
       continue;
     }

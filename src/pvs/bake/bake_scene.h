@@ -9,6 +9,7 @@
 #include "pvs/bake/cell_region.h"
 #include "pvs/bake/convex_occluder.h"
 #include "pvs/bake/runs.h"
+#include "pvs/bake/shadow_tree.h"
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/pvs/bake/bake.h"
 

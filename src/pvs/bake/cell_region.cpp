@@ -15,10 +15,6 @@ struct BoxEdge {
   std::uint32_t from, to;
   int axis;
 };
-// A plane that faces cover less of divides no cell.
-constexpr double kLeastCoverage = 0.5;
-constexpr std::size_t kMostTried = 16;  // planes
-
 constexpr std::array<BoxEdge, 12> kBoxEdges{{{0, 1, 0},
                                              {2, 3, 0},
                                              {4, 5, 0},
@@ -31,6 +27,10 @@ constexpr std::array<BoxEdge, 12> kBoxEdges{{{0, 1, 0},
                                              {1, 5, 2},
                                              {2, 6, 2},
                                              {3, 7, 2}}};
+
+// A plane that faces cover less of divides no cell.
+constexpr double kLeastCoverage = 0.5;
+constexpr std::size_t kMostTried = 16;  // faces whose planes are looked at
 
 // Where the plane dot(normal, x) = level crosses the edge, kept on it. Its ends lie on different sides.
 Vec3d crossing(const CellBox& cell, const BoxEdge& edge, const Vec3d& normal, double level) {
@@ -143,6 +143,22 @@ double coverage(const FaceInCell& face, std::span<const FaceInCell> faces) {
   return area / face.section;
 }
 
+// Metres along its normal from the origin, of the back of the solid before which it lies: the next face
+// behind it that looks the other way. Its own level where there is none.
+double backLevel(const DividingFace& front, std::span<const DividingFace* const> covering) {
+  double back_level = levelOf(front);
+  bool looks_back = front.double_sided;
+  for (const DividingFace* face : covering) {
+    const double level = -levelOf(*face);
+    if (dot(face->plane.normal, front.plane.normal) < -1.0 + 1e-9 && level <= levelOf(front) &&
+        (!looks_back || level > back_level)) {
+      back_level = level;
+      looks_back = true;
+    }
+  }
+  return back_level;
+}
+
 }  // namespace
 
 double CellBox::smallestFace() const {
@@ -216,17 +232,8 @@ std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const Divi
   }
   const DividingFace& front = *best->face;
   const Vec3d& normal = front.plane.normal;
-  double back_level = levelOf(front);
-  bool looks_back = front.double_sided;
-  for (const DividingFace* face : covering) {
-    const double level = -levelOf(*face);
-    if (dot(face->plane.normal, normal) < -1.0 + 1e-9 && level <= levelOf(front) &&
-        (!looks_back || level > back_level)) {
-      back_level = level;
-      looks_back = true;
-    }
-  }
-  const CellPlane plane{normal, levelOf(front) + clearance.of(front), back_level - clearance.of(front)};
+  const CellPlane plane{normal, levelOf(front) + clearance.of(front),
+                        backLevel(front, covering) - clearance.of(front)};
   const bool some_before = !cornersBefore(cell, normal, plane.front).empty();
   const bool some_behind = !cornersBefore(cell, -normal, -plane.back).empty();
   return some_before || some_behind ? std::optional(plane) : std::nullopt;

@@ -30,6 +30,10 @@ inline bool meet(const CellBox& a, const CellBox& b) {
          a.max.y >= b.min.y && a.max.z >= b.min.z;
 }
 
+inline bool meet(const CellBox& a, const Box& b) {
+  return meet(a, CellBox{Vec3d(b.min), Vec3d(b.max)});
+}
+
 std::vector<Vec3d> cornersOf(const CellBox& cell);
 
 // The corners of the part of the cell with dot(normal, x) >= least: corners of the cell and points on its

@@ -104,33 +104,30 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance) {
     sets.front = sets.back = everything;
   }
   chooseOccluders(cell, search_distance, cell.level);
-  hideFromAll(box, sets);
+  removeHidden(box, sets);
   return sets;
 }
 
 void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
   chooseOccluders(cell, search_distance, cell.level);
   const CellBox known = searchBox(cell, searched);
-  std::erase_if(chosen_, [&](std::uint32_t i) {
-    const Box& bounds = scene_.occluders[i].bounds;
-    return meet(known, {Vec3d(bounds.min), Vec3d(bounds.max)});
-  });
-  hideFromAll(scene_.boxOf(cell), sets);
+  std::erase_if(chosen_, [&](std::uint32_t i) { return meet(known, scene_.occluders[i].bounds); });
+  removeHidden(scene_.boxOf(cell), sets);
 }
 
-void CellBaker::hideFromAll(const CellBox& box, CellSets& sets) {
-  hideFromRegion(cornersOf(box), sets.whole);
+void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
+  removeHiddenFrom(cornersOf(box), sets.whole);
   if (sets.plane) {
     const CellPlane& plane = *sets.plane;
     const double margin = 2.0 * scene_.side_margin;
-    hideFromRegion(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
-    hideFromRegion(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
+    removeHiddenFrom(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
+    removeHiddenFrom(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
   }
 }
 
 // An occluder whose object is hidden by one of those before it hides nothing more: its shadow lies within
 // that one's, from every viewpoint.
-void CellBaker::hideFromRegion(std::span<const Vec3d> corners, Runs& seen) {
+void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen) {
   if (corners.empty()) {
     seen.clear();  // nobody is there
     return;
@@ -144,7 +141,7 @@ void CellBaker::hideFromRegion(std::span<const Vec3d> corners, Runs& seen) {
     const ConvexOccluder& occluder = scene_.occluders[i];
     if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
         separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
-        hiddenFromAll(i, samples)) {
+        intersectOverCorners(i, samples)) {
       hidden_.add(common_);
     }
   }
@@ -154,7 +151,7 @@ void CellBaker::hideFromRegion(std::span<const Vec3d> corners, Runs& seen) {
 // Fills common_ with what this one occluder hides from all corners: the intersection is taken for each
 // occluder, the union of all occluders comes after. (The other way round would be wrong: from between the
 // corners one may see past what hides from each.) false: nothing.
-bool CellBaker::hiddenFromAll(std::uint32_t occluder, std::span<Sample* const> corners) {
+bool CellBaker::intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners) {
   const std::span<const ObjectRun> first = samples_.hidden(*corners[0], occluder);
   common_.assign(first.begin(), first.end());
   for (std::size_t i = 1; i < corners.size() && !common_.empty(); ++i) {
@@ -195,8 +192,8 @@ bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, co
   return std::any_of(points.begin(), points.end(), [&](const Vec3d& point) {
     const Runs* side = &sets.whole;
     if (sets.plane) {
-      const double at = dot(sets.plane->normal, point);
-      side = at >= sets.plane->front ? &sets.front : at <= sets.plane->back ? &sets.back : nullptr;
+      const CellSide at = sideOf(*sets.plane, point);
+      side = at == CellSide::kFront ? &sets.front : at == CellSide::kBack ? &sets.back : nullptr;
     }
     if (side == nullptr) {
       return false;

@@ -25,9 +25,10 @@ std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets);
 // Objects as a bit each, for uniting many runs.
 class ObjectMask {
  public:
-  // Of so many; to begin with all but those.
-  void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
+  // Of so many objects; to begin with none.
   void reset(std::uint32_t count);
+  // The same; to begin with all but those of the runs.
+  void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
   void add(std::span<const ObjectRun> runs);
   bool contains(std::uint32_t position) const { return (words_[position / 64] >> position % 64 & 1) != 0; }
   // out: what is not in it.
@@ -48,8 +49,8 @@ class CellBaker {
   CellSets seenFrom(const OctreeCell& cell, double search_distance);
   // The same with a greater distance, from sets with a smaller one.
   void lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets);
-  // Whether cells within this one are likely to see clearly less: some point of it does, with all occluders
-  // that are of use to the smallest cells.
+  // Whether cells within this one are likely to see clearly less: a corner or centre of it, or a centre of
+  // its children, does, with all occluders that are of use to the smallest cells.
   bool dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets);
   // Whether a larger search box holds nothing new.
   bool searchedAll(const OctreeCell& cell, double search_distance) const;
@@ -62,11 +63,11 @@ class CellBaker {
   CellBox searchBox(const OctreeCell& cell, double search_distance) const;
   // Those in the search box that are of use to cells of this level; what seems largest from the cell first.
   void chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level);
-  // Takes from each set what the chosen occluders hide.
-  void hideFromAll(const CellBox& box, CellSets& sets);
-  void hideFromRegion(std::span<const Vec3d> corners, Runs& seen);
+  // Takes from each set what the chosen occluders hide from its region: the cell, or a side of its plane.
+  void removeHidden(const CellBox& box, CellSets& sets);
+  void removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen);
+  bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
-  bool hiddenFromAll(std::uint32_t occluder, std::span<Sample* const> corners);
 
   const BakeScene& scene_;
   SampleStore samples_;

@@ -55,6 +55,23 @@ double depthIn(std::span<const Vec3d> corners, const Vec3d& normal, const Vec3d&
   return least;
 }
 
+// Of a body, metres.
+struct BodyDepth {
+  double centre = INFINITY;  // least depth of the centre behind the planes of the faces
+  double outside = 0.0;      // greatest height of a corner before one of them
+};
+
+BodyDepth depthIn(std::span<const BodyFace> faces, std::span<const Vec3f> vertices, const Vec3d& centre) {
+  BodyDepth depth;
+  for (const BodyFace& face : faces) {
+    depth.centre = lesser(depth.centre, -face.plane.evaluate(centre));
+    for (const Vec3f& vertex : vertices) {
+      depth.outside = std::max(depth.outside, face.plane.evaluate(Vec3d(vertex)));
+    }
+  }
+  return depth;
+}
+
 Box boundsOf(std::span<const Vec3f> points) {
   Box bounds;
   for (const Vec3f& point : points) {
@@ -115,16 +132,10 @@ bool ConvexOccluders::addBody(const OccluderSet& set, const OccluderBody& body) 
   const std::span<const BodyFace> faces = set.facesOf(body);
   const Vec3d centre = meanOf(vertices);
   const double size = sizeOf(vertices);
-  double depth = INFINITY, outside = 0.0;  // of the centre in the faces' planes; of corners before them
-  for (const BodyFace& face : faces) {
-    depth = lesser(depth, -face.plane.evaluate(centre));
-    for (const Vec3f& vertex : vertices) {
-      outside = std::max(outside, face.plane.evaluate(Vec3d(vertex)));
-    }
-  }
+  const BodyDepth depth = depthIn(faces, vertices, centre);
   ConvexOccluder occluder;
   occluder.margin = 2.0 * static_cast<double>(body.slack) + kMarginRounding * size;
-  const double shrink = shrinking(occluder.margin + outside, depth);
+  const double shrink = shrinking(occluder.margin + depth.outside, depth.centre);
   if (!(shrink > 0.0 && shrink <= kMostShrinking)) {
     return false;
   }

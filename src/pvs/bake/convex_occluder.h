@@ -8,9 +8,8 @@
 //
 //   margin = 2 slack + how far corners lie off their planes + 2^-44 of the coordinates' size.
 //
-//   A polygon P  is shrunk about its centre until each edge has moved inwards by the margin. Two sets are
-//   made
-//                of it, one the margin before P's plane, one the margin behind it; what both hide is hidden.
+//   A polygon P  is shrunk about its centre until each edge has moved inwards by the margin. Of it two sets
+//                are made, one the margin before P's plane, one the margin behind; what both hide is hidden.
 //                A line that crosses both stays farther than slack from P's boundary, and its ends are
 //                farther than slack from P's plane, so it really meets P's triangles (docs/conservative.md).
 //   A body       is shrunk about its centre until each corner is behind every face by the margin. A line that

@@ -87,7 +87,7 @@ Status checkSetsOf(const BakedVisibility& baked) {
   for (std::uint32_t set = 0; set < sets.count(); ++set) {
     if (!soundSet(sets[set], baked.boxes.nodes)) {
       return Error{"set " + std::to_string(set) +
-                   " is not ascending, not in the hierarchy, or names a node " + "below another"};
+                   " is not ascending, not in the hierarchy, or names a node below another"};
     }
   }
   return Success{};

@@ -5,6 +5,8 @@
 #include <map>
 #include <unordered_map>
 
+#include "pvs/format/checksum.h"
+
 namespace sightline::bake_detail {
 namespace {
 
@@ -45,11 +47,7 @@ class Flattener {
   std::uint32_t setOf(const Runs& runs) {
     nodes_.clear();
     appendNodes(boxes_, runs, nodes_);
-    std::uint64_t hash = nodes_.size();
-    for (const std::uint32_t n : nodes_) {
-      hash = (hash ^ n) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 29;
-    }
+    const std::uint64_t hash = sight_format::checksumOf(std::as_bytes(std::span(nodes_)));
     const auto [first, last] = sets_by_hash_.equal_range(hash);
     for (auto known = first; known != last; ++known) {
       if (std::ranges::equal(sets_[known->second], nodes_)) {

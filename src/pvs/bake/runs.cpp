@@ -32,26 +32,6 @@ void unite(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out
   }
 }
 
-void complement(std::span<const ObjectRun> a, std::uint32_t count, Runs& out) {
-  out.clear();
-  std::uint32_t begin = 0;
-  for (const ObjectRun& run : a) {
-    if (begin < run.begin) {
-      out.push_back({begin, run.begin});
-    }
-    begin = run.end;
-  }
-  if (begin < count) {
-    out.push_back({begin, count});
-  }
-}
-
-bool contains(std::span<const ObjectRun> runs, std::uint32_t position) {
-  const auto after =
-      std::partition_point(runs.begin(), runs.end(), [&](const ObjectRun& r) { return r.end <= position; });
-  return after != runs.end() && after->begin <= position;
-}
-
 void appendNodes(const BoxTreeView& tree, std::span<const ObjectRun> runs,
                  std::vector<std::uint32_t>& nodes) {
   std::size_t run = 0;

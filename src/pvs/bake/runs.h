@@ -7,20 +7,22 @@
 #include <span>
 #include <vector>
 
-#include "pvs/bake/shadow_tree.h"
 #include "sightline/hierarchy/box_tree.h"
 
 namespace sightline::bake_detail {
 
+// A range of BoxTree::objects, [begin, end).
+struct ObjectRun {
+  std::uint32_t begin = 0, end = 0;
+
+  friend bool operator==(const ObjectRun&, const ObjectRun&) = default;
+};
 using Runs = std::vector<ObjectRun>;
 
 // out: what is in both. out is neither a nor b.
 void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
 // out: what is in either. out is neither a nor b.
 void unite(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
-// out: what of the first `count` objects is not in a. out is not a.
-void complement(std::span<const ObjectRun> a, std::uint32_t count, Runs& out);
-bool contains(std::span<const ObjectRun> runs, std::uint32_t position);
 
 // Appends the nodes whose objects are all in the set and whose parents' are not: ascending.
 void appendNodes(const BoxTreeView& tree, std::span<const ObjectRun> runs, std::vector<std::uint32_t>& nodes);

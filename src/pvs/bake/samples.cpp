@@ -57,11 +57,14 @@ std::size_t SampleStore::KeyHash::operator()(const Key& k) const {
   return static_cast<std::size_t>(mixed(k.x + mixed(k.y + mixed(k.z))));
 }
 
-Sample& SampleStore::at(const Vec3d& eye) {
+SampleStore::Key SampleStore::keyOf(const Vec3d& eye) {
   // + 0.0: the two zeros are one place.
-  const Key key{std::bit_cast<std::uint64_t>(eye.x + 0.0), std::bit_cast<std::uint64_t>(eye.y + 0.0),
-                std::bit_cast<std::uint64_t>(eye.z + 0.0)};
-  const auto [place, is_new] = places_.try_emplace(key);
+  return {std::bit_cast<std::uint64_t>(eye.x + 0.0), std::bit_cast<std::uint64_t>(eye.y + 0.0),
+          std::bit_cast<std::uint64_t>(eye.z + 0.0)};
+}
+
+Sample& SampleStore::at(const Vec3d& eye) {
+  const auto [place, is_new] = places_.try_emplace(keyOf(eye));
   if (is_new) {
     samples_.emplace_front(eye);
     place->second = samples_.begin();
@@ -92,10 +95,8 @@ std::span<const ObjectRun> SampleStore::hidden(Sample& sample, std::uint32_t occ
 void SampleStore::forgetOldest() {
   while (bytes_ > max_bytes_ && !samples_.empty()) {
     const Sample& oldest = samples_.back();
-    const Vec3d& eye = oldest.eye();
     bytes_ -= oldest.bytes();
-    places_.erase({std::bit_cast<std::uint64_t>(eye.x + 0.0), std::bit_cast<std::uint64_t>(eye.y + 0.0),
-                   std::bit_cast<std::uint64_t>(eye.z + 0.0)});
+    places_.erase(keyOf(oldest.eye()));
     samples_.pop_back();
     stats_.forgotten += 1;
   }

@@ -11,8 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pvs/bake/runs.h"
-#include "pvs/bake/shadow.h"
+#include "pvs/bake/shadow_tree.h"
 #include "sightline/pvs/bake/bake.h"
 
 namespace sightline::bake_detail {
@@ -47,7 +46,7 @@ class Sample {
 
 class SampleStore {
  public:
-  // All views outlive this. reach: of makeShadow.
+  // Occluders and tree outlive this. reach: of makeShadow.
   SampleStore(const ConvexOccluders& occluders, const ShadowTree& tree, double reach, std::size_t max_bytes)
       : occluders_(occluders), tree_(tree), reach_(reach), max_bytes_(max_bytes) {}
 
@@ -65,6 +64,7 @@ class SampleStore {
     std::uint64_t x, y, z;
     friend bool operator==(const Key&, const Key&) = default;
   };
+  static Key keyOf(const Vec3d& eye);
   struct KeyHash {
     std::size_t operator()(const Key& k) const;
   };

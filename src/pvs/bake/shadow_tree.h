@@ -5,17 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "pvs/bake/runs.h"
 #include "pvs/bake/shadow.h"
 #include "sightline/hierarchy/box_tree.h"
 
 namespace sightline::bake_detail {
-
-// A range of BoxTree::objects, [begin, end).
-struct ObjectRun {
-  std::uint32_t begin = 0, end = 0;
-
-  friend bool operator==(const ObjectRun&, const ObjectRun&) = default;
-};
 
 // The boxes of a tree, the children of a node side by side. Nodes of few children are dissolved in their
 // parent, so that vector lanes are filled; leaves are those of the tree. Does not change once made.

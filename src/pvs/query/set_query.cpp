@@ -27,9 +27,8 @@ std::uint32_t setOf(const OctreeView& octree, const OctreeLeaf& leaf, const Vec3
   if (leaf.plane == OctreeLeaf::kNoPlane) {
     return leaf.set;
   }
-  const CellPlane& plane = octree.planes[leaf.plane];
-  const double distance = dot(plane.normal, eye);
-  return distance >= plane.front ? leaf.front_set : distance <= plane.back ? leaf.back_set : leaf.set;
+  const CellSide side = sideOf(octree.planes[leaf.plane], eye);
+  return side == CellSide::kFront ? leaf.front_set : side == CellSide::kBack ? leaf.back_set : leaf.set;
 }
 
 }  // namespace

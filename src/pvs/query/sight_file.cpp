@@ -35,6 +35,10 @@ std::string countsOf(const SceneId& scene) {
   return withCommas(scene.objects) + " objects and " + withCommas(scene.triangles) + " triangles";
 }
 
+Error brokenSet(const std::string& file, std::uint32_t set) {
+  return Error{file + " is altered: set " + std::to_string(set) + " is broken: bake it again"};
+}
+
 const DatabaseEntry* findDatabase(const SightView& view, const std::string& name) {
   const auto found = std::find_if(view.databases.begin(), view.databases.end(),
                                   [&](const DatabaseEntry& entry) { return entry.name == name; });
@@ -132,7 +136,7 @@ Status SightFile::matches(const SceneId& other) const {
 
 Status SightFile::readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) const {
   if (!ChunkDecoder().readSet(data_->view, set, nodes)) {
-    return Error{data_->name + " is altered: set " + std::to_string(set) + " is broken: bake it again"};
+    return brokenSet(data_->name, set);
   }
   return Success{};
 }
@@ -143,7 +147,7 @@ Status SightFile::verifyAll() const {
   for (std::uint32_t set = 0; set < setCount(); ++set) {
     nodes.clear();
     if (!decoder.readSet(data_->view, set, nodes)) {
-      return Error{data_->name + " is altered: set " + std::to_string(set) + " is broken: bake it again"};
+      return brokenSet(data_->name, set);
     }
   }
   for (const DatabaseEntry& entry : data_->view.databases) {

@@ -31,13 +31,14 @@ struct BakeSettings {
   // An occluder is of use to a cell when its area is so many times that of the cell's smallest face, or its
   // volume so many times the cell's.
   double occluder_size = 1.0;
-  // Dividing helps where some corner, or the centre, sees less than the cell by this part of the cell's
-  // triangles.
+  // Dividing helps where some point, of the cell's corners and centre and its children's centres, sees less
+  // than the cell by this part of the cell's triangles.
   double similarity = 0.1;
   double least_gain = 0.02;  // doubling the search box helped when it hid this part of the triangles
-  double merge_tolerance =
-      0.05;  // siblings are merged when all together see at most this part more than each
-  std::size_t sample_bytes = 256u << 20;  // of a worker; what is forgotten is computed again
+  // Siblings are merged when all together see at most this part more than each.
+  double merge_tolerance = 0.05;
+  // Of a worker, between cells; what is forgotten is computed again.
+  std::size_t sample_bytes = 256u << 20;
 };
 
 // One part's cells as plain bytes, the same wherever it was baked.
@@ -49,10 +50,10 @@ struct PartSummary {
 };
 
 struct BakeStats {
-  std::uint64_t samples = 0;    // viewpoints from which something was computed
-  std::uint64_t shadows = 0;    // occluders seen from a viewpoint
-  std::uint64_t forgotten = 0;  // samples, for want of memory
-  std::size_t most_sample_bytes = 0;
+  std::uint64_t samples = 0;          // viewpoints from which something was computed
+  std::uint64_t shadows = 0;          // occluders seen from a viewpoint
+  std::uint64_t forgotten = 0;        // samples, for want of memory
+  std::size_t most_sample_bytes = 0;  // that samples took at any time
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };
 
@@ -60,7 +61,7 @@ struct BakeStats {
 class Bake {
  public:
   // Computes the top of the octree, down to the parts. scene, occluders: need not outlive it. An error where
-  // settings are out of range or the scene has no objects with a finite box.
+  // settings are out of range, or where there is no region and no object with a finite box.
   // occluders: all that are to be considered; area_fraction = 1 leaves none out.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {});
@@ -73,7 +74,7 @@ class Bake {
   // Holds the samples of the parts that it bakes, one after the other. For one thread at a time.
   class Worker {
    public:
-    explicit Worker(const Bake& bake);  // which it outlives not
+    explicit Worker(const Bake& bake);  // keeps its plan alive
     ~Worker();
     Worker(Worker&&) noexcept;
     // part < partCount(). Depends on nothing but the plan and the part.
@@ -96,7 +97,7 @@ class Bake {
   std::shared_ptr<const Data> data_;
 };
 
-// All of it in one call, in the threads of parallel_for. progress: parts done.
+// All of it in one call, in the threads of parallel_for.
 Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet& occluders,
                                        const BakeSettings& settings = {},
                                        const ParallelFor& parallel_for = serialFor);

@@ -41,6 +41,16 @@ struct CellPlane {
   friend bool operator==(const CellPlane&, const CellPlane&) = default;
 };
 
+enum class CellSide : std::uint8_t { kFront, kBetween, kBack };
+
+// The side of the plane that the eye is on; between for what is not a number.
+inline CellSide sideOf(const CellPlane& plane, const Vec3d& eye) {
+  const double distance = dot(plane.normal, eye);
+  return distance >= plane.front  ? CellSide::kFront
+         : distance <= plane.back ? CellSide::kBack
+                                  : CellSide::kBetween;
+}
+
 // Each belongs to one node. 16 bytes.
 struct OctreeLeaf {
   static constexpr std::uint32_t kNoPlane = 0xffffffffu;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <chrono>
+#include <utility>
+
+namespace sightline::tool {
+
+class Stopwatch {
+ public:
+  // Microseconds since it was made, or since the last call.
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    return std::chrono::duration<double, std::micro>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace sightline::tool
