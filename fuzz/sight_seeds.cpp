@@ -30,8 +30,12 @@ bool writeFile(const std::string& file, const made::Visibility& settings) {
 }
 
 bool writeSet(const std::string& file, const std::vector<std::uint32_t>& nodes) {
+  std::vector<BoxNode> leaves(nodes.empty() ? 0 : nodes.back() + 1);
+  for (std::uint32_t i = 0; i < leaves.size(); ++i) {
+    leaves[i].end = i + 1;
+  }
   std::vector<std::byte> bytes;
-  sight_format::appendSet(bytes, nodes);
+  sight_format::appendSet(bytes, nodes, leaves);
   return write(file, bytes);
 }
 

@@ -37,8 +37,8 @@ bool decodes(const Bytes& code, std::span<const BoxNode> tree) {
 
 TEST(SetCode, IsWhatTheSchemaSays) {
   Bytes code;
-  appendSet(code, Nodes{1, 2, 131, 1000});
-  // Four nodes; 1; then distances minus one: 0, 128, 868 = 6 * 128 + 100.
+  appendSet(code, Nodes{1, 2, 131, 1000}, flatTree(1000));
+  // Four nodes; 1; then from the end of one to the next: 0, 128, 868 = 6 * 128 + 100.
   EXPECT_EQ(code, bytes({4, 1, 0, 0x80, 1, 0xe4, 6}));
 }
 
@@ -50,7 +50,7 @@ TEST(SetCode, GivesBackEverySet) {
     for (std::uint32_t set = 0; set < baked.sets.count(); ++set) {
       const auto expected = baked.sets[set];
       Bytes code;
-      appendSet(code, expected);
+      appendSet(code, expected, baked.boxes.nodes);
       EXPECT_LE(code.size(), mostSetBytes(expected.size()));
       Nodes nodes;
       ASSERT_TRUE(decodeSet(code, baked.boxes.nodes, nodes)) << "seed " << seed;
@@ -97,7 +97,7 @@ TEST(SetCode, SurvivesAnyBytes) {
     if (decodeSet(code, baked.boxes.nodes, nodes)) {
       EXPECT_TRUE(soundSet(nodes, baked.boxes.nodes));
       Bytes again;
-      appendSet(again, nodes);
+      appendSet(again, nodes, baked.boxes.nodes);
       EXPECT_LE(again.size(), code.size());
     }
   }

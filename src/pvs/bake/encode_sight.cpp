@@ -45,7 +45,8 @@ class Compressor {
 };
 
 // Sets follow each other into a chunk until the next one would make it too long.
-void encodeSets(const NodeSets& sets, Compressor& compressor, EncodedChunks& encoded) {
+void encodeSets(const NodeSets& sets, std::span<const BoxNode> tree, Compressor& compressor,
+                EncodedChunks& encoded) {
   std::vector<std::byte> raw, set_bytes;
   const auto finishChunk = [&] {
     if (!raw.empty()) {
@@ -55,7 +56,7 @@ void encodeSets(const NodeSets& sets, Compressor& compressor, EncodedChunks& enc
   };
   for (std::uint32_t set = 0; set < sets.count(); ++set) {
     set_bytes.clear();
-    appendSet(set_bytes, sets[set]);
+    appendSet(set_bytes, sets[set], tree);
     if (raw.size() + set_bytes.size() > kSetChunkBytes) {
       finishChunk();
     }
@@ -98,7 +99,7 @@ Status checkSetsOf(const BakedVisibility& baked) {
 EncodedChunks encodeChunks(const BakedVisibility& baked) {
   EncodedChunks encoded;
   Compressor compressor(encoded);
-  encodeSets(baked.sets, compressor, encoded);
+  encodeSets(baked.sets, baked.boxes.nodes, compressor, encoded);
   for (const DatabaseBlob& blob : baked.databases) {
     encodeDatabase(blob, compressor, encoded);
   }

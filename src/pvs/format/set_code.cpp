@@ -11,7 +11,7 @@ void appendNumber(std::vector<std::byte>& bytes, std::uint32_t value) {
 }
 
 // Moves `at` past the number. false: it does not end, or has more than 32 bits.
-bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value) {
+bool readLongNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value) {
   std::uint64_t number = 0;
   for (std::uint32_t shift = 0; shift < 35 && at != end; shift += 7) {
     const auto byte = static_cast<std::uint64_t>(*at++);
@@ -24,8 +24,17 @@ bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value
   return false;
 }
 
-// The numbers of the nodes, below `limit`, from their distances.
-bool readNodes(const std::byte* at, const std::byte* end, std::uint64_t limit,
+// Most numbers are of one byte.
+bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value) {
+  if (at != end && static_cast<std::uint8_t>(*at) < 0x80) {
+    value = static_cast<std::uint8_t>(*at++);
+    return true;
+  }
+  return readLongNumber(at, end, value);
+}
+
+// The nodes, from their distances: each from where the one before ends, so that none is below another.
+bool readNodes(const std::byte* at, const std::byte* end, std::span<const BoxNode> tree,
                std::span<std::uint32_t> nodes) {
   std::uint64_t next = 0;  // the least that the next node may be
   for (std::uint32_t& node : nodes) {
@@ -34,22 +43,24 @@ bool readNodes(const std::byte* at, const std::byte* end, std::uint64_t limit,
       return false;
     }
     next += distance;
-    if (next >= limit) {
+    if (next >= tree.size()) {
       return false;
     }
-    node = static_cast<std::uint32_t>(next++);
+    node = static_cast<std::uint32_t>(next);
+    next = tree[node].end;
   }
   return at == end;
 }
 
 }  // namespace
 
-void appendSet(std::vector<std::byte>& bytes, std::span<const std::uint32_t> nodes) {
+void appendSet(std::vector<std::byte>& bytes, std::span<const std::uint32_t> nodes,
+               std::span<const BoxNode> tree) {
   appendNumber(bytes, static_cast<std::uint32_t>(nodes.size()));
   std::uint32_t next = 0;
   for (const std::uint32_t node : nodes) {
     appendNumber(bytes, node - next);
-    next = node + 1;
+    next = tree[node].end;
   }
 }
 
@@ -76,7 +87,7 @@ bool decodeSet(std::span<const std::byte> bytes, std::span<const BoxNode> tree,
   const std::size_t before = nodes.size();
   nodes.resize(before + count);
   const std::span<std::uint32_t> added = std::span(nodes).subspan(before);
-  if (!readNodes(at, end, tree.size(), added) || !soundSet(added, tree)) {
+  if (!readNodes(at, end, tree, added)) {
     nodes.resize(before);
     return false;
   }

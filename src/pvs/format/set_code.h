@@ -11,8 +11,9 @@
 
 namespace sightline::sight_format {
 
-// Ascending numbers without equal ones, any 32 bits.
-void appendSet(std::vector<std::byte>& bytes, std::span<const std::uint32_t> nodes);
+// nodes: a soundSet of the tree.
+void appendSet(std::vector<std::byte>& bytes, std::span<const std::uint32_t> nodes,
+               std::span<const BoxNode> tree);
 
 // At most so many bytes: a set of that many nodes.
 constexpr std::uint64_t mostSetBytes(std::uint64_t node_count) {
