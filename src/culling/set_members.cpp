@@ -56,8 +56,9 @@ bool SetMembers::find(const View& view) {
   id_ = set.id;
   if (another || everything()) {
     object_count_ = 0;
+    const BoxTreeView tree = boxes();
     for (const std::uint32_t node : nodes_) {
-      object_count_ += sets_->boxes().nodes[node].object_count;
+      object_count_ += tree.nodes[node].object_count;
     }
   }
   if (another && !everything() && node_marks_) {

@@ -26,7 +26,7 @@ class Walk {
   // Nodes first ... first + count - 1, whose parent is behind all planes but these.
   void visit(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
              std::uint32_t plane_count) {
-    const auto lanes = static_cast<std::uint32_t>(hn::Lanes(d_));
+    const auto lanes = static_cast<std::uint32_t>(hn::Lanes(kLanes));
     for (std::uint32_t i = 0; i < count; i += lanes) {
       visitLanes(first + i, std::min(count - i, lanes), planes, plane_count);
     }
@@ -59,26 +59,26 @@ class Walk {
   // The lanes with nothing below that is behind all planes: for some plane, no leaf reaches far enough.
   std::uint32_t classify(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
                          std::uint32_t plane_count, std::uint8_t* behind) const {
-    const auto x = hn::Sub(hn::LoadU(d_, tree_.cx.data() + first), hn::Set(d_, shadow_.eye.x));
-    const auto y = hn::Sub(hn::LoadU(d_, tree_.cy.data() + first), hn::Set(d_, shadow_.eye.y));
-    const auto z = hn::Sub(hn::LoadU(d_, tree_.cz.data() + first), hn::Set(d_, shadow_.eye.z));
-    const auto hx = hn::LoadU(d_, tree_.hx.data() + first);
-    const auto hy = hn::LoadU(d_, tree_.hy.data() + first);
-    const auto hz = hn::LoadU(d_, tree_.hz.data() + first);
-    const auto rx = hn::LoadU(d_, tree_.rx.data() + first);
-    const auto ry = hn::LoadU(d_, tree_.ry.data() + first);
-    const auto rz = hn::LoadU(d_, tree_.rz.data() + first);
-    auto lit = hn::Not(hn::FirstN(d_, count));
+    const auto x = hn::Sub(hn::LoadU(kLanes, tree_.cx.data() + first), hn::Set(kLanes, shadow_.eye.x));
+    const auto y = hn::Sub(hn::LoadU(kLanes, tree_.cy.data() + first), hn::Set(kLanes, shadow_.eye.y));
+    const auto z = hn::Sub(hn::LoadU(kLanes, tree_.cz.data() + first), hn::Set(kLanes, shadow_.eye.z));
+    const auto hx = hn::LoadU(kLanes, tree_.hx.data() + first);
+    const auto hy = hn::LoadU(kLanes, tree_.hy.data() + first);
+    const auto hz = hn::LoadU(kLanes, tree_.hz.data() + first);
+    const auto rx = hn::LoadU(kLanes, tree_.rx.data() + first);
+    const auto ry = hn::LoadU(kLanes, tree_.ry.data() + first);
+    const auto rz = hn::LoadU(kLanes, tree_.rz.data() + first);
+    auto lit = hn::Not(hn::FirstN(kLanes, count));
     for (std::uint32_t i = 0; i < plane_count; ++i) {
       const std::uint8_t p = planes[i];
-      const auto nx = hn::Set(d_, shadow_.nx[p]), ny = hn::Set(d_, shadow_.ny[p]);
-      const auto nz = hn::Set(d_, shadow_.nz[p]), offset = hn::Set(d_, shadow_.offset[p]);
+      const auto nx = hn::Set(kLanes, shadow_.nx[p]), ny = hn::Set(kLanes, shadow_.ny[p]);
+      const auto nz = hn::Set(kLanes, shadow_.nz[p]), offset = hn::Set(kLanes, shadow_.offset[p]);
       const auto middle = hn::Add(hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)), hn::Mul(nz, z));
       const auto ax = hn::Abs(nx), ay = hn::Abs(ny), az = hn::Abs(nz);
       const auto half = hn::Add(hn::Add(hn::Mul(ax, hx), hn::Mul(ay, hy)), hn::Mul(az, hz));
       const auto room = hn::Add(hn::Add(hn::Mul(ax, rx), hn::Mul(ay, ry)), hn::Mul(az, rz));
       lit = hn::Or(lit, hn::Lt(hn::Add(middle, room), offset));
-      if (hn::AllTrue(d_, lit)) {
+      if (hn::AllTrue(kLanes, lit)) {
         break;
       }
       behind[i] = bitsOf(hn::Ge(hn::Sub(middle, half), offset));
@@ -101,7 +101,7 @@ class Walk {
     }
   }
 
-  static constexpr Lanes d_{};
+  static constexpr Lanes kLanes{};
   const ShadowTree::Arrays& tree_;
   const Shadow& shadow_;
   std::vector<ObjectRun>& runs_;
