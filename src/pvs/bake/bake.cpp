@@ -76,7 +76,7 @@ std::optional<CellBox> regionOf(const SceneView& scene, const BakeSettings& sett
 
 // An eighth of all there is: a few rooms, a few streets.
 double firstSearchDistance(const BakeScene& scene) {
-  return scene.settings.search_distance > 0.0 ? scene.settings.search_distance : 0.125 * scene.reach;
+  return scene.settings.search_distance > 0.0 ? scene.settings.search_distance : 0.125 * scene.diagonal;
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,

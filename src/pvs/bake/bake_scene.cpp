@@ -44,16 +44,16 @@ CellBox cubeAround(const CellBox& box) {
   return {box.min, box.min + Vec3d{edge, edge, edge}};
 }
 
-// Length of the diagonal of the smallest box around the root and all objects with a box.
-double reachOf(const SceneView& scene, const CellBox& root) {
-  Vec3d low = root.min, high = root.max;
+// Of the smallest box around this one and all objects with a box.
+double diagonalOf(const SceneView& scene, const CellBox& box) {
+  Vec3d low = box.min, high = box.max;
   for (const Object& object : scene.objects) {
     if (object.bounds.wellFormed()) {
       low = min(low, Vec3d(object.bounds.min));
       high = max(high, Vec3d(object.bounds.max));
     }
   }
-  return 1.01 * length(high - low);
+  return length(high - low);
 }
 
 }  // namespace
@@ -69,7 +69,8 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       position_of(scene.objects.size()),
       occluders(set),
       side_margin(sideMargin(root)),
-      reach(reachOf(scene, root)) {
+      diagonal(diagonalOf(scene, region)),
+      reach(1.01 * diagonalOf(scene, root)) {
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
   }

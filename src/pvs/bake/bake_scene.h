@@ -31,6 +31,7 @@ struct BakeScene {
   std::vector<std::uint32_t> position_of;  // by object, into BoxTree::objects
   ConvexOccluders occluders;
   double side_margin = 0.0;  // metres, of the root
+  double diagonal = 0.0;     // metres, of the region and all objects
   double reach = 0.0;        // metres, from any viewer to any box
 
   CellBox boxOf(const OctreeCell& cell) const {
