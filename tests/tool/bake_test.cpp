@@ -58,7 +58,7 @@ TEST(Bake, GivesTheSameBytesWithAnyThreads) {
 
 TEST(Bake, GivesTheSameBytesWithAnyProcesses) {
   if (!haveMpirun()) {
-    GTEST_SKIP() << "no mpirun here";
+    GTEST_SKIP() << kNoMpirun;
   }
   const TemporaryFolder folder;
   ASSERT_EQ(runTool(bakeArguments(kShip, folder.file("0.sight"))).code, 0);
@@ -78,7 +78,7 @@ TEST(Bake, GivesTheSameBytesWithAnyProcesses) {
 
 TEST(Bake, EndsAllProcessesWithOneLine) {
   if (!haveMpirun()) {
-    GTEST_SKIP() << "no mpirun here";
+    GTEST_SKIP() << kNoMpirun;
   }
   const TemporaryFolder folder;
   const std::string file = folder.file("F.sight");

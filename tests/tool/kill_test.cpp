@@ -106,7 +106,7 @@ TEST_F(KilledBake, GoesOnAfterManyKillsOneAfterTheOther) {
 
 TEST_F(KilledBake, GoesOnAfterOneOfTwoProcessesIsKilled) {
   if (!haveMpirun()) {
-    GTEST_SKIP() << "no mpirun here";
+    GTEST_SKIP() << kNoMpirun;
   }
   for (int i = 0; i < kKills; ++i) {
     const std::string file = folder_.file("mpi" + std::to_string(i));

@@ -107,6 +107,10 @@ inline std::vector<std::string> toolWords(int processes, const std::vector<std::
   return words;
 }
 
+// scripts/setup installs it. Who sets SIGHTLINE_NO_SETUP may have built against an MPI whose launcher is not
+// at hand; there is then nothing to start several processes with.
+inline constexpr const char* kNoMpirun = "mpirun cannot be run (scripts/setup installs openmpi-bin)";
+
 inline bool haveMpirun() {
   return Started({"mpirun", "--version"}).wait().code == 0;
 }

@@ -1,11 +1,12 @@
 #include "tools/sightline/bake_databases.h"
 
-#include <map>
+#include <algorithm>
 
 #include "sightline/occluders/occluder_database.h"
 #include "sightline/occluders/viewpoint_database.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/load.h"
+#include "tools/sightline/names.h"
 #include "tools/sightline/progress_bar.h"
 
 namespace sightline::tool {
@@ -23,9 +24,8 @@ std::vector<std::byte> buildDatabase(const std::string& name, CullingData& data,
         .save();
   }
   ViewpointDatabaseSettings settings;
-  settings.criterion = name == "minimum-sets" ? OccluderCriterion::kMinimumSets
-                       : name == "first-hit"  ? OccluderCriterion::kFirstHit
-                                              : OccluderCriterion::kProjectedSize;
+  const auto choice = std::ranges::find(kOccluderChoices, name, &Name<OccluderChoice>::text);
+  settings.criterion = criterionOf(choice->value);
   return ViewpointDatabase::build(data.hierarchy(HierarchyKind::kBvh), data.occluders(), {}, settings,
                                   parallel_for, progress)
       .save();

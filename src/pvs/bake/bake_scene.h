@@ -16,9 +16,9 @@
 namespace sightline::bake_detail {
 
 struct BakeScene {
-  // settings: usable ones. root: where viewers are.
+  // settings: usable ones. region: where viewers are.
   BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& settings,
-            const CellBox& root);
+            const CellBox& region);
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
