@@ -141,7 +141,7 @@ void measureDecoding(const SightFile& file) {
     eyes[leaf] = (cellMin(octree.min, octree.max, cell) + cellMax(octree.min, octree.max, cell)) * 0.5;
   });
   std::shuffle(leaves.begin(), leaves.end(), std::mt19937(3));
-  SetQuery query(file, {.cache_bytes = std::size_t{1} << 30});
+  SetQuery query(file);
   std::vector<double> times;
   double nodes = 0.0;
   for (const std::uint32_t leaf : leaves) {

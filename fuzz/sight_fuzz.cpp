@@ -144,8 +144,9 @@ std::vector<BoxNode> treeOfSets() {
 
 void decode(std::span<const std::byte> bytes) {
   static const std::vector<BoxNode> tree = treeOfSets();
+  static const std::vector<std::uint32_t> ends = sight_format::endsOf(tree);
   std::vector<std::uint32_t> nodes;
-  if (sight_format::decodeSet(bytes, tree, nodes)) {
+  if (sight_format::decodeSet(bytes, ends, nodes)) {
     checkNodes(nodes, {tree, {}});
   } else {
     require(nodes.empty());

@@ -306,7 +306,8 @@ TEST_F(BakedMethods, HideNothingVisibleAtTheBordersOfCells) {
                "visibility-octree,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
                "--visible-sets", "on", "--json", "-"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const json& run : parse(outcome.out)["runs"]) {
+  const json report = parse(outcome.out);
+  for (const json& run : report["runs"]) {
     EXPECT_EQ(run["false_culls"], 0) << run["method"] << " " << run["witnesses"];
   }
 }

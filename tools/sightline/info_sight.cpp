@@ -27,16 +27,14 @@ struct SetSize {
 Result<std::vector<SetSize>> sizesOfSets(const SightFile& file) {
   const BoxTreeView boxes = file.boxes();
   std::vector<SetSize> sizes(file.setCount());
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t set = 0; set < sizes.size(); ++set) {
-    nodes.clear();
-    if (const Status ok = file.readSet(set, nodes); !ok) {
-      return ok.error();
-    }
+  const Status whole = file.forEachSet([&](std::uint32_t set, std::span<const std::uint32_t> nodes) {
     for (const std::uint32_t node : nodes) {
       sizes[set].objects += boxes.nodes[node].object_count;
       sizes[set].triangles += boxes.nodes[node].triangles;
     }
+  });
+  if (!whole) {
+    return whole.error();
   }
   return sizes;
 }

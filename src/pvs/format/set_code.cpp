@@ -1,5 +1,7 @@
 #include "pvs/format/set_code.h"
 
+#include <algorithm>
+
 namespace sightline::sight_format {
 namespace {
 
@@ -34,7 +36,7 @@ bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value
 }
 
 // The nodes, from their distances: each from where the one before ends, so that none is below another.
-bool readNodes(const std::byte* at, const std::byte* end, std::span<const BoxNode> tree,
+bool readNodes(const std::byte* at, const std::byte* end, std::span<const std::uint32_t> ends,
                std::span<std::uint32_t> nodes) {
   std::uint64_t next = 0;  // the least that the next node may be
   for (std::uint32_t& node : nodes) {
@@ -43,11 +45,11 @@ bool readNodes(const std::byte* at, const std::byte* end, std::span<const BoxNod
       return false;
     }
     next += distance;
-    if (next >= tree.size()) {
+    if (next >= ends.size()) {
       return false;
     }
     node = static_cast<std::uint32_t>(next);
-    next = tree[node].end;
+    next = ends[node];
   }
   return at == end;
 }
@@ -75,7 +77,13 @@ bool soundSet(std::span<const std::uint32_t> nodes, std::span<const BoxNode> tre
   return sound;
 }
 
-bool decodeSet(std::span<const std::byte> bytes, std::span<const BoxNode> tree,
+std::vector<std::uint32_t> endsOf(std::span<const BoxNode> tree) {
+  std::vector<std::uint32_t> ends(tree.size());
+  std::transform(tree.begin(), tree.end(), ends.begin(), [](const BoxNode& node) { return node.end; });
+  return ends;
+}
+
+bool decodeSet(std::span<const std::byte> bytes, std::span<const std::uint32_t> ends,
                std::vector<std::uint32_t>& nodes) {
   const std::byte* at = bytes.data();
   const std::byte* end = at + bytes.size();
@@ -87,7 +95,7 @@ bool decodeSet(std::span<const std::byte> bytes, std::span<const BoxNode> tree,
   const std::size_t before = nodes.size();
   nodes.resize(before + count);
   const std::span<std::uint32_t> added = std::span(nodes).subspan(before);
-  if (!readNodes(at, end, tree, added)) {
+  if (!readNodes(at, end, ends, added)) {
     nodes.resize(before);
     return false;
   }

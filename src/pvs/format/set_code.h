@@ -20,9 +20,12 @@ constexpr std::uint64_t mostSetBytes(std::uint64_t node_count) {
   return 5 * (node_count + 1);
 }
 
+// BoxNode::end of all nodes, close together: decoding waits for one of them after each node.
+std::vector<std::uint32_t> endsOf(std::span<const BoxNode> tree);
+
 // Appends the nodes of a set. false, with nothing appended: the bytes are not exactly one set, or a node is
-// not in the tree or lies below another one of the set. tree: the nodes of a sound BoxTree.
-bool decodeSet(std::span<const std::byte> bytes, std::span<const BoxNode> tree,
+// not in the tree or lies below another one of the set. ends: endsOf the nodes of a sound BoxTree.
+bool decodeSet(std::span<const std::byte> bytes, std::span<const std::uint32_t> ends,
                std::vector<std::uint32_t>& nodes);
 
 // Whether a set is ascending, in the tree, and none of it is below another.

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "pvs/format/checksum.h"
+#include "pvs/format/set_code.h"
 #include "pvs/format/sight_view.h"
 
 namespace sightline::sight_format {
@@ -247,6 +248,7 @@ Result<SightView> viewOf(std::span<const std::byte> bytes) {
   if (!sound) {
     return Error{"is damaged: " + sound.error().message + ": bake it again"};
   }
+  view.ends = endsOf(view.boxes.nodes);
   return view;
 }
 

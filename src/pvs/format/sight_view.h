@@ -20,7 +20,7 @@ inline constexpr std::uint64_t kMostFileBytes = 0x7fffffffu;  // what a FlatBuff
 
 // Chunks of sets are about as long as the first of these before compression: one is decompressed in some
 // microseconds. None is longer than the second one, but for sets that are longer themselves.
-inline constexpr std::uint32_t kSetChunkBytes = 4096;
+inline constexpr std::uint32_t kSetChunkBytes = 2048;
 inline constexpr std::uint32_t kMostSetChunkBytes = 65536;
 inline constexpr std::uint32_t kDatabaseChunkBytes = 1u << 20;
 inline constexpr std::uint64_t kMostDatabaseBytes = 1u << 30;
@@ -52,6 +52,7 @@ struct SightView {
   std::uint32_t max_depth = 0;
   std::string_view settings;
   BoxTreeView boxes;
+  std::vector<std::uint32_t> ends;  // endsOf the boxes' nodes, where sets are to be decoded
   OctreeView octree;
   std::uint32_t set_chunks = 0;  // the first of chunks
   std::span<const SetPlace> sets;

@@ -47,7 +47,7 @@ bool ChunkDecoder::readSet(const SightView& view, std::uint32_t set, std::vector
     last_chunk_ = chunk;
   }
   const std::span<const std::byte> raw(raw_);
-  return decodeSet(raw.subspan(offset, view.endOf(set) - offset), view.boxes.nodes, nodes);
+  return decodeSet(raw.subspan(offset, view.endOf(set) - offset), view.ends, nodes);
 }
 
 }  // namespace sightline::sight_query

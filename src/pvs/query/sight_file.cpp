@@ -141,7 +141,8 @@ Status SightFile::readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) 
   return Success{};
 }
 
-Status SightFile::verifyAll() const {
+Status SightFile::forEachSet(
+    const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const {
   ChunkDecoder decoder;
   std::vector<std::uint32_t> nodes;
   for (std::uint32_t set = 0; set < setCount(); ++set) {
@@ -149,6 +150,14 @@ Status SightFile::verifyAll() const {
     if (!decoder.readSet(data_->view, set, nodes)) {
       return brokenSet(data_->name, set);
     }
+    visit(set, nodes);
+  }
+  return Success{};
+}
+
+Status SightFile::verifyAll() const {
+  if (const Status whole = forEachSet([](std::uint32_t, std::span<const std::uint32_t>) {}); !whole) {
+    return whole;
   }
   for (const DatabaseEntry& entry : data_->view.databases) {
     const Result<DatabaseBlob> database = readDatabase(std::string(entry.name));

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,6 +41,9 @@ class SightFile {
   // Decodes a set: appends the nodes. set < setCount(). An error where the chunk is broken. For many sets in
   // a row SetQuery is faster.
   Status readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) const;
+  // Calls visit(set, nodes) for all of them, ascending, each chunk decoded once; ends at the first broken
+  // one.
+  Status forEachSet(const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const;
   // Decodes all chunks, as a check.
   Status verifyAll() const;
 
