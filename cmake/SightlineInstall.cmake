@@ -1,5 +1,5 @@
-# cmake --install: sightline::runtime and, where it is built, sightline::pvs, their headers, and the package that
-# find_package(sightline) reads. The other libraries serve the tool and are not installed.
+# cmake --install: sightline::runtime and, where they are built, sightline::pvs and sightline::layers, their
+# headers, and the package that find_package(sightline) reads. The other libraries serve the tool and are not installed.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -21,6 +21,14 @@ if(TARGET sightline_pvs)
       DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline/pvs COMPONENT pvs FILES_MATCHING PATTERN "*.h")
   endforeach()
   install(EXPORT sightlinePvsTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT pvs)
+endif()
+
+if(TARGET sightline_layers)
+  install(TARGETS sightline_layers EXPORT sightlineLayersTargets COMPONENT layers
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT layers)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline/layers
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT layers FILES_MATCHING PATTERN "*.h")
+  install(EXPORT sightlineLayersTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT layers)
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightlineConfig.cmake.in

@@ -2,32 +2,56 @@
 
 #include "scenes/procedural.h"
 
+#include <algorithm>
 #include <charconv>
-#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "scenes/moving_scene.h"
 
 namespace sightline {
 namespace {
 
 constexpr std::string_view kPrefix = "demo:";
 
-// A number that a scene's URL may give.
+// What a scene's URL may give: a number, or one of some words.
 struct Key {
   std::string_view name;
   std::uint32_t min, max;
-  std::uint32_t* value;
+  std::uint32_t* value;                          // the number, or which word
+  std::span<const std::string_view> words = {};  // if there are any, min and max are not looked at
   bool given = false;
 };
+
+std::string choiceOf(const Key& key) {
+  std::string choice;
+  for (const std::string_view word : key.words) {
+    choice += (choice.empty() ? "" : " or ") + std::string(word);
+  }
+  return key.words.empty() ? std::to_string(key.min) + " to " + std::to_string(key.max) : choice;
+}
 
 std::string listOf(std::span<const Key> keys) {
   std::string list;
   for (const Key& key : keys) {
-    list += (list.empty() ? "" : ", ") + std::string(key.name) + " (" + std::to_string(key.min) + " to " +
-            std::to_string(key.max) + ")";
+    list += (list.empty() ? "" : ", ") + std::string(key.name) + " (" + choiceOf(key) + ")";
   }
   return list;
+}
+
+// The value that a text is for a key; false: none.
+bool readValue(std::string_view text, const Key& key) {
+  if (!key.words.empty()) {
+    const auto word = std::find(key.words.begin(), key.words.end(), text);
+    *key.value = static_cast<std::uint32_t>(word - key.words.begin());
+    return word != key.words.end();
+  }
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  *key.value = static_cast<std::uint32_t>(number);
+  return error == std::errc() && end == text.data() + text.size() && number >= key.min && number <= key.max;
 }
 
 Status readPair(std::string_view pair, std::string_view scene, std::span<Key> keys) {
@@ -45,14 +69,10 @@ Status readPair(std::string_view pair, std::string_view scene, std::span<Key> ke
     if (key.given) {
       return Error{where + "the key '" + std::string(name) + "' is given twice; give it once"};
     }
-    std::uint64_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number < key.min || number > key.max) {
-      return Error{where + "'" + std::string(text) + "' is no value for '" + std::string(name) +
-                   "'; give a whole number from " + std::to_string(key.min) + " to " +
-                   std::to_string(key.max)};
+    if (!readValue(text, key)) {
+      return Error{where + "'" + std::string(text) + "' is no value for '" + std::string(name) + "'; give " +
+                   (key.words.empty() ? "a whole number from " : "") + choiceOf(key)};
     }
-    *key.value = static_cast<std::uint32_t>(number);
     key.given = true;
     return Success{};
   }
@@ -109,10 +129,76 @@ Result<Scene> makeDemoShip(std::string_view query) {
   return status ? Result<Scene>(makeShip(options)) : status.error();
 }
 
+Result<MovingScene> makeDemoToothpicks(std::string_view query) {
+  static constexpr std::string_view kScalings[] = {"us", "ud"};
+  ToothpickOptions options;
+  std::uint32_t scaling = 0;
+  Key keys[] = {{"n", 1, 100000, &options.count},
+                {"scaling", 0, 0, &scaling, kScalings},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "toothpicks", keys);
+  options.uniform_density = scaling == 1;
+  return status ? Result<MovingScene>(makeToothpicks(options)) : status.error();
+}
+
+Result<MovingScene> makeDemoCanyon(std::string_view query) {
+  CanyonOptions options;
+  Key keys[] = {{"grid", 1, 100, &options.grid}, {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "canyon", keys);
+  return status ? Result<MovingScene>(makeCanyon(options)) : status.error();
+}
+
+template <typename S>
+struct Maker {
+  std::string_view name;
+  Result<S> (*make)(std::string_view query);
+};
+constexpr Maker<Scene> kStillScenes[] = {
+    {"city", makeDemoCity}, {"building", makeDemoBuilding}, {"boxes", makeDemoBoxes}, {"ship", makeDemoShip}};
+constexpr Maker<MovingScene> kMovingScenes[] = {{"toothpicks", makeDemoToothpicks},
+                                                {"canyon", makeDemoCanyon}};
+
+// A URL without its prefix: the scene's name, and what stands behind the '?'.
+std::pair<std::string_view, std::string_view> split(std::string_view url) {
+  const std::string_view rest = url.substr(std::min(kPrefix.size(), url.size()));
+  const std::size_t mark = rest.find('?');
+  return {rest.substr(0, mark), mark == std::string_view::npos ? std::string_view() : rest.substr(mark + 1)};
+}
+
+template <typename S>
+const Maker<S>* find(std::span<const Maker<S>> makers, std::string_view name) {
+  const auto found =
+      std::find_if(makers.begin(), makers.end(), [&](const Maker<S>& m) { return m.name == name; });
+  return found == makers.end() ? nullptr : &*found;
+}
+
+template <typename S>
+std::string namesOf(std::span<const Maker<S>> makers) {
+  std::string names;
+  for (const Maker<S>& maker : makers) {
+    names += (names.empty() ? "" : ", ") + std::string(maker.name);
+  }
+  return names;
+}
+
 }  // namespace
 
 bool isDemoUrl(std::string_view url) {
   return url.substr(0, kPrefix.size()) == kPrefix;
+}
+
+bool isMovingDemoUrl(std::string_view url) {
+  return isDemoUrl(url) && find<MovingScene>(kMovingScenes, split(url).first) != nullptr;
+}
+
+Result<MovingScene> makeMovingDemoScene(std::string_view url) {
+  const auto [name, query] = split(url);
+  const Maker<MovingScene>* maker = isDemoUrl(url) ? find<MovingScene>(kMovingScenes, name) : nullptr;
+  if (maker == nullptr) {
+    return Error{"'" + std::string(url) + "' is no demo scene with moving parts; there are " +
+                 namesOf<MovingScene>(kMovingScenes) + ", as demo:toothpicks?n=200"};
+  }
+  return maker->make(query);
 }
 
 Result<Scene> makeDemoScene(std::string_view url) {
@@ -120,23 +206,16 @@ Result<Scene> makeDemoScene(std::string_view url) {
     return Error{"'" + std::string(url) +
                  "' is no demo scene; its URL begins with demo:, as demo:city?copies=30"};
   }
-  const std::string_view rest = url.substr(kPrefix.size());
-  const std::size_t mark = rest.find('?');
-  const std::string_view scene = rest.substr(0, mark);
-  const std::string_view query = mark == std::string_view::npos ? std::string_view() : rest.substr(mark + 1);
-  if (scene == "city") {
-    return makeDemoCity(query);
+  const auto [name, query] = split(url);
+  if (const Maker<Scene>* maker = find<Scene>(kStillScenes, name)) {
+    return maker->make(query);
   }
-  if (scene == "building") {
-    return makeDemoBuilding(query);
+  if (const Maker<MovingScene>* maker = find<MovingScene>(kMovingScenes, name)) {
+    Result<MovingScene> moving = maker->make(query);
+    return moving ? Result<Scene>(std::move(moving->scene)) : moving.error();
   }
-  if (scene == "boxes") {
-    return makeDemoBoxes(query);
-  }
-  if (scene == "ship") {
-    return makeDemoShip(query);
-  }
-  return Error{"unknown demo scene '" + std::string(scene) + "'; scenes: city, building, boxes, ship"};
+  return Error{"unknown demo scene '" + std::string(name) + "'; scenes: " + namesOf<Scene>(kStillScenes) +
+               ", " + namesOf<MovingScene>(kMovingScenes)};
 }
 
 }  // namespace sightline

@@ -17,9 +17,9 @@ namespace sightline::repository {
 namespace {
 
 // From the bottom to the top.
-constexpr std::array<std::string_view, 11> kRooms{"base",      "math",      "geometry",  "scene",
+constexpr std::array<std::string_view, 12> kRooms{"base",      "math",      "geometry",  "scene",
                                                   "hierarchy", "occluders", "occlusion", "culling",
-                                                  "pvs",       "io",        "render"};
+                                                  "layers",    "pvs",       "io",        "render"};
 constexpr std::size_t kRuntimeRooms = 8;  // the first of them make sightline::runtime
 
 std::optional<std::size_t> levelOf(std::string_view room) {
@@ -162,6 +162,23 @@ TEST(IncludeDirections, TheBakerAndTheLookUpShareOnlyTheFormat) {
         EXPECT_FALSE(file.file.find(from) != std::string::npos &&
                      include.target.find(to) != std::string::npos)
             << where(include) << "through pvs/format only";
+      }
+    }
+  }
+}
+
+// Sorting stands beside culling: neither knows of the other.
+TEST(IncludeDirections, LayersKnowNothingOfCulling) {
+  for (const RoomFile& file : roomFiles()) {
+    for (const Include& include : includesOf(file.file)) {
+      const auto room = includedRoom(file, include);
+      if (!room) {
+        continue;
+      }
+      if (file.room == "layers") {
+        EXPECT_TRUE(*room == "layers" || levelOf(*room) <= levelOf("scene")) << where(include);
+      } else {
+        EXPECT_TRUE(*room != "layers" || file.room == "render") << where(include);
       }
     }
   }

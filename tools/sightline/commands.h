@@ -21,5 +21,6 @@ void addVerify(CLI::App& app, Command& chosen);
 void addReproduce(CLI::App& app, Command& chosen);
 void addBake(CLI::App& app, Command& chosen);
 void addQuery(CLI::App& app, Command& chosen);
+void addLayers(CLI::App& app, Command& chosen);
 
 }  // namespace sightline::tool

@@ -44,7 +44,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "SCENE is a file (.glb .gltf .obj .ply .stl ...) or a built-in scene: demo:city?copies=30&seed=1, "
-      "demo:building, demo:boxes, demo:ship.\n"
+      "demo:building, demo:boxes, demo:ship, demo:toothpicks?n=200&scaling=ud, demo:canyon?grid=14.\n"
       "Exit code: 0 fine, 1 a check failed, 2 bad usage or input.\n"
       "sightline COMMAND --help shows a command's options and examples.");
   Command chosen;
@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   addReproduce(app, chosen);
   addBake(app, chosen);
   addQuery(app, chosen);
+  addLayers(app, chosen);
   if (const std::string word = argc > 1 ? argv[1] : "";
       !word.empty() && word[0] != '-' && !isCommand(app, word)) {
     return fail(fmt::format("there is no command '{}'; choose from: {}", word, commandNames(app)));

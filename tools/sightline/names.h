@@ -7,8 +7,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sightline/culling/culler.h"
+#include "sightline/layers/compositing.h"
+#include "sightline/layers/layer_sorter.h"
 
 namespace sightline::tool {
 
@@ -63,6 +66,20 @@ inline constexpr std::array<Name<DepthComparison>, 2> kDepthComparisons{{
     {"sparse", DepthComparison::kSparse},
     {"pixelwise", DepthComparison::kPixelwise},
 }};
+inline constexpr std::array<Name<LayerSort>, 2> kLayerSorts{{
+    {"depth-first", LayerSort::kDepthFirst},
+    {"incremental", LayerSort::kIncremental},
+}};
+inline constexpr std::array<Name<OccluderSearch>, 3> kOccluderSearches{{
+    {"automatic", OccluderSearch::kAutomatic},
+    {"scan", OccluderSearch::kScan},
+    {"tree", OccluderSearch::kTree},
+}};
+inline constexpr std::array<Name<CompositingForm>, 3> kCompositingForms{{
+    {"sum-of-outs", CompositingForm::kSumOfOuts},
+    {"over-atop", CompositingForm::kOverAtop},
+    {"cheapest", CompositingForm::kCheapest},
+}};
 inline constexpr std::array<Name<bool>, 2> kSwitch{{{"on", true}, {"off", false}}};
 
 template <typename T, std::size_t N>
@@ -73,6 +90,26 @@ std::string nameOf(const std::array<Name<T>, N>& names, T value) {
     }
   }
   return "?";
+}
+
+// text: one of the names.
+template <typename T, std::size_t N>
+T valueOf(const std::array<Name<T>, N>& names, std::string_view text) {
+  for (const Name<T>& name : names) {
+    if (name.text == text) {
+      return name.value;
+    }
+  }
+  return names[0].value;
+}
+
+template <typename T, std::size_t N>
+std::vector<std::string> textsOf(const std::array<Name<T>, N>& names) {
+  std::vector<std::string> texts;
+  for (const Name<T>& name : names) {
+    texts.emplace_back(name.text);
+  }
+  return texts;
 }
 
 // "a, b, c"

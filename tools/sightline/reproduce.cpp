@@ -19,7 +19,7 @@ namespace {
 
 struct Paper {
   const char* title;
-  std::vector<std::string> scenes;  // unless the user names others
+  std::vector<std::string> scenes;  // unless the user names others; none: it makes its own
   Result<Reproduction> (*reproduce)(const ReproduceOptions&, const std::vector<SceneAndWalk>&);
   bool bakes = false;
   std::vector<std::string> short_scenes{};  // with --short; none: the same
@@ -44,6 +44,10 @@ const std::vector<std::pair<std::string, Paper>>& papers() {
         reproduceSaonaVazquez,
         true,
         {"demo:ship?decks=3&rooms=4&machinery=8"}}},
+      {"snyder-lengyel",
+       {"Snyder, Lengyel. Visibility Sorting and Compositing for Image-Based Rendering. MSR-TR-97-11, 1997.",
+        {},
+        reproduceSnyderLengyel}},
   };
   return kPapers;
 }
@@ -114,7 +118,8 @@ std::string folderName(const std::string& scene) {
 Status writeFolder(const ReproduceOptions& options, const std::string& text, const std::string& json,
                    const Reproduction& result) {
   for (std::size_t i = 0; i < result.reports.size(); ++i) {
-    const std::string folder = fmt::format("{}/{}-{}", options.folder, i + 1, folderName(options.scenes[i]));
+    const std::string& name = options.scenes.empty() ? options.paper : options.scenes[i];
+    const std::string folder = fmt::format("{}/{}-{}", options.folder, i + 1, folderName(name));
     if (const Status made = makeFolder(folder); !made) {
       return made;
     }
@@ -152,6 +157,9 @@ Result<ExitCode> runReproduce(ReproduceOptions options) {
   if (!paper.bakes && (options.depth > 0 || options.triangle_budget > 0)) {
     return Error{
         fmt::format("--depth and --triangle-budget: {} bakes nothing; leave them out", options.paper)};
+  }
+  if (paper.scenes.empty() && !(options.scenes.empty() && options.path.path.empty())) {
+    return Error{fmt::format("--scene and --path: {} makes its own scenes; leave them out", options.paper)};
   }
   if (options.scenes.empty()) {
     options.scenes = options.fewer_frames && !paper.short_scenes.empty() ? paper.short_scenes : paper.scenes;
@@ -205,6 +213,7 @@ void addReproduce(CLI::App& app, Command& chosen) {
       "  sightline reproduce coorg-teller\n"
       "  sightline reproduce poon-wang -o report\n"
       "  sightline reproduce saona-vazquez --threads 8 -o report\n"
+      "  sightline reproduce snyder-lengyel -o report\n"
       "  sightline reproduce coorg-teller --short --scene \"demo:city?copies=4\" --json tables.json\n"
       "  sightline reproduce coorg-teller --scene office.glb --path walk.json -o report");
   command->callback([options, command, &chosen] {

@@ -57,7 +57,7 @@ Json toJson(const Experiment& experiment);
 struct Reproduction {
   std::vector<Experiment> experiments{};
   std::vector<std::string> notes{};
-  std::vector<Report> reports{};  // one a scene
+  std::vector<Report> reports{};  // one a scene; one in all where the paper makes its own
 };
 
 // Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 6.
@@ -70,5 +70,9 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
 // Computers & Graphics 1999, section 4.
 Result<Reproduction> reproduceSaonaVazquez(const ReproduceOptions& options,
                                            const std::vector<SceneAndWalk>& inputs);
+// Based on: Snyder, Lengyel. Visibility Sorting and Compositing for Image-Based Rendering. MSR-TR-97-11,
+// 1997, section 12. Makes its own scenes; takes no inputs.
+Result<Reproduction> reproduceSnyderLengyel(const ReproduceOptions& options,
+                                            const std::vector<SceneAndWalk>& inputs);
 
 }  // namespace sightline::tool

@@ -1,0 +1,246 @@
+// Ellipsoids that tumble in a cube of one metre a side.
+//
+// Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
+// Microsoft Research MSR-TR-97-11, 1997, section 12.1.
+// Differs from the paper in: sizes, which it does not give; the corner spheres and edge cylinders, which do
+// not quite touch, so that each is a layer of its own. About 5 % of the layers of 200 toothpicks then have
+// more than one part, mostly two (in the paper 4.5 %).
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/moving_parts.h"
+#include "scenes/random.h"
+
+namespace sightline {
+namespace procedural {
+namespace {
+
+constexpr double kHalfLength = 0.07, kHalfWidth = 0.01;  // metres, at scale 1
+// 41 bands of 8: 312 quads and 16 triangles, 40 rings of 8 vertices and two poles: 322.
+constexpr std::uint32_t kBands = 41, kSegments = 8;
+constexpr double kEndMovement = 0.00269;  // metres a frame, mean of all ends
+constexpr double kMargin = 0.02;          // metres at scale 1: how near to the cube's sides centres come
+constexpr double kSphereRadius = 0.02, kCylinderRadius = 0.01;
+constexpr double kJointGap = 0.001;
+// The hulls are this much larger than the meshes: more than what rounds off when a mesh is moved to where it
+// is and stored in single precision.
+constexpr double kHullGrowth = 0x1p-15;
+
+// By Newton's method; of numbers > 0. Sums and quotients alone: the same bits everywhere.
+double cubeRoot(double a) {
+  double x = std::max(a, 1.0);
+  for (int i = 0; i < 64; ++i) {
+    x = (2.0 * x + a / (x * x)) / 3.0;
+  }
+  return x;
+}
+
+double scaleOf(const ToothpickOptions& options) {
+  return options.uniform_density ? cubeRoot(200.0 / std::max(options.count, 1u)) : 1.0;
+}
+
+// From a position and a speed on a line to where a thing that bounces between low and high is.
+double bounced(double start, double travelled, double low, double high) {
+  const double length = high - low;
+  const double turns = (start - low + travelled) / (2.0 * length);
+  const double at = (turns - std::floor(turns)) * 2.0 * length;
+  return low + (at > length ? 2.0 * length - at : at);
+}
+
+struct Toothpick {
+  Vec3d centre;    // in frame 0
+  Vec3d velocity;  // metres a frame, until it bounces
+  // The long axis turns in the plane of these two, from the first to the second.
+  Vec3d axis, aside;
+  double turns = 0.0;  // full turns a frame
+};
+
+struct Motion {
+  std::vector<Toothpick> toothpicks;
+  double margin = 0.0;  // metres: how near to the cube's sides centres come
+  double velocity = 1.0;
+
+  Mat4 worldFromPart(std::size_t i, double frame) const {
+    const Toothpick& t = toothpicks[i];
+    const double time = frame * velocity;
+    Vec3d centre;
+    for (int a = 0; a < 3; ++a) {
+      centre[a] = bounced(t.centre[a], t.velocity[a] * time, margin, 1.0 - margin);
+    }
+    const Point2 d = unitVector(t.turns * time);
+    const Vec3d along = t.axis * d.x + t.aside * d.y, across = t.aside * d.x - t.axis * d.y;
+    // The part's y axis is the long one.
+    return rigid(across, along, cross(across, along), centre);
+  }
+};
+
+Vec3d randomDirection(Random& random) {
+  for (;;) {
+    const double x = random.range(-1.0, 1.0), y = random.range(-1.0, 1.0), z = random.range(-1.0, 1.0);
+    const Vec3d v(x, y, z);
+    const double squared = dot(v, v);
+    if (squared > 0.01 && squared <= 1.0) {
+      return normalized(v);
+    }
+  }
+}
+
+// Speeds are relative to each other: of the centre and, by the turning alone, of the ends.
+Toothpick randomToothpick(Random random, double margin, double half_length) {
+  Toothpick t;
+  for (int a = 0; a < 3; ++a) {
+    t.centre[a] = random.range(margin, 1.0 - margin);
+  }
+  t.axis = randomDirection(random);
+  t.aside = normalized(cross(randomDirection(random), t.axis));
+  const Vec3d direction = randomDirection(random);
+  t.velocity = direction * random.range(0.5, 1.5);
+  t.turns = random.range(0.5, 1.5) / (6.283185307179586 * half_length);
+  return t;
+}
+
+// Mean speed of all ends over a whole turn, bounces left aside.
+double meanEndSpeed(std::span<const Toothpick> toothpicks, double half_length) {
+  constexpr int kSteps = 32;
+  double sum = 0.0;
+  for (const Toothpick& t : toothpicks) {
+    const double end_speed = t.turns * 6.283185307179586 * half_length;
+    for (int i = 0; i < kSteps; ++i) {
+      const Point2 d = unitVector(static_cast<double>(i) / kSteps);
+      sum += length(t.velocity + (t.axis * d.x + t.aside * d.y) * end_speed);
+    }
+  }
+  return sum / (static_cast<double>(toothpicks.size()) * kSteps);
+}
+
+Motion makeMotion(const ToothpickOptions& options) {
+  const double half_length = kHalfLength * scaleOf(options);
+  Motion motion;
+  motion.velocity = options.velocity;
+  motion.margin = kMargin * scaleOf(options);
+  for (std::uint32_t i = 0; i < options.count; ++i) {
+    motion.toothpicks.push_back(randomToothpick(Random(options.seed, i), motion.margin, half_length));
+  }
+  const double factor = kEndMovement / meanEndSpeed(motion.toothpicks, half_length);
+  for (Toothpick& t : motion.toothpicks) {
+    t.velocity = t.velocity * factor;
+    t.turns *= factor;
+  }
+  return motion;
+}
+
+// Turned about the builder's z axis, the part's y axis. From pole to pole.
+Scene ellipsoid(double half_length, double half_width, std::uint32_t bands, std::uint32_t segments) {
+  return buildPartMesh([&](MeshBuilder& mesh) {
+    std::vector<Point2> profile{{0.0, -half_length}};
+    for (std::uint32_t i = 1; i < bands; ++i) {
+      const Point2 d = unitVector(0.5 * i / bands);
+      profile.push_back({half_width * d.y, -half_length * d.x});
+    }
+    profile.push_back({0.0, half_length});
+    mesh.lathe(profile, segments);
+  });
+}
+
+Scene cylinder(double half_length, double radius) {
+  const Point2 profile[] = {
+      {0.0, -half_length}, {radius, -half_length}, {radius, half_length}, {0.0, half_length}};
+  return buildPartMesh([&](MeshBuilder& mesh) { mesh.lathe(profile, 16); });
+}
+
+enum Kind : std::uint32_t { kToothpick, kCorner, kEdge };
+
+MovingPart partOf(Kind kind, std::string name) {
+  MovingPart part;
+  part.name = std::move(name);
+  part.hulls = {kind};
+  part.class_of = kind;
+  part.settings.is_static = kind != kToothpick;
+  return part;
+}
+
+// A frame part stands still: its poses, in the order of the parts.
+std::vector<Mat4> addFrame(MovingScene& scene, const Scene& sphere, const Scene& edge) {
+  std::vector<Mat4> poses;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    poses.push_back(
+        rigid({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {i & 1 ? 1.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0}));
+    addMovingPart(scene, partOf(kCorner, "corner " + std::to_string(i)), sphere, poses.back(),
+                  MaterialId{kCorner});
+  }
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const int axis = static_cast<int>(i / 4);
+    Vec3d middle, along, aside;
+    middle[axis] = 0.5;
+    middle[(axis + 1) % 3] = i & 1 ? 1.0 : 0.0;
+    middle[(axis + 2) % 3] = i & 2 ? 1.0 : 0.0;
+    along[axis] = 1.0;
+    aside[(axis + 2) % 3] = 1.0;
+    poses.push_back(rigid(aside, along, cross(aside, along), middle));
+    addMovingPart(scene, partOf(kEdge, "edge " + std::to_string(i)), edge, poses.back(), MaterialId{kEdge});
+  }
+  return poses;
+}
+
+// Round the cube at a distance from which all of it is in view, while going up and down.
+CameraPath cameraPath(double velocity, std::uint32_t frames) {
+  constexpr double kDistance = 2.7, kTurnsAFrame = 1.0 / 3000;
+  CameraPath path;
+  path.name = "round";
+  path.fovy_deg = 45.0;
+  path.width = path.height = 800;
+  path.far = 10.0;
+  const Vec3d middle(0.5, 0.5, 0.5);
+  for (std::uint32_t f = 0; f < frames; ++f) {
+    const double turns = f * velocity * kTurnsAFrame;
+    const Point2 round = unitVector(0.085 + turns);
+    const double height = 0.25 + 0.1 * unitVector(2.0 * turns).y;
+    const Vec3d away = normalized(Vec3d(round.x, height, round.y));
+    path.frames.push_back({middle + away * kDistance, -away, {0.0, 1.0, 0.0}});
+  }
+  return path;
+}
+
+}  // namespace
+}  // namespace procedural
+
+MovingScene makeToothpicks(const ToothpickOptions& options) {
+  using namespace procedural;
+  MovingScene scene;
+  scene.classes = {"toothpick", "corner", "edge"};
+  scene.scene.materials = {{.name = "wood", .base_color = {0.8f, 0.62f, 0.36f, 1.0f}},
+                           {.name = "corner", .base_color = {0.25f, 0.35f, 0.6f, 1.0f}},
+                           {.name = "edge", .base_color = {0.5f, 0.55f, 0.6f, 1.0f}}};
+  const double scale = scaleOf(options);
+  const Scene toothpick = ellipsoid(kHalfLength * scale, kHalfWidth * scale, kBands, kSegments);
+  const Scene sphere = ellipsoid(kSphereRadius, kSphereRadius, 10, 20);
+  const Scene edge = cylinder(0.5 - kSphereRadius - kJointGap, kCylinderRadius);
+  for (const Scene* mesh : {&toothpick, &sphere, &edge}) {
+    scene.hulls.push_back(hullOf(*mesh, kHullGrowth));
+  }
+
+  const auto motion = std::make_shared<const Motion>(makeMotion(options));
+  for (std::uint32_t i = 0; i < options.count; ++i) {
+    addMovingPart(scene, partOf(kToothpick, "toothpick " + std::to_string(i)), toothpick,
+                  motion->worldFromPart(i, 0.0), MaterialId{kToothpick});
+  }
+  const std::vector<Mat4> frame_poses = addFrame(scene, sphere, edge);
+  scene.pose = [motion, frame_poses](std::uint32_t frame, std::span<Mat4> world_from_part) {
+    const std::size_t count = motion->toothpicks.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      world_from_part[i] = motion->worldFromPart(i, frame);
+    }
+    std::copy(frame_poses.begin(), frame_poses.end(),
+              world_from_part.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  weldPositions(scene.scene);
+  scene.scene.paths = {cameraPath(options.velocity, scene.frames)};
+  return scene;
+}
+
+}  // namespace sightline

@@ -1,0 +1,160 @@
+// Iterated merging of binary cycles.
+//
+// Based on: Snyder, Lengyel. MSR-TR-97-11, section 8, "Compositing Expression Compilation".
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "sightline/layers/compositing.h"
+
+namespace sightline {
+namespace {
+
+// Places in the order stand for parts, and a layer's first place for the layer.
+struct PlaceArc {
+  std::uint32_t front = 0, back = 0;
+
+  friend auto operator<=>(const PlaceArc&, const PlaceArc&) = default;
+};
+
+constexpr std::uint32_t kNotInOrder = 0xffffffffu;
+
+}  // namespace
+
+struct LayerMerger::Impl {
+  std::vector<std::uint32_t> place_of;  // by PartId
+  std::vector<std::uint32_t> group_of;  // by place
+  std::vector<std::uint32_t> first;     // by place: one before it in the same layer, or itself
+  std::vector<std::uint32_t> number;    // by place: the layer's
+  std::vector<std::uint32_t> next;      // by layer: where its next part goes
+  std::vector<PlaceArc> arcs;           // ascending, without duplicates
+  FrameLayers layers;
+
+  void read(const LayerOrder& order);
+  void takeArcs(std::span<const LayerArc> given);
+  std::uint32_t firstOf(std::uint32_t place);
+  bool mergePairs();
+  void contractArcs();
+  void numberLayers(const LayerOrder& order);
+  void listParts(const LayerOrder& order);
+};
+
+void LayerMerger::Impl::read(const LayerOrder& order) {
+  std::uint32_t parts = 0;
+  for (const PartId part : order.parts) {
+    parts = std::max(parts, part.value + 1);
+  }
+  place_of.assign(parts, kNotInOrder);
+  group_of.resize(order.parts.size());
+  first.resize(order.parts.size());
+  std::iota(first.begin(), first.end(), 0u);
+  for (std::size_t g = 0; g < order.groups(); ++g) {
+    for (std::uint32_t i = order.first_of[g]; i < order.first_of[g + 1]; ++i) {
+      place_of[order.parts[i].value] = i;
+      group_of[i] = static_cast<std::uint32_t>(g);
+    }
+  }
+  takeArcs(order.arcs);
+}
+
+void LayerMerger::Impl::takeArcs(std::span<const LayerArc> given) {
+  const auto placeOf = [&](PartId part) {
+    return part.value < place_of.size() ? place_of[part.value] : kNotInOrder;
+  };
+  arcs.clear();
+  for (const LayerArc& arc : given) {
+    const std::uint32_t front = placeOf(arc.front), back = placeOf(arc.back);
+    if (front != kNotInOrder && back != kNotInOrder && front != back && group_of[front] == group_of[back]) {
+      arcs.push_back({front, back});
+    }
+  }
+  std::sort(arcs.begin(), arcs.end());
+  arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
+}
+
+std::uint32_t LayerMerger::Impl::firstOf(std::uint32_t place) {
+  while (first[place] != place) {
+    first[place] = first[first[place]];
+    place = first[place];
+  }
+  return place;
+}
+
+// Whether there was a pair that occludes each other.
+bool LayerMerger::Impl::mergePairs() {
+  bool merged = false;
+  for (const PlaceArc& arc : arcs) {
+    if (arc.front < arc.back && std::binary_search(arcs.begin(), arcs.end(), PlaceArc{arc.back, arc.front})) {
+      const std::uint32_t a = firstOf(arc.front), b = firstOf(arc.back);
+      first[std::max(a, b)] = std::min(a, b);
+      merged = true;
+    }
+  }
+  return merged;
+}
+
+void LayerMerger::Impl::contractArcs() {
+  for (PlaceArc& arc : arcs) {
+    arc = {firstOf(arc.front), firstOf(arc.back)};
+  }
+  std::erase_if(arcs, [](const PlaceArc& arc) { return arc.front == arc.back; });
+  std::sort(arcs.begin(), arcs.end());
+  arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
+}
+
+void LayerMerger::Impl::numberLayers(const LayerOrder& order) {
+  const std::size_t parts = order.parts.size();
+  number.resize(parts);
+  layers.first_layer.assign(1, 0u);
+  layers.first_part.assign(1, 0u);
+  std::uint32_t count = 0;
+  for (std::size_t g = 0; g < order.groups(); ++g) {
+    for (std::uint32_t i = order.first_of[g]; i < order.first_of[g + 1]; ++i) {
+      const std::uint32_t of = firstOf(i);
+      if (of == i) {
+        number[i] = count++;
+        layers.first_part.push_back(0u);
+      }
+      number[i] = number[of];
+      ++layers.first_part[number[i] + 1];
+    }
+    layers.first_layer.push_back(count);
+  }
+  std::partial_sum(layers.first_part.begin(), layers.first_part.end(), layers.first_part.begin());
+}
+
+void LayerMerger::Impl::listParts(const LayerOrder& order) {
+  next.assign(layers.first_part.begin(), layers.first_part.end());
+  layers.parts.resize(order.parts.size());
+  for (std::size_t i = 0; i < order.parts.size(); ++i) {
+    layers.parts[next[number[i]]++] = order.parts[i];
+  }
+}
+
+LayerMerger::LayerMerger() : impl_(std::make_unique<Impl>()) {}
+LayerMerger::~LayerMerger() = default;
+LayerMerger::LayerMerger(LayerMerger&&) noexcept = default;
+LayerMerger& LayerMerger::operator=(LayerMerger&&) noexcept = default;
+
+const FrameLayers& LayerMerger::merge(const LayerOrder& order) {
+  Impl& m = *impl_;
+  m.read(order);
+  // A merged layer may occlude one that occludes another of its parts.
+  while (m.mergePairs()) {
+    m.contractArcs();
+  }
+  m.numberLayers(order);
+  m.listParts(order);
+  m.layers.occlusions.clear();
+  for (const PlaceArc& arc : m.arcs) {
+    // Layers are numbered by their first places: the arcs stay ascending.
+    m.layers.occlusions.push_back({LayerId(m.number[arc.front]), LayerId(m.number[arc.back])});
+  }
+  return m.layers;
+}
+
+}  // namespace sightline

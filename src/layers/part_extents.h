@@ -1,0 +1,93 @@
+#pragma once
+
+// Bounds of all parts along the axes, followed from frame to frame by walking from the last farthest vertices
+// along edges.
+//
+// Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.1 and appendix A.
+// Differs from the paper in: heights are above the eye, or above the first eye for axes that are fixed to the
+// world, so that scenes far from the origin keep their precision; angles are periodic pseudo-angles; of
+// orthographic views too; everything is rounded outwards.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "layers/axis_look.h"
+#include "layers/extent_table.h"
+#include "layers/part_store.h"
+#include "layers/plane_angle.h"
+#include "sightline/layers/extent_axis.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline::layers {
+
+class PartExtents {
+ public:
+  // axes: at most kMostExtentAxes; what is beyond is left out.
+  explicit PartExtents(std::vector<ExtentAxis> axes);
+
+  // Brings the table up to date with the view and the parts. moved: one a part, whether its placement changed
+  // since the last call; parts that are new count as moved. World-fixed spatial extents are computed for
+  // those alone, camera-fixed ones and angles for all if the view changed. A part that is not finite has
+  // infinite extents and the full circle. Returns how many intervals were computed. Angular axes of an
+  // orthographic view hold positions across the view: table().kinds says so.
+  std::uint64_t update(const View& view, const PartStore& parts, std::span<const std::uint8_t> moved);
+
+  const ExtentTable& table() const { return table_; }
+  // What occluders of a part must overlap: its spatial intervals widened to the eye (perspective: to the
+  // eye's height along the axis; orthographic: without end towards the eye), its angles as they are.
+  Extent query(std::uint32_t part) const;
+  // The same for parts taken together. members: at least one.
+  Extent query(std::span<const std::uint32_t> members) const;
+  // Whether a part overlaps another one's query.
+  bool mayOcclude(std::uint32_t front, std::uint32_t back) const;
+  // Of an axis: the middle of a part's interval less the eye's height, absolute: what orders parts by
+  // distance. Orthographic: with its sign, growing away from the eye. Not finite: infinite. axis: spatial.
+  double distanceAlong(std::size_t axis, std::uint32_t part) const;
+
+ private:
+  // What is the same for all parts that share a hull.
+  struct HullBounds {
+    double reach = 0.0;  // no vertex is farther from the hull's origin
+    double error = 0.0;  // of support along a direction of unit length
+  };
+  struct Heights {
+    double low = 0.0, high = 0.0;
+  };
+  // Of one part while its hulls are looked at: heights, or angles.
+  union Bounds {
+    Heights heights;
+    AngleRange angles;
+    Bounds() : heights{} {}
+  };
+
+  std::uint32_t lookFrom(const View& view);
+  void addParts(const PartStore& parts);
+  void updatePart(std::uint32_t part, const PartStore& parts, std::uint32_t axes);
+  void addInstance(std::uint32_t instance, const ConvexHull& hull, const HullBounds& bounds,
+                   const Placement& placement, double stretch, std::uint32_t axes, bool first);
+  Heights heightsOf(const ConvexHull& hull, const HullBounds& bounds, const Placement& placement,
+                    double stretch, const AxisLook& look, std::uint32_t* vertices) const;
+  AngleRange anglesOf(const ConvexHull& hull, const HullBounds& bounds, const Placement& placement,
+                      double stretch, const AxisLook& look, std::uint32_t* vertices) const;
+  void store(std::uint32_t part, std::uint32_t axes, bool finite);
+
+  std::vector<ExtentAxis> axes_;
+  std::vector<std::uint32_t> first_vertex_;  // an axis: its place among an instance's numbers
+  std::uint32_t vertices_of_instance_ = 0;
+
+  bool has_reference_ = false;
+  Vec3d reference_;               // world-fixed heights are above it
+  std::vector<AxisLook> looks_;   // an axis
+  std::vector<Interval> to_eye_;  // an axis: see eyeHeights()
+  std::vector<double> eye_;       // an axis: the eye's height
+  std::vector<double> away_;  // an axis: 0, or of orthographic views the sign of heights away from the eye
+
+  std::vector<HullBounds> hulls_;
+  std::vector<std::uint32_t> vertices_;  // instances * vertices_of_instance_: where the next search begins
+  std::array<Bounds, kMostExtentAxes> bounds_;
+  ExtentTable table_;
+};
+
+}  // namespace sightline::layers

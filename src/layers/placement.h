@@ -1,0 +1,35 @@
+#pragma once
+
+// Where a hull is: an affine map from its space to the world.
+
+#include "sightline/math/mat4.h"
+#include "sightline/math/vec3.h"
+
+namespace sightline::layers {
+
+struct Placement {
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  // what the hull's axes become
+  Vec3d origin;
+
+  friend bool operator==(const Placement&, const Placement&) = default;
+  Vec3d point(const Vec3d& p) const { return x * p.x + y * p.y + z * p.z + origin; }
+  // The direction in the hull's space along which the height is that along a direction of the world.
+  Vec3d toHull(const Vec3d& direction_world) const {
+    return {dot(direction_world, x), dot(direction_world, y), dot(direction_world, z)};
+  }
+};
+
+inline Placement placementOf(const Mat4& world_from_hull) {
+  const Mat4& m = world_from_hull;
+  return {{m(0, 0), m(1, 0), m(2, 0)},
+          {m(0, 1), m(1, 1), m(2, 1)},
+          {m(0, 2), m(1, 2), m(2, 2)},
+          {m(0, 3), m(1, 3), m(2, 3)}};
+}
+
+inline bool isFinite(const Placement& p) {
+  return sightline::isFinite(p.x) && sightline::isFinite(p.y) && sightline::isFinite(p.z) &&
+         sightline::isFinite(p.origin);
+}
+
+}  // namespace sightline::layers

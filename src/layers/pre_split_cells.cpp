@@ -1,0 +1,222 @@
+// The cells that meshes are cut to, and the planes between them.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "sightline/layers/pre_split.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Direction2 {
+  double x, y;
+};
+
+// The unit vector at this part of a full turn. Sums and products alone: the same bits on every machine. By
+// Taylor series to the last bit or two, of at most an eighth of a turn; whole quarters are turned exactly.
+Direction2 atTurns(double turns) {
+  const double quarters = std::floor(turns * 4.0 + 0.5);
+  const double a = (turns - quarters * 0.25) * (2.0 * std::numbers::pi);
+  double cosine = 1.0, sine = 1.0;
+  for (int k = 8; k >= 1; --k) {
+    cosine = 1.0 - cosine * a * a / static_cast<double>((2 * k - 1) * (2 * k));
+    sine = 1.0 - sine * a * a / static_cast<double>((2 * k) * (2 * k + 1));
+  }
+  sine *= a;
+  switch (static_cast<long long>(quarters) & 3) {
+    case 0:
+      return {cosine, sine};
+    case 1:
+      return {-sine, cosine};
+    case 2:
+      return {-cosine, -sine};
+    default:
+      return {sine, -cosine};
+  }
+}
+
+// Where slab `index` of `count` lies. Neighbours share the same bits.
+CellSlab slabOf(double low, double high, std::uint32_t index, std::uint32_t count) {
+  const auto at = [&](std::uint32_t i) { return low + (high - low) * (static_cast<double>(i) / count); };
+  return {index == 0 ? -kInfinity : at(index), index + 1 == count ? kInfinity : at(index + 1)};
+}
+
+// The plane through the axis in whose front angles of this part of a turn and up to half a turn more lie.
+Plane axisPlane(const SplitCells& cells, double turns) {
+  const Direction2 d = atTurns(turns);
+  const Vec3d normal = cells.quarter * d.x - cells.zero * d.y;
+  return {normal, -dot(normal, cells.axis_point)};
+}
+
+// Sector `second` begins `ahead` sectors after `first`. Counted in sectors from the first one's beginning, a
+// line at angle t has the first behind it where 1 <= t <= n / 2, and the second before it where ahead + 1 - n
+// / 2 <= t <= ahead. The middle of what is common is exactly the border between neighbours.
+Plane sectorPlane(const SplitCells& cells, std::uint32_t first, std::uint32_t second) {
+  const double n = cells.sectors;
+  const double ahead = (second + cells.sectors - first) % cells.sectors;
+  const double low = std::max(1.0, ahead + 1.0 - 0.5 * n), high = std::min(ahead, 0.5 * n);
+  return axisPlane(cells, std::fmod(first + 0.5 * (low + high), n) / n).flipped();
+}
+
+// Where the middle of a hexagon is along the grid's three directions, in halves of a hexagon's width. The
+// first direction is u, the others are at 60 and at 120 degrees from it.
+struct HexagonPlace {
+  long long along[3];
+};
+
+HexagonPlace hexagonAt(long long column, long long row) {
+  // Rows are 1.5 sides apart, odd ones half a width farther along u.
+  const long long first = 2 * column + (row & 1);
+  return {{first, (first + 3 * row) / 2, (3 * row - first) / 2}};
+}
+
+// Whether the rectangle meets the closed hexagon: a slab of either's sides may part them.
+bool meetsRectangle(const HexagonOptions& o, const HexagonPlace& place) {
+  const double half = 0.5 * o.width, radius = o.width / std::numbers::sqrt3;
+  const double middle_u = half * static_cast<double>(place.along[0]);
+  const double middle_v = 0.5 * radius * static_cast<double>(place.along[1] + place.along[2]);
+  // A little more than touching counts: a hexagon too many does no harm.
+  const double slack = 1e-9 * o.width;
+  if (middle_u - half > o.high_u + slack || middle_u + half < o.low_u - slack ||
+      middle_v - radius > o.high_v + slack || middle_v + radius < o.low_v - slack) {
+    return false;
+  }
+  for (int k = 1; k < 3; ++k) {
+    const double cosine = k == 1 ? 0.5 : -0.5, sine = 0.5 * std::numbers::sqrt3;
+    const double low = std::min(o.low_u * cosine, o.high_u * cosine) + o.low_v * sine;
+    const double high = std::max(o.low_u * cosine, o.high_u * cosine) + o.high_v * sine;
+    const double middle = half * static_cast<double>(place.along[k]);
+    if (middle - half > high + slack || middle + half < low - slack) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+SplitCells gridCells(std::span<const SplitAxis> axes) {
+  SplitCells cells;
+  cells.count = 1;
+  for (const SplitAxis& axis : axes) {
+    const std::uint32_t count = std::max(axis.count, 1u);
+    cells.directions.push_back(normalized(axis.direction));
+    cells.widths.push_back((axis.high - axis.low) / count);
+    cells.count *= count;
+  }
+  for (std::uint32_t c = 0; c < cells.count; ++c) {
+    std::uint32_t rest = c;
+    for (const SplitAxis& axis : axes) {
+      const std::uint32_t count = std::max(axis.count, 1u);
+      cells.slabs.push_back(slabOf(axis.low, axis.high, rest % count, count));
+      rest /= count;
+    }
+  }
+  return cells;
+}
+
+SplitCells cylinderCells(const CylinderOptions& options) {
+  SplitCells cells;
+  const Vec3d axis = normalized(options.axis);
+  const double foot = dot(axis, options.axis_point);
+  cells.directions = {axis};
+  cells.widths = {(options.high - options.low) / options.slices};
+  cells.sectors = options.sectors;
+  cells.axis_point = options.axis_point;
+  cells.zero = normalized(options.zero - axis * dot(options.zero, axis));
+  cells.quarter = cross(axis, cells.zero);
+  cells.sector_width =
+      options.sectors < 2 ? 2.0 * options.radius : 2.0 * options.radius * atTurns(0.5 / options.sectors).y;
+  cells.count = options.sectors * options.slices;
+  for (std::uint32_t c = 0; c < cells.count; ++c) {
+    cells.slabs.push_back(
+        slabOf(foot + options.low, foot + options.high, c / options.sectors, options.slices));
+    cells.sector_of.push_back(c % options.sectors);
+  }
+  return cells;
+}
+
+SplitCells hexagonCells(const HexagonOptions& options) {
+  SplitCells cells;
+  for (const Direction2 d :
+       {Direction2{1.0, 0.0}, {0.5, 0.5 * std::numbers::sqrt3}, {-0.5, 0.5 * std::numbers::sqrt3}}) {
+    cells.directions.push_back(options.u * d.x + options.v * d.y);
+    cells.widths.push_back(options.width);
+  }
+  const double half = 0.5 * options.width, row_height = 0.5 * std::numbers::sqrt3 * options.width;
+  const auto first_row = static_cast<long long>(std::floor(options.low_v / row_height)) - 1;
+  const auto last_row = static_cast<long long>(std::ceil(options.high_v / row_height)) + 1;
+  const auto first_column = static_cast<long long>(std::floor(options.low_u / options.width)) - 1;
+  const auto last_column = static_cast<long long>(std::ceil(options.high_u / options.width)) + 1;
+  for (long long row = first_row; row <= last_row; ++row) {
+    for (long long column = first_column; column <= last_column; ++column) {
+      const HexagonPlace place = hexagonAt(column, row);
+      if (!meetsRectangle(options, place)) {
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double base = dot(options.origin, cells.directions[k]);
+        cells.slabs.push_back({base + half * static_cast<double>(place.along[k] - 1),
+                               base + half * static_cast<double>(place.along[k] + 1)});
+      }
+      ++cells.count;
+    }
+  }
+  return cells;
+}
+
+std::vector<Plane> cellPlanes(const SplitCells& cells, std::uint32_t cell, double inflation) {
+  std::vector<Plane> planes;
+  const std::size_t directions = cells.directions.size();
+  for (std::size_t d = 0; d < directions; ++d) {
+    const CellSlab& slab = cells.slabs[cell * directions + d];
+    const double out = 0.5 * inflation * cells.widths[d];
+    if (slab.low > -kInfinity) {
+      planes.push_back({cells.directions[d], -(slab.low - out)});
+    }
+    if (slab.high < kInfinity) {
+      planes.push_back({-cells.directions[d], slab.high + out});
+    }
+  }
+  if (cells.sectors > 1) {
+    const double n = cells.sectors, out = 0.5 * inflation * cells.sector_width;
+    const std::uint32_t sector = cells.sector_of[cell];
+    planes.push_back(axisPlane(cells, sector / n));
+    planes.back().offset += out;
+    // Of two sectors, each is a half space.
+    if (cells.sectors > 2) {
+      planes.push_back(axisPlane(cells, (sector + 1) % cells.sectors / n).flipped());
+      planes.back().offset += out;
+    }
+  }
+  return planes;
+}
+
+Plane planeBetween(const SplitCells& cells, std::uint32_t first, std::uint32_t second) {
+  const std::size_t directions = cells.directions.size();
+  Plane best;
+  double best_gap = -kInfinity;
+  for (std::size_t d = 0; d < directions; ++d) {
+    const CellSlab& a = cells.slabs[first * directions + d];
+    const CellSlab& b = cells.slabs[second * directions + d];
+    const double above = a.low - b.high, below = b.low - a.high;
+    if (above >= 0.0 && above > best_gap) {
+      best_gap = above;
+      best = {cells.directions[d], -(b.high + 0.5 * above)};
+    }
+    if (below >= 0.0 && below > best_gap) {
+      best_gap = below;
+      best = {-cells.directions[d], a.high + 0.5 * below};
+    }
+  }
+  if (best_gap < 0.0) {
+    best = sectorPlane(cells, cells.sector_of[first], cells.sector_of[second]);
+  }
+  return best;
+}
+
+}  // namespace sightline

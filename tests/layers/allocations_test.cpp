@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <numeric>
+#include <vector>
+
+#include "layers/conditioning_sort.h"
+#include "layers/depth_first_sort.h"
+#include "layers/extent_scan.h"
+#include "layers/extent_tree.h"
+#include "layers/incremental_sort.h"
+#include "layers/part_extents.h"
+#include "sightline/layers/shaped_image.h"
+#include "tests/layers/extent_scene.h"
+#include "tests/layers/graph_source.h"
+#include "tests/layers/made_extents.h"
+#include "tests/layers/moving_sorter.h"
+#include "tests/support/count_allocations.h"
+
+namespace sightline::layers {
+namespace {
+
+bool ask(void* graph, std::uint32_t front, std::uint32_t back) {
+  return static_cast<GraphSource*>(graph)->occludes(front, back);
+}
+
+TEST(Sorts, DoNotAllocateOnceTheyHaveSortedAsMuch) {
+  std::mt19937 random(3);
+  const std::vector<std::uint32_t> previous = shuffledOrder(60, random);
+  GraphSource graph = randomGraph(60, 25, random);
+  IncrementalSort incremental;
+  DepthFirstSort depth_first;
+  ConditioningSort conditioning;
+  GroupedOrder order, other;
+  std::vector<double> keys(60);
+  for (double& key : keys) {
+    key = below(100, random);
+  }
+  std::size_t before = 0;
+  std::uint64_t conditioned = 0;
+  for (int round = 0; round < 2; ++round) {
+    before = allocations.load();
+    graph.reset();
+    incremental.sort(previous, graph, order);
+    graph.reset();
+    depth_first.sort(previous, graph, other);
+    conditioned = conditioning.sort(std::span(keys).first(other.groups()), keys, {ask, &graph}, {}, other);
+  }
+  EXPECT_EQ(allocations.load() - before, 0u);
+  EXPECT_GT(incremental.reinsertions(), 0u);
+  EXPECT_GT(conditioned, 0u);
+  EXPECT_GT(order.arcs.size(), 0u);
+}
+
+}  // namespace
+}  // namespace sightline::layers
+
+namespace sightline::layers {
+namespace {
+
+using namespace made;
+
+TEST(ExtentTree, AllocatesNothingAfterWarmUp) {
+  Random random(16);
+  ExtentTable table = makeTable(400, kindsOf(3, 3));
+  scatter(table, random, 0.03f);
+  const ExtentTable start = table;
+  ExtentTreeSettings settings;
+  settings.rebuild_after = 10;
+  settings.rebuild_steps = 50;
+  ExtentTree tree(settings);
+  std::vector<std::uint32_t> parts;
+  const auto frame = [&](std::size_t number) {
+    const float by = 0.05f * std::sin(static_cast<float>(number) * 0.2f);
+    for (std::size_t part = 0; part < table.parts; ++part) {
+      const float own = part % 2 == 0 ? by : -by;
+      set(table, 2, part, {start.lows[2][part] + own, start.highs[2][part] + own});
+    }
+    tree.update(table);
+    for (std::uint32_t part = 0; part < table.parts; ++part) {
+      tree.setActive(part, false);
+      parts.clear();
+      tree.query({table.at(0, part), table.at(1, part), table.at(2, part)}, parts);
+    }
+  };
+  std::size_t number = 0;
+  while (number < 120) {
+    frame(number++);
+  }
+  const std::size_t before = allocations;
+  const std::uint64_t takeovers = tree.work().takeovers;
+  while (number < 180) {
+    frame(number++);
+  }
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(tree.work().takeovers, takeovers);
+}
+
+}  // namespace
+}  // namespace sightline::layers
+
+namespace sightline::layers::extent_tests {
+namespace {
+
+TEST(PartExtents, DoNotAllocateAfterTheFirstFrame) {
+  shapes::Random random(2);
+  ExtentScene scene;
+  const std::uint32_t hulls[] = {scene.addHull(shapes::toothpick(0.7)), scene.addHull(shapes::cube())};
+  for (int i = 0; i < 50; ++i) {
+    scene.addPart(hulls, randomPlacement(random, random.direction() * 5.0, 1));
+  }
+  PartExtents extents(cameraExtents());
+  ExtentScan scan;
+  std::vector<std::uint32_t> found, order(50);
+  found.reserve(50);
+  std::iota(order.begin(), order.end(), 0u);
+  std::size_t before = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    if (frame == 1) {
+      before = allocations;
+    }
+    const View view = randomView(random, random.direction() * 8.0, frame % 5 == 4);
+    for (std::uint32_t part = 0; part < 50; ++part) {
+      scene.place(part, randomPlacement(random, random.direction() * 5.0, 1));
+    }
+    extents.update(view, scene.store, scene.moved);
+    scan.begin(extents.table(), order);
+    for (std::uint32_t part = 0; part < 50; ++part) {
+      found.clear();
+      scan.query(extents.query(part), found);
+    }
+  }
+  EXPECT_EQ(allocations - before, 0u);
+}
+
+}  // namespace
+}  // namespace sightline::layers::extent_tests
+
+namespace sightline {
+namespace {
+
+TEST(Compositing, DoesNotAllocateAfterWarmUp) {
+  const std::uint32_t n = 12;
+  std::vector<PartId> parts;
+  std::vector<LayerArc> arcs;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    parts.push_back(PartId(i));
+  }
+  for (std::uint32_t i = 0; i + 1 < n; ++i) {
+    arcs.push_back({PartId(i), PartId((i + 1) % (n - 1))});
+  }
+  arcs.push_back({PartId(4u), PartId(3u)});
+  arcs.push_back({PartId(2u), PartId(7u)});
+  const std::vector<std::uint32_t> first_of{0, n - 1, n};
+  const LayerOrder order{.parts = parts, .first_of = first_of, .arcs = arcs};
+
+  std::vector<ShapedPixel> pixels(64 * 4, ShapedPixel{0.1f, 0.2f, 0.3f, 0.4f}), result(64 * 4), scratch(32);
+  const std::vector<ShapedImage> images(n, ShapedImage{pixels.data(), 64, 4, 64});
+  LayerMerger merger;
+  CompositingCompiler compiler;
+  std::size_t layers = 0;
+  const auto frame = [&] {
+    for (const auto form :
+         {CompositingForm::kSumOfOuts, CompositingForm::kOverAtop, CompositingForm::kCheapest}) {
+      const CompositingProgram& program = compiler.compile(merger.merge(order), form);
+      layers = program.layers;
+      EXPECT_TRUE(evaluate(program, images, {result.data(), 64, 4, 64}, scratch));
+    }
+  };
+  frame();
+  ASSERT_EQ(layers, n - 1u);
+  const std::size_t before = allocations.load();
+  frame();
+  EXPECT_EQ(allocations.load(), before);
+}
+
+}  // namespace
+}  // namespace sightline
+
+namespace sightline {
+namespace {
+
+// All frames twice: the second time everything has had its greatest size.
+void expectNoAllocations(const MovingScene& scene, LayerSettings settings) {
+  MovingSorter moving(scene, settings);
+  LayerMerger merger;
+  CompositingCompiler compiler;
+  std::size_t before = 0, groups = 0;
+  for (int round = 0; round < 2; ++round) {
+    moving.sorter().reset();
+    before = allocations;
+    for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
+      const LayerOrder& order = moving.update(frame);
+      compiler.compile(merger.merge(order));
+      groups = order.groups();
+    }
+  }
+  EXPECT_EQ(allocations - before, 0u);
+  EXPECT_GT(groups, 20u);
+}
+
+TEST(LayerSorter, DoesNotAllocateAfterWarmUp) {
+  MovingScene scene = makeToothpicks({.count = 60});
+  scene.frames = 60;
+  for (const LayerSort sort : {LayerSort::kDepthFirst, LayerSort::kIncremental}) {
+    for (const OccluderSearch search : {OccluderSearch::kScan, OccluderSearch::kTree}) {
+      for (const bool all_arcs : {false, true}) {
+        SCOPED_TRACE(::testing::Message() << static_cast<int>(sort) << static_cast<int>(search) << all_arcs);
+        LayerSettings settings;
+        settings.sort = sort;
+        settings.search = search;
+        settings.all_arcs = all_arcs;
+        expectNoAllocations(scene, settings);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline

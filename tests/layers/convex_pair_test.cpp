@@ -1,0 +1,439 @@
+#include "layers/convex_pair.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <vector>
+
+#include "layers/support.h"
+#include "tests/support/exact_pairs.h"
+#include "tests/support/layer_shapes.h"
+
+namespace sightline::layers {
+
+std::ostream& operator<<(std::ostream& out, Meeting m) {
+  return out << std::array{"apart", "meet", "undecided"}[static_cast<std::size_t>(m)];
+}
+
+namespace {
+
+using shapes::Points;
+using shapes::Random;
+using Kind = ConvexSet::Kind;
+
+constexpr std::array<Kind, 3> kKinds{Kind::kHull, Kind::kWithEye, Kind::kSwept};
+
+ConvexHull hullOf(const Points& points) {
+  const auto hull = buildHull(points);
+  EXPECT_TRUE(hull);
+  return hull ? *hull : ConvexHull();
+}
+
+Meeting ask(const ConvexSet& first, const ConvexSet& second) {
+  PairWitness witness;
+  PairCounts counts;
+  return meeting(first, second, witness, counts);
+}
+
+Meeting ask(const Points& first, const Points& second) {
+  const ConvexHull a = hullOf(first), b = hullOf(second);
+  return ask(ConvexSet{&a}, ConvexSet{&b});
+}
+
+// The set's points in the world, right to the bit where the placement's numbers are small and whole.
+Points worldPoints(const ConvexSet& set, const Points& points) {
+  Points world;
+  for (const Vec3d& p : points) {
+    world.push_back(set.placement.point(p));
+  }
+  const std::size_t count = world.size();
+  if (set.kind == Kind::kWithEye) {
+    world.push_back(set.eye_or_sweep);
+  } else if (set.kind == Kind::kSwept) {
+    for (std::size_t i = 0; i < count; ++i) {
+      world.push_back(world[i] + set.eye_or_sweep);
+    }
+  }
+  return world;
+}
+
+// Both ways round, and again with what is known.
+void expectExact(const ConvexSet& first, const Points& first_points, const ConvexSet& second,
+                 const Points& second_points) {
+  const bool meet =
+      test::convexHullsMeet(worldPoints(first, first_points), worldPoints(second, second_points));
+  PairWitness there, back;
+  PairCounts counts;
+  for (int i = 0; i < 2; ++i) {
+    for (const Meeting answer :
+         {meeting(first, second, there, counts), meeting(second, first, back, counts)}) {
+      if (meet) {
+        EXPECT_NE(answer, Meeting::kApart);
+      } else {
+        EXPECT_EQ(answer, Meeting::kApart);
+      }
+    }
+  }
+}
+
+// A point, segment, polygon or solid of whole numbers.
+Points randomWhole(Random& random) {
+  const int dimension = random.whole(0, 3);
+  const int half = random.whole(1, 5);
+  return dimension == 3 ? shapes::randomGrid(random, 4 + random.below(8), half)
+                        : shapes::randomFlatGrid(random, 1 + random.below(6), half, dimension);
+}
+
+Vec3d randomWholePoint(Random& random, int half) {
+  return shapes::randomGrid(random, 1, half)[0];
+}
+
+TEST(ConvexPair, AgreesWithExactArithmeticAboutSmallWholeNumbers) {
+  std::array<int, 2> seen{};
+  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const Points a = randomWhole(random);
+    const Points b = shapes::moved(randomWhole(random), randomWholePoint(random, 5));
+    const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
+    const ConvexSet first{&hull_a};
+    const ConvexSet second{&hull_b, {}, kKinds[seed % 3], randomWholePoint(random, 12)};
+    expectExact(first, a, second, b);
+    ++seen[ask(first, second) == Meeting::kApart ? 1 : 0];
+  }
+  EXPECT_GT(seen[0], 400);
+  EXPECT_GT(seen[1], 400);
+}
+
+// Whole numbers: turned by a right angle or by that of 3, 4 and 5, mirrored, sheared, flattened to less.
+Placement randomWholePlacement(Random& random) {
+  Placement placement;
+  switch (random.below(4)) {
+    case 0:
+      placement = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+      break;
+    case 1:
+      placement = {{3, 4, 0}, {-4, 3, 0}, {0, 0, 5}};
+      break;
+    case 2:
+      placement = {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}};
+      break;
+    default:
+      placement = {randomWholePoint(random, 2), randomWholePoint(random, 2), randomWholePoint(random, 2)};
+      break;
+  }
+  placement.origin = randomWholePoint(random, 12);
+  return placement;
+}
+
+Placement scaledAndMoved(Placement placement, double scale, const Vec3d& by) {
+  return {placement.x * scale, placement.y * scale, placement.z * scale, placement.origin * scale + by};
+}
+
+TEST(ConvexPair, AgreesWithExactArithmeticAboutPlacedHullsAtAnyScaleAndFarFromTheOrigin) {
+  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const Points a = randomWhole(random), b = randomWhole(random);
+    const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
+    const double scale = std::array{1.0, 0x1p-20, 0x1p20}[random.below(3)];
+    const Vec3d by = randomWholePoint(random, 3) * (seed % 2 == 0 ? 1e6 : 0.0);
+    const ConvexSet first{&hull_a, scaledAndMoved(randomWholePlacement(random), scale, by)};
+    ConvexSet second{&hull_b, scaledAndMoved(randomWholePlacement(random), scale, by), kKinds[seed % 3],
+                     randomWholePoint(random, 40) * scale};
+    second.eye_or_sweep += second.kind == Kind::kWithEye ? by : Vec3d();
+    expectExact(first, a, second, b);
+  }
+}
+
+// Sets that touch as the name says, and the way by which the second is moved off the first.
+struct Touch {
+  const char* name;
+  Points first, second;
+  Vec3d off;
+};
+
+std::vector<Touch> touches() {
+  const Points cube = shapes::cube();
+  const Points needle = shapes::box({-1000, -1, -1}, {1000, 1, 1});
+  const Points plate = shapes::box({-1000, -1, -1000}, {1000, 1, 1000});
+  const Points square{{-2, 1, -2}, {2, 1, -2}, {2, 1, 2}, {-2, 1, 2}};
+  const Points octahedron{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  return {
+      {"corner and corner", cube, shapes::moved(cube, {2, 2, 2}), {1, 1, 1}},
+      {"corner and face", cube, shapes::moved(octahedron, {0.25, 2, 0.5}), {0, 1, 0}},
+      {"edge and edge, crossing",
+       shapes::segment({-1, 0, 0}, {1, 0, 0}),
+       shapes::segment({0, 0, -1}, {0, 0, 1}),
+       {0, 1, 0}},
+      {"edge and edge, side by side", cube, shapes::moved(cube, {2, 2, 0}), {1, 1, 0}},
+      {"edge and edge, shifted", cube, shapes::moved(cube, {2, 2, 1.5}), {1, 0, 0}},
+      {"face and face", cube, shapes::moved(cube, {2, 0, 0}), {1, 0, 0}},
+      {"face and face, shifted", cube, shapes::moved(cube, {2, 0.5, -0.75}), {1, 0, 0}},
+      {"face and polygon", cube, square, {0, 1, 0}},
+      {"face and point", cube, shapes::point({1, 0.5, 0.25}), {1, 0, 0}},
+      {"corner and point", cube, shapes::point({1, 1, 1}), {1, 0, 0}},
+      {"the same polygon", square, square, {0, 1, 0}},
+      {"polygons in one plane, edge to edge", square, shapes::moved(square, {4, 0, 1}), {1, 0, 0}},
+      {"polygons in one plane, overlapping", square, shapes::moved(square, {1, 0, 1}), {0, 1, 0}},
+      {"the same segment",
+       shapes::segment({0, 0, 0}, {1, 2, 3}),
+       shapes::segment({0, 0, 0}, {1, 2, 3}),
+       {3, 0, -1}},
+      {"segments in one line",
+       shapes::segment({0, 0, 0}, {1, 2, 3}),
+       shapes::segment({1, 2, 3}, {2, 4, 6}),
+       {1, 2, 3}},
+      {"the same point", shapes::point({1, 2, 3}), shapes::point({1, 2, 3}), {0, 0, 1}},
+      {"needles, end to end", needle, shapes::moved(needle, {2000, 0, 0}), {1, 0, 0}},
+      {"needles, side by side", needle, shapes::moved(needle, {3, 2, 0}), {0, 1, 0}},
+      {"needles, crossing",
+       needle,
+       shapes::turned(shapes::moved(needle, {0, 0, 2}), {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}),
+       {0, 0, 1}},
+      {"plates", plate, shapes::moved(plate, {10, 2, 20}), {0, 1, 0}},
+      {"balls, pole to pole",
+       shapes::toothpick(),
+       shapes::moved(shapes::toothpick(), {0, 0.14, 0}),
+       {0, 1, 0}},
+  };
+}
+
+double sizeOf(const Points& points) {
+  double size = 0.0;
+  for (const Vec3d& p : points) {
+    size = std::max(size, length(p - points[0]));
+  }
+  return size;
+}
+
+TEST(ConvexPair, WhatTouchesIsNotApartAndWhatIsOffByATenBillionthOfTheSizeIs) {
+  Random random(11);
+  for (const Touch& touch : touches()) {
+    SCOPED_TRACE(touch.name);
+    EXPECT_NE(ask(touch.first, touch.second), Meeting::kApart);
+    EXPECT_NE(ask(touch.second, touch.first), Meeting::kApart);
+    const double size = std::max({sizeOf(touch.first), sizeOf(touch.second), 1.0});
+    const Vec3d off = normalized(touch.off) * (1e-10 * size);
+    EXPECT_EQ(ask(touch.first, shapes::moved(touch.second, off)), Meeting::kApart);
+    const ConvexHull a = hullOf(touch.first), b = hullOf(touch.second);
+    for (int i = 0; i < 20; ++i) {
+      const shapes::Axes axes = shapes::randomAxes(random);
+      const ConvexSet first{&a, {axes.x, axes.y, axes.z, {}}};
+      ConvexSet second{&b, {axes.x, axes.y, axes.z, {}}};
+      EXPECT_NE(ask(first, second), Meeting::kApart);
+      second.placement.origin = axes.turn(off);
+      EXPECT_EQ(ask(first, second), Meeting::kApart);
+    }
+  }
+}
+
+// A point set that touches the plane z = 0 with its first few points, whose mean is the origin, from the side
+// that `sign` says. shallow: other points come down to a billionth of the size to the plane.
+Points touchingPlane(Random& random, double sign, const Vec3d& stretch, bool shallow) {
+  Points points;
+  Vec3d mean;
+  const int on_plane = random.whole(1, 5);
+  for (int i = 0; i < on_plane; ++i) {
+    points.emplace_back(random.number(-1, 1) * stretch.x, random.number(-1, 1) * stretch.y, 0.0);
+    mean += points.back() / on_plane;
+  }
+  points = shapes::moved(points, -mean);
+  for (int i = random.whole(0, shallow ? 200 : 20); i > 0; --i) {
+    const double depth = shallow ? std::pow(10.0, random.number(-9, 0)) : random.number(0, 1);
+    points.emplace_back(random.number(-1, 1) * stretch.x, random.number(-1, 1) * stretch.y,
+                        sign * depth * stretch.z);
+  }
+  return points;
+}
+
+TEST(ConvexPair, SetsAreFoundApartThatAreApartByATenBillionthOfTheirSize) {
+  const std::array<Vec3d, 4> stretches{{{1, 1, 1}, {1, 1e-3, 1e-3}, {1, 1, 1e-3}, {1e-3, 1e-3, 1}}};
+  int asked = 0;
+  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const Vec3d stretch = stretches[random.below(4)];
+    const bool shallow = stretch == stretches[0] && seed % 2 == 0;
+    const Vec3d up{0, 0, std::pow(10.0, random.number(-10, seed % 4 == 0 ? -3 : -9))};
+    const shapes::Axes axes = shapes::randomAxes(random);
+    const Points a = shapes::turned(touchingPlane(random, -1.0, stretch, shallow), axes);
+    const Points b = shapes::turned(shapes::moved(touchingPlane(random, 1.0, stretch, shallow), up), axes);
+    const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
+    // What farthest() may miss on hulls with slivers for faces; 3: the sum of the axes' components.
+    const double missed = 2.0 * (supportError(hull_a, 3.0) + supportError(hull_b, 3.0));
+    // An eye or sweep on the second's side of the plane changes nothing.
+    const Vec3d beyond = random.point({-10, -10, seed % 2 == 0 ? 0.0 : 1.0}, {10, 10, 10});
+    ConvexSet second{&hull_b, {}, kKinds[seed % 3], axes.turn(beyond)};
+    second.eye_or_sweep += second.kind == Kind::kWithEye ? axes.turn(up) : Vec3d();
+    if (missed < up.z) {
+      EXPECT_EQ(ask(ConvexSet{&hull_a}, second), Meeting::kApart);
+      ++asked;
+    }
+  }
+  EXPECT_GT(asked, 3500);
+}
+
+TEST(ConvexPair, DeepOverlapIsFoundToMeetNotLeftUndecided) {
+  const ConvexHull needle = hullOf(shapes::toothpick()), cube = hullOf(shapes::cube());
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const ConvexHull& hull = seed % 2 == 0 ? needle : cube;
+    // Both hold a ball around their centres: of the least semi-axis, 0.01 and 1, less a bit.
+    const Vec3d apart = random.direction() * (seed % 2 == 0 ? 0.015 : 1.5) * random.number(0, 1);
+    const shapes::Axes axes = shapes::randomAxes(random);
+    EXPECT_EQ(ask(ConvexSet{&hull}, ConvexSet{&hull, {axes.x, axes.y, axes.z, apart}}), Meeting::kMeet);
+  }
+}
+
+// A hull on its way.
+struct Mover {
+  ConvexSet set;
+  Vec3d velocity;
+  shapes::Axes turn;
+
+  void step() {
+    Placement& p = set.placement;
+    p = {turn.turn(p.x), turn.turn(p.y), turn.turn(p.z), p.origin + velocity};
+  }
+};
+
+Mover randomMover(Random& random, const ConvexHull& hull, Kind kind) {
+  const shapes::Axes axes = shapes::randomAxes(random);
+  const double angle = random.number(-0.05, 0.05);
+  Mover mover{{&hull, {axes.x, axes.y, axes.z, random.direction() * 0.12}}, random.direction() * 0.004};
+  mover.turn = {{std::cos(angle), std::sin(angle), 0}, {-std::sin(angle), std::cos(angle), 0}, {0, 0, 1}};
+  mover.set.kind = kind;
+  mover.set.eye_or_sweep = random.direction() * 0.5;
+  return mover;
+}
+
+TEST(ConvexPair, WhatIsKnownDoesNotChangeDecidedAnswers) {
+  const std::array<ConvexHull, 4> hulls{hullOf(shapes::toothpick()), hullOf(shapes::cube({}, 0.05)),
+                                        hullOf(shapes::segment({0, -0.1, 0}, {0, 0.1, 0})),
+                                        hullOf(shapes::flatPolygon(9, 0.08))};
+  int changes = 0, decided = 0;
+  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+    Random random(seed);
+    Mover a = randomMover(random, hulls[random.below(4)], Kind::kHull);
+    Mover b = randomMover(random, hulls[random.below(4)], kKinds[seed % 3]);
+    PairWitness witness;
+    PairCounts counts;
+    Meeting last = Meeting::kUndecided;
+    for (int frame = 0; frame < 60; ++frame, a.step(), b.step()) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << " frame " << frame);
+      const Meeting warm = meeting(a.set, b.set, witness, counts);
+      const Meeting cold = ask(a.set, b.set);
+      if (warm != Meeting::kUndecided && cold != Meeting::kUndecided) {
+        EXPECT_EQ(warm, cold);
+        ++decided;
+      }
+      changes += warm != last ? 1 : 0;
+      last = warm;
+    }
+  }
+  EXPECT_GT(changes, 100);
+  EXPECT_GT(decided, 8500);
+}
+
+TEST(ConvexPair, StrangeWitnessesDoNoHarm) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (std::uint64_t seed = 0; seed < 4000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const Points a = randomWhole(random);
+    const Points b = shapes::moved(randomWhole(random), randomWholePoint(random, 5));
+    const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
+    const ConvexSet first{&hull_a};
+    const ConvexSet second{&hull_b, {}, kKinds[seed % 3], randomWholePoint(random, 12)};
+    PairWitness witness;
+    witness.apart = random.below(2) == 0;
+    witness.pairs = static_cast<std::uint8_t>(random.below(256));
+    const std::array<Vec3d, 5> directions{
+        {{std::nan(""), 0, 0}, {inf, -inf, 1}, {0, 0, 0}, {1e-310, 0, 0}, {1e200, 3, -1e200}}};
+    witness.direction = random.below(2) == 0 ? directions[random.below(5)] : random.direction() * 5.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      witness.first[i] = random.below(4) == 0 ? PairWitness::kEye : static_cast<std::uint32_t>(random.bits());
+      witness.second[i] =
+          random.below(4) == 0 ? PairWitness::kEye : static_cast<std::uint32_t>(random.bits());
+    }
+    PairCounts counts;
+    const Meeting answer = meeting(first, second, witness, counts);
+    EXPECT_EQ(answer == Meeting::kApart, ask(first, second) == Meeting::kApart);
+    EXPECT_TRUE(isFinite(witness.direction));
+    EXPECT_LE(witness.pairs, 4);
+  }
+}
+
+TEST(ConvexPair, AskedAgainAPairCostsOneSupportIfApartAndNoneIfItMeets) {
+  const ConvexHull hull = hullOf(shapes::toothpick());
+  std::array<int, 2> seen{};
+  for (std::uint64_t seed = 0; seed < 600; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const Mover a = randomMover(random, hull, Kind::kHull);
+    Mover b = randomMover(random, hull, kKinds[seed % 3]);
+    b.set.placement.origin = a.set.placement.origin + random.direction() * random.number(0.0, 0.2);
+    PairWitness witness;
+    PairCounts counts;
+    const Meeting answer = meeting(a.set, b.set, witness, counts);
+    ASSERT_NE(answer, Meeting::kUndecided);
+    counts = {};
+    EXPECT_EQ(meeting(a.set, b.set, witness, counts), answer);
+    EXPECT_EQ(counts.questions, 1u);
+    EXPECT_EQ(counts.chung_steps, answer == Meeting::kApart ? 1u : 0u);
+    EXPECT_EQ(counts.gilbert_steps, 0u);
+    ++seen[answer == Meeting::kApart ? 1 : 0];
+  }
+  EXPECT_GT(seen[0], 50);
+  EXPECT_GT(seen[1], 50);
+}
+
+TEST(ConvexPair, AnEyeInsideOrOnAHullMeetsIt) {
+  const ConvexHull occluder = hullOf(shapes::cube());
+  const ConvexHull away = hullOf(shapes::cube({9, 9, 9}));
+  for (const Vec3d& eye :
+       {Vec3d{0, 0, 0}, Vec3d{0.5, -0.25, 0.125}, Vec3d{-1, 0, 0}, Vec3d{-1, -1, 0.5}, Vec3d{-1, -1, -1}}) {
+    EXPECT_NE(ask(ConvexSet{&occluder}, ConvexSet{&away, {}, Kind::kWithEye, eye}), Meeting::kApart);
+  }
+}
+
+TEST(ConvexPair, NumbersThatOverflowOrUnderflowDoNotMakeTheSameSetsApart) {
+  const ConvexHull cube = hullOf(shapes::cube());
+  for (const double scale : {1e-310, 1e-300, 1e-160, 1e160, 1e300, 1e308}) {
+    const Placement placement{{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {scale, 0, scale}};
+    for (const Kind kind : kKinds) {
+      const ConvexSet second{&cube, placement, kind, {scale, 3 * scale, 0}};
+      EXPECT_NE(ask(ConvexSet{&cube, placement}, second), Meeting::kApart) << scale;
+    }
+  }
+}
+
+TEST(ConvexPair, WhatIsNotFiniteIsUndecidedAtOnce) {
+  const ConvexHull cube = hullOf(shapes::cube());
+  const ConvexHull none;
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    for (const Kind kind : {Kind::kWithEye, Kind::kSwept}) {
+      for (int entry = 0; entry < 15; ++entry) {
+        ConvexSet set{&cube, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {50, 0, 0}}, kind, {9, 0, 0}};
+        std::array<Vec3d*, 5> vectors{&set.placement.x, &set.placement.y, &set.placement.z,
+                                      &set.placement.origin, &set.eye_or_sweep};
+        (*vectors[static_cast<std::size_t>(entry) / 3])[entry % 3] = bad;
+        PairWitness witness;
+        PairCounts counts;
+        EXPECT_EQ(meeting(set, ConvexSet{&cube}, witness, counts), Meeting::kUndecided) << entry;
+        EXPECT_EQ(meeting(ConvexSet{&cube}, set, witness, counts), Meeting::kUndecided) << entry;
+        EXPECT_EQ(counts.chung_steps + counts.gilbert_steps, 0u);
+      }
+    }
+  }
+  EXPECT_EQ(ask(ConvexSet{&none}, ConvexSet{&cube}), Meeting::kUndecided);
+  EXPECT_EQ(ask(ConvexSet{&cube}, ConvexSet{}), Meeting::kUndecided);
+}
+
+}  // namespace
+}  // namespace sightline::layers

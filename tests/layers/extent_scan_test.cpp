@@ -1,0 +1,132 @@
+#include "layers/extent_scan.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <limits>
+#include <numeric>
+
+#include "tests/support/layer_shapes.h"
+
+namespace sightline::layers {
+namespace {
+
+using shapes::Random;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Interval randomInterval(Random& random, bool angular) {
+  // Coarse numbers, so that intervals often just touch.
+  const auto coarse = [&](double from, double to) {
+    return static_cast<float>(std::round(random.number(from, to) * 4) / 4);
+  };
+  if (angular) {
+    const float low = coarse(-2, 2);
+    return random.below(10) == 0 ? Interval{-2, 2} : Interval{low, low + coarse(0, 4)};
+  }
+  const float low = random.below(10) == 0 ? -kInfinity : coarse(-3, 3);
+  const float high = random.below(10) == 0 ? kInfinity : std::max(low, coarse(-3, 3));
+  return {low, high};
+}
+
+Extent randomExtent(Random& random, const ExtentTable& table) {
+  Extent extent{};
+  for (std::size_t axis = 0; axis < table.axes(); ++axis) {
+    extent[axis] = randomInterval(random, table.angular(axis));
+  }
+  return extent;
+}
+
+ExtentTable randomTable(Random& random) {
+  ExtentTable table;
+  table.parts = random.below(300);
+  const std::size_t axes = 1 + random.below(random.below(5) == 0 ? kMostExtentAxes : 4);
+  const std::size_t padded = (table.parts + 15) / 16 * 16;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    table.kinds.push_back(random.below(2) == 0 ? ExtentAxis::Kind::kAngular : ExtentAxis::Kind::kSpatial);
+    table.lows.emplace_back(padded, std::nanf(""));
+    table.highs.emplace_back(padded, std::nanf(""));
+    for (std::size_t part = 0; part < table.parts; ++part) {
+      const Interval own = randomInterval(random, table.angular(axis));
+      table.lows[axis][part] = own.low;
+      table.highs[axis][part] = own.high;
+    }
+  }
+  return table;
+}
+
+std::vector<std::uint32_t> shuffledParts(Random& random, std::size_t count) {
+  std::vector<std::uint32_t> parts(count);
+  std::iota(parts.begin(), parts.end(), 0u);
+  for (std::size_t i = count; i > 1; --i) {
+    std::swap(parts[i - 1], parts[random.below(static_cast<std::uint32_t>(i))]);
+  }
+  return parts;
+}
+
+TEST(ExtentScan, FindsWhatComparingOneByOneFindsOnEveryInstructionSet) {
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  ASSERT_FALSE(targets.empty());
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Random random(seed);
+    const ExtentTable table = randomTable(random);
+    ExtentScan scan;
+    scan.begin(table, shuffledParts(random, table.parts));
+    std::vector<bool> active(table.parts, true);
+    for (int round = 0; round < 6; ++round) {
+      for (std::size_t i = 0; round > 0 && i < table.parts; ++i) {
+        if (random.below(3) == 0) {
+          active[i] = random.below(2) == 0;
+          scan.setActive(static_cast<std::uint32_t>(i), active[i]);
+        }
+      }
+      const Extent query = randomExtent(random, table);
+      std::vector<std::uint32_t> expected{77};
+      for (std::uint32_t part = 0; part < table.parts; ++part) {
+        if (active[part] && overlaps(table, query, part)) {
+          expected.push_back(part);
+        }
+      }
+      found += expected.size() - 1;
+      for (const std::int64_t target : targets) {
+        hwy::SetSupportedTargetsForTest(target);
+        std::vector<std::uint32_t> parts{77};  // appends
+        scan.query(query, parts);
+        hwy::SetSupportedTargetsForTest(0);
+        EXPECT_EQ(parts, expected) << hwy::TargetName(target) << ", seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(found, 1000u);
+}
+
+TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
+  ExtentTable table;
+  table.kinds = {ExtentAxis::Kind::kSpatial};
+  table.parts = 64;
+  table.lows = {std::vector<float>(64, 0.0f)};
+  table.highs = {std::vector<float>(64, 1.0f)};
+  ExtentScan scan;
+  Random random(1);
+  const std::vector<std::uint32_t> all = shuffledParts(random, 64);
+  scan.begin(table, all);
+  scan.setActive(63, false);
+  Extent query{};
+  query[0] = {1.0f, 2.0f};  // touches
+  std::vector<std::uint32_t> parts;
+  scan.query(query, parts);
+  EXPECT_EQ(parts.size(), 63u);
+  scan.begin(table, all);
+  parts.clear();
+  scan.query(query, parts);
+  EXPECT_EQ(parts.size(), 64u);
+  scan.begin(table, std::vector<std::uint32_t>{40, 7, 12});
+  scan.setActive(50, true);  // not listed
+  parts.clear();
+  scan.query(query, parts);
+  EXPECT_EQ(parts, (std::vector<std::uint32_t>{7, 12, 40}));
+}
+
+}  // namespace
+}  // namespace sightline::layers

@@ -1,0 +1,212 @@
+#pragma once
+
+// Who occludes whom as a graph, and what a sorted order of it must be, found independently.
+
+#include <algorithm>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/strong_components.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "layers/occluder_source.h"
+
+namespace sightline::layers {
+
+class GraphSource : public OccluderSource {
+ public:
+  explicit GraphSource(std::size_t parts) : occluders_(parts), active_(parts, 1), member_(parts, 0) {}
+
+  // No loops; the same arc more than once counts once.
+  void add(std::uint32_t front, std::uint32_t back) {
+    std::vector<std::uint32_t>& list = occluders_[back];
+    const auto at = std::lower_bound(list.begin(), list.end(), front);
+    if (front != back && (at == list.end() || *at != front)) {
+      list.insert(at, front);
+    }
+  }
+  std::size_t parts() const { return occluders_.size(); }
+  bool has(std::uint32_t front, std::uint32_t back) const {
+    return std::binary_search(occluders_[back].begin(), occluders_[back].end(), front);
+  }
+  std::span<const std::uint32_t> occludersOf(std::uint32_t back) const { return occluders_[back]; }
+  bool active(std::uint32_t part) const { return active_[part] != 0; }
+
+  // As before the first question: all active, nothing counted.
+  void reset() {
+    std::fill(active_.begin(), active_.end(), std::uint8_t{1});
+    queries = pair_questions = 0;
+  }
+
+  void occludersOf(std::span<const std::uint32_t> members, std::vector<std::uint32_t>& occluders) override {
+    ++queries;
+    const auto begin = static_cast<std::ptrdiff_t>(occluders.size());
+    for (const std::uint32_t member : members) {
+      member_[member] = 1;
+    }
+    for (const std::uint32_t member : members) {
+      for (const std::uint32_t front : occluders_[member]) {
+        if (active_[front] != 0 && member_[front] == 0) {
+          occluders.push_back(front);
+        }
+      }
+    }
+    for (const std::uint32_t member : members) {
+      member_[member] = 0;
+    }
+    std::sort(occluders.begin() + begin, occluders.end());
+    occluders.erase(std::unique(occluders.begin() + begin, occluders.end()), occluders.end());
+  }
+  bool occludes(std::uint32_t front, std::uint32_t back) override {
+    ++pair_questions;
+    return has(front, back);
+  }
+  void setActive(std::uint32_t part, bool active) override { active_[part] = active ? 1 : 0; }
+
+  std::uint64_t queries = 0, pair_questions = 0;
+
+ private:
+  std::vector<std::vector<std::uint32_t>> occluders_;  // of a part, ascending
+  std::vector<std::uint8_t> active_, member_;
+};
+
+// The strongly connected component of each part, by Boost.
+inline std::vector<std::uint32_t> componentsOf(const GraphSource& graph) {
+  using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+  Graph boost_graph(graph.parts());
+  for (std::uint32_t back = 0; back < graph.parts(); ++back) {
+    for (const std::uint32_t front : graph.occludersOf(back)) {
+      boost::add_edge(front, back, boost_graph);
+    }
+  }
+  std::vector<std::uint32_t> component(graph.parts());
+  if (!component.empty()) {
+    boost::strong_components(boost_graph, boost::make_iterator_property_map(
+                                              component.begin(), get(boost::vertex_index, boost_graph)));
+  }
+  return component;
+}
+
+// What is wrong with an order of all parts of the graph; empty: nothing. component: componentsOf(graph).
+inline std::string faultOf(const GroupedOrder& order, const GraphSource& graph,
+                           std::span<const std::uint32_t> component) {
+  const std::size_t n = graph.parts();
+  if (order.parts.size() != n || order.first_of.empty() || order.first_of.front() != 0 ||
+      order.first_of.back() != n) {
+    return "the groups do not hold as many parts as there are";
+  }
+  std::vector<std::uint32_t> group(n, 0xffffffffu);
+  for (std::uint32_t i = 0; i < order.groups(); ++i) {
+    if (order.group(i).empty()) {
+      return "a group is empty";
+    }
+    for (const std::uint32_t part : order.group(i)) {
+      if (part >= n || group[part] != 0xffffffffu) {
+        return "a part is in the order twice";
+      }
+      group[part] = i;
+      if (component[part] != component[order.group(i).front()]) {
+        return "parts of two components are in one group";
+      }
+    }
+  }
+  std::vector<Arc> inside;
+  for (std::uint32_t front = 0; front < n; ++front) {
+    for (std::uint32_t back = 0; back < n; ++back) {
+      if (component[front] == component[back] && group[front] != group[back]) {
+        return "a component is in two groups";
+      }
+      if (graph.has(front, back) && group[front] > group[back]) {
+        return "a part is occluded by one of a later group";
+      }
+      if (graph.has(front, back) && group[front] == group[back]) {
+        inside.push_back({front, back});
+      }
+    }
+  }
+  return order.arcs == inside ? "" : "the arcs inside the groups are not those of the graph";
+}
+
+// Empty as well: every group's parts are in the order of `previous`.
+inline std::string faultOfMemberOrder(const GroupedOrder& order, std::span<const std::uint32_t> previous) {
+  std::vector<std::size_t> rank(previous.size());
+  for (std::size_t i = 0; i < previous.size(); ++i) {
+    rank[previous[i]] = i;
+  }
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    const std::span<const std::uint32_t> parts = order.group(i);
+    if (!std::is_sorted(parts.begin(), parts.end(),
+                        [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; })) {
+      return "a group's parts are not in the previous order";
+    }
+  }
+  return "";
+}
+
+inline std::vector<std::uint32_t> identityOrder(std::size_t parts) {
+  std::vector<std::uint32_t> order(parts);
+  std::iota(order.begin(), order.end(), 0u);
+  return order;
+}
+
+inline std::uint32_t below(std::size_t bound, std::mt19937& random) {
+  return static_cast<std::uint32_t>(random() % bound);
+}
+
+// Fisher and Yates, the same everywhere.
+inline std::vector<std::uint32_t> shuffledOrder(std::size_t parts, std::mt19937& random) {
+  std::vector<std::uint32_t> order = identityOrder(parts);
+  for (std::size_t i = parts; i > 1; --i) {
+    std::swap(order[i - 1], order[below(i, random)]);
+  }
+  return order;
+}
+
+// Each of the n (n - 1) arcs with a probability of per_mille / 1000.
+inline GraphSource randomGraph(std::size_t parts, std::uint32_t per_mille, std::mt19937& random) {
+  GraphSource graph(parts);
+  for (std::uint32_t back = 0; back < parts; ++back) {
+    for (std::uint32_t front = 0; front < parts; ++front) {
+      if (below(1000, random) < per_mille) {
+        graph.add(front, back);
+      }
+    }
+  }
+  return graph;
+}
+
+// The same, without circles: the arcs of randomGraph() that go forwards in a shuffled order.
+inline GraphSource randomAcyclicGraph(std::size_t parts, std::uint32_t per_mille, std::mt19937& random) {
+  const std::vector<std::uint32_t> order = shuffledOrder(parts, random);
+  GraphSource graph(parts);
+  for (std::size_t b = 0; b < parts; ++b) {
+    for (std::size_t f = 0; f < b; ++f) {
+      if (below(1000, random) < per_mille) {
+        graph.add(order[f], order[b]);
+      }
+    }
+  }
+  return graph;
+}
+
+// Bit k of the number says whether the k-th of the n (n - 1) ordered pairs is an arc.
+inline GraphSource numberedGraph(std::size_t parts, std::uint32_t number) {
+  GraphSource graph(parts);
+  for (std::uint32_t front = 0; front < parts; ++front) {
+    for (std::uint32_t back = 0; back < parts; ++back) {
+      if (front != back) {
+        if ((number & 1u) != 0) {
+          graph.add(front, back);
+        }
+        number >>= 1;
+      }
+    }
+  }
+  return graph;
+}
+
+}  // namespace sightline::layers

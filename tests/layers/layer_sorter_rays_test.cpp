@@ -1,0 +1,227 @@
+// What rays meet first, against what the order says comes first.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tests/layers/hull_rays.h"
+#include "tests/layers/moving_sorter.h"
+#include "tests/support/layer_shapes.h"
+
+namespace sightline {
+namespace {
+
+using shapes::Random;
+using test::HullRays;
+using test::RayStretch;
+
+struct Ray {
+  Vec3d from, direction;
+};
+
+// The ray of a view through a point.
+Ray rayThrough(const View& view, const Vec3d& point) {
+  if (!view.orthographic) {
+    return {view.eye, point - view.eye};
+  }
+  return {point - view.forward * (dot(point - view.eye, view.forward) + 100.0), view.forward};
+}
+
+// A point of the part's hull, as near to its silhouette on the side of `towards` as vertices are.
+Vec3d farSide(const MovingSorter& moving, std::uint32_t part, const Vec3d& towards) {
+  const ConvexHull& hull = moving.scene().hulls[moving.scene().parts[part].hulls[0]];
+  const Mat4& m = moving.poses()[part];
+  Vec3d best = transformPoint(m, hull.vertices[0]);
+  for (const Vec3d& vertex : hull.vertices) {
+    const Vec3d world = transformPoint(m, vertex);
+    best = dot(world, towards) > dot(best, towards) ? world : best;
+  }
+  // A little inside: rays through the vertex itself meet no inner point.
+  return best + (transformPoint(m, hull.centre) - best) * 1e-5;
+}
+
+// Two for each two parts that lie near each other before the eye: through the side of each that is nearest to
+// the other. Where they hardly overlap, the rays pass there.
+void addRaysAtPairs(const MovingSorter& moving, const View& view, std::vector<Ray>& rays) {
+  struct Ball {
+    Vec3d centre;
+    double radius = 0.0;
+  };
+  std::vector<Ball> balls;
+  for (std::uint32_t i = 0; i < moving.scene().parts.size(); ++i) {
+    const ConvexHull& hull = moving.scene().hulls[moving.scene().parts[i].hulls[0]];
+    balls.push_back({transformPoint(moving.poses()[i], hull.centre), hull.radius});
+  }
+  for (std::uint32_t a = 0; a < balls.size(); ++a) {
+    if (moving.scene().parts[a].settings.place != PartSettings::Place::kSorted) {
+      continue;
+    }
+    for (std::uint32_t b = 0; b < balls.size(); ++b) {
+      const Vec3d forward = normalized(rayThrough(view, balls[a].centre).direction);
+      Vec3d across = balls[b].centre - rayThrough(view, balls[b].centre).from;
+      across = across - forward * dot(across, forward);
+      if (view.orthographic) {
+        across = balls[b].centre - balls[a].centre;
+        across = across - forward * dot(across, forward);
+      }
+      if (a == b || length(across) > 2.0 * (balls[a].radius + balls[b].radius) || !(length(across) > 0.0)) {
+        continue;
+      }
+      rays.push_back(rayThrough(view, farSide(moving, a, across)));
+    }
+  }
+}
+
+std::vector<Ray> manyRays(const MovingSorter& moving, const View& view, Random& random, int anywhere) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < anywhere; ++i) {
+    rays.push_back(view.orthographic ? rayThrough(view, random.point({0, 0, 0}, {1, 1, 1}))
+                                     : Ray{view.eye, random.direction()});
+  }
+  for (std::uint32_t part = 0; part < moving.scene().parts.size(); ++part) {
+    for (int i = 0; i < 4; ++i) {
+      rays.push_back(rayThrough(view, farSide(moving, part, random.direction())));
+    }
+  }
+  addRaysAtPairs(moving, view, rays);
+  return rays;
+}
+
+struct Seen {
+  std::size_t pairs = 0;   // of parts that a ray met one after the other
+  std::size_t images = 0;  // rays that met several parts, all in groups of one
+};
+
+// Whoever is met before another has left must be its occluder.
+void expectArcs(const MovingSorter& moving, std::span<const RayStretch> met, const LayerOrder& order,
+                Seen& seen) {
+  for (const RayStretch& a : met) {
+    for (const RayStretch& b : met) {
+      if (a.part == b.part || a.enter > b.leave || moving.hasRule(a.part, b.part)) {
+        continue;
+      }
+      ++seen.pairs;
+      const LayerArc arc{PartId(a.part), PartId(b.part)};
+      EXPECT_TRUE(std::binary_search(order.arcs.begin(), order.arcs.end(), arc))
+          << moving.scene().parts[a.part].name << " occludes " << moving.scene().parts[b.part].name;
+    }
+  }
+}
+
+// The painter's image is the depth buffer's.
+void expectFirstIsNearest(const MovingSorter& moving, std::span<const RayStretch> met,
+                          std::span<const std::uint32_t> place, std::span<const std::uint32_t> group_size,
+                          Seen& seen) {
+  const bool alone =
+      std::all_of(met.begin(), met.end(), [&](const RayStretch& m) { return group_size[m.part] == 1; });
+  if (met.size() < 2 || !alone) {
+    return;
+  }
+  const RayStretch& first = *std::min_element(
+      met.begin(), met.end(),
+      [&](const RayStretch& a, const RayStretch& b) { return place[a.part] < place[b.part]; });
+  for (const RayStretch& other : met) {
+    if (!moving.hasRule(first.part, other.part)) {
+      EXPECT_LE(first.enter, other.enter) << moving.scene().parts[first.part].name << " is drawn over "
+                                          << moving.scene().parts[other.part].name;
+    }
+  }
+  ++seen.images;
+}
+
+void checkFrame(MovingSorter& moving, const View& view, Random& random, int anywhere, Seen& seen) {
+  const HullRays hulls(moving.scene(), moving.poses());
+  const LayerOrder& order = moving.sorter().update(view);
+  std::vector<std::uint32_t> place(order.parts.size()), group_size(order.parts.size());
+  for (std::uint32_t i = 0; i < order.parts.size(); ++i) {
+    place[order.parts[i].value] = i;
+  }
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    for (const PartId part : order.group(i)) {
+      group_size[part.value] = static_cast<std::uint32_t>(order.group(i).size());
+    }
+  }
+  for (const Ray& ray : manyRays(moving, view, random, anywhere)) {
+    const std::vector<RayStretch> met = hulls.meet(ray.from, ray.direction);
+    expectArcs(moving, met, order, seen);
+    expectFirstIsNearest(moving, met, place, group_size, seen);
+    if (::testing::Test::HasFailure()) {
+      return;
+    }
+  }
+}
+
+LayerSettings settingsOf(LayerSort sort, OccluderSearch search) {
+  LayerSettings settings;
+  settings.sort = sort;
+  settings.search = search;
+  settings.all_arcs = true;
+  return settings;
+}
+
+Seen checkToothpicks(std::uint32_t count, const LayerSettings& settings) {
+  const MovingScene scene = makeToothpicks({.count = count});
+  MovingSorter moving(scene, settings);
+  Random random(count);
+  Seen seen;
+  for (std::uint32_t frame = 0; frame < 5; ++frame) {
+    SCOPED_TRACE(::testing::Message() << "seed " << count << ", frame " << frame);
+    moving.pose(frame * 40);
+    View view = moving.view(frame * 40);
+    if (frame == 2) {
+      view.eye = random.point({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8});  // amid them
+    }
+    view.orthographic = frame == 3;
+    checkFrame(moving, view, random, 2000, seen);
+    if (::testing::Test::HasFailure()) {
+      break;
+    }
+  }
+  return seen;
+}
+
+TEST(LayerSorterRays, AgreeOnSixtyToothpicks) {
+  for (const LayerSort sort : {LayerSort::kDepthFirst, LayerSort::kIncremental}) {
+    for (const OccluderSearch search : {OccluderSearch::kScan, OccluderSearch::kTree}) {
+      const Seen seen = checkToothpicks(60, settingsOf(sort, search));
+      EXPECT_GT(seen.pairs, 500u);
+      EXPECT_GT(seen.images, 100u);
+    }
+  }
+}
+
+TEST(LayerSorterRays, AgreeOnTwoHundredToothpicks) {
+  LayerSettings settings = settingsOf(LayerSort::kDepthFirst, OccluderSearch::kTree);
+  for (const std::vector<ExtentAxis>& extents : {cameraExtents(), worldExtents()}) {
+    settings.extents = extents;
+    const Seen seen = checkToothpicks(200, settings);
+    EXPECT_GT(seen.pairs, 2000u);
+    EXPECT_GT(seen.images, 500u);
+  }
+}
+
+TEST(LayerSorterRays, AgreeOnTheCanyon) {
+  const MovingScene scene = makeCanyon({.grid = 10});
+  LayerSettings settings = settingsOf(LayerSort::kDepthFirst, OccluderSearch::kScan);
+  settings.extents = worldExtents();
+  MovingSorter moving(scene, settings);
+  Random random(3);
+  Seen seen;
+  for (const std::uint32_t frame : {0u, 77u, 150u, 249u}) {
+    SCOPED_TRACE(::testing::Message() << "seed 3, frame " << frame);
+    moving.pose(frame);
+    checkFrame(moving, moving.view(frame), random, 4000, seen);
+    if (HasFailure()) {
+      break;
+    }
+  }
+  EXPECT_GT(seen.pairs, 500u);
+  EXPECT_GT(seen.images, 100u);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,62 @@
+#pragma once
+
+// A sorter with a moving scene's parts, frame after frame.
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "scenes/moving_scene.h"
+#include "sightline/layers/layer_sorter.h"
+
+namespace sightline {
+
+class MovingSorter {
+ public:
+  MovingSorter(const MovingScene& scene, const LayerSettings& settings)
+      : scene_(scene), sorter_(settings), poses_(scene.parts.size()) {
+    for (const ConvexHull& hull : scene.hulls) {
+      sorter_.addHull(hull);
+    }
+    for (const MovingPart& part : scene.parts) {
+      std::vector<HullId> hulls;
+      for (const std::uint32_t hull : part.hulls) {
+        hulls.emplace_back(hull);
+      }
+      sorter_.addPart(hulls, part.settings);
+    }
+    for (const MovingPlane& plane : scene.planes) {
+      sorter_.setRule(PartId(plane.first), PartId(plane.second), plane.rule);
+      ruled_.emplace_back(std::min(plane.first, plane.second), std::max(plane.first, plane.second));
+    }
+    std::sort(ruled_.begin(), ruled_.end());
+  }
+
+  void pose(std::uint32_t frame) {
+    scene_.pose(frame, poses_);
+    for (std::uint32_t part = 0; part < poses_.size(); ++part) {
+      sorter_.setTransform(PartId(part), poses_[part]);  // refused by what is static: that does not move
+    }
+  }
+  const LayerOrder& update(std::uint32_t frame) {
+    pose(frame);
+    return sorter_.update(view(frame));
+  }
+  View view(std::uint32_t frame) const { return scene_.scene.paths[0].view(frame, {}); }
+
+  const MovingScene& scene() const { return scene_; }
+  LayerSorter& sorter() { return sorter_; }
+  const std::vector<Mat4>& poses() const { return poses_; }
+  bool hasRule(std::uint32_t a, std::uint32_t b) const {
+    return std::binary_search(ruled_.begin(), ruled_.end(), std::pair(std::min(a, b), std::max(a, b)));
+  }
+
+ private:
+  const MovingScene& scene_;
+  LayerSorter sorter_;
+  std::vector<Mat4> poses_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ruled_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,205 @@
+#pragma once
+
+// Whether convex hulls meet, and whether one occludes another, in exact arithmetic: what the tests of
+// visibility sorting compare with. Shares nothing with the library.
+//
+// Hulls of points a and b meet where sum l_i a_i = sum m_j b_j has a solution with l, m >= 0 and sums of 1:
+// a linear programme of five rows. Its first phase is solved by the simplex method with Bland's rule (which
+// ends), on whole numbers: all coordinates are multiples of one power of two, and a tableau's entries stay
+// whole if they are kept times the last pivot (Edmonds). Quick for a few dozen points.
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sightline/math/vec3.h"
+
+namespace sightline::test {
+
+using Whole = boost::multiprecision::cpp_int;
+using Exact = boost::multiprecision::cpp_rational;
+
+inline Exact exactDot(const Vec3d& a, const Vec3d& b) {
+  return Exact(a.x) * Exact(b.x) + Exact(a.y) * Exact(b.y) + Exact(a.z) * Exact(b.z);
+}
+
+// Six times the volume of the tetrahedron: positive if d sees a, b, c clockwise, that is, lies behind them.
+inline Exact exactVolume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
+  using Row = std::array<Exact, 3>;
+  const auto less = [&d](const Vec3d& p) {
+    return Row{Exact(p.x) - Exact(d.x), Exact(p.y) - Exact(d.y), Exact(p.z) - Exact(d.z)};
+  };
+  const Row u = less(a);
+  const Row v = less(b);
+  const Row w = less(c);
+  return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+         u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+// Is there x >= 0 with columns * x = right_side >= 0?
+template <std::size_t kRows>
+class Feasibility {
+ public:
+  using Column = std::array<Whole, kRows>;
+
+  explicit Feasibility(std::vector<Column> columns, const Column& right_side) : table_(std::move(columns)) {
+    table_.push_back(right_side);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      basis_[row] = table_.size() + row;  // the artificial variable of the row
+    }
+    for (const Column& column : table_) {
+      Whole sum = 0;
+      for (const Whole& entry : column) {
+        sum += entry;
+      }
+      gain_.push_back(sum);
+    }
+  }
+
+  bool solve() {
+    while (gain_.back() > 0) {
+      const std::optional<std::size_t> column = entering();
+      if (!column) {
+        return false;
+      }
+      pivot(leaving(*column), *column);
+    }
+    return true;
+  }
+
+ private:
+  std::optional<std::size_t> entering() const {
+    for (std::size_t i = 0; i + 1 < table_.size(); ++i) {
+      if (gain_[i] > 0) {
+        return i;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // The row of least right side / entry among the positive entries; one exists, for the sum of artificial
+  // variables cannot fall without end.
+  std::size_t leaving(std::size_t column) const {
+    std::size_t best = kRows;
+    const Column& right = table_.back();
+    for (std::size_t row = 0; row < kRows; ++row) {
+      if (table_[column][row] <= 0) {
+        continue;
+      }
+      if (best == kRows) {
+        best = row;
+        continue;
+      }
+      const Whole here = right[row] * table_[column][best];
+      const Whole there = right[best] * table_[column][row];
+      if (here < there || (here == there && basis_[row] < basis_[best])) {
+        best = row;
+      }
+    }
+    return best;
+  }
+
+  void pivot(std::size_t pivot_row, std::size_t pivot_column) {
+    const Column by = table_[pivot_column];
+    const Whole gain_by = gain_[pivot_column];
+    const Whole& at = by[pivot_row];
+    for (std::size_t i = 0; i < table_.size(); ++i) {
+      Column& column = table_[i];
+      for (std::size_t row = 0; row < kRows; ++row) {
+        if (row != pivot_row) {
+          column[row] = (column[row] * at - by[row] * column[pivot_row]) / scale_;
+        }
+      }
+      gain_[i] = (gain_[i] * at - gain_by * column[pivot_row]) / scale_;
+    }
+    scale_ = at;
+    basis_[pivot_row] = pivot_column;
+  }
+
+  std::vector<Column> table_;  // entries times scale_; the last is the right side
+  std::vector<Whole> gain_;    // by how much the sum of artificial variables falls, times scale_
+  std::array<std::size_t, kRows> basis_{};
+  Whole scale_ = 1;
+};
+
+// Vectors times one power of two, so that all are whole.
+class WholeVectors {
+ public:
+  void add(const Vec3d& v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (v[axis] != 0.0) {
+        lowest_ = std::min(lowest_, std::ilogb(v[axis]) - 52);
+      }
+    }
+  }
+  void add(std::span<const Vec3d> vectors) {
+    for (const Vec3d& v : vectors) {
+      add(v);
+    }
+  }
+  Whole whole(double value) const {
+    if (value == 0.0) {
+      return 0;
+    }
+    const int exponent = std::ilogb(value) - 52;
+    const Whole digits = static_cast<std::int64_t>(std::ldexp(value, -exponent));
+    return digits << static_cast<unsigned>(exponent - lowest_);
+  }
+
+ private:
+  int lowest_ = 0;
+};
+
+// Do the hull of a and the set of b's hull plus all t * ray, t >= 0, have a point in common?
+inline bool hullMeetsSwept(std::span<const Vec3d> a, std::span<const Vec3d> b,
+                           const std::optional<Vec3d>& ray) {
+  WholeVectors whole;
+  whole.add(a);
+  whole.add(b);
+  if (ray) {
+    whole.add(*ray);
+  }
+  using Programme = Feasibility<5>;
+  std::vector<Programme::Column> columns;
+  for (const Vec3d& p : a) {
+    columns.push_back({whole.whole(p.x), whole.whole(p.y), whole.whole(p.z), 1, 0});
+  }
+  for (const Vec3d& p : b) {
+    columns.push_back({-whole.whole(p.x), -whole.whole(p.y), -whole.whole(p.z), 0, 1});
+  }
+  if (ray) {
+    columns.push_back({-whole.whole(ray->x), -whole.whole(ray->y), -whole.whole(ray->z), 0, 0});
+  }
+  return Programme(std::move(columns), {0, 0, 0, 1, 1}).solve();
+}
+
+// Closed sets: touching is meeting. An empty set meets nothing.
+inline bool convexHullsMeet(std::span<const Vec3d> a, std::span<const Vec3d> b) {
+  return hullMeetsSwept(a, b, std::nullopt);
+}
+
+inline bool inConvexHull(const Vec3d& point, std::span<const Vec3d> points) {
+  return convexHullsMeet(std::span(&point, 1), points);
+}
+
+// Does a ray from the eye meet the hull of `front` and then, or in the same place, that of `back`?
+inline bool occludesExactly(std::span<const Vec3d> front, std::span<const Vec3d> back, const Vec3d& eye) {
+  std::vector<Vec3d> shadowed(back.begin(), back.end());
+  shadowed.push_back(eye);
+  return convexHullsMeet(front, shadowed);
+}
+
+// The same for an eye without end far away in a direction (any length > 0).
+inline bool occludesExactlyTowards(std::span<const Vec3d> front, std::span<const Vec3d> back,
+                                   const Vec3d& towards_eye) {
+  return hullMeetsSwept(front, back, towards_eye);
+}
+
+}  // namespace sightline::test

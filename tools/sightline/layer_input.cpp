@@ -1,0 +1,121 @@
+#include "tools/sightline/layer_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scenes/procedural.h"
+#include "tools/sightline/json_output.h"
+#include "tools/sightline/progress_bar.h"
+
+namespace sightline::tool {
+namespace {
+
+// The hull of an object's vertices.
+Result<ConvexHull> hullOf(const Scene& scene, std::size_t object) {
+  std::vector<std::uint32_t> corners(
+      scene.indices.begin() + scene.objects[object].first_index,
+      scene.indices.begin() + scene.objects[object].first_index + scene.objects[object].index_count);
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<Vec3d> points;
+  for (const std::uint32_t corner : corners) {
+    points.emplace_back(scene.positions[corner]);
+  }
+  Result<ConvexHull> hull = buildHull(points);
+  return hull ? std::move(hull)
+              : Error{fmt::format("object {} ({}) has no convex hull: {}", object, scene.object_names[object],
+                                  hull.error().message)};
+}
+
+Result<MovingScene> withoutMotion(Scene scene) {
+  MovingScene moving;
+  ProgressBar progress("convex hulls");
+  for (std::size_t object = 0; object < scene.objects.size(); ++object) {
+    Result<ConvexHull> hull = hullOf(scene, object);
+    if (!hull) {
+      return hull.error();
+    }
+    moving.hulls.push_back(std::move(*hull));
+    moving.parts.push_back({.name = scene.object_names[object],
+                            .hulls = {static_cast<std::uint32_t>(object)},
+                            .settings = {.is_static = true}});
+    progress.update(static_cast<double>(object + 1) / static_cast<double>(scene.objects.size()));
+  }
+  moving.frames = 0;
+  moving.scene = std::move(scene);
+  return moving;
+}
+
+Result<MovingScene> loadMoving(const std::string& name) {
+  if (isMovingDemoUrl(name)) {
+    return makeMovingDemoScene(name);
+  }
+  Result<Scene> scene = loadScene(name);
+  return scene ? withoutMotion(std::move(*scene)) : scene.error();
+}
+
+Status setPlaces(MovingScene& scene, const std::vector<std::uint32_t>& parts, PartSettings::Place place,
+                 const char* option) {
+  for (const std::uint32_t part : parts) {
+    if (part >= scene.parts.size()) {
+      return Error{fmt::format("{} {}: there is no such part; the scene has {}, numbered from 0", option,
+                               part, scene.parts.size())};
+    }
+    scene.parts[part].settings.place = place;
+  }
+  return Success{};
+}
+
+}  // namespace
+
+Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions& path,
+                                  const LayerPlaces& places) {
+  if (const Status ok = checkOutput(common.json, common.scene); !ok) {
+    return ok.error();
+  }
+  Result<MovingScene> scene = loadMoving(common.scene);
+  if (!scene) {
+    return scene.error();
+  }
+  if (const Status ok = setPlaces(*scene, places.backdrops, PartSettings::Place::kBackdrop, "--backdrop");
+      !ok) {
+    return ok.error();
+  }
+  if (const Status ok = setPlaces(*scene, places.overlays, PartSettings::Place::kOverlay, "--overlay"); !ok) {
+    return ok.error();
+  }
+  Result<Walk> walk = loadWalk(path, common.scene, scene->scene);
+  if (!walk) {
+    return walk.error();
+  }
+  return LayerInput{std::move(*scene), std::move(*walk)};
+}
+
+LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings) {
+  LayerSorter sorter(settings);
+  for (const ConvexHull& hull : scene.hulls) {
+    sorter.addHull(hull);
+  }
+  for (const MovingPart& part : scene.parts) {
+    const std::vector<HullId> hulls(part.hulls.begin(), part.hulls.end());
+    sorter.addPart(hulls, part.settings);
+  }
+  for (const MovingPlane& plane : scene.planes) {
+    sorter.setRule(PartId(plane.first), PartId(plane.second), plane.rule);
+  }
+  return sorter;
+}
+
+void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter) {
+  if (!scene.pose) {
+    return;
+  }
+  poses.resize(scene.parts.size());
+  scene.pose(frame, poses);
+  for (std::uint32_t part = 0; part < poses.size(); ++part) {
+    sorter.setTransform(PartId(part), poses[part]);
+  }
+}
+
+}  // namespace sightline::tool

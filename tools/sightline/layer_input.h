@@ -1,0 +1,37 @@
+#pragma once
+
+// What layers are sorted from: parts that may move, along a camera's path.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/moving_scene.h"
+#include "sightline/layers/layer_sorter.h"
+#include "tools/sightline/load.h"
+#include "tools/sightline/options.h"
+
+namespace sightline::tool {
+
+struct LayerInput {
+  MovingScene moving;  // of a scene that does not move: each object is a part, static, where it is
+  Walk walk;
+};
+
+// backdrops, overlays: parts by number.
+struct LayerPlaces {
+  std::vector<std::uint32_t> backdrops, overlays;
+};
+
+// Asks first whether the output can be written, before the work. Where the scene moves, a frame of the walk
+// is a frame of the motion; a path of the user's own may be longer.
+Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions& path,
+                                  const LayerPlaces& places = {});
+
+// A sorter of the scene's parts, which have its numbers, with its planes.
+LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings);
+
+// Moves the parts to where they are in a frame. poses: scratch.
+void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter);
+
+}  // namespace sightline::tool
