@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <random>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "layers/conditioning_sort.h"
