@@ -1,4 +1,4 @@
-# Installs the runtime and the look-up under a fresh prefix, builds the consumer against them, runs it.
+# Installs the runtime, the look-up and the sort under a fresh prefix, builds the consumer against them, runs it.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -13,6 +13,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/consumer)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component runtime)
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component pvs)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component layers)
 
 # The package alone is looked at: neither a package registry nor the build folder may help.
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${WORK}/consumer -G ${GENERATOR}
@@ -23,6 +24,11 @@ run(${CMAKE_COMMAND} --build ${WORK}/consumer)
 run(${WORK}/consumer/consumer)
 if(NOT output STREQUAL "visible: 0\nvisible: 5\n")
   message(FATAL_ERROR "the consumer printed:\n${output}")
+endif()
+
+run(${WORK}/consumer/sort_layers)
+if(NOT output STREQUAL "1 \n0 \n2 3 \n" AND NOT output STREQUAL "1 \n2 3 \n0 \n" AND NOT output STREQUAL "2 3 \n1 \n0 \n")
+  message(FATAL_ERROR "the order printed:\n${output}")
 endif()
 
 if(TOOL)
