@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,9 +29,9 @@ struct RayStretch {
 
 class HullRays {
  public:
-  // The hulls of all enabled-by-default parts but backdrops, where they are. Solids only.
+  // The solid hulls of all parts but overlays and backdrops, where they are.
   HullRays(const MovingScene& scene, std::span<const Mat4> world_from_part)
-      : scene_(scene), device_(rtcNewDevice(nullptr)), embree_(rtcNewScene(device_.get())) {
+      : device_(rtcNewDevice(nullptr)), embree_(rtcNewScene(device_.get())) {
     EXPECT_TRUE(rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED));
     rtcSetSceneFlags(embree_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     for (std::uint32_t part = 0; part < scene.parts.size(); ++part) {
@@ -152,7 +153,6 @@ class HullRays {
     return stretch.enter < stretch.leave ? std::optional(stretch) : std::nullopt;
   }
 
-  const MovingScene& scene_;
   std::vector<Mat4> part_from_world_;
   std::vector<Instance> instances_;
   std::unique_ptr<RTCDeviceTy, Release> device_;
