@@ -158,8 +158,14 @@ Result<ExitCode> runReproduce(ReproduceOptions options) {
     return Error{
         fmt::format("--depth and --triangle-budget: {} bakes nothing; leave them out", options.paper)};
   }
-  if (paper.scenes.empty() && !(options.scenes.empty() && options.path.path.empty())) {
-    return Error{fmt::format("--scene and --path: {} makes its own scenes; leave them out", options.paper)};
+  const bool nothing_chosen = options.scenes.empty() && options.path.path.empty() &&
+                              options.path.frames.empty() && options.picture.width == 0 &&
+                              options.picture.height == 0;
+  if (paper.scenes.empty() && !nothing_chosen) {
+    return Error{fmt::format(
+        "--scene, --path, --frames, --width and --height: {} makes its own scenes and draws nothing; leave "
+        "them out",
+        options.paper)};
   }
   if (options.scenes.empty()) {
     options.scenes = options.fewer_frames && !paper.short_scenes.empty() ? paper.short_scenes : paper.scenes;
