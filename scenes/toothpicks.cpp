@@ -24,7 +24,6 @@ constexpr double kHalfLength = 0.066, kHalfWidth = 0.0094;  // metres, at scale 
 // 41 bands of 8: 312 quads and 16 triangles, 40 rings of 8 vertices and two poles: 322.
 constexpr std::uint32_t kBands = 41, kSegments = 8;
 constexpr double kEndMovement = 0.00269;  // metres a frame, mean of all ends
-constexpr double kMargin = 0.0;           // metres at scale 1: how near to the cube's sides centres come
 constexpr double kSphereRadius = 0.02, kCylinderRadius = 0.01;
 constexpr double kJointGap = 0.001;
 // The hulls are this much larger than the meshes: more than what rounds off when a mesh is moved to where it
@@ -44,12 +43,11 @@ double scaleOf(const ToothpickOptions& options) {
   return options.uniform_density ? cubeRoot(200.0 / std::max(options.count, 1u)) : 1.0;
 }
 
-// From a position and a speed on a line to where a thing that bounces between low and high is.
-double bounced(double start, double travelled, double low, double high) {
-  const double length = high - low;
-  const double turns = (start - low + travelled) / (2.0 * length);
-  const double at = (turns - std::floor(turns)) * 2.0 * length;
-  return low + (at > length ? 2.0 * length - at : at);
+// From a position on a side of the cube and the way travelled to where a thing is that bounces at both ends.
+double bounced(double start, double travelled) {
+  const double turns = (start + travelled) / 2.0;
+  const double at = (turns - std::floor(turns)) * 2.0;
+  return at > 1.0 ? 2.0 - at : at;
 }
 
 struct Toothpick {
@@ -62,7 +60,6 @@ struct Toothpick {
 
 struct Motion {
   std::vector<Toothpick> toothpicks;
-  double margin = 0.0;  // metres: how near to the cube's sides centres come
   double velocity = 1.0;
 
   Mat4 worldFromPart(std::size_t i, double frame) const {
@@ -70,7 +67,7 @@ struct Motion {
     const double time = frame * velocity;
     Vec3d centre;
     for (int a = 0; a < 3; ++a) {
-      centre[a] = bounced(t.centre[a], t.velocity[a] * time, margin, 1.0 - margin);
+      centre[a] = bounced(t.centre[a], t.velocity[a] * time);
     }
     const Point2 d = unitVector(t.turns * time);
     const Vec3d along = t.axis * d.x + t.aside * d.y, across = t.aside * d.x - t.axis * d.y;
@@ -91,10 +88,10 @@ Vec3d randomDirection(Random& random) {
 }
 
 // Speeds are relative to each other: of the centre and, by the turning alone, of the ends.
-Toothpick randomToothpick(Random random, double margin, double half_length) {
+Toothpick randomToothpick(Random random, double half_length) {
   Toothpick t;
   for (int a = 0; a < 3; ++a) {
-    t.centre[a] = random.range(margin, 1.0 - margin);
+    t.centre[a] = random.uniform();
   }
   t.axis = randomDirection(random);
   t.aside = normalized(cross(randomDirection(random), t.axis));
@@ -122,9 +119,8 @@ Motion makeMotion(const ToothpickOptions& options) {
   const double half_length = kHalfLength * scaleOf(options);
   Motion motion;
   motion.velocity = options.velocity;
-  motion.margin = kMargin * scaleOf(options);
   for (std::uint32_t i = 0; i < options.count; ++i) {
-    motion.toothpicks.push_back(randomToothpick(Random(options.seed, i), motion.margin, half_length));
+    motion.toothpicks.push_back(randomToothpick(Random(options.seed, i), half_length));
   }
   const double factor = kEndMovement / meanEndSpeed(motion.toothpicks, half_length);
   for (Toothpick& t : motion.toothpicks) {

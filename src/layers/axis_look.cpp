@@ -65,7 +65,9 @@ ExtentAxis normalizedAxis(const ExtentAxis& axis) {
   ExtentAxis unit_axis = axis;
   unit_axis.zero = axis.kind == Kind::kAngular ? unit(axis.zero) : Vec3d();
   const Vec3d direction = unit(axis.direction);
-  unit_axis.direction = unit(direction - unit_axis.zero * dot(direction, unit_axis.zero));
+  const Vec3d residue = direction - unit_axis.zero * dot(direction, unit_axis.zero);
+  // Parallel to zero up to rounding: no plane, and no direction.
+  unit_axis.direction = length(residue) > kAcross ? unit(residue) : Vec3d();
   return unit_axis;
 }
 
@@ -78,7 +80,7 @@ AxisLook lookAlong(const ExtentAxis& axis, const View& view, const Vec3d& refere
   look.direction = inWorld(axis.direction, axis.frame, view);
   look.from = of_camera || axis.kind == Kind::kAngular ? view.eye : reference;
   look.zero = inWorld(axis.zero, axis.frame, view);
-  if (!isFinite(look.direction) || !isFinite(look.zero)) {
+  if (!isFinite(look.direction) || !isFinite(look.zero) || look.direction == Vec3d()) {
     return AxisLook{.measure = Measure::kNothing};
   }
   if (axis.kind == Kind::kAngular) {

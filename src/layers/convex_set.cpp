@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "layers/support.h"
+#include "sightline/geometry/tolerance.h"
 
 namespace sightline::layers {
 namespace {
@@ -24,25 +25,21 @@ namespace {
 constexpr double kRounding = 0x1p-49;
 constexpr double kTiny = 1e-200;
 
-double sumAbs(const Vec3d& v) {
-  return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
-
 }  // namespace
 
 LocalSet localSet(const ConvexSet& set, const Vec3d& local_origin) {
   LocalSet local{set.hull, set.placement, set.kind, set.eye_or_sweep};
   local.placement.origin = set.placement.origin - local_origin;
   const ConvexHull& hull = *set.hull;
-  const double stretch = sumAbs(set.placement.x) + sumAbs(set.placement.y) + sumAbs(set.placement.z);
-  const double reach = sumAbs(hull.centre) + hull.radius + hull.slack;
-  local.size = stretch * reach + sumAbs(local.placement.origin);
+  const double stretch = magnitude(set.placement.x) + magnitude(set.placement.y) + magnitude(set.placement.z);
+  const double reach = magnitude(hull.centre) + hull.radius + hull.slack;
+  local.size = stretch * reach + magnitude(local.placement.origin);
   local.hull_error = supportError(hull, stretch * (1.0 + 0x1p-50)) + kRounding * local.size + kTiny;
   if (set.kind != ConvexSet::Kind::kHull) {
     if (set.kind == ConvexSet::Kind::kWithEye) {
       local.eye_or_sweep = set.eye_or_sweep - local_origin;
     }
-    const double far_size = sumAbs(local.eye_or_sweep);
+    const double far_size = magnitude(local.eye_or_sweep);
     local.far_error = kRounding * far_size + kTiny;
     local.size += far_size;
   }

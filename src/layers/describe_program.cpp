@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sightline/layers/compositing.h"
 
@@ -92,6 +94,32 @@ CompositingCounts countSteps(std::span<const CompositingStep> steps) {
     }
   }
   return counts;
+}
+
+Status checkLayers(const FrameLayers& layers) {
+  const auto lists = [](const std::vector<std::uint32_t>& first, std::size_t size) {
+    return first.empty()
+               ? size == 0
+               : first.front() == 0 && first.back() == size && std::is_sorted(first.begin(), first.end());
+  };
+  if (!lists(layers.first_part, layers.parts.size()) || !lists(layers.first_layer, layers.layers())) {
+    return Error{"layers of a frame: the lists of parts and layers do not fit together"};
+  }
+  const auto groupOf = [&](LayerId layer) {
+    return std::upper_bound(layers.first_layer.begin(), layers.first_layer.end(), layer.value);
+  };
+  const std::vector<LayerOcclusion>& all = layers.occlusions;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [front, back] = all[i];
+    const bool sound = front.value < layers.layers() && back.value < layers.layers() && front != back &&
+                       groupOf(front) == groupOf(back) && (i == 0 || all[i - 1] < all[i]) &&
+                       !std::binary_search(all.begin(), all.end(), LayerOcclusion{back, front});
+    if (!sound) {
+      return Error{"layers of a frame: occlusion " + std::to_string(i) +
+                   " is out of order, between groups, both ways, or of no layer"};
+    }
+  }
+  return Success{};
 }
 
 Status checkProgram(std::span<const CompositingStep> steps, std::size_t layers) {

@@ -27,6 +27,9 @@ constexpr double kGreatestFactor = 1e6;
 constexpr std::size_t kMeasureDrops = 2048;
 
 double leastDrop(const ConvexHull& hull, std::uint32_t p, const Vec3d& n) {
+  if (hull.first_neighbour[p + 1] - hull.first_neighbour[p] < 3) {
+    return 0.0;  // no vertex of a solid; nothing follows from it
+  }
   double least = 1e300;
   for (std::uint32_t i = hull.first_neighbour[p]; i < hull.first_neighbour[p + 1]; ++i) {
     const Vec3d fall = hull.vertices[p] - hull.vertices[hull.neighbours[i]];

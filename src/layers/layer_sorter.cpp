@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "layers/conditioning_sort.h"
@@ -37,6 +38,19 @@ LayerSettings checked(LayerSettings settings) {
   return settings;
 }
 
+// A power of two times the direction, so that no product of two of its coordinates vanishes. What an
+// orthographic view looks along needs no length.
+View scaled(const View& view) {
+  const double largest = maxComponent(abs(view.forward));
+  View result = view;
+  if (view.orthographic && std::isfinite(largest) && largest > 0.0) {
+    const int exponent = std::ilogb(largest);
+    result.forward = {std::ldexp(view.forward.x, -exponent), std::ldexp(view.forward.y, -exponent),
+                      std::ldexp(view.forward.z, -exponent)};
+  }
+  return result;
+}
+
 }  // namespace
 
 struct LayerSorter::Impl {
@@ -45,6 +59,8 @@ struct LayerSorter::Impl {
         extents(settings.extents),
         source(settings, extents, occlusion) {}
 
+  bool isFinite(std::uint32_t part) const;
+  bool areParts(PartId first, PartId second) const;
   void place(const View& view);
   void sort();
   void condition();
@@ -99,7 +115,7 @@ PartId LayerSorter::addPart(std::span<const HullId> hulls, const PartSettings& s
   }
   own.store.first_hull.push_back(static_cast<std::uint32_t>(own.store.part_hulls.size()));
   own.store.placements.emplace_back();
-  own.store.finite.push_back(1);
+  own.store.finite.push_back(own.isFinite(static_cast<std::uint32_t>(own.store.parts() - 1)) ? 1 : 0);
   own.part_settings.push_back(settings);
   own.enabled.push_back(1);
   own.moved.push_back(1);
@@ -122,9 +138,21 @@ bool LayerSorter::setTransform(PartId part, const Mat4& world_from_part) {
     return true;
   }
   own.store.placements[part.value] = placement;
-  own.store.finite[part.value] = layers::isFinite(own.store.placements[part.value]) ? 1 : 0;
+  own.store.finite[part.value] = own.isFinite(part.value) ? 1 : 0;
   own.moved[part.value] = 1;
   return true;
+}
+
+// A hull without vertices, which buildHull never makes, leaves open where the part is.
+bool LayerSorter::Impl::isFinite(std::uint32_t part) const {
+  const std::span<const std::uint32_t> hulls = store.hullsOf(part);
+  return layers::isFinite(store.placements[part]) && !hulls.empty() &&
+         std::none_of(hulls.begin(), hulls.end(),
+                      [&](std::uint32_t hull) { return store.hulls[hull].vertices.empty(); });
+}
+
+bool LayerSorter::Impl::areParts(PartId first, PartId second) const {
+  return first.value < store.parts() && second.value < store.parts();
 }
 
 void LayerSorter::setEnabled(PartId part, bool enabled) {
@@ -132,19 +160,33 @@ void LayerSorter::setEnabled(PartId part, bool enabled) {
 }
 
 void LayerSorter::setRule(PartId first, PartId second, const PairPlane& rule) {
-  impl_->rules.set(first.value, second.value, rule);
+  if (impl_->areParts(first, second)) {
+    impl_->rules.set(first.value, second.value, rule);
+  }
 }
+
 void LayerSorter::setRule(PartId first, PartId second, const SphereCylinderJoint& rule) {
-  impl_->rules.set(first.value, second.value, rule);
+  if (impl_->areParts(first, second)) {
+    impl_->rules.set(first.value, second.value, rule);
+  }
 }
+
 void LayerSorter::setRule(PartId first, PartId second, const PairCallback& rule) {
-  impl_->rules.set(first.value, second.value, rule);
+  if (impl_->areParts(first, second)) {
+    impl_->rules.set(first.value, second.value, rule);
+  }
 }
+
 void LayerSorter::clearRule(PartId first, PartId second) {
-  impl_->rules.clear(first.value, second.value);
+  if (impl_->areParts(first, second)) {
+    impl_->rules.clear(first.value, second.value);
+  }
 }
+
 void LayerSorter::setContainer(PartId front, PartId back) {
-  impl_->rules.setContainer(front.value, back.value);
+  if (impl_->areParts(front, back)) {
+    impl_->rules.setContainer(front.value, back.value);
+  }
 }
 
 void LayerSorter::rebuildTree() {
@@ -293,8 +335,9 @@ LayerStats LayerSorter::Impl::stats() const {
           .by_tree = source.byTree()};
 }
 
-const LayerOrder& LayerSorter::update(const View& view) {
+const LayerOrder& LayerSorter::update(const View& given) {
   Impl& own = *impl_;
+  const View view = scaled(given);
   own.extent_updates = own.extents.update(view, own.store, own.moved);
   std::fill(own.moved.begin(), own.moved.end(), 0);
   std::fill(own.sorted.begin(), own.sorted.end(), 1);

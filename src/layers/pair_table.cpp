@@ -1,7 +1,5 @@
 #include "layers/pair_table.h"
 
-#include <utility>
-
 namespace sightline::layers {
 
 void PairTable::beginFrame(std::uint32_t expiry) {
@@ -23,11 +21,22 @@ void PairTable::beginFrame(std::uint32_t expiry) {
   index_.keepOnly(keep_);
 }
 
+namespace {
+
+PairKey keyOf(std::uint32_t a, std::uint32_t b, PairTable::Question question) {
+  const bool swapped = question == PairTable::Question::kMeeting && a > b;
+  return {swapped ? b : a, swapped ? a : b, static_cast<std::uint32_t>(question)};
+}
+
+}  // namespace
+
+PairTable::Kept PairTable::find(std::uint32_t a, std::uint32_t b, Question question) const {
+  const std::uint32_t entry = index_.find(keyOf(a, b, question));
+  return entry == PairIndex::kNone ? Kept{} : Kept{&witnesses_[entry], last_used_[entry] == frame_};
+}
+
 PairWitness& PairTable::use(std::uint32_t a, std::uint32_t b, Question question) {
-  if (question == Question::kMeeting && a > b) {
-    std::swap(a, b);
-  }
-  const PairKey key{a, b, static_cast<std::uint32_t>(question)};
+  const PairKey key = keyOf(a, b, question);
   std::uint32_t entry = index_.find(key);
   if (entry == PairIndex::kNone) {
     entry = static_cast<std::uint32_t>(index_.size());

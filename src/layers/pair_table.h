@@ -22,6 +22,11 @@ class PairTable {
   // The entry for a pair, fresh if it is new; valid until the next call. kMeeting: the same for (b, a), a <
   // b.
   PairWitness& use(std::uint32_t a, std::uint32_t b, Question question);
+  struct Kept {
+    const PairWitness* witness = nullptr;  // null: nothing is kept
+    bool used_now = false;                 // in this frame
+  };
+  Kept find(std::uint32_t a, std::uint32_t b, Question question) const;
   std::size_t size() const { return index_.size(); }
   void clear();
 

@@ -26,14 +26,6 @@ constexpr std::uint32_t kAngleVertices = 3;   // AngularVertices; heights need t
 // up to their own rounding, and a ray across a direction is so up to 2^-50: as much again.
 constexpr double kRounding = 0x1p-48;
 
-// Above every stretching of a direction by the placement (the square root of the greatest row sum of the
-// products of its columns bounds the greatest singular value), and by axes of nearly unit length.
-double stretchOf(const Placement& p) {
-  const double xy = std::abs(dot(p.x, p.y)), xz = std::abs(dot(p.x, p.z)), yz = std::abs(dot(p.y, p.z));
-  const double x = dot(p.x, p.x) + xy + xz, y = dot(p.y, p.y) + xy + yz, z = dot(p.z, p.z) + xz + yz;
-  return 1.00001 * std::sqrt(std::max(x, std::max(y, z)));
-}
-
 }  // namespace
 
 PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) {

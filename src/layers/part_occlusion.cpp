@@ -19,14 +19,6 @@ struct Heights {
   double magnitude = 0.0;  // of what the middle was computed from
 };
 
-// No vector becomes longer than this times its length. The largest row sum of a symmetric matrix bounds its
-// eigenvalues.
-double stretch(const Placement& p) {
-  const double xy = std::abs(dot(p.x, p.y)), yz = std::abs(dot(p.y, p.z)), zx = std::abs(dot(p.z, p.x));
-  const double rows = std::max({dot(p.x, p.x) + xy + zx, dot(p.y, p.y) + xy + yz, dot(p.z, p.z) + yz + zx});
-  return std::sqrt(rows) * (1.0 + kMargin);
-}
-
 double reachOf(const ConvexSet& set) {
   const Placement& p = set.placement;
   return magnitude(p.origin) + (magnitude(p.x) + magnitude(p.y) + magnitude(p.z)) *
@@ -34,14 +26,10 @@ double reachOf(const ConvexSet& set) {
 }
 
 Heights heightsAlong(const ConvexSet& set, const Vec3d& direction) {
-  const double radius = (set.hull->radius + set.hull->slack) * stretch(set.placement);
+  const double radius = (set.hull->radius + set.hull->slack) * stretchOf(set.placement);
   const double steep = magnitude(direction);
   return {dot(set.placement.point(set.hull->centre), direction), radius * length(direction) * (1.0 + kMargin),
           reachOf(set) * steep};
-}
-
-bool sameBits(const Placement& a, const Placement& b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z && a.origin == b.origin;
 }
 
 }  // namespace
@@ -87,6 +75,9 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
   }
 
   ++pair_queries_;
+  if (rule == nullptr && stillCollide(front, back)) {
+    return containment(front, back) != Verdict::kDoesNot;
+  }
   const bool occludes = anyHullPair(
       front, back, [&](std::uint32_t i, std::uint32_t j) { return hullOccludes(front, i, back, j); });
   return occludes &&
@@ -147,18 +138,40 @@ bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& 
   return false;
 }
 
+// a < b.
+bool PartOcclusion::hullsMeet(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
+  PairWitness& witness = table_.use(i, j, PairTable::Question::kMeeting);
+  return meeting(placed(a, i), placed(b, j), witness, counts_) != Meeting::kApart;
+}
+
+void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
+  collisions_.push_back({a, b});
+  collisions_are_sorted_ = false;
+}
+
+// Whether the parts met at the last question and do so now: then each occludes the other, and one question
+// serves both orders.
+bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
+  const std::uint32_t low = std::min(front, back), high = std::max(front, back);
+  const bool meet = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
+    const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kMeeting);
+    return kept.witness != nullptr && !kept.witness->apart && (kept.used_now || hullsMeet(low, i, high, j));
+  });
+  if (meet) {
+    addCollision(low, high);
+  }
+  return meet;
+}
+
 // Whether the parts meet; then they are kept as a collision. Parts that meet occlude each other, so none goes
 // unseen of those that are asked about.
 bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
   const bool meet =
-      spatialExtentsOverlap(low, high) && anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
-        PairWitness& witness = table_.use(i, j, PairTable::Question::kMeeting);
-        return meeting(placed(low, i), placed(high, j), witness, counts_) != Meeting::kApart;
-      });
+      spatialExtentsOverlap(low, high) &&
+      anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) { return hullsMeet(low, i, high, j); });
   if (meet) {
-    collisions_.push_back({low, high});
-    collisions_are_sorted_ = false;
+    addCollision(low, high);
   }
   return meet;
 }
@@ -185,21 +198,22 @@ bool PartOcclusion::sweepPast(const ConvexSet& front, ConvexSet& back) const {
   const Vec3d towards_eye = -view_.forward;
   const Heights f = heightsAlong(front, towards_eye), b = heightsAlong(back, towards_eye);
   const double way = (f.middle + f.half) - (b.middle - b.half) + kMargin * (f.magnitude + b.magnitude);
-  if (way <= 0.0) {
+  if (way < 0.0) {
     return false;
   }
-  int exponent = 0;
-  (void)std::frexp(way / dot(towards_eye, towards_eye), &exponent);
   back.kind = ConvexSet::Kind::kSwept;
-  back.eye_or_sweep = towards_eye * std::ldexp(1.0, exponent);
+  const double steps = way / dot(towards_eye, towards_eye);
+  int exponent = 0;
+  (void)std::frexp(steps, &exponent);
+  // Not finite: meeting() leaves it undecided.
+  back.eye_or_sweep = towards_eye * (std::isfinite(steps) ? std::ldexp(1.0, exponent) : steps);
   return true;
 }
 
 bool PartOcclusion::isContainer(std::uint32_t front, std::uint32_t back) const {
   const auto of_front = parts_->hullsOf(front), of_back = parts_->hullsOf(back);
   return of_front.size() == 1 && of_back.size() == 1 && of_front[0] == of_back[0] &&
-         parts_->hulls[of_front[0]].dimension == 3 &&
-         sameBits(parts_->placements[front], parts_->placements[back]);
+         parts_->hulls[of_front[0]].dimension == 3 && parts_->placements[front] == parts_->placements[back];
 }
 
 // What lies in a container is behind its front and before its back. Asked where hulls meet.

@@ -4,8 +4,8 @@
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 6.
 // Differs from the paper in: hulls are first tested for occlusion, and for collision only where they occlude,
-// which most pairs do not; parts are unions of hulls; the eye may be far away (orthographic); rules allow
-// or forbid directions before hulls are looked at; containers.
+// which most pairs do not, or met in the last frame; parts are unions of hulls; the eye may be far away
+// (orthographic); rules allow or forbid directions before hulls are looked at; containers.
 
 #include <cstddef>
 #include <cstdint>
@@ -50,7 +50,10 @@ class PartOcclusion {
   template <typename Test>
   bool anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const;
   bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j);
+  bool hullsMeet(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
+  bool stillCollide(std::uint32_t front, std::uint32_t back);
   bool collide(std::uint32_t front, std::uint32_t back);
+  void addCollision(std::uint32_t a, std::uint32_t b);
   bool sweepPast(const ConvexSet& front, ConvexSet& back) const;
 
   bool isContainer(std::uint32_t front, std::uint32_t back) const;

@@ -17,7 +17,7 @@ struct PartStore {
   std::vector<std::uint32_t> first_hull{0};  // parts + 1: where each part's begin in part_hulls
   std::vector<std::uint32_t> part_hulls;     // into hulls; the place here is an "instance"
   std::vector<Placement> placements;         // one a part
-  std::vector<std::uint8_t> finite;          // one a part: its placement and what it makes of its hulls
+  std::vector<std::uint8_t> finite;          // one a part: its placement is, and its hulls have vertices
 
   std::size_t parts() const { return placements.size(); }
   std::size_t instances() const { return part_hulls.size(); }

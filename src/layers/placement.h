@@ -2,6 +2,9 @@
 
 // Where a hull is: an affine map from its space to the world.
 
+#include <algorithm>
+#include <cmath>
+
 #include "sightline/math/mat4.h"
 #include "sightline/math/vec3.h"
 
@@ -18,6 +21,14 @@ struct Placement {
     return {dot(direction_world, x), dot(direction_world, y), dot(direction_world, z)};
   }
 };
+
+// No vector becomes longer than this times its length: the greatest row sum of the products of the axes
+// bounds the square of the greatest singular value.
+inline double stretchOf(const Placement& p) {
+  const double xy = std::abs(dot(p.x, p.y)), yz = std::abs(dot(p.y, p.z)), zx = std::abs(dot(p.z, p.x));
+  const double x = dot(p.x, p.x) + xy + zx, y = dot(p.y, p.y) + xy + yz, z = dot(p.z, p.z) + yz + zx;
+  return 1.00001 * std::sqrt(std::max(x, std::max(y, z)));
+}
 
 inline Placement placementOf(const Mat4& world_from_hull) {
   const Mat4& m = world_from_hull;

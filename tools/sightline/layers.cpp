@@ -58,7 +58,8 @@ LayerSettings settingsOf(const LayersOptions& options) {
   settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
   settings.exact = valueOf(kSwitch, options.exact);
   settings.all_arcs = options.arcs == "all";
-  if (!valueOf(kSwitch, options.conditioning)) {
+  // The world's axes say nothing about what is near.
+  if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
     settings.conditioning_axis = -1;
   }
   return settings;
@@ -183,7 +184,7 @@ void addLayers(CLI::App& app, Command& chosen) {
   addChoice("--expression", options->expression, textsOf(kCompositingForms),
             "how cycles without mutual occlusion are composited");
   addChoice("--conditioning", options->conditioning, textsOf(kSwitch),
-            "let near groups move forward in the order");
+            "let near groups move forward in the order (camera extents only)");
   addChoice("--exact", options->exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
   command->add_option("--backdrop", options->places.backdrops, "parts behind all others, by number")
       ->delimiter(',');

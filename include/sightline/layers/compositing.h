@@ -139,6 +139,11 @@ class CompositingCompiler {
   std::unique_ptr<Impl> impl_;
 };
 
+// What layers that LayerMerger did not just make must fulfil before they are compiled: lists that begin at 0,
+// ascend and end with what they list; occlusions between two layers of one group, ascending, never both ways.
+// Errors: what is not so.
+Status checkLayers(const FrameLayers& layers);
+
 CompositingCounts countSteps(std::span<const CompositingStep> steps);
 
 // What a program that was not just compiled must fulfil: its layers are below `layers`, kLoad, kIn and kOut

@@ -117,7 +117,9 @@ class LayerSorter {
   // A part that is not enabled is not in the order.
   void setEnabled(PartId part, bool enabled);
 
-  // A rule replaces what hulls say about these two parts; for both orders of the two, the last one holds.
+  // What a program knows of two parts. A rule only takes arcs away: where it lets one occlude the other,
+  // hulls decide. For both orders of the two, the last one holds. Without effect with numbers of no part, and
+  // where extents alone decide (LayerSettings::exact).
   void setRule(PartId first, PartId second, const PairPlane& rule);
   void setRule(PartId first, PartId second, const SphereCylinderJoint& rule);
   void setRule(PartId first, PartId second, const PairCallback& rule);
@@ -127,8 +129,8 @@ class LayerSorter {
   // lies between them.
   void setContainer(PartId front, PartId back);
 
-  // Builds the tree of extents anew, at once, as it does by itself in the first update and, spread over
-  // frames, later (ExtentTreeSettings). After update().
+  // Builds the tree of extents anew, at once, as it does by itself in the first update that searches by tree
+  // and, spread over frames, later (ExtentTreeSettings). After update().
   void rebuildTree();
   // Forgets the last order: the next one begins from distances, as after a cut.
   void reset();
