@@ -132,10 +132,11 @@ SplitCells cylinderCells(const CylinderOptions& options) {
   cells.sector_width =
       options.sectors < 2 ? 2.0 * options.radius : 2.0 * options.radius * atTurns(0.5 / options.sectors).y;
   cells.count = options.sectors * options.slices;
-  for (std::uint32_t c = 0; c < cells.count; ++c) {
-    cells.slabs.push_back(
-        slabOf(foot + options.low, foot + options.high, c / options.sectors, options.slices));
-    cells.sector_of.push_back(c % options.sectors);
+  for (std::uint32_t slice = 0; slice < options.slices; ++slice) {
+    for (std::uint32_t sector = 0; sector < options.sectors; ++sector) {
+      cells.slabs.push_back(slabOf(foot + options.low, foot + options.high, slice, options.slices));
+      cells.sector_of.push_back(sector);
+    }
   }
   return cells;
 }
