@@ -85,24 +85,6 @@ std::vector<Shape> shapesOf(const MovingScene& scene, const std::vector<Mat4>& p
   return shapes;
 }
 
-LayerSorter sorterOf(const MovingScene& scene, const LayerSettings& settings) {
-  LayerSorter sorter(settings);
-  for (const ConvexHull& hull : scene.hulls) {
-    sorter.addHull(hull);
-  }
-  for (const MovingPart& part : scene.parts) {
-    const std::vector<HullId> hulls(part.hulls.begin(), part.hulls.end());
-    sorter.addPart(hulls, part.settings);
-  }
-  return sorter;
-}
-
-void move(LayerSorter& sorter, const std::vector<Mat4>& poses) {
-  for (std::uint32_t part = 0; part < poses.size(); ++part) {
-    sorter.setTransform(PartId(part), poses[part]);
-  }
-}
-
 struct Distances {
   double sort_us = 0.0;
   std::size_t wrong_arcs = 0;
@@ -132,9 +114,9 @@ Distances sortByDistance(const std::vector<Shape>& shapes, const Vec3d& eye, std
 
 void measure(const ToothpickOptions& options, bool brief) {
   const MovingScene scene = makeToothpicks(options);
-  LayerSorter depth_first = sorterOf(scene, {});
-  LayerSorter incremental = sorterOf(scene, {.sort = LayerSort::kIncremental});
-  LayerSorter all_arcs = sorterOf(scene, {.all_arcs = true});
+  LayerSorter depth_first = makeSorter(scene, {});
+  LayerSorter incremental = makeSorter(scene, {.sort = LayerSort::kIncremental});
+  LayerSorter all_arcs = makeSorter(scene, {.all_arcs = true});
   std::vector<Mat4> poses(scene.parts.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   std::vector<double> first_us, depth_first_us, incremental_us, pairs_us, distance_us;
@@ -143,9 +125,8 @@ void measure(const ToothpickOptions& options, bool brief) {
   const std::size_t pair_frames = scene.parts.size() > 2000 ? 0 : scene.parts.size() > 500 ? 1 : 5;
   for (std::uint32_t frame = 0; frame < frames; ++frame) {
     const View view = scene.scene.paths.front().view(frame, scene.scene.origin);
-    scene.pose(frame, poses);
-    move(depth_first, poses);
-    move(incremental, poses);
+    pose(scene, frame, poses, depth_first);
+    pose(scene, frame, poses, incremental);
     (frame == 0 ? first_us : depth_first_us).push_back(microseconds([&] {
       pair_queries += static_cast<double>(depth_first.update(view).stats.pair_queries);
     }));
@@ -154,7 +135,7 @@ void measure(const ToothpickOptions& options, bool brief) {
     if (!compared) {
       continue;
     }
-    move(all_arcs, poses);
+    pose(scene, frame, poses, all_arcs);
     const LayerOrder& order = all_arcs.update(view);
     const std::vector<Shape> shapes = shapesOf(scene, poses);
     const Distances distances = sortByDistance(shapes, view.eye, order.arcs);

@@ -41,6 +41,13 @@ struct MovingScene {
   std::function<void(std::uint32_t frame, std::span<Mat4> world_from_part)> pose;
 };
 
+// A sorter of the scene's parts, which have its numbers, with its planes.
+LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings);
+
+// Moves the parts to where they are in a frame; a scene without poses stays. poses: as many as parts
+// afterwards.
+void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter);
+
 struct ToothpickOptions {
   std::uint32_t count = 200;
   bool uniform_density = false;  // "ud": smaller by (200 / count)^(1/3); else "us"

@@ -209,4 +209,33 @@ inline GraphSource numberedGraph(std::size_t parts, std::uint32_t number) {
   return graph;
 }
 
+// Arcs a part: from far below one to nearly all; most around one, where components are of all sizes.
+inline GraphSource variedGraph(std::uint32_t seed, std::size_t parts, std::mt19937& random) {
+  const std::uint32_t per_mille =
+      seed % 3 == 0 ? below(1001, random) : (500 + below(2000, random)) / static_cast<std::uint32_t>(parts);
+  return randomGraph(parts, per_mille, random);
+}
+
+// Sorts every graph of up to four parts from every order; the first fault that an order has, or none.
+template <typename Sorter>
+std::string faultOfSmallGraphs(Sorter& sorter) {
+  for (std::size_t parts = 0; parts <= 4; ++parts) {
+    const std::uint32_t graphs = 1u << (parts == 0 ? 0 : parts * (parts - 1));
+    for (std::uint32_t number = 0; number < graphs; ++number) {
+      GraphSource graph = numberedGraph(parts, number);
+      const std::vector<std::uint32_t> component = componentsOf(graph);
+      std::vector<std::uint32_t> previous = identityOrder(parts);
+      GroupedOrder order;
+      do {
+        graph.reset();
+        sorter.sort(previous, graph, order);
+        if (const std::string fault = faultOf(order, graph, component); !fault.empty()) {
+          return std::to_string(parts) + " parts, graph " + std::to_string(number) + ": " + fault;
+        }
+      } while (std::next_permutation(previous.begin(), previous.end()));
+    }
+  }
+  return "";
+}
+
 }  // namespace sightline::layers

@@ -15,30 +15,14 @@ namespace sightline {
 class MovingSorter {
  public:
   MovingSorter(const MovingScene& scene, const LayerSettings& settings)
-      : scene_(scene), sorter_(settings), poses_(scene.parts.size()) {
-    for (const ConvexHull& hull : scene.hulls) {
-      sorter_.addHull(hull);
-    }
-    for (const MovingPart& part : scene.parts) {
-      std::vector<HullId> hulls;
-      for (const std::uint32_t hull : part.hulls) {
-        hulls.emplace_back(hull);
-      }
-      sorter_.addPart(hulls, part.settings);
-    }
+      : scene_(scene), sorter_(makeSorter(scene, settings)) {
     for (const MovingPlane& plane : scene.planes) {
-      sorter_.setRule(PartId(plane.first), PartId(plane.second), plane.rule);
       ruled_.emplace_back(std::min(plane.first, plane.second), std::max(plane.first, plane.second));
     }
     std::sort(ruled_.begin(), ruled_.end());
   }
 
-  void pose(std::uint32_t frame) {
-    scene_.pose(frame, poses_);
-    for (std::uint32_t part = 0; part < poses_.size(); ++part) {
-      sorter_.setTransform(PartId(part), poses_[part]);  // refused by what is static: that does not move
-    }
-  }
+  void pose(std::uint32_t frame) { sightline::pose(scene_, frame, poses_, sorter_); }
   const LayerOrder& update(std::uint32_t frame) {
     pose(frame);
     return sorter_.update(view(frame));

@@ -92,30 +92,4 @@ Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions
   return LayerInput{std::move(*scene), std::move(*walk)};
 }
 
-LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings) {
-  LayerSorter sorter(settings);
-  for (const ConvexHull& hull : scene.hulls) {
-    sorter.addHull(hull);
-  }
-  for (const MovingPart& part : scene.parts) {
-    const std::vector<HullId> hulls(part.hulls.begin(), part.hulls.end());
-    sorter.addPart(hulls, part.settings);
-  }
-  for (const MovingPlane& plane : scene.planes) {
-    sorter.setRule(PartId(plane.first), PartId(plane.second), plane.rule);
-  }
-  return sorter;
-}
-
-void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter) {
-  if (!scene.pose) {
-    return;
-  }
-  poses.resize(scene.parts.size());
-  scene.pose(frame, poses);
-  for (std::uint32_t part = 0; part < poses.size(); ++part) {
-    sorter.setTransform(PartId(part), poses[part]);
-  }
-}
-
 }  // namespace sightline::tool

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "scenes/moving_scene.h"
-#include "sightline/layers/layer_sorter.h"
 #include "tools/sightline/load.h"
 #include "tools/sightline/options.h"
 
@@ -27,11 +26,5 @@ struct LayerPlaces {
 // is a frame of the motion; a path of the user's own may be longer.
 Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions& path,
                                   const LayerPlaces& places = {});
-
-// A sorter of the scene's parts, which have its numbers, with its planes.
-LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings);
-
-// Moves the parts to where they are in a frame. poses: scratch.
-void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter);
 
 }  // namespace sightline::tool
