@@ -91,17 +91,31 @@ Vec3d randomWholePoint(Random& random, int half) {
   return shapes::randomGrid(random, 1, half)[0];
 }
 
+// Two sets of small whole numbers.
+struct WholePair {
+  WholePair(Random& random, ConvexSet::Kind kind)
+      : a(randomWhole(random)),
+        b(shapes::moved(randomWhole(random), randomWholePoint(random, 5))),
+        hull_a(hullOf(a)),
+        hull_b(hullOf(b)),
+        first{&hull_a},
+        second{&hull_b, {}, kind, randomWholePoint(random, 12)} {}
+  WholePair(const WholePair&) = delete;
+  WholePair& operator=(const WholePair&) = delete;
+
+  Points a, b;
+  ConvexHull hull_a, hull_b;
+  ConvexSet first, second;
+};
+
 TEST(ConvexPair, AgreesWithExactArithmeticAboutSmallWholeNumbers) {
   std::array<int, 2> seen{};
   for (std::uint64_t seed = 0; seed < 4000; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
-    const Points a = randomWhole(random);
-    const Points b = shapes::moved(randomWhole(random), randomWholePoint(random, 5));
-    const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
-    const ConvexSet first{&hull_a};
-    const ConvexSet second{&hull_b, {}, kKinds[seed % 3], randomWholePoint(random, 12)};
-    expectExact(first, a, second, b);
+    const WholePair pair(random, kKinds[seed % 3]);
+    const ConvexSet &first = pair.first, &second = pair.second;
+    expectExact(first, pair.a, second, pair.b);
     ++seen[ask(first, second) == Meeting::kApart ? 1 : 0];
   }
   EXPECT_GT(seen[0], 400);
@@ -345,11 +359,8 @@ TEST(ConvexPair, StrangeWitnessesDoNoHarm) {
   for (std::uint64_t seed = 0; seed < 4000; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
-    const Points a = randomWhole(random);
-    const Points b = shapes::moved(randomWhole(random), randomWholePoint(random, 5));
-    const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
-    const ConvexSet first{&hull_a};
-    const ConvexSet second{&hull_b, {}, kKinds[seed % 3], randomWholePoint(random, 12)};
+    const WholePair pair(random, kKinds[seed % 3]);
+    const ConvexSet &first = pair.first, &second = pair.second;
     PairWitness witness;
     witness.apart = random.below(2) == 0;
     witness.pairs = static_cast<std::uint8_t>(random.below(256));
