@@ -14,6 +14,9 @@ LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings) 
   for (const MovingPlane& plane : scene.planes) {
     sorter.setRule(PartId(plane.first), PartId(plane.second), plane.rule);
   }
+  for (const MovingJoint& joint : scene.joints) {
+    sorter.setRule(PartId(joint.first), PartId(joint.second), joint.rule);
+  }
   return sorter;
 }
 

@@ -29,11 +29,18 @@ struct MovingPlane {
   PairPlane rule;
 };
 
+// The first part is a sphere on which the second one, a cylinder, stands.
+struct MovingJoint {
+  std::uint32_t first = 0, second = 0;
+  SphereCylinderJoint rule;
+};
+
 struct MovingScene {
   Scene scene;  // object i is part i, where it is in frame 0; paths[0] is the camera's
   std::vector<ConvexHull> hulls;
   std::vector<MovingPart> parts;
   std::vector<MovingPlane> planes;
+  std::vector<MovingJoint> joints;
   std::vector<std::string> classes;  // "aircraft", "terrain", ...
   std::uint32_t frames = 250;        // as many as paths[0] has
   // world_from_part of all parts in a frame: of the part's own space, in which its hulls are. Any frame, in
@@ -41,7 +48,7 @@ struct MovingScene {
   std::function<void(std::uint32_t frame, std::span<Mat4> world_from_part)> pose;
 };
 
-// A sorter of the scene's parts, which have its numbers, with its planes.
+// A sorter of the scene's parts, which have its numbers, with its planes and joints.
 LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings);
 
 // Moves the parts to where they are in a frame; a scene without poses stays. poses: as many as parts

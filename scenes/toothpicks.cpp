@@ -1,10 +1,10 @@
-// Ellipsoids that tumble in a cube of one metre a side.
+// Ellipsoids that tumble with their centres in a cube of one metre a side. The frame stands around it, as far
+// away as a toothpick is long from its centre: they bounce off the frame's sides with their ends.
 //
 // Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
 // Microsoft Research MSR-TR-97-11, 1997, section 12.1.
-// Differs from the paper in: sizes, which it does not give; the corner spheres and edge cylinders, which do
-// not quite touch, so that each is a layer of its own. Sizes are such that the shares of groups with more
-// than one part come out: 4.7 % of 200 toothpicks (in the paper 4.5), of 1,600 4.6 (4.6) and 25.4 (25.4).
+// Differs from the paper in: sizes, which it does not give. They are such that its shares of groups with more
+// than one part come out: of 200 toothpicks, of 1,600 at the same density, and of 1,600 at the same size.
 
 #include <algorithm>
 #include <cmath>
@@ -20,15 +20,14 @@ namespace sightline {
 namespace procedural {
 namespace {
 
-constexpr double kHalfLength = 0.066, kHalfWidth = 0.0094;  // metres, at scale 1
+constexpr double kHalfLength = 0.077, kHalfWidth = 0.0084;  // metres, at scale 1
 // 41 bands of 8: 312 quads and 16 triangles, 40 rings of 8 vertices and two poles: 322.
 constexpr std::uint32_t kBands = 41, kSegments = 8;
 constexpr double kEndMovement = 0.00269;  // metres a frame, mean of all ends
-constexpr double kSphereRadius = 0.02, kCylinderRadius = 0.01;
-constexpr double kJointGap = 0.001;
+constexpr double kSphereRadius = 0.03, kCylinderRadius = 0.002;
 // The hulls are this much larger than the meshes: more than what rounds off when a mesh is moved to where it
 // is and stored in single precision.
-constexpr double kHullGrowth = 0x1p-15;
+constexpr double kHullGrowth = 0x1p-14;
 
 // By Newton's method; of numbers > 0. Sums and quotients alone: the same bits everywhere.
 double cubeRoot(double a) {
@@ -149,6 +148,15 @@ Scene cylinder(double half_length, double radius) {
   return buildPartMesh([&](MeshBuilder& mesh) { mesh.lathe(profile, 16); });
 }
 
+// Of the circle in which a cylinder's end lies on a corner's sphere, above its centre.
+double rimHeight() {
+  return std::sqrt(kSphereRadius * kSphereRadius - kCylinderRadius * kCylinderRadius);
+}
+
+SphereCylinderJoint jointAlong(const Vec3d& axis) {
+  return {.sphere_radius = kSphereRadius, .axis = axis, .cylinder_radius = kCylinderRadius};
+}
+
 enum Kind : std::uint32_t { kToothpick, kCorner, kEdge };
 
 MovingPart partOf(Kind kind, std::string name) {
@@ -160,31 +168,37 @@ MovingPart partOf(Kind kind, std::string name) {
   return part;
 }
 
-// A frame part stands still: its poses, in the order of the parts.
-std::vector<Mat4> addFrame(MovingScene& scene, const Scene& sphere, const Scene& edge) {
+// margin: from the cube. A frame part stands still: its poses, in the order of the parts.
+std::vector<Mat4> addFrame(MovingScene& scene, double margin, const Scene& sphere, const Scene& edge) {
   std::vector<Mat4> poses;
+  const auto side = [margin](std::uint32_t upper) { return upper != 0 ? 1.0 + margin : -margin; };
   for (std::uint32_t i = 0; i < 8; ++i) {
-    poses.push_back(
-        rigid({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {i & 1 ? 1.0 : 0.0, i & 2 ? 1.0 : 0.0, i & 4 ? 1.0 : 0.0}));
+    poses.push_back(rigid({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {side(i & 1), side(i & 2), side(i & 4)}));
     addMovingPart(scene, partOf(kCorner, "corner " + std::to_string(i)), sphere, poses.back(),
                   MaterialId{kCorner});
   }
+  const auto corners = static_cast<std::uint32_t>(scene.parts.size() - 8);
   for (std::uint32_t i = 0; i < 12; ++i) {
     const int axis = static_cast<int>(i / 4);
     Vec3d middle, along, aside;
     middle[axis] = 0.5;
-    middle[(axis + 1) % 3] = i & 1 ? 1.0 : 0.0;
-    middle[(axis + 2) % 3] = i & 2 ? 1.0 : 0.0;
+    middle[(axis + 1) % 3] = side(i & 1);
+    middle[(axis + 2) % 3] = side(i & 2);
     along[axis] = 1.0;
     aside[(axis + 2) % 3] = 1.0;
     poses.push_back(rigid(aside, along, cross(aside, along), middle));
     addMovingPart(scene, partOf(kEdge, "edge " + std::to_string(i)), edge, poses.back(), MaterialId{kEdge});
+    const std::uint32_t from = (i & 1 ? 1u << (axis + 1) % 3 : 0u) | (i & 2 ? 1u << (axis + 2) % 3 : 0u);
+    const auto cylinder_part = static_cast<std::uint32_t>(scene.parts.size() - 1);
+    for (const std::uint32_t corner : {from, from | 1u << axis}) {
+      scene.joints.push_back({corners + corner, cylinder_part, jointAlong(corner == from ? along : -along)});
+    }
   }
   return poses;
 }
 
-// Round the cube at a distance from which all of it is in view, while going up and down.
-CameraPath cameraPath(double velocity, std::uint32_t frames) {
+// Round the frame at a distance from which all of it is in view, while going up and down. side: the frame's.
+CameraPath cameraPath(double velocity, double side, std::uint32_t frames) {
   constexpr double kDistance = 2.7, kTurnsAFrame = 1.0 / 3000;
   CameraPath path;
   path.name = "round";
@@ -197,7 +211,7 @@ CameraPath cameraPath(double velocity, std::uint32_t frames) {
     const Point2 round = unitVector(0.085 + turns);
     const double height = 0.25 + 0.1 * unitVector(2.0 * turns).y;
     const Vec3d away = normalized(Vec3d(round.x, height, round.y));
-    path.frames.push_back({middle + away * kDistance, -away, {0.0, 1.0, 0.0}});
+    path.frames.push_back({middle + away * (kDistance * side), -away, {0.0, 1.0, 0.0}});
   }
   return path;
 }
@@ -215,7 +229,8 @@ MovingScene makeToothpicks(const ToothpickOptions& options) {
   const double scale = scaleOf(options);
   const Scene toothpick = ellipsoid(kHalfLength * scale, kHalfWidth * scale, kBands, kSegments);
   const Scene sphere = ellipsoid(kSphereRadius, kSphereRadius, 10, 20);
-  const Scene edge = cylinder(0.5 - kSphereRadius - kJointGap, kCylinderRadius);
+  const double margin = kHalfLength * scale;
+  const Scene edge = cylinder(0.5 + margin - rimHeight(), kCylinderRadius);
   for (const Scene* mesh : {&toothpick, &sphere, &edge}) {
     scene.hulls.push_back(hullOf(*mesh, kHullGrowth));
   }
@@ -225,7 +240,7 @@ MovingScene makeToothpicks(const ToothpickOptions& options) {
     addMovingPart(scene, partOf(kToothpick, "toothpick " + std::to_string(i)), toothpick,
                   motion->worldFromPart(i, 0.0), MaterialId{kToothpick});
   }
-  const std::vector<Mat4> frame_poses = addFrame(scene, sphere, edge);
+  const std::vector<Mat4> frame_poses = addFrame(scene, margin, sphere, edge);
   scene.pose = [motion, frame_poses](std::uint32_t frame, std::span<Mat4> world_from_part) {
     const std::size_t count = motion->toothpicks.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -235,7 +250,7 @@ MovingScene makeToothpicks(const ToothpickOptions& options) {
               world_from_part.begin() + static_cast<std::ptrdiff_t>(count));
   };
   weldPositions(scene.scene);
-  scene.scene.paths = {cameraPath(options.velocity, scene.frames)};
+  scene.scene.paths = {cameraPath(options.velocity, 1.0 + 2.0 * margin, scene.frames)};
   return scene;
 }
 

@@ -36,5 +36,21 @@ struct AngularVertices {
 // A range that holds the exact angles of all points that the hull was made of; the full circle if the eye
 // lies in the hull's image or so near that rounding does not tell.
 AngleRange angularExtent(const ConvexHull& hull, const PlaneMap& map, AngularVertices& start);
+// The same by looking at all vertices. error: see errorOf(). ends: the answer's.
+AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error, AngularVertices& ends);
+
+// What the ends found may be off by, in the plane; angular_extent-inl.h derives it.
+inline double errorOf(const ConvexHull& hull, const PlaneMap& map) {
+  return map.slack + map.rounding * (4.0 + 4.0 * hull.descent_factor);
+}
+// From low to high with the hull at least `distance` from the eye.
+inline AngleRange widened(const PlanePoint& low, const PlanePoint& high, double distance, double error) {
+  if (!(distance > 4.0 * error)) {
+    return {};
+  }
+  const double room = 2.0 * error / distance;
+  const AngleRange range = rangeBetween(low, high);
+  return {range.low - room, range.high + room};
+}
 
 }  // namespace sightline::layers

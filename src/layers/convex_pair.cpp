@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "layers/gilbert.h"
+#include "sightline/geometry/tolerance.h"
 
 namespace sightline::layers {
 namespace {
@@ -23,6 +24,10 @@ Vec3d directionBetween(const PairQuestion& question) {
   return unit == Vec3d() ? Vec3d{1, 0, 0} : unit;
 }
 
+bool isUnit(const Vec3d& direction) {
+  return std::abs(dot(direction, direction) - 1.0) <= 1e-9;
+}
+
 // Where to begin: the kept direction, and the kept vertices of hulls.
 void recall(const PairWitness& witness, PairQuestion& question) {
   for (std::size_t i = std::min<std::size_t>(witness.pairs, witness.first.size()); i-- > 0;) {
@@ -31,8 +36,7 @@ void recall(const PairWitness& witness, PairQuestion& question) {
     question.first_hull = first == PairWitness::kEye ? question.first_hull : first;
     question.second_hull = second == PairWitness::kEye ? question.second_hull : second;
   }
-  const double square = dot(witness.direction, witness.direction);
-  if (witness.pairs > 0 && std::abs(square - 1.0) <= 1e-9) {
+  if (witness.pairs > 0 && isUnit(witness.direction)) {
     question.direction = witness.direction;
     return;
   }
@@ -100,6 +104,37 @@ Meeting chung(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
   return Meeting::kUndecided;
 }
 
+// An upper bound of the set's heights along a direction, whose components do not exceed 1 by more than
+// rounding, above the local origin: by its ellipsoid. Of sums of numbers whose magnitudes add up to m, 2^-45
+// m is far above the rounding. Not a number where anything is not finite.
+double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& local_origin) {
+  constexpr double kRounding = 0x1p-45;
+  const Placement& p = set.placement;
+  const Vec3d offset = p.origin - local_origin;
+  const double stretch = magnitude(p.x) + magnitude(p.y) + magnitude(p.z);
+  double height = set.around->height(p.toHull(direction)) + dot(direction, offset) +
+                  kRounding * (stretch * set.around->reach + magnitude(offset));
+  if (set.kind == ConvexSet::Kind::kWithEye) {
+    const Vec3d eye = set.eye_or_sweep - local_origin;
+    const double of_eye = dot(direction, eye) + kRounding * magnitude(eye);
+    height = of_eye <= height ? height : of_eye;
+  } else if (set.kind == ConvexSet::Kind::kSwept) {
+    const double along = dot(direction, set.eye_or_sweep) + kRounding * magnitude(set.eye_or_sweep);
+    height = along <= 0.0 ? height : height + along;
+  }
+  return height;
+}
+
+// Whether the kept direction still separates, seen without looking at vertices. false: not known.
+bool stillApart(const ConvexSet& first, const ConvexSet& second, const PairWitness& witness) {
+  if (!witness.apart || first.around == nullptr || second.around == nullptr || !isUnit(witness.direction)) {
+    return false;
+  }
+  const Vec3d& origin = first.placement.origin;
+  return outerHeight(first, witness.direction, origin) + outerHeight(second, -witness.direction, origin) <
+         0.0;
+}
+
 bool hasPoints(const ConvexSet& set) {
   return set.hull != nullptr && !set.hull->vertices.empty();
 }
@@ -121,6 +156,10 @@ Meeting meeting(const ConvexSet& first, const ConvexSet& second, PairWitness& wi
   if (!hasPoints(first) || !hasPoints(second)) {
     witness = PairWitness();
     return Meeting::kUndecided;
+  }
+  if (stillApart(first, second, witness)) {
+    ++counts.chung_steps;
+    return Meeting::kApart;
   }
   PairQuestion question = questionOf(first, second);
   if (!isFinite(question.first) || !isFinite(question.second)) {

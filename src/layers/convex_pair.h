@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "layers/hull_ellipsoid.h"
 #include "layers/placement.h"
 #include "sightline/layers/hull.h"
 
@@ -19,6 +20,7 @@ struct ConvexSet {
   Placement placement;
   Kind kind = Kind::kHull;
   Vec3d eye_or_sweep;  // world space: the eye; or the segment, as long as is needed to pass the other set
+  const HullEllipsoid* around = nullptr;  // the hull's; none: pairs known to be apart take longer
 };
 
 enum class Meeting : std::uint8_t {
@@ -44,6 +46,7 @@ struct PairCounts {
   std::uint64_t questions = 0, chung_steps = 0, gilbert_steps = 0;
 };
 
+// Sets that were apart at the last question are first looked at as ellipsoids, which mostly settles it. Then
 // Chung's reflections, at most four and only if they were apart at the last question or nothing is known;
 // then Gilbert's distance, from the vertex pairs found. The answer does not depend on the witness but for
 // pairs that nearly touch; a wrong or strange witness (numbers beyond the hull's) does no harm. Source:

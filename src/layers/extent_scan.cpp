@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -10,104 +12,110 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::layers {
-namespace HWY_NAMESPACE {
+namespace sightline::layers::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<float, ExtentTable::kPadding>;
+using Lanes = hn::CappedTag<std::uint8_t, ScanRows::kFanOut>;
 using Mask = hn::Mask<Lanes>;
 
-// An axis, and what its intervals are compared with: the query, and the query a turn on and back where one of
-// them can overlap anything.
-struct Column {
-  const float* lows;
-  const float* highs;
-  std::uint32_t shifts = 1;
-  float low[3], high[3];
+// What the intervals of an axis are compared with: the query, and the query a turn on and back where one of
+// them can overlap anything. In cells.
+struct AxisQuery {
+  std::uint32_t shifts = 0;
+  std::uint8_t low[3], high[3];
+
+  void add(const CellScale& scale, const Interval& interval) {
+    low[shifts] = scale.cell(interval.low);
+    high[shifts++] = scale.cell(interval.high);
+  }
 };
 
-Column columnOf(const ExtentTable& table, std::size_t axis, const Interval& query, const Interval& all) {
-  Column column;
-  column.lows = table.lows[axis].data();
-  column.highs = table.highs[axis].data();
-  column.low[0] = query.low;
-  column.high[0] = query.high;
-  if (table.angular(axis)) {
+AxisQuery axisQuery(const ScanRows& rows, std::size_t axis, const Interval& query) {
+  AxisQuery result;
+  result.add(rows.scales[axis], query);
+  if (rows.kinds[axis] == ExtentAxis::Kind::kAngular) {
     for (const float turn : {4.0f, -4.0f}) {
       const Interval shifted{query.low + turn, query.high + turn};
-      if (overlapsSpatial(shifted, all)) {
-        column.low[column.shifts] = shifted.low;
-        column.high[column.shifts++] = shifted.high;
+      if (overlapsSpatial(shifted, rows.all[axis])) {
+        result.add(rows.scales[axis], shifted);
       }
     }
   }
-  return column;
+  return result;
 }
 
-HWY_INLINE Mask overlap(const Column& column, std::size_t first) {
+// Whether low <= query's high and high >= its low.
+HWY_INLINE Mask overlap(const AxisQuery& query, const std::uint8_t* low, const std::uint8_t* high) {
   const Lanes d;
-  const auto lows = hn::LoadU(d, column.lows + first), highs = hn::LoadU(d, column.highs + first);
-  Mask any = hn::And(hn::Ge(highs, hn::Set(d, column.low[0])), hn::Le(lows, hn::Set(d, column.high[0])));
-  for (std::uint32_t i = 1; i < column.shifts; ++i) {
-    any = hn::Or(any,
-                 hn::And(hn::Ge(highs, hn::Set(d, column.low[i])), hn::Le(lows, hn::Set(d, column.high[i]))));
+  const auto lows = hn::LoadU(d, low), highs = hn::LoadU(d, high);
+  const auto within = [&](std::uint32_t i) HWY_ATTR {
+    return hn::And(hn::Eq(hn::Max(highs, hn::Set(d, query.low[i])), highs),
+                   hn::Eq(hn::Min(lows, hn::Set(d, query.high[i])), lows));
+  };
+  Mask any = within(0);
+  for (std::uint32_t i = 1; HWY_UNLIKELY(i < query.shifts); ++i) {
+    any = hn::Or(any, within(i));
   }
   return any;
 }
 
-HWY_INLINE std::uint32_t bitsOf(Mask mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(Lanes(), mask, bytes);
-  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
-}
+struct Scan {
+  const ScanRows& rows;
+  AxisQuery axes[kMostExtentAxes];
+  std::vector<std::uint32_t>& found;
 
-// Rows [first, first + lanes) that overlap along all axes.
-HWY_INLINE std::uint64_t overlapBits(const Column* columns, std::size_t axes, std::size_t first) {
-  Mask mask = overlap(columns[0], first);
-  for (std::size_t axis = 1; axis < axes; ++axis) {
-    if (hn::AllFalse(Lanes(), mask)) {
-      return 0;
-    }
-    mask = hn::And(mask, overlap(columns[axis], first));
-  }
-  return bitsOf(mask);
-}
-
-void appendRows(std::uint64_t bits, std::size_t first, std::vector<std::uint32_t>& rows) {
-  for (; bits != 0; bits &= bits - 1) {
-    rows.push_back(static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(bits)));
-  }
-}
-
-// active: a word a block. Appends rows.
-void scan(const ScanTables& tables, const Extent& query, const std::uint64_t* active,
-          std::vector<std::uint32_t>& rows) {
-  const std::size_t lanes = hn::Lanes(Lanes()), axes = tables.rows.axes();
-  const std::uint64_t lane_bits = (std::uint64_t{1} << lanes) - 1;
-  Column row_columns[kMostExtentAxes], block_columns[kMostExtentAxes];
-  for (std::size_t axis = 0; axis < axes; ++axis) {
-    row_columns[axis] = block_columns[axis] = columnOf(tables.rows, axis, query[axis], tables.all[axis]);
-    block_columns[axis].lows = tables.blocks.lows[axis].data();
-    block_columns[axis].highs = tables.blocks.highs[axis].data();
-  }
-  for (std::size_t first = 0; first < tables.blocks.parts; first += lanes) {
-    std::uint64_t blocks = axes == 0 ? lane_bits : overlapBits(block_columns, axes, first);
-    for (; blocks != 0; blocks &= blocks - 1) {
-      const std::size_t block = first + static_cast<std::size_t>(std::countr_zero(blocks));
-      const std::uint64_t word = block < tables.blocks.parts ? active[block] : 0;
-      for (std::size_t i = 0; i < 64 && (word >> i) != 0; i += lanes) {
-        const std::uint64_t bits = (word >> i) & lane_bits;
-        if (bits != 0) {
-          appendRows(axes == 0 ? bits : bits & overlapBits(row_columns, axes, 64 * block + i), 64 * block + i,
-                     rows);
+  // Of kFanOut rows of a level, those whose cells overlap along all axes.
+  HWY_INLINE std::uint64_t overlapBits(std::size_t level, std::size_t first) const {
+    const Lanes d;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < ScanRows::kFanOut; i += hn::Lanes(d)) {
+      const std::size_t at = rows.first[level] + first + i;
+      Mask mask = hn::FirstN(d, ScanRows::kFanOut);
+      for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
+        const std::size_t place = axis * rows.stride + at;
+        mask = hn::And(mask, overlap(axes[axis], rows.lows.data() + place, rows.highs.data() + place));
+        if (axis != 0 && hn::AllFalse(d, mask)) {
+          break;
         }
+      }
+      std::uint8_t bytes[ScanRows::kFanOut / 8] = {};
+      hn::StoreMaskBits(d, mask, bytes);
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes, sizeof(word));
+      bits |= word << i;
+    }
+    return bits;
+  }
+
+  // Appends rows of level 0.
+  void visit(std::size_t level, std::size_t first) {
+    std::uint64_t there = level == 0 ? rows.active[first / ScanRows::kFanOut] : ~std::uint64_t{0};
+    if (level != 0 && rows.count[level] - first < ScanRows::kFanOut) {
+      there = (std::uint64_t{1} << (rows.count[level] - first)) - 1;
+    }
+    if (there == 0) {
+      return;
+    }
+    for (std::uint64_t bits = there & overlapBits(level, first); bits != 0; bits &= bits - 1) {
+      const std::size_t row = first + static_cast<std::size_t>(std::countr_zero(bits));
+      if (level == 0) {
+        found.push_back(static_cast<std::uint32_t>(row));
+      } else {
+        visit(level - 1, row * ScanRows::kFanOut);
       }
     }
   }
+};
+
+void scan(const ScanRows& rows, const Extent& query, std::vector<std::uint32_t>& found) {
+  Scan scan{rows, {}, found};
+  for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
+    scan.axes[axis] = axisQuery(rows, axis, query[axis]);
+  }
+  scan.visit(rows.levels - 1, 0);
 }
 
-}  // namespace HWY_NAMESPACE
-}  // namespace sightline::layers
+}  // namespace sightline::layers::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -117,69 +125,132 @@ HWY_EXPORT(scan);
 
 namespace {
 
+constexpr std::size_t kFanOut = ScanRows::kFanOut;
 constexpr Interval kNothing{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+constexpr std::size_t kMostClusterAxes = 3;
 
-// Room for so many rows, and padding that overlaps nothing.
-void padColumn(std::size_t rows, std::vector<float>& column) {
-  column.resize((rows + ExtentTable::kPadding - 1) / ExtentTable::kPadding * ExtentTable::kPadding);
-  std::fill(column.begin() + static_cast<std::ptrdiff_t>(rows), column.end(),
-            std::numeric_limits<float>::quiet_NaN());
+// The axes along which parts that lie together are laid together: directions as seen, if there are any, since
+// a query reaches to the eye along the others.
+struct ClusterAxes {
+  std::array<std::size_t, kMostClusterAxes> axis{};
+  std::size_t count = 0;
+};
+
+ClusterAxes clusterAxes(const ExtentTable& table) {
+  ClusterAxes chosen;
+  const bool any_angular = std::any_of(table.kinds.begin(), table.kinds.end(), [](ExtentAxis::Kind kind) {
+    return kind == ExtentAxis::Kind::kAngular;
+  });
+  for (std::size_t axis = 0; axis < table.axes() && chosen.count < kMostClusterAxes; ++axis) {
+    if (table.angular(axis) || !any_angular) {
+      chosen.axis[chosen.count++] = axis;
+    }
+  }
+  return chosen;
 }
 
-// Some rows of a table, in their order.
-void copyRows(const ExtentTable& from, std::span<const std::uint32_t> rows, ExtentTable& to) {
-  to.kinds = from.kinds;
-  to.parts = rows.size();
-  const auto copyColumn = [&](const std::vector<float>& source, std::vector<float>& target) {
-    padColumn(rows.size(), target);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      target[i] = source[rows[i]];
-    }
-  };
-  to.lows.resize(from.axes());
-  to.highs.resize(from.axes());
-  for (std::size_t axis = 0; axis < from.axes(); ++axis) {
-    copyColumn(from.lows[axis], to.lows[axis]);
-    copyColumn(from.highs[axis], to.highs[axis]);
-  }
+// Bits of a cell's number, two places between each and the next.
+std::uint32_t spread(std::uint32_t cell) {
+  std::uint32_t x = cell;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
 }
 
 }  // namespace
 
 void ExtentScan::begin(const ExtentTable& table, std::span<const std::uint32_t> order) {
-  part_.assign(order.begin(), order.end());
-  place_.assign(table.parts, kNowhere);
-  for (std::uint32_t place = 0; place < part_.size(); ++place) {
-    place_[part_[place]] = place;
+  table_ = &table;
+  measure(order);
+  cluster(order);
+  layOut();
+  fillRows();
+  uniteRows();
+  found_.reserve(order.size());
+  rows_.active.assign((order.size() + kFanOut - 1) / kFanOut, ~std::uint64_t{0});
+  if (order.size() % kFanOut != 0) {
+    rows_.active.back() = (std::uint64_t{1} << (order.size() % kFanOut)) - 1;
   }
-  copyRows(table, part_, tables_.rows);
-  uniteBlocks();
-  active_.assign((part_.size() + 63) / 64, ~std::uint64_t{0});
-  if (part_.size() % 64 != 0) {
-    active_.back() = (std::uint64_t{1} << (part_.size() % 64)) - 1;
+}
+
+// Cells from the least finite bound to the greatest.
+void ExtentScan::measure(std::span<const std::uint32_t> order) {
+  rows_.kinds = table_->kinds;
+  for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
+    Interval all = kNothing, finite = kNothing;
+    for (const std::uint32_t part : order) {
+      const Interval own = table_->at(axis, part);
+      all = unite(all, own);
+      finite.low = std::isfinite(own.low) ? std::min(finite.low, own.low) : finite.low;
+      finite.high = std::isfinite(own.high) ? std::max(finite.high, own.high) : finite.high;
+    }
+    const float width = finite.high - finite.low;
+    rows_.all[axis] = all;
+    rows_.scales[axis] = {finite.low, width > 0.0f && std::isfinite(width) ? 256.0f / width : 0.0f};
+  }
+}
+
+// In the order of a Morton curve through the intervals' middles.
+void ExtentScan::cluster(std::span<const std::uint32_t> order) {
+  const ClusterAxes axes = clusterAxes(*table_);
+  keys_.clear();
+  for (const std::uint32_t part : order) {
+    std::uint32_t key = 0;
+    for (std::size_t i = 0; i < axes.count; ++i) {
+      const Interval own = table_->at(axes.axis[i], part);
+      key |= spread(rows_.scales[axes.axis[i]].cell(0.5f * (own.low + own.high))) << i;
+    }
+    keys_.push_back(std::uint64_t{key} << 32 | part);
+  }
+  std::sort(keys_.begin(), keys_.end());
+  place_.assign(table_->parts, kNowhere);
+  part_.clear();
+  for (const std::uint64_t key : keys_) {
+    const auto part = static_cast<std::uint32_t>(key);
+    place_[part] = static_cast<std::uint32_t>(part_.size());
+    part_.push_back(part);
+  }
+}
+
+void ExtentScan::layOut() {
+  rows_.levels = 0;
+  rows_.stride = 0;
+  for (std::size_t count = part_.size();; count = (count + kFanOut - 1) / kFanOut) {
+    rows_.count[rows_.levels] = count;
+    rows_.first[rows_.levels++] = rows_.stride;
+    rows_.stride += (count + kFanOut - 1) / kFanOut * kFanOut;
+    if (count <= kFanOut) {
+      break;
+    }
+  }
+  rows_.lows.resize(rows_.axes() * rows_.stride);
+  rows_.highs.resize(rows_.axes() * rows_.stride);
+}
+
+void ExtentScan::fillRows() {
+  for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
+    const CellScale scale = rows_.scales[axis];
+    for (std::size_t i = 0; i < part_.size(); ++i) {
+      const Interval own = table_->at(axis, part_[i]);
+      rows_.lows[axis * rows_.stride + i] = scale.cell(own.low);
+      rows_.highs[axis * rows_.stride + i] = scale.cell(own.high);
+    }
   }
 }
 
 // Of angles as numbers on a line: whatever overlaps a member a turn on or back overlaps the union there, too.
-void ExtentScan::uniteBlocks() {
-  const ExtentTable& rows = tables_.rows;
-  ExtentTable& blocks = tables_.blocks;
-  blocks.kinds = rows.kinds;
-  blocks.parts = (rows.parts + 63) / 64;
-  blocks.lows.resize(rows.axes());
-  blocks.highs.resize(rows.axes());
-  for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
-    padColumn(blocks.parts, blocks.lows[axis]);
-    padColumn(blocks.parts, blocks.highs[axis]);
-    tables_.all[axis] = kNothing;
-    for (std::size_t block = 0; block < blocks.parts; ++block) {
-      Interval united = kNothing;
-      for (std::size_t row = 64 * block; row < std::min(64 * block + 64, rows.parts); ++row) {
-        united = unite(united, rows.at(axis, static_cast<std::uint32_t>(row)));
+void ExtentScan::uniteRows() {
+  for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
+    std::uint8_t *const lows = rows_.lows.data() + axis * rows_.stride, *const highs = rows_.highs.data() +
+                                                                                       axis * rows_.stride;
+    for (std::size_t level = 1; level < rows_.levels; ++level) {
+      const std::size_t below = rows_.first[level - 1], here = rows_.first[level];
+      for (std::size_t i = 0; i < rows_.count[level]; ++i) {
+        const std::size_t begin = below + i * kFanOut,
+                          end = below + std::min((i + 1) * kFanOut, rows_.count[level - 1]);
+        lows[here + i] = *std::min_element(lows + begin, lows + end);
+        highs[here + i] = *std::max_element(highs + begin, highs + end);
       }
-      blocks.lows[axis][block] = united.low;
-      blocks.highs[axis][block] = united.high;
-      tables_.all[axis] = unite(tables_.all[axis], united);
     }
   }
 }
@@ -189,16 +260,24 @@ void ExtentScan::setActive(std::uint32_t part, bool active) {
   if (place == kNowhere) {
     return;
   }
-  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-  active_[place / 64] = active ? active_[place / 64] | bit : active_[place / 64] & ~bit;
+  const std::uint64_t bit = std::uint64_t{1} << (place % kFanOut);
+  std::uint64_t& word = rows_.active[place / kFanOut];
+  word = active ? word | bit : word & ~bit;
 }
 
 void ExtentScan::query(const Extent& query, std::vector<std::uint32_t>& parts) {
+  if (part_.empty()) {
+    return;
+  }
+  found_.clear();
+  HWY_DYNAMIC_DISPATCH(scan)(rows_, query, found_);
   const auto before = static_cast<std::ptrdiff_t>(parts.size());
-  HWY_DYNAMIC_DISPATCH(scan)(tables_, query, active_.data(), parts);
-  const auto found = parts.begin() + before;
-  std::transform(found, parts.end(), found, [&](std::uint32_t place) { return part_[place]; });
-  std::sort(found, parts.end());
+  for (const std::uint32_t row : found_) {
+    if (overlaps(*table_, query, part_[row])) {
+      parts.push_back(part_[row]);
+    }
+  }
+  std::sort(parts.begin() + before, parts.end());
 }
 
 }  // namespace sightline::layers

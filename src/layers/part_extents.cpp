@@ -2,40 +2,17 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
-#include "layers/angular_extent.h"
-#include "layers/round_outwards.h"
-#include "layers/support.h"
-#include "sightline/geometry/tolerance.h"
-
 namespace sightline::layers {
-namespace {
-
-using Measure = AxisLook::Measure;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr Interval kEndless{-kInfinity, kInfinity};
-
-// Numbers kept for an instance and an axis.
-constexpr std::uint32_t kHeightVertices = 2;  // lowest, highest
-constexpr std::uint32_t kAngleVertices = 3;   // AngularVertices; heights need the first two
-
-// Computing a point's height or its place in a plane, from an exact placement and direction: 12 operations in
-// a row at most, each rounding by 2^-53 of a number that is no greater than `reach`. Frames are perpendicular
-// up to their own rounding, and a ray across a direction is so up to 2^-50: as much again.
-constexpr double kRounding = 0x1p-48;
-
-}  // namespace
-
 PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) {
   axes_.resize(std::min(axes_.size(), kMostExtentAxes));
   for (ExtentAxis& axis : axes_) {
     axis = normalizedAxis(axis);
-    first_vertex_.push_back(vertices_of_instance_);
-    vertices_of_instance_ += axis.kind == ExtentAxis::Kind::kAngular ? kAngleVertices : kHeightVertices;
+    own_.axes.push_back({.first_vertex = own_.vertices_of_instance});
+    own_.vertices_of_instance += axis.kind == ExtentAxis::Kind::kAngular ? kAngleVertices : kHeightVertices;
   }
-  looks_.resize(axes_.size());
   to_eye_.resize(axes_.size());
   eye_.resize(axes_.size());
   away_.resize(axes_.size());
@@ -50,14 +27,13 @@ std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << axes_.size()) - 1);
   const std::uint32_t turned = lookFrom(view);
   addParts(parts);
+  axes_of_.resize(parts.parts());
   std::uint64_t computed = 0;
   for (std::uint32_t part = 0; part < parts.parts(); ++part) {
-    const std::uint32_t axes = part >= known || moved[part] != 0 ? all : turned;
-    if (axes != 0) {
-      updatePart(part, parts, axes);
-      computed += static_cast<std::uint64_t>(std::popcount(axes));
-    }
+    axes_of_[part] = part >= known || moved[part] != 0 ? all : turned;
+    computed += static_cast<std::uint64_t>(std::popcount(axes_of_[part]));
   }
+  updateExtents(own_, parts, axes_of_, table_);
   return computed;
 }
 
@@ -68,10 +44,14 @@ std::uint32_t PartExtents::lookFrom(const View& view) {
     reference_ = view.eye;
   }
   std::uint32_t turned = 0;
+  own_.rows.clear();
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    MeasuredAxis& own = own_.axes[axis];
     const AxisLook look = lookAlong(axes_[axis], view, reference_);
-    turned |= (look == looks_[axis] ? 0u : 1u) << axis;
-    looks_[axis] = look;
+    turned |= (look == own.look ? 0u : 1u) << axis;
+    own.look = look;
+    own.along = rowOf({look.direction, look.from});
+    own.zero = look.measure == AxisLook::Measure::kAngles ? rowOf({look.zero, look.from}) : 0;
     to_eye_[axis] = eyeHeights(look, view);
     eye_[axis] = dot(look.direction, view.eye - look.from);
     away_[axis] = !view.orthographic ? 0.0 : std::copysign(1.0, dot(look.direction, view.forward));
@@ -80,12 +60,20 @@ std::uint32_t PartExtents::lookFrom(const View& view) {
   return turned;
 }
 
-void PartExtents::addParts(const PartStore& parts) {
-  for (std::size_t i = hulls_.size(); i < parts.hulls.size(); ++i) {
-    const ConvexHull& hull = parts.hulls[i];
-    hulls_.push_back({1.0001 * (length(hull.centre) + hull.radius), 1.0001 * supportError(hull, 1.0)});
+std::uint32_t PartExtents::rowOf(const ExtentRow& row) {
+  const auto found = std::find(own_.rows.begin(), own_.rows.end(), row);
+  if (found == own_.rows.end()) {
+    own_.rows.push_back(row);
+    return static_cast<std::uint32_t>(own_.rows.size() - 1);
   }
-  vertices_.resize(parts.instances() * vertices_of_instance_);
+  return static_cast<std::uint32_t>(found - own_.rows.begin());
+}
+
+void PartExtents::addParts(const PartStore& parts) {
+  for (std::size_t i = own_.hulls.size(); i < parts.hulls.size(); ++i) {
+    own_.hulls.push_back(boundsOf(parts.hulls[i]));
+  }
+  own_.vertices.resize(parts.instances() * own_.vertices_of_instance);
   if (table_.parts == parts.parts()) {
     return;
   }
@@ -99,91 +87,6 @@ void PartExtents::addParts(const PartStore& parts) {
     for (std::size_t i = table_.parts; i < padded; ++i) {
       table_.lows[axis][i] = table_.highs[axis][i] = std::numeric_limits<float>::quiet_NaN();
     }
-  }
-}
-
-void PartExtents::updatePart(std::uint32_t part, const PartStore& parts, std::uint32_t axes) {
-  const bool finite = parts.finite[part] != 0;
-  if (finite) {
-    const Placement& placement = parts.placements[part];
-    const double stretch = stretchOf(placement);
-    const std::uint32_t begin = parts.first_hull[part], end = parts.first_hull[part + 1];
-    for (std::uint32_t instance = begin; instance < end; ++instance) {
-      const std::uint32_t hull = parts.part_hulls[instance];
-      addInstance(instance, parts.hulls[hull], hulls_[hull], placement, stretch, axes, instance == begin);
-    }
-  }
-  store(part, axes, finite);
-}
-
-void PartExtents::addInstance(std::uint32_t instance, const ConvexHull& hull, const HullBounds& bounds,
-                              const Placement& placement, double stretch, std::uint32_t axes, bool first) {
-  std::uint32_t* const vertices = vertices_.data() + std::size_t{instance} * vertices_of_instance_;
-  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-    const AxisLook& look = looks_[axis];
-    if (((axes >> axis) & 1u) == 0 || look.measure == Measure::kNothing) {
-      continue;
-    }
-    std::uint32_t* const own = vertices + first_vertex_[axis];
-    if (look.measure == Measure::kAngles) {
-      const AngleRange angles = anglesOf(hull, bounds, placement, stretch, look, own);
-      bounds_[axis].angles = first ? angles : unite(bounds_[axis].angles, angles);
-    } else {
-      const Heights heights = heightsOf(hull, bounds, placement, stretch, look, own);
-      Heights& all = bounds_[axis].heights;
-      all = first ? heights : Heights{std::min(all.low, heights.low), std::max(all.high, heights.high)};
-    }
-  }
-}
-
-PartExtents::Heights PartExtents::heightsOf(const ConvexHull& hull, const HullBounds& bounds,
-                                            const Placement& placement, double stretch, const AxisLook& look,
-                                            std::uint32_t* vertices) const {
-  const Vec3d offset = placement.origin - look.from;
-  const Vec3d direction = placement.toHull(look.direction);
-  const Support low = farthest(hull, -direction, vertices[0]), high = farthest(hull, direction, vertices[1]);
-  vertices[0] = low.vertex;
-  vertices[1] = high.vertex;
-  const double base = dot(look.direction, offset);
-  const double error = stretch * bounds.error + kRounding * (stretch * bounds.reach + magnitude(offset));
-  const Heights heights{base - low.height - error, base + high.height + error};
-  return heights.low <= heights.high ? heights : Heights{-kInfinity, kInfinity};
-}
-
-AngleRange PartExtents::anglesOf(const ConvexHull& hull, const HullBounds& bounds, const Placement& placement,
-                                 double stretch, const AxisLook& look, std::uint32_t* vertices) const {
-  const Vec3d offset = placement.origin - look.from;
-  PlaneMap map;
-  map.x = placement.toHull(look.direction);
-  map.z = placement.toHull(look.zero);
-  map.origin = {dot(look.direction, offset), dot(look.zero, offset)};
-  map.stretch = stretch;
-  map.rounding = kRounding * (stretch * bounds.reach + magnitude(offset));
-  map.slack = 1.0001 * stretch * hull.slack;
-  AngularVertices start{vertices[0], vertices[1], vertices[2]};
-  const AngleRange range = angularExtent(hull, map, start);
-  vertices[0] = start.low;
-  vertices[1] = start.high;
-  vertices[2] = start.nearest;
-  return range;
-}
-
-void PartExtents::store(std::uint32_t part, std::uint32_t axes, bool finite) {
-  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-    if (((axes >> axis) & 1u) == 0) {
-      continue;
-    }
-    const bool angular = looks_[axis].measure == Measure::kAngles;
-    Interval interval = angular ? kFullCircle : kEndless;
-    if (finite && angular) {
-      const AngleRange range = bounds_[axis].angles;
-      interval = roundedAngles({range.low - kAngleMargin, range.high + kAngleMargin});
-    } else if (finite && looks_[axis].measure == Measure::kHeights) {
-      const Heights heights = bounds_[axis].heights;
-      interval = {roundedDown(heights.low), roundedUp(heights.high)};
-    }
-    table_.lows[axis][part] = interval.low;
-    table_.highs[axis][part] = interval.high;
   }
 }
 

@@ -8,13 +8,12 @@
 // world, so that scenes far from the origin keep their precision; angles are periodic pseudo-angles; of
 // orthographic views too; everything is rounded outwards.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "layers/axis_look.h"
 #include "layers/extent_table.h"
+#include "layers/extent_update.h"
 #include "layers/part_store.h"
 #include "layers/plane_angle.h"
 #include "sightline/layers/extent_axis.h"
@@ -47,46 +46,19 @@ class PartExtents {
   double distanceAlong(std::size_t axis, std::uint32_t part) const;
 
  private:
-  // What is the same for all parts that share a hull.
-  struct HullBounds {
-    double reach = 0.0;  // no vertex is farther from the hull's origin
-    double error = 0.0;  // of support along a direction of unit length
-  };
-  struct Heights {
-    double low = 0.0, high = 0.0;
-  };
-  // Of one part while its hulls are looked at: heights, or angles.
-  union Bounds {
-    Heights heights;
-    AngleRange angles;
-    Bounds() : heights{} {}
-  };
-
   std::uint32_t lookFrom(const View& view);
   void addParts(const PartStore& parts);
-  void updatePart(std::uint32_t part, const PartStore& parts, std::uint32_t axes);
-  void addInstance(std::uint32_t instance, const ConvexHull& hull, const HullBounds& bounds,
-                   const Placement& placement, double stretch, std::uint32_t axes, bool first);
-  Heights heightsOf(const ConvexHull& hull, const HullBounds& bounds, const Placement& placement,
-                    double stretch, const AxisLook& look, std::uint32_t* vertices) const;
-  AngleRange anglesOf(const ConvexHull& hull, const HullBounds& bounds, const Placement& placement,
-                      double stretch, const AxisLook& look, std::uint32_t* vertices) const;
-  void store(std::uint32_t part, std::uint32_t axes, bool finite);
+  std::uint32_t rowOf(const ExtentRow& row);
 
   std::vector<ExtentAxis> axes_;
-  std::vector<std::uint32_t> first_vertex_;  // an axis: its place among an instance's numbers
-  std::uint32_t vertices_of_instance_ = 0;
-
   bool has_reference_ = false;
   Vec3d reference_;               // world-fixed heights are above it
-  std::vector<AxisLook> looks_;   // an axis
   std::vector<Interval> to_eye_;  // an axis: see eyeHeights()
   std::vector<double> eye_;       // an axis: the eye's height
   std::vector<double> away_;  // an axis: 0, or of orthographic views the sign of heights away from the eye
 
-  std::vector<HullBounds> hulls_;
-  std::vector<std::uint32_t> vertices_;  // instances * vertices_of_instance_: where the next search begins
-  std::array<Bounds, kMostExtentAxes> bounds_;
+  ExtentUpdate own_;
+  std::vector<std::uint32_t> axes_of_;  // scratch
   ExtentTable table_;
 };
 

@@ -72,6 +72,9 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
     if (!(rule->first == front ? order.first_may_occlude : order.second_may_occlude)) {
       return false;
     }
+    if (std::holds_alternative<SphereCylinderJoint>(rule->what)) {
+      return true;  // they touch
+    }
   }
 
   ++pair_queries_;
@@ -266,7 +269,9 @@ bool PartOcclusion::contains(std::uint32_t shell, std::uint32_t part) const {
 
 ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance) const {
   ConvexSet set;
-  set.hull = &parts_->hulls[parts_->part_hulls[instance]];
+  const std::uint32_t hull = parts_->part_hulls[instance];
+  set.hull = &parts_->hulls[hull];
+  set.around = hull < parts_->ellipsoids.size() ? &parts_->ellipsoids[hull] : nullptr;
   set.placement = parts_->placements[part];
   return set;
 }

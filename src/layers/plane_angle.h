@@ -6,9 +6,12 @@
 // diamond |x| + |z| = 1: x / (|x| + |z|) in front, the same mirrored behind. It grows with the angle, no
 // faster than it, and makes a full turn in 4; opposite directions are 2 apart.
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "layers/extent_table.h"
+#include "layers/round_outwards.h"
 
 namespace sightline::layers {
 
@@ -39,18 +42,40 @@ struct AngleRange {
 };
 
 // From one direction on to another that is less than half a turn ahead; a little behind counts as the same.
-AngleRange rangeBetween(const PlanePoint& low, const PlanePoint& high);
+inline AngleRange rangeBetween(const PlanePoint& low, const PlanePoint& high) {
+  AngleRange range{pseudoAngle(low), pseudoAngle(high)};
+  if (range.high < range.low - 2.0) {
+    range.high += 4.0;
+  } else if (range.high < range.low) {
+    std::swap(range.low, range.high);
+  }
+  return range;
+}
 
 // The narrower one of the two ranges that hold both.
 AngleRange unite(const AngleRange& a, const AngleRange& b);
 
+inline constexpr Interval kFullCircle{-2.0f, 2.0f};
+
 // Rounded outwards, in the form that tables hold. Anything that is not a number: the full circle.
-Interval roundedAngles(const AngleRange& range);
+inline Interval roundedAngles(const AngleRange& range) {
+  // Near the ends of the circle there is room for rounding, so that bounds stay where they are promised.
+  constexpr double kRoom = 1e-6;
+  if (!(range.high - range.low < 4.0 - 4.0 * kRoom)) {
+    return kFullCircle;
+  }
+  double low = range.low, high = range.high;
+  while (low < -2.0 + kRoom) {
+    low += 4.0, high += 4.0;
+  }
+  while (low > 2.0 + kRoom) {
+    low -= 4.0, high -= 4.0;
+  }
+  return {std::min(roundedDown(low), 2.0f), roundedUp(high)};
+}
 
 // What each end of an angular interval is moved outwards by, for overlapsAngular: its sums are below 16 and
 // round by 2^-21, those of both intervals together by 2^-20.
 inline constexpr double kAngleMargin = 4e-6;
-
-inline constexpr Interval kFullCircle{-2.0f, 2.0f};
 
 }  // namespace sightline::layers

@@ -1,6 +1,5 @@
 #include "layers/support.h"
 
-#include <cstddef>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -8,68 +7,25 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "layers/support-inl.h"
 #include "sightline/geometry/tolerance.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::layers {
-namespace HWY_NAMESPACE {
+namespace sightline::layers::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<double, 4>;
-
-// The highest of a vertex' neighbours, if one is higher than it. Mostly none is, and four are asked at once.
-HWY_INLINE Support highestAround(const ConvexHull& hull, const Vec3d& direction, const Support& at) {
-  const Lanes d;
-  const std::size_t lanes = hn::Lanes(d);
-  const auto x = hn::Set(d, direction.x), y = hn::Set(d, direction.y), z = hn::Set(d, direction.z);
-  Support best = at;
-  const std::uint32_t first = hull.first_quad[at.vertex], last = hull.first_quad[at.vertex + 1];
-  for (std::uint32_t quad = first; quad < last; ++quad) {
-    const double* corners = hull.neighbour_quads.data() + 12 * std::size_t{quad};
-    for (std::size_t i = 0; i < 4; i += lanes) {
-      const auto heights =
-          hn::Add(hn::Add(hn::Mul(x, hn::LoadU(d, corners + i)), hn::Mul(y, hn::LoadU(d, corners + 4 + i))),
-                  hn::Mul(z, hn::LoadU(d, corners + 8 + i)));
-      if (hn::AllFalse(d, hn::Gt(heights, hn::Set(d, best.height)))) {
-        continue;
-      }
-      double each[4];
-      hn::StoreU(heights, d, each);
-      for (std::size_t k = 0; k < lanes; ++k) {
-        if (each[k] > best.height) {
-          best = {hull.neighbours[hull.first_neighbour[at.vertex] + 4 * (quad - first) + i + k], each[k]};
-        }
-      }
-    }
-  }
-  return best;
+Support climbFrom(const ConvexHull& hull, const Vec3d& direction, std::uint32_t start) {
+  return climb(hull, direction, start);
 }
 
-Support climb(const ConvexHull& hull, const Vec3d& direction, std::uint32_t start) {
-  Support at{start, dot(direction, hull.vertices[start])};
-  while (true) {
-    const Support next = highestAround(hull, direction, at);
-    if (next.vertex == at.vertex) {
-      return at;
-    }
-    at = next;
-  }
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace sightline::layers
+}  // namespace sightline::layers::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sightline::layers {
 
-HWY_EXPORT(climb);
+HWY_EXPORT(climbFrom);
 
-namespace {
-
-constexpr std::size_t kScanUpTo = 24;
-
-Support scan(const ConvexHull& hull, const Vec3d& direction) {
+Support farthestOfAll(const ConvexHull& hull, const Vec3d& direction) {
   Support best{0, dot(direction, hull.vertices[0])};
   const auto count = static_cast<std::uint32_t>(hull.vertices.size());
   for (std::uint32_t v = 1; v < count; ++v) {
@@ -81,14 +37,11 @@ Support scan(const ConvexHull& hull, const Vec3d& direction) {
   return best;
 }
 
-}  // namespace
-
 Support farthest(const ConvexHull& hull, const Vec3d& direction, std::uint32_t start) {
-  const std::size_t count = hull.vertices.size();
-  if (hull.descent_factor <= 0.0 || count <= kScanUpTo) {
-    return scan(hull, direction);
+  if (!climbs(hull)) {
+    return farthestOfAll(hull, direction);
   }
-  return HWY_DYNAMIC_DISPATCH(climb)(hull, direction, start < count ? start : 0);
+  return HWY_DYNAMIC_DISPATCH(climbFrom)(hull, direction, start < hull.vertices.size() ? start : 0);
 }
 
 double supportError(const ConvexHull& hull, double length) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,7 +18,13 @@ class MovingSorter {
   MovingSorter(const MovingScene& scene, const LayerSettings& settings)
       : scene_(scene), sorter_(makeSorter(scene, settings)) {
     for (const MovingPlane& plane : scene.planes) {
-      ruled_.emplace_back(std::min(plane.first, plane.second), std::max(plane.first, plane.second));
+      ruled_.emplace_back(plane.first, plane.second);
+    }
+    for (const MovingJoint& joint : scene.joints) {
+      ruled_.emplace_back(joint.first, joint.second);
+    }
+    for (auto& [a, b] : ruled_) {
+      std::tie(a, b) = std::minmax({a, b});
     }
     std::sort(ruled_.begin(), ruled_.end());
   }

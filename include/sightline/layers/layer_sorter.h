@@ -118,8 +118,8 @@ class LayerSorter {
   void setEnabled(PartId part, bool enabled);
 
   // What a program knows of two parts. A rule only takes arcs away: where it lets one occlude the other,
-  // hulls decide. For both orders of the two, the last one holds. Without effect with numbers of no part, and
-  // where extents alone decide (LayerSettings::exact).
+  // hulls decide; those of a joint meet. For both orders of the two, the last one holds. Without effect with
+  // numbers of no part, and where extents alone decide (LayerSettings::exact).
   void setRule(PartId first, PartId second, const PairPlane& rule);
   void setRule(PartId first, PartId second, const SphereCylinderJoint& rule);
   void setRule(PartId first, PartId second, const PairCallback& rule);
