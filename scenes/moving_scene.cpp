@@ -1,6 +1,37 @@
 #include "scenes/moving_scene.h"
 
+#include <unordered_map>
+
 namespace sightline {
+namespace {
+
+Vec3d column(const Mat4& m, int i) {
+  return {m(0, i), m(1, i), m(2, i)};
+}
+
+// Of a rigid matrix: turned back, and what is left moved back.
+Mat4 inverseRigid(const Mat4& m) {
+  Mat4 inverse;
+  for (int row = 0; row < 3; ++row) {
+    for (int i = 0; i < 3; ++i) {
+      inverse(row, i) = m(i, row);
+    }
+    inverse(row, 3) = -dot(column(m, row), column(m, 3));
+  }
+  return inverse;
+}
+
+// The same motion for points that are told from `origin`.
+Mat4 aboutOrigin(const Mat4& motion, const Vec3d& origin) {
+  Mat4 moved = motion;
+  const Vec3d offset = transformPoint(motion, origin) - origin;
+  for (int row = 0; row < 3; ++row) {
+    moved(row, 3) = offset[row];
+  }
+  return moved;
+}
+
+}  // namespace
 
 LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings) {
   LayerSorter sorter(settings);
@@ -28,6 +59,47 @@ void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& pose
   scene.pose(frame, poses);
   for (std::uint32_t part = 0; part < poses.size(); ++part) {
     sorter.setTransform(PartId(part), poses[part]);
+  }
+}
+
+void placements(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& scene_from_stored) {
+  scene_from_stored.assign(scene.scene.objects.size(), Mat4{});
+  if (!scene.pose) {
+    return;
+  }
+  std::vector<Mat4> first(scene.parts.size()), now(scene.parts.size());
+  scene.pose(0, first);
+  scene.pose(frame, now);
+  for (std::size_t i = 0; i < scene_from_stored.size(); ++i) {
+    // What stands still stays so to the last bit.
+    if (now[i].m != first[i].m) {
+      scene_from_stored[i] = aboutOrigin(now[i] * inverseRigid(first[i]), scene.scene.origin);
+    }
+  }
+}
+
+void posedScene(const MovingScene& scene, std::uint32_t frame, Scene& posed) {
+  std::vector<Mat4> scene_from_stored;
+  placements(scene, frame, scene_from_stored);
+  posed = scene.scene;
+  posed.positions.clear();
+  std::unordered_map<std::uint32_t, std::uint32_t>
+      number_of;  // of one object's positions, by the stored ones
+  for (std::size_t i = 0; i < posed.objects.size(); ++i) {
+    Object& object = posed.objects[i];
+    number_of.clear();
+    object.bounds = {};
+    for (std::uint32_t k = object.first_index; k < object.first_index + object.index_count; ++k) {
+      std::uint32_t& index = posed.indices[k];
+      const auto next = static_cast<std::uint32_t>(posed.positions.size());
+      const auto [found, is_new] = number_of.try_emplace(index, next);
+      if (is_new) {
+        posed.positions.emplace_back(
+            transformPoint(scene_from_stored[i], Vec3d(scene.scene.positions[index])));
+        object.bounds.extend(posed.positions.back());
+      }
+      index = found->second;
+    }
   }
 }
 

@@ -43,8 +43,8 @@ struct MovingScene {
   std::vector<MovingJoint> joints;
   std::vector<std::string> classes;  // "aircraft", "terrain", ...
   std::uint32_t frames = 250;        // as many as paths[0] has
-  // world_from_part of all parts in a frame: of the part's own space, in which its hulls are. Any frame, in
-  // any order.
+  // world_from_part of all parts in a frame: of the part's own space, in which its hulls are. Rigid. Any
+  // frame, in any order.
   std::function<void(std::uint32_t frame, std::span<Mat4> world_from_part)> pose;
 };
 
@@ -54,6 +54,15 @@ LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings);
 // Moves the parts to where they are in a frame; a scene without poses stays. poses: as many as parts
 // afterwards.
 void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter);
+
+// Where the objects are in a frame: scene space from the positions that `scene` stores, which are those of
+// frame 0, as LayerRenderer::setTransforms takes them. One an object afterwards; of what has not moved, and
+// in a scene without poses, the identity.
+void placements(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& scene_from_stored);
+
+// The whole scene with its positions where they are in a frame, rounded to single precision once. Objects,
+// materials and paths are the same; no two objects share a position, so indices are others.
+void posedScene(const MovingScene& scene, std::uint32_t frame, Scene& posed);
 
 struct ToothpickOptions {
   std::uint32_t count = 200;

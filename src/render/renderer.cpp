@@ -1,9 +1,7 @@
 #include "sightline/render/renderer.h"
 
-#include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include "gl_context.h"
@@ -18,48 +16,6 @@ namespace {
 
 constexpr std::array<float, 4> kBlack{0.0f, 0.0f, 0.0f, 1.0f};
 
-// The sky fills the picture before anything else is drawn.
-struct Sky {
-  GLuint program = 0, vertex_array = 0;
-  GLint forward = -1, right = -1, up = -1;
-};
-
-Result<Sky> makeSky() {
-  const Result<GLuint> program = makeProgram("sky", shaders::kSkyVertex, shaders::kSkyFragment);
-  if (!program) {
-    return program.error();
-  }
-  Sky sky{.program = *program};
-  sky.forward = glGetUniformLocation(sky.program, "forward");
-  sky.right = glGetUniformLocation(sky.program, "right");
-  sky.up = glGetUniformLocation(sky.program, "up");
-  glGenVertexArrays(1, &sky.vertex_array);
-  return sky;
-}
-
-void drawSky(const Sky& sky, const View& view) {
-  // Orthographic rays are parallel; a mild gradient all the same.
-  const double half_height = view.orthographic ? 0.3 : view.tan_half_fovy;
-  const Vec3f forward(view.forward);
-  const Vec3f right(view.right * (half_height * view.aspect));
-  const Vec3f up(view.up * half_height);
-  glUseProgram(sky.program);
-  glUniform3f(sky.forward, forward.x, forward.y, forward.z);
-  glUniform3f(sky.right, right.x, right.y, right.z);
-  glUniform3f(sky.up, up.x, up.y, up.z);
-  glBindVertexArray(sky.vertex_array);
-  glDisable(GL_DEPTH_TEST);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glEnable(GL_DEPTH_TEST);
-}
-
-// Half of the haze at 1.5 times the scene's diagonal, but never nearer than 60 metres.
-float hazeOf(const Box& bounds) {
-  const double diagonal = bounds.wellFormed() ? length(Vec3d(bounds.max) - Vec3d(bounds.min)) : 0.0;
-  const double half_distance = std::max(1.5 * diagonal, 60.0);
-  return static_cast<float>(1.0 / (half_distance * half_distance));
-}
-
 }  // namespace
 
 struct Renderer::Impl {
@@ -71,7 +27,7 @@ struct Renderer::Impl {
   GlContext context;
   SceneBuffers buffers;
   SceneProgram solid, alpha_tested;
-  Sky sky;
+  SkyProgram sky;
   PlanPainter plan_painter;
   Framebuffer picture;
   Box bounds;
@@ -86,7 +42,7 @@ Status Renderer::Impl::prepare(const SceneView& scene, std::uint32_t width, std:
   }
   Result<SceneProgram> solid_program = makeSceneProgram("solid", shaders::kSceneFragment);
   Result<SceneProgram> alpha_program = makeSceneProgram("alpha-tested", shaders::kAlphaTestedFragment);
-  Result<Sky> new_sky = makeSky();
+  Result<SkyProgram> new_sky = makeSkyProgram(shaders::kSkyFragment);
   Result<PlanPainter> painter = PlanPainter::create();
   Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene);
   for (const Error* error :
@@ -104,14 +60,14 @@ Status Renderer::Impl::prepare(const SceneView& scene, std::uint32_t width, std:
   plan_painter = *painter;
   buffers = std::move(*scene_buffers);
   bounds = sceneBounds(scene);
-  haze = hazeOf(bounds);
+  haze = hazeFor(bounds);
   return Success{};
 }
 
 void Renderer::Impl::drawScene(const View& view) const {
   const float view_haze = view.orthographic ? 0.0f : haze;
   beginPicture(picture.id, picture.width, picture.height, kBlack);
-  drawSky(sky, view);
+  drawSkyBehind(sky, view);
   buffers.bind();
   useProgram(solid, view, view_haze);
   buffers.drawPass(Pass::kOpaque);

@@ -191,23 +191,29 @@ Result<SceneBuffers> SceneBuffers::create(const SceneView& scene) {
   return b;
 }
 
-SceneBuffers::Drawn SceneBuffers::select(std::span<const ObjectId> objects) {
-  for (RangeList& ranges : selected_) {
-    ranges.clear();
+SceneBuffers::Drawn SceneBuffers::select(std::span<const ObjectId> objects,
+                                         std::span<const std::uint8_t> mirrored) {
+  for (std::array<RangeList, kPassCount>* lists : {&selected_, &mirrored_}) {
+    for (RangeList& ranges : *lists) {
+      ranges.clear();
+    }
   }
   blended_count_ = 0;
+  blended_triangles_ = 0;
   Drawn drawn;
   for (const ObjectId id : objects) {
     const ObjectRange& range = ranges_[id.value];
+    const bool mirror = !mirrored.empty() && mirrored[id.value] != 0;
     drawn.triangles += range.count / 3;
     if (range.pass == Pass::kBlended) {
-      addBlended(range);
+      blended_triangles_ += range.count / 3;
+      addBlended(range, range.double_sided ? Cull::kNothing : mirror ? Cull::kFronts : Cull::kBacks);
     } else {
-      selected_[static_cast<std::size_t>(range.pass)].add(range.first, range.count);
+      (mirror ? mirrored_ : selected_)[static_cast<std::size_t>(range.pass)].add(range.first, range.count);
     }
   }
-  for (const RangeList& ranges : selected_) {
-    drawn.ranges += ranges.size();
+  for (std::size_t pass = 0; pass < kPassCount; ++pass) {
+    drawn.ranges += selected_[pass].size() + mirrored_[pass].size();
   }
   for (std::size_t i = 0; i < blended_count_; ++i) {
     drawn.ranges += blended_[i].ranges.size();
@@ -215,29 +221,40 @@ SceneBuffers::Drawn SceneBuffers::select(std::span<const ObjectId> objects) {
   return drawn;
 }
 
-void SceneBuffers::addBlended(const ObjectRange& range) {
-  if (blended_count_ == 0 || blended_[blended_count_ - 1].double_sided != range.double_sided) {
+void SceneBuffers::addBlended(const ObjectRange& range, Cull cull) {
+  if (blended_count_ == 0 || blended_[blended_count_ - 1].cull != cull) {
     if (blended_count_ == blended_.size()) {
       blended_.emplace_back();
     }
     blended_[blended_count_].ranges.clear();
-    blended_[blended_count_].double_sided = range.double_sided;
+    blended_[blended_count_].cull = cull;
     ++blended_count_;
   }
   blended_[blended_count_ - 1].ranges.add(range.first, range.count);
 }
 
-void SceneBuffers::drawPass(Pass pass) const {
-  const auto cullBacks = [](bool cull) { cull ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE); };
-  if (pass != Pass::kBlended) {
-    cullBacks(pass == Pass::kOpaque || pass == Pass::kAlphaTested);
-    selected_[static_cast<std::size_t>(pass)].draw();
+void SceneBuffers::use(Cull cull) {
+  if (cull == Cull::kNothing) {
+    glDisable(GL_CULL_FACE);
     return;
   }
-  for (std::size_t i = 0; i < blended_count_; ++i) {
-    cullBacks(!blended_[i].double_sided);
-    blended_[i].ranges.draw();
+  glEnable(GL_CULL_FACE);
+  glCullFace(cull == Cull::kBacks ? GL_BACK : GL_FRONT);
+}
+
+void SceneBuffers::drawPass(Pass pass) const {
+  if (pass == Pass::kBlended) {
+    for (std::size_t i = 0; i < blended_count_; ++i) {
+      use(blended_[i].cull);
+      blended_[i].ranges.draw();
+    }
+    return;
   }
+  const bool one_sided = pass == Pass::kOpaque || pass == Pass::kAlphaTested;
+  use(one_sided ? Cull::kBacks : Cull::kNothing);
+  selected_[static_cast<std::size_t>(pass)].draw();
+  use(one_sided ? Cull::kFronts : Cull::kNothing);
+  mirrored_[static_cast<std::size_t>(pass)].draw();
 }
 
 void SceneBuffers::drawAll() const {

@@ -52,10 +52,12 @@ class SceneBuffers {
     std::uint64_t triangles = 0;
     std::uint32_t ranges = 0;
   };
-  // Sorts the objects' triangles by pass; drawPass() then draws them.
-  Drawn select(std::span<const ObjectId> objects);
+  // Sorts the objects' triangles by pass; drawPass() then draws them. mirrored: of each object, not 0 where a
+  // transform turns its triangles' fronts round; empty where none does.
+  Drawn select(std::span<const ObjectId> objects, std::span<const std::uint8_t> mirrored = {});
   void drawPass(Pass pass) const;
   void drawAll() const;
+  std::uint64_t blendedTriangles() const { return blended_triangles_; }  // of those selected
 
   // Binds the vertices and one of the two colour buffers (texture unit 0).
   void bind() const;
@@ -69,16 +71,20 @@ class SceneBuffers {
     Pass pass = Pass::kOpaque;
     bool double_sided = false;
   };
+  // Which sides OpenGL leaves away, by the stored order of vertices.
+  enum class Cull : std::uint8_t { kNothing, kBacks, kFronts };
   struct BlendedRun {
     RangeList ranges;
-    bool double_sided = false;
+    Cull cull = Cull::kNothing;
   };
-  void addBlended(const ObjectRange& range);
+  static void use(Cull cull);
+  void addBlended(const ObjectRange& range, Cull cull);
 
   std::vector<ObjectRange> ranges_;  // one an object
-  std::array<RangeList, kPassCount> selected_;
-  std::vector<BlendedRun> blended_;  // of equal sidedness each; kept between frames for their memory
+  std::array<RangeList, kPassCount> selected_, mirrored_;
+  std::vector<BlendedRun> blended_;  // of equal culling each; kept between frames for their memory
   std::size_t blended_count_ = 0;
+  std::uint64_t blended_triangles_ = 0;
   std::uint32_t index_count_ = 0;
   GLuint vertex_array_ = 0, color_buffer_ = 0, color_texture_ = 0, state_buffer_ = 0, state_texture_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// All shaders of the reference renderer, GLSL 4.30.
+// All shaders of the reference renderer and of layers, GLSL 4.30.
 //
 // Precision: positions are floats in scene space; the eye comes as two floats a coordinate (high + low), so
 // that what is near the eye keeps the stored precision wherever the scene lies. Depth runs from 1 at the near
@@ -28,13 +28,44 @@ void main() {
 }
 )";
 
-// Sun, sky and a little difference between walls on flat faces; haze with distance.
+// The same for objects that move: each is placed by three rows of scene_from_stored less the eye, applied to
+// positions relative to a pivot, which comes in two floats a coordinate too. The pivot is where the eye lies
+// among the stored positions, so that here as well what is near the eye keeps the stored precision.
+inline constexpr const char* kMovedSceneVertex = R"(#version 430 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in uint object;
+uniform mat4 clip_from_relative;
+uniform vec3 lens_offset;  // from the eye
+uniform samplerBuffer colors;
+uniform samplerBuffer places;  // five texels an object: three rows, the pivot's high and low part
+uniform float depth_scale;
+out vec3 relative;
+flat out vec4 color;
+invariant gl_Position;
+void main() {
+  int place = 5 * int(object);
+  vec4 x = texelFetch(places, place);
+  vec4 y = texelFetch(places, place + 1);
+  vec4 z = texelFetch(places, place + 2);
+  vec3 pivot_high = texelFetch(places, place + 3).xyz;
+  vec3 pivot_low = texelFetch(places, place + 4).xyz;
+  vec3 stored = (position - pivot_high) - pivot_low;
+  vec3 turned = vec3(dot(x.xyz, stored), dot(y.xyz, stored), dot(z.xyz, stored));
+  relative = (turned + vec3(x.w, y.w, z.w)) - lens_offset;
+  color = texelFetch(colors, int(object));
+  gl_Position = clip_from_relative * vec4(relative, 1.0);
+  gl_Position.z *= depth_scale;
+}
+)";
+
+// Sun, sky and a little difference between walls on flat faces; haze with distance. Linear light; its square
+// root is what pictures of eight bits hold.
 #define SIGHTLINE_SHADE                                                                                  \
   "in vec3 relative;\n"                                                                                  \
   "flat in vec4 color;\n"                                                                                \
   "uniform float haze;\n"                                                                                \
   "out vec4 result;\n"                                                                                   \
-  "vec4 shade() {\n"                                                                                     \
+  "vec3 linearLight() {\n"                                                                               \
   "  vec3 n = cross(dFdx(relative), dFdy(relative));\n"                                                  \
   "  n *= inversesqrt(max(dot(n, n), 1e-36));\n"                                                         \
   "  float sun = max(dot(n, vec3(0.4286, 0.7845, 0.4482)), 0.0);\n"                                      \
@@ -42,8 +73,9 @@ void main() {
   "  vec3 lit = color.rgb * color.rgb * (sky * vec3(0.95, 1.0, 1.08) + sun * vec3(0.52, 0.49, 0.43));\n" \
   "  float fog = dot(relative, relative) * haze;\n"                                                      \
   "  fog = 0.75 * fog / (1.0 + fog);\n"                                                                  \
-  "  return vec4(sqrt(mix(lit, vec3(0.66, 0.73, 0.80), fog)), color.a);\n"                               \
-  "}\n"
+  "  return mix(lit, vec3(0.66, 0.73, 0.80), fog);\n"                                                    \
+  "}\n"                                                                                                  \
+  "vec4 shade() { return vec4(sqrt(linearLight()), color.a); }\n"
 
 inline constexpr const char* kSceneFragment =
     "#version 430 core\n" SIGHTLINE_SHADE "void main() { result = shade(); }\n";
@@ -56,7 +88,67 @@ inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTL
                                                     "  result = shade();\n"
                                                     "}\n";
 
+// Layers: linear light, colour times opacity, to float pictures.
+inline constexpr const char* kLayerOpaqueFragment =
+    "#version 430 core\n" SIGHTLINE_SHADE "void main() { result = vec4(linearLight(), 1.0); }\n";
+
+// The holes are whole pixels also where a pixel has several samples.
+inline constexpr const char* kLayerAlphaTestedFragment = "#version 430 core\n" SIGHTLINE_SHADE
+                                                         "uniform int samples;\n"
+                                                         "void main() {\n"
+                                                         "  ivec2 p = ivec2(gl_FragCoord.xy) / samples;\n"
+                                                         "  if (((p.x + p.y) & 1) != 0) discard;\n"
+                                                         "  result = vec4(linearLight(), 1.0);\n"
+                                                         "}\n";
+
+inline constexpr const char* kLayerBlendedFragment =
+    "#version 430 core\n" SIGHTLINE_SHADE
+    "void main() { result = vec4(linearLight() * color.a, color.a); }\n";
+
+// Peeling: only what is nearer than the depths in `behind` (larger is nearer).
+#define SIGHTLINE_BEHIND        \
+  "uniform sampler2D behind;\n" \
+  "bool peeled() { return !(gl_FragCoord.z > texelFetch(behind, ivec2(gl_FragCoord.xy), 0).r); }\n"
+
+inline constexpr const char* kPeelDepthFragment =
+    "#version 430 core\n" SIGHTLINE_BEHIND "void main() { if (peeled()) discard; }\n";
+
+inline constexpr const char* kPeelColorFragment = "#version 430 core\n" SIGHTLINE_SHADE SIGHTLINE_BEHIND
+                                                  "void main() {\n"
+                                                  "  vec3 light = linearLight();\n"
+                                                  "  if (peeled()) discard;\n"
+                                                  "  result = vec4(light * color.a, color.a);\n"
+                                                  "}\n";
+
+#undef SIGHTLINE_BEHIND
 #undef SIGHTLINE_SHADE
+
+inline constexpr const char* kNoColorFragment = "#version 430 core\nvoid main() {}\n";
+
+// One pixel from its samples: colours averaged, the nearest depth (the largest). To be headed by the version
+// and "const int samples = ...;".
+inline constexpr const char* kResolveVertex = R"(#version 430 core
+void main() {
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+)";
+inline constexpr const char* kResolveFragment = R"(
+uniform sampler2D colors, depths;
+layout(location = 0) out vec4 color;
+layout(location = 1) out float depth;
+void main() {
+  ivec2 first = ivec2(gl_FragCoord.xy) * samples;
+  color = vec4(0.0);
+  depth = 0.0;
+  for (int y = 0; y < samples; ++y) {
+    for (int x = 0; x < samples; ++x) {
+      color += texelFetch(colors, first + ivec2(x, y), 0);
+      depth = max(depth, texelFetch(depths, first + ivec2(x, y), 0).r);
+    }
+  }
+  color /= float(samples * samples);
+}
+)";
 
 // Background: a gradient by elevation.
 inline constexpr const char* kSkyVertex = R"(#version 430 core
@@ -68,16 +160,20 @@ void main() {
   gl_Position = vec4(p, 0.0, 1.0);
 }
 )";
-inline constexpr const char* kSkyFragment = R"(#version 430 core
-in vec3 direction;
-out vec4 result;
-void main() {
-  float h = normalize(direction).y;
-  vec3 above = mix(vec3(0.81, 0.86, 0.90), vec3(0.36, 0.56, 0.80), sqrt(clamp(h, 0.0, 1.0)));
-  vec3 below = mix(vec3(0.81, 0.86, 0.90), vec3(0.55, 0.53, 0.50), sqrt(clamp(-4.0 * h, 0.0, 1.0)));
-  result = vec4(h >= 0.0 ? above : below, 1.0);
-}
-)";
+#define SIGHTLINE_SKY                                                                                      \
+  "#version 430 core\n"                                                                                    \
+  "in vec3 direction;\n"                                                                                   \
+  "out vec4 result;\n"                                                                                     \
+  "vec3 sky() {\n"                                                                                         \
+  "  float h = normalize(direction).y;\n"                                                                  \
+  "  vec3 above = mix(vec3(0.81, 0.86, 0.90), vec3(0.36, 0.56, 0.80), sqrt(clamp(h, 0.0, 1.0)));\n"        \
+  "  vec3 below = mix(vec3(0.81, 0.86, 0.90), vec3(0.55, 0.53, 0.50), sqrt(clamp(-4.0 * h, 0.0, 1.0)));\n" \
+  "  return h >= 0.0 ? above : below;\n"                                                                   \
+  "}\n"
+inline constexpr const char* kSkyFragment = SIGHTLINE_SKY "void main() { result = vec4(sky(), 1.0); }\n";
+inline constexpr const char* kLinearSkyFragment =
+    SIGHTLINE_SKY "void main() { vec3 root = sky(); result = vec4(root * root, 1.0); }\n";
+#undef SIGHTLINE_SKY
 
 // Plan: state colours, a little light on slopes; what the cut lays open (backs of faces) is darker.
 inline constexpr const char* kPlanFragment = R"(#version 430 core

@@ -17,9 +17,9 @@ namespace sightline::repository {
 namespace {
 
 // From the bottom to the top.
-constexpr std::array<std::string_view, 12> kRooms{"base",      "math",      "geometry",  "scene",
-                                                  "hierarchy", "occluders", "occlusion", "culling",
-                                                  "layers",    "pvs",       "io",        "render"};
+constexpr std::array<std::string_view, 13> kRooms{"base",      "math",      "geometry", "scene",  "hierarchy",
+                                                  "occluders", "occlusion", "culling",  "layers", "drawing",
+                                                  "pvs",       "io",        "render"};
 constexpr std::size_t kRuntimeRooms = 8;  // the first of them make sightline::runtime
 
 std::optional<std::size_t> levelOf(std::string_view room) {

@@ -1,0 +1,179 @@
+#include "drawing/feature_edges_build.h"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+namespace sightline {
+namespace {
+
+// Corners are rounded to single precision by up to 2^-24 of their largest coordinate, an edge and a corner on
+// it together by some 2^-22.
+constexpr double kPlaceRounding = 0x1p-21;
+
+// Equal for equal places, -0 taken as 0, and ordered also where coordinates are not numbers.
+std::array<std::uint32_t, 3> placeKey(const Vec3f& p) {
+  return {std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
+          std::bit_cast<std::uint32_t>(p.z + 0.0f)};
+}
+
+}  // namespace
+
+EdgeBuilder::EdgeBuilder(const SceneView& scene) : scene_(scene), stands_for_(scene.positions.size()) {}
+
+bool EdgeBuilder::before(const HalfEdge& x, const HalfEdge& y) {
+  return std::tie(x.a, x.b, x.first_index, x.along) < std::tie(y.a, y.b, y.first_index, y.along);
+}
+
+void EdgeBuilder::add(const Object& object, FeatureEdges& edges) {
+  weld(scene_.indicesOf(object));
+  gather(object);
+  std::sort(half_edges_.begin(), half_edges_.end(), before);
+  cutAtCorners();
+  store(edges);
+}
+
+// Sets stands_for_, corners_ and the tolerance.
+void EdgeBuilder::weld(std::span<const std::uint32_t> indices) {
+  corners_.assign(indices.begin(), indices.end());
+  std::sort(corners_.begin(), corners_.end());
+  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  const auto key = [this](std::uint32_t corner) { return placeKey(scene_.positions[corner]); };
+  std::stable_sort(corners_.begin(), corners_.end(),
+                   [&](std::uint32_t p, std::uint32_t q) { return key(p) < key(q); });
+  double size = 0.0;
+  std::size_t kept = 0;
+  for (const std::uint32_t corner : corners_) {
+    if (kept == 0 || key(corners_[kept - 1]) != key(corner)) {
+      corners_[kept++] = corner;
+    }
+    stands_for_[corner] = corners_[kept - 1];
+    if (isFinite(scene_.positions[corner])) {
+      size = std::max(size, maxComponent(abs(at(corner))));
+    }
+  }
+  corners_.resize(kept);
+  std::erase_if(corners_, [this](std::uint32_t corner) { return !isFinite(scene_.positions[corner]); });
+  tolerance_ = kPlaceRounding * size;
+}
+
+void EdgeBuilder::gather(const Object& object) {
+  half_edges_.clear();
+  const std::span<const std::uint32_t> indices = scene_.indicesOf(object);
+  for (std::uint32_t i = 0; i + 2 < indices.size(); i += 3) {
+    const std::array<std::uint32_t, 3> corners{stands_for_[indices[i]], stands_for_[indices[i + 1]],
+                                               stands_for_[indices[i + 2]]};
+    for (int k = 0; k < 3 && hasArea(corners); ++k) {
+      addHalfEdge(corners[static_cast<std::size_t>(k)], corners[static_cast<std::size_t>((k + 1) % 3)],
+                  object.first_index + i);
+    }
+  }
+}
+
+void EdgeBuilder::addHalfEdge(std::uint32_t from, std::uint32_t to, std::uint32_t first_index) {
+  half_edges_.push_back({std::min(from, to), std::max(from, to), first_index, from < to});
+}
+
+// Triangles thinner than the rounding of their corners have no plane. Without them their neighbours meet in a
+// T-junction.
+bool EdgeBuilder::hasArea(const std::array<std::uint32_t, 3>& corners) const {
+  const Vec3d a = at(corners[0]);
+  const Vec3d b = at(corners[1]);
+  const Vec3d c = at(corners[2]);
+  const double longest = std::max({length(b - a), length(c - b), length(a - c)});
+  return length(cross(b - a, c - a)) > tolerance_ * longest;
+}
+
+// Edges of one face alone end at the corners that lie on them.
+void EdgeBuilder::cutAtCorners() {
+  const auto alone = [this](std::size_t i) {
+    const auto same = [&](const HalfEdge& other) {
+      return other.a == half_edges_[i].a && other.b == half_edges_[i].b;
+    };
+    return !(i > 0 && same(half_edges_[i - 1])) && !(i + 1 < half_edges_.size() && same(half_edges_[i + 1]));
+  };
+  for (std::vector<std::uint32_t>& sorted : by_axis_) {
+    sorted.clear();
+  }
+  cut_.clear();
+  for (std::size_t i = 0; i < half_edges_.size(); ++i) {
+    on_edge_.clear();
+    if (alone(i)) {
+      findCornersOn(half_edges_[i]);
+    }
+    if (on_edge_.empty()) {
+      cut_.push_back(half_edges_[i]);
+      continue;
+    }
+    const HalfEdge& edge = half_edges_[i];
+    on_edge_.push_back({1.0, edge.b});
+    std::uint32_t from = edge.a;
+    for (const OnEdge& next : on_edge_) {
+      const bool up = from < next.corner;
+      cut_.push_back(
+          {std::min(from, next.corner), std::max(from, next.corner), edge.first_index, up == edge.along});
+      from = next.corner;
+    }
+  }
+  if (cut_.size() != half_edges_.size()) {
+    half_edges_.swap(cut_);
+    std::sort(half_edges_.begin(), half_edges_.end(), before);
+  }
+}
+
+// Fills on_edge_, from a to b.
+void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
+  if (by_axis_[0].empty()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<std::uint32_t>& sorted = by_axis_[static_cast<std::size_t>(axis)];
+      sorted = corners_;
+      std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t p, std::uint32_t q) {
+        return scene_.positions[p][axis] < scene_.positions[q][axis];
+      });
+    }
+  }
+  const Vec3d a = at(edge.a);
+  const Vec3d ab = at(edge.b) - a;
+  const double length_ab = length(ab);
+  const Vec3d margin(tolerance_, tolerance_, tolerance_);
+  for (const std::uint32_t corner : cornersNear(min(a, a + ab) - margin, max(a, a + ab) + margin)) {
+    const Vec3d ac = at(corner) - a;
+    const double along = dot(ac, ab) / length_ab;
+    const bool between = along > tolerance_ && along < length_ab - tolerance_;
+    if (between && length(cross(ac, ab)) <= tolerance_ * length_ab) {
+      on_edge_.push_back({along / length_ab, corner});
+    }
+  }
+  std::sort(on_edge_.begin(), on_edge_.end(), [](const OnEdge& p, const OnEdge& q) {
+    return std::tie(p.share, p.corner) < std::tie(q.share, q.corner);
+  });
+}
+
+// Corners between low and high along the axis that leaves the fewest.
+std::span<const std::uint32_t> EdgeBuilder::cornersNear(const Vec3d& low, const Vec3d& high) const {
+  std::span<const std::uint32_t> best = by_axis_[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<std::uint32_t>& sorted = by_axis_[static_cast<std::size_t>(axis)];
+    const auto first = std::partition_point(sorted.begin(), sorted.end(),
+                                            [&](std::uint32_t p) { return at(p)[axis] < low[axis]; });
+    const auto last =
+        std::partition_point(first, sorted.end(), [&](std::uint32_t p) { return at(p)[axis] <= high[axis]; });
+    const std::span<const std::uint32_t> range(first, last);
+    best = range.size() < best.size() ? range : best;
+  }
+  return best;
+}
+
+void EdgeBuilder::store(FeatureEdges& edges) const {
+  for (const HalfEdge& half : half_edges_) {
+    const bool goes_on = !edges.edges_.empty() && edges.edges_.size() > edges.first_edge_.back() &&
+                         edges.edges_.back().a == half.a && edges.edges_.back().b == half.b;
+    if (!goes_on) {
+      edges.edges_.push_back({half.a, half.b, static_cast<std::uint32_t>(edges.sides_.size()), 0});
+    }
+    edges.sides_.push_back({half.first_index, half.along});
+    ++edges.edges_.back().side_count;
+  }
+}
+
+}  // namespace sightline

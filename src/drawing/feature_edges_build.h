@@ -1,0 +1,52 @@
+#pragma once
+
+// Finds the edges of objects: corners at the same place are one, edges are cut at T-junctions.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/drawing/feature_edges.h"
+
+namespace sightline {
+
+class EdgeBuilder {
+ public:
+  explicit EdgeBuilder(const SceneView& scene);
+  // Appends the object's edges.
+  void add(const Object& object, FeatureEdges& edges);
+
+ private:
+  struct HalfEdge {
+    std::uint32_t a = 0, b = 0;  // corners that stand for all at their place, a < b
+    std::uint32_t first_index = 0;
+    bool along = true;
+  };
+  struct OnEdge {
+    double share = 0.0;
+    std::uint32_t corner = 0;
+  };
+  static bool before(const HalfEdge& x, const HalfEdge& y);
+
+  void weld(std::span<const std::uint32_t> indices);
+  void gather(const Object& object);
+  void addHalfEdge(std::uint32_t from, std::uint32_t to, std::uint32_t first_index);
+  bool hasArea(const std::array<std::uint32_t, 3>& corners) const;
+  void cutAtCorners();
+  void findCornersOn(const HalfEdge& edge);
+  std::span<const std::uint32_t> cornersNear(const Vec3d& low, const Vec3d& high) const;
+  void store(FeatureEdges& edges) const;
+
+  Vec3d at(std::uint32_t corner) const { return Vec3d(scene_.positions[corner]); }
+
+  const SceneView& scene_;
+  double tolerance_ = 0.0;                             // metres
+  std::vector<std::uint32_t> stands_for_;              // of all positions; set for the object's
+  std::vector<std::uint32_t> corners_;                 // that stand for others, each once
+  std::array<std::vector<std::uint32_t>, 3> by_axis_;  // the same, ascending along each axis
+  std::vector<HalfEdge> half_edges_, cut_;
+  std::vector<OnEdge> on_edge_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,83 @@
+#include "drawing/hidden_lines_occluders.h"
+
+#include <algorithm>
+
+#include "drawing/triangle_side.h"
+#include "sightline/geometry/tolerance.h"
+
+namespace sightline {
+namespace {
+
+// Of the part beyond the near plane; none() if there is none.
+HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
+  HidingBox box = HidingBox::none();
+  const double near = view.view().near;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3d& a = triangle.corners[i];
+    const Vec3d& b = triangle.corners[(i + 1) % 3];
+    if (a.z >= near) {
+      box.extend(view.onScreen(a));
+    }
+    if ((a.z < near) != (b.z < near)) {
+      Vec3d between = a + (b - a) * ((near - a.z) / (b.z - a.z));
+      between.z = near;
+      box.extend(view.onScreen(between));
+    }
+  }
+  box.widen();
+  return box;
+}
+
+bool onScreen(const HidingBox& box, const LineView& view) {
+  const bool beside = box.min_x > view.halfWidth() || box.max_x < -view.halfWidth() ||
+                      box.min_y > view.halfHeight() || box.max_y < -view.halfHeight();
+  return !beside && box.nearness >= view.onScreen({0.0, 0.0, view.view().far}).nearness;
+}
+
+}  // namespace
+
+void HidingTriangles::set(const SceneView& scene, const LineView& view) {
+  triangles_.clear();
+  trees_.clear();
+  roots_.clear();
+  for (const Object& object : scene.objects) {
+    items_.clear();
+    if (view.usable() && scene.materialOf(object).opaque()) {
+      addObject(scene, object, view);
+    }
+    roots_.push_back(trees_.add(items_));
+  }
+}
+
+void HidingTriangles::addObject(const SceneView& scene, const Object& object, const LineView& view) {
+  const bool double_sided = scene.materialOf(object).double_sided;
+  const std::span<const std::uint32_t> indices = scene.indicesOf(object);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const int side = sideSeen(scene.positions[indices[i]], scene.positions[indices[i + 1]],
+                              scene.positions[indices[i + 2]], view.view());
+    if (side > 0 || (side < 0 && double_sided)) {
+      addTriangle(scene, indices.subspan(i, 3), view);
+    }
+  }
+}
+
+void HidingTriangles::addTriangle(const SceneView& scene, std::span<const std::uint32_t> corners,
+                                  const LineView& view) {
+  HidingTriangle triangle;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3f& position = scene.positions[corners[k]];
+    triangle.corners[k] = view.cameraPoint(position);
+    triangle.reach = std::max(triangle.reach, magnitude(triangle.corners[k]));
+    triangle.size = std::max(triangle.size, maxComponent(abs(Vec3d(position))));
+  }
+  if (!turnToEye(triangle, view.view().orthographic)) {
+    return;
+  }
+  const HidingBox box = boxOnScreen(triangle, view);
+  if (onScreen(box, view)) {
+    items_.push_back({box, static_cast<std::uint32_t>(triangles_.size())});
+    triangles_.push_back(triangle);
+  }
+}
+
+}  // namespace sightline

@@ -1,0 +1,35 @@
+#pragma once
+
+// The triangles of a view that hide what is behind them.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "drawing/hidden_lines_tree.h"
+#include "drawing/triangle_hiding.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+class HidingTriangles {
+ public:
+  // Of all objects; a tree for each.
+  void set(const SceneView& scene, const LineView& view);
+
+  std::size_t objects() const { return roots_.size(); }
+  std::uint32_t rootOf(std::uint32_t object) const { return roots_[object]; }  // or HidingTrees::kNoTree
+  const HidingTrees& trees() const { return trees_; }
+  const HidingTriangle& operator[](std::uint32_t id) const { return triangles_[id]; }
+
+ private:
+  void addObject(const SceneView& scene, const Object& object, const LineView& view);
+  void addTriangle(const SceneView& scene, std::span<const std::uint32_t> corners, const LineView& view);
+
+  std::vector<HidingTriangle> triangles_;
+  HidingTrees trees_;
+  std::vector<std::uint32_t> roots_;
+  std::vector<HidingTrees::Item> items_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace sightline {
+
+// A closed set of numbers as intervals that do not touch each other, ascending. Keeps its memory.
+class LineIntervals {
+ public:
+  struct Interval {
+    double from = 0.0, to = 0.0;
+  };
+
+  void clear() { intervals_.clear(); }
+  // Adds [from, to], from <= to. What touches becomes one.
+  void add(double from, double to);
+  // Whether all of [from, to] is in the set.
+  bool covers(double from, double to) const;
+  std::span<const Interval> intervals() const { return intervals_; }
+
+ private:
+  std::vector<Interval> intervals_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,68 @@
+#include "drawing/line_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sightline {
+
+bool narrow(double at_0, double at_1, double& from, double& to) {
+  if (at_0 >= 0.0 && at_1 >= 0.0) {
+    return true;
+  }
+  if (!(at_0 >= 0.0 || at_1 >= 0.0)) {
+    return false;
+  }
+  const double zero = at_0 / (at_0 - at_1);
+  if (at_0 < 0.0) {
+    from = std::max(from, zero);
+  } else {
+    to = std::min(to, zero);
+  }
+  return from <= to;
+}
+
+LineView::LineView(const View& view, double page_height) : view_(view) {
+  half_height_ = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
+  half_width_ = half_height_ * view.aspect;
+  page_scale_ = page_height / (2.0 * half_height_);
+  const bool finite =
+      isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
+  usable_ = finite && view.near > 0.0 && view.far > view.near && half_height_ > 0.0 && half_width_ > 0.0 &&
+            std::isfinite(half_height_) && std::isfinite(half_width_) && std::isfinite(page_scale_) &&
+            page_scale_ > 0.0;
+}
+
+Vec3d LineView::cameraPoint(const Vec3f& position) const {
+  const Vec3d p = Vec3d(position) - view_.eye;
+  return {dot(p, view_.right), dot(p, view_.up), dot(p, view_.forward)};
+}
+
+ScreenPoint LineView::onScreen(const Vec3d& camera) const {
+  if (view_.orthographic) {
+    return {camera.x, camera.y, -camera.z};
+  }
+  return {camera.x / camera.z, camera.y / camera.z, 1.0 / camera.z};
+}
+
+double LineView::pageX(double screen_x) const {
+  return std::clamp((half_width_ + screen_x) * page_scale_, 0.0, 2.0 * half_width_ * page_scale_);
+}
+
+double LineView::pageY(double screen_y) const {
+  return std::clamp((half_height_ - screen_y) * page_scale_, 0.0, 2.0 * half_height_ * page_scale_);
+}
+
+bool LineView::clip(const Vec3d& a, const Vec3d& b, double& from, double& to) const {
+  from = 0.0;
+  to = 1.0;
+  const double scale_a = view_.orthographic ? 1.0 : a.z;
+  const double scale_b = view_.orthographic ? 1.0 : b.z;
+  return usable_ && narrow(a.z - view_.near, b.z - view_.near, from, to) &&
+         narrow(view_.far - a.z, view_.far - b.z, from, to) &&
+         narrow(half_width_ * scale_a + a.x, half_width_ * scale_b + b.x, from, to) &&
+         narrow(half_width_ * scale_a - a.x, half_width_ * scale_b - b.x, from, to) &&
+         narrow(half_height_ * scale_a + a.y, half_height_ * scale_b + b.y, from, to) &&
+         narrow(half_height_ * scale_a - a.y, half_height_ * scale_b - b.y, from, to);
+}
+
+}  // namespace sightline

@@ -1,0 +1,171 @@
+#include "drawing/outline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drawing/outline_union.h"
+#include "geometry/clip_convex.h"
+
+namespace sightline::drawing {
+namespace {
+
+constexpr std::uint32_t kBorders = 6;  // near, far, left, right, lower, upper
+// Units. Beyond, doubles do not hold thousandths; the grid ends at 2^60, below Clipper's limit.
+constexpr double kLargestPage = 1e15;
+constexpr double kSmallestPage = 1e-15;
+constexpr double kFewestLines = 1024.0;  // of the grid, a unit
+constexpr double kLinesAcross = 0x1p20;  // of the grid, at least
+
+bool isSize(double value) {
+  return std::isfinite(value) && value > 0.0;
+}
+
+bool isPageSide(double value) {
+  return value >= kSmallestPage && value <= kLargestPage;
+}
+
+// A power of two, so that pages of round sizes have corners on the grid.
+double gridScaleOf(double extent) {
+  return std::max(kFewestLines, std::exp2(std::ceil(std::log2(kLinesAcross / extent))));
+}
+
+}  // namespace
+
+bool isDrawable(const View& view, double page_height) {
+  const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
+  return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
+         isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
+         isSize(view.near) && isSize(view.far) && view.near < view.far && isFinite(view.eye) &&
+         isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
+}
+
+void Outliner::setView(const View& view, double page_height) {
+  view_ = view;
+  half_height_ = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;
+  half_width_ = half_height_ * view.aspect;
+  const double margin = 2.0 * half_height_ * kMargin;
+  widest_ = half_width_ + margin;
+  highest_ = half_height_ + margin;
+  units_ = page_height / (2.0 * half_height_);
+  scale_ = gridScaleOf(2.0 * units_ * std::max(widest_, highest_));
+}
+
+Vec3d Outliner::cameraPoint(const Vec3f& position) const {
+  const Vec3d d = Vec3d(position) - view_.eye;
+  return {dot(d, view_.right), dot(d, view_.up), dot(d, view_.forward)};
+}
+
+bool Outliner::mayShow(const SceneView& scene, ObjectId object) const {
+  std::uint32_t beyond = ~0u;
+  for (const std::uint32_t corner : scene.indicesOf(scene.objects[object.value])) {
+    if (isFinite(scene.positions[corner])) {
+      beyond &= bordersBeyond(cameraPoint(scene.positions[corner]));
+    }
+    if (beyond == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Not negative inside.
+double Outliner::borderDistance(std::uint32_t border, const Vec3d& p) const {
+  const double depth = view_.orthographic ? 1.0 : p.z;
+  switch (border) {
+    case 0:
+      return p.z - view_.near;
+    case 1:
+      return view_.far - p.z;
+    case 2:
+      return p.x + widest_ * depth;
+    case 3:
+      return widest_ * depth - p.x;
+    case 4:
+      return p.y + highest_ * depth;
+    default:
+      return highest_ * depth - p.y;
+  }
+}
+
+std::uint32_t Outliner::bordersBeyond(const Vec3d& p) const {
+  std::uint32_t borders = 0;
+  for (std::uint32_t border = 0; border < kBorders; ++border) {
+    borders |= borderDistance(border, p) < 0.0 ? 1u << border : 0u;
+  }
+  return borders;
+}
+
+// x to the right and y down, as on the page. The clamp holds what rounding leaves beyond the margin.
+GridPoint Outliner::onGrid(const Vec3d& p) const {
+  const double depth = view_.orthographic ? 1.0 : p.z;
+  const double x = std::clamp(p.x / depth, -widest_, widest_);
+  const double y = std::clamp(p.y / depth, -highest_, highest_);
+  return {std::llround((x + half_width_) * units_ * scale_),
+          std::llround((half_height_ - y) * units_ * scale_)};
+}
+
+// Cuts polygon_ at some borders.
+bool Outliner::clip(std::uint32_t borders) {
+  for (std::uint32_t border = 0; border < kBorders; ++border) {
+    if ((borders >> border & 1u) != 0 && !clipConvex(polygon_, scratch_, Corner{}, [&](const Vec3d& p) {
+          return borderDistance(border, p);
+        })) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Outliner::addTriangle(const SceneView& scene, std::span<const std::uint32_t> corners,
+                           bool double_sided) {
+  polygon_.clear();
+  std::uint32_t some_beyond = 0, all_beyond = ~0u;
+  for (const std::uint32_t corner : corners) {
+    if (!isFinite(scene.positions[corner])) {
+      return;
+    }
+    const Vec3d p = cameraPoint(scene.positions[corner]);
+    const std::uint32_t beyond = bordersBeyond(p);
+    some_beyond |= beyond;
+    all_beyond &= beyond;
+    polygon_.push_back({p});
+  }
+  if (all_beyond != 0 || (some_beyond != 0 && !clip(some_beyond))) {
+    return;
+  }
+  ring_.clear();
+  for (const Corner& corner : polygon_) {
+    ring_.push_back(onGrid(corner.position));
+  }
+  // Seen from the front, corners are counter-clockwise: with y down, of negative area.
+  const int turn = orientationOf(ring_);
+  if (turn == 0 || (turn > 0 && !double_sided)) {
+    return;
+  }
+  if (turn < 0) {
+    std::reverse(ring_.begin(), ring_.end());
+  }
+  chain_.add(ring_);
+}
+
+void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<PagePath>& rings) {
+  rings.clear();
+  chain_.clear();
+  const Object& object = scene.objects[id.value];
+  const bool double_sided = scene.materialOf(object).double_sided;
+  const std::span<const std::uint32_t> indices = scene.indicesOf(object);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+    addTriangle(scene, indices.subspan(i, 3), double_sided);
+  }
+  chain_.takeLoops(loops_);
+  uniteLoops(loops_, kLeastWidth);
+  for (const GridPath& loop : loops_) {
+    PagePath& ring = rings.emplace_back();
+    ring.reserve(loop.size());
+    for (const GridPoint& p : loop) {
+      ring.push_back({static_cast<double>(p.x) / scale_, static_cast<double>(p.y) / scale_});
+    }
+  }
+}
+
+}  // namespace sightline::drawing

@@ -1,0 +1,98 @@
+#include "drawing/outline_union.h"
+
+#include <algorithm>
+#include <cmath>
+#include <polyclipping/clipper.hpp>
+
+namespace sightline::drawing {
+namespace {
+
+constexpr int kCoarsest = 16;  // bits that may be given up where Clipper fails
+
+// Clipper's sweep gives up, rarely, where many edges cross within a grid cell.
+bool unite(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& result) {
+  ClipperLib::Clipper clipper;
+  ClipperLib::Path path;
+  for (const GridPath& loop : loops) {
+    path.clear();
+    for (const GridPoint& p : loop) {
+      path.emplace_back(p.x >> bits, p.y >> bits);
+    }
+    clipper.AddPath(path, ClipperLib::ptSubject, true);
+  }
+  return clipper.Execute(ClipperLib::ctUnion, result, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
+}
+
+// It throws where its sweep meets what it cannot be in; that is no more than a failure.
+bool uniteSafely(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& result) {
+  try {
+    return unite(loops, bits, result);
+  } catch (const ClipperLib::clipperException&) {
+    return false;
+  }
+}
+
+bool isSliver(const GridPath& ring, double least_width) {
+  double area = 0.0, perimeter = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const GridPoint& a = ring[i];
+    const GridPoint& b = ring[i + 1 < ring.size() ? i + 1 : 0];
+    const auto ax = static_cast<double>(a.x - ring[0].x), ay = static_cast<double>(a.y - ring[0].y);
+    const auto bx = static_cast<double>(b.x - ring[0].x), by = static_cast<double>(b.y - ring[0].y);
+    area += 0.5 * (ax * by - ay * bx);
+    perimeter += std::hypot(bx - ax, by - ay);
+  }
+  return 2.0 * std::abs(area) < least_width * perimeter;
+}
+
+}  // namespace
+
+bool isConvexRing(const GridPath& ring) {
+  const std::size_t count = ring.size();
+  if (count < 3) {
+    return false;
+  }
+  // Turning only one way, it goes once around if it goes down once and up once.
+  int changes = 0;
+  bool was_up = ring[0] > ring[count - 1];
+  for (std::size_t i = 0; i < count; ++i) {
+    const GridPoint& a = ring[i];
+    const GridPoint& b = ring[(i + 1) % count];
+    if (turnOf(a, b, ring[(i + 2) % count]) <= 0) {
+      return false;
+    }
+    const bool is_up = b > a;
+    changes += is_up != was_up ? 1 : 0;
+    was_up = is_up;
+  }
+  return changes == 2;
+}
+
+void uniteLoops(std::vector<GridPath>& loops, double least_width) {
+  const auto dropSlivers = [&] {
+    std::erase_if(loops, [&](const GridPath& ring) { return isSliver(ring, least_width); });
+  };
+  if (loops.empty() || (loops.size() == 1 && isConvexRing(loops[0]))) {
+    dropSlivers();
+    return;
+  }
+  ClipperLib::Paths united;
+  int bits = 0;
+  while (!uniteSafely(loops, bits, united) && bits < kCoarsest) {
+    united.clear();
+    ++bits;
+  }
+  // Where even that failed, the loops themselves are better than nothing.
+  if (bits < kCoarsest) {
+    loops.clear();
+    for (const ClipperLib::Path& path : united) {
+      GridPath& ring = loops.emplace_back();
+      for (const ClipperLib::IntPoint& p : path) {
+        ring.push_back({p.X * (std::int64_t{1} << bits), p.Y * (std::int64_t{1} << bits)});
+      }
+    }
+  }
+  dropSlivers();
+}
+
+}  // namespace sightline::drawing

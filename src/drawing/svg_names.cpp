@@ -1,0 +1,88 @@
+#include "drawing/svg_names.h"
+
+#include "drawing/drawing_text.h"
+
+namespace sightline::drawing {
+namespace {
+
+bool isLetter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+bool isNameCharacter(char c) {
+  return isLetter(c) || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+}
+
+bool isXmlCharacter(char32_t code) {
+  return code == U'\t' || code == U'\n' || code == U'\r' || (code >= 0x20 && code < 0xfffe) ||
+         code >= 0x10000;
+}
+
+void appendUtf8(std::string& text, char32_t code) {
+  const auto put = [&](char32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
+  if (code < 0x80) {
+    put(code);
+  } else if (code < 0x800) {
+    put(0xc0 | code >> 6);
+    put(0x80 | (code & 0x3f));
+  } else if (code < 0x10000) {
+    put(0xe0 | code >> 12);
+    put(0x80 | (code >> 6 & 0x3f));
+    put(0x80 | (code & 0x3f));
+  } else {
+    put(0xf0 | code >> 18);
+    put(0x80 | (code >> 12 & 0x3f));
+    put(0x80 | (code >> 6 & 0x3f));
+    put(0x80 | (code & 0x3f));
+  }
+}
+
+}  // namespace
+
+std::string escapeXml(std::string_view text) {
+  std::string escaped;
+  for (const char32_t code : decodeUtf8(text)) {
+    switch (code) {
+      case U'&':
+        escaped += "&amp;";
+        break;
+      case U'<':
+        escaped += "&lt;";
+        break;
+      case U'>':
+        escaped += "&gt;";
+        break;
+      case U'"':
+        escaped += "&quot;";
+        break;
+      case U'\t':
+      case U'\n':
+      case U'\r':
+        // As they are, attributes would turn them into spaces.
+        escaped += "&#" + std::to_string(static_cast<int>(code)) + ";";
+        break;
+      default:
+        appendUtf8(escaped, isXmlCharacter(code) ? code : U'\ufffd');
+    }
+  }
+  return escaped;
+}
+
+std::string XmlIds::make(std::string_view name) {
+  std::string base;
+  for (const char32_t code : decodeUtf8(name)) {
+    const char c = code < 0x80 ? static_cast<char>(code) : '_';
+    base += isNameCharacter(c) ? c : '_';
+  }
+  if (base.empty() || (!isLetter(base[0]) && base[0] != '_')) {
+    base.insert(base.begin(), '_');
+  }
+  std::string id = base;
+  std::uint32_t& number = last_.try_emplace(base, 1).first->second;
+  while (!taken_.insert(id).second) {
+    id = base + "-" + std::to_string(++number);
+  }
+  return id;
+}
+
+}  // namespace sightline::drawing

@@ -1,0 +1,108 @@
+#include "drawing/triangle_hiding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sightline/geometry/tolerance.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kSideRounding = 0x1p-48;
+constexpr double kCameraRounding = 0x1p-46;
+constexpr double kCornerRounding = 0x1p-21;
+
+double flatCross(const Vec3d& p, const Vec3d& q) {
+  return p.x * q.y - p.y * q.x;
+}
+
+// Narrows [from, to] to where the line is on the inner side of the edge from p to q.
+bool insideEdge(const HidingTriangle& triangle, const Vec3d& p, const Vec3d& q, const HidableLine& line,
+                bool orthographic, double& from, double& to) {
+  const double size_a = magnitude(line.a);
+  const double size_b = magnitude(line.b);
+  if (!orthographic) {
+    const Vec3d inwards = cross(p, q);
+    const double wider = kSideRounding * triangle.reach * triangle.reach;
+    return narrow(dot(inwards, line.a) + wider * size_a, dot(inwards, line.b) + wider * size_b, from, to);
+  }
+  // (q - p) x (X - p) along z, such that p, q and q, p give the same bits but for the sign.
+  const auto side = [&](const Vec3d& point) {
+    return flatCross(p, q) + (p.y - q.y) * point.x + (q.x - p.x) * point.y;
+  };
+  const double wider = kSideRounding * triangle.reach;
+  return narrow(side(line.a) + wider * (triangle.reach + size_a),
+                side(line.b) + wider * (triangle.reach + size_b), from, to);
+}
+
+// Narrows to where the sight meets the triangle at the near plane or beyond it.
+bool beyondNear(const HidingTriangle& triangle, const Vec3d& normal, const HidableLine& line,
+                const View& view, double& from, double& to) {
+  const Vec3d& p = triangle.corners[0];
+  const auto excess = [&](const Vec3d& point) {
+    if (!view.orthographic) {
+      return point.z * dot(normal, p) - view.near * dot(normal, point);
+    }
+    return (p.z - view.near) * normal.z - normal.x * (point.x - p.x) - normal.y * (point.y - p.y);
+  };
+  return narrow(excess(line.a), excess(line.b), from, to);
+}
+
+// Narrows to where the line is behind the triangle's plane.
+bool behindPlane(const HidingTriangle& triangle, const Vec3d& normal, const HidableLine& line, double& from,
+                 double& to) {
+  const Vec3d& p = triangle.corners[0];
+  const double behind_a = dot(normal, line.a - p);
+  const double behind_b = dot(normal, line.b - p);
+  // 1 behind, -1 before, 0 in the plane as far as rounding tells.
+  const auto place = [&](double share, double& behind) {
+    const double rest = 1.0 - share;
+    behind = rest * behind_a + share * behind_b;
+    const double size = std::max(triangle.size, rest * line.size_a + share * line.size_b);
+    const double reach = triangle.reach + rest * magnitude(line.a) + share * magnitude(line.b);
+    const double bound = kCornerRounding * size + kCameraRounding * reach;
+    return behind > bound ? 1 : behind < -bound ? -1 : 0;
+  };
+  double behind_from = 0.0;
+  double behind_to = 0.0;
+  const int place_from = place(from, behind_from);
+  const int place_to = place(to, behind_to);
+  if (place_from <= 0 && place_to <= 0) {
+    return false;
+  }
+  if (place_from + place_to == 0) {
+    const double meets = from + (to - from) * (behind_from / (behind_from - behind_to));
+    (place_from > 0 ? to : from) = std::clamp(meets, from, to);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool turnToEye(HidingTriangle& triangle, bool orthographic) {
+  auto& [p, q, r] = triangle.corners;
+  const double volume = orthographic ? cross(q - p, r - p).z : dot(p, cross(q, r));
+  if (volume < 0.0) {
+    std::swap(q, r);
+  }
+  return volume != 0.0 && std::isfinite(volume);
+}
+
+bool hiddenPart(const HidingTriangle& triangle, const HidableLine& line, const View& view, double& from,
+                double& to) {
+  from = line.from;
+  to = line.to;
+  const auto& [p, q, r] = triangle.corners;
+  if (!insideEdge(triangle, p, q, line, view.orthographic, from, to) ||
+      !insideEdge(triangle, q, r, line, view.orthographic, from, to) ||
+      !insideEdge(triangle, r, p, line, view.orthographic, from, to)) {
+    return false;
+  }
+  const Vec3d normal = normalized(cross(q - p, r - p));
+  const bool crosses_near = std::min({p.z, q.z, r.z}) < view.near;
+  return behindPlane(triangle, normal, line, from, to) &&
+         (!crosses_near || beyondNear(triangle, normal, line, view, from, to));
+}
+
+}  // namespace sightline

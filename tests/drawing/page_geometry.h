@@ -1,0 +1,66 @@
+#pragma once
+
+// Rings and polylines on a page, for tests: plain loops over all edges.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "sightline/drawing/drawing.h"
+
+namespace sightline::test {
+
+inline double areaOf(const PagePath& ring) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const PagePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+    area += 0.5 * (a.x * b.y - a.y * b.x);
+  }
+  return area;
+}
+
+// Even-odd.
+inline bool isInside(const std::vector<PagePath>& rings, const PagePoint& p) {
+  bool inside = false;
+  for (const PagePath& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const PagePoint &a = ring[i], &b = ring[(i + 1) % ring.size()];
+      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)) {
+        inside = !inside;
+      }
+    }
+  }
+  return inside;
+}
+
+inline double distanceToEdge(const PagePoint& a, const PagePoint& b, const PagePoint& p) {
+  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+  const double along = (p.x - a.x) * dx + (p.y - a.y) * dy;
+  const double t = squared > 0.0 ? std::clamp(along / squared, 0.0, 1.0) : 0.0;
+  return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+// paths: rings, closed without a repeated point, or else polylines.
+inline double distanceTo(const std::vector<PagePath>& paths, const PagePoint& p, bool rings) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PagePath& path : paths) {
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      least = std::min(least, distanceToEdge(path[i - 1], path[i], p));
+    }
+    if (rings && !path.empty()) {
+      least = std::min(least, distanceToEdge(path.back(), path.front(), p));
+    }
+  }
+  return least;
+}
+
+inline double lengthOf(const PagePath& path) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    sum += std::hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y);
+  }
+  return sum;
+}
+
+}  // namespace sightline::test
