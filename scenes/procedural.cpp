@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/glass.h"
 #include "scenes/moving_scene.h"
 
 namespace sightline {
@@ -129,6 +130,15 @@ Result<Scene> makeDemoShip(std::string_view query) {
   return status ? Result<Scene>(makeShip(options)) : status.error();
 }
 
+Result<Scene> makeDemoGlass(std::string_view query) {
+  GlassOptions options;
+  Key keys[] = {{"panes", 0, 10000, &options.panes},
+                {"bottles", 0, 10000, &options.bottles},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "glass", keys);
+  return status ? Result<Scene>(makeGlass(options)) : status.error();
+}
+
 Result<MovingScene> makeDemoToothpicks(std::string_view query) {
   static constexpr std::string_view kScalings[] = {"us", "ud"};
   ToothpickOptions options;
@@ -153,8 +163,11 @@ struct Maker {
   std::string_view name;
   Result<S> (*make)(std::string_view query);
 };
-constexpr Maker<Scene> kStillScenes[] = {
-    {"city", makeDemoCity}, {"building", makeDemoBuilding}, {"boxes", makeDemoBoxes}, {"ship", makeDemoShip}};
+constexpr Maker<Scene> kStillScenes[] = {{"city", makeDemoCity},
+                                         {"building", makeDemoBuilding},
+                                         {"boxes", makeDemoBoxes},
+                                         {"ship", makeDemoShip},
+                                         {"glass", makeDemoGlass}};
 constexpr Maker<MovingScene> kMovingScenes[] = {{"toothpicks", makeDemoToothpicks},
                                                 {"canyon", makeDemoCanyon}};
 

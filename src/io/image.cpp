@@ -28,4 +28,30 @@ Status writePng(const Image& image, const std::string& file) {
   return writeFile(file, bytes);
 }
 
+Result<Image> readPng(const std::string& file) {
+  constexpr std::uint32_t kMostPixels = 16384;
+  const Result<std::string> bytes = readFile(file);
+  if (!bytes) {
+    return bytes.error();
+  }
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&png, bytes->data(), bytes->size()) == 0) {
+    return failure("{}: cannot be read as PNG: {}", file, png.message);
+  }
+  if (png.width > kMostPixels || png.height > kMostPixels) {
+    const Error error = failure("{}: has {} x {} pixels; at most {} a side can be read", file, png.width,
+                                png.height, kMostPixels);
+    png_image_free(&png);
+    return error;
+  }
+  png.format = PNG_FORMAT_RGBA;
+  Image image{.width = png.width, .height = png.height, .rgba = {}};
+  image.rgba.resize(PNG_IMAGE_SIZE(png));
+  if (png_image_finish_read(&png, nullptr, image.rgba.data(), 0, nullptr) == 0) {
+    return failure("{}: cannot be read as PNG: {}", file, png.message);
+  }
+  return image;
+}
+
 }  // namespace sightline

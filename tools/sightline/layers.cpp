@@ -8,7 +8,10 @@
 #include "sightline/layers/compositing.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
-#include "tools/sightline/layer_input.h"
+#include "tools/sightline/layer_drawings.h"
+#include "tools/sightline/layer_frames.h"
+#include "tools/sightline/layer_lens.h"
+#include "tools/sightline/layer_pictures.h"
 #include "tools/sightline/layer_totals.h"
 #include "tools/sightline/names.h"
 #include "tools/sightline/progress_bar.h"
@@ -24,7 +27,14 @@ struct LayersOptions {
   std::string sort = "depth-first", search = "automatic", extents = "camera", arcs = "groups",
               expression = "cheapest", conditioning = "on", exact = "on";
   bool no_times = false;
+  PictureOptions size;
+  std::uint32_t samples = 1;
+  LayerPictureOptions pictures;
+  LayerLensOptions lens;
+  LayerDrawingOptions drawings;
 };
+
+using FrameMakers = std::vector<std::unique_ptr<FrameMaker>>;
 
 template <typename Tag>
 std::vector<std::uint32_t> numbersOf(std::span<const Id<Tag>> ids) {
@@ -57,7 +67,7 @@ LayerSettings settingsOf(const LayersOptions& options) {
   settings.search = valueOf(kOccluderSearches, options.search);
   settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
   settings.exact = valueOf(kSwitch, options.exact);
-  settings.all_arcs = options.arcs == "all";
+  settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
   // The world's axes say nothing about what is near.
   if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
     settings.conditioning_axis = -1;
@@ -87,21 +97,21 @@ Json programJson(const CompositingProgram& program) {
   return json;
 }
 
-std::string frameJson(std::uint32_t frame, const LayerOrder& order, const FrameLayers& layers,
-                      const CompositingProgram& program, double sort_us) {
+Json frameJson(std::uint32_t frame, const LayerOrder& order, const FrameLayers& layers,
+               const CompositingProgram& program, double sort_us) {
   const LayerStats& stats = order.stats;
-  return dump({{"frame", frame},
-               {"order", orderJson(order)},
-               {"arcs", pairsJson(order.arcs)},
-               {"collisions", pairsJson(order.collisions)},
-               {"layers", layersJson(layers)},
-               {"program", programJson(program)},
-               {"sort_us", sort_us},
-               {"occluder_queries", stats.occluder_queries},
-               {"candidates", stats.candidates},
-               {"pair_queries", stats.pair_queries},
-               {"reinsertions", stats.reinsertions},
-               {"search", stats.by_tree ? "tree" : "scan"}});
+  return {{"frame", frame},
+          {"order", orderJson(order)},
+          {"arcs", pairsJson(order.arcs)},
+          {"collisions", pairsJson(order.collisions)},
+          {"layers", layersJson(layers)},
+          {"program", programJson(program)},
+          {"sort_us", sort_us},
+          {"occluder_queries", stats.occluder_queries},
+          {"candidates", stats.candidates},
+          {"pair_queries", stats.pair_queries},
+          {"reinsertions", stats.reinsertions},
+          {"search", stats.by_tree ? "tree" : "scan"}};
 }
 
 void print(const LayerTotals& totals, std::size_t parts) {
@@ -122,45 +132,118 @@ void print(const LayerTotals& totals, std::size_t parts) {
   line("sort time, largest, us", totals.largest(&LayerTotals::Frame::sort_us));
 }
 
-Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input) {
-  LayerSorter sorter = makeSorter(input.moving, settingsOf(options));
-  const CompositingForm form = valueOf(kCompositingForms, options.expression);
-  std::vector<std::string> frames;
-  std::vector<Mat4> poses;
-  LayerTotals totals;
-  LayerMerger merger;
-  CompositingCompiler compiler;
+// Everything that is made of sorted frames besides JSON.
+Result<FrameMakers> makersOf(const LayersOptions& options, const FrameMakerInput& input) {
+  FrameMakers makers;
+  Result<std::unique_ptr<FrameMaker>> made[] = {makeLayerPictures(options.pictures, input),
+                                                makeLayerLens(options.lens, input),
+                                                makeLayerDrawings(options.drawings, input)};
+  for (Result<std::unique_ptr<FrameMaker>>& maker : made) {
+    if (!maker) {
+      return maker.error();
+    }
+    if (*maker != nullptr) {
+      makers.push_back(std::move(*maker));
+    }
+  }
+  return makers;
+}
+
+// Sorts the frames of a walk one after another.
+class WalkSorter {
+ public:
+  WalkSorter(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers)
+      : options_(options),
+        input_(input),
+        makers_(makers),
+        sorter_(makeSorter(input.moving, settingsOf(options))) {}
+
+  Status sort(std::uint32_t frame) {
+    const View view = input_.walk.view(frame, input_.moving.scene);
+    pose(input_.moving, frame, poses_, sorter_);
+    Stopwatch watch;
+    const LayerOrder& order = sorter_.update(view);
+    const double sort_us = options_.no_times ? 0.0 : watch.lap();
+    const FrameLayers& layers = merger_.merge(order);
+    const CompositingProgram& program =
+        compiler_.compile(layers, valueOf(kCompositingForms, options_.expression));
+    totals_.add(order, static_cast<double>(layers.layers()),
+                static_cast<double>(countSteps(program.steps).operations()), sort_us);
+    Json json;
+    if (!options_.common.json.empty()) {
+      json = frameJson(frame, order, layers, program, sort_us);
+    }
+    if (!makers_.empty()) {
+      placements(input_.moving, frame, scene_from_stored_);
+    }
+    for (const std::unique_ptr<FrameMaker>& maker : makers_) {
+      const Result<Json> made = maker->make({frame, view, order, layers, scene_from_stored_});
+      if (!made) {
+        return made.error();
+      }
+      json.update(*made);
+    }
+    if (!options_.common.json.empty()) {
+      frames_.push_back(dump(json));
+    }
+    return Success{};
+  }
+
+  const LayerTotals& totals() const { return totals_; }
+  const std::vector<std::string>& frames() const { return frames_; }  // as JSON
+
+ private:
+  const LayersOptions& options_;
+  const LayerInput& input_;
+  const FrameMakers& makers_;
+  LayerSorter sorter_;
+  LayerMerger merger_;
+  CompositingCompiler compiler_;
+  std::vector<Mat4> poses_, scene_from_stored_;
+  LayerTotals totals_;
+  std::vector<std::string> frames_;
+};
+
+Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers) {
+  WalkSorter sorter(options, input, makers);
   ProgressBar progress("sorting");
   for (const std::uint32_t frame : input.walk.frames) {
-    const View view = input.walk.view(frame, input.moving.scene);
-    pose(input.moving, frame, poses, sorter);
-    Stopwatch watch;
-    const LayerOrder& order = sorter.update(view);
-    const double sort_us = options.no_times ? 0.0 : watch.lap();
-    const FrameLayers& layers = merger.merge(order);
-    const CompositingProgram& program = compiler.compile(layers, form);
-    totals.add(order, static_cast<double>(layers.layers()),
-               static_cast<double>(countSteps(program.steps).operations()), sort_us);
-    if (!options.common.json.empty()) {
-      frames.push_back(frameJson(frame, order, layers, program, sort_us));
+    if (const Status ok = sorter.sort(frame); !ok) {
+      return ok.error();
     }
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(input.walk.frames.back() + 1));
   }
   const Json head = {{"scene", sceneJson(input.moving.scene)},
                      {"parts", input.moving.parts.size()},
                      {"options", optionsJson(options)}};
-  if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", frames)); !ok) {
+  if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", sorter.frames()));
+      !ok) {
     return ok.error();
   }
   if (options.common.textOnStdout()) {
-    print(totals, input.moving.parts.size());
+    print(sorter.totals(), input.moving.parts.size());
+    for (const std::unique_ptr<FrameMaker>& maker : makers) {
+      maker->print();
+    }
   }
   return kOk;
 }
 
 Result<ExitCode> runLayers(const LayersOptions& options) {
   const Result<LayerInput> input = loadLayerInput(options.common, options.path, options.places);
-  return input ? sortWalk(options, *input) : input.error();
+  if (!input) {
+    return input.error();
+  }
+  const PictureOptions size = pictureSize(options.size, input->walk.path);
+  const FrameMakerInput made_from{.input = *input,
+                                  .scene_file = options.common.scene,
+                                  .width = size.width,
+                                  .height = size.height,
+                                  .samples = options.samples,
+                                  .form = valueOf(kCompositingForms, options.expression),
+                                  .several_frames = input->walk.frames.size() > 1};
+  const Result<FrameMakers> makers = makersOf(options, made_from);
+  return makers ? sortWalk(options, *input, *makers) : makers.error();
 }
 
 }  // namespace
@@ -190,6 +273,13 @@ void addLayers(CLI::App& app, Command& chosen) {
       ->delimiter(',');
   command->add_option("--overlay", options->places.overlays, "parts before all others, by number")
       ->delimiter(',');
+  addLayerPictureOptions(*command, options->pictures);
+  addLayerLensOptions(*command, options->lens);
+  addLayerDrawingOptions(*command, options->drawings);
+  addPictureOptions(*command, options->size);
+  command->add_option("--samples", options->samples, "a side of each pixel of the pictures: 1, 2 or 4")
+      ->check(CLI::IsMember({1u, 2u, 4u}))
+      ->capture_default_str();
   command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
   command->footer(
       "A part is an object of the scene, taken as its convex hull. Groups are parts that occlude each other "
@@ -199,6 +289,10 @@ void addLayers(CLI::App& app, Command& chosen) {
       "  sightline layers demo:toothpicks --json order.json\n"
       "  sightline layers \"demo:toothpicks?n=1600&scaling=ud\" --sort incremental\n"
       "  sightline layers demo:canyon --extents world --expression over-atop --json -\n"
+      "  sightline layers demo:glass --frames 100 --image glass.png --by-distance compared.png\n"
+      "  sightline layers demo:canyon --frames 0:250:50 --width 640 --height 360 --samples 4 --image "
+      "canyon.png\n"
+      "  sightline layers demo:glass --frames 100 --image part.png --without 12,13 --replace 3=poster.png\n"
       "  sightline layers model.glb --path walk.json --arcs all --backdrop 0");
   command->callback([options, &chosen] { chosen = [options] { return runLayers(*options); }; });
 }

@@ -44,7 +44,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "SCENE is a file (.glb .gltf .obj .ply .stl ...) or a built-in scene: demo:city?copies=30&seed=1, "
-      "demo:building, demo:boxes, demo:ship, demo:toothpicks?n=200&scaling=ud, demo:canyon?grid=14.\n"
+      "demo:building, demo:boxes, demo:ship, demo:glass, demo:toothpicks?n=200&scaling=ud, "
+      "demo:canyon?grid=14.\n"
       "Exit code: 0 fine, 1 a check failed, 2 bad usage or input.\n"
       "sightline COMMAND --help shows a command's options and examples.");
   Command chosen;

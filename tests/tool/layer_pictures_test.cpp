@@ -1,0 +1,196 @@
+// sightline layers --image, --by-distance.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "sightline/io/image.h"
+#include "tests/tool/run_tool.h"
+
+namespace sightline::tool_test {
+namespace {
+
+using nlohmann::json;
+
+const std::vector<std::string> kSize{"--width", "160", "--height", "90"};
+
+std::vector<std::string> layersOf(const std::string& scene, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"layers", scene};
+  arguments.insert(arguments.end(), kSize.begin(), kSize.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+// Skips the test, with the reason, on a machine without OpenGL.
+class LayerPictures : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Outcome outcome = runTool(
+        layersOf("demo:glass?panes=0&bottles=0", {"--frames", "0", "--image", folder_.file("probe.png")}));
+    if (outcome.code != 0) {
+      GTEST_SKIP() << "no pictures on this machine: " << outcome.err;
+    }
+    std::filesystem::remove(folder_.file("probe.png"));
+  }
+
+  // The frames' JSON.
+  json draw(const std::string& scene, std::vector<std::string> more) const {
+    more.insert(more.end(), {"--no-times", "--json", "-"});
+    const Outcome outcome = runTool(layersOf(scene, more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return parse(outcome.out)["frames"];
+  }
+  Image read(const std::string& name) const {
+    const Result<Image> image = readPng(folder_.file(name));
+    EXPECT_TRUE(image) << (image ? "" : image.error().message);
+    return image ? *image : Image{};
+  }
+
+  TemporaryFolder folder_;
+};
+
+std::vector<std::string> namesOf(const json& parts) {
+  std::vector<std::string> names;
+  for (const json& part : parts) {
+    names.push_back(part["name"]);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_F(LayerPictures, AFrameIsAPictureThatIsRightWithItsGroupsNamed) {
+  const json frames = draw("demo:glass", {"--frames", "60", "--image", folder_.file("glass.png")});
+  ASSERT_EQ(frames.size(), 1u);
+  const json& picture = frames[0]["picture"];
+  EXPECT_EQ(picture["file"], folder_.file("glass.png"));
+  EXPECT_EQ(folder_.entries(), 1u);
+  const Image image = read("glass.png");
+  EXPECT_EQ(image.width, 160u);
+  EXPECT_EQ(image.height, 90u);
+  EXPECT_LE(picture["difference"]["largest"], 1.0);
+  EXPECT_EQ(picture["difference"]["share_beyond"], 0.0);
+  EXPECT_GT(picture["peeled"], 4);
+  EXPECT_LT(picture["peeled"], picture["layers"].get<int>() / 2);
+  std::vector<std::vector<std::string>> groups;
+  for (const json& group : picture["without_order"]) {
+    groups.push_back(namesOf(group));
+  }
+  const auto has = [&](const std::vector<std::string>& names) {
+    return std::find(groups.begin(), groups.end(), names) != groups.end();
+  };
+  EXPECT_TRUE(has({"crossing 0", "crossing 1"}));
+  EXPECT_TRUE(has({"pierced pane", "piercing ball"}));
+  EXPECT_TRUE(has({"ring 0", "ring 1", "ring 2", "ring 3", "ring 4", "ring 5"}));
+}
+
+TEST_F(LayerPictures, SeveralFramesAreFilesWithNumbers) {
+  const json frames = draw("demo:toothpicks?n=20", {"--frames", "8:13:2", "--image",
+                                                    folder_.file("sticks.v2.png"), "--samples", "2"});
+  ASSERT_EQ(frames.size(), 3u);
+  for (const int frame : {0, 1, 2}) {
+    const std::string name = "sticks.v2_00" +
+                             std::string(frame == 0   ? "08"
+                                         : frame == 1 ? "10"
+                                                      : "12") +
+                             ".png";
+    EXPECT_EQ(frames[frame]["picture"]["file"], folder_.file(name));
+    EXPECT_EQ(read(name).width, 160u);
+  }
+  EXPECT_EQ(folder_.entries(), 3u);
+}
+
+TEST_F(LayerPictures, WhatDistancesGetWrongIsCountedAndShownBeside) {
+  const json frames = draw("demo:glass", {"--frames", "80", "--by-distance", folder_.file("compared.png"),
+                                          "--image", folder_.file("ours.png")});
+  const json& by_distance = frames[0]["picture"]["by_distance"];
+  EXPECT_GE(by_distance["wrong_pairs"], 2);
+  EXPECT_GT(by_distance["overlapping_pairs"], by_distance["wrong_pairs"]);
+  EXPECT_LE(by_distance["pairs_without_order"], by_distance["wrong_pairs"]);
+  EXPECT_GT(by_distance["difference"]["share_beyond"], 0.005);
+  const Image compared = read("compared.png"), ours = read("ours.png");
+  EXPECT_EQ(compared.width, 3 * 160u + 2 * 8u);
+  EXPECT_EQ(compared.height, 90u);
+  for (std::uint32_t y = 0; y < 90; ++y) {
+    const auto row = compared.rgba.begin() + 4 * y * compared.width;
+    ASSERT_TRUE(std::equal(row, row + 4 * 160, ours.rgba.begin() + 4 * y * 160)) << y;
+  }
+}
+
+TEST_F(LayerPictures, OpaqueScenesHaveNoPairsToGetWrong) {
+  const json frames =
+      draw("demo:toothpicks?n=20", {"--frames", "0", "--by-distance", folder_.file("compared.png")});
+  const json& picture = frames[0]["picture"];
+  EXPECT_EQ(picture["by_distance"]["overlapping_pairs"], 0);
+  EXPECT_EQ(picture["by_distance"]["difference"]["share_beyond"], 0.0);
+  EXPECT_EQ(picture["peeled"], 0);
+  EXPECT_FALSE(picture.contains("file"));
+}
+
+TEST_F(LayerPictures, PartsAreLeftOutWithTheirLayers) {
+  draw("demo:glass", {"--frames", "60", "--image", folder_.file("all.png")});
+  const json frames =
+      draw("demo:glass", {"--frames", "60", "--image", folder_.file("less.png"), "--without", "0"});
+  EXPECT_EQ(frames[0]["picture"]["left_out"], json::array({0}));
+  EXPECT_LE(frames[0]["picture"]["difference"]["largest"], 1.0);
+  EXPECT_NE(read("all.png"), read("less.png"));
+}
+
+TEST_F(LayerPictures, APictureReplacesALayerWhereItsPartIs) {
+  const Image red{
+      .width = 2, .height = 2, .rgba = {255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255}};
+  ASSERT_TRUE(writePng(red, folder_.file("red.png")));
+  // Part 1 is the back wall, behind all the rest.
+  const json frames =
+      draw("demo:glass?panes=0&bottles=0", {"--frames", "120", "--image", folder_.file("replaced.png"),
+                                            "--replace", "1=" + folder_.file("red.png")});
+  EXPECT_FALSE(frames[0]["picture"].contains("difference"));
+  const Image image = read("replaced.png");
+  std::size_t reds = 0;
+  for (std::size_t p = 0; p < image.rgba.size(); p += 4) {
+    reds += image.rgba[p] == 255 && image.rgba[p + 1] == 0 && image.rgba[p + 2] == 0 ? 1 : 0;
+  }
+  EXPECT_GT(reds, image.rgba.size() / 4 / 20);
+  EXPECT_LT(reds, image.rgba.size() / 4 / 2);
+  EXPECT_GT(image.rgba[2], image.rgba[0]);  // the sky above it, blue
+}
+
+TEST_F(LayerPictures, TheTextTellsOfEachFrame) {
+  const Outcome outcome = runTool(
+      layersOf("demo:glass", {"--frames", "0:60:40", "--image", folder_.file("a.png"), "--peel", "never"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("frame 0: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("frame 40: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("0 of them peeled"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("crossing 0"), std::string::npos) << outcome.out;
+}
+
+TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
+  const std::string png = folder_.file("a.png"), none = folder_.file("nowhere/a.png");
+  const std::string text = folder_.write("no.png", "no picture");
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& about) {
+    std::vector<std::string> all{"--frames", "0"};
+    all.insert(all.end(), more.begin(), more.end());
+    expectRefused(layersOf("demo:glass", all), about);
+  };
+  refused({"--image", none}, "there is no folder");
+  refused({"--by-distance", none}, "there is no folder");
+  refused({"--image", folder_.file("a.jpg")}, ".png");
+  refused({"--image", "-"}, ".png");
+  refused({"--image", png, "--by-distance", png}, "--by-distance");
+  refused({"--image", png, "--without", "999"}, "--without 999");
+  refused({"--image", png, "--replace", "999=" + text}, "--replace 999");
+  refused({"--image", png, "--replace", text}, "PART=FILE.png");
+  refused({"--image", png, "--replace", "1=" + text}, text);
+  refused({"--image", png, "--replace", "1=" + folder_.file("missing.png")}, "missing.png");
+  refused({"--image", png, "--by-distance", folder_.file("b.png"), "--replace", "1=" + text}, "--replace");
+  refused({"--image", png, "--samples", "3"}, "--samples");
+  refused({"--image", png, "--peel", "always"}, "--peel");
+  expectRefused({"layers", "demo:glass", "--image", png, "--width", "0"}, "--width");
+  expectRefused({"layers", "demo:glass", "--frames", "0", "--image", png, "--width", "16384"}, "8192");
+  refused({"--without", "1"}, "--image");
+  refused({"--replace", "1=" + text}, "--image");
+  EXPECT_EQ(folder_.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace sightline::tool_test

@@ -1,0 +1,29 @@
+#pragma once
+
+// `layers --svg, --pdf`: hidden-line drawings of frames.
+
+#include <memory>
+#include <string>
+
+#include "tools/sightline/layer_frames.h"
+
+namespace sightline::tool {
+
+struct LayerDrawingOptions {
+  std::string svg, pdf;  // files; empty: none
+  bool plot = false;
+  double crease_deg = 30.0;
+  bool no_creases = false, no_silhouettes = false, no_boundaries = false;
+  double stroke_width = 1.0;  // page units: pixels of the pictures, points in PDF
+};
+void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options);
+
+// Whether the sorter must find the arcs of all pairs (LayerSettings::all_arcs).
+bool needAllArcs(const LayerDrawingOptions& options);
+
+// The page is as high as the pictures in pixels, and as wide as the view's aspect says. Objects keep their
+// names. Frames in a moving scene show the parts where they are.
+Result<std::unique_ptr<FrameMaker>> makeLayerDrawings(const LayerDrawingOptions& options,
+                                                      const FrameMakerInput& input);
+
+}  // namespace sightline::tool
