@@ -24,7 +24,7 @@ constexpr double kHalfLength = 0.077, kHalfWidth = 0.0084;  // metres, at scale 
 // 41 bands of 8: 312 quads and 16 triangles, 40 rings of 8 vertices and two poles: 322.
 constexpr std::uint32_t kBands = 41, kSegments = 8;
 constexpr double kEndMovement = 0.00269;  // metres a frame, mean of all ends
-constexpr double kSphereRadius = 0.03, kCylinderRadius = 0.002;
+constexpr double kSphereRadius = 0.05, kCylinderRadius = 0.004;
 // The hulls are this much larger than the meshes: more than what rounds off when a mesh is moved to where it
 // is and stored in single precision.
 constexpr double kHullGrowth = 0x1p-14;

@@ -75,7 +75,8 @@ class EvenBlur {
 
   // For each pixel of the target's width, the mean over the disc of what a chord around it covers.
   void sumChords(double half) {
-    const auto whole = static_cast<std::size_t>(half + 0.5);  // the pixel, to either side, that the end is in
+    const auto whole =
+        static_cast<std::size_t>(std::lround(half));  // the pixel, to either side, that the end is in
     const double part = whole == 0 ? half : half + 0.5 - static_cast<double>(whole);
     const double scale = 1.0 / disc_.area;
     const auto middle = kChannels * static_cast<std::size_t>(target_.x0 - first_);

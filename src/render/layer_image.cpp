@@ -10,7 +10,8 @@ namespace {
 
 // 0 to 255; what is not a number counts as nothing.
 std::uint8_t toByte(float value) {
-  return value > 0.0f ? static_cast<std::uint8_t>(std::min(value, 1.0f) * 255.0f + 0.5f) : std::uint8_t{0};
+  return value > 0.0f ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0f) * 255.0f))
+                      : std::uint8_t{0};
 }
 
 std::uint8_t colorByte(float premultiplied, float alpha) {
@@ -76,10 +77,11 @@ PictureDifference measureDifference(const LayerImage& a, const LayerImage& b, do
     difference.largest = std::max(difference.largest, worst);
     beyond += worst > tolerance ? 1 : 0;
   }
+  const std::size_t pixels = first.rgba.size() / 4;
   const auto channels = static_cast<double>(first.rgba.size());
   difference.mean = sum / channels;
   difference.rms = std::sqrt(squares / channels);
-  difference.share_beyond = static_cast<double>(beyond) / static_cast<double>(first.rgba.size() / 4);
+  difference.share_beyond = static_cast<double>(beyond) / static_cast<double>(pixels);
   return difference;
 }
 

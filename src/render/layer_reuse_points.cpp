@@ -63,7 +63,8 @@ std::vector<std::size_t> extremesOf(std::span<const Vec3d> points) {
   const Vec3d scale(unit(size.x), unit(size.y), unit(size.z));
   std::vector<std::size_t> chosen;
   for (int d = 0; d < 27 && !points.empty(); ++d) {
-    const Vec3d direction((d % 3 - 1) * scale.x, (d / 3 % 3 - 1) * scale.y, (d / 9 - 1) * scale.z);
+    const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
+    const Vec3d direction(x * scale.x, y * scale.y, z * scale.z);
     if (direction == Vec3d()) {
       continue;
     }

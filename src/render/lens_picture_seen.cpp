@@ -23,8 +23,9 @@ SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
     most = seen.empty ? depth : std::max(most, depth);
     seen.empty = false;
     weight += alpha;
-    x += alpha * (static_cast<double>(i % image.width) + 0.5);
-    y += alpha * (static_cast<double>(i / image.width) + 0.5);
+    const std::size_t row = i / image.width, column = i % image.width;
+    x += alpha * (static_cast<double>(column) + 0.5);
+    y += alpha * (static_cast<double>(row) + 0.5);
     inverse += alpha / depth;
     depths += alpha * depth;
   }

@@ -24,7 +24,8 @@ class LayerLens : public ::testing::Test {
   // Of one frame of a small picture, unless `more` says otherwise.
   json drawn(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{
-        "layers", "demo:toothpicks?n=40", "--width", "160", "--height", "120", "--json", "-"};
+        "layers", "demo:toothpicks?n=40", "--width", "160", "--height", "120", "--samples", "2", "--json",
+        "-"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = runTool(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
