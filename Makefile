@@ -20,7 +20,7 @@ help:
 	@echo "make test                   build, then run all tests"
 	@echo "make bench                  build, then run the benchmarks (SHORT=1: briefly)"
 	@echo "make format                 lay out all C++ files as .clang-format says (format-check: only look)"
-	@echo "make tidy                   clang-tidy over the library and the tool (TIDY=src: over that folder)"
+	@echo "make tidy                   clang-tidy over the library and the tool (TIDY=src: over that folder; CHECKS=-x: less x)"
 	@echo "PRESET=dev|release|sanitize and JOBS=N hold for all of them. Packages that are missing get installed."
 
 setup:
@@ -56,5 +56,5 @@ format-check:
 tidy:
 	@scripts/setup --checks
 	@$(configure)
-	@{ find $(TIDY) -name '*.cpp' | sort | xargs -P $(JOBS) -n 1 clang-tidy --quiet -p $(BUILD); } 2> /dev/null
+	@{ find $(TIDY) -name '*.cpp' | sort | xargs -P $(JOBS) -n 1 clang-tidy --quiet $(if $(CHECKS),--checks=$(CHECKS)) -p $(BUILD); } 2> /dev/null
 	@echo "tidy: nothing to say"
