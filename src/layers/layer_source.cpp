@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace sightline::layers {
-namespace {
-
-// From so many parts on the tree is faster than the scan: farther than bench/layers goes, as long as the
-// order is about that by distance.
-constexpr std::size_t kLeastForTree = 50'000;
-
-}  // namespace
-
 LayerSource::LayerSource(const LayerSettings& settings, const PartExtents& extents, PartOcclusion& occlusion)
     : search_(settings.search),
       exact_(settings.exact),
@@ -20,8 +12,7 @@ LayerSource::LayerSource(const LayerSettings& settings, const PartExtents& exten
 
 void LayerSource::beginFrame(std::span<const std::uint32_t> sorted) {
   const ExtentTable& table = extents_.table();
-  by_tree_ = search_ == OccluderSearch::kTree ||
-             (search_ == OccluderSearch::kAutomatic && table.parts >= kLeastForTree);
+  by_tree_ = search_ == OccluderSearch::kTree;
   if (by_tree_) {
     tree_.update(table);
     deactivateOthers(sorted);

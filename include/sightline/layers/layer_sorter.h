@@ -35,7 +35,11 @@ enum class LayerSort : std::uint8_t {
   kIncremental,  // the paper's: reinsertion behind the furthest occluder, cycles found by marks
 };
 
-enum class OccluderSearch : std::uint8_t { kAutomatic, kScan, kTree };
+enum class OccluderSearch : std::uint8_t {
+  kAutomatic,  // the faster one: the scan, from 25 to 50,000 parts (bench/layers)
+  kScan,       // compares with many parts at a time
+  kTree,       // the paper's kd-tree of extents
+};
 
 struct ExtentTreeSettings {
   std::uint32_t least_gain = 10;    // a node is divided where its longer child is shorter by so many parts
