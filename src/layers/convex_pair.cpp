@@ -106,18 +106,19 @@ Meeting chung(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
 
 // An upper bound of the set's heights along a direction, whose components do not exceed 1 by more than
 // rounding, above the local origin: by its ellipsoid. Of sums of numbers whose magnitudes add up to m, 2^-45
-// m is far above the rounding. Not a number where anything is not finite.
+// m is far above the rounding, and kTiny above all that underflows. Not a number, or infinite, where anything
+// is not finite.
 double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& local_origin) {
-  constexpr double kRounding = 0x1p-45;
+  constexpr double kRounding = 0x1p-45, kTiny = 1e-150;
   const Placement& p = set.placement;
   const Vec3d offset = p.origin - local_origin;
   const double stretch = magnitude(p.x) + magnitude(p.y) + magnitude(p.z);
   double height = set.around->height(p.toHull(direction)) + dot(direction, offset) +
-                  kRounding * (stretch * set.around->reach + magnitude(offset));
+                  kRounding * (stretch * set.around->reach + magnitude(offset)) + kTiny;
   if (set.kind == ConvexSet::Kind::kWithEye) {
     const Vec3d eye = set.eye_or_sweep - local_origin;
     const double of_eye = dot(direction, eye) + kRounding * magnitude(eye);
-    height = of_eye <= height ? height : of_eye;
+    height = std::isnan(height) || of_eye <= height ? height : of_eye;
   } else if (set.kind == ConvexSet::Kind::kSwept) {
     const double along = dot(direction, set.eye_or_sweep) + kRounding * magnitude(set.eye_or_sweep);
     height = along <= 0.0 ? height : height + along;

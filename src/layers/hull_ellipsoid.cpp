@@ -19,6 +19,8 @@ constexpr double kThinnest = 1e-6;
 // Relative to the radius; far above the rounding of the sums below, of which the division by the thinnest
 // axis makes 1e6 times as much.
 constexpr double kRounding = 1e-8;
+// Metres. Smaller hulls' squares would underflow.
+constexpr double kLeastRadius = 1e-100;
 
 struct Covariance {
   double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
@@ -41,11 +43,13 @@ double positiveRoot(double square) {
 }  // namespace
 
 HullEllipsoid ellipsoidAround(const ConvexHull& hull) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  HullEllipsoid around{hull.centre, {kNone, kNone, kNone}, {}, {}};
-  if (hull.vertices.empty() || !(hull.radius > 0.0) || !std::isfinite(hull.radius)) {
-    return around;
+  if (hull.vertices.empty() || !(hull.radius > kLeastRadius) || !std::isfinite(hull.radius)) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    constexpr Vec3d kNowhere(kNone, kNone, kNone);
+    return {kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNone};
   }
+  HullEllipsoid around;
+  around.centre = hull.centre;
   // Scaled to a trace of at most 1 or so; only the shape counts.
   const Covariance sum = covarianceOf(hull);
   const double n = static_cast<double>(hull.vertices.size());

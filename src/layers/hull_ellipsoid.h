@@ -18,7 +18,8 @@ struct HullEllipsoid {
   Vec3d box_centre, box_half;
   double reach = 0.0;  // no component of a point of it is greater, nor the sum of what height() adds up
 
-  // dot(direction, p) of no point p of the hull is greater, up to rounding.
+  // dot(direction, p) of no point p of the hull is greater, up to rounding, and up to 1e-160 where squares
+  // underflow.
   double height(const Vec3d& direction) const {
     const double x = dot(a, direction), y = dot(b, direction), z = dot(c, direction);
     const double round = dot(centre, direction) + std::sqrt(x * x + y * y + z * z);
@@ -27,8 +28,8 @@ struct HullEllipsoid {
   }
 };
 
-// Of the shape of the vertices' scatter. Holds all points that the hull was made of; not finite where that
-// cannot be said.
+// Of the shape of the vertices' scatter. Holds all points that the hull was made of. Where that cannot be
+// said (a single point, or what is not finite), all its numbers and heights are not numbers.
 HullEllipsoid ellipsoidAround(const ConvexHull& hull);
 
 }  // namespace sightline::layers

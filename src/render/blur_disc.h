@@ -7,7 +7,7 @@
 namespace sightline {
 
 struct BlurDisc {
-  // Half the chord of row dy and of row -dy, pixels, averaged over the row's height; > 0. The middle row
+  // Half the chord of row dy and of row -dy, pixels, averaged over the row's height; >= 0. The middle row
   // first.
   std::vector<double> half_chords;
   double area = 0.0;  // pixels; the sum of all chords

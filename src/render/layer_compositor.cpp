@@ -37,8 +37,10 @@ struct LayerCompositor::Impl {
   std::vector<ObjectId> objects;
   std::array<ShapedPixel, kCompositingScratch> scratch;
   LayerImage composited, sky;
+  bool all_sizes_fit = true;  // of the images that were drawn
 
   Status readUses(const FrameLayers& layers, const CompositeSettings& settings);
+  bool isOfRenderersSize(const LayerImage& image) const;
   bool hasBlended(const FrameLayers& layers, LayerId layer) const;
   bool needsPeel() const;
   bool isUnordered(const FrameLayers& layers, std::uint32_t first, std::uint32_t end) const;
@@ -62,9 +64,7 @@ Status LayerCompositor::Impl::readUses(const FrameLayers& layers, const Composit
       return replacementError(replaced.layer, "replaces none: there are " + std::to_string(uses.size()));
     }
     const LayerImage* image = replaced.image;
-    const std::size_t pixels = std::size_t{renderer->width()} * renderer->height();
-    if (image == nullptr || image->width != renderer->width() || image->height != renderer->height() ||
-        image->pixels.size() != pixels) {
+    if (image == nullptr || !isOfRenderersSize(*image)) {
       return replacementError(replaced.layer, "must have " + std::to_string(renderer->width()) + " x " +
                                                   std::to_string(renderer->height()) + " pixels");
     }
@@ -76,6 +76,11 @@ Status LayerCompositor::Impl::readUses(const FrameLayers& layers, const Composit
     }
   }
   return Success{};
+}
+
+bool LayerCompositor::Impl::isOfRenderersSize(const LayerImage& image) const {
+  return image.width == renderer->width() && image.height == renderer->height() &&
+         image.pixels.size() == std::size_t{image.width} * image.height;
 }
 
 bool LayerCompositor::Impl::hasBlended(const FrameLayers& layers, LayerId layer) const {
@@ -124,6 +129,10 @@ void LayerCompositor::Impl::drawObjects(const View& view, const CompositeSetting
   stats.peeled += how.peel ? 1 : 0;
   if (settings.draw_layer) {
     settings.draw_layer(objects, how, image);
+    if (!isOfRenderersSize(image)) {
+      all_sizes_fit = false;
+      image.clear(renderer->width(), renderer->height());
+    }
   } else {
     stats.triangles += renderer->draw(view, objects, how, image).triangles;
   }
@@ -229,9 +238,14 @@ Result<CompositeStats> LayerCompositor::composite(const View& view, const FrameL
   const CompositingProgram& program = c.compiler.compile(layers, settings.form, settings.left_out);
   CompositeStats stats;
   stats.operations = countSteps(program.steps);
+  c.all_sizes_fit = true;
   picture.clear(c.renderer->width(), c.renderer->height());
   for (std::uint32_t group = 0; group < layers.groups(); ++group) {
     c.addGroup(view, layers, group, program, settings, picture, stats);
+  }
+  if (!c.all_sizes_fit) {
+    return Error{"layers drawn by draw_layer must have " + std::to_string(c.renderer->width()) + " x " +
+                 std::to_string(c.renderer->height()) + " pixels"};
   }
   if (settings.sky) {
     c.renderer->drawSky(view, c.sky);

@@ -78,7 +78,7 @@ struct LayerReuse::Impl {
   bool matchPoints(const KeptImage& kept);
   bool suits(const Warp& frame_from_kept, const LayerPoints& layer) const;
   std::optional<FoundWarp> findWarp(const KeptImage& kept);
-  void drawAnew(const LayerDraw& how, LayerImage& image);
+  void drawAnew(std::span<const ObjectId> given, const LayerDraw& how, LayerImage& image);
   void keep(bool peel);
   std::uint64_t triangles() const;
 
@@ -252,8 +252,8 @@ bool LayerReuse::Impl::warpKept(const LayerDraw& how, LayerImage& image) {
   return true;
 }
 
-void LayerReuse::Impl::drawAnew(const LayerDraw& how, LayerImage& image) {
-  renderer->draw(guarded, objects, how, drawn);
+void LayerReuse::Impl::drawAnew(std::span<const ObjectId> given, const LayerDraw& how, LayerImage& image) {
+  renderer->draw(guarded, given, how, drawn);
   image.clear(width, height);
   const bool has_depths = drawn.depths.size() == drawn.pixels.size();
   if (has_depths) {
@@ -327,14 +327,16 @@ void LayerReuse::image(std::span<const ObjectId> objects, const LayerDraw& how, 
   const std::uint64_t triangles = r.triangles();
   ++r.stats.layers;
   r.stats.triangles += triangles;
-  // Points are told from the eye: from elsewhere on a lens they are seen elsewhere.
-  const bool is_reusable = is_placed && !how.depths && how.lens.right == 0.0 && how.lens.up == 0.0;
+  // Points are told from the eye: from elsewhere on a lens they are seen elsewhere. Images are kept by their
+  // objects, not by an order of these.
+  const bool is_reusable =
+      is_placed && !how.depths && !how.as_given && how.lens.right == 0.0 && how.lens.up == 0.0;
   if (is_reusable && r.warpKept(how, image)) {
     return;
   }
   ++r.stats.drawn;
   r.stats.drawn_triangles += triangles;
-  r.drawAnew(how, image);
+  r.drawAnew(objects, how, image);
   if (is_reusable) {
     r.keep(how.peel);
   }

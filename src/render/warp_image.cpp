@@ -11,8 +11,8 @@ bool isTransparent(const ShapedPixel& p) {
 }
 
 // The part of the rectangle that has anything in it.
-PixelRect coveredIn(const LayerImage& picture, const PixelRect& within) {
-  PixelRect covered{within.right, within.bottom, within.left, within.top};
+PictureRect coveredIn(const LayerImage& picture, const PictureRect& within) {
+  PictureRect covered{within.right, within.bottom, within.left, within.top};
   for (std::uint32_t y = within.top; y < within.bottom; ++y) {
     const ShapedPixel* row = &picture.pixels[std::size_t{y} * picture.width];
     const ShapedPixel *begin = row + within.left, *end = row + within.right;
@@ -66,8 +66,8 @@ ShapedPixel bilinear(const Sprite& sprite, double x, double y) {
 }
 
 // Whole pixels of the target that the sprite may touch: all of it where the map tears.
-PixelRect touchedBy(const Sprite& sprite, const Warp& picture_from_target, const LayerImage& target) {
-  const PixelRect all{0, 0, target.width, target.height};
+PictureRect touchedBy(const Sprite& sprite, const Warp& picture_from_target, const LayerImage& target) {
+  const PictureRect all{0, 0, target.width, target.height};
   const std::optional<Warp> target_from_picture = inverseOf(picture_from_target);
   if (!target_from_picture) {
     return all;
@@ -94,10 +94,10 @@ PixelRect touchedBy(const Sprite& sprite, const Warp& picture_from_target, const
 
 }  // namespace
 
-void cropSprite(const LayerImage& picture, const PixelRect& within, const SideFlags& cut, Sprite& sprite) {
-  const PixelRect inside{within.left, within.top, std::min(within.right, picture.width),
-                         std::min(within.bottom, picture.height)};
-  const PixelRect covered = inside.empty() ? PixelRect{} : coveredIn(picture, inside);
+void cropSprite(const LayerImage& picture, const PictureRect& within, const SideFlags& cut, Sprite& sprite) {
+  const PictureRect inside{within.left, within.top, std::min(within.right, picture.width),
+                           std::min(within.bottom, picture.height)};
+  const PictureRect covered = inside.empty() ? PictureRect{} : coveredIn(picture, inside);
   sprite = {};
   if (covered.empty()) {
     return;
@@ -120,7 +120,7 @@ void drawWarped(const Sprite& sprite, const Warp& picture_from_target, LayerImag
   if (sprite.pixels.empty()) {
     return;
   }
-  const PixelRect touched = touchedBy(sprite, picture_from_target, target);
+  const PictureRect touched = touchedBy(sprite, picture_from_target, target);
   for (std::uint32_t y = touched.top; y < touched.bottom; ++y) {
     for (std::uint32_t x = touched.left; x < touched.right; ++x) {
       const PicturePoint centre{x + 0.5, y + 0.5};

@@ -15,7 +15,7 @@ enum PictureSide : std::size_t { kLeftSide, kTopSide, kRightSide, kBottomSide, k
 using SideFlags = std::array<bool, kPictureSides>;
 
 // A rectangle of pixels.
-struct PixelRect {
+struct PictureRect {
   std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // up to, not with, right and bottom
 
   bool empty() const { return left >= right || top >= bottom; }
@@ -31,7 +31,7 @@ struct Sprite {
 
 // What there is in `within` of the picture (which may reach beyond it), cropped to what is not transparent.
 // What lies beyond the picture is taken to go on where that side is cut, otherwise to be transparent.
-void cropSprite(const LayerImage& picture, const PixelRect& within, const SideFlags& cut, Sprite& sprite);
+void cropSprite(const LayerImage& picture, const PictureRect& within, const SideFlags& cut, Sprite& sprite);
 
 // The sprite where `picture_from_target` looks it up, by bilinear resampling: a target pixel's centre (x +
 // 0.5, y + 0.5) is mapped to the sprite's picture; where its divisor is not positive nothing is. target:

@@ -101,6 +101,59 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsOnEveryInstructionSet) {
   EXPECT_GT(found, 1000u);
 }
 
+// Narrow intervals anywhere, of numbers of any size: near the least and the greatest that a float holds, all
+// the same, or close together and far from zero.
+ExtentTable fineTable(Random& random, std::size_t parts) {
+  ExtentTable table;
+  table.parts = parts;
+  table.kinds = {ExtentAxis::Kind::kAngular, ExtentAxis::Kind::kSpatial, ExtentAxis::Kind::kSpatial};
+  const double sizes[] = {1.0, 1e-43, 3e38, 0.0, 1e-3}, offsets[] = {0.0, 0.0, 0.0, 7.0, 1e4};
+  for (const ExtentAxis::Kind kind : table.kinds) {
+    const bool angular = kind == ExtentAxis::Kind::kAngular;
+    const std::uint32_t form = random.below(5);
+    const double size = angular ? 2.0 : sizes[form], offset = angular ? 0.0 : offsets[form];
+    std::vector<float>&lows = table.lows.emplace_back(), &highs = table.highs.emplace_back();
+    for (std::size_t part = 0; part < parts; ++part) {
+      lows.push_back(static_cast<float>(offset + size * random.number(-1, 1)));
+      highs.push_back(std::max(lows.back(), static_cast<float>(lows.back() + size * random.number(0, 0.1))));
+    }
+  }
+  return table;
+}
+
+// More than 64 * 64 parts: rows of rows of rows.
+TEST(ExtentScan, FindsWhatComparingOneByOneFindsThroughThreeLevels) {
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Random random(seed);
+    const ExtentTable table = fineTable(random, 4096 + random.below(3) * 1000);
+    ExtentScan scan;
+    scan.begin(table, shuffledParts(random, table.parts));
+    for (int round = 0; round < 20; ++round) {
+      Extent query{};
+      for (std::size_t axis = 0; axis < table.axes(); ++axis) {
+        query[axis] = table.at(axis, random.below(static_cast<std::uint32_t>(table.parts)));
+      }
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t part = 0; part < table.parts; ++part) {
+        if (overlaps(table, query, part)) {
+          expected.push_back(part);
+        }
+      }
+      found += expected.size();
+      for (const std::int64_t target : targets) {
+        hwy::SetSupportedTargetsForTest(target);
+        std::vector<std::uint32_t> parts;
+        scan.query(query, parts);
+        hwy::SetSupportedTargetsForTest(0);
+        EXPECT_EQ(parts, expected) << hwy::TargetName(target) << ", seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(found, 1000u);
+}
+
 TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
   ExtentTable table;
   table.kinds = {ExtentAxis::Kind::kSpatial};

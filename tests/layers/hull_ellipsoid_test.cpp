@@ -56,9 +56,52 @@ TEST(HullEllipsoid, IsNowhereLowerThanTheHull) {
   EXPECT_GT(tight, 400u * 40u / 2u);
 }
 
-TEST(HullEllipsoid, OfAPointIsNotFinite) {
-  const ConvexHull point = hullOf({{1, 2, 3}});
-  EXPECT_FALSE(std::isfinite(ellipsoidAround(point).a.x));
+std::vector<Vec3d> boxAround(const Vec3d& middle, double half) {
+  std::vector<Vec3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(middle + Vec3d(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half));
+  }
+  return corners;
+}
+
+// Of two that were apart along the x axis at the last question.
+Meeting askAgain(ConvexSet first, ConvexSet second) {
+  const HullEllipsoid around_first = ellipsoidAround(*first.hull),
+                      around_second = ellipsoidAround(*second.hull);
+  first.around = &around_first;
+  second.around = &around_second;
+  PairWitness witness;
+  witness.apart = true;
+  witness.pairs = 2;
+  witness.direction = {1.0, 0.0, 0.0};
+  PairCounts counts;
+  return meeting(first, second, witness, counts);
+}
+
+TEST(HullEllipsoid, SaysNothingOfAPoint) {
+  const ConvexHull point = hullOf({{5, 0, 0}}), box = hullOf(boxAround({5, 0, 0}, 1.0));
+  EXPECT_TRUE(std::isnan(ellipsoidAround(point).height({1, 0, 0})));
+  for (const auto kind : {ConvexSet::Kind::kHull, ConvexSet::Kind::kWithEye, ConvexSet::Kind::kSwept}) {
+    ConvexSet in_the_box{&point, {}, kind};
+    in_the_box.eye_or_sweep = {-3.0, 0.0, 0.0};
+    EXPECT_NE(askAgain(in_the_box, {&box}), Meeting::kApart) << static_cast<int>(kind);
+  }
+}
+
+TEST(HullEllipsoid, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
+  const ConvexHull box = hullOf(boxAround({}, 1.0)), aside = hullOf(boxAround({10, -10, 0}, 1.0));
+  ConvexSet huge{&aside};
+  huge.placement.x = huge.placement.y = {1e308, 0.0, 0.0};
+  huge.kind = ConvexSet::Kind::kWithEye;
+  huge.eye_or_sweep = {-5.0, 0.0, 0.0};
+  EXPECT_EQ(askAgain(huge, {&box}), Meeting::kUndecided);
+
+  ConvexSet tiny{&box}, neighbour{&box};
+  tiny.placement.x = neighbour.placement.x = {1e-170, 0.0, 0.0};
+  tiny.placement.y = neighbour.placement.y = {0.0, 1e-170, 0.0};
+  tiny.placement.z = neighbour.placement.z = {0.0, 0.0, 1e-170};
+  neighbour.placement.origin = {1.5e-170, 0.0, 0.0};
+  EXPECT_NE(askAgain(tiny, neighbour), Meeting::kApart);
 }
 
 // The shortcut for pairs that were apart never says what the whole test does not.

@@ -431,6 +431,12 @@ TEST_F(LayerCompositorTest, WhatCannotBeIsAnError) {
   FrameLayers other = studio.layers();
   other.parts[0] = PartId(1u);
   EXPECT_TRUE(fails(other, {}));
+  CompositeSettings smaller;
+  smaller.draw_layer = [](std::span<const ObjectId>, const LayerDraw&, LayerImage& drawn) {
+    drawn.clear(16, 12);
+  };
+  EXPECT_TRUE(fails(studio.layers(), smaller));
+  EXPECT_FALSE(fails(studio.layers(), {}));
 }
 
 }  // namespace

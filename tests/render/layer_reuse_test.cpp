@@ -453,6 +453,20 @@ TEST_F(LayerReuseTest, WhatIsNotFiniteIsDrawnEachTimeAndHarmsNothingElse) {
   }
 }
 
+TEST_F(LayerReuseTest, WhatIsDrawnAsGivenIsNotReused) {
+  maker.wall(0.0, 1.0, kGlass);
+  maker.scene.materials[kGreen].opacity = Opacity::kBlended;
+  maker.scene.materials[kGreen].base_color[3] = 0.5f;
+  maker.wall(1.0, 1.0, kGreen);
+  Reused reused(maker.scene, {});
+  reused.begin(testView());
+  EXPECT_TRUE(reused.draw(ids({0, 1}), {.as_given = true}));
+  const LayerImage other_order = reused.image;
+  EXPECT_TRUE(reused.draw(ids({1, 0}), {.as_given = true}));
+  EXPECT_EQ(reused.image.pixels, reused.expected.pixels);
+  EXPECT_GT(largestDifference(reused.image, other_order), 0.05f);
+}
+
 TEST_F(LayerReuseTest, HostileViewsAndSettingsDoNoHarm) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
   for (const double bad : {kNan, 0.0, -1.0, 1e308, std::numeric_limits<double>::infinity()}) {

@@ -36,8 +36,8 @@ struct CompositeSettings {
   bool sky = true;                // behind everything
   std::vector<LayerId> left_out;  // others than the frame's do not matter; before `replaced`
   std::vector<LayerReplacement> replaced;
-  // Draws a layer's image in place of LayerRenderer::draw (depth of field, motion blur, reuse). Empty:
-  // draw().
+  // Draws a layer's image, of the renderer's size, in place of LayerRenderer::draw (depth of field, motion
+  // blur, reuse). Empty: draw().
   std::function<void(std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image)> draw_layer;
 };
 
@@ -62,7 +62,8 @@ class LayerCompositor {
 
   // picture: of the renderer's size afterwards, without depths. layers: as LayerMerger gives them
   // (checkLayers). No allocation of pictures after warm-up.
-  // Errors: a replacement of another size or of a layer that is not there; a part that is no object.
+  // Errors: a replacement of another size or of a layer that is not there; a part that is no object; an image
+  // of draw_layer of another size.
   Result<CompositeStats> composite(const View& view, const FrameLayers& layers,
                                    const CompositeSettings& settings, LayerImage& picture);
 

@@ -57,7 +57,8 @@ struct ReuseStats {
 //  - of which something comes into view that was outside the drawn picture,
 //  - that crosses the near or the far plane,
 //  - when the view's kind or its near or far distance changes, or whether it is peeled,
-//  - of which depths are asked for, or that is seen from beside the lens's middle: these are not reused,
+//  - of which depths are asked for, that is drawn as given (LayerDraw::as_given), or that is seen from beside
+//    the lens's middle: these are not reused,
 //  - with a transform that is not finite, or in such a view.
 // With a tolerance of 0 everything is drawn but what has not moved at all, nor the view. The largest
 // deviation is measured at the characteristic points, up to 26 an object: farthest vertices in as many
@@ -75,8 +76,8 @@ class LayerReuse {
   // Once a frame, before image(): the objects' places, as LayerRenderer::setTransforms takes them, which is
   // called with them.
   void beginFrame(const View& view, std::span<const Mat4> scene_from_stored);
-  // The image of the layer of these objects (each once, in any order): warped from the last one drawn, or
-  // drawn. Of the frame's size. A layer outside the view is transparent, and costs neither.
+  // The image of the layer of these objects (as LayerRenderer::draw takes them): warped from the last one
+  // drawn, or drawn. Of the frame's size. A layer outside the view is transparent, and costs neither.
   void image(std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image);
 
   std::uint32_t width() const;  // of the frames, pixels
