@@ -56,8 +56,9 @@ struct Draughtsman::Impl {
   // false: nothing can be drawn.
   bool begin(const SceneView& scene, std::span<const std::string> names, const View& view,
              const DrawingSettings& settings, Drawing& drawing);
-  // The object with its name; strokes are what it itself and the occluders leave of its lines.
-  DrawingObject drawLines(ObjectId object, Drawing& drawing);
+  // The object with its name; strokes are what it itself and the occluders leave of its lines, but for what
+  // is drawn before.
+  DrawingObject drawLines(ObjectId object, drawing::DrawnPieces* before, Drawing& drawing);
   void drawOutline(DrawingObject& object);
   // Those that may show something.
   std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
@@ -101,7 +102,7 @@ bool Draughtsman::Impl::begin(const SceneView& scene_in, std::span<const std::st
   return true;
 }
 
-DrawingObject Draughtsman::Impl::drawLines(ObjectId object, Drawing& drawing) {
+DrawingObject Draughtsman::Impl::drawLines(ObjectId object, drawing::DrawnPieces* before, Drawing& drawing) {
   DrawingObject drawn{.object = object,
                       .name = object.value < names.size() ? names[object.value] : std::string()};
   occluders.push_back(object);
@@ -111,6 +112,9 @@ DrawingObject Draughtsman::Impl::drawLines(ObjectId object, Drawing& drawing) {
   edges.select(scene, object, view, settings->features, lines);
   pieces.clear();
   hidden.visiblePieces(lines, occluders, pieces);
+  if (before != nullptr) {
+    before->leaveNew(pieces);
+  }
   drawing::joinPieces(pieces, tolerance, drawn.strokes);
   drawing.pairs += lines.size() * occluders.size();
   drawing.all_pairs += lines.size() * objects;
@@ -169,7 +173,7 @@ Drawing Draughtsman::paint(const SceneView& scene, std::span<const std::string> 
           own.occluders.push_back(front);
         }
       }
-      DrawingObject object = own.drawLines(member, drawing);
+      DrawingObject object = own.drawLines(member, nullptr, drawing);
       own.drawOutline(object);
       if (!object.outline.empty() || !object.strokes.empty()) {
         group.objects.push_back(std::move(object));
@@ -193,6 +197,7 @@ Drawing Draughtsman::plot(const SceneView& scene, std::span<const std::string> n
   const std::vector<ObjectId> members = own.objectsOf(order.parts);
   own.objects = members.size();
   const OccludersOf occluders_of(order.arcs, scene.objects.size());
+  drawing::DrawnPieces drawn(own.tolerance);
   for (auto member = members.rbegin(); member != members.rend(); ++member) {
     const auto& backdrops = settings.backdrops;
     if (std::find(backdrops.begin(), backdrops.end(), *member) != backdrops.end()) {
@@ -202,7 +207,7 @@ Drawing Draughtsman::plot(const SceneView& scene, std::span<const std::string> n
       own.occluders.assign(fronts.begin(), fronts.end());
       own.occluders.insert(own.occluders.end(), settings.overlays.begin(), settings.overlays.end());
     }
-    DrawingObject object = own.drawLines(*member, drawing);
+    DrawingObject object = own.drawLines(*member, &drawn, drawing);
     if (!object.strokes.empty()) {
       drawing.groups.emplace_back().objects.push_back(std::move(object));
     }

@@ -14,7 +14,7 @@ namespace {
 
 // Corners are rounded to single precision: by up to 2^-24 of their largest coordinate in each axis.
 constexpr double kCornerRounding = 0x1p-22;
-constexpr double kCreaseSlack_deg = 1e-9;
+constexpr double kCreaseSlackDeg = 1e-9;
 
 double angleBetween(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
@@ -55,7 +55,7 @@ class Fan {
       return LineKind::kSilhouette;
     }
     if (settings.creases &&
-        sharpestFold() * (180.0 / std::numbers::pi) >= settings.crease_deg - kCreaseSlack_deg) {
+        sharpestFold() * (180.0 / std::numbers::pi) >= settings.crease_deg - kCreaseSlackDeg) {
       return LineKind::kCrease;
     }
     return std::nullopt;

@@ -10,6 +10,7 @@ namespace {
 // Corners are rounded to single precision by up to 2^-24 of their largest coordinate, an edge and a corner on
 // it together by some 2^-22.
 constexpr double kPlaceRounding = 0x1p-21;
+constexpr std::size_t kLeaf = 8;  // of the tree of corners
 
 // Equal for equal places, -0 taken as 0, and ordered also where coordinates are not numbers.
 std::array<std::uint32_t, 3> placeKey(const Vec3f& p) {
@@ -92,9 +93,7 @@ void EdgeBuilder::cutAtCorners() {
     };
     return !(i > 0 && same(half_edges_[i - 1])) && !(i + 1 < half_edges_.size() && same(half_edges_[i + 1]));
   };
-  for (std::vector<std::uint32_t>& sorted : by_axis_) {
-    sorted.clear();
-  }
+  tree_.clear();
   cut_.clear();
   for (std::size_t i = 0; i < half_edges_.size(); ++i) {
     on_edge_.clear();
@@ -123,20 +122,17 @@ void EdgeBuilder::cutAtCorners() {
 
 // Fills on_edge_, from a to b.
 void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
-  if (by_axis_[0].empty()) {
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<std::uint32_t>& sorted = by_axis_[static_cast<std::size_t>(axis)];
-      sorted = corners_;
-      std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t p, std::uint32_t q) {
-        return scene_.positions[p][axis] < scene_.positions[q][axis];
-      });
-    }
+  if (tree_.empty()) {
+    tree_ = corners_;
+    divide(tree_, 0);
   }
   const Vec3d a = at(edge.a);
   const Vec3d ab = at(edge.b) - a;
   const double length_ab = length(ab);
   const Vec3d margin(tolerance_, tolerance_, tolerance_);
-  for (const std::uint32_t corner : cornersNear(min(a, a + ab) - margin, max(a, a + ab) + margin)) {
+  near_.clear();
+  findNear(tree_, 0, min(a, a + ab) - margin, max(a, a + ab) + margin);
+  for (const std::uint32_t corner : near_) {
     const Vec3d ac = at(corner) - a;
     const double along = dot(ac, ab) / length_ab;
     const bool between = along > tolerance_ && along < length_ab - tolerance_;
@@ -149,19 +145,35 @@ void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
   });
 }
 
-// Corners between low and high along the axis that leaves the fewest.
-std::span<const std::uint32_t> EdgeBuilder::cornersNear(const Vec3d& low, const Vec3d& high) const {
-  std::span<const std::uint32_t> best = by_axis_[0];
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<std::uint32_t>& sorted = by_axis_[static_cast<std::size_t>(axis)];
-    const auto first = std::partition_point(sorted.begin(), sorted.end(),
-                                            [&](std::uint32_t p) { return at(p)[axis] < low[axis]; });
-    const auto last =
-        std::partition_point(first, sorted.end(), [&](std::uint32_t p) { return at(p)[axis] <= high[axis]; });
-    const std::span<const std::uint32_t> range(first, last);
-    best = range.size() < best.size() ? range : best;
+void EdgeBuilder::divide(std::span<std::uint32_t> corners, int axis) {
+  if (corners.size() <= kLeaf) {
+    return;
   }
-  return best;
+  const std::size_t half = corners.size() / 2;
+  std::nth_element(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(half), corners.end(),
+                   [&](std::uint32_t p, std::uint32_t q) {
+                     return scene_.positions[p][axis] < scene_.positions[q][axis];
+                   });
+  divide(corners.first(half), (axis + 1) % 3);
+  divide(corners.subspan(half + 1), (axis + 1) % 3);
+}
+
+// Appends to near_ the corners of a part of the tree between low and high, and some others.
+void EdgeBuilder::findNear(std::span<const std::uint32_t> corners, int axis, const Vec3d& low,
+                           const Vec3d& high) {
+  if (corners.size() <= kLeaf) {
+    near_.insert(near_.end(), corners.begin(), corners.end());
+    return;
+  }
+  const std::size_t half = corners.size() / 2;
+  const double middle = at(corners[half])[axis];
+  near_.push_back(corners[half]);
+  if (low[axis] <= middle) {
+    findNear(corners.first(half), (axis + 1) % 3, low, high);
+  }
+  if (high[axis] >= middle) {
+    findNear(corners.subspan(half + 1), (axis + 1) % 3, low, high);
+  }
 }
 
 void EdgeBuilder::store(FeatureEdges& edges) const {

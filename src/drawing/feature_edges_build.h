@@ -35,16 +35,20 @@ class EdgeBuilder {
   bool hasArea(const std::array<std::uint32_t, 3>& corners) const;
   void cutAtCorners();
   void findCornersOn(const HalfEdge& edge);
-  std::span<const std::uint32_t> cornersNear(const Vec3d& low, const Vec3d& high) const;
+  void divide(std::span<std::uint32_t> corners, int axis);
+  void findNear(std::span<const std::uint32_t> corners, int axis, const Vec3d& low, const Vec3d& high);
   void store(FeatureEdges& edges) const;
 
   Vec3d at(std::uint32_t corner) const { return Vec3d(scene_.positions[corner]); }
 
   const SceneView& scene_;
-  double tolerance_ = 0.0;                             // metres
-  std::vector<std::uint32_t> stands_for_;              // of all positions; set for the object's
-  std::vector<std::uint32_t> corners_;                 // that stand for others, each once
-  std::array<std::vector<std::uint32_t>, 3> by_axis_;  // the same, ascending along each axis
+  double tolerance_ = 0.0;                 // metres
+  std::vector<std::uint32_t> stands_for_;  // of all positions; set for the object's
+  std::vector<std::uint32_t> corners_;     // that stand for others, each once
+  // The same as a k-d tree: the middle one parts the others along x, their halves along y, and so on. Empty
+  // until it is needed.
+  std::vector<std::uint32_t> tree_;
+  std::vector<std::uint32_t> near_;
   std::vector<HalfEdge> half_edges_, cut_;
   std::vector<OnEdge> on_edge_;
 };

@@ -95,9 +95,10 @@ std::uint32_t Outliner::bordersBeyond(const Vec3d& p) const {
   return borders;
 }
 
-// x to the right and y down, as on the page. The clamp holds what rounding leaves beyond the margin.
+// x to the right and y down, as on the page. The clamp holds what rounding leaves beyond the margin; what it
+// leaves before the near plane may have no depth at all.
 GridPoint Outliner::onGrid(const Vec3d& p) const {
-  const double depth = view_.orthographic ? 1.0 : p.z;
+  const double depth = view_.orthographic ? 1.0 : std::max(p.z, view_.near);
   const double x = std::clamp(p.x / depth, -widest_, widest_);
   const double y = std::clamp(p.y / depth, -highest_, highest_);
   return {std::llround((x + half_width_) * units_ * scale_),

@@ -7,7 +7,7 @@
 namespace sightline::drawing {
 namespace {
 
-__extension__ typedef __int128 Wide;
+__extension__ using Wide = __int128;
 
 int signOf(Wide value) {
   return (value > 0) - (value < 0);

@@ -207,4 +207,16 @@ void joinPieces(std::span<const LinePiece> pieces, double tolerance, std::vector
   }
 }
 
+void DrawnPieces::leaveNew(std::vector<LinePiece>& pieces) {
+  const auto steps = [this](double value) {
+    return static_cast<std::int64_t>(std::llround(value / tolerance_));
+  };
+  std::erase_if(pieces, [&](const LinePiece& piece) {
+    const std::pair from(steps(piece.from.x), steps(piece.from.y));
+    const std::pair to(steps(piece.to.x), steps(piece.to.y));
+    const auto& [low, high] = std::minmax(from, to);
+    return !drawn_.insert({low.first, low.second, high.first, high.second}).second;
+  });
+}
+
 }  // namespace sightline::drawing

@@ -2,6 +2,9 @@
 
 // From visible pieces of lines to strokes.
 
+#include <array>
+#include <cstdint>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -20,5 +23,18 @@ void joinPieces(std::span<const LinePiece> pieces, double tolerance, std::vector
 // farther than tolerance. The first and the last point stay. Source: Zhao, Saalfeld. Linear-time
 // sleeve-fitting polyline simplification algorithms. AutoCarto 1997.
 void simplify(PagePath& line, double tolerance);
+
+// The pieces of a drawing so far, by where they lie on the page.
+class DrawnPieces {
+ public:
+  explicit DrawnPieces(double tolerance) : tolerance_(tolerance) {}  // page units
+
+  // Takes out pieces that lie on one before from end to end, and remembers the others.
+  void leaveNew(std::vector<LinePiece>& pieces);
+
+ private:
+  double tolerance_;
+  std::set<std::array<std::int64_t, 4>> drawn_;  // both ends, in steps of the tolerance, the lesser first
+};
 
 }  // namespace sightline::drawing

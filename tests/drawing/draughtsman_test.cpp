@@ -260,6 +260,24 @@ TEST(Draughtsman, PlotsAsIfEachLineWereTestedAgainstAllObjects) {
   }
 }
 
+TEST(Draughtsman, PlotsAnEdgeThatObjectsShareOnce) {
+  Set apart, together;
+  apart.add(test::block({-2, -1, -1}, {0, 1, 1}));
+  apart.add(test::block({0.5f, -1, -1}, {2.5f, 1, 1}));
+  together.add(test::block({-2, -1, -1}, {0, 1, 1}));
+  together.add(test::block({0, -1, -1}, {2, 1, 1}));
+  const auto lengthOfPlot = [](const Set& set) {
+    const Drawing plot = set.plot(viewFromFront(true));
+    return lengthOfAll(strokesOf(plot, 0)) + lengthOfAll(strokesOf(plot, 1));
+  };
+  // The page shows 12 metres: two squares of 2, and two that share a side.
+  const double side = 2.0 * kHeight / 12.0;
+  EXPECT_NEAR(lengthOfPlot(apart), 8 * side, 1e-6);
+  EXPECT_NEAR(lengthOfPlot(together), 7 * side, 1e-6);
+  // Designers move painted objects apart.
+  EXPECT_NEAR(lengthOfAll(strokesOf(together.paint(viewFromFront(true)), 1)), 4 * side, 1e-6);
+}
+
 TEST(Draughtsman, GlassHasLinesAndHidesNothing) {
   Set set;
   set.add(test::block({-1, -1, 2}, {1, 1, 3}), false);

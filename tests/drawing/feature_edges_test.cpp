@@ -253,6 +253,25 @@ TEST(FeatureEdges, AreCutAndJoinedAtTJunctions) {
   EXPECT_EQ(folded.size(), 8u);
 }
 
+TEST(FeatureEdges, AreCutAtEachOfManyCorners) {
+  // One long face below, many squares above it, at a slant in whole numbers.
+  constexpr int kSquares = 200;
+  const auto at = [](int x, int y) {
+    return Vec3f(static_cast<float>(2 * x - y), static_cast<float>(x + 2 * y), static_cast<float>(2 * x));
+  };
+  Triangles wall;
+  addQuad(wall, at(0, -1), at(kSquares, -1), at(kSquares, 0), at(0, 0));
+  for (int i = 0; i < kSquares; ++i) {
+    const int x = i * 77 % kSquares;
+    addQuad(wall, at(x, 0), at(x + 1, 0), at(x + 1, 1), at(x, 1));
+  }
+  const Lines lines = linesOf(sceneOf(wall, true), viewFrom({0, 50, 900}));
+  // The upper border in so many parts, the lower one, and two at each end; none within.
+  EXPECT_EQ(lines.size(), kSquares + 5u);
+  EXPECT_EQ(count(lines, LineKind::kBoundary), kSquares + 5u);
+  EXPECT_EQ(lines.count(ends(at(3, 0), at(4, 0))), 0u);
+}
+
 TEST(FeatureEdges, FacesThatLieOnOneAnotherCountAsOne) {
   Triangles doubled = cube();
   const Triangles once = doubled;

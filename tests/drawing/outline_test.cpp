@@ -215,6 +215,16 @@ TEST(Outline, IsCutAtTheNearPlaneAndAtThePageBorders) {
   }
 }
 
+TEST(Outline, IsOnThePageWhereTheNearPlaneIsNearerThanRoundingTells) {
+  OneObject square(true);
+  square.addSquare({2, 0, 0}, 1);
+  OneObject both = square;
+  both.add({0, 0, 12}, {0, 0, 8}, {1, 1, 8});  // one side goes through the eye: it is seen edge on
+  View view = viewFromFront();
+  view.near = 1e-300;
+  EXPECT_EQ(both.outline(view), square.outline(view));
+}
+
 TEST(Outline, EndsAtTheFarPlane) {
   OneObject object(true);
   object.addSquare({0, 0, -95}, 5);

@@ -115,6 +115,21 @@ TEST(Polylines, ShorterThanTheToleranceAreLeftOut) {
   EXPECT_TRUE(joined({}).empty());
 }
 
+TEST(Polylines, PiecesThatLieOnOneBeforeAreTakenOut) {
+  DrawnPieces drawn(kTolerance);
+  std::vector<LinePiece> first{piece(kSquare, 0, 1), piece(kSquare, 1, 2, 0.25, 1.0)};
+  drawn.leaveNew(first);
+  EXPECT_EQ(first.size(), 2u);
+  // The same there and back, half of it, the rest of the other, and a neighbour.
+  std::vector<LinePiece> second{piece(kSquare, 0, 1), piece(kSquare, 1, 0), piece(kSquare, 0, 1, 0.0, 0.5),
+                                piece(kSquare, 1, 2, 0.0, 0.25), piece(kSquare, 1, 4)};
+  drawn.leaveNew(second);
+  ASSERT_EQ(second.size(), 3u);
+  EXPECT_EQ(second[0].to_share, 0.5);
+  EXPECT_EQ(second[1].to_share, 0.25);
+  EXPECT_EQ(second[2].line.b, 4u);
+}
+
 TEST(Polylines, SimplifiedLinesStayWithinTheTolerance) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed);

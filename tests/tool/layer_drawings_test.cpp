@@ -120,6 +120,24 @@ TEST(LayerDrawings, RefusesWhatMakesNoDrawing) {
   expectRefused(with({"--plot"}), "--svg");
   expectRefused(with({"--svg", svg, "--crease", "200"}), "--crease");
   expectRefused(with({"--svg", svg, "--no-creases", "--no-silhouettes", "--no-boundaries"}), "line");
+  expectRefused(with({"--svg", svg, "--crease", "nan"}), "--crease");
+  expectRefused(with({"--svg", svg, "--stroke-width", "nan"}), "--stroke-width");
+  expectRefused(with({"--crease", "20"}), "--svg");
+  expectRefused(with({"--no-creases"}), "--svg");
+  expectRefused(with({"--svg", ""}), "--svg");
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(LayerDrawings, NoTwoOutputsAreOneFile) {
+  const TemporaryFolder folder;
+  const std::string svg = folder.file("a.svg");
+  expectRefused(with({"--svg", svg, "--json", svg}), "--json");
+  expectRefused(
+      with({"--svg", svg, "--json",
+            folder.file("../") + std::filesystem::path(svg).parent_path().filename().string() + "/a.svg"}),
+      "too; name another");
+  const std::string png = folder.file("a.png");
+  expectRefused(with({"--image", png, "--motion-blur", "1", "--blurred", png}), "too; name another");
   EXPECT_EQ(folder.entries(), 0u);
 }
 

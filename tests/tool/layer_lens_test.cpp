@@ -122,6 +122,9 @@ TEST_F(LayerLens, BadUsageIsRefused) {
           "--aperture");
   refused({"--motion-blur", "1.5", "--blurred", file}, "--motion-blur");
   refused({"--motion-blur", "1", "--passes", "0", "--blurred", file}, "--passes");
+  refused({"--passes", "9"}, "--passes");
+  refused({"--motion-blur", "1", "--blur-layer", "1=even", "--blur-layer", "1=depth", "--blurred", file},
+          "named twice");
   refused({"--motion-blur", "1", "--blurred", folder_.file("x.jpg")}, ".png");
   refused({"--motion-blur", "1", "--blurred", file, "--compare", file}, "--compare");
   refused({"--motion-blur", "1", "--blurred", file, "--blur-layer", "3=soft"}, "3=soft");

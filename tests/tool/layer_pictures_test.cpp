@@ -1,6 +1,7 @@
 // sightline layers --image, --by-distance.
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -154,6 +155,29 @@ TEST_F(LayerPictures, APictureReplacesALayerWhereItsPartIs) {
   EXPECT_GT(image.rgba[2], image.rgba[0]);  // the sky above it, blue
 }
 
+TEST_F(LayerPictures, PixelsAreSquareWhateverThePathsSize) {
+  // The path's frames are as wide as high; a picture twice as wide has the same in its middle.
+  const auto drawn = [&](const char* name, const char* width) {
+    const Outcome outcome = runTool({"layers", "demo:toothpicks?n=20", "--frames", "0", "--height", "80",
+                                     "--width", width, "--image", folder_.file(name)});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return read(name);
+  };
+  const Image square = drawn("square.png", "80"), wide = drawn("wide.png", "160");
+  ASSERT_EQ(wide.width, 160u);
+  ASSERT_EQ(square.width, 80u);
+  std::size_t different = 0;
+  for (std::size_t y = 0; y < 80; ++y) {
+    for (std::size_t x = 0; x < 80; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const int a = square.rgba[4 * (y * 80 + x) + c], b = wide.rgba[4 * (y * 160 + x + 40) + c];
+        different += std::abs(a - b) > 8 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_LT(different, 60u);  // rounding at outlines
+}
+
 TEST_F(LayerPictures, TheTextTellsOfEachFrame) {
   const Outcome outcome = runTool(
       layersOf("demo:glass", {"--frames", "0:60:40", "--image", folder_.file("a.png"), "--peel", "never"}));
@@ -162,6 +186,7 @@ TEST_F(LayerPictures, TheTextTellsOfEachFrame) {
   EXPECT_NE(outcome.out.find("frame 40: "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("0 of them peeled"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("crossing 0"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no order among"), std::string::npos) << outcome.out;
 }
 
 TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
@@ -187,8 +212,28 @@ TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
   refused({"--image", png, "--peel", "always"}, "--peel");
   expectRefused({"layers", "demo:glass", "--image", png, "--width", "0"}, "--width");
   expectRefused({"layers", "demo:glass", "--frames", "0", "--image", png, "--width", "16384"}, "8192");
+  refused({"--image", png, "--without", ""}, "--without");
+  refused({"--image", png, "--replace", "1="}, "PART=FILE.png");
+  refused({"--image", ""}, "--image");
+  refused({"--peel", "never"}, "--image");
   refused({"--without", "1"}, "--image");
   refused({"--replace", "1=" + text}, "--image");
+  EXPECT_EQ(folder_.entries(), 1u);
+}
+
+TEST_F(LayerPictures, APartIsReplacedOnceAndNotLeftOutToo) {
+  const Image dot{.width = 1, .height = 1, .rgba = {255, 0, 0, 255}};
+  const std::string file = folder_.file("dot.png"), to = folder_.file("a.png");
+  ASSERT_TRUE(writePng(dot, file));
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& about) {
+    std::vector<std::string> all{"--frames", "0", "--replace", "1=" + file};
+    all.insert(all.end(), more.begin(), more.end());
+    expectRefused(layersOf("demo:glass", all), about);
+  };
+  refused({"--image", to, "--without", "1"}, "--without");
+  refused({"--image", to, "--replace", "1=" + file}, "two pictures");
+  refused({"--image", file}, "--replace");
+  EXPECT_EQ(read("dot.png"), dot);
   EXPECT_EQ(folder_.entries(), 1u);
 }
 

@@ -106,6 +106,10 @@ TEST(Layers, BadUsageIsRefused) {
   expectRefused({"layers", "demo:toothpicks", "--backdrop", "220"}, "--backdrop 220");
   expectRefused({"layers", "demo:toothpicks", "--overlay", "-1"}, "--overlay");
   expectRefused({"layers", "demo:toothpicks", "--frames", "9:3"}, "--frames");
+  expectRefused({"layers", "demo:toothpicks", "--backdrop", "3", "--overlay", "3"}, "--overlay 3");
+  expectRefused({"layers", "demo:toothpicks", "--backdrop", ""}, "--backdrop");
+  expectRefused({"layers", "demo:toothpicks", "--json", ""}, "--json");
+  expectRefused({"layers", ""}, "SCENE");
   expectRefused({"layers", "/nowhere/scene.glb"}, "/nowhere/scene.glb");
   expectRefused({"reproduce", "snyder-lengyel", "--scene", "demo:city"}, "leave them out");
   expectRefused({"reproduce", "snyder-lengyel", "--frames", "0:3"}, "leave them out");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "sightline/drawing/drawing.h"
@@ -55,14 +56,12 @@ class LayerDrawings : public FrameMaker {
 
   Result<Json> make(const SortedFrame& frame) override {
     const MovingScene& moving = input_.input.moving;
-    View view = frame.view;
-    view.aspect = static_cast<double>(input_.width) / static_cast<double>(input_.height);
     place(moving, frame.number);
     const std::vector<std::string>& names = moving.scene.object_names;
     Stopwatch watch;
-    const Drawing drawing = options_.plot
-                                ? draughtsman_->plot(posed_.view(), names, view, frame.order, settings_)
-                                : draughtsman_->paint(posed_.view(), names, view, frame.order, settings_);
+    const Drawing drawing =
+        options_.plot ? draughtsman_->plot(posed_.view(), names, frame.view, frame.order, settings_)
+                      : draughtsman_->paint(posed_.view(), names, frame.view, frame.order, settings_);
     Json json = count(drawing, watch.lap());
     if (const Status ok = write(drawing, frame.number, json); !ok) {
       return ok.error();
@@ -157,7 +156,12 @@ class LayerDrawings : public FrameMaker {
 
 Status checkOptions(const LayerDrawingOptions& options, const FrameMakerInput& input) {
   if (options.svg.empty() && options.pdf.empty()) {
-    return Error{"--plot is a form of drawings: say --svg FILE or --pdf FILE too"};
+    return Error{
+        "--plot, --crease, --stroke-width and --no-...: are of drawings; say --svg FILE or --pdf FILE too"};
+  }
+  // Ranges let them pass.
+  if (std::isnan(options.crease_deg) || std::isnan(options.stroke_width)) {
+    return Error{"--crease and --stroke-width: must be numbers"};
   }
   if (options.no_creases && options.no_silhouettes && options.no_boundaries) {
     return Error{"--no-creases --no-silhouettes --no-boundaries: no kind of line is left to draw"};
@@ -176,16 +180,21 @@ Status checkOptions(const LayerDrawingOptions& options, const FrameMakerInput& i
 }  // namespace
 
 void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options) {
-  command.add_option("--svg", options.svg, "a hidden-line drawing of each frame, objects as named groups");
-  command.add_option("--pdf", options.pdf, "the same as PDF, objects as layers");
+  command
+      .add_option("--svg", options.svg,
+                  "write a hidden-line drawing of each frame, objects as named groups, to this .svg file")
+      ->check(isNotEmpty());
+  command.add_option("--pdf", options.pdf, "the same as a .pdf file, objects as layers")->check(isNotEmpty());
   command.add_flag("--plot", options.plot,
                    "draw the visible pieces of lines alone, for plotters and CAD, instead of filled outlines "
                    "back to front");
-  command.add_option("--crease", options.crease_deg, "edges are drawn from this angle on, degrees")
+  command
+      .add_option("--crease", options.crease_deg,
+                  "edges between two faces are drawn from this angle of their normals on, degrees")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   command.add_flag("--no-creases", options.no_creases, "draw no edges inside of surfaces");
-  command.add_flag("--no-silhouettes", options.no_silhouettes, "draw no edges between front and back");
+  command.add_flag("--no-silhouettes", options.no_silhouettes, "draw no edges at which a surface turns away");
   command.add_flag("--no-boundaries", options.no_boundaries, "draw no borders of open surfaces");
   command
       .add_option("--stroke-width", options.stroke_width,
@@ -200,7 +209,7 @@ bool needAllArcs(const LayerDrawingOptions& options) {
 
 Result<std::unique_ptr<FrameMaker>> makeLayerDrawings(const LayerDrawingOptions& options,
                                                       const FrameMakerInput& input) {
-  if (options.svg.empty() && options.pdf.empty() && !options.plot) {
+  if (options == LayerDrawingOptions{}) {
     return std::unique_ptr<FrameMaker>();
   }
   if (const Status ok = checkOptions(options, input); !ok) {

@@ -15,6 +15,8 @@ struct LayerDrawingOptions {
   double crease_deg = 30.0;
   bool no_creases = false, no_silhouettes = false, no_boundaries = false;
   double stroke_width = 1.0;  // page units: pixels of the pictures, points in PDF
+
+  bool operator==(const LayerDrawingOptions&) const = default;
 };
 void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "tools/sightline/json_output.h"
 
@@ -23,6 +24,35 @@ Status checkFrameFile(const std::string& option, const std::string& target, cons
     return Error{fmt::format("{} {}: the file's name must end in {}", option, target, extension)};
   }
   return checkOutput(target, scene_file);
+}
+
+CLI::Validator isNotEmpty() {
+  return {[](std::string& word) { return std::string(word.empty() ? "is empty" : ""); }, ""};
+}
+
+Status checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+  std::vector<std::pair<std::filesystem::path, std::string>> taken;  // and by which option
+  std::error_code ignored;
+  for (const NamedFile& input : inputs) {
+    taken.emplace_back(
+        std::filesystem::weakly_canonical(std::filesystem::absolute(input.file, ignored), ignored),
+        input.option);
+  }
+  for (const NamedFile& output : outputs) {
+    if (output.file.empty() || output.file == "-") {
+      continue;
+    }
+    const std::filesystem::path path =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(output.file, ignored), ignored);
+    for (const auto& [other, option] : taken) {
+      if (!path.empty() && path == other) {
+        return Error{
+            fmt::format("{} {}: is the file of {} too; name another", output.option, output.file, option)};
+      }
+    }
+    taken.emplace_back(path, output.option);
+  }
+  return Success{};
 }
 
 }  // namespace sightline::tool

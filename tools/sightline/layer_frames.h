@@ -2,6 +2,7 @@
 
 // What `layers` hands on, frame by frame: the sorted layers, to whatever makes pictures or drawings of them.
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -17,7 +18,7 @@ namespace sightline::tool {
 // Valid during the call that it is given to.
 struct SortedFrame {
   std::uint32_t number = 0;  // in the walk
-  const View& view;
+  const View& view;          // with square pixels
   const LayerOrder& order;
   const FrameLayers& layers;
   std::span<const Mat4> scene_from_stored;  // where the parts are, one a part; none: as stored
@@ -52,5 +53,14 @@ std::string frameFile(const std::string& target, std::uint32_t frame, bool sever
 // As checkOutput, and that the name ends in the extension (".png").
 Status checkFrameFile(const std::string& option, const std::string& target, const std::string& extension,
                       const std::string& scene_file);
+
+// Refuses an empty word, as of a variable that a script has not set.
+CLI::Validator isNotEmpty();
+
+struct NamedFile {
+  std::string option, file;  // file empty or "-": none
+};
+// That no two outputs are the same file, by whatever names, and none is one of the inputs.
+Status checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
 }  // namespace sightline::tool

@@ -78,6 +78,11 @@ Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions
   if (!scene) {
     return scene.error();
   }
+  for (const std::uint32_t part : places.overlays) {
+    if (std::find(places.backdrops.begin(), places.backdrops.end(), part) != places.backdrops.end()) {
+      return Error{fmt::format("--overlay {}: the part is in --backdrop too", part)};
+    }
+  }
   if (const Status ok = setPlaces(*scene, places.backdrops, PartSettings::Place::kBackdrop, "--backdrop");
       !ok) {
     return ok.error();

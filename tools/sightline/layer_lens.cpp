@@ -48,9 +48,8 @@ class LayerLens : public FrameMaker {
 
   Result<Json> make(const SortedFrame& frame) override {
     renderer_.setTransforms(frame.scene_from_stored);
-    const View view = squarePixels(frame.view);
     setMotion(frame);
-    const Result<LensStats> stats = lens_.draw(view, frame.layers, settings_, picture_);
+    const Result<LensStats> stats = lens_.draw(frame.view, frame.layers, settings_, picture_);
     if (!stats) {
       return stats.error();
     }
@@ -65,7 +64,7 @@ class LayerLens : public FrameMaker {
       return ok.error();
     }
     if (!options_.compare.empty()) {
-      const Result<Json> compared = compare(view, frame, line);
+      const Result<Json> compared = compare(frame, line);
       if (!compared) {
         return compared.error();
       }
@@ -82,12 +81,6 @@ class LayerLens : public FrameMaker {
   }
 
  private:
-  // Discs are round where pixels are square.
-  View squarePixels(View view) const {
-    view.aspect = static_cast<double>(input_.width) / input_.height;
-    return view;
-  }
-
   // To the next frame; of the last one to the one before, which is the same line.
   void setMotion(const SortedFrame& frame) {
     const Walk& walk = input_.input.walk;
@@ -98,7 +91,9 @@ class LayerLens : public FrameMaker {
     }
     const std::uint32_t other = frame.number + 1 < frames ? frame.number + 1 : frame.number - 1;
     placements(input_.input.moving, other, other_stored_);
-    settings_.motion = FrameMotion{.later = squarePixels(walk.view(other, input_.input.moving.scene)),
+    View later = walk.view(other, input_.input.moving.scene);
+    later.aspect = frame.view.aspect;
+    settings_.motion = FrameMotion{.later = later,
                                    .stored = frame.scene_from_stored,
                                    .later_stored = other_stored_,
                                    .shutter = options_.motion_blur};
@@ -129,11 +124,11 @@ class LayerLens : public FrameMaker {
   }
 
   // With the reference; its picture beside ours, and where they differ.
-  Result<Json> compare(const View& view, const SortedFrame& frame, std::string& line) {
+  Result<Json> compare(const SortedFrame& frame, std::string& line) {
     LensSettings reference = settings_;
     reference.method = LensMethod::kAccumulation;
     reference.passes = options_.reference_passes;
-    if (const Result<LensStats> drawn = lens_.draw(view, frame.layers, reference, reference_); !drawn) {
+    if (const Result<LensStats> drawn = lens_.draw(frame.view, frame.layers, reference, reference_); !drawn) {
       return drawn.error();
     }
     const PictureDifference difference = measureDifference(picture_, reference_, kTolerance);
@@ -193,9 +188,6 @@ Status checkFiles(const LayerLensOptions& options, const FrameMakerInput& input)
       return ok;
     }
   }
-  if (options.blurred == options.compare) {
-    return Error{fmt::format("--compare {}: is the file of --blurred too; name another", options.compare)};
-  }
   return Success{};
 }
 
@@ -247,6 +239,10 @@ Result<LensSettings> settingsOf(const LayerLensOptions& options, const FrameMake
     if (!part) {
       return part.error();
     }
+    const auto is_same = [&](const PartBlur& other) { return other.part == part->part; };
+    if (std::any_of(settings.parts.begin(), settings.parts.end(), is_same)) {
+      return Error{fmt::format("--blur-layer {}: the part is named twice", text)};
+    }
     settings.parts.push_back(*part);
   }
   return settings;
@@ -274,12 +270,14 @@ void addLayerLensOptions(CLI::App& command, LayerLensOptions& options) {
   command.add_option("--blur-layer", options.blur_layer,
                      "PART=even|depth|accumulate: how the layer of this part is blurred (else chosen by its "
                      "depth)");
-  command.add_option("--blurred", options.blurred,
-                     "write the blurred picture of each frame to this .png file");
-  command.add_option(
-      "--compare", options.compare,
-      "write the blurred picture, beside it the accumulation of whole pictures, and where they "
-      "differ, to this .png file");
+  command
+      .add_option("--blurred", options.blurred, "write the blurred picture of each frame to this .png file")
+      ->check(isNotEmpty());
+  command
+      .add_option("--compare", options.compare,
+                  "write the blurred picture, beside it the accumulation of whole pictures, and where they "
+                  "differ, to this .png file")
+      ->check(isNotEmpty());
   command.add_option("--reference-passes", options.reference_passes, "of the accumulation of --compare")
       ->capture_default_str();
 }
@@ -287,8 +285,10 @@ void addLayerLensOptions(CLI::App& command, LayerLensOptions& options) {
 Result<std::unique_ptr<FrameMaker>> makeLayerLens(const LayerLensOptions& options,
                                                   const FrameMakerInput& input) {
   if (options.depth_of_field.empty() && options.motion_blur == 0.0) {
-    if (!options.blurred.empty() || !options.compare.empty() || !options.blur_layer.empty()) {
-      return Error{"--blurred, --compare and --blur-layer: go with --depth-of-field or --motion-blur"};
+    if (options != LayerLensOptions{}) {
+      return Error{
+          "--blurred, --compare, --blur-layer, --passes and --reference-passes: go with --depth-of-field or "
+          "--motion-blur"};
     }
     return std::unique_ptr<FrameMaker>();
   }

@@ -21,6 +21,8 @@ struct LayerLensOptions {
   std::uint32_t reference_passes = 64;  // of what --compare compares with
   std::vector<std::string> blur_layer;  // PART=even|depth|accumulate
   std::string blurred, compare;         // files; empty: none
+
+  bool operator==(const LayerLensOptions&) const = default;
 };
 void addLayerLensOptions(CLI::App& command, LayerLensOptions& options);
 

@@ -226,7 +226,7 @@ class LayerPictures : public FrameMaker {
       for (std::uint32_t i = frame.layers.first_layer[g]; i < frame.layers.first_layer[g + 1]; ++i) {
         if (isDrawn(LayerId(i))) {
           for (const PartId part : frame.layers.partsOf(LayerId(i))) {
-            parts.push_back({{"part", part.value}, {"name", nameOf(part)}});
+            parts.push_back({{"part", part.value}, {"name", nameOf(part)}, {"see_through", isBlended(part)}});
             any_blended = any_blended || isBlended(part);
           }
         }
@@ -256,18 +256,23 @@ class LayerPictures : public FrameMaker {
     return parts;
   }
 
-  // The first parts of each group; JSON has them all.
+  // The first see-through parts of each group, as "12 pane"; JSON has all parts.
   static std::string unorderedText(const Json& groups) {
     constexpr std::size_t kMostNames = 8;
     std::string text;
     for (const Json& group : groups) {
       std::vector<std::string> names;
-      for (std::size_t i = 0; i < std::min(group.size(), kMostNames); ++i) {
-        names.push_back(group[i]["name"].get<std::string>());
+      std::size_t see_through = 0;
+      for (const Json& part : group) {
+        if (part["see_through"].get<bool>() && ++see_through <= kMostNames) {
+          names.push_back(
+              fmt::format("{} {}", part["part"].get<std::uint32_t>(), part["name"].get<std::string>()));
+        }
       }
-      text += fmt::format("{} {}", text.empty() ? "; no order among" : " |", fmt::join(names, ", "));
-      if (group.size() > kMostNames) {
-        text += fmt::format(" and {} more", group.size() - kMostNames);
+      text += fmt::format("{} {} parts, see-through of them: {}", text.empty() ? "; no order among" : " |",
+                          group.size(), fmt::join(names, ", "));
+      if (see_through > kMostNames) {
+        text += fmt::format(" and {} more", see_through - kMostNames);
       }
     }
     return text;
@@ -295,7 +300,7 @@ Status checkPart(const std::string& option, std::uint32_t part, std::size_t part
 Result<ReplacedPart> readReplacement(const std::string& text, std::size_t parts) {
   const std::size_t equals = text.find('=');
   const std::optional<std::uint32_t> part = parseWhole(text.substr(0, equals));
-  if (!part || equals == std::string::npos) {
+  if (!part || equals == std::string::npos || equals + 1 == text.size()) {
     return Error{fmt::format("--replace {}: is not of the form PART=FILE.png", text)};
   }
   if (const Status ok = checkPart("--replace", *part, parts); !ok) {
@@ -308,6 +313,17 @@ Result<ReplacedPart> readReplacement(const std::string& text, std::size_t parts)
   return ReplacedPart{*part, std::move(*file), {}};
 }
 
+Status checkOnce(const ReplacedPart& part, const std::vector<std::uint32_t>& without,
+                 const std::vector<ReplacedPart>& before) {
+  if (std::find(without.begin(), without.end(), part.part) != without.end()) {
+    return Error{fmt::format("--replace {}: the part is left out by --without", part.part)};
+  }
+  const auto is_same = [&](const ReplacedPart& other) { return other.part == part.part; };
+  return std::none_of(before.begin(), before.end(), is_same)
+             ? Status(Success{})
+             : Error{fmt::format("--replace {}: the part has two pictures", part.part)};
+}
+
 Status checkOptions(const LayerPictureOptions& options, const FrameMakerInput& input) {
   for (const auto& [option, file] :
        {std::pair("--image", options.image), {"--by-distance", options.by_distance}}) {
@@ -317,9 +333,6 @@ Status checkOptions(const LayerPictureOptions& options, const FrameMakerInput& i
     if (const Status ok = checkFrameFile(option, file, ".png", input.scene_file); !ok) {
       return ok;
     }
-  }
-  if (options.image == options.by_distance) {
-    return Error{fmt::format("--by-distance {}: is the file of --image too; name another", options.image)};
   }
   for (const std::uint32_t part : options.without) {
     if (const Status ok = checkPart("--without", part, input.input.moving.parts.size()); !ok) {
@@ -332,14 +345,17 @@ Status checkOptions(const LayerPictureOptions& options, const FrameMakerInput& i
 }  // namespace
 
 void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
-  command.add_option(
-      "--image", options.image,
-      "write a picture of each frame, composited from layers, to this .png file; of several frames, the "
-      "frame's number goes before .png");
+  command
+      .add_option(
+          "--image", options.image,
+          "write a picture of each frame, composited from layers, to this .png file; of several frames, the "
+          "frame's number goes before .png")
+      ->check(isNotEmpty());
   CLI::Option* by_distance = command.add_option(
       "--by-distance", options.by_distance,
       "write the picture, beside it the one with see-through parts ordered by distances of their centres, "
       "and where they differ, to this .png file");
+  by_distance->check(isNotEmpty());
   command
       .add_option("--peel", options.peel,
                   "depth peeling of see-through parts whose order is not known (else they are drawn by "
@@ -347,6 +363,7 @@ void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
       ->check(CLI::IsMember(textsOf(kPeels)))
       ->capture_default_str();
   command.add_option("--without", options.without, "leave out the layers of these parts, by number")
+      ->check(isNotEmpty())
       ->delimiter(',')
       ->allow_extra_args(false);
   command
@@ -360,8 +377,8 @@ void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
 Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions& options,
                                                       const FrameMakerInput& input) {
   if (options.image.empty() && options.by_distance.empty()) {
-    if (!options.without.empty() || !options.replace.empty()) {
-      return Error{"--without and --replace change pictures; give --image too"};
+    if (options != LayerPictureOptions{}) {
+      return Error{"--without, --replace and --peel change pictures; give --image too"};
     }
     return std::unique_ptr<FrameMaker>();
   }
@@ -373,6 +390,9 @@ Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions&
     Result<ReplacedPart> part = readReplacement(text, input.input.moving.parts.size());
     if (!part) {
       return part.error();
+    }
+    if (const Status ok = checkOnce(*part, options.without, replaced); !ok) {
+      return ok.error();
     }
     replaced.push_back(std::move(*part));
   }

@@ -17,6 +17,8 @@ struct LayerPictureOptions {
   std::string peel = "where-needed";
   std::vector<std::uint32_t> without;  // parts
   std::vector<std::string> replace;    // PART=FILE.png
+
+  bool operator==(const LayerPictureOptions&) const = default;
 };
 void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options);
 

@@ -149,6 +149,10 @@ Result<FrameMakers> makersOf(const LayersOptions& options, const FrameMakerInput
   return makers;
 }
 
+double aspectOf(const PictureOptions& size) {
+  return static_cast<double>(size.width) / static_cast<double>(size.height);
+}
+
 // Sorts the frames of a walk one after another.
 class WalkSorter {
  public:
@@ -156,10 +160,12 @@ class WalkSorter {
       : options_(options),
         input_(input),
         makers_(makers),
+        aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
         sorter_(makeSorter(input.moving, settingsOf(options))) {}
 
   Status sort(std::uint32_t frame) {
-    const View view = input_.walk.view(frame, input_.moving.scene);
+    View view = input_.walk.view(frame, input_.moving.scene);
+    view.aspect = aspect_;
     pose(input_.moving, frame, poses_, sorter_);
     Stopwatch watch;
     const LayerOrder& order = sorter_.update(view);
@@ -196,6 +202,7 @@ class WalkSorter {
   const LayersOptions& options_;
   const LayerInput& input_;
   const FrameMakers& makers_;
+  double aspect_;  // of the pictures
   LayerSorter sorter_;
   LayerMerger merger_;
   CompositingCompiler compiler_;
@@ -206,12 +213,13 @@ class WalkSorter {
 
 Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers) {
   WalkSorter sorter(options, input, makers);
-  ProgressBar progress("sorting");
-  for (const std::uint32_t frame : input.walk.frames) {
-    if (const Status ok = sorter.sort(frame); !ok) {
+  const std::vector<std::uint32_t>& frames = input.walk.frames;
+  ProgressBar progress(makers.empty() ? "sorting" : "sorting and drawing");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (const Status ok = sorter.sort(frames[i]); !ok) {
       return ok.error();
     }
-    progress.update(static_cast<double>(frame + 1) / static_cast<double>(input.walk.frames.back() + 1));
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
   }
   const Json head = {{"scene", sceneJson(input.moving.scene)},
                      {"parts", input.moving.parts.size()},
@@ -229,7 +237,25 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   return kOk;
 }
 
+Status checkFilesOf(const LayersOptions& options) {
+  std::vector<NamedFile> inputs;
+  for (const std::string& replace : options.pictures.replace) {
+    inputs.push_back({"--replace", replace.substr(std::min(replace.find('='), replace.size() - 1) + 1)});
+  }
+  return checkApart({{"--json", options.common.json},
+                     {"--image", options.pictures.image},
+                     {"--by-distance", options.pictures.by_distance},
+                     {"--blurred", options.lens.blurred},
+                     {"--compare", options.lens.compare},
+                     {"--svg", options.drawings.svg},
+                     {"--pdf", options.drawings.pdf}},
+                    inputs);
+}
+
 Result<ExitCode> runLayers(const LayersOptions& options) {
+  if (const Status ok = checkFilesOf(options); !ok) {
+    return ok.error();
+  }
   const Result<LayerInput> input = loadLayerInput(options.common, options.path, options.places);
   if (!input) {
     return input.error();
@@ -254,6 +280,9 @@ void addLayers(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<LayersOptions>();
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
+  for (const char* option : {"SCENE", "--json"}) {
+    command->get_option(option)->check(isNotEmpty());
+  }
   const auto addChoice = [&](const char* name, std::string& value, const std::vector<std::string>& values,
                              const char* help) {
     command->add_option(name, value, help)->check(CLI::IsMember(values))->capture_default_str();
@@ -270,8 +299,10 @@ void addLayers(CLI::App& app, Command& chosen) {
             "let near groups move forward in the order (camera extents only)");
   addChoice("--exact", options->exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
   command->add_option("--backdrop", options->places.backdrops, "parts behind all others, by number")
+      ->check(isNotEmpty())
       ->delimiter(',');
   command->add_option("--overlay", options->places.overlays, "parts before all others, by number")
+      ->check(isNotEmpty())
       ->delimiter(',');
   addLayerPictureOptions(*command, options->pictures);
   addLayerLensOptions(*command, options->lens);
@@ -283,8 +314,8 @@ void addLayers(CLI::App& app, Command& chosen) {
   command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
   command->footer(
       "A part is an object of the scene, taken as its convex hull. Groups are parts that occlude each other "
-      "in "
-      "a circle; layers, what must be drawn together within them.\n"
+      "in a circle; layers, what must be drawn together within them. Of several frames each "
+      "picture or drawing has the frame's number before its ending.\n"
       "Examples:\n"
       "  sightline layers demo:toothpicks --json order.json\n"
       "  sightline layers \"demo:toothpicks?n=1600&scaling=ud\" --sort incremental\n"
@@ -293,6 +324,10 @@ void addLayers(CLI::App& app, Command& chosen) {
       "  sightline layers demo:canyon --frames 0:250:50 --width 640 --height 360 --samples 4 --image "
       "canyon.png\n"
       "  sightline layers demo:glass --frames 100 --image part.png --without 12,13 --replace 3=poster.png\n"
+      "  sightline layers demo:toothpicks --frames 100 --depth-of-field layers --focus 3 --aperture 0.06 "
+      "--blurred out.png\n"
+      "  sightline layers demo:city --frames 0 --svg city.svg --pdf city.pdf\n"
+      "  sightline layers demo:city --frames 0 --plot --svg plot.svg\n"
       "  sightline layers model.glb --path walk.json --arcs all --backdrop 0");
   command->callback([options, &chosen] { chosen = [options] { return runLayers(*options); }; });
 }

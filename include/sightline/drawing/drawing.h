@@ -70,7 +70,8 @@ class Draughtsman {
 
   // The visible pieces of all lines, nothing else: for plotters and CAD. Each line is tested against its
   // object and those that may occlude it: order.arcs, which must be of all pairs (LayerSettings::all_arcs).
-  // Each object is a group of its own.
+  // Each object is a group of its own. What several objects draw at the same place, from end to end, as walls
+  // that share an edge do, only the first one has: a pen goes there once.
   Drawing plot(const SceneView& scene, std::span<const std::string> names, const View& view,
                const LayerOrder& order, const DrawingSettings& settings);
 
