@@ -95,7 +95,7 @@ Status LayerRenderer::Impl::prepare(const SceneView& scene, const LayerRendererO
   Result<LayerPrograms> stored_programs = makeLayerPrograms(shaders::kSceneVertex, new_options.samples);
   Result<LayerPrograms> moved_programs = makeLayerPrograms(shaders::kMovedSceneVertex, new_options.samples);
   Result<SkyProgram> new_sky = makeSkyProgram(shaders::kLinearSkyFragment);
-  Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene);
+  Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene, new_options.tints);
   Result<ObjectPlaces> new_places = ObjectPlaces::create(static_cast<std::uint32_t>(scene.objects.size()));
   for (const Error* error :
        {stored_programs ? nullptr : &stored_programs.error(),

@@ -30,15 +30,19 @@ Pass passOf(const Material& material) {
   return Pass::kOpaque;
 }
 
-// Square root of the linear colour, made a little lighter or darker from object to object.
-std::array<std::uint8_t, 4> colorOf(const Material& material, std::uint32_t object) {
+// A little above or below 1.
+float tintOf(std::uint32_t object) {
   const std::uint32_t hash = (object * 2654435761u) >> 16;
-  const float shade = 0.88f + 0.24f * static_cast<float>(hash & 0xffu) / 255.0f;
+  return 0.88f + 0.24f * static_cast<float>(hash & 0xffu) / 255.0f;
+}
+
+// Square root of the linear colour, made lighter or darker by the tint.
+std::array<std::uint8_t, 4> colorOf(const Material& material, float tint) {
   std::array<std::uint8_t, 4> color{};
   for (std::size_t i = 0; i < 4; ++i) {
     const float linear = material.base_color[i];
     const float value =
-        i < 3 ? std::sqrt(std::clamp(linear * shade, 0.0f, 1.0f)) : std::clamp(linear, 0.0f, 1.0f);
+        i < 3 ? std::sqrt(std::clamp(linear * tint, 0.0f, 1.0f)) : std::clamp(linear, 0.0f, 1.0f);
     color[i] = static_cast<std::uint8_t>(std::isfinite(value) ? value * 255.0f + 0.5f : 255.0f);
   }
   return color;
@@ -152,7 +156,7 @@ void RangeList::draw() const {
   }
 }
 
-Result<SceneBuffers> SceneBuffers::create(const SceneView& scene) {
+Result<SceneBuffers> SceneBuffers::create(const SceneView& scene, bool tints) {
   if (Status fits = checkSize(scene); !fits) {
     return fits.error();
   }
@@ -171,7 +175,7 @@ Result<SceneBuffers> SceneBuffers::create(const SceneView& scene) {
       b.ranges_[i] = {static_cast<std::uint32_t>(indices.size()), scene.objects[i].index_count,
                       passOf(material), material.double_sided};
       builder.add(i, indices);
-      colors[i] = colorOf(material, i);
+      colors[i] = colorOf(material, tints ? tintOf(i) : 1.0f);
     }
   }
   b.index_count_ = static_cast<std::uint32_t>(indices.size());

@@ -45,8 +45,9 @@ class RangeList {
 
 class SceneBuffers {
  public:
-  // Precondition of all functions: the context is current.
-  static Result<SceneBuffers> create(const SceneView& scene);
+  // Precondition of all functions: the context is current. tints: each object is a little lighter or darker
+  // than its material.
+  static Result<SceneBuffers> create(const SceneView& scene, bool tints = true);
 
   struct Drawn {
     std::uint64_t triangles = 0;

@@ -193,6 +193,17 @@ TEST_F(LayerCompositorTest, OnlyWhereSurfacesLieInTheSamePlaceDoesAnOverlappingS
   }
 }
 
+TEST_F(LayerCompositorTest, WithoutTintsAnOverlappingSplitIsThePictureOfAllAtOnce) {
+  Studio studio(makeCanyon({.grid = 5}), {.width = 160, .height = 90, .tints = false});
+  for (const std::uint32_t frame : {0u, 60u, 170u}) {
+    studio.goTo(frame);
+    const PictureDifference difference = measureDifference(studio.composite(), studio.atOnce());
+    std::printf("XX %u %g %g %g %g\n", frame, difference.mean, difference.rms, difference.largest,
+                difference.share_beyond);
+    EXPECT_LE(difference.largest, kRounding) << frame;
+  }
+}
+
 TEST_F(LayerCompositorTest, LayersOfGlassAreThePictureOfAllPeeledAtOnce) {
   Studio studio(glass());
   for (const std::uint32_t frame : {0u, 60u, 110u, 160u, 239u}) {

@@ -98,6 +98,19 @@ TEST_F(LayerRendererTest, IdsComeInAnyOrderAndCountOnce) {
   EXPECT_EQ(image.pixels, drawn(layers, testView(), allOf(maker.scene)).pixels);
 }
 
+TEST_F(LayerRendererTest, WithoutTintsObjectsOfOneMaterialAreOneColour) {
+  SceneMaker maker;
+  const ObjectId first = maker.wall(0.0, 1.0, kRed), alike = maker.wall(0.0, 1.0, kRed),
+                 green = maker.wall(0.0, 1.0, kGreen);
+  for (const bool tints : {false, true}) {
+    LayerRenderer layers = layersOf(maker.scene, {.width = kWidth, .height = kHeight, .tints = tints});
+    const LayerImage one = drawn(layers, testView(), {&first, 1});
+    const LayerImage other = drawn(layers, testView(), {&alike, 1});
+    EXPECT_EQ(one.pixels != other.pixels, tints);
+    EXPECT_GT(largestDifference(one, drawn(layers, testView(), {&green, 1})), 0.1);
+  }
+}
+
 TEST_F(LayerRendererTest, NothingIsTransparentAndWithoutDepth) {
   SceneMaker maker;
   maker.wall(0.0, 1.0, kRed);

@@ -43,10 +43,7 @@ class LayerDrawings : public FrameMaker {
  public:
   LayerDrawings(const LayerDrawingOptions& options, const FrameMakerInput& input)
       : options_(options), input_(input) {
-    settings_.features = {.creases = !options.no_creases,
-                          .silhouettes = !options.no_silhouettes,
-                          .boundaries = !options.no_boundaries,
-                          .crease_deg = options.crease_deg};
+    settings_.features = featuresOf(options);
     settings_.page_height = static_cast<double>(input.height);
     settings_.overlays = partsAt(input.input.moving, PartSettings::Place::kOverlay);
     settings_.backdrops = partsAt(input.input.moving, PartSettings::Place::kBackdrop);
@@ -154,17 +151,10 @@ class LayerDrawings : public FrameMaker {
   Totals totals_;
 };
 
-Status checkOptions(const LayerDrawingOptions& options, const FrameMakerInput& input) {
+Status checkFiles(const LayerDrawingOptions& options, const FrameMakerInput& input) {
   if (options.svg.empty() && options.pdf.empty()) {
     return Error{
         "--plot, --crease, --stroke-width and --no-...: are of drawings; say --svg FILE or --pdf FILE too"};
-  }
-  // Ranges let them pass.
-  if (std::isnan(options.crease_deg) || std::isnan(options.stroke_width)) {
-    return Error{"--crease and --stroke-width: must be numbers"};
-  }
-  if (options.no_creases && options.no_silhouettes && options.no_boundaries) {
-    return Error{"--no-creases --no-silhouettes --no-boundaries: no kind of line is left to draw"};
   }
   if (!options.svg.empty()) {
     if (Status ok = checkFrameFile("--svg", options.svg, ".svg", input.scene_file); !ok) {
@@ -185,6 +175,11 @@ void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options) {
                   "write a hidden-line drawing of each frame, objects as named groups, to this .svg file")
       ->check(isNotEmpty());
   command.add_option("--pdf", options.pdf, "the same as a .pdf file, objects as layers")->check(isNotEmpty());
+  command
+      .add_option("--line-picture", options.line_picture,
+                  "the same lines in pixels, hidden by a depth buffer, to this .png file: to compare drawings "
+                  "with")
+      ->check(isNotEmpty());
   command.add_flag("--plot", options.plot,
                    "draw the visible pieces of lines alone, for plotters and CAD, instead of filled outlines "
                    "back to front");
@@ -203,17 +198,39 @@ void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options) {
       ->capture_default_str();
 }
 
+FeatureSettings featuresOf(const LayerDrawingOptions& options) {
+  return {.creases = !options.no_creases,
+          .silhouettes = !options.no_silhouettes,
+          .boundaries = !options.no_boundaries,
+          .crease_deg = options.crease_deg};
+}
+
+Status checkLines(const LayerDrawingOptions& options) {
+  // Ranges let them pass.
+  if (std::isnan(options.crease_deg) || std::isnan(options.stroke_width)) {
+    return Error{"--crease and --stroke-width: must be numbers"};
+  }
+  if (options.no_creases && options.no_silhouettes && options.no_boundaries) {
+    return Error{"--no-creases --no-silhouettes --no-boundaries: no kind of line is left to draw"};
+  }
+  return Success{};
+}
+
 bool needAllArcs(const LayerDrawingOptions& options) {
   return options.plot;
 }
 
 Result<std::unique_ptr<FrameMaker>> makeLayerDrawings(const LayerDrawingOptions& options,
                                                       const FrameMakerInput& input) {
-  if (options == LayerDrawingOptions{}) {
+  const bool line_picture_alone =
+      !options.line_picture.empty() && options.svg.empty() && options.pdf.empty() && !options.plot;
+  if (options == LayerDrawingOptions{} || line_picture_alone) {
     return std::unique_ptr<FrameMaker>();
   }
-  if (const Status ok = checkOptions(options, input); !ok) {
-    return ok.error();
+  for (const Status& ok : {checkLines(options), checkFiles(options, input)}) {
+    if (!ok) {
+      return ok.error();
+    }
   }
   return std::unique_ptr<FrameMaker>(std::make_unique<LayerDrawings>(options, input));
 }

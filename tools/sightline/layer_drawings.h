@@ -5,12 +5,13 @@
 #include <memory>
 #include <string>
 
+#include "sightline/drawing/feature_edges.h"
 #include "tools/sightline/layer_frames.h"
 
 namespace sightline::tool {
 
 struct LayerDrawingOptions {
-  std::string svg, pdf;  // files; empty: none
+  std::string svg, pdf, line_picture;  // files; empty: none
   bool plot = false;
   double crease_deg = 30.0;
   bool no_creases = false, no_silhouettes = false, no_boundaries = false;
@@ -19,6 +20,10 @@ struct LayerDrawingOptions {
   bool operator==(const LayerDrawingOptions&) const = default;
 };
 void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options);
+
+FeatureSettings featuresOf(const LayerDrawingOptions& options);
+// That numbers are numbers and some kind of line is to be drawn.
+Status checkLines(const LayerDrawingOptions& options);
 
 // Whether the sorter must find the arcs of all pairs (LayerSettings::all_arcs).
 bool needAllArcs(const LayerDrawingOptions& options);

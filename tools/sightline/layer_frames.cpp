@@ -9,6 +9,12 @@
 
 namespace sightline::tool {
 
+Result<LayerRenderer> makeRenderer(const FrameMakerInput& input) {
+  return LayerRenderer::create(
+      input.input.moving.scene.view(),
+      {.width = input.width, .height = input.height, .samples = input.samples, .tints = input.tints});
+}
+
 std::string frameFile(const std::string& target, std::uint32_t frame, bool several_frames) {
   if (!several_frames) {
     return target;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sightline/layers/compositing.h"
+#include "sightline/render/layer_renderer.h"
 #include "tools/sightline/layer_input.h"
 #include "tools/sightline/options.h"
 
@@ -30,6 +31,7 @@ struct FrameMakerInput {
   std::string scene_file;       // as the user named it: must not be written over
   std::uint32_t width, height;  // of the pictures, pixels
   std::uint32_t samples = 1;    // a side of each pixel: 1, 2 or 4
+  bool tints = true;            // see LayerRendererOptions
   CompositingForm form = CompositingForm::kCheapest;
   bool several_frames = false;  // see frameFile
 };
@@ -46,6 +48,9 @@ class FrameMaker {
   // After the last frame: a few lines on standard output, of what was measured.
   virtual void print() const = 0;
 };
+
+// Of the pictures that the input asks for.
+Result<LayerRenderer> makeRenderer(const FrameMakerInput& input);
 
 // Where a frame's file goes: `target` itself, or, of several frames, with the number before the extension:
 // "dir/out_0012.png".

@@ -299,9 +299,7 @@ Result<std::unique_ptr<FrameMaker>> makeLayerLens(const LayerLensOptions& option
   if (const Status ok = checkFiles(options, input); !ok) {
     return ok.error();
   }
-  Result<LayerRenderer> renderer =
-      LayerRenderer::create(input.input.moving.scene.view(),
-                            {.width = input.width, .height = input.height, .samples = input.samples});
+  Result<LayerRenderer> renderer = makeRenderer(input);
   if (!renderer) {
     return renderer.error();
   }

@@ -396,9 +396,7 @@ Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions&
     }
     replaced.push_back(std::move(*part));
   }
-  Result<LayerRenderer> renderer =
-      LayerRenderer::create(input.input.moving.scene.view(),
-                            {.width = input.width, .height = input.height, .samples = input.samples});
+  Result<LayerRenderer> renderer = makeRenderer(input);
   if (!renderer) {
     return renderer.error();
   }

@@ -11,6 +11,7 @@
 #include "tools/sightline/layer_drawings.h"
 #include "tools/sightline/layer_frames.h"
 #include "tools/sightline/layer_lens.h"
+#include "tools/sightline/layer_line_picture.h"
 #include "tools/sightline/layer_pictures.h"
 #include "tools/sightline/layer_totals.h"
 #include "tools/sightline/names.h"
@@ -25,7 +26,7 @@ struct LayersOptions {
   PathOptions path;
   LayerPlaces places;
   std::string sort = "depth-first", search = "automatic", extents = "camera", arcs = "groups",
-              expression = "cheapest", conditioning = "on", exact = "on";
+              expression = "cheapest", conditioning = "on", exact = "on", tints = "on";
   bool no_times = false;
   PictureOptions size;
   std::uint32_t samples = 1;
@@ -135,9 +136,9 @@ void print(const LayerTotals& totals, std::size_t parts) {
 // Everything that is made of sorted frames besides JSON.
 Result<FrameMakers> makersOf(const LayersOptions& options, const FrameMakerInput& input) {
   FrameMakers makers;
-  Result<std::unique_ptr<FrameMaker>> made[] = {makeLayerPictures(options.pictures, input),
-                                                makeLayerLens(options.lens, input),
-                                                makeLayerDrawings(options.drawings, input)};
+  Result<std::unique_ptr<FrameMaker>> made[] = {
+      makeLayerPictures(options.pictures, input), makeLayerLens(options.lens, input),
+      makeLayerDrawings(options.drawings, input), makeLinePicture(options.drawings, input)};
   for (Result<std::unique_ptr<FrameMaker>>& maker : made) {
     if (!maker) {
       return maker.error();
@@ -266,6 +267,7 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .width = size.width,
                                   .height = size.height,
                                   .samples = options.samples,
+                                  .tints = valueOf(kSwitch, options.tints),
                                   .form = valueOf(kCompositingForms, options.expression),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
@@ -311,6 +313,10 @@ void addLayers(CLI::App& app, Command& chosen) {
   command->add_option("--samples", options->samples, "a side of each pixel of the pictures: 1, 2 or 4")
       ->check(CLI::IsMember({1u, 2u, 4u}))
       ->capture_default_str();
+  addChoice(
+      "--tints", options->tints, textsOf(kSwitch),
+      "pictures: objects of one material differ a little in lightness; off: where objects overlap in one "
+      "surface, it does not matter which of them is drawn");
   command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
   command->footer(
       "A part is an object of the scene, taken as its convex hull. Groups are parts that occlude each other "

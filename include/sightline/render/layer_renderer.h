@@ -25,6 +25,9 @@ struct LayerRendererOptions {
   // A side of each pixel: 1, 2 or 4. Colours are averaged, premultiplied and linear; the depth is that of the
   // nearest sample. Holes of alpha-tested objects are whole pixels.
   std::uint32_t samples = 1;
+  // Objects of one material differ a little in lightness, as in Renderer's pictures. false: the materials'
+  // colours alone, so that a surface that several objects share looks alike, whichever of them is drawn.
+  bool tints = true;
 };
 
 // A point of a thin lens. The picture is drawn from there, sheared so that what lies at the focus distance
