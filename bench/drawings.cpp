@@ -42,6 +42,7 @@ using namespace sightline;
 using namespace sightline::bench;
 
 constexpr int kHeight = 720;
+constexpr float kDepthRange = 1000.0f;  // what gl2ps makes of OpenGL's 0 to 1
 constexpr rlim_t kMostMemory = rlim_t{8} << 30;
 
 struct Limits {
@@ -115,7 +116,7 @@ Measured measureOurs(const Scene& scene, const View& view, bool plot) {
   return result;
 }
 
-// What gl2ps is given: in pixels from the lower left corner, depth from 0 to 1.
+// What gl2ps is given: in pixels from the lower left corner, depth from 0 to kDepthRange (spreadDepths).
 struct Primitive {
   std::vector<GL2PSvertex> corners;  // 3, or 2 of a line
 };
@@ -179,8 +180,8 @@ class Projector {
   Mat4 clip_;
 };
 
-// gl2ps's tree has a fixed tolerance and single precision: depths that fill the range from 0 to 1 suit it
-// best.
+// gl2ps's tree has a fixed tolerance, made for pixels: it multiplies depths that it has from OpenGL by 1000,
+// and takes those that it is given as they are. Filling the whole range suits it best.
 void spreadDepths(std::vector<Primitive>& primitives) {
   float low = 1.0f, high = 0.0f;
   for (const Primitive& primitive : primitives) {
@@ -191,7 +192,7 @@ void spreadDepths(std::vector<Primitive>& primitives) {
   }
   for (Primitive& primitive : primitives) {
     for (GL2PSvertex& corner : primitive.corners) {
-      corner.xyz[2] = high > low ? (corner.xyz[2] - low) / (high - low) : 0.5f;
+      corner.xyz[2] = high > low ? kDepthRange * (corner.xyz[2] - low) / (high - low) : 0.0f;
     }
   }
 }

@@ -198,8 +198,6 @@ TEST_F(LayerCompositorTest, WithoutTintsAnOverlappingSplitIsThePictureOfAllAtOnc
   for (const std::uint32_t frame : {0u, 60u, 170u}) {
     studio.goTo(frame);
     const PictureDifference difference = measureDifference(studio.composite(), studio.atOnce());
-    std::printf("XX %u %g %g %g %g\n", frame, difference.mean, difference.rms, difference.largest,
-                difference.share_beyond);
     EXPECT_LE(difference.largest, kRounding) << frame;
   }
 }

@@ -84,6 +84,17 @@ TEST_F(LayerPictures, AFrameIsAPictureThatIsRightWithItsGroupsNamed) {
   EXPECT_TRUE(has({"ring 0", "ring 1", "ring 2", "ring 3", "ring 4", "ring 5"}));
 }
 
+// Its pieces of terrain overlap in one surface.
+TEST_F(LayerPictures, WithoutTintsItDoesNotMatterWhichOfTwoPiecesShowsTheirSurface) {
+  const auto difference = [&](const std::string& tints) {
+    return draw("demo:canyon?grid=5", {"--frames", "60", "--image", folder_.file(tints + ".png"), "--tints",
+                                       tints})[0]["picture"]["difference"];
+  };
+  EXPECT_GT(difference("on")["mean"], 0.01);
+  EXPECT_LE(difference("off")["largest"], 1.0);
+  EXPECT_NE(read("on.png"), read("off.png"));
+}
+
 TEST_F(LayerPictures, SeveralFramesAreFilesWithNumbers) {
   const json frames = draw("demo:toothpicks?n=20", {"--frames", "8:13:2", "--image",
                                                     folder_.file("sticks.v2.png"), "--samples", "2"});

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -17,7 +16,8 @@ namespace {
 
 constexpr std::uint32_t kFinest = 4;         // fine pixels a side of a pixel
 constexpr std::uint32_t kMostPixels = 8192;  // a side of LayerRenderer's pictures
-constexpr double kRounding = 4e-6;           // of a depth; in orthographic views, of the far distance
+constexpr double kRounding = 1e-6;           // of a depth; in orthographic views, of the far distance
+constexpr double kEven = 0.25;               // changes that differ by less than this share are of one plane
 
 // Finest that the renderer can draw.
 std::uint32_t finenessFor(std::uint32_t width, std::uint32_t height) {
@@ -63,19 +63,25 @@ class NearestSurfaces {
     return nearness_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                      static_cast<std::size_t>(x)];
   }
-  // How much the surface changes within a fine pixel. Of the two neighbours each way one at least is on it.
-  double slope(int x, int y) const {
-    const double here = at(x, y);
-    const auto least = [&](int dx, int dy) {
-      double change = std::numeric_limits<double>::infinity();
-      for (const int sign : {-1, 1}) {
-        if (contains(x + sign * dx, y + sign * dy)) {
-          change = std::min(change, std::abs(at(x + sign * dx, y + sign * dy) - here));
-        }
+  // How much the surface changes within a fine pixel: as it does on the steeper side of those on which it
+  // goes on evenly. (Across an edge it goes on otherwise, or there is another surface.)
+  double slope(int x, int y) const { return slopeAlong(x, y, 1, 0) + slopeAlong(x, y, 0, 1); }
+  double slopeAlong(int x, int y, int dx, int dy) const {
+    double steepest = 0.0;
+    std::optional<double> least;  // for surfaces of one or two fine pixels
+    for (const int sign : {-1, 1}) {
+      const int u = x + sign * dx, v = y + sign * dy, far_u = u + sign * dx, far_v = v + sign * dy;
+      if (!contains(far_u, far_v)) {
+        continue;
       }
-      return std::isfinite(change) ? change : 0.0;
-    };
-    return least(1, 0) + least(0, 1);
+      const double change = at(u, v) - at(x, y), next = at(far_u, far_v) - at(u, v);
+      if (std::abs(change - next) <= kEven * std::abs(change)) {
+        steepest = std::max(steepest, std::abs(change));
+      }
+      least = std::min(least.value_or(std::abs(change)), std::abs(change));
+    }
+    const double change = steepest > 0.0 ? steepest : least.value_or(0.0);
+    return std::isfinite(change) ? change : 0.0;
   }
 
   int width_, height_;
