@@ -11,7 +11,7 @@ configure = if command -v ninja > /dev/null && [ -z "$$CMAKE_GENERATOR" ]; then 
 build = cmake --build $(BUILD) --parallel $(JOBS)
 cpp_files = find include src scenes oracle tools bench fuzz tests examples -name '*.h' -o -name '*.cpp'
 
-.PHONY: help demo test bench format format-check tidy setup
+.PHONY: help demo test bench gallery format format-check tidy setup
 .DEFAULT_GOAL := help
 
 help:
@@ -19,6 +19,7 @@ help:
 	@echo "make demo SCENE=path.glb    walk your own scene (CAMERA=path.json: along your own path)"
 	@echo "make test                   build, then run all tests"
 	@echo "make bench                  build, then run the benchmarks (SHORT=1: briefly)"
+	@echo "make gallery                all pictures of docs/gallery.md anew (FULL=1: with all frames of the paper's tables)"
 	@echo "make format                 lay out all C++ files as .clang-format says (format-check: only look)"
 	@echo "make tidy                   clang-tidy over the library and the tool (TIDY=src: over that folder; CHECKS=-x: less x)"
 	@echo "PRESET=dev|release|sanitize and JOBS=N hold for all of them. Packages that are missing get installed."
@@ -43,6 +44,11 @@ bench: setup
 	@for program in $$(find $(BUILD)/bench -maxdepth 1 -type f -executable | sort); do \
 	  $$program $(if $(SHORT),--benchmark_min_time=0.05) || exit 1; \
 	done
+
+gallery: setup
+	@$(configure)
+	@$(build) --target sightline_tool
+	@FULL="$(FULL)" scripts/gallery $(BUILD)/bin/sightline
 
 format:
 	@scripts/setup --checks

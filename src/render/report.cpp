@@ -156,7 +156,9 @@ void addPictures(std::string& out, const Report& report) {
     by_frame[picture.frame].push_back(&picture);
   }
   for (const auto& [frame, pictures] : by_frame) {
-    out += fmt::format("<h3>Frame {}</h3>\n<div class=\"frame\">\n", frame);
+    const std::string& heading = pictures.front()->heading;
+    out += fmt::format("<h3>{}</h3>\n<div class=\"frame\">\n",
+                       heading.empty() ? fmt::format("Frame {}", frame) : escapeMarkup(heading));
     for (const ReportPicture* picture : pictures) {
       const std::string link = relativeLink(picture->file);
       const std::string caption = escapeMarkup(picture->caption);

@@ -176,9 +176,10 @@ void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options) {
       ->check(isNotEmpty());
   command.add_option("--pdf", options.pdf, "the same as a .pdf file, objects as layers")->check(isNotEmpty());
   command
-      .add_option("--line-picture", options.line_picture,
-                  "the same lines in pixels, hidden by a depth buffer, to this .png file: to compare drawings "
-                  "with")
+      .add_option(
+          "--line-picture", options.line_picture,
+          "the same lines in pixels, hidden by a depth buffer, to this .png file: to compare drawings "
+          "with")
       ->check(isNotEmpty());
   command.add_flag("--plot", options.plot,
                    "draw the visible pieces of lines alone, for plotters and CAD, instead of filled outlines "

@@ -251,7 +251,7 @@ Result<std::unique_ptr<FrameMaker>> makeLinePicture(const LayerDrawingOptions& o
   if (options.line_picture.empty()) {
     return std::unique_ptr<FrameMaker>();
   }
-  for (const Status& ok : {checkKinds(options), checkFrameFile("--line-picture", options.line_picture, ".png",
+  for (const Status& ok : {checkLines(options), checkFrameFile("--line-picture", options.line_picture, ".png",
                                                                input.scene_file)}) {
     if (!ok) {
       return ok.error();

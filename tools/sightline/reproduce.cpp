@@ -115,6 +115,17 @@ std::string folderName(const std::string& scene) {
   return name;
 }
 
+Status writeFiles(const std::vector<ReportFile>& files, const std::string& folder) {
+  for (const ReportFile& file : files) {
+    const std::string path = folder + "/" + file.name;
+    if (const Status ok = file.text.empty() ? writePng(file.picture, path) : writeFile(path, file.text);
+        !ok) {
+      return ok;
+    }
+  }
+  return Success{};
+}
+
 Status writeFolder(const ReproduceOptions& options, const std::string& text, const std::string& json,
                    const Reproduction& result) {
   for (std::size_t i = 0; i < result.reports.size(); ++i) {
@@ -124,6 +135,9 @@ Status writeFolder(const ReproduceOptions& options, const std::string& text, con
       return made;
     }
     if (const Status written = writeReport(result.reports[i], folder); !written) {
+      return written;
+    }
+    if (const Status written = i == 0 ? writeFiles(result.files, folder) : Success{}; !written) {
       return written;
     }
   }
@@ -159,13 +173,12 @@ Result<ExitCode> runReproduce(ReproduceOptions options) {
         fmt::format("--depth and --triangle-budget: {} bakes nothing; leave them out", options.paper)};
   }
   const bool nothing_chosen = options.scenes.empty() && options.path.path.empty() &&
-                              options.path.frames.empty() && options.picture.width == 0 &&
-                              options.picture.height == 0;
+                              options.path.frames.empty() && options.picture.width == 0;
   if (paper.scenes.empty() && !nothing_chosen) {
-    return Error{fmt::format(
-        "--scene, --path, --frames, --width and --height: {} makes its own scenes and draws nothing; leave "
-        "them out",
-        options.paper)};
+    return Error{
+        fmt::format("--scene, --path, --frames and --width: {} makes its own scenes and pictures; leave "
+                    "them out",
+                    options.paper)};
   }
   if (options.scenes.empty()) {
     options.scenes = options.fewer_frames && !paper.short_scenes.empty() ? paper.short_scenes : paper.scenes;
@@ -202,6 +215,7 @@ void addReproduce(CLI::App& app, Command& chosen) {
   command->add_flag(
       "--short", options->fewer_frames,
       "few frames, unless --frames says which; experiments on stretches of the path have their own; of "
+      "snyder-lengyel small pictures too, unless --height is given; of "
       "saona-vazquez a small ship and depth 4 as well, unless --scene and --depth say others");
   command->add_option("--depth", options->depth, "saona-vazquez: of the octree (default: 6)")
       ->check(CLI::Range(1u, kMaxOctreeDepth));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sightline/io/image.h"
 #include "sightline/render/report.h"
 #include "tools/sightline/load.h"
 
@@ -54,10 +55,18 @@ struct Experiment {
 std::string toText(const Experiment& experiment);
 Json toJson(const Experiment& experiment);
 
+// A file beside a report's page: a picture or, where that is empty, text.
+struct ReportFile {
+  std::string name;
+  Image picture{};  // as .png
+  std::string text{};
+};
+
 struct Reproduction {
   std::vector<Experiment> experiments{};
   std::vector<std::string> notes{};
-  std::vector<Report> reports{};  // one a scene; one in all where the paper makes its own
+  std::vector<Report> reports{};    // one a scene; one in all where the paper makes its own
+  std::vector<ReportFile> files{};  // of the first report
 };
 
 // Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 6.

@@ -31,12 +31,13 @@ struct ReportRow {
   std::uint64_t frames_tied = 0;                  // besides those: differ by ties of the depth buffer only
 };
 
-// Pictures of one frame stand side by side.
+// Pictures of one frame stand side by side, frames in ascending order.
 struct ReportPicture {
   std::string file{};  // a name inside the report's folder
   std::string caption{};
   std::uint32_t frame = 0;
-  bool plan = false;  // a plan view: the legend of its colours is shown
+  bool plan = false;      // a plan view: the legend of its colours is shown
+  std::string heading{};  // of the frame's first picture: over the frame, in place of its number
 };
 
 struct Report {
