@@ -66,17 +66,20 @@ struct Set {
   }
 };
 
-// From z = 10 along -z.
 View viewFromFront(bool orthographic = false) {
-  View view;
-  view.eye = {0, 0, 10};
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.orthographic = orthographic;
-  view.tan_half_fovy = 0.5;
+  View view = test::viewFromFront(orthographic);
   view.ortho_height = 12.0;
   view.aspect = 1.25;
   view.near = 0.5;
   view.far = 50.0;
+  return view;
+}
+
+// Three sides of a box in the middle are seen.
+View viewOfACorner() {
+  View view = viewFromFront();
+  view.eye = {6, 5, 8};
+  setOrientation(view, {-6, -5, -8}, {0, 1, 0});
   return view;
 }
 
@@ -142,10 +145,7 @@ TEST(Draughtsman, PaintsFarGroupsFirstAndLeavesTheirStrokesWhole) {
 TEST(Draughtsman, AConvexObjectIsOneOutlineAndFewStrokes) {
   Set set;
   set.add(test::block({-1, -1, -1}, {1, 1, 1}));
-  View view = viewFromFront();
-  view.eye = {6, 5, 8};
-  setOrientation(view, {-6, -5, -8}, {0, 1, 0});
-  const Drawing drawing = set.paint(view);
+  const Drawing drawing = set.paint(viewOfACorner());
   const DrawingObject* box = find(drawing, 0);
   ASSERT_TRUE(box);
   ASSERT_EQ(box->outline.size(), 1u);
@@ -321,9 +321,7 @@ TEST(Draughtsman, LeavesOutWhatIsNotOnThePage) {
 TEST(Draughtsman, ChoosesKindsOfLines) {
   Set set;
   set.add(test::block({-1, -1, -1}, {1, 1, 1}));
-  View view = viewFromFront();
-  view.eye = {6, 5, 8};
-  setOrientation(view, {-6, -5, -8}, {0, 1, 0});
+  const View view = viewOfACorner();
   DrawingSettings settings{.page_height = kHeight};
   settings.features = {.creases = true, .silhouettes = false, .boundaries = false};
   EXPECT_EQ(set.paint(view, settings).stats.lines, 9u);  // a silhouette of an angle is a crease too

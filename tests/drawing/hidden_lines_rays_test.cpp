@@ -12,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <random>
@@ -27,11 +26,11 @@
 #include "sightline/drawing/hidden_lines.h"
 #include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
+#include "tests/support/random_numbers.h"
+#include "tests/support/real_scenes.h"
 
 namespace sightline {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kBeside = 1e-4;       // of the distance: how far beside the point a ray may go
 constexpr double kRounding = 0x1p-21;  // of the distance: above what single precision moves a ray by
@@ -212,9 +211,7 @@ TEST(HiddenLinesRays, AgreeOnToothpicks) {
 TEST(HiddenLinesRays, AgreeOnRandomTriangles) {
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     std::mt19937 random(seed);
-    const auto number = [&](float low, float high) {
-      return std::uniform_real_distribution<float>(low, high)(random);
-    };
+    const auto number = test::numbersFrom<float>(random);
     Scene scene;
     scene.materials = {{.name = "double-sided", .double_sided = true},
                        {.name = "single-sided"},
@@ -243,15 +240,9 @@ TEST(HiddenLinesRays, AgreeOnRandomTriangles) {
 }
 
 void checkReal(const std::string& name, std::size_t every) {
-  const char* const from_environment = std::getenv("SIGHTLINE_SCENES");
-  const fs::path folder =
-      (from_environment != nullptr ? fs::path(from_environment)
-                                   : fs::path(SIGHTLINE_SOURCE_DIR) / ".." / "shared" / "scenes") /
-      name;
-  if (!fs::exists(folder / (name + ".glb"))) {
-    GTEST_SKIP() << "no scene at " << folder << "; set SIGHTLINE_SCENES to run this test";
-  }
-  const Result<Scene> scene = importScene((folder / (name + ".glb")).string());
+  const std::filesystem::path folder = test::folderOfScenes() / name, file = folder / (name + ".glb");
+  SIGHTLINE_SKIP_WITHOUT_SCENE(file);
+  const Result<Scene> scene = importScene(file.string());
   ASSERT_TRUE(scene) << scene.error().message;
   const Result<CameraPath> path = readCameraPath((folder / "walk.path.json").string());
   ASSERT_TRUE(path) << path.error().message;

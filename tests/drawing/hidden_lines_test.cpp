@@ -2,86 +2,25 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "tests/drawing/sketch.h"
 #include "tests/support/count_allocations.h"
+#include "tests/support/random_numbers.h"
 
 namespace sightline {
 namespace {
 
-using Triangle = std::array<Vec3f, 3>;
-constexpr double kPage = 100.0;
-
-// Looks along -z with the eye at zero, a square page, borders at 45 degrees.
-View squareView() {
-  View view;
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.tan_half_fovy = 1.0;
-  view.aspect = 1.0;
-  view.near = 1.0;
-  view.far = 100.0;
-  return view;
-}
-
-View flatView(double height) {
-  View view = squareView();
-  view.orthographic = true;
-  view.ortho_height = height;
-  return view;
-}
-
-// Objects of a few triangles, and lines between any points.
-struct Sketch {
-  Scene scene;
-
-  Sketch() {
-    scene.materials = {{.name = "double-sided", .double_sided = true},
-                       {.name = "single-sided"},
-                       {.name = "glass", .opacity = Opacity::kBlended, .double_sided = true},
-                       {.name = "leaves", .opacity = Opacity::kAlphaTested, .double_sided = true}};
-  }
-  std::uint32_t point(const Vec3f& p) {
-    scene.positions.push_back(p);
-    return static_cast<std::uint32_t>(scene.positions.size() - 1);
-  }
-  ObjectId add(const std::vector<Triangle>& triangles, std::uint32_t material = 0) {
-    Object object;
-    object.first_index = static_cast<std::uint32_t>(scene.indices.size());
-    object.index_count = static_cast<std::uint32_t>(3 * triangles.size());
-    object.material = MaterialId(material);
-    for (const Triangle& triangle : triangles) {
-      for (const Vec3f& corner : triangle) {
-        scene.indices.push_back(point(corner));
-      }
-    }
-    scene.objects.push_back(object);
-    return ObjectId(scene.objects.size() - 1);
-  }
-  FeatureLine line(const Vec3f& a, const Vec3f& b) {
-    const std::uint32_t first = point(a);
-    return {first, point(b), LineKind::kCrease};
-  }
-  std::vector<ObjectId> all() const {
-    std::vector<ObjectId> ids;
-    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-      ids.emplace_back(i);
-    }
-    return ids;
-  }
-  std::vector<LinePiece> pieces(const View& view, const FeatureLine& line) const {
-    HiddenLines hidden;
-    hidden.setView(scene.view(), view, kPage);
-    std::vector<LinePiece> found;
-    hidden.visiblePieces({&line, 1}, all(), found);
-    return found;
-  }
-};
+using test::flatView;
+using test::kPage;
+using test::Sketch;
+using test::squareView;
+using test::Triangle;
 
 std::vector<Triangle> quad(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
   return {{a, b, c}, {a, c, d}};
@@ -190,9 +129,7 @@ TEST(HiddenLines, AreNotHiddenByCoplanarNeighbours) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const auto number = [&](double low, double high) {
-      return std::uniform_real_distribution<double>(low, high)(random);
-    };
+    const auto number = test::numbersFrom<double>(random);
     View view = squareView();
     view.orthographic = seed % 3 == 0;
     view.ortho_height = 60;
@@ -257,9 +194,7 @@ TEST(HiddenLines, LeaveNoSpeckBehindTrianglesThatAdjoin) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const auto number = [&](float low, float high) {
-      return std::uniform_real_distribution<float>(low, high)(random);
-    };
+    const auto number = test::numbersFrom<float>(random);
     const bool orthographic = seed % 2 == 0;
     constexpr int kCells = 8;
     Vec3f at[kCells + 1][kCells + 1];
@@ -303,9 +238,7 @@ TEST(HiddenLines, LeaveNoSpeckBehindTJunctions) {
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const auto number = [&](float low, float high) {
-      return std::uniform_real_distribution<float>(low, high)(random);
-    };
+    const auto number = test::numbersFrom<float>(random);
     const float x = number(-1, 1);
     const float y = number(-2, 2);
     const float depth = number(3, 5);
@@ -386,9 +319,7 @@ TEST(HiddenLines, LookAtNothingThatLiesBesideOrBehind) {
 
 TEST(HiddenLines, AllocateNothingOnceTheyHaveGrown) {
   std::mt19937 random(5);
-  const auto number = [&](float low, float high) {
-    return std::uniform_real_distribution<float>(low, high)(random);
-  };
+  const auto number = test::numbersFrom<float>(random);
   Sketch sketch;
   std::vector<FeatureLine> lines;
   for (int i = 0; i < 50; ++i) {
@@ -413,154 +344,6 @@ TEST(HiddenLines, AllocateNothingOnceTheyHaveGrown) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     EXPECT_EQ(pieces[i].from_share, first[i].from_share);
     EXPECT_EQ(pieces[i].to_share, first[i].to_share);
-  }
-}
-
-// ---- Small scenes of whole numbers, judged in whole numbers: every tie occurs. ----
-
-using Int = std::int64_t;
-struct IntPoint {
-  Int x = 0, y = 0, z = 0;
-};
-IntPoint operator-(const IntPoint& a, const IntPoint& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-IntPoint cross(const IntPoint& a, const IntPoint& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Int dot(const IntPoint& a, const IntPoint& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-struct IntTriangle {
-  IntPoint corner[3];
-  bool single_sided = false;
-};
-
-// Shares of lines are k / kUnit. Points times kUnit are whole; products stay below 2^63.
-constexpr Int kUnit = 840 * 16;
-
-class IntWorld {
- public:
-  IntWorld(std::uint32_t seed, bool orthographic) : random_(seed), orthographic_(orthographic) {
-    for (int i = 0; i < 9; ++i) {
-      IntTriangle triangle{{point(), point(), point()}, below(3) == 0};
-      if (!triangles_.empty() && below(2) == 0) {  // an edge in common
-        const IntTriangle& other =
-            triangles_[static_cast<std::size_t>(below(static_cast<int>(triangles_.size())))];
-        triangle.corner[0] = other.corner[1];
-        triangle.corner[1] = other.corner[0];
-      }
-      triangles_.push_back(triangle);
-      sketch_.add({{place(triangle.corner[0]), place(triangle.corner[1]), place(triangle.corner[2])}},
-                  triangle.single_sided ? 1 : 0);
-    }
-    for (int i = 0; i < 12; ++i) {
-      lines_.push_back({point(), point()});
-    }
-    for (const IntTriangle& t : triangles_) {
-      lines_.push_back({t.corner[0], t.corner[1]});
-      lines_.push_back({t.corner[1], t.corner[2]});
-    }
-  }
-
-  void check() {
-    const View view = orthographic_ ? flatView(8) : squareView();
-    for (const auto& [a, b] : lines_) {
-      const std::vector<LinePiece> pieces = sketch_.pieces(view, sketch_.line(place(a), place(b)));
-      const IntPoint ab = b - a;
-      const bool end_on = orthographic_ ? ab.x == 0 && ab.y == 0 : zero(cross(a, b));
-      EXPECT_TRUE(pieces.empty() || !end_on);
-      for (Int k = 16 * 7; k < kUnit && !end_on; k += 16 * 7) {
-        const double share = static_cast<double>(k) / static_cast<double>(kUnit);
-        const bool drawn = std::any_of(pieces.begin(), pieces.end(), [&](const LinePiece& p) {
-          return p.from_share <= share && share <= p.to_share;
-        });
-        // What is so at a single point only (where a line touches an edge) is no piece.
-        const bool wrong =
-            visible(a, b, k) != drawn && visible(a, b, k - 1) != drawn && visible(a, b, k + 1) != drawn;
-        EXPECT_FALSE(wrong) << "share " << share << (drawn ? " is drawn" : " is not drawn") << ": (" << a.x
-                            << ' ' << a.y << ' ' << a.z << ") (" << b.x << ' ' << b.y << ' ' << b.z << ")";
-        (drawn ? drawn_ : hidden_) += 1;
-      }
-    }
-  }
-  int drawn() const { return drawn_; }
-  int hidden() const { return hidden_; }
-
- private:
-  static bool zero(const IntPoint& p) { return p.x == 0 && p.y == 0 && p.z == 0; }
-  static Vec3f place(const IntPoint& p) {
-    return {static_cast<float>(p.x), static_cast<float>(p.y), -static_cast<float>(p.z)};
-  }
-  int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
-  // z is the depth here, so triangles are seen clockwise from their front. Some lie behind the eye.
-  IntPoint point() { return {below(9) - 4, below(9) - 4, below(8) == 0 ? -below(3) : 1 + below(6)}; }
-
-  bool visible(const IntPoint& a, const IntPoint& b, Int k) const {
-    const IntPoint x{a.x * (kUnit - k) + b.x * k, a.y * (kUnit - k) + b.y * k, a.z * (kUnit - k) + b.z * k};
-    const Int border = orthographic_ ? 4 * kUnit : x.z;
-    if (x.z < kUnit || std::abs(x.x) > border || std::abs(x.y) > border) {
-      return false;
-    }
-    return std::none_of(triangles_.begin(), triangles_.end(),
-                        [&](const IntTriangle& t) { return hides(t, x); });
-  }
-
-  // x times kUnit. The sight to x meets the closed triangle before x, at a depth of at least 1.
-  bool hides(const IntTriangle& t, const IntPoint& x) const {
-    const IntPoint normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
-    const IntPoint sight = orthographic_ ? IntPoint{0, 0, kUnit} : x;
-    const IntPoint start = orthographic_ ? IntPoint{x.x, x.y, 0} : IntPoint{};
-    const Int height = dot(normal, t.corner[0]) * kUnit - dot(normal, start);  // of the plane over the start
-    const Int slope = dot(normal, sight);
-    const Int facing = orthographic_ ? normal.z : dot(normal, t.corner[0]);
-    // In these mirrored coordinates a normal that points away from the eye is that of a front.
-    if (slope == 0 || facing == 0 || (t.single_sided && facing < 0)) {
-      return false;
-    }
-    // Met at start + (height / slope) sight, before x, at depth 1 or more.
-    const Int sign = slope > 0 ? 1 : -1;
-    const Int end = orthographic_ ? x.z : kUnit;  // x = start + (end / kUnit) sight
-    if (sign * height * kUnit >= sign * slope * end || sign * height <= 0 ||
-        sign * height * sight.z < sign * slope * kUnit) {
-      return false;
-    }
-    bool left = false;
-    bool right = false;
-    for (int i = 0; i < 3; ++i) {
-      const IntPoint& p = t.corner[i];
-      const IntPoint& q = t.corner[(i + 1) % 3];
-      const Int side = orthographic_ ? (q.x - p.x) * (x.y - p.y * kUnit) - (q.y - p.y) * (x.x - p.x * kUnit)
-                                     : dot(cross(p, q), x);
-      left = left || side > 0;
-      right = right || side < 0;
-    }
-    // In perspective the three planes also bound the pyramid behind the eye, which the depth rules out.
-    return !(left && right);
-  }
-
-  std::mt19937 random_;
-  bool orthographic_ = false;
-  Sketch sketch_;
-  std::vector<IntTriangle> triangles_;
-  std::vector<std::array<IntPoint, 2>> lines_;
-  int drawn_ = 0, hidden_ = 0;
-};
-
-TEST(HiddenLines, AgreeWithExactArithmeticOnWholeNumbers) {
-  for (const bool orthographic : {false, true}) {
-    int drawn = 0;
-    int hidden = 0;
-    for (std::uint32_t seed = 1; seed <= 150 && !HasFailure(); ++seed) {
-      SCOPED_TRACE(::testing::Message() << "seed " << seed << (orthographic ? ", orthographic" : ""));
-      IntWorld world(seed, orthographic);
-      world.check();
-      drawn += world.drawn();
-      hidden += world.hidden();
-    }
-    EXPECT_GT(drawn, 10000);
-    EXPECT_GT(hidden, 10000);
   }
 }
 

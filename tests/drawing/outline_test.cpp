@@ -22,22 +22,9 @@ using shapes::Random;
 using test::areaOf;
 using test::distanceTo;
 using test::isInside;
+using test::viewFromFront;
 
 constexpr double kHeight = 400.0;
-
-// Looking along -z at the origin from z = 10; square pages.
-View viewFromFront(bool orthographic = false) {
-  View view;
-  view.eye = {0, 0, 10};
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.orthographic = orthographic;
-  view.tan_half_fovy = 0.5;
-  view.ortho_height = 10.0;
-  view.aspect = 1.0;
-  view.near = 0.1;
-  view.far = 100.0;
-  return view;
-}
 
 struct OneObject {
   Scene scene;

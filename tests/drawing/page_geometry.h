@@ -1,6 +1,6 @@
 #pragma once
 
-// Rings and polylines on a page, for tests: plain loops over all edges.
+// For tests: a view to draw; rings and polylines on a page, by plain loops over all edges.
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,20 @@
 #include "sightline/drawing/drawing.h"
 
 namespace sightline::test {
+
+// At z = 10, looking along -z at the origin; square pages, which show 10 m there.
+inline View viewFromFront(bool orthographic = false) {
+  View view;
+  view.eye = {0, 0, 10};
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.orthographic = orthographic;
+  view.tan_half_fovy = 0.5;
+  view.ortho_height = 10.0;
+  view.aspect = 1.0;
+  view.near = 0.1;
+  view.far = 100.0;
+  return view;
+}
 
 inline double areaOf(const PagePath& ring) {
   double area = 0.0;

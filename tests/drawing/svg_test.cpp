@@ -16,12 +16,15 @@
 #include "drawing/drawing_text.h"
 #include "drawing/svg_names.h"
 #include "sightline/drawing/drawing.h"
+#include "tests/drawing/made_drawings.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline {
 namespace {
 
 using shapes::Random;
+using test::drawingOf;
+using test::object;
 
 struct Element {
   std::string tag;
@@ -209,18 +212,6 @@ void expectSame(const std::vector<PagePath>& paths, const std::vector<PagePath>&
       ASSERT_NEAR(paths[i][k].y, expected[i][k].y, tolerance) << i << ", " << k;
     }
   }
-}
-
-DrawingObject object(std::uint32_t id, const std::string& name) {
-  const double x = 10.0 * id;
-  return {.object = ObjectId(id),
-          .name = name,
-          .outline = {{{x, 0}, {x + 8, 0}, {x + 8, 8}, {x, 8}}},
-          .strokes = {{{x, 0}, {x + 8, 0}, {x + 8, 8}, {x, 8}, {x, 0}}, {{x + 1, 1}, {x + 3.25, 2.5}}}};
-}
-
-Drawing drawingOf(std::vector<DrawingGroup> groups) {
-  return {.width = 640.0, .height = 360.0, .groups = std::move(groups)};
 }
 
 const Element* byId(const Element& root, const std::string& id) {

@@ -10,6 +10,7 @@
 
 #include "scene_checks.h"
 #include "sightline/io/camera_path_json.h"
+#include "tests/support/real_scenes.h"
 
 namespace sightline {
 namespace {
@@ -19,12 +20,6 @@ namespace fs = std::filesystem;
 struct Counts {
   std::size_t objects = 0, triangles = 0;
 };
-
-fs::path folderOfScenes() {
-  const char* const from_environment = std::getenv("SIGHTLINE_SCENES");
-  return from_environment != nullptr ? fs::path(from_environment)
-                                     : fs::path(SIGHTLINE_SOURCE_DIR) / ".." / "shared" / "scenes";
-}
 
 std::vector<std::string> splitAt(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -69,10 +64,8 @@ std::map<std::string, Counts> statedCounts(const fs::path& readme) {
 }
 
 TEST(RealScenes, HaveTheirStatedObjectsTrianglesAndWalks) {
-  const fs::path folder = folderOfScenes();
-  if (!fs::exists(folder / "README.md")) {
-    GTEST_SKIP() << "no folder of scenes at " << folder << "; set SIGHTLINE_SCENES to run this test";
-  }
+  const fs::path folder = test::folderOfScenes();
+  SIGHTLINE_SKIP_WITHOUT_SCENE(folder / "README.md");
   const std::map<std::string, Counts> stated = statedCounts(folder / "README.md");
   ASSERT_FALSE(stated.empty());
   for (const auto& [name, counts] : stated) {

@@ -8,6 +8,7 @@
 #include "scenes/procedural.h"
 #include "sightline/render/compare.h"
 #include "sightline/render/renderer.h"
+#include "tests/support/pictures.h"
 
 namespace sightline {
 namespace {
@@ -24,14 +25,12 @@ std::vector<ObjectId> objectsOf(const std::vector<Witness>& witnesses) {
 }
 
 TEST(ExactVisibility, ItsObjectsMakeTheWholePictureAndEachIsNeeded) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
   for (const char* url : {"demo:city?copies=1", "demo:building?floors=2&plants=5"}) {
     const Result<Scene> scene = makeDemoScene(url);
     ASSERT_TRUE(scene) << scene.error().message;
     Result<Renderer> renderer = Renderer::create(scene->view(), kWidth, kHeight);
-    if (!renderer) {
-      // Pictures need OpenGL, which scripts/setup installs; the other tests of the oracle do without.
-      GTEST_SKIP() << renderer.error().message;
-    }
+    ASSERT_TRUE(renderer) << renderer.error().message;
     std::vector<ObjectId> all;
     for (std::uint32_t o = 0; o < scene->objects.size(); ++o) {
       all.push_back(ObjectId(o));

@@ -9,8 +9,11 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "sightline/render/depth_of_field.h"
+#include "tests/render/largest_difference.h"
 
 namespace sightline {
 namespace {
@@ -59,18 +62,6 @@ Sums sumsOf(const LayerImage& image) {
     }
   }
   return sums;
-}
-
-double largestDifference(const LayerImage& a, const LayerImage& b) {
-  EXPECT_EQ(a.pixels.size(), b.pixels.size());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    for (const float d : {a.pixels[i].red - b.pixels[i].red, a.pixels[i].green - b.pixels[i].green,
-                          a.pixels[i].blue - b.pixels[i].blue, a.pixels[i].alpha - b.pixels[i].alpha}) {
-      largest = std::max(largest, static_cast<double>(std::abs(d)));
-    }
-  }
-  return largest;
 }
 
 // weight(dx, dy), gathered; beyond the borders the outermost pixels.
@@ -124,25 +115,20 @@ Kernel tableOf(const Kernel& kernel, int reach) {
       table.push_back(kernel(dx, dy));
     }
   }
-  return [table, reach](int dx, int dy) {
+  return [table = std::move(table), reach](int dx, int dy) {
     return table[static_cast<std::size_t>((dy + reach) * (2 * reach + 1) + dx + reach)];
   };
 }
 
-Kernel sampledLine(double lx, double ly, int reach) {
-  constexpr int kSamples = 20000;
-  std::vector<double> table(static_cast<std::size_t>((2 * reach + 1) * (2 * reach + 1)), 0.0);
-  for (int i = 0; i < kSamples; ++i) {
-    const double x = ((i + 0.5) / kSamples - 0.5) * lx, y = ((i + 0.5) / kSamples - 0.5) * ly;
-    for (int dy = -reach; dy <= reach; ++dy) {
-      for (int dx = -reach; dx <= reach; ++dx) {
-        const double near = std::max(1.0 - std::abs(x - dx), 0.0) * std::max(1.0 - std::abs(y - dy), 0.0);
-        table[static_cast<std::size_t>((dy + reach) * (2 * reach + 1) + dx + reach)] += near / kSamples;
-      }
+Kernel sampledLine(double lx, double ly) {
+  return [lx, ly](int dx, int dy) {
+    constexpr int kSamples = 20000;
+    double weight = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double x = ((i + 0.5) / kSamples - 0.5) * lx, y = ((i + 0.5) / kSamples - 0.5) * ly;
+      weight += std::max(1.0 - std::abs(x - dx), 0.0) * std::max(1.0 - std::abs(y - dy), 0.0) / kSamples;
     }
-  }
-  return [table, reach](int dx, int dy) {
-    return table[static_cast<std::size_t>((dy + reach) * (2 * reach + 1) + dx + reach)];
+    return weight;
   };
 }
 
@@ -349,7 +335,7 @@ TEST(BlurAlong, IsConvolutionWithALine) {
          {std::pair{0.3, 0.0}, {5.0, 0.0}, {0.0, -7.25}, {4.0, 4.0}, {-3.7, 8.1}, {6.0, -2.0}}) {
       LayerImage blurred;
       blurAlong(image, dx, dy, blurred);
-      const LayerImage expected = convolved(image, 6, sampledLine(dx, dy, 6));
+      const LayerImage expected = convolved(image, 6, tableOf(sampledLine(dx, dy), 6));
       EXPECT_LT(largestDifference(blurred, expected), 2e-5) << dx << ' ' << dy << " margin " << margin;
     }
   }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/random_numbers.h"
+
 namespace sightline {
 namespace {
 
@@ -19,9 +21,7 @@ struct Case {
 
 // Boxes around, before and behind the eye, large and small.
 Case randomCase(std::mt19937& random) {
-  const auto between = [&random](double lo, double hi) {
-    return std::uniform_real_distribution<double>(lo, hi)(random);
-  };
+  const auto between = test::numbersFrom<double>(random);
   Case c;
   c.view.eye = {between(-3, 3), between(-3, 3), between(-3, 3)};
   setOrientation(c.view, {between(-1, 1), between(-1, 1), between(-1, 1)}, {0.0, 1.0, 0.1});

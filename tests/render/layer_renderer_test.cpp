@@ -30,19 +30,14 @@ TEST_F(LayerRendererTest, OpaqueObjectsOverTheSkyAreWhatRendererDraws) {
 }
 
 TEST_F(LayerRendererTest, SmallDistancesHoldFarFromTheOriginAsInRenderer) {
-  SceneMaker maker;
-  maker.wall(0.0, 1.0, kGreen);
-  maker.wall(0.01, 1.0, kRed);
-  for (Vec3f& position : maker.scene.positions) {
-    position += Vec3f(1024.0f, 0.0f, 2048.0f);
-  }
-  LayerRenderer layers = layersOf(maker.scene);
-  Renderer renderer = rendererOf(maker.scene, kWidth, kHeight);
+  const Scene scene = closeWalls({1024.0f, 0.0f, 2048.0f});
+  LayerRenderer layers = layersOf(scene);
+  Renderer renderer = rendererOf(scene, kWidth, kHeight);
   const View view = testView({1024.0, 0.0, 2058.0});
-  LayerImage picture = drawn(layers, view, allOf(maker.scene)), sky;
+  LayerImage picture = drawn(layers, view, allOf(scene)), sky;
   layers.drawSky(view, sky);
   compositeOver(picture, sky);
-  EXPECT_LE(compareImages(toImage(picture), renderer.draw(view, allOf(maker.scene))).largest, 1);
+  EXPECT_LE(compareImages(toImage(picture), renderer.draw(view, allOf(scene))).largest, 1);
 }
 
 TEST_F(LayerRendererTest, PixelsAreOpaqueWhereAnObjectIsAndTransparentElsewhere) {

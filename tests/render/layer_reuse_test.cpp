@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/render/largest_difference.h"
 #include "tests/render/test_scene.h"
 
 namespace sightline {
@@ -86,17 +87,6 @@ class Reused {
   LayerImage image, expected;  // of the last draw(): with reuse, and drawn
 };
 
-// The largest difference of any channel, colours and opacity.
-float largestDifference(const LayerImage& a, const LayerImage& b) {
-  float largest = a.pixels.size() == b.pixels.size() ? 0.0f : 1e9f;
-  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
-    const ShapedPixel &p = a.pixels[i], &q = b.pixels[i];
-    largest = std::max({largest, std::abs(p.red - q.red), std::abs(p.green - q.green),
-                        std::abs(p.blue - q.blue), std::abs(p.alpha - q.alpha)});
-  }
-  return largest;
-}
-
 double covered(const LayerImage& image) {
   double sum = 0.0;
   for (const ShapedPixel& p : image.pixels) {
@@ -147,7 +137,7 @@ TEST_F(LayerReuseTest, FirstImageIsWhatTheRendererDraws) {
     reused.begin(testView());
     for (const std::uint32_t object : {0u, 1u}) {
       EXPECT_TRUE(reused.draw(ids({object})));
-      EXPECT_LT(largestDifference(reused.image, reused.expected), 1e-4f) << guard;
+      EXPECT_LT(largestDifference(reused.image, reused.expected), 1e-4) << guard;
     }
     EXPECT_EQ(reused.reuse.stats().triangles, 14u);
     EXPECT_EQ(reused.reuse.stats().drawn_triangles, 14u);
@@ -161,7 +151,7 @@ TEST_F(LayerReuseTest, PlaneMovedParallelToThePictureIsShiftedExactly) {
     EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}}, ids({0})));
     EXPECT_FALSE(reused.drawFrame(testView(), {shifted(right * kPixel, -down * kPixel, 0.0)}, ids({0})));
     // The light of the wall is the same; haze differs a little with the distance from the eye.
-    EXPECT_LT(largestDifference(reused.image, reused.expected), 5e-3f) << right << ' ' << down;
+    EXPECT_LT(largestDifference(reused.image, reused.expected), 5e-3) << right << ' ' << down;
     EXPECT_GT(covered(reused.image), 300.0);
     EXPECT_LT(reused.reuse.stats().largest_error_px, 1e-6);
   }
@@ -248,7 +238,7 @@ TEST_F(LayerReuseTest, LayersOfOtherObjectsAreDrawnAnew) {
   EXPECT_FALSE(reused.drawFrame(testView(), {}, ids({0})));
   EXPECT_TRUE(reused.drawFrame(testView(), {}, ids({1, 0})));
   EXPECT_FALSE(reused.drawFrame(testView(), {}, ids({0, 1})));
-  EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0f);
+  EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0);
   // What was not asked for a frame long is forgotten.
   EXPECT_TRUE(reused.drawFrame(testView(), {}, ids({0})));
 }
@@ -295,7 +285,7 @@ TEST_F(LayerReuseTest, LayerIsDrawnWhenAnObjectOfItComesIntoView) {
     elsewhere(1, 3) = 1.0;
     EXPECT_FALSE(reused.drawFrame(testView(), {Mat4{}, elsewhere}, ids({0, 1})));
     EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, shifted(3, 0, 0)}, ids({0, 1})));
-    EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0f);
+    EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0);
   }
 }
 
@@ -324,7 +314,7 @@ TEST_F(LayerReuseTest, OrthographicViewsShiftExactlyWhereverThingsAre) {
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
   view.eye = view.eye + Vec3d(4 * kPixel, 0, 0);
   EXPECT_FALSE(reused.drawFrame(view, {}, ids({0})));
-  EXPECT_LT(largestDifference(reused.image, reused.expected), 2e-3f);
+  EXPECT_LT(largestDifference(reused.image, reused.expected), 2e-3);
 }
 
 TEST_F(LayerReuseTest, LayersOutsideTheViewCostNothing) {
@@ -425,7 +415,7 @@ TEST_F(LayerReuseTest, WhatCrossesTheNearPlaneIsDrawnEachTime) {
     reused.begin(testView({0.01 * frame, 0.0, 10.0}));
     EXPECT_TRUE(reused.draw(ids({0})));
     EXPECT_TRUE(reused.draw(ids({0, 1})));
-    EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0f);
+    EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0);
   }
   // It comes there from before the eye.
   EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}, shifted(0, 0, 2)}, ids({1})));
@@ -464,7 +454,7 @@ TEST_F(LayerReuseTest, WhatIsDrawnAsGivenIsNotReused) {
   const LayerImage other_order = reused.image;
   EXPECT_TRUE(reused.draw(ids({1, 0}), {.as_given = true}));
   EXPECT_EQ(reused.image.pixels, reused.expected.pixels);
-  EXPECT_GT(largestDifference(reused.image, other_order), 0.05f);
+  EXPECT_GT(largestDifference(reused.image, other_order), 0.05);
 }
 
 TEST_F(LayerReuseTest, HostileViewsAndSettingsDoNoHarm) {

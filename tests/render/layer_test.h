@@ -14,6 +14,7 @@
 
 #include "sightline/render/layer_renderer.h"
 #include "test_scene.h"
+#include "tests/render/largest_difference.h"
 
 namespace sightline {
 
@@ -63,17 +64,6 @@ inline SceneMaker opaqueScene(std::uint32_t seed) {
                            : kGreen);
   }
   return maker;
-}
-
-inline double largestDifference(const LayerImage& a, const LayerImage& b) {
-  double largest = a.pixels.size() == b.pixels.size() ? 0.0 : 1e9;
-  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
-    const ShapedPixel &p = a.pixels[i], &q = b.pixels[i];
-    for (const float d : {p.red - q.red, p.green - q.green, p.blue - q.blue, p.alpha - q.alpha}) {
-      largest = std::isfinite(d) ? std::max<double>(largest, std::abs(d)) : 1e9;
-    }
-  }
-  return largest;
 }
 
 // What a ray through the centre of a pixel meets is computed here, without OpenGL.

@@ -90,15 +90,13 @@ TEST_F(LayerTransformsTest, TheEyeMayChangeBetweenPicturesOfMovedObjects) {
 }
 
 TEST_F(LayerTransformsTest, MovedFarFromTheOriginSmallDistancesHold) {
-  SceneMaker maker;
-  maker.wall(0.0, 1.0, kGreen);
-  maker.wall(0.01, 1.0, kRed);
-  LayerRenderer layers = layersOf(maker.scene);
-  const LayerImage near = drawn(layers, testView(), allOf(maker.scene));
+  const Scene scene = closeWalls();
+  LayerRenderer layers = layersOf(scene);
+  const LayerImage near = drawn(layers, testView(), allOf(scene));
   // A thousand kilometres away, where a float has steps of 6 centimetres.
   const Vec3d far(1e6 + 0.123, 33.3, -2e6);
   layers.setTransforms(std::vector(2, placed(0.0, far)));
-  const LayerImage moved = drawn(layers, testView(Vec3d(0.0, 0.0, 10.0) + far), allOf(maker.scene));
+  const LayerImage moved = drawn(layers, testView(Vec3d(0.0, 0.0, 10.0) + far), allOf(scene));
   EXPECT_LT(measureDifference(near, moved, 2.0).share_beyond, 0.003);
 }
 

@@ -2,7 +2,7 @@
 
 #include "sightline/render/lens_picture.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
@@ -12,12 +12,15 @@
 #include <utility>
 #include <vector>
 
+#include "tests/render/largest_difference.h"
 #include "tests/render/test_scene.h"
 
 namespace sightline {
 namespace {
 
 constexpr std::uint32_t kWidth = 128, kHeight = 96;
+constexpr std::array kMethods{LensMethod::kLayers, LensMethod::kSingleNormalised, LensMethod::kSingleSpread,
+                              LensMethod::kAccumulation};
 
 // Each list a layer and a group of its own, front to back.
 FrameLayers layersOf(std::initializer_list<std::vector<ObjectId>> lists) {
@@ -42,18 +45,6 @@ Mat4 movedBy(const Vec3d& d) {
   return m;
 }
 
-double largestDifference(const LayerImage& a, const LayerImage& b) {
-  EXPECT_EQ(a.pixels.size(), b.pixels.size());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    for (const float d : {a.pixels[i].red - b.pixels[i].red, a.pixels[i].green - b.pixels[i].green,
-                          a.pixels[i].blue - b.pixels[i].blue, a.pixels[i].alpha - b.pixels[i].alpha}) {
-      largest = std::max(largest, static_cast<double>(std::abs(d)));
-    }
-  }
-  return largest;
-}
-
 // Of the colours of pixels that `counts` says yes to.
 template <typename Counts>
 double rmsOf(const LayerImage& a, const LayerImage& b, Counts&& counts) {
@@ -69,6 +60,9 @@ double rmsOf(const LayerImage& a, const LayerImage& b, Counts&& counts) {
   }
   EXPECT_GT(count, 0.0);
   return std::sqrt(sum / count);
+}
+double rmsOf(const LayerImage& a, const LayerImage& b) {
+  return rmsOf(a, b, [](std::size_t) { return true; });
 }
 
 // Middle and mean square of the distance from it, of opacity; pixels.
@@ -110,6 +104,12 @@ class LensPictureTest : public RenderTest {
     EXPECT_TRUE(stats.has_value());
     return stats ? *stats : LensStats{};
   }
+  LayerImage by(LensMethod method) {
+    LayerImage picture;
+    settings_.method = method;
+    draw(layers_, settings_, picture);
+    return picture;
+  }
   std::string errorOf(const FrameLayers& layers, const LensSettings& settings) {
     LayerImage picture;
     const Result<LensStats> stats = lens_picture_->draw(view_, layers, settings, picture);
@@ -127,6 +127,8 @@ class LensPictureTest : public RenderTest {
 
   SceneMaker maker_;
   View view_ = testView();  // at z = 10; a wall of half height 5 at z = 0 fills it
+  FrameLayers layers_;
+  LensSettings settings_;
   std::unique_ptr<LayerRenderer> renderer_;
   std::unique_ptr<LensPicture> lens_picture_;
 };
@@ -155,12 +157,6 @@ class BlurredForeground : public LensPictureTest {
     draw(layers_, settings_, reference_);
   }
 
-  LayerImage by(LensMethod method) {
-    LayerImage picture;
-    settings_.method = method;
-    draw(layers_, settings_, picture);
-    return picture;
-  }
   // Where the thing covers a part of the lens alone: within half its circle of its edge.
   bool atEdge(std::size_t pixel) {
     if (edge_.pixels.empty()) {
@@ -176,8 +172,6 @@ class BlurredForeground : public LensPictureTest {
 
   ObjectId front_;
   std::vector<ObjectId> tiles_;
-  FrameLayers layers_;
-  LensSettings settings_;
   LayerImage reference_, edge_;
 };
 
@@ -195,15 +189,13 @@ TEST_F(BlurredForeground, LeavesTheBackgroundInFocusSharp) {
   all.push_back(front_);
   const LayerImage pinhole = sharp(all);
   const auto far_from_edge = [this](std::size_t i) { return i % kWidth > kWidth * 2 / 3 && !atEdge(i); };
-  for (const LensMethod method : {LensMethod::kLayers, LensMethod::kSingleNormalised,
-                                  LensMethod::kSingleSpread, LensMethod::kAccumulation}) {
+  for (const LensMethod method : kMethods) {
     EXPECT_LT(rmsOf(by(method), pinhole, far_from_edge), 0.02) << static_cast<int>(method);
   }
 }
 
 TEST_F(BlurredForeground, IsOpaqueWithASkyInEveryWay) {
-  for (const LensMethod method : {LensMethod::kLayers, LensMethod::kSingleNormalised,
-                                  LensMethod::kSingleSpread, LensMethod::kAccumulation}) {
+  for (const LensMethod method : kMethods) {
     for (const ShapedPixel& pixel : by(method).pixels) {
       ASSERT_NEAR(pixel.alpha, 1.0, 1e-4) << static_cast<int>(method);
     }
@@ -249,8 +241,7 @@ TEST_F(LensPictureTest, APinholeGivesTheSharpPictureInEveryWay) {
   const FrameLayers layers = layersOf({{red}, {green}});
   const std::vector<ObjectId> all{red, green};
   const LayerImage expected = sharp(all);
-  for (const LensMethod method : {LensMethod::kLayers, LensMethod::kSingleNormalised,
-                                  LensMethod::kSingleSpread, LensMethod::kAccumulation}) {
+  for (const LensMethod method : kMethods) {
     LayerImage picture;
     draw(layers, {.method = method, .lens = {.focus = 3.0, .aperture = 0.0}}, picture);
     EXPECT_LT(largestDifference(picture, expected), 1e-4) << static_cast<int>(method);
@@ -312,8 +303,7 @@ TEST_F(LensPictureTest, ByDepthIsNearerThanEvenWhereALayerIsDeep) {
   draw(layers, settings, even);
   settings.parts = {{PartId(deep.value), LayerBlur::kByDepth}};
   draw(layers, settings, by_depth);
-  const auto all = [](std::size_t) { return true; };
-  EXPECT_LT(rmsOf(by_depth, reference, all), 0.7 * rmsOf(even, reference, all));
+  EXPECT_LT(rmsOf(by_depth, reference), 0.7 * rmsOf(even, reference));
 }
 
 TEST_F(LensPictureTest, TheSkyIsBlurredAsAtInfinity) {
@@ -325,8 +315,7 @@ TEST_F(LensPictureTest, TheSkyIsBlurredAsAtInfinity) {
   LayerImage sky, expected, picture;
   renderer_->drawSky(view_, sky);
   blurEvenly(sky, circle, expected);
-  for (const LensMethod method : {LensMethod::kLayers, LensMethod::kAccumulation,
-                                  LensMethod::kSingleNormalised, LensMethod::kSingleSpread}) {
+  for (const LensMethod method : kMethods) {
     LensSettings chosen = settings;
     chosen.method = method;
     draw(FrameLayers{}, chosen, picture);
@@ -353,19 +342,9 @@ class MovingThing : public LensPictureTest {
     later_ = {mover, Mat4{}};
     settings_.motion = FrameMotion{.later = view_, .stored = now_, .later_stored = later_, .shutter = 0.5};
   }
-  LayerImage by(LensMethod method) {
-    LayerImage picture;
-    settings_.method = method;
-    draw(layers_, settings_, picture);
-    return picture;
-  }
-  double layersError() {
-    return rmsOf(by(LensMethod::kLayers), by(LensMethod::kAccumulation), [](std::size_t) { return true; });
-  }
+  double layersError() { return rmsOf(by(LensMethod::kLayers), by(LensMethod::kAccumulation)); }
 
   ObjectId mover_, backdrop_;
-  FrameLayers layers_;
-  LensSettings settings_;
   std::vector<Mat4> now_{Mat4{}, Mat4{}}, later_;
 };
 
@@ -373,7 +352,7 @@ TEST_F(MovingThing, IsSpreadAsTheReferenceInTimeSpreadsIt) {
   moveTo(movedBy({2.0, 0.7, 0.0}));
   const std::vector<ObjectId> all{mover_, backdrop_};
   const LayerImage still = sharp(all);
-  const double unblurred = rmsOf(still, by(LensMethod::kAccumulation), [](std::size_t) { return true; });
+  const double unblurred = rmsOf(still, by(LensMethod::kAccumulation));
   EXPECT_GT(unblurred, 0.015);
   EXPECT_LT(layersError(), 0.25 * unblurred);
 
@@ -414,7 +393,7 @@ TEST_F(MovingThing, IsSpreadByTheCamerasMotionToo) {
   settings_.motion->later.eye.x += 1.0;
   setOrientation(settings_.motion->later, {0.05, 0.0, -1.0}, {0.0, 1.0, 0.0});
   const std::vector<ObjectId> all{mover_, backdrop_};
-  const double unblurred = rmsOf(sharp(all), by(LensMethod::kAccumulation), [](std::size_t) { return true; });
+  const double unblurred = rmsOf(sharp(all), by(LensMethod::kAccumulation));
   EXPECT_LT(layersError(), 0.3 * unblurred);
   // Nearer things move farther.
   settings_.sky = false;
@@ -500,7 +479,7 @@ TEST_F(LensPictureTest, SeesThroughLayersInTheRightOrder) {
   draw(layers, settings, reference);
   settings.method = LensMethod::kLayers;
   draw(layers, settings, picture);
-  EXPECT_LT(rmsOf(picture, reference, [](std::size_t) { return true; }), 0.01);
+  EXPECT_LT(rmsOf(picture, reference), 0.01);
 }
 
 }  // namespace

@@ -154,14 +154,9 @@ TEST_F(RendererTest, WhatTheNearAndFarPlanesCutAwayIsNotDrawn) {
 }
 
 TEST_F(RendererTest, SmallDistancesHoldFarFromTheOrigin) {
-  SceneMaker maker;
-  maker.wall(0.0, 1.0, kGreen);
-  maker.wall(0.01, 1.0, kRed);
-  for (Vec3f& position : maker.scene.positions) {
-    position += Vec3f(1024.0f, 0.0f, 2048.0f);
-  }
-  Renderer renderer = rendererOf(maker.scene);
-  const Image image = renderer.draw(testView({1024.0, 0.0, 2058.0}), allOf(maker.scene));
+  const Scene scene = closeWalls({1024.0f, 0.0f, 2048.0f});
+  Renderer renderer = rendererOf(scene);
+  const Image image = renderer.draw(testView({1024.0, 0.0, 2058.0}), allOf(scene));
   for (std::uint32_t x = 140; x < 180; ++x) {
     EXPECT_TRUE(isRed(pixelOf(image, x, 120)));
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sightline/render/renderer.h"
+#include "tests/support/pictures.h"
 
 namespace sightline {
 
@@ -76,6 +77,17 @@ class SceneMaker {
   }
 };
 
+// A red wall a centimetre before a green one.
+inline Scene closeWalls(const Vec3f& at = {}) {
+  SceneMaker maker;
+  maker.wall(0.0, 1.0, kGreen);
+  maker.wall(0.01, 1.0, kRed);
+  for (Vec3f& position : maker.scene.positions) {
+    position += at;
+  }
+  return std::move(maker.scene);
+}
+
 // At z = 10, looking along -z.
 inline View testView(const Vec3d& eye = {0.0, 0.0, 10.0}) {
   View view;
@@ -115,16 +127,9 @@ inline bool isBlue(const Pixel& p) {
   return p.b > 2 * p.r && p.b > 2 * p.g;
 }
 
-// Skips the test, with the reason, on a machine without OpenGL.
 class RenderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    SceneMaker probe;
-    probe.wall(0.0, 1.0, kRed);
-    if (const Result<Renderer> renderer = Renderer::create(probe.scene.view(), 8, 8); !renderer) {
-      GTEST_SKIP() << "no pictures on this machine: " << renderer.error().message;
-    }
-  }
+  void SetUp() override { SIGHTLINE_SKIP_WITHOUT_PICTURES(); }
 
   static Renderer rendererOf(const Scene& scene, std::uint32_t width = 320, std::uint32_t height = 240) {
     Result<Renderer> renderer = Renderer::create(scene.view(), width, height);

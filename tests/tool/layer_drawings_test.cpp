@@ -10,13 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kScene{
-    "layers", "demo:toothpicks?n=40", "--width", "320", "--height", "240", "--no-times"};
-
 std::vector<std::string> with(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = kScene;
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"layers", "demo:toothpicks?n=40", "--width", "320", "--height", "240", "--no-times"}, more);
 }
 
 json drawn(const std::vector<std::string>& more) {
@@ -72,9 +67,9 @@ TEST(LayerDrawings, APlotHasNoFillsAndTestsMoreThanThePaintersForm) {
 TEST(LayerDrawings, KindsOfLinesAreChosen) {
   const TemporaryFolder folder;
   const auto lines = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"--frames", "0", "--svg", folder.file("a.svg"), "--json", "-"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return drawn(arguments)["frames"][0]["drawing"]["lines"].get<int>();
+    const json result =
+        drawn(joined({"--frames", "0", "--svg", folder.file("a.svg"), "--json", "-"}, options));
+    return result["frames"][0]["drawing"]["lines"].get<int>();
   };
   const int all = lines({});
   EXPECT_LT(lines({"--no-creases"}), all);

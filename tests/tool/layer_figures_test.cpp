@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/pictures.h"
 #include "tests/tool/run_tool.h"
 #include "tools/sightline/layer_figure_scene.h"
 
@@ -22,17 +23,13 @@ const ReportFile* fileOf(const LayerFigures& figures, const std::string& name) {
   return found == figures.files.end() ? nullptr : &*found;
 }
 
-// Drawn once, for all tests; skipped, with the reason, on a machine without OpenGL.
+// Drawn once, for all tests.
 class LayerFiguresDrawn : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { drawn_ = new Result<LayerFigures>(layerFigures(kSmall)); }
   static void TearDownTestSuite() { delete drawn_; }
   void SetUp() override {
-    const MovingScene scene = makeToothpicks({.count = 1});
-    const Result<LayerRenderer> renderer = figureRenderer(scene.scene, kSmall, 1.0);
-    if (!renderer) {
-      GTEST_SKIP() << "no pictures on this machine: " << renderer.error().message;
-    }
+    SIGHTLINE_SKIP_WITHOUT_PICTURES();
     ASSERT_TRUE(drawn_->has_value());
   }
   static const LayerFigures& figures() { return **drawn_; }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "tests/support/pictures.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -11,30 +12,18 @@ using nlohmann::json;
 
 class LayerLens : public ::testing::Test {
  protected:
-  // Skips the test, with the reason, on a machine without OpenGL.
-  void SetUp() override {
-    const Outcome outcome =
-        runTool({"layers", "demo:toothpicks?n=1", "--frames", "0", "--width", "8", "--height", "8",
-                 "--motion-blur", "0.5", "--blurred", folder_.file("probe.png")});
-    if (outcome.code != 0) {
-      GTEST_SKIP() << "no pictures on this machine: " << outcome.err;
-    }
-  }
+  void SetUp() override { SIGHTLINE_SKIP_WITHOUT_PICTURES(); }
 
   // Of one frame of a small picture, unless `more` says otherwise.
   json drawn(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{
-        "layers", "demo:toothpicks?n=40", "--width", "160", "--height", "120", "--samples", "2", "--json",
-        "-"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = runTool(arguments);
+    const Outcome outcome = runTool(joined({"layers", "demo:toothpicks?n=40", "--width", "160", "--height",
+                                            "120", "--samples", "2", "--json", "-"},
+                                           more));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    const json result = parse(outcome.out);
-    return result["frames"];
+    return parse(outcome.out)["frames"];
   }
-  json lens(std::vector<std::string> more) const {
-    more.insert(more.end(), {"--frames", "20", "--compare", folder_.file("compare.png")});
-    return drawn(more)[0]["lens"];
+  json lens(const std::vector<std::string>& more) const {
+    return drawn(joined(more, {"--frames", "20", "--compare", folder_.file("compare.png")}))[0]["lens"];
   }
   static double rms(const json& lens) { return lens["compare"]["difference"]["rms"]; }
 
@@ -42,11 +31,8 @@ class LayerLens : public ::testing::Test {
 };
 
 TEST_F(LayerLens, LayersAreNearerToTheReferenceThanSingleImages) {
-  const std::vector<std::string> optics{"--focus", "2.2", "--aperture", "0.15"};
   const auto by = [&](const char* method) {
-    std::vector<std::string> arguments = optics;
-    arguments.insert(arguments.end(), {"--depth-of-field", method});
-    return lens(arguments);
+    return lens({"--focus", "2.2", "--aperture", "0.15", "--depth-of-field", method});
   };
   const json layers = by("layers");
   EXPECT_EQ(layers["method"], "layers");
@@ -70,10 +56,8 @@ TEST_F(LayerLens, LayersAreBlurredAsTheUserChooses) {
   const std::vector<std::string> arguments{"--depth-of-field", "layers", "--focus", "1.9",
                                            "--aperture",       "0.05"};
   const json automatic = lens(arguments);
-  std::vector<std::string> more = arguments;
-  more.insert(more.end(),
-              {"--blur-layer", "40=accumulate", "--blur-layer", "41=accumulate", "--passes", "5"});
-  const json chosen = lens(more);
+  const json chosen = lens(
+      joined(arguments, {"--blur-layer", "40=accumulate", "--blur-layer", "41=accumulate", "--passes", "5"}));
   // Parts from 40 on are the cube's spheres, small and each a layer of its own or with a neighbour.
   EXPECT_GE(chosen["layers"]["accumulate"], 1);
   EXPECT_LT(chosen["layers"]["even"], automatic["layers"]["even"]);
@@ -106,10 +90,9 @@ TEST_F(LayerLens, OfSeveralFramesEachHasItsFiles) {
 }
 
 TEST_F(LayerLens, BadUsageIsRefused) {
-  const auto refused = [this](std::vector<std::string> more, const std::string& about) {
-    more.insert(more.begin(), {"layers", "demo:toothpicks?n=5", "--frames", "0"});
-    expectRefused(more, about);
-    EXPECT_EQ(folder_.entries(), 1u);  // the probe
+  const auto refused = [this](const std::vector<std::string>& more, const std::string& about) {
+    expectRefused(joined({"layers", "demo:toothpicks?n=5", "--frames", "0"}, more), about);
+    EXPECT_EQ(folder_.entries(), 0u);
   };
   const std::string file = folder_.file("x.png");
   refused({"--depth-of-field", "blur", "--focus", "1", "--aperture", "0.1", "--blurred", file},

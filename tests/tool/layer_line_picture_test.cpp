@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sightline/io/image.h"
+#include "tests/support/pictures.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -63,18 +64,9 @@ Pixels inkOf(const std::string& file) {
   return pixels;
 }
 
-// Skips the test, with the reason, on a machine without OpenGL.
 class LayerLinePicture : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const TemporaryFolder folder;
-    const Outcome outcome =
-        runTool({"layers", "demo:glass?panes=0&bottles=0", "--frames", "0", "--line-picture",
-                 folder.file("probe.png"), "--width", "8", "--height", "8"});
-    if (outcome.code != 0) {
-      GTEST_SKIP() << "no pictures on this machine: " << outcome.err;
-    }
-  }
+  void SetUp() override { SIGHTLINE_SKIP_WITHOUT_PICTURES(); }
 };
 
 TEST_F(LayerLinePicture, LinesEndWhereSomethingHidesThem) {
@@ -104,15 +96,14 @@ TEST_F(LayerLinePicture, LinesEndWhereSomethingHidesThem) {
 TEST_F(LayerLinePicture, KindsOfLinesAreThoseOfDrawings) {
   const TemporaryFolder folder;
   const auto drawn = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"layers",         "demo:toothpicks?n=40",
-                                       "--frames",       "0",
-                                       "--width",        "320",
-                                       "--height",       "240",
-                                       "--svg",          folder.file("a.svg"),
-                                       "--line-picture", folder.file("a.png"),
-                                       "--json",         "-"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return parse(runTool(arguments).out)["frames"][0];
+    const std::vector<std::string> arguments{"layers",         "demo:toothpicks?n=40",
+                                             "--frames",       "0",
+                                             "--width",        "320",
+                                             "--height",       "240",
+                                             "--svg",          folder.file("a.svg"),
+                                             "--line-picture", folder.file("a.png"),
+                                             "--json",         "-"};
+    return parse(runTool(joined(arguments, options)).out)["frames"][0];
   };
   const json all = drawn({}), some = drawn({"--no-creases"});
   EXPECT_EQ(all["line_picture"]["lines"], all["drawing"]["lines"]);
@@ -133,10 +124,8 @@ TEST_F(LayerLinePicture, SeveralFramesAreSeveralFiles) {
 
 TEST_F(LayerLinePicture, RefusesOtherFilesAndNoKindOfLine) {
   const TemporaryFolder folder;
-  const std::vector<std::string> scene{"layers", "demo:toothpicks?n=20", "--line-picture"};
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), scene.begin(), scene.end());
-    return more;
+  const auto with = [](const std::vector<std::string>& more) {
+    return joined({"layers", "demo:toothpicks?n=20", "--line-picture"}, more);
   };
   expectRefused(with({folder.file("a.svg")}), ".png");
   expectRefused(with({folder.file("none/a.png")}), "none");

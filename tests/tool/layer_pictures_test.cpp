@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sightline/io/image.h"
+#include "tests/support/pictures.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -13,31 +14,17 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kSize{"--width", "160", "--height", "90"};
-
 std::vector<std::string> layersOf(const std::string& scene, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"layers", scene};
-  arguments.insert(arguments.end(), kSize.begin(), kSize.end());
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"layers", scene, "--width", "160", "--height", "90"}, more);
 }
 
-// Skips the test, with the reason, on a machine without OpenGL.
 class LayerPictures : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const Outcome outcome = runTool(
-        layersOf("demo:glass?panes=0&bottles=0", {"--frames", "0", "--image", folder_.file("probe.png")}));
-    if (outcome.code != 0) {
-      GTEST_SKIP() << "no pictures on this machine: " << outcome.err;
-    }
-    std::filesystem::remove(folder_.file("probe.png"));
-  }
+  void SetUp() override { SIGHTLINE_SKIP_WITHOUT_PICTURES(); }
 
   // The frames' JSON.
-  json draw(const std::string& scene, std::vector<std::string> more) const {
-    more.insert(more.end(), {"--no-times", "--json", "-"});
-    const Outcome outcome = runTool(layersOf(scene, more));
+  json draw(const std::string& scene, const std::vector<std::string>& more) const {
+    const Outcome outcome = runTool(layersOf(scene, joined(more, {"--no-times", "--json", "-"})));
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return parse(outcome.out)["frames"];
   }
@@ -99,14 +86,10 @@ TEST_F(LayerPictures, SeveralFramesAreFilesWithNumbers) {
   const json frames = draw("demo:toothpicks?n=20", {"--frames", "8:13:2", "--image",
                                                     folder_.file("sticks.v2.png"), "--samples", "2"});
   ASSERT_EQ(frames.size(), 3u);
-  for (const int frame : {0, 1, 2}) {
-    const std::string name = "sticks.v2_00" +
-                             std::string(frame == 0   ? "08"
-                                         : frame == 1 ? "10"
-                                                      : "12") +
-                             ".png";
-    EXPECT_EQ(frames[frame]["picture"]["file"], folder_.file(name));
-    EXPECT_EQ(read(name).width, 160u);
+  const std::vector<std::string> names{"sticks.v2_0008.png", "sticks.v2_0010.png", "sticks.v2_0012.png"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(frames[i]["picture"]["file"], folder_.file(names[i]));
+    EXPECT_EQ(read(names[i]).width, 160u);
   }
   EXPECT_EQ(folder_.entries(), 3u);
 }
@@ -204,9 +187,7 @@ TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
   const std::string png = folder_.file("a.png"), none = folder_.file("nowhere/a.png");
   const std::string text = folder_.write("no.png", "no picture");
   const auto refused = [&](const std::vector<std::string>& more, const std::string& about) {
-    std::vector<std::string> all{"--frames", "0"};
-    all.insert(all.end(), more.begin(), more.end());
-    expectRefused(layersOf("demo:glass", all), about);
+    expectRefused(layersOf("demo:glass", joined({"--frames", "0"}, more)), about);
   };
   refused({"--image", none}, "there is no folder");
   refused({"--by-distance", none}, "there is no folder");
@@ -237,9 +218,7 @@ TEST_F(LayerPictures, APartIsReplacedOnceAndNotLeftOutToo) {
   const std::string file = folder_.file("dot.png"), to = folder_.file("a.png");
   ASSERT_TRUE(writePng(dot, file));
   const auto refused = [&](const std::vector<std::string>& more, const std::string& about) {
-    std::vector<std::string> all{"--frames", "0", "--replace", "1=" + file};
-    all.insert(all.end(), more.begin(), more.end());
-    expectRefused(layersOf("demo:glass", all), about);
+    expectRefused(layersOf("demo:glass", joined({"--frames", "0", "--replace", "1=" + file}, more)), about);
   };
   refused({"--image", to, "--without", "1"}, "--without");
   refused({"--image", to, "--replace", "1=" + file}, "two pictures");

@@ -11,10 +11,7 @@ namespace {
 using nlohmann::json;
 
 json layered(const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{"layers"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  arguments.insert(arguments.end(), {"--no-times", "--json", "-"});
-  const Outcome outcome = runTool(arguments);
+  const Outcome outcome = runTool(joined({"layers", "--no-times", "--json", "-"}, more));
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return parse(outcome.out);
 }
@@ -69,9 +66,7 @@ TEST(Layers, SortersAndSearchesGiveTheSameGroups) {
                                                {"--search", "scan"},
                                                {"--extents", "world"},
                                                {"--conditioning", "off"}}) {
-    std::vector<std::string> arguments = scene;
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const json other = layered(arguments);
+    const json other = layered(joined(scene, more));
     for (std::size_t i = 0; i < expected["frames"].size(); ++i) {
       EXPECT_EQ(groupsOf(other["frames"][i]), groupsOf(expected["frames"][i])) << more.back();
     }

@@ -53,6 +53,11 @@ struct Outcome {
   std::ptrdiff_t errorLines() const { return std::count(err.begin(), err.end(), '\n'); }
 };
 
+inline std::vector<std::string> joined(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 // arguments: one word each.
 inline Outcome runTool(const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;

@@ -6,23 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "sightline/layers/extent_axis.h"
-#include "sightline/render/layer_renderer.h"
+#include "tests/support/pictures.h"
 
 namespace sightline::tool {
 namespace {
 
-// Skips the test, with the reason, on a machine without OpenGL.
 class SavedRendering : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const MovingScene scene = makeToothpicks({.count = 1});
-    const Result<LayerRenderer> renderer =
-        LayerRenderer::create(scene.scene.view(), {.width = 8, .height = 8});
-    if (!renderer) {
-      GTEST_SKIP() << "no pictures on this machine: " << renderer.error().message;
-    }
-  }
+  void SetUp() override { SIGHTLINE_SKIP_WITHOUT_PICTURES(); }
 
   static std::vector<Experiment> measured(const SavedRenderingOptions& options) {
     Result<std::vector<Experiment>> tables = savedRendering(options);

@@ -1,0 +1,26 @@
+#pragma once
+
+// Drawings made by hand, to be written as files.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sightline/drawing/drawing.h"
+
+namespace sightline::test {
+
+// A square at ten times its number: its outline, its borders, and a line within.
+inline DrawingObject object(std::uint32_t id, const std::string& name) {
+  const double x = 10.0 * id;
+  return {.object = ObjectId(id),
+          .name = name,
+          .outline = {{{x, 0}, {x + 8, 0}, {x + 8, 8}, {x, 8}}},
+          .strokes = {{{x, 0}, {x + 8, 0}, {x + 8, 8}, {x, 8}, {x, 0}}, {{x + 1, 1}, {x + 3.25, 2.5}}}};
+}
+
+inline Drawing drawingOf(std::vector<DrawingGroup> groups) {
+  return {.width = 640.0, .height = 360.0, .groups = std::move(groups)};
+}
+
+}  // namespace sightline::test

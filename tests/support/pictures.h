@@ -1,0 +1,26 @@
+#pragma once
+
+// Skips tests that need pictures.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "sightline/render/renderer.h"
+
+namespace sightline::test {
+
+// Nothing where this machine draws pictures.
+inline std::string whyNoPictures() {
+  const Scene empty;
+  const Result<Renderer> renderer = Renderer::create(empty.view(), 8, 8);
+  return renderer ? "" : renderer.error().message;
+}
+
+}  // namespace sightline::test
+
+// Ends a test or its SetUp on a machine without OpenGL, which the rest of the library does without. With
+// scripts/setup, as in CI, there is Mesa, and nothing is skipped.
+#define SIGHTLINE_SKIP_WITHOUT_PICTURES()                                       \
+  if (const std::string why = ::sightline::test::whyNoPictures(); !why.empty()) \
+  GTEST_SKIP() << "no pictures on this machine: " << why
