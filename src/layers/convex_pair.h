@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "layers/hull_ellipsoid.h"
+#include "layers/hull_envelope.h"
 #include "layers/placement.h"
 #include "sightline/layers/hull.h"
 
@@ -20,7 +20,7 @@ struct ConvexSet {
   Placement placement;
   Kind kind = Kind::kHull;
   Vec3d eye_or_sweep;  // world space: the eye; or the segment, as long as is needed to pass the other set
-  const HullEllipsoid* around = nullptr;  // the hull's; none: pairs known to be apart take longer
+  const HullEnvelope* around = nullptr;  // the hull's; none: pairs known to be apart take longer
 };
 
 enum class Meeting : std::uint8_t {
@@ -46,10 +46,10 @@ struct PairCounts {
   std::uint64_t questions = 0, chung_steps = 0, gilbert_steps = 0;
 };
 
-// Sets that were apart at the last question are first looked at as ellipsoids, which mostly settles it. Then
-// Chung's reflections, at most four and only if they were apart at the last question or nothing is known;
-// then Gilbert's distance, from the vertex pairs found. The answer does not depend on the witness but for
-// pairs that nearly touch; a wrong or strange witness (numbers beyond the hull's) does no harm. Source:
+// Sets that were apart at the last question are first looked at as their envelopes, which mostly settles it.
+// Then Chung's reflections, at most four and only if they were apart at the last question or nothing is
+// known; then Gilbert's distance, from the vertex pairs found. The answer does not depend on the witness but
+// for pairs that nearly touch; a wrong or strange witness (numbers beyond the hull's) does no harm. Source:
 // Snyder, Lengyel. MSR-TR-97-11, appendix B; Chung, Wang. Quick collision detection of polytopes in virtual
 // environments. VRST 1996; Gilbert, Johnson, Keerthi. A fast procedure for computing the distance between
 // complex objects in three-dimensional space. IEEE J. Robotics and Automation 1988.

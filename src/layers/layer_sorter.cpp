@@ -102,7 +102,7 @@ LayerSorter::LayerSorter(LayerSorter&&) noexcept = default;
 LayerSorter& LayerSorter::operator=(LayerSorter&&) noexcept = default;
 
 HullId LayerSorter::addHull(ConvexHull hull) {
-  impl_->store.ellipsoids.push_back(ellipsoidAround(hull));
+  impl_->store.envelopes.push_back(envelopeOf(hull));
   impl_->store.hulls.push_back(std::move(hull));
   return HullId(impl_->store.hulls.size() - 1);
 }

@@ -271,7 +271,7 @@ ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance) cons
   ConvexSet set;
   const std::uint32_t hull = parts_->part_hulls[instance];
   set.hull = &parts_->hulls[hull];
-  set.around = hull < parts_->ellipsoids.size() ? &parts_->ellipsoids[hull] : nullptr;
+  set.around = hull < parts_->envelopes.size() ? &parts_->envelopes[hull] : nullptr;
   set.placement = parts_->placements[part];
   return set;
 }

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "layers/hull_ellipsoid.h"
+#include "layers/hull_envelope.h"
 #include "layers/placement.h"
 #include "sightline/layers/hull.h"
 
@@ -15,7 +15,7 @@ namespace sightline::layers {
 
 struct PartStore {
   std::vector<ConvexHull> hulls;
-  std::vector<HullEllipsoid> ellipsoids;     // one a hull, or none
+  std::vector<HullEnvelope> envelopes;       // one a hull, or none
   std::vector<std::uint32_t> first_hull{0};  // parts + 1: where each part's begin in part_hulls
   std::vector<std::uint32_t> part_hulls;     // into hulls; the place here is an "instance"
   std::vector<Placement> placements;         // one a part

@@ -4,7 +4,7 @@
 // longer by r makes the ellipsoid higher by less than r, so each axis is lengthened along itself by as much
 // as the ball's radius in units of the shortest one.
 
-#include "layers/hull_ellipsoid.h"
+#include "layers/hull_envelope.h"
 
 #include <algorithm>
 #include <limits>
@@ -42,13 +42,13 @@ double positiveRoot(double square) {
 
 }  // namespace
 
-HullEllipsoid ellipsoidAround(const ConvexHull& hull) {
+HullEnvelope envelopeOf(const ConvexHull& hull) {
   if (hull.vertices.empty() || !(hull.radius > kLeastRadius) || !std::isfinite(hull.radius)) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     constexpr Vec3d kNowhere(kNone, kNone, kNone);
     return {kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNone};
   }
-  HullEllipsoid around;
+  HullEnvelope around;
   around.centre = hull.centre;
   // Scaled to a trace of at most 1 or so; only the shape counts.
   const Covariance sum = covarianceOf(hull);

@@ -1,4 +1,4 @@
-#include "layers/hull_ellipsoid.h"
+#include "layers/hull_envelope.h"
 
 #include <gtest/gtest.h>
 
@@ -34,13 +34,13 @@ std::vector<Vec3d> randomPoints(Random& random, std::uint64_t kind) {
   return points;
 }
 
-TEST(HullEllipsoid, IsNowhereLowerThanTheHull) {
+TEST(HullEnvelope, IsNowhereLowerThanTheHull) {
   std::size_t tight = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     Random random(seed);
     const std::vector<Vec3d> points = randomPoints(random, seed);
     const ConvexHull hull = hullOf(points);
-    const HullEllipsoid around = ellipsoidAround(hull);
+    const HullEnvelope around = envelopeOf(hull);
     for (int i = 0; i < 40; ++i) {
       const Vec3d direction = i == 0 ? Vec3d{0, 1, 0} : random.direction();
       double highest = dot(direction, points[0]), lowest = highest;
@@ -66,8 +66,7 @@ std::vector<Vec3d> boxAround(const Vec3d& middle, double half) {
 
 // Of two that were apart along the x axis at the last question.
 Meeting askAgain(ConvexSet first, ConvexSet second) {
-  const HullEllipsoid around_first = ellipsoidAround(*first.hull),
-                      around_second = ellipsoidAround(*second.hull);
+  const HullEnvelope around_first = envelopeOf(*first.hull), around_second = envelopeOf(*second.hull);
   first.around = &around_first;
   second.around = &around_second;
   PairWitness witness;
@@ -78,9 +77,9 @@ Meeting askAgain(ConvexSet first, ConvexSet second) {
   return meeting(first, second, witness, counts);
 }
 
-TEST(HullEllipsoid, SaysNothingOfAPoint) {
+TEST(HullEnvelope, SaysNothingOfAPoint) {
   const ConvexHull point = hullOf({{5, 0, 0}}), box = hullOf(boxAround({5, 0, 0}, 1.0));
-  EXPECT_TRUE(std::isnan(ellipsoidAround(point).height({1, 0, 0})));
+  EXPECT_TRUE(std::isnan(envelopeOf(point).height({1, 0, 0})));
   for (const auto kind : {ConvexSet::Kind::kHull, ConvexSet::Kind::kWithEye, ConvexSet::Kind::kSwept}) {
     ConvexSet in_the_box{&point, {}, kind};
     in_the_box.eye_or_sweep = {-3.0, 0.0, 0.0};
@@ -88,7 +87,7 @@ TEST(HullEllipsoid, SaysNothingOfAPoint) {
   }
 }
 
-TEST(HullEllipsoid, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
+TEST(HullEnvelope, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
   const ConvexHull box = hullOf(boxAround({}, 1.0)), aside = hullOf(boxAround({10, -10, 0}, 1.0));
   ConvexSet huge{&aside};
   huge.placement.x = huge.placement.y = {1e308, 0.0, 0.0};
@@ -105,13 +104,13 @@ TEST(HullEllipsoid, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
 }
 
 // The shortcut for pairs that were apart never says what the whole test does not.
-TEST(HullEllipsoid, LetsNoPairBeApartThatIsNot) {
+TEST(HullEnvelope, LetsNoPairBeApartThatIsNot) {
   std::size_t apart = 0, meets = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Random random(seed);
     const ConvexHull first = hullOf(randomPoints(random, 4 * seed + 2)),
                      second = hullOf(randomPoints(random, 4 * seed + 3));
-    const HullEllipsoid around_first = ellipsoidAround(first), around_second = ellipsoidAround(second);
+    const HullEnvelope around_first = envelopeOf(first), around_second = envelopeOf(second);
     const double reach = first.radius + second.radius;
     PairWitness witness;
     PairCounts counts;

@@ -12,7 +12,7 @@ namespace sightline::layers {
 
 // In the hull's space: all points centre + x a + y b + z c with x^2 + y^2 + z^2 <= 1; all points from
 // box_centre up to box_half away along each axis.
-struct HullEllipsoid {
+struct HullEnvelope {
   Vec3d centre;
   Vec3d a, b, c;
   Vec3d box_centre, box_half;
@@ -30,6 +30,6 @@ struct HullEllipsoid {
 
 // Of the shape of the vertices' scatter. Holds all points that the hull was made of. Where that cannot be
 // said (a single point, or what is not finite), all its numbers and heights are not numbers.
-HullEllipsoid ellipsoidAround(const ConvexHull& hull);
+HullEnvelope envelopeOf(const ConvexHull& hull);
 
 }  // namespace sightline::layers
