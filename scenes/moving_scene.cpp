@@ -83,22 +83,23 @@ void posedScene(const MovingScene& scene, std::uint32_t frame, Scene& posed) {
   placements(scene, frame, scene_from_stored);
   posed = scene.scene;
   posed.positions.clear();
+  posed.indices.clear();
   std::unordered_map<std::uint32_t, std::uint32_t>
       number_of;  // of one object's positions, by the stored ones
+  const SceneView stored = scene.scene.view();
   for (std::size_t i = 0; i < posed.objects.size(); ++i) {
     Object& object = posed.objects[i];
-    number_of.clear();
+    object.first_index = static_cast<std::uint32_t>(posed.indices.size());
     object.bounds = {};
-    for (std::uint32_t k = object.first_index; k < object.first_index + object.index_count; ++k) {
-      std::uint32_t& index = posed.indices[k];
+    number_of.clear();
+    for (const std::uint32_t index : stored.indicesOf(stored.objects[i])) {
       const auto next = static_cast<std::uint32_t>(posed.positions.size());
       const auto [found, is_new] = number_of.try_emplace(index, next);
       if (is_new) {
-        posed.positions.emplace_back(
-            transformPoint(scene_from_stored[i], Vec3d(scene.scene.positions[index])));
+        posed.positions.emplace_back(transformPoint(scene_from_stored[i], Vec3d(stored.positions[index])));
         object.bounds.extend(posed.positions.back());
       }
-      index = found->second;
+      posed.indices.push_back(found->second);
     }
   }
 }

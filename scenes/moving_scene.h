@@ -61,7 +61,7 @@ void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& pose
 void placements(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& scene_from_stored);
 
 // The whole scene with its positions where they are in a frame, rounded to single precision once. Objects,
-// materials and paths are the same; no two objects share a position, so indices are others.
+// materials and paths are the same; no two objects share a position or an index.
 void posedScene(const MovingScene& scene, std::uint32_t frame, Scene& posed);
 
 struct ToothpickOptions {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "drawing/line_view.h"
 #include "drawing/outline.h"
 #include "drawing/polylines.h"
 #include "sightline/drawing/drawing.h"
@@ -83,7 +84,7 @@ struct Draughtsman::Impl {
 
 bool Draughtsman::Impl::begin(const SceneView& scene_in, std::span<const std::string> names_in,
                               const View& view_in, const DrawingSettings& settings_in, Drawing& drawing) {
-  if (!drawing::isDrawable(view_in, settings_in.page_height)) {
+  if (!isDrawable(view_in, settings_in.page_height)) {
     return false;
   }
   scene = scene_in;

@@ -42,7 +42,7 @@ void HidingTriangles::set(const SceneView& scene, const LineView& view) {
   roots_.clear();
   for (const Object& object : scene.objects) {
     items_.clear();
-    if (view.usable() && scene.materialOf(object).opaque()) {
+    if (view.drawable() && scene.materialOf(object).opaque()) {
       addObject(scene, object, view);
     }
     roots_.push_back(trees_.add(items_));

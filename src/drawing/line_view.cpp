@@ -4,6 +4,29 @@
 #include <cmath>
 
 namespace sightline {
+namespace {
+
+// Units. Beyond, doubles do not hold thousandths.
+constexpr double kLargestPage = 1e15;
+constexpr double kSmallestPage = 1e-15;
+
+bool isSize(double value) {
+  return std::isfinite(value) && value > 0.0;
+}
+
+bool isPageSide(double value) {
+  return value >= kSmallestPage && value <= kLargestPage;
+}
+
+}  // namespace
+
+bool isDrawable(const View& view, double page_height) {
+  const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
+  return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
+         isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
+         isSize(view.near) && isSize(view.far) && view.near < view.far && isFinite(view.eye) &&
+         isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
+}
 
 bool narrow(double at_0, double at_1, double& from, double& to) {
   if (at_0 >= 0.0 && at_1 >= 0.0) {
@@ -21,15 +44,11 @@ bool narrow(double at_0, double at_1, double& from, double& to) {
   return from <= to;
 }
 
-LineView::LineView(const View& view, double page_height) : view_(view) {
+LineView::LineView(const View& view, double page_height)
+    : view_(view), drawable_(isDrawable(view, page_height)) {
   half_height_ = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   half_width_ = half_height_ * view.aspect;
   page_scale_ = page_height / (2.0 * half_height_);
-  const bool finite =
-      isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
-  usable_ = finite && view.near > 0.0 && view.far > view.near && half_height_ > 0.0 && half_width_ > 0.0 &&
-            std::isfinite(half_height_) && std::isfinite(half_width_) && std::isfinite(page_scale_) &&
-            page_scale_ > 0.0;
 }
 
 Vec3d LineView::cameraPoint(const Vec3f& position) const {
@@ -57,7 +76,7 @@ bool LineView::clip(const Vec3d& a, const Vec3d& b, double& from, double& to) co
   to = 1.0;
   const double scale_a = view_.orthographic ? 1.0 : a.z;
   const double scale_b = view_.orthographic ? 1.0 : b.z;
-  return usable_ && narrow(a.z - view_.near, b.z - view_.near, from, to) &&
+  return drawable_ && narrow(a.z - view_.near, b.z - view_.near, from, to) &&
          narrow(view_.far - a.z, view_.far - b.z, from, to) &&
          narrow(half_width_ * scale_a + a.x, half_width_ * scale_b + b.x, from, to) &&
          narrow(half_width_ * scale_a - a.x, half_width_ * scale_b - b.x, from, to) &&

@@ -13,18 +13,23 @@ struct ScreenPoint {
   double nearness = 0.0;    // greater is nearer: 1 / depth, or -depth
 };
 
+// Whether a view can be drawn on a page of this height: sizes and directions are finite, sizes above zero,
+// and both sides of the page between 1e-15 and 1e15 units.
+bool isDrawable(const View& view, double page_height);
+
 class LineView {
  public:
   LineView() = default;  // nothing is in it
   LineView(const View& view, double page_height);
 
   const View& view() const { return view_; }
-  bool usable() const { return usable_; }  // all numbers make sense
+  bool drawable() const { return drawable_; }
 
   Vec3d cameraPoint(const Vec3f& position) const;
   ScreenPoint onScreen(const Vec3d& camera) const;  // camera.z > 0 in perspective
   double halfWidth() const { return half_width_; }  // of the screen
   double halfHeight() const { return half_height_; }
+  double pageScale() const { return page_scale_; }  // page units a unit of the screen
 
   // On the page: units, x to the right, y down, clamped to it.
   double pageX(double screen_x) const;
@@ -35,7 +40,7 @@ class LineView {
 
  private:
   View view_;
-  bool usable_ = false;
+  bool drawable_ = false;
   double half_width_ = 0.0, half_height_ = 0.0, page_scale_ = 0.0;
 };
 

@@ -9,57 +9,31 @@
 namespace sightline::drawing {
 namespace {
 
-constexpr std::uint32_t kBorders = 6;  // near, far, left, right, lower, upper
-// Units. Beyond, doubles do not hold thousandths; the grid ends at 2^60, below Clipper's limit.
-constexpr double kLargestPage = 1e15;
-constexpr double kSmallestPage = 1e-15;
+constexpr std::uint32_t kBorders = 6;    // near, far, left, right, lower, upper
 constexpr double kFewestLines = 1024.0;  // of the grid, a unit
 constexpr double kLinesAcross = 0x1p20;  // of the grid, at least
 
-bool isSize(double value) {
-  return std::isfinite(value) && value > 0.0;
-}
-
-bool isPageSide(double value) {
-  return value >= kSmallestPage && value <= kLargestPage;
-}
-
-// A power of two, so that pages of round sizes have corners on the grid.
+// A power of two, so that pages of round sizes have corners on the grid. The largest pages need 2^60 lines,
+// below Clipper's limit.
 double gridScaleOf(double extent) {
   return std::max(kFewestLines, std::exp2(std::ceil(std::log2(kLinesAcross / extent))));
 }
 
 }  // namespace
 
-bool isDrawable(const View& view, double page_height) {
-  const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
-  return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
-         isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
-         isSize(view.near) && isSize(view.far) && view.near < view.far && isFinite(view.eye) &&
-         isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
-}
-
 void Outliner::setView(const View& view, double page_height) {
-  view_ = view;
-  half_height_ = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;
-  half_width_ = half_height_ * view.aspect;
-  const double margin = 2.0 * half_height_ * kMargin;
-  widest_ = half_width_ + margin;
-  highest_ = half_height_ + margin;
-  units_ = page_height / (2.0 * half_height_);
-  scale_ = gridScaleOf(2.0 * units_ * std::max(widest_, highest_));
-}
-
-Vec3d Outliner::cameraPoint(const Vec3f& position) const {
-  const Vec3d d = Vec3d(position) - view_.eye;
-  return {dot(d, view_.right), dot(d, view_.up), dot(d, view_.forward)};
+  view_ = LineView(view, page_height);
+  const double margin = 2.0 * view_.halfHeight() * kMargin;
+  widest_ = view_.halfWidth() + margin;
+  highest_ = view_.halfHeight() + margin;
+  scale_ = gridScaleOf(2.0 * view_.pageScale() * std::max(widest_, highest_));
 }
 
 bool Outliner::mayShow(const SceneView& scene, ObjectId object) const {
   std::uint32_t beyond = ~0u;
   for (const std::uint32_t corner : scene.indicesOf(scene.objects[object.value])) {
     if (isFinite(scene.positions[corner])) {
-      beyond &= bordersBeyond(cameraPoint(scene.positions[corner]));
+      beyond &= bordersBeyond(view_.cameraPoint(scene.positions[corner]));
     }
     if (beyond == 0) {
       return true;
@@ -70,12 +44,12 @@ bool Outliner::mayShow(const SceneView& scene, ObjectId object) const {
 
 // Not negative inside.
 double Outliner::borderDistance(std::uint32_t border, const Vec3d& p) const {
-  const double depth = view_.orthographic ? 1.0 : p.z;
+  const double depth = view_.view().orthographic ? 1.0 : p.z;
   switch (border) {
     case 0:
-      return p.z - view_.near;
+      return p.z - view_.view().near;
     case 1:
-      return view_.far - p.z;
+      return view_.view().far - p.z;
     case 2:
       return p.x + widest_ * depth;
     case 3:
@@ -98,11 +72,11 @@ std::uint32_t Outliner::bordersBeyond(const Vec3d& p) const {
 // x to the right and y down, as on the page. The clamp holds what rounding leaves beyond the margin; what it
 // leaves before the near plane may have no depth at all.
 GridPoint Outliner::onGrid(const Vec3d& p) const {
-  const double depth = view_.orthographic ? 1.0 : std::max(p.z, view_.near);
+  const double depth = view_.view().orthographic ? 1.0 : std::max(p.z, view_.view().near);
   const double x = std::clamp(p.x / depth, -widest_, widest_);
   const double y = std::clamp(p.y / depth, -highest_, highest_);
-  return {std::llround((x + half_width_) * units_ * scale_),
-          std::llround((half_height_ - y) * units_ * scale_)};
+  const double lines = view_.pageScale() * scale_;
+  return {std::llround((x + view_.halfWidth()) * lines), std::llround((view_.halfHeight() - y) * lines)};
 }
 
 // Cuts polygon_ at some borders.
@@ -125,7 +99,7 @@ void Outliner::addTriangle(const SceneView& scene, std::span<const std::uint32_t
     if (!isFinite(scene.positions[corner])) {
       return;
     }
-    const Vec3d p = cameraPoint(scene.positions[corner]);
+    const Vec3d p = view_.cameraPoint(scene.positions[corner]);
     const std::uint32_t beyond = bordersBeyond(p);
     some_beyond |= beyond;
     all_beyond &= beyond;

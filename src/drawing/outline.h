@@ -6,18 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "drawing/line_view.h"
 #include "drawing/outline_chain.h"
 #include "sightline/base/ids.h"
 #include "sightline/drawing/drawing.h"
 #include "sightline/math/vec3.h"
-#include "sightline/scene/camera.h"
 #include "sightline/scene/scene.h"
 
 namespace sightline::drawing {
-
-// Whether a view can be drawn on a page of this height: sizes and directions are finite, sizes above zero,
-// and both sides of the page between 1e-15 and 1e15 units.
-bool isDrawable(const View& view, double page_height);
 
 // Corners are rounded to a grid of at least 1,024 lines a unit, more on small pages. All that follows is
 // exact, but for the corners where borders cross. For one thread at a time; keeps its memory.
@@ -45,20 +41,17 @@ class Outliner {
 
  private:
   struct Corner {
-    Vec3d position;  // along right, up, forward from the eye
+    Vec3d position;  // camera space
   };
 
-  Vec3d cameraPoint(const Vec3f& position) const;
   std::uint32_t bordersBeyond(const Vec3d& p) const;
   double borderDistance(std::uint32_t border, const Vec3d& p) const;
   GridPoint onGrid(const Vec3d& p) const;
   void addTriangle(const SceneView& scene, std::span<const std::uint32_t> corners, bool double_sided);
   bool clip(std::uint32_t borders);
 
-  View view_;
-  double half_width_ = 0.0, half_height_ = 0.0;  // of the page at depth 1 (orthographic: at any)
-  double widest_ = 0.0, highest_ = 0.0;          // the same with margin
-  double units_ = 0.0;                           // page units a unit of half_height_
+  LineView view_;
+  double widest_ = 0.0, highest_ = 0.0;  // half of the screen with margin
   double scale_ = 1024.0;
   std::vector<Corner> polygon_, scratch_;
   std::vector<GridPoint> ring_;

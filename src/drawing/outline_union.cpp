@@ -32,6 +32,17 @@ bool uniteSafely(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths
   }
 }
 
+void take(const ClipperLib::Paths& united, int bits, std::vector<GridPath>& loops) {
+  const std::int64_t cell = std::int64_t{1} << bits;
+  loops.clear();
+  for (const ClipperLib::Path& path : united) {
+    GridPath& ring = loops.emplace_back();
+    for (const ClipperLib::IntPoint& p : path) {
+      ring.push_back({p.X * cell, p.Y * cell});
+    }
+  }
+}
+
 bool isSliver(const GridPath& ring, double least_width) {
   double area = 0.0, perimeter = 0.0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -76,20 +87,12 @@ void uniteLoops(std::vector<GridPath>& loops, double least_width) {
     dropSlivers();
     return;
   }
-  ClipperLib::Paths united;
-  int bits = 0;
-  while (!uniteSafely(loops, bits, united) && bits < kCoarsest) {
-    united.clear();
-    ++bits;
-  }
-  // Where even that failed, the loops themselves are better than nothing.
-  if (bits < kCoarsest) {
-    loops.clear();
-    for (const ClipperLib::Path& path : united) {
-      GridPath& ring = loops.emplace_back();
-      for (const ClipperLib::IntPoint& p : path) {
-        ring.push_back({p.X * (std::int64_t{1} << bits), p.Y * (std::int64_t{1} << bits)});
-      }
+  // Where all fail, the loops themselves are better than nothing.
+  for (int bits = 0; bits <= kCoarsest; ++bits) {
+    ClipperLib::Paths united;
+    if (uniteSafely(loops, bits, united)) {
+      take(united, bits, loops);
+      break;
     }
   }
   dropSlivers();

@@ -37,6 +37,7 @@ struct LayerCompositor::Impl {
   std::vector<ObjectId> objects;
   std::array<ShapedPixel, kCompositingScratch> scratch;
   LayerImage composited, sky;
+  std::vector<std::uint32_t> unordered_groups;
   bool all_sizes_fit = true;  // of the images that were drawn
 
   Status readUses(const FrameLayers& layers, const CompositeSettings& settings);
@@ -158,7 +159,9 @@ void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers
                                      LayerImage& picture, CompositeStats& stats) {
   const std::uint32_t first = layers.first_layer[group], end = layers.first_layer[group + 1];
   const bool unordered = isUnordered(layers, first, end);
-  stats.unordered_groups += unordered ? 1 : 0;
+  if (unordered) {
+    unordered_groups.push_back(group);
+  }
   if (end - first == 1) {
     addLayer(view, layers, first, settings, picture, stats);
     return;
@@ -239,10 +242,12 @@ Result<CompositeStats> LayerCompositor::composite(const View& view, const FrameL
   CompositeStats stats;
   stats.operations = countSteps(program.steps);
   c.all_sizes_fit = true;
+  c.unordered_groups.clear();
   picture.clear(c.renderer->width(), c.renderer->height());
   for (std::uint32_t group = 0; group < layers.groups(); ++group) {
     c.addGroup(view, layers, group, program, settings, picture, stats);
   }
+  stats.unordered_groups = static_cast<std::uint32_t>(c.unordered_groups.size());
   if (!c.all_sizes_fit) {
     return Error{"layers drawn by draw_layer must have " + std::to_string(c.renderer->width()) + " x " +
                  std::to_string(c.renderer->height()) + " pixels"};
@@ -252,6 +257,10 @@ Result<CompositeStats> LayerCompositor::composite(const View& view, const FrameL
     compositeOver(picture, c.sky);
   }
   return stats;
+}
+
+std::span<const std::uint32_t> LayerCompositor::unorderedGroups() const {
+  return impl_->unordered_groups;
 }
 
 }  // namespace sightline

@@ -245,7 +245,8 @@ bool LayerReuse::Impl::warpKept(const LayerDraw& how, LayerImage& image) {
   }
   const double guard = settings.guard_px;
   const Warp guarded_from_frame{{1, 0, guard, 0, 1, guard, 0, 0, 1}};
-  image.clear(width, height);
+  image.width = width;
+  image.height = height;
   drawWarped(found->second.sprite, *kept_from_frame * guarded_from_frame, image);
   stats.largest_error_px = std::max(stats.largest_error_px, warp->error_px);
   found->second.used_in = frame;

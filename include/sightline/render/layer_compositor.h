@@ -44,7 +44,7 @@ struct CompositeSettings {
 struct CompositeStats {
   std::uint32_t layers = 0;            // drawn; a group that is peeled as one layer counts once
   std::uint32_t peeled = 0;            // of them
-  std::uint32_t unordered_groups = 0;  // groups of several parts with blended ones, which no order gets right
+  std::uint32_t unordered_groups = 0;  // see LayerCompositor::unorderedGroups
   std::uint64_t triangles = 0;         // sent to OpenGL; none of what draw_layer draws
   CompositingCounts operations;
 };
@@ -66,6 +66,10 @@ class LayerCompositor {
   // of draw_layer of another size.
   Result<CompositeStats> composite(const View& view, const FrameLayers& layers,
                                    const CompositeSettings& settings, LayerImage& picture);
+
+  // Of the last picture: the frame's groups of which several parts were drawn and some of them were blended,
+  // which no order gets right. Ascending.
+  std::span<const std::uint32_t> unorderedGroups() const;
 
  private:
   struct Impl;
