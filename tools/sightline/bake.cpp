@@ -1,6 +1,7 @@
 // sightline bake: the visibility octree of a scene, and its occluder databases, as a file.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "tools/sightline/bake_options.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,6 @@
 
 // The options of `bake`, and what they mean for the library.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +10,10 @@
 #include "sightline/pvs/bake/bake.h"
 #include "tools/sightline/method_options.h"
 #include "tools/sightline/options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::tool {
 

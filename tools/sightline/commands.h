@@ -2,10 +2,13 @@
 
 // The commands. Each adds itself to the command line; the one that the user names becomes `chosen`.
 
-#include <CLI/CLI.hpp>
 #include <functional>
 
 #include "sightline/base/result.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::tool {
 

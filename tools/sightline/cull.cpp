@@ -1,6 +1,7 @@
 // sightline cull: the objects that may be seen in every frame of a walk.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <map>
 #include <memory>

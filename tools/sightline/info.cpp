@@ -1,6 +1,7 @@
 // sightline info: what is in a scene, and what culling can make of it; what is in a baked file.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <memory>
 

@@ -1,6 +1,7 @@
 #include "tools/sightline/layer_drawings.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>

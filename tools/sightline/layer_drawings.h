@@ -8,6 +8,10 @@
 #include "sightline/drawing/feature_edges.h"
 #include "tools/sightline/layer_frames.h"
 
+namespace CLI {
+class App;
+}
+
 namespace sightline::tool {
 
 struct LayerDrawingOptions {

@@ -2,7 +2,6 @@
 
 // What `layers` hands on, frame by frame: the sorted layers, to whatever makes pictures or drawings of them.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -10,9 +9,15 @@
 #include <vector>
 
 #include "sightline/layers/compositing.h"
+#include "sightline/render/layer_image.h"
 #include "sightline/render/layer_renderer.h"
 #include "tools/sightline/layer_input.h"
 #include "tools/sightline/options.h"
+
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace sightline::tool {
 
@@ -51,6 +56,12 @@ class FrameMaker {
 
 // Of the pictures that the input asks for.
 Result<LayerRenderer> makeRenderer(const FrameMakerInput& input);
+
+// How two pictures of a frame differ, as it is told everywhere.
+constexpr double kTolerance = 4.0;  // of 255, see measureDifference
+Json differenceJson(const PictureDifference& difference);
+// Ours, theirs, and where they differ, side by side.
+Status writeComparison(const LayerImage& ours, const LayerImage& theirs, const std::string& file);
 
 // Where a frame's file goes: `target` itself, or, of several frames, with the number before the extension:
 // "dir/out_0012.png".

@@ -1,6 +1,7 @@
 #include "tools/sightline/layer_lens.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,6 @@
 #include <utility>
 
 #include "sightline/io/image.h"
-#include "sightline/render/compare.h"
 #include "sightline/render/lens_picture.h"
 #include "tools/sightline/names.h"
 #include "tools/sightline/parse_text.h"
@@ -28,7 +28,6 @@ constexpr std::array<Name<LayerBlur>, 3> kLayerBlurs{{
     {"depth", LayerBlur::kByDepth},
     {"accumulate", LayerBlur::kAccumulate},
 }};
-constexpr double kTolerance = 4.0;  // of 255, see measureDifference
 constexpr std::uint32_t kMostPasses = 10000;
 
 // Motion blur alone goes by layers.
@@ -60,8 +59,12 @@ class LayerLens : public FrameMaker {
       line += fmt::format(" ({} layers: {} blurred evenly, {} by depth, {} accumulated)", stats->layers,
                           stats->even, stats->by_depth, stats->accumulated);
     }
-    if (const Status ok = write(options_.blurred, frame.number, toImage(picture_), json); !ok) {
-      return ok.error();
+    if (!options_.blurred.empty()) {
+      const std::string file = frameFile(options_.blurred, frame.number, input_.several_frames);
+      if (const Status ok = writePng(toImage(picture_), file); !ok) {
+        return ok.error();
+      }
+      json["file"] = file;
     }
     if (!options_.compare.empty()) {
       const Result<Json> compared = compare(frame, line);
@@ -114,15 +117,6 @@ class LayerLens : public FrameMaker {
     return json;
   }
 
-  Status write(const std::string& target, std::uint32_t frame, const Image& image, Json& json) const {
-    if (target.empty()) {
-      return Success{};
-    }
-    const std::string file = frameFile(target, frame, input_.several_frames);
-    json["file"] = file;
-    return writePng(image, file);
-  }
-
   // With the reference; its picture beside ours, and where they differ.
   Result<Json> compare(const SortedFrame& frame, std::string& line) {
     LensSettings reference = settings_;
@@ -138,17 +132,11 @@ class LayerLens : public FrameMaker {
         "{:.3f} % of the pixels beyond {:.0f})",
         reference.passes, difference.mean, difference.rms, difference.largest,
         100.0 * difference.share_beyond, kTolerance);
-    Json json = {{"passes", reference.passes},
-                 {"difference",
-                  {{"mean", difference.mean},
-                   {"rms", difference.rms},
-                   {"largest", difference.largest},
-                   {"tolerance", kTolerance},
-                   {"share_beyond", difference.share_beyond}}}};
-    const Image ours = toImage(picture_), theirs = toImage(reference_);
-    const Status ok = write(options_.compare, frame.number,
-                            sideBySide(sideBySide(ours, theirs), differenceImage(ours, theirs)), json);
-    return ok ? Result<Json>(std::move(json)) : ok.error();
+    const std::string file = frameFile(options_.compare, frame.number, input_.several_frames);
+    if (const Status ok = writeComparison(picture_, reference_, file); !ok) {
+      return ok.error();
+    }
+    return Json{{"passes", reference.passes}, {"difference", differenceJson(difference)}, {"file", file}};
   }
 
   const LayerLensOptions& options_;

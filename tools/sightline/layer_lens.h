@@ -3,13 +3,16 @@
 // layers --depth-of-field, --motion-blur: blurred pictures of sorted frames, beside the accumulation of whole
 // pictures.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "tools/sightline/layer_frames.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::tool {
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
 #include "sightline/io/image.h"
-#include "sightline/render/compare.h"
 #include "sightline/render/layer_compositor.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/layer_by_distance.h"
@@ -22,7 +22,6 @@ constexpr std::array<Name<CompositeSettings::Peel>, 2> kPeels{{
     {"where-needed", CompositeSettings::Peel::kWhereNeeded},
     {"never", CompositeSettings::Peel::kNever},
 }};
-constexpr double kTolerance = 4.0;  // of 255, see measureDifference
 
 struct ReplacedPart {
   std::uint32_t part = 0;
@@ -68,14 +67,6 @@ void fit(const Image& file, const Rectangle& to, LayerImage& image) {
           pixelOf(file, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
     }
   }
-}
-
-Json differenceJson(const PictureDifference& difference) {
-  return {{"mean", difference.mean},
-          {"rms", difference.rms},
-          {"largest", difference.largest},
-          {"tolerance", kTolerance},
-          {"share_beyond", difference.share_beyond}};
 }
 
 std::string differenceText(const PictureDifference& difference) {
@@ -203,8 +194,7 @@ class LayerPictures : public FrameMaker {
         "; by distances of centres {} of {} overlapping pairs of see-through parts are in the wrong order "
         "({} have no order), mean difference {}",
         pairs.wrong, pairs.overlapping, pairs.without_order, differenceText(difference));
-    const Image ours = toImage(picture_), theirs = toImage(other_);
-    return writePng(sideBySide(sideBySide(ours, theirs), differenceImage(ours, theirs)), file);
+    return writeComparison(picture_, other_, file);
   }
 
   void addSky(const View& view, LayerImage& image) {
@@ -217,22 +207,17 @@ class LayerPictures : public FrameMaker {
   }
   const std::string& nameOf(PartId part) const { return input_.input.moving.parts[part.value].name; }
 
-  // Groups of several parts that are drawn of which some are see-through.
+  // The parts of groups that no order gets right, as far as they are drawn.
   Json unorderedGroups(const SortedFrame& frame) const {
     Json groups = Json::array();
-    for (std::size_t g = 0; g < frame.layers.groups(); ++g) {
-      Json parts = Json::array();
-      bool any_blended = false;
+    for (const std::uint32_t g : compositor_.unorderedGroups()) {
+      Json& parts = groups.emplace_back(Json::array());
       for (std::uint32_t i = frame.layers.first_layer[g]; i < frame.layers.first_layer[g + 1]; ++i) {
         if (isDrawn(LayerId(i))) {
           for (const PartId part : frame.layers.partsOf(LayerId(i))) {
             parts.push_back({{"part", part.value}, {"name", nameOf(part)}, {"see_through", isBlended(part)}});
-            any_blended = any_blended || isBlended(part);
           }
         }
-      }
-      if (any_blended && parts.size() > 1) {
-        groups.push_back(parts);
       }
     }
     return groups;

@@ -3,12 +3,15 @@
 // layers --image, --by-distance: pictures composited from layers, and what other ways of drawing differ from
 // them.
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "tools/sightline/layer_frames.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::tool {
 

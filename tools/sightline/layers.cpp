@@ -1,6 +1,7 @@
 // sightline layers: the order in which the parts of a scene must be drawn, in every frame of a walk.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -4,6 +4,7 @@
 #include "tools/sightline/method_options.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,13 +2,16 @@
 
 // How to cull: the options of the command line, and what they mean for the library.
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/culling/culler.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::tool {
 

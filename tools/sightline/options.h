@@ -2,13 +2,16 @@
 
 // Options that commands share; for how to cull see method_options.h.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/scene/camera.h"
+
+namespace CLI {
+class App;
+}
 
 namespace sightline::tool {
 

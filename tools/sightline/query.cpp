@@ -1,6 +1,7 @@
 // sightline query: what may be seen from points, from a baked file alone.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -1,6 +1,7 @@
 // sightline reproduce: the experiments of a paper, on the scenes of today.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <limits>

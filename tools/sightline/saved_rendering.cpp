@@ -2,9 +2,8 @@
 // 1997, section 12.2. Differs from the paper in: it assumes the shares of frames in which parts are drawn;
 // here a tolerance is given and the shares come out.
 //
-// Pieces of the canyon's terrain overlap, each with its own tint. Where some are drawn as one layer, which of
-// them shows is chance, and differs between any two ways to draw them: with coarse grids that is most of the
-// difference between the pictures.
+// Drawn without tints: where pieces of the terrain that overlap are drawn as one layer, it is chance which of
+// them shows.
 
 #include "tools/sightline/saved_rendering.h"
 
@@ -104,9 +103,10 @@ Result<LayerRenderer> rendererOf(const MovingScene& scene, const SavedRenderingO
                                  std::uint32_t guard_px) {
   const double aspect = scene.scene.paths.front().view(0, scene.scene.origin).aspect;
   const auto width = static_cast<std::uint32_t>(std::lround(options.height * aspect));
-  return LayerRenderer::create(
-      scene.scene.view(),
-      {.width = width + 2 * guard_px, .height = options.height + 2 * guard_px, .samples = options.samples});
+  return LayerRenderer::create(scene.scene.view(), {.width = width + 2 * guard_px,
+                                                    .height = options.height + 2 * guard_px,
+                                                    .samples = options.samples,
+                                                    .tints = false});
 }
 
 Result<SceneTotals> SceneRun::run(const MovingScene& scene, const LayerSettings& sorting,

@@ -1,6 +1,7 @@
 // sightline verify: what a culler says against what rays see.
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
