@@ -78,8 +78,8 @@ struct Draughtsman::Impl {
   View view;
   const DrawingSettings* settings = nullptr;
   double tolerance = 0.0;
-  std::vector<bool> shows;    // by object: it may
-  std::uint64_t objects = 0;  // in the order, that may
+  std::vector<bool> shows;                       // by object: it may
+  std::uint64_t objects = 0, objects_drawn = 0;  // in the order, that may
 };
 
 bool Draughtsman::Impl::begin(const SceneView& scene_in, std::span<const std::string> names_in,
@@ -91,6 +91,7 @@ bool Draughtsman::Impl::begin(const SceneView& scene_in, std::span<const std::st
   names = names_in;
   view = view_in;
   settings = &settings_in;
+  objects_drawn = 0;
   tolerance = settings_in.page_height * kToleranceShare;
   drawing.height = settings_in.page_height;
   drawing.width = settings_in.page_height * view.aspect;
@@ -117,6 +118,10 @@ DrawingObject Draughtsman::Impl::drawLines(ObjectId object, drawing::DrawnPieces
     before->leaveNew(pieces);
   }
   drawing::joinPieces(pieces, tolerance, drawn.strokes);
+  ++objects_drawn;
+  if (settings->progress) {
+    settings->progress(static_cast<double>(objects_drawn) / static_cast<double>(objects));
+  }
   drawing.pairs += lines.size() * occluders.size();
   drawing.all_pairs += lines.size() * objects;
   return drawn;

@@ -75,6 +75,14 @@ struct LensPicture::Impl {
     const View& view;
     const LensSettings& settings;
     LensStats stats;
+    std::size_t steps = 0, begun = 0;  // passes of accumulation, or layers
+
+    void tellProgress() {
+      if (settings.progress) {
+        settings.progress(static_cast<double>(begun) / static_cast<double>(steps));
+      }
+      ++begun;
+    }
   };
 
   Status check(const FrameLayers& layers, const LensSettings& settings) const;
@@ -148,6 +156,9 @@ void LensPicture::Impl::accumulate(Frame& frame, std::span<const ObjectId> ids, 
   how.depths = false;
   image.clear(renderer->width(), renderer->height());
   for (const LensPass& pass : passesOf(frame.settings)) {
+    if (frame.settings.method == LensMethod::kAccumulation) {
+      frame.tellProgress();
+    }
     how.lens = pass.point;
     View view = frame.view;
     if (motion) {
@@ -245,6 +256,7 @@ LayerBlur LensPicture::Impl::chosenFor(std::span<const ObjectId> ids, const Lens
 
 void LensPicture::Impl::drawLayer(Frame& frame, std::span<const ObjectId> ids, LayerDraw how,
                                   LayerImage& image) {
+  frame.tellProgress();
   how.depths = true;
   drawObjects(frame, frame.view, ids, how, drawn);
   const SeenLayer seen = lookAt(drawn, frame.view, frame.settings.lens);
@@ -311,7 +323,8 @@ Result<LensStats> LensPicture::draw(const View& view, const FrameLayers& layers,
   if (settings.motion) {
     impl_->renderer->setTransforms(settings.motion->stored);
   }
-  Impl::Frame frame{view, settings, {}};
+  const std::size_t steps = settings.method == LensMethod::kAccumulation ? settings.passes : layers.layers();
+  Impl::Frame frame{view, settings, {}, steps, 0};
   switch (settings.method) {
     case LensMethod::kSingleNormalised:
       impl_->drawSingle(frame, ids, Spread::kNormalised, picture);

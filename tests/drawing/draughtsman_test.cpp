@@ -392,5 +392,18 @@ TEST(Draughtsman, ViewsAndPagesWithoutSizeGiveEmptyDrawings) {
   EXPECT_TRUE(set.plot(view).groups.empty());
 }
 
+TEST(Draughtsman, TellsOfItsProgressUpToTheEnd) {
+  const Set set = randomSet(8, 5);
+  std::vector<double> told;
+  const DrawingSettings settings{.page_height = kHeight,
+                                 .progress = [&](double done) { told.push_back(done); }};
+  set.paint(viewFromFront(), settings);
+  set.plot(viewFromFront(), settings);
+  ASSERT_EQ(told.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_DOUBLE_EQ(told[i], static_cast<double>(i % 5 + 1) / 5.0);
+  }
+}
+
 }  // namespace
 }  // namespace sightline

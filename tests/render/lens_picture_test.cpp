@@ -482,5 +482,20 @@ TEST_F(LensPictureTest, SeesThroughLayersInTheRightOrder) {
   EXPECT_LT(rmsOf(picture, reference), 0.01);
 }
 
+TEST_F(LensPictureTest, TellsOfItsProgress) {
+  const ObjectId near_wall = maker_.wall(4.0, 1.0, kGlass), wall = maker_.wall(0.0, 2.5, kRed);
+  prepare();
+  layers_ = layersOf({{near_wall}, {wall}});
+  settings_.lens = {.focus = 10.0, .aperture = 0.5};
+  settings_.passes = 4;
+  std::vector<double> told;
+  settings_.progress = [&](double done) { told.push_back(done); };
+  by(LensMethod::kAccumulation);
+  EXPECT_EQ(told, (std::vector<double>{0.0, 0.25, 0.5, 0.75}));
+  told.clear();
+  by(LensMethod::kLayers);
+  EXPECT_EQ(told, (std::vector<double>{0.0, 0.5}));
+}
+
 }  // namespace
 }  // namespace sightline

@@ -126,5 +126,26 @@ TEST(MovingScene, ObjectsOfAPosedSceneShareNoPositionAndUseAll) {
   }
 }
 
+// As instances do.
+TEST(MovingScene, ObjectsThatShareTheirIndicesGoEachWhereItIs) {
+  MovingScene scene = makeToothpicks({.count = 2});
+  std::vector<Object>& objects = scene.scene.objects;
+  objects[1].first_index = objects[0].first_index;
+  objects[1].index_count = objects[0].index_count;
+  std::vector<Mat4> placed;
+  placements(scene, 60, placed);
+  Scene posed;
+  posedScene(scene, 60, posed);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::span<const std::uint32_t> stored = scene.scene.view().indicesOf(objects[i]),
+                                         now = posed.view().indicesOf(posed.objects[i]);
+    ASSERT_EQ(now.size(), stored.size());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      EXPECT_EQ(posed.positions[now[k]],
+                Vec3f(transformPoint(placed[i], Vec3d(scene.scene.positions[stored[k]]))));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline

@@ -208,6 +208,9 @@ TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
   refused({"--image", png, "--replace", "1="}, "PART=FILE.png");
   refused({"--image", ""}, "--image");
   refused({"--peel", "never"}, "--image");
+  refused({"--samples", "2"}, "--image");
+  refused({"--tints", "off"}, "--image");
+  refused({"--image", png, "--line-picture", png}, "--line-picture");
   refused({"--without", "1"}, "--image");
   refused({"--replace", "1=" + text}, "--image");
   EXPECT_EQ(folder_.entries(), 1u);

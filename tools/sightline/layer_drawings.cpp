@@ -55,6 +55,7 @@ class LayerDrawings : public FrameMaker {
   Result<Json> make(const SortedFrame& frame) override {
     const MovingScene& moving = input_.input.moving;
     place(moving, frame.number);
+    settings_.progress = frame.progress;
     const std::vector<std::string>& names = moving.scene.object_names;
     Stopwatch watch;
     const Drawing drawing =

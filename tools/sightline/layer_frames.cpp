@@ -1,7 +1,6 @@
 #include "tools/sightline/layer_frames.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <utility>
@@ -46,10 +45,6 @@ Status checkFrameFile(const std::string& option, const std::string& target, cons
     return Error{fmt::format("{} {}: the file's name must end in {}", option, target, extension)};
   }
   return checkOutput(target, scene_file);
-}
-
-CLI::Validator isNotEmpty() {
-  return {[](std::string& word) { return std::string(word.empty() ? "is empty" : ""); }, ""};
 }
 
 Status checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {

@@ -3,6 +3,7 @@
 // What `layers` hands on, frame by frame: the sorted layers, to whatever makes pictures or drawings of them.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,11 +15,6 @@
 #include "tools/sightline/layer_input.h"
 #include "tools/sightline/options.h"
 
-namespace CLI {
-class App;
-class Validator;
-}  // namespace CLI
-
 namespace sightline::tool {
 
 // Valid during the call that it is given to.
@@ -27,7 +23,8 @@ struct SortedFrame {
   const View& view;          // with square pixels
   const LayerOrder& order;
   const FrameLayers& layers;
-  std::span<const Mat4> scene_from_stored;  // where the parts are, one a part; none: as stored
+  std::span<const Mat4> scene_from_stored;         // where the parts are, one a part; none: as stored
+  std::function<void(double done)> progress = {};  // takes the share of the maker's work on this frame
 };
 
 // What a maker works with. Outlives it.
@@ -69,9 +66,6 @@ std::string frameFile(const std::string& target, std::uint32_t frame, bool sever
 // As checkOutput, and that the name ends in the extension (".png").
 Status checkFrameFile(const std::string& option, const std::string& target, const std::string& extension,
                       const std::string& scene_file);
-
-// Refuses an empty word, as of a variable that a script has not set.
-CLI::Validator isNotEmpty();
 
 struct NamedFile {
   std::string option, file;  // file empty or "-": none

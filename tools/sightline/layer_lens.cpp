@@ -48,6 +48,8 @@ class LayerLens : public FrameMaker {
   Result<Json> make(const SortedFrame& frame) override {
     renderer_.setTransforms(frame.scene_from_stored);
     setMotion(frame);
+    const double share = options_.compare.empty() ? 1.0 : 0.5;
+    settings_.progress = [&](double done) { frame.progress(share * done); };
     const Result<LensStats> stats = lens_.draw(frame.view, frame.layers, settings_, picture_);
     if (!stats) {
       return stats.error();
@@ -122,6 +124,7 @@ class LayerLens : public FrameMaker {
     LensSettings reference = settings_;
     reference.method = LensMethod::kAccumulation;
     reference.passes = options_.reference_passes;
+    reference.progress = [&](double done) { frame.progress(0.5 + 0.5 * done); };
     if (const Result<LensStats> drawn = lens_.draw(frame.view, frame.layers, reference, reference_); !drawn) {
       return drawn.error();
     }

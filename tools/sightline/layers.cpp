@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "sightline/layers/compositing.h"
@@ -165,7 +166,8 @@ class WalkSorter {
         aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
         sorter_(makeSorter(input.moving, settingsOf(options))) {}
 
-  Status sort(std::uint32_t frame) {
+  // progress: takes the share of the frame that is done.
+  Status sort(std::uint32_t frame, const std::function<void(double)>& progress) {
     View view = input_.walk.view(frame, input_.moving.scene);
     view.aspect = aspect_;
     pose(input_.moving, frame, poses_, sorter_);
@@ -184,8 +186,12 @@ class WalkSorter {
     if (!makers_.empty()) {
       placements(input_.moving, frame, scene_from_stored_);
     }
-    for (const std::unique_ptr<FrameMaker>& maker : makers_) {
-      const Result<Json> made = maker->make({frame, view, order, layers, scene_from_stored_});
+    for (std::size_t i = 0; i < makers_.size(); ++i) {
+      const auto progressOf = [&](double done) {
+        progress((static_cast<double>(i) + done) / static_cast<double>(makers_.size()));
+      };
+      const Result<Json> made =
+          makers_[i]->make({frame, view, order, layers, scene_from_stored_, progressOf});
       if (!made) {
         return made.error();
       }
@@ -218,10 +224,13 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   const std::vector<std::uint32_t>& frames = input.walk.frames;
   ProgressBar progress(makers.empty() ? "sorting" : "sorting and drawing");
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (const Status ok = sorter.sort(frames[i]); !ok) {
+    const auto progressOf = [&](double done) {
+      progress.update((static_cast<double>(i) + done) / static_cast<double>(frames.size()));
+    };
+    if (const Status ok = sorter.sort(frames[i], progressOf); !ok) {
       return ok.error();
     }
-    progress.update(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
+    progressOf(1.0);
   }
   const Json head = {{"scene", sceneJson(input.moving.scene)},
                      {"parts", input.moving.parts.size()},
@@ -250,7 +259,8 @@ Status checkFilesOf(const LayersOptions& options) {
                      {"--blurred", options.lens.blurred},
                      {"--compare", options.lens.compare},
                      {"--svg", options.drawings.svg},
-                     {"--pdf", options.drawings.pdf}},
+                     {"--pdf", options.drawings.pdf},
+                     {"--line-picture", options.drawings.line_picture}},
                     inputs);
 }
 
@@ -272,6 +282,9 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .form = valueOf(kCompositingForms, options.expression),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
+  if (makers && makers->empty() && (options.samples != 1 || options.tints != "on")) {
+    return Error{"--samples and --tints: are of pictures; say --image FILE.png, or another of them, too"};
+  }
   return makers ? sortWalk(options, *input, *makers) : makers.error();
 }
 

@@ -15,6 +15,10 @@ constexpr std::uint32_t kMaxPixels = 16384;
 
 }  // namespace
 
+CLI::Validator isNotEmpty() {
+  return {[](std::string& word) { return std::string(word.empty() ? "is empty" : ""); }, ""};
+}
+
 void addCommonOptions(CLI::App& command, CommonOptions& options) {
   command
       .add_option("SCENE", options.scene, "a file (.glb .gltf .obj .ply .stl ...) or demo:NAME?key=value&...")

@@ -11,9 +11,13 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace sightline::tool {
+
+// Refuses an empty word, as of a variable that a script has not set.
+CLI::Validator isNotEmpty();
 
 // What every command takes.
 struct OutputOptions {

@@ -3,6 +3,7 @@
 // Hidden-line drawings as editable vector graphics: groups, outlines, strokes; SVG and PDF.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -47,6 +48,8 @@ struct DrawingSettings {
   // (PartSettings::place). It has no arcs of them, so lines are tested against all overlays, and those of a
   // backdrop against everything. What hides there is still decided by depth.
   std::vector<ObjectId> overlays, backdrops;
+  // Called after each object with the share of them that is drawn, ascending to 1.
+  std::function<void(double done)> progress = {};
 };
 
 // Draws scenes, one view after another. Part i of an order is object i. Objects that show nothing on the page

@@ -7,6 +7,7 @@
 // Lerner. A Two-and-a-Half-D Motion-Blur Algorithm. 1985. Haeberli, Akeley. The Accumulation Buffer. 1990.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -71,6 +72,8 @@ struct LensSettings {
   CompositeSettings::Peel peel = CompositeSettings::Peel::kWhereNeeded;
   CompositingForm form = CompositingForm::kCheapest;
   bool sky = true;  // behind everything, blurred as at infinity (as it is in orthographic views)
+  // Called with the share of passes, or of layers, that were done before, ascending from 0.
+  std::function<void(double done)> progress = {};
 };
 
 struct LensStats {
