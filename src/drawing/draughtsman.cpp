@@ -61,6 +61,7 @@ struct Draughtsman::Impl {
   // is drawn before.
   DrawingObject drawLines(ObjectId object, drawing::DrawnPieces* before, Drawing& drawing);
   void drawOutline(DrawingObject& object);
+  void tellProgress();  // after each object
   // Those that may show something.
   std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
   bool mayShow(ObjectId object) const { return object.value < shows.size() && shows[object.value]; }
@@ -118,13 +119,16 @@ DrawingObject Draughtsman::Impl::drawLines(ObjectId object, drawing::DrawnPieces
     before->leaveNew(pieces);
   }
   drawing::joinPieces(pieces, tolerance, drawn.strokes);
+  drawing.pairs += lines.size() * occluders.size();
+  drawing.all_pairs += lines.size() * objects;
+  return drawn;
+}
+
+void Draughtsman::Impl::tellProgress() {
   ++objects_drawn;
   if (settings->progress) {
     settings->progress(static_cast<double>(objects_drawn) / static_cast<double>(objects));
   }
-  drawing.pairs += lines.size() * occluders.size();
-  drawing.all_pairs += lines.size() * objects;
-  return drawn;
 }
 
 void Draughtsman::Impl::drawOutline(DrawingObject& object) {
@@ -181,6 +185,7 @@ Drawing Draughtsman::paint(const SceneView& scene, std::span<const std::string> 
       }
       DrawingObject object = own.drawLines(member, nullptr, drawing);
       own.drawOutline(object);
+      own.tellProgress();
       if (!object.outline.empty() || !object.strokes.empty()) {
         group.objects.push_back(std::move(object));
       }
@@ -214,6 +219,7 @@ Drawing Draughtsman::plot(const SceneView& scene, std::span<const std::string> n
       own.occluders.insert(own.occluders.end(), settings.overlays.begin(), settings.overlays.end());
     }
     DrawingObject object = own.drawLines(*member, &drawn, drawing);
+    own.tellProgress();
     if (!object.strokes.empty()) {
       drawing.groups.emplace_back().objects.push_back(std::move(object));
     }

@@ -75,13 +75,13 @@ struct LensPicture::Impl {
     const View& view;
     const LensSettings& settings;
     LensStats stats;
-    std::size_t steps = 0, begun = 0;  // passes of accumulation, or layers
+    std::size_t steps = 0, drawn = 0;  // passes of accumulation, or layers, of which some are drawn as one
 
     void tellProgress() {
-      if (settings.progress) {
-        settings.progress(static_cast<double>(begun) / static_cast<double>(steps));
+      ++drawn;
+      if (settings.progress && drawn < steps) {
+        settings.progress(static_cast<double>(drawn) / static_cast<double>(steps));
       }
-      ++begun;
     }
   };
 
@@ -156,9 +156,6 @@ void LensPicture::Impl::accumulate(Frame& frame, std::span<const ObjectId> ids, 
   how.depths = false;
   image.clear(renderer->width(), renderer->height());
   for (const LensPass& pass : passesOf(frame.settings)) {
-    if (frame.settings.method == LensMethod::kAccumulation) {
-      frame.tellProgress();
-    }
     how.lens = pass.point;
     View view = frame.view;
     if (motion) {
@@ -168,6 +165,9 @@ void LensPicture::Impl::accumulate(Frame& frame, std::span<const ObjectId> ids, 
     }
     drawObjects(frame, view, ids, how, pass_image);
     addTo(image, pass_image, weight);
+    if (frame.settings.method == LensMethod::kAccumulation) {
+      frame.tellProgress();
+    }
   }
   if (motion) {
     renderer->setTransforms(motion->stored);
@@ -256,9 +256,9 @@ LayerBlur LensPicture::Impl::chosenFor(std::span<const ObjectId> ids, const Lens
 
 void LensPicture::Impl::drawLayer(Frame& frame, std::span<const ObjectId> ids, LayerDraw how,
                                   LayerImage& image) {
-  frame.tellProgress();
   how.depths = true;
   drawObjects(frame, frame.view, ids, how, drawn);
+  frame.tellProgress();
   const SeenLayer seen = lookAt(drawn, frame.view, frame.settings.lens);
   if (seen.empty) {
     image.clear(drawn.width, drawn.height);
@@ -340,6 +340,9 @@ Result<LensStats> LensPicture::draw(const View& view, const FrameLayers& layers,
     case LensMethod::kAccumulation:
       impl_->drawAccumulated(frame, ids, picture);
       break;
+  }
+  if (settings.progress) {
+    settings.progress(1.0);
   }
   return frame.stats;
 }

@@ -35,8 +35,7 @@ void cropSprite(const LayerImage& picture, const PictureRect& within, const Side
 
 // The sprite where `picture_from_target` looks it up, by bilinear resampling: a target pixel's centre (x +
 // 0.5, y + 0.5) is mapped to the sprite's picture; where its divisor is not positive nothing is. target:
-// its width and height are given; all else is
-// written.
+// its width and height are given, all else is written.
 void drawWarped(const Sprite& sprite, const Warp& picture_from_target, LayerImage& target);
 
 }  // namespace sightline

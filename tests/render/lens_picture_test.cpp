@@ -491,10 +491,10 @@ TEST_F(LensPictureTest, TellsOfItsProgress) {
   std::vector<double> told;
   settings_.progress = [&](double done) { told.push_back(done); };
   by(LensMethod::kAccumulation);
-  EXPECT_EQ(told, (std::vector<double>{0.0, 0.25, 0.5, 0.75}));
+  EXPECT_EQ(told, (std::vector<double>{0.25, 0.5, 0.75, 1.0}));
   told.clear();
   by(LensMethod::kLayers);
-  EXPECT_EQ(told, (std::vector<double>{0.0, 0.5}));
+  EXPECT_EQ(told, (std::vector<double>{0.5, 1.0}));
 }
 
 }  // namespace

@@ -210,6 +210,8 @@ TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
   refused({"--peel", "never"}, "--image");
   refused({"--samples", "2"}, "--image");
   refused({"--tints", "off"}, "--image");
+  refused({"--svg", folder_.file("a.svg"), "--samples", "2"}, "--image");
+  refused({"--line-picture", png, "--tints", "off"}, "--image");
   refused({"--image", png, "--line-picture", png}, "--line-picture");
   refused({"--without", "1"}, "--image");
   refused({"--replace", "1=" + text}, "--image");

@@ -11,10 +11,6 @@
 #include "tools/sightline/method_options.h"
 #include "tools/sightline/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::tool {
 
 struct BakeOptions {

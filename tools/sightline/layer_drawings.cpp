@@ -55,12 +55,13 @@ class LayerDrawings : public FrameMaker {
   Result<Json> make(const SortedFrame& frame) override {
     const MovingScene& moving = input_.input.moving;
     place(moving, frame.number);
-    settings_.progress = frame.progress;
+    DrawingSettings settings = settings_;
+    settings.progress = frame.progress;
     const std::vector<std::string>& names = moving.scene.object_names;
     Stopwatch watch;
     const Drawing drawing =
-        options_.plot ? draughtsman_->plot(posed_.view(), names, frame.view, frame.order, settings_)
-                      : draughtsman_->paint(posed_.view(), names, frame.view, frame.order, settings_);
+        options_.plot ? draughtsman_->plot(posed_.view(), names, frame.view, frame.order, settings)
+                      : draughtsman_->paint(posed_.view(), names, frame.view, frame.order, settings);
     Json json = count(drawing, watch.lap());
     if (const Status ok = write(drawing, frame.number, json); !ok) {
       return ok.error();

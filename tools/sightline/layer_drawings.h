@@ -8,10 +8,6 @@
 #include "sightline/drawing/feature_edges.h"
 #include "tools/sightline/layer_frames.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::tool {
 
 struct LayerDrawingOptions {

@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "sightline/io/image.h"
-#include "sightline/render/compare.h"
 #include "tools/sightline/json_output.h"
 
 namespace sightline::tool {
@@ -15,19 +13,6 @@ Result<LayerRenderer> makeRenderer(const FrameMakerInput& input) {
   return LayerRenderer::create(
       input.input.moving.scene.view(),
       {.width = input.width, .height = input.height, .samples = input.samples, .tints = input.tints});
-}
-
-Json differenceJson(const PictureDifference& difference) {
-  return {{"mean", difference.mean},
-          {"rms", difference.rms},
-          {"largest", difference.largest},
-          {"tolerance", kTolerance},
-          {"share_beyond", difference.share_beyond}};
-}
-
-Status writeComparison(const LayerImage& ours, const LayerImage& theirs, const std::string& file) {
-  const Image left = toImage(ours), right = toImage(theirs);
-  return writePng(sideBySide(sideBySide(left, right), differenceImage(left, right)), file);
 }
 
 std::string frameFile(const std::string& target, std::uint32_t frame, bool several_frames) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "sightline/layers/compositing.h"
-#include "sightline/render/layer_image.h"
 #include "sightline/render/layer_renderer.h"
 #include "tools/sightline/layer_input.h"
 #include "tools/sightline/options.h"
@@ -23,8 +22,8 @@ struct SortedFrame {
   const View& view;          // with square pixels
   const LayerOrder& order;
   const FrameLayers& layers;
-  std::span<const Mat4> scene_from_stored;         // where the parts are, one a part; none: as stored
-  std::function<void(double done)> progress = {};  // takes the share of the maker's work on this frame
+  std::span<const Mat4> scene_from_stored;    // where the parts are, one a part; none: as stored
+  std::function<void(double done)> progress;  // takes the share of the maker's work on this frame
 };
 
 // What a maker works with. Outlives it.
@@ -53,12 +52,6 @@ class FrameMaker {
 
 // Of the pictures that the input asks for.
 Result<LayerRenderer> makeRenderer(const FrameMakerInput& input);
-
-// How two pictures of a frame differ, as it is told everywhere.
-constexpr double kTolerance = 4.0;  // of 255, see measureDifference
-Json differenceJson(const PictureDifference& difference);
-// Ours, theirs, and where they differ, side by side.
-Status writeComparison(const LayerImage& ours, const LayerImage& theirs, const std::string& file);
 
 // Where a frame's file goes: `target` itself, or, of several frames, with the number before the extension:
 // "dir/out_0012.png".

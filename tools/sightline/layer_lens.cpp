@@ -13,6 +13,7 @@
 #include "sightline/render/lens_picture.h"
 #include "tools/sightline/names.h"
 #include "tools/sightline/parse_text.h"
+#include "tools/sightline/picture_difference.h"
 
 namespace sightline::tool {
 namespace {
@@ -49,8 +50,9 @@ class LayerLens : public FrameMaker {
     renderer_.setTransforms(frame.scene_from_stored);
     setMotion(frame);
     const double share = options_.compare.empty() ? 1.0 : 0.5;
-    settings_.progress = [&](double done) { frame.progress(share * done); };
-    const Result<LensStats> stats = lens_.draw(frame.view, frame.layers, settings_, picture_);
+    LensSettings settings = settings_;
+    settings.progress = [&](double done) { frame.progress(share * done); };
+    const Result<LensStats> stats = lens_.draw(frame.view, frame.layers, settings, picture_);
     if (!stats) {
       return stats.error();
     }
@@ -128,13 +130,9 @@ class LayerLens : public FrameMaker {
     if (const Result<LensStats> drawn = lens_.draw(frame.view, frame.layers, reference, reference_); !drawn) {
       return drawn.error();
     }
-    const PictureDifference difference = measureDifference(picture_, reference_, kTolerance);
-    line += fmt::format(
-        "; from {} accumulated pictures it differs by {:.4f} of 255 (root mean square {:.4f}, largest "
-        "{:.0f}, "
-        "{:.3f} % of the pixels beyond {:.0f})",
-        reference.passes, difference.mean, difference.rms, difference.largest,
-        100.0 * difference.share_beyond, kTolerance);
+    const PictureDifference difference = measureDifference(picture_, reference_, kDifferenceTolerance);
+    line += fmt::format("; from {} accumulated pictures it differs by {}", reference.passes,
+                        differenceText(difference));
     const std::string file = frameFile(options_.compare, frame.number, input_.several_frames);
     if (const Status ok = writeComparison(picture_, reference_, file); !ok) {
       return ok.error();

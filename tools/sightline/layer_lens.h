@@ -10,10 +10,6 @@
 
 #include "tools/sightline/layer_frames.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::tool {
 
 struct LayerLensOptions {

@@ -14,6 +14,7 @@
 #include "tools/sightline/layer_by_distance.h"
 #include "tools/sightline/names.h"
 #include "tools/sightline/parse_text.h"
+#include "tools/sightline/picture_difference.h"
 
 namespace sightline::tool {
 namespace {
@@ -67,11 +68,6 @@ void fit(const Image& file, const Rectangle& to, LayerImage& image) {
           pixelOf(file, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
     }
   }
-}
-
-std::string differenceText(const PictureDifference& difference) {
-  return fmt::format("{:.4f} of 255 (largest {:.0f}, {:.3f} % of the pixels beyond {:.0f})", difference.mean,
-                     difference.largest, 100.0 * difference.share_beyond, kTolerance);
 }
 
 class LayerPictures : public FrameMaker {
@@ -173,7 +169,7 @@ class LayerPictures : public FrameMaker {
     }
     renderer_.draw(frame.view, objects_, {.peel = true}, other_);
     addSky(frame.view, other_);
-    const PictureDifference difference = measureDifference(picture_, other_, kTolerance);
+    const PictureDifference difference = measureDifference(picture_, other_, kDifferenceTolerance);
     json["difference"] = differenceJson(difference);
     line_ += "; mean difference from all objects drawn at once " + differenceText(difference);
   }
@@ -183,7 +179,7 @@ class LayerPictures : public FrameMaker {
     drawByDistance(renderer_, frame.view, order, other_);
     addSky(frame.view, other_);
     const DistancePairs pairs = countWrongPairs(renderer_, frame.view, order);
-    const PictureDifference difference = measureDifference(picture_, other_, kTolerance);
+    const PictureDifference difference = measureDifference(picture_, other_, kDifferenceTolerance);
     const std::string file = frameFile(options_.by_distance, frame.number, input_.several_frames);
     json["by_distance"] = {{"file", file},
                            {"overlapping_pairs", pairs.overlapping},

@@ -9,10 +9,6 @@
 
 #include "tools/sightline/layer_frames.h"
 
-namespace CLI {
-class App;
-}
-
 namespace sightline::tool {
 
 struct LayerPictureOptions {

@@ -264,9 +264,20 @@ Status checkFilesOf(const LayersOptions& options) {
                     inputs);
 }
 
+Status checkPictureOptions(const LayersOptions& options) {
+  const bool any_picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty() ||
+                           !options.lens.blurred.empty() || !options.lens.compare.empty();
+  const bool any_option = options.samples != 1 || options.tints != "on";
+  return any_picture || !any_option
+             ? Status(Success{})
+             : Error{"--samples and --tints: go with --image, --by-distance, --blurred or --compare"};
+}
+
 Result<ExitCode> runLayers(const LayersOptions& options) {
-  if (const Status ok = checkFilesOf(options); !ok) {
-    return ok.error();
+  for (const Status& ok : {checkFilesOf(options), checkPictureOptions(options)}) {
+    if (!ok) {
+      return ok.error();
+    }
   }
   const Result<LayerInput> input = loadLayerInput(options.common, options.path, options.places);
   if (!input) {
@@ -282,9 +293,6 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .form = valueOf(kCompositingForms, options.expression),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
-  if (makers && makers->empty() && (options.samples != 1 || options.tints != "on")) {
-    return Error{"--samples and --tints: are of pictures; say --image FILE.png, or another of them, too"};
-  }
   return makers ? sortWalk(options, *input, *makers) : makers.error();
 }
 

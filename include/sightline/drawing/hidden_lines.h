@@ -55,7 +55,8 @@ class HiddenLines {
 
   // page_height: units; the page is as wide as the view's aspect says. Only triangles that are drawn hide:
   // backs of single-sided materials do not, nor do blended and alpha-tested materials, nor what the near
-  // plane cuts off. page_height: > 0. The scene's memory is not needed afterwards. Takes n log n time for n
+  // plane cuts off. A view or a page without a size that is a finite number above zero (pages: 1e-15 to
+  // 1e15 units) has no visible lines. The scene's memory is not needed afterwards. Takes n log n time for n
   // triangles.
   void setView(const SceneView& scene, const View& view, double page_height);
 

@@ -68,7 +68,7 @@ class LayerCompositor {
                                    const CompositeSettings& settings, LayerImage& picture);
 
   // Of the last picture: the frame's groups of which several parts were drawn and some of them were blended,
-  // which no order gets right. Ascending.
+  // which no order gets right. Ascending; valid until the next picture.
   std::span<const std::uint32_t> unorderedGroups() const;
 
  private:

@@ -72,7 +72,7 @@ struct LensSettings {
   CompositeSettings::Peel peel = CompositeSettings::Peel::kWhereNeeded;
   CompositingForm form = CompositingForm::kCheapest;
   bool sky = true;  // behind everything, blurred as at infinity (as it is in orthographic views)
-  // Called with the share of passes, or of layers, that were done before, ascending from 0.
+  // Called after each pass, or layer, with the share of them that is drawn, ascending to 1.
   std::function<void(double done)> progress = {};
 };
 
