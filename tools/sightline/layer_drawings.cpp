@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "sightline/drawing/drawing.h"
@@ -49,7 +50,7 @@ class LayerDrawings : public FrameMaker {
     settings_.overlays = partsAt(input.input.moving, PartSettings::Place::kOverlay);
     settings_.backdrops = partsAt(input.input.moving, PartSettings::Place::kBackdrop);
     style_.stroke_width = options.stroke_width;
-    style_.title = input.scene_file;
+    style_.title = std::filesystem::path(input.scene_file).filename().string();
   }
 
   Result<Json> make(const SortedFrame& frame) override {
