@@ -86,16 +86,6 @@ LayerSorter sorterOf(const Scene& scene, bool all_arcs) {
   return sorter;
 }
 
-double strokesOf(const Drawing& drawing) {
-  std::size_t strokes = 0;
-  for (const DrawingGroup& group : drawing.groups) {
-    for (const DrawingObject& object : group.objects) {
-      strokes += object.strokes.size();
-    }
-  }
-  return static_cast<double>(strokes);
-}
-
 // The first sort of a view, not one from the frame before, with hulls and edges made before.
 Measured measureOurs(const Scene& scene, const View& view, bool plot) {
   Draughtsman draughtsman(scene.view());
@@ -112,7 +102,7 @@ Measured measureOurs(const Scene& scene, const View& view, bool plot) {
   });
   result.svg_bytes = static_cast<double>(svg.size());
   result.pdf_bytes = static_cast<double>(toPdf(drawing).size());
-  result.strokes = strokesOf(drawing);
+  result.strokes = static_cast<double>(countStrokes(drawing));
   return result;
 }
 

@@ -51,6 +51,16 @@ class OccludersOf {
 
 }  // namespace
 
+std::uint64_t countStrokes(const Drawing& drawing) {
+  std::uint64_t strokes = 0;
+  for (const DrawingGroup& group : drawing.groups) {
+    for (const DrawingObject& object : group.objects) {
+      strokes += object.strokes.size();
+    }
+  }
+  return strokes;
+}
+
 struct Draughtsman::Impl {
   explicit Impl(const SceneView& of) : edges(of) {}
 

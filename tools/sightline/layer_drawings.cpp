@@ -21,16 +21,6 @@ struct Totals {
   double draw_us = 0.0;
 };
 
-std::uint64_t strokesOf(const Drawing& drawing) {
-  std::uint64_t strokes = 0;
-  for (const DrawingGroup& group : drawing.groups) {
-    for (const DrawingObject& object : group.objects) {
-      strokes += object.strokes.size();
-    }
-  }
-  return strokes;
-}
-
 std::vector<ObjectId> partsAt(const MovingScene& scene, PartSettings::Place place) {
   std::vector<ObjectId> ids;
   for (std::size_t part = 0; part < scene.parts.size(); ++part) {
@@ -108,7 +98,7 @@ class LayerDrawings : public FrameMaker {
   }
 
   Json count(const Drawing& drawing, double draw_us) {
-    const std::uint64_t strokes = strokesOf(drawing);
+    const std::uint64_t strokes = countStrokes(drawing);
     ++totals_.frames;
     totals_.lines += drawing.stats.lines;
     totals_.pieces += drawing.stats.pieces;
@@ -154,22 +144,6 @@ class LayerDrawings : public FrameMaker {
   Scene posed_;
   Totals totals_;
 };
-
-Status checkFiles(const LayerDrawingOptions& options, const FrameMakerInput& input) {
-  if (options.svg.empty() && options.pdf.empty()) {
-    return Error{
-        "--plot, --crease, --stroke-width and --no-...: are of drawings; say --svg FILE or --pdf FILE too"};
-  }
-  if (!options.svg.empty()) {
-    if (Status ok = checkFrameFile("--svg", options.svg, ".svg", input.scene_file); !ok) {
-      return ok;
-    }
-  }
-  if (!options.pdf.empty()) {
-    return checkFrameFile("--pdf", options.pdf, ".pdf", input.scene_file);
-  }
-  return Success{};
-}
 
 }  // namespace
 
@@ -232,10 +206,12 @@ Result<std::unique_ptr<FrameMaker>> makeLayerDrawings(const LayerDrawingOptions&
   if (options == LayerDrawingOptions{} || line_picture_alone) {
     return std::unique_ptr<FrameMaker>();
   }
-  for (const Status& ok : {checkLines(options), checkFiles(options, input)}) {
-    if (!ok) {
-      return ok.error();
-    }
+  if (options.svg.empty() && options.pdf.empty()) {
+    return Error{
+        "--plot, --crease, --stroke-width and --no-...: are of drawings; say --svg FILE or --pdf FILE too"};
+  }
+  if (const Status ok = checkLines(options); !ok) {
+    return ok.error();
   }
   return std::unique_ptr<FrameMaker>(std::make_unique<LayerDrawings>(options, input));
 }

@@ -268,16 +268,6 @@ Status figure22(const LayerFigureOptions& options, Experiment& table, LayerFigur
 
 // ---- Figure 17.
 
-std::uint64_t strokesOf(const Drawing& drawing) {
-  std::uint64_t strokes = 0;
-  for (const DrawingGroup& group : drawing.groups) {
-    for (const DrawingObject& object : group.objects) {
-      strokes += object.strokes.size();
-    }
-  }
-  return strokes;
-}
-
 Status figure17Shaded(const LayerFigureOptions& options, LayerFigures& figures) {
   const MovingScene scene = makeToothpicks({.count = options.toothpicks});
   FigureFrame frame = sortedFrame(scene, {}, kToothpickFrame, 1.0);
@@ -342,7 +332,7 @@ LayerFigures hiddenLineFigure(const LayerFigureOptions& options) {
                                   {"ms", "ms", 1}},
                                  {{{"n", options.toothpicks},
                                    {"lines", drawing.stats.lines},
-                                   {"strokes", strokesOf(drawing)},
+                                   {"strokes", countStrokes(drawing)},
                                    {"pairs", drawing.pairs},
                                    {"all_pairs", drawing.all_pairs},
                                    {"bytes", svg.size()},

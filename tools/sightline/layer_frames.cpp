@@ -24,35 +24,36 @@ std::string frameFile(const std::string& target, std::uint32_t frame, bool sever
   return (path.parent_path() / name).string();
 }
 
-Status checkFrameFile(const std::string& option, const std::string& target, const std::string& extension,
-                      const std::string& scene_file) {
-  if (std::filesystem::path(target).extension() != extension) {
-    return Error{fmt::format("{} {}: the file's name must end in {}", option, target, extension)};
-  }
-  return checkOutput(target, scene_file);
-}
-
-Status checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs) {
+Status checkFrameFiles(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
+                       const std::string& scene_file) {
+  const auto canonical = [](const std::string& file) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file, ignored), ignored);
+  };
   std::vector<std::pair<std::filesystem::path, std::string>> taken;  // and by which option
-  std::error_code ignored;
   for (const NamedFile& input : inputs) {
-    taken.emplace_back(
-        std::filesystem::weakly_canonical(std::filesystem::absolute(input.file, ignored), ignored),
-        input.option);
+    taken.emplace_back(canonical(input.file), input.option);
   }
-  for (const NamedFile& output : outputs) {
-    if (output.file.empty() || output.file == "-") {
+  for (const auto& [option, file, extension] : outputs) {
+    if (file.empty()) {
       continue;
     }
-    const std::filesystem::path path =
-        std::filesystem::weakly_canonical(std::filesystem::absolute(output.file, ignored), ignored);
-    for (const auto& [other, option] : taken) {
+    if (!extension.empty() && std::filesystem::path(file).extension() != extension) {
+      return Error{fmt::format("{} {}: the file's name must end in {}", option, file, extension)};
+    }
+    if (const Status ok = checkOutput(file, scene_file); !ok) {
+      return ok;
+    }
+    if (file == "-") {
+      continue;
+    }
+    const std::filesystem::path path = canonical(file);
+    for (const auto& [other, its_option] : taken) {
       if (!path.empty() && path == other) {
-        return Error{
-            fmt::format("{} {}: is the file of {} too; name another", output.option, output.file, option)};
+        return Error{fmt::format("{} {}: is the file of {} too; name another", option, file, its_option)};
       }
     }
-    taken.emplace_back(path, output.option);
+    taken.emplace_back(path, option);
   }
   return Success{};
 }

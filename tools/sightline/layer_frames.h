@@ -39,8 +39,8 @@ struct FrameMakerInput {
 
 // Makes files of frames. A maker is created before anything is sorted, by
 //   Result<std::unique_ptr<FrameMaker>> make...(const ...Options&, const FrameMakerInput&)
-// which gives nullptr where the options ask for nothing, and checks all that can be checked then: options,
-// output files (checkFrameFile), OpenGL.
+// which gives nullptr where the options ask for nothing, and checks all that can be checked then: options and
+// OpenGL; output files were checked before (checkFrameFiles).
 class FrameMaker {
  public:
   virtual ~FrameMaker() = default;
@@ -56,14 +56,15 @@ Result<LayerRenderer> makeRenderer(const FrameMakerInput& input);
 // Where a frame's file goes: `target` itself, or, of several frames, with the number before the extension:
 // "dir/out_0012.png".
 std::string frameFile(const std::string& target, std::uint32_t frame, bool several_frames);
-// As checkOutput, and that the name ends in the extension (".png").
-Status checkFrameFile(const std::string& option, const std::string& target, const std::string& extension,
-                      const std::string& scene_file);
 
+// An option that names a file.
 struct NamedFile {
   std::string option, file;  // file empty or "-": none
+  std::string extension;     // that the name must have (".png"); empty: any
 };
-// That no two outputs are the same file, by whatever names, and none is one of the inputs.
-Status checkApart(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
+// As checkOutput; and that no two outputs are the same file, by whatever names, and none is one of the
+// inputs.
+Status checkFrameFiles(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
+                       const std::string& scene_file);
 
 }  // namespace sightline::tool

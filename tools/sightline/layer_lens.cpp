@@ -164,22 +164,6 @@ Result<PartBlur> readPartBlur(const std::string& text, std::size_t parts) {
   return PartBlur{PartId(*part), valueOf(kLayerBlurs, words.back())};
 }
 
-Status checkFiles(const LayerLensOptions& options, const FrameMakerInput& input) {
-  if (options.blurred.empty() && options.compare.empty()) {
-    return Error{"--depth-of-field and --motion-blur: name a file with --blurred or --compare"};
-  }
-  for (const auto& [option, file] :
-       {std::pair("--blurred", options.blurred), {"--compare", options.compare}}) {
-    if (file.empty()) {
-      continue;
-    }
-    if (const Status ok = checkFrameFile(option, file, ".png", input.scene_file); !ok) {
-      return ok;
-    }
-  }
-  return Success{};
-}
-
 Status checkNumbers(const LayerLensOptions& options) {
   const bool has_lens = !options.depth_of_field.empty();
   if (has_lens && !(options.focus > 0.0 && std::isfinite(options.focus))) {
@@ -285,8 +269,8 @@ Result<std::unique_ptr<FrameMaker>> makeLayerLens(const LayerLensOptions& option
   if (!settings) {
     return settings.error();
   }
-  if (const Status ok = checkFiles(options, input); !ok) {
-    return ok.error();
+  if (options.blurred.empty() && options.compare.empty()) {
+    return Error{"--depth-of-field and --motion-blur: name a file with --blurred or --compare"};
   }
   Result<LayerRenderer> renderer = makeRenderer(input);
   if (!renderer) {

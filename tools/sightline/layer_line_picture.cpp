@@ -251,11 +251,8 @@ Result<std::unique_ptr<FrameMaker>> makeLinePicture(const LayerDrawingOptions& o
   if (options.line_picture.empty()) {
     return std::unique_ptr<FrameMaker>();
   }
-  for (const Status& ok : {checkLines(options), checkFrameFile("--line-picture", options.line_picture, ".png",
-                                                               input.scene_file)}) {
-    if (!ok) {
-      return ok.error();
-    }
+  if (const Status ok = checkLines(options); !ok) {
+    return ok.error();
   }
   const std::uint32_t fineness = finenessFor(input.width, input.height);
   Result<LayerRenderer> renderer = LayerRenderer::create(

@@ -306,15 +306,6 @@ Status checkOnce(const ReplacedPart& part, const std::vector<std::uint32_t>& wit
 }
 
 Status checkOptions(const LayerPictureOptions& options, const FrameMakerInput& input) {
-  for (const auto& [option, file] :
-       {std::pair("--image", options.image), {"--by-distance", options.by_distance}}) {
-    if (file.empty()) {
-      continue;
-    }
-    if (const Status ok = checkFrameFile(option, file, ".png", input.scene_file); !ok) {
-      return ok;
-    }
-  }
   for (const std::uint32_t part : options.without) {
     if (const Status ok = checkPart("--without", part, input.input.moving.parts.size()); !ok) {
       return ok;

@@ -251,17 +251,18 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
 Status checkFilesOf(const LayersOptions& options) {
   std::vector<NamedFile> inputs;
   for (const std::string& replace : options.pictures.replace) {
-    inputs.push_back({"--replace", replace.substr(std::min(replace.find('='), replace.size() - 1) + 1)});
+    const std::size_t equals = std::min(replace.find('='), replace.size() - 1);
+    inputs.push_back({"--replace", replace.substr(equals + 1), ""});
   }
-  return checkApart({{"--json", options.common.json},
-                     {"--image", options.pictures.image},
-                     {"--by-distance", options.pictures.by_distance},
-                     {"--blurred", options.lens.blurred},
-                     {"--compare", options.lens.compare},
-                     {"--svg", options.drawings.svg},
-                     {"--pdf", options.drawings.pdf},
-                     {"--line-picture", options.drawings.line_picture}},
-                    inputs);
+  return checkFrameFiles({{"--json", options.common.json, ""},
+                          {"--image", options.pictures.image, ".png"},
+                          {"--by-distance", options.pictures.by_distance, ".png"},
+                          {"--blurred", options.lens.blurred, ".png"},
+                          {"--compare", options.lens.compare, ".png"},
+                          {"--svg", options.drawings.svg, ".svg"},
+                          {"--pdf", options.drawings.pdf, ".pdf"},
+                          {"--line-picture", options.drawings.line_picture, ".png"}},
+                         inputs, options.common.scene);
 }
 
 Status checkPictureOptions(const LayersOptions& options) {

@@ -41,6 +41,8 @@ struct Drawing {
   std::uint64_t pairs = 0, all_pairs = 0;
 };
 
+std::uint64_t countStrokes(const Drawing& drawing);
+
 struct DrawingSettings {
   FeatureSettings features;
   double page_height = 720.0;
