@@ -95,17 +95,5 @@ TEST(LayerFigures, ADifferenceIsDarkWhereThereIsOne) {
   EXPECT_EQ(differenceStrength(a, b), (Image{2, 1, {255, 255, 255, 255, 235, 235, 235, 255}}));
 }
 
-TEST(LayerFigures, AReportIsWrittenWithItsPictures) {
-  const tool_test::TemporaryFolder folder;
-  const tool_test::Outcome outcome =
-      tool_test::runTool({"reproduce", "snyder-lengyel", "--short", "-o", folder.file("report")});
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const std::string page = tool_test::contents(folder.file("report/1-snyder-lengyel/index.html"));
-  EXPECT_NE(page.find("<h3>Figure 17"), std::string::npos);
-  EXPECT_NE(page.find("figure17_lines.svg"), std::string::npos);
-  EXPECT_NE(tool_test::contents(folder.file("report/1-snyder-lengyel/figure17_lines.svg")).find("<svg"),
-            std::string::npos);
-}
-
 }  // namespace
 }  // namespace sightline::tool

@@ -110,9 +110,16 @@ TEST(Layers, BadUsageIsRefused) {
   expectRefused({"reproduce", "snyder-lengyel", "--frames", "0:3"}, "leave them out");
 }
 
-TEST(Layers, ThePapersTablesStandBesideOurs) {
-  const Outcome outcome = runTool({"reproduce", "snyder-lengyel", "--short", "--json", "-"});
+TEST(Layers, ThePapersTablesStandBesideOursAndInAReportWithItsPictures) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      runTool({"reproduce", "snyder-lengyel", "--short", "--json", "-", "-o", folder.file("report")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string page = contents(folder.file("report/1-snyder-lengyel/index.html"));
+  EXPECT_NE(page.find("<h3>Figure 17"), std::string::npos);
+  EXPECT_NE(page.find("figure17_lines.svg"), std::string::npos);
+  EXPECT_NE(contents(folder.file("report/1-snyder-lengyel/figure17_lines.svg")).find("<svg"),
+            std::string::npos);
   const json result = parse(outcome.out);
   const std::map<std::string, std::size_t> rows{{"components", 3},  {"growth", 7},     {"builds", 7},
                                                 {"velocities", 11}, {"directions", 6}, {"canyon", 10},
