@@ -1,5 +1,7 @@
 #include "tools/sightline/layer_figure_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -45,6 +47,16 @@ Image differenceStrength(const Image& a, const Image& b) {
 void FigurePictures::add(const std::string& name, const std::string& caption, Image picture) {
   figures_.files.push_back({name + ".png", std::move(picture), {}});
   addPicture(name + ".png", caption);
+}
+
+PictureDifference FigurePictures::addDifference(const std::string& name, const std::string& what,
+                                                const LayerImage& a, const LayerImage& b, int decimals) {
+  const PictureDifference difference = measureDifference(a, b);
+  add(name,
+      fmt::format("{} {:.{}f} of 255 in the mean, {:.{}f} % of the pixels beyond 4", what, difference.mean,
+                  decimals, 100.0 * difference.share_beyond, decimals - 1),
+      differenceStrength(toImage(a), toImage(b)));
+  return difference;
 }
 
 void FigurePictures::addSvg(const std::string& name, const std::string& caption, std::string svg) {

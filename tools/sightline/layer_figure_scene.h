@@ -39,6 +39,9 @@ class FigurePictures {
     add(name, caption, toImage(picture));
   }
   void add(const std::string& name, const std::string& caption, Image picture);
+  // Where the two differ, and by how much: `what` begins the caption.
+  PictureDifference addDifference(const std::string& name, const std::string& what, const LayerImage& a,
+                                  const LayerImage& b, int decimals = 3);
   void addSvg(const std::string& name, const std::string& caption, std::string svg);
 
  private:

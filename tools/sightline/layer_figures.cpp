@@ -128,16 +128,12 @@ class LensFigure {
     if (const Status ok = draw(file, name, settings, picture_); !ok) {
       return ok;
     }
-    const PictureDifference difference = measureDifference(picture_, reference_);
+    const PictureDifference difference = pictures_.addDifference(
+        file + "_difference", "its difference from the reference:", picture_, reference_);
     Json& row = table_.rows.back();
     row["difference"] = difference.mean;
     row["largest"] = difference.largest;
     row["beyond"] = 100.0 * difference.share_beyond;
-    pictures_.add(file + "_difference",
-                  fmt::format("its difference from the reference: {:.3f} of 255 in the mean, {:.2f} % of the "
-                              "pixels beyond 4",
-                              difference.mean, 100.0 * difference.share_beyond),
-                  differenceStrength(toImage(picture_), toImage(reference_)));
     return Success{};
   }
 

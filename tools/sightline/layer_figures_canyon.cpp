@@ -179,17 +179,12 @@ Status figure23(const LayerFigureOptions& options, LayerFigures& figures) {
   if (const Status ok = drawCanyon(canyon->scene, number, options, highlighted, nullptr); !ok) {
     return ok;
   }
-  const PictureDifference difference = measureDifference(plain, at_once);
   FigurePictures pictures(
       23, fmt::format("Figure 23: the canyon, {0} x {0}, from layers (frame {1})", canyon->grid, number),
       figures);
   pictures.add("figure23_canyon", caption, highlighted);
   pictures.add("figure23_zbuffer", "all objects at once, by depth buffer, without the highlight", at_once);
-  pictures.add("figure23_difference",
-               fmt::format("what layers differ from that: {:.4f} of 255 in the mean, {:.3f} % of the pixels "
-                           "beyond 4",
-                           difference.mean, 100.0 * difference.share_beyond),
-               differenceStrength(toImage(plain), toImage(at_once)));
+  pictures.addDifference("figure23_difference", "what layers differ from that:", plain, at_once, 4);
   return Success{};
 }
 
@@ -264,7 +259,6 @@ Status savedRenderingFigure(const LayerFigureOptions& options, LayerFigures& fig
   if (const Status ok = run.run(options.reused_frames); !ok) {
     return ok;
   }
-  const PictureDifference difference = measureDifference(run.reused, run.anew);
   FigurePictures pictures(
       24,
       fmt::format("Saved rendering: the canyon, {0} x {0}, after {1} frames", kGrid, options.reused_frames),
@@ -275,10 +269,7 @@ Status savedRenderingFigure(const LayerFigureOptions& options, LayerFigures& fig
       fmt::format("{} drawn anew in this frame, {} warped from earlier ones, by up to {:.0f} pixel wrong",
                   run.drawn(), run.layers() - run.drawn(), kReuseTolerance),
       run.reused);
-  pictures.add("saved_difference",
-               fmt::format("their difference: {:.3f} of 255 in the mean, {:.2f} % of the pixels beyond 4",
-                           difference.mean, 100.0 * difference.share_beyond),
-               differenceStrength(toImage(run.reused), toImage(run.anew)));
+  pictures.addDifference("saved_difference", "their difference:", run.reused, run.anew);
   return Success{};
 }
 

@@ -161,8 +161,6 @@ class LinePicture : public FrameMaker {
 
   Result<Json> make(const SortedFrame& frame) override {
     const MovingScene& moving = input_.input.moving;
-    View view = frame.view;
-    view.aspect = static_cast<double>(input_.width) / static_cast<double>(input_.height);
     if (!edges_ || moving.pose) {
       posedScene(moving, frame.number, posed_);
     }
@@ -170,19 +168,18 @@ class LinePicture : public FrameMaker {
       edges_.emplace(posed_.view());
     }
     renderer_.setTransforms(frame.scene_from_stored);
-    renderer_.draw(view, opaque_, {.depths = true}, image_);
-    const NearestSurfaces surfaces(view, image_);
+    renderer_.draw(frame.view, opaque_, {.depths = true}, image_);
+    const NearestSurfaces surfaces(frame.view, image_);
     Image picture = whitePicture(input_.width, input_.height);
-    const std::uint64_t lines = drawLines(view, surfaces, picture);
+    const std::uint64_t lines = drawLines(frame.view, surfaces, picture), ink = inkOf(picture);
     const std::string file = frameFile(file_, frame.number, input_.several_frames);
     if (const Status ok = writePng(picture, file); !ok) {
       return ok.error();
     }
     ++frames_;
     lines_ += lines;
-    ink_ += inkOf(picture);
-    return Json{{"line_picture",
-                 {{"file", file}, {"lines", lines}, {"fineness", fineness()}, {"ink", inkOf(picture)}}}};
+    ink_ += ink;
+    return Json{{"line_picture", {{"file", file}, {"lines", lines}, {"fineness", fineness()}, {"ink", ink}}}};
   }
 
   void print() const override {

@@ -20,6 +20,7 @@
 #include "sightline/render/layer_compositor.h"
 #include "sightline/render/layer_reuse.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/snyder_lengyel.h"
 #include "tools/sightline/stopwatch.h"
 
 namespace sightline::tool {
@@ -359,8 +360,7 @@ Result<std::vector<Experiment>> savedRendering(const SavedRenderingOptions& opti
   for (const std::uint32_t grid : options.grids) {
     ProgressBar progress(fmt::format("saved rendering, {0} x {0}", grid));
     const MovingScene scene = makeCanyon({.grid = grid});
-    const Result<SceneTotals> totals =
-        SceneRun::run(scene, {.extents = worldExtents(), .conditioning_axis = -1}, options, progress);
+    const Result<SceneTotals> totals = SceneRun::run(scene, canyonSorting(), options, progress);
     if (!totals) {
       return totals.error();
     }
