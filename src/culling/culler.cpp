@@ -10,6 +10,7 @@
 #include "culling/set_members.h"
 #include "culling/set_walk.h"
 #include "culling/wide_walk.h"
+#include "scene/usable_view.h"
 
 namespace sightline {
 namespace {
@@ -334,6 +335,14 @@ struct Culler::Impl {
     stats.walk_us = microseconds(start, Clock::now());
   }
 
+  // For a view that is none. everywhere: a frustum that holds all of space.
+  void keepEverything(const Frustum& everywhere, std::size_t dynamic_boxes) {
+    has_previous = false;
+    visible.clear();
+    walk.run(everywhere, {.temporal_coherence = false}, seeEverything(), stats, visible);
+    dynamic_states.assign(dynamic_boxes, Visibility::kVisible);
+  }
+
   // No more than the set of the eye's cell, as far as it meets the frustum.
   void cullBySet(const Frustum& frustum) {
     if (members.everything()) {
@@ -434,9 +443,16 @@ Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
 
-void Culler::cull(const View& view, std::span<const Box> dynamic_boxes, const OccluderSet* moving) {
+void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const OccluderSet* moving) {
+  View view = given;
+  const char* fault = makeUsable(view);
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
+  if (fault != nullptr) {
+    impl_->stats.view_fault = fault;
+    impl_->keepEverything(frustum, dynamic_boxes.size());
+    return;
+  }
   impl_->view_jumped = impl_->jumped(view);
   impl_->lookUp(view);
   const CullMethod method = impl_->settings.method;
@@ -475,6 +491,9 @@ std::span<const Visibility> Culler::dynamicStates() const {
   return impl_->dynamic_states;
 }
 std::span<const OccluderId> Culler::occludersUsed() const {
+  if (impl_->stats.view_fault != nullptr) {
+    return {};
+  }
   switch (impl_->settings.method) {
     case CullMethod::kOcclusionTree:
       return impl_->tree.occluders();
@@ -495,6 +514,9 @@ const CullStats& Culler::stats() const {
   return impl_->stats;
 }
 DepthMapView Culler::depthMap() const {
+  if (impl_->stats.view_fault != nullptr) {
+    return {};
+  }
   if (impl_->opacity_map) {
     return impl_->opacity_map->map();
   }

@@ -9,6 +9,7 @@
 
 #include "occlusion/tree_build.h"
 #include "occlusion/tree_classify.h"
+#include "scene/usable_view.h"
 
 namespace sightline {
 
@@ -20,7 +21,7 @@ struct OcclusionTree::Impl {
   TreeData tree;
   SplittingQuery splitting;
   OcclusionTreeStats stats;
-  bool usable_view = false;  // finite, and there was one
+  bool usable_view = false;  // there was one, and it was one: see validate()
   std::vector<OccluderId> used;
 
   bool modified() const {
@@ -38,11 +39,11 @@ OcclusionTree::~OcclusionTree() = default;
 OcclusionTree::OcclusionTree(OcclusionTree&&) noexcept = default;
 OcclusionTree& OcclusionTree::operator=(OcclusionTree&&) noexcept = default;
 
-void OcclusionTree::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
+void OcclusionTree::build(const View& given, const OccluderSet& set, std::span<const OccluderId> chosen) {
   Impl& impl = *impl_;
+  View view = given;
+  impl.usable_view = makeUsable(view) == nullptr;
   const TreeLimits limits{impl.modified(), impl.settings.clip_to_frustum, impl.settings.max_nodes};
-  impl.usable_view =
-      isFinite(view.eye) && isFinite(view.forward) && isFinite(view.right) && isFinite(view.up);
   // Each occluder needs three nodes at least.
   std::span<const OccluderId> part =
       chosen.first(std::min<std::size_t>(chosen.size(), impl.settings.max_nodes / 3));

@@ -305,7 +305,7 @@ BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std
   sides[2] = rounded(view.up + view.forward * tan_y);
   sides[3] = rounded(view.forward * tan_y - view.up);
   side_size = roundedUp(1.0 + std::max(tan_x, tan_y));
-  near_least = roundedDown(view.near);
+  near_least = roundedDown(view.frustum_near);
   near_most = roundedUp(view.near);
   far_least = roundedDown(view.far);
   far_most = roundedUp(view.far);

@@ -10,6 +10,7 @@
 
 #include "occlusion/relation.h"
 #include "occlusion/relation_store.h"
+#include "scene/usable_view.h"
 
 namespace sightline {
 
@@ -49,7 +50,8 @@ struct SupportingPlanes::Impl {
   const OccluderSet* set = nullptr;
   Eye eye;
   bool has_eye = false;
-  double path = 0.0;  // of the eye, metres; orthographic: of its direction on the unit sphere
+  bool usable_view = false;  // of the last build(): see validate(). Without one, no occluder hides
+  double path = 0.0;         // of the eye, metres; orthographic: of its direction on the unit sphere
   std::vector<Member> members;
   std::uint32_t recruitable = 0;         // so many of them are those of build()
   std::vector<std::uint32_t> member_of;  // by OccluderId
@@ -86,8 +88,10 @@ void SupportingPlanes::Impl::follow(const Eye& next) {
   eye = next;
 }
 
-void SupportingPlanes::Impl::build(const View& view, const OccluderSet& new_set,
+void SupportingPlanes::Impl::build(const View& given, const OccluderSet& new_set,
                                    std::span<const OccluderId> chosen) {
+  View view = given;
+  usable_view = makeUsable(view) == nullptr;
   for (const OccluderId id : asked) {
     member_of[id.value] = kNone;
   }
@@ -139,7 +143,8 @@ std::uint32_t SupportingPlanes::Impl::memberOf(OccluderId id) {
 OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids) {
   const std::size_t first = lists.size();
   for (const OccluderId id : ids) {
-    const std::uint32_t member = set != nullptr && id.value < set->occluders.size() ? memberOf(id) : kNone;
+    const bool known = usable_view && set != nullptr && id.value < set->occluders.size();
+    const std::uint32_t member = known ? memberOf(id) : kNone;
     if (member != kNone) {
       lists.push_back(member);
     }

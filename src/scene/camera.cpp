@@ -1,8 +1,11 @@
 #include "sightline/scene/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "scene/usable_view.h"
 
 namespace sightline {
 
@@ -28,26 +31,34 @@ Mat4 clipFromScene(const View& view) {
     camera_from_scene(row, 3) = -dot(axes[row], view.eye);
   }
   Mat4 clip_from_camera;
+  // As far grows: (far + near) / (far - near) -> 1, far / (far - near) -> 1.
+  const bool endless = std::isinf(view.far);
   const double depth = view.far - view.near;
+  const double middle = endless ? 1.0 : (view.far + view.near) / depth;
   if (view.orthographic) {
     const double half = view.ortho_height * 0.5;
     clip_from_camera(0, 0) = 1.0 / (half * view.aspect);
     clip_from_camera(1, 1) = 1.0 / half;
     clip_from_camera(2, 2) = -2.0 / depth;
-    clip_from_camera(2, 3) = -(view.far + view.near) / depth;
+    clip_from_camera(2, 3) = -middle;
   } else {
     clip_from_camera(0, 0) = 1.0 / (view.tan_half_fovy * view.aspect);
     clip_from_camera(1, 1) = 1.0 / view.tan_half_fovy;
-    clip_from_camera(2, 2) = -(view.far + view.near) / depth;
-    clip_from_camera(2, 3) = -2.0 * view.far * view.near / depth;
+    clip_from_camera(2, 2) = -middle;
+    clip_from_camera(2, 3) = endless ? -2.0 * view.near : -2.0 * view.far * view.near / depth;
     clip_from_camera(3, 2) = -1.0;
     clip_from_camera(3, 3) = 0.0;
   }
   return clip_from_camera * camera_from_scene;
 }
 
-Frustum frustumOf(const View& view) {
+Frustum frustumOf(const View& given) {
+  View view = given;
   Frustum frustum;
+  if (makeUsable(view) != nullptr) {
+    frustum.planes.fill({Vec3d(), 1.0});
+    return frustum;
+  }
   const auto through = [](const Vec3d& normal, const Vec3d& point) {
     const Vec3d unit = normalized(normal);
     return Plane{unit, -dot(unit, point)};
@@ -68,7 +79,9 @@ Frustum frustumOf(const View& view) {
     frustum.planes[3] = through(y - view.up, view.eye);
   }
   frustum.planes[4] = through(view.forward, view.eye + view.forward * view.near);
-  frustum.planes[5] = through(-view.forward, view.eye + view.forward * view.far);
+  // An infinite one would make a plane that is not a number; this one is beyond all boxes.
+  constexpr double kFarthest = 0x1p500;
+  frustum.planes[5] = through(-view.forward, view.eye + view.forward * std::min(view.far, kFarthest));
   return frustum;
 }
 

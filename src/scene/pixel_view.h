@@ -7,9 +7,10 @@
 // square from (i, j) to (i + 1, j + 1). Nearness is what a map stores of a depth: greater is nearer, and over
 // a plane's image it is linear. Perspective: 1 / depth; orthographic: -depth.
 
+#include <algorithm>
 #include <cstdint>
 
-#include "sightline/scene/camera.h"
+#include "scene/usable_view.h"
 
 namespace sightline {
 
@@ -20,22 +21,28 @@ struct PixelView {
   // orthonormal, which a caller's single precision makes visible on a large map.
   Vec3d unit_x, unit_y, unit_z;
   bool orthographic = false;
-  double near = 0.0, far = 0.0;
+  double frustum_near = 0.0, far = 0.0;
+  // The near plane, or a depth beyond it that single precision can divide by: what reaches before it neither
+  // hides nor has a rectangle on the map.
+  double near = 0.0;
   double scale_x = 0.0,
          scale_y = 0.0;  // pixels for a unit of x / z (perspective), for a metre (orthographic)
   double middle_x = 0.0, middle_y = 0.0;  // of the map, pixels
 
   PixelView() = default;
-  PixelView(const View& view, std::uint32_t width, std::uint32_t height)
-      : eye(view.eye),
-        right(view.right),
-        up(view.up),
-        forward(view.forward),
-        orthographic(view.orthographic),
-        near(view.near),
-        far(view.far),
-        middle_x(0.5 * width),
-        middle_y(0.5 * height) {
+  PixelView(const View& given, std::uint32_t width, std::uint32_t height) {
+    View view = given;
+    valid_ = makeUsable(view) == nullptr;
+    eye = view.eye;
+    right = view.right;
+    up = view.up;
+    forward = view.forward;
+    orthographic = view.orthographic;
+    frustum_near = view.near;
+    far = view.far;
+    near = std::max(view.near, 2.0 / kLargestScale);
+    middle_x = 0.5 * width;
+    middle_y = 0.5 * height;
     const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
     scale_x = middle_x / (half_height * view.aspect);
     scale_y = middle_y / half_height;
@@ -49,12 +56,12 @@ struct PixelView {
   // Finite, and of sizes that neither overflow nor leave nothing of single precision. With other views
   // nothing can be said: maps stay empty, and boxes have no place in them.
   bool sane() const {
-    constexpr double kLargestCoordinate = 0x1p60, kLargestScale = 0x1p40;
+    constexpr double kLargestCoordinate = 0x1p60;
     const auto axis = [](const Vec3d& v) { return isFinite(v) && maxComponent(abs(v)) < 2.0; };
     const auto scale = [](double s) { return s < kLargestScale && s > 1.0 / kLargestScale; };
-    return axis(right) && axis(up) && axis(forward) && axis(unit_x) && axis(unit_y) && axis(unit_z) &&
-           scale(scale_x) && scale(scale_y) && isFinite(eye) && maxComponent(abs(eye)) < kLargestCoordinate &&
-           near > 1.0 / kLargestScale && near < kLargestCoordinate && far > near;
+    return valid_ && axis(right) && axis(up) && axis(forward) && axis(unit_x) && axis(unit_y) &&
+           axis(unit_z) && scale(scale_x) && scale(scale_y) && isFinite(eye) &&
+           maxComponent(abs(eye)) < kLargestCoordinate && near < kLargestCoordinate && far > near;
   }
   // Of a plane's normal.
   Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
@@ -68,6 +75,10 @@ struct PixelView {
   double mapX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
   double mapY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
   double nearness(double depth) const { return orthographic ? -depth : 1.0 / depth; }
+
+ private:
+  static constexpr double kLargestScale = 0x1p40;
+  bool valid_ = false;  // see validate()
 };
 
 }  // namespace sightline

@@ -195,7 +195,8 @@ TEST(PixelBoxes, BoxesThatAreNotWellFormedAndViewsThatSayNothingGiveNoRectangle)
   }
   const Box good{{-1, -1, -5}, {1, 1, -4}};
   for (double View::*member : {&View::tan_half_fovy, &View::aspect, &View::near}) {
-    for (const double value : {0.0, static_cast<double>(inf), static_cast<double>(nan)}) {
+    const double no_size = member == &View::near ? -1.0 : 0.0;
+    for (const double value : {no_size, static_cast<double>(inf), static_cast<double>(nan)}) {
       View strange;
       setOrientation(strange, {0, 0, -1}, {0, 1, 0});
       strange.*member = value;

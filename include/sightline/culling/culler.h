@@ -87,6 +87,9 @@ struct CullerSettings {
 };
 
 struct CullStats {
+  // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything was
+  // kept.
+  const char* view_fault = nullptr;
   bool focused = false;                // see FocusSettings
   std::uint32_t nodes_visited = 0;     // frustum tests of nodes
   std::uint32_t nodes_tested = 0;      // nodes asked of the occlusion structure
@@ -134,9 +137,10 @@ class Culler {
   Culler& operator=(Culler&&) noexcept;
 
   // One frame. dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them.
-  // Does not fail, and does not allocate after a few frames. moving: occluders of this frame only
-  // (makeOccluders), all of which are used in addition; opacity map and depth pyramid draw them like others,
-  // the other methods leave them out.
+  // Does not fail, and does not allocate after a few frames; with a view that validate() refuses, everything
+  // is visible (CullStats::view_fault). moving: occluders of this frame only (makeOccluders), all of which
+  // are used in addition; opacity map and depth pyramid draw them like others, the other methods leave them
+  // out.
   void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr);
 
   // Answers of the last cull(). Objects that may be seen, ascending.
@@ -146,7 +150,8 @@ class Culler {
   // The occluders that this frame's structure was built from; without those that move.
   std::span<const OccluderId> occludersUsed() const;
   const CullStats& stats() const;
-  // What the opacity map or the depth pyramid was made of; empty with other methods.
+  // What the opacity map or the depth pyramid was made of; empty with other methods. Of a left-handed view it
+  // is mirrored.
   DepthMapView depthMap() const;
 
   // For drawing the maps and for the depth pyramid's walk, from now on; answers do not depend on it. Serial

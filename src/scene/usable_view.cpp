@@ -1,0 +1,83 @@
+#include "scene/usable_view.h"
+
+#include <cmath>
+#include <string>
+
+namespace sightline {
+namespace {
+
+// Axes that are this close to unit length are taken as they are: single precision is four times better.
+constexpr double kUnitSlack = 0x1p-20;
+// The cosine between two axes from which on they are not perpendicular. Below it the frustum is the one that
+// the axes span, which is what a renderer draws whose view matrix has these axes as rows.
+constexpr double kSkewCosine = 0x1p-10;
+
+bool isPositive(double value) {
+  return std::isfinite(value) && value > 0.0;
+}
+
+// False for a vector without a direction.
+bool makeUnit(Vec3d& axis) {
+  const double square = dot(axis, axis);
+  if (std::abs(square - 1.0) <= kUnitSlack) {
+    return true;
+  }
+  const double largest = maxComponent(abs(axis));
+  if (!isPositive(largest)) {
+    return false;
+  }
+  axis = normalized(axis / largest);
+  return isFinite(axis) && dot(axis, axis) > 0.5;
+}
+
+const char* projectionFault(const View& view) {
+  if (view.orthographic ? !isPositive(view.ortho_height) : !isPositive(view.tan_half_fovy)) {
+    return view.orthographic ? "View::ortho_height must be greater than 0 and finite"
+                             : "View::tan_half_fovy must be greater than 0 and finite";
+  }
+  if (!isPositive(view.aspect)) {
+    return "View::aspect (width / height) must be greater than 0 and finite";
+  }
+  if (!(std::isfinite(view.near) && view.near >= 0.0)) {
+    return "View::near must be 0 or more metres and finite; to see what is behind the eye, move the eye back";
+  }
+  if (!(view.far > view.near)) {
+    return "View::far must be greater than View::near; it may be infinite";
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const char* makeUsable(View& view) {
+  if (!isFinite(view.eye)) {
+    return "View::eye must be finite";
+  }
+  View usable = view;
+  if (!makeUnit(usable.right) || !makeUnit(usable.up) || !makeUnit(usable.forward)) {
+    return "View::right, up and forward must be finite and not zero; setOrientation() makes them";
+  }
+  if (std::abs(dot(usable.right, usable.up)) > kSkewCosine ||
+      std::abs(dot(usable.up, usable.forward)) > kSkewCosine ||
+      std::abs(dot(usable.forward, usable.right)) > kSkewCosine) {
+    return "View::right, up and forward must be perpendicular to each other; setOrientation() makes them so";
+  }
+  if (const char* fault = projectionFault(usable)) {
+    return fault;
+  }
+  // The frustum is symmetric, so a mirrored picture shows the same objects.
+  const bool left_handed = dot(cross(usable.right, usable.up), usable.forward) > 0.0;
+  usable.right = left_handed ? -usable.right : usable.right;
+  view = usable;
+  return nullptr;
+}
+
+Result<View> validate(const View& view) {
+  View usable = view;
+  if (const char* fault = makeUsable(usable)) {
+    return Error{fault};
+  }
+  return usable;
+}
+
+}  // namespace sightline

@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sightline/math/box.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+View viewAlong(const Vec3d& forward) {
+  View view;
+  view.eye = {3, -2, 7};
+  setOrientation(view, forward, {0, 1, 0});
+  return view;
+}
+
+void expectSameAxes(const View& a, const View& b) {
+  EXPECT_NEAR(length(a.right - b.right), 0.0, 1e-12);
+  EXPECT_NEAR(length(a.up - b.up), 0.0, 1e-12);
+  EXPECT_NEAR(length(a.forward - b.forward), 0.0, 1e-12);
+}
+
+// The view is in error, and the message names what is wrong.
+void expectError(const View& view, const std::string& member) {
+  const Result<View> result = validate(view);
+  ASSERT_FALSE(result) << member;
+  EXPECT_NE(result.error().message.find(member), std::string::npos) << result.error().message;
+}
+
+TEST(ValidateView, LeavesAViewAsItIsThatIsOrthonormalToSinglePrecision) {
+  std::mt19937_64 random(5);
+  const auto number = [&] { return 2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0; };
+  for (int i = 0; i < 1000; ++i) {
+    View view = viewAlong({number(), number(), number()});
+    for (Vec3d* axis : {&view.right, &view.up, &view.forward}) {
+      *axis = Vec3d(Vec3f(*axis));
+    }
+    const Result<View> result = validate(view);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->right, view.right);
+    EXPECT_EQ(result->up, view.up);
+    EXPECT_EQ(result->forward, view.forward);
+  }
+}
+
+TEST(ValidateView, NormalisesAxesOfAnyLength) {
+  const View unit = viewAlong({1, 0.5, -2});
+  for (const double scale : {0.01, 0.999, 1.5, 3.0, 1e-160, 1e160}) {
+    View view = unit;
+    view.right = view.right * scale;
+    view.up = view.up * (2.0 * scale);
+    view.forward = view.forward * (0.5 * scale);
+    const Result<View> result = validate(view);
+    ASSERT_TRUE(result) << scale;
+    expectSameAxes(*result, unit);
+  }
+}
+
+TEST(ValidateView, MirrorsALeftHandedBasis) {
+  const View right_handed = viewAlong({1, 0.5, -2});
+  View view = right_handed;
+  view.right = -view.right;
+  const Result<View> result = validate(view);
+  ASSERT_TRUE(result);
+  expectSameAxes(*result, right_handed);
+}
+
+TEST(ValidateView, AcceptsANearDistanceOfZeroAndAnInfiniteFarOne) {
+  for (const bool orthographic : {false, true}) {
+    View view = viewAlong({0, 0, -1});
+    view.orthographic = orthographic;
+    view.near = 0.0;
+    view.far = kInfinite;
+    EXPECT_TRUE(validate(view));
+  }
+}
+
+TEST(ValidateView, NamesTheMemberThatMakesNoView) {
+  const View good = viewAlong({1, 0.5, -2});
+  for (const double bad : {kNan, kInfinite}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      View view = good;
+      view.eye[axis] = bad;
+      expectError(view, "View::eye");
+      for (Vec3d View::*vector : {&View::right, &View::up, &View::forward}) {
+        view = good;
+        (view.*vector)[axis] = bad;
+        expectError(view, "forward");
+      }
+    }
+  }
+  for (Vec3d View::*vector : {&View::right, &View::up, &View::forward}) {
+    View view = good;
+    view.*vector = {};
+    expectError(view, "not zero");
+    view = good;
+    view.*vector = normalized(good.right + good.up * 0.3 - good.forward * 0.2);
+    expectError(view, "perpendicular");
+  }
+  View twice = good;
+  twice.up = twice.right;
+  expectError(twice, "perpendicular");
+  for (const double bad : {0.0, -1.0, kNan, kInfinite}) {
+    View view = good;
+    view.tan_half_fovy = bad;
+    expectError(view, "View::tan_half_fovy");
+    view.orthographic = true;
+    EXPECT_TRUE(validate(view)) << "an orthographic view has no angle";
+    view.ortho_height = bad;
+    expectError(view, "View::ortho_height");
+    view = good;
+    view.aspect = bad;
+    expectError(view, "View::aspect");
+  }
+  for (const double bad : {-1e-9, -1.0, kNan, kInfinite}) {
+    View view = good;
+    view.near = bad;
+    expectError(view, "View::near");
+  }
+  for (const double bad : {good.near, 0.0, -1.0, kNan}) {
+    View view = good;
+    view.far = bad;
+    expectError(view, "View::far");
+  }
+}
+
+TEST(FrustumOfAnOddView, HoldsEverythingWhereThereIsNoView) {
+  View view = viewAlong({0, 0, -1});
+  view.aspect = -1.0;
+  const Frustum frustum = frustumOf(view);
+  std::uint8_t mask = kAllFrustumPlanes;
+  EXPECT_EQ(classify(frustum, Box{{1e6, 1e6, 1e6}, {2e6, 2e6, 2e6}}, mask), FrustumSide::kInside);
+}
+
+TEST(FrustumOfAnOddView, WithAnInfiniteFarDistanceHasNoEnd) {
+  View view = viewAlong({0, 0, -1});
+  view.far = kInfinite;
+  std::uint8_t mask = kAllFrustumPlanes;
+  EXPECT_EQ(classify(frustumOf(view), Box{{-1, -1, -1e30f}, {1, 1, -0.9e30f}}, mask), FrustumSide::kInside);
+  mask = kAllFrustumPlanes;
+  EXPECT_EQ(classify(frustumOf(view), Box{{-1, -1, 1e3f}, {1, 1, 1e4f}}, mask), FrustumSide::kOutside);
+}
+
+TEST(FrustumOfAnOddView, MeasuresNearAndFarInMetresWhateverTheLengthOfForward) {
+  View view = viewAlong({0, 0, -1});
+  view.eye = {};
+  view.near = 1.0;
+  view.far = 10.0;
+  view.forward = view.forward * 0.01;
+  const Frustum frustum = frustumOf(view);
+  std::uint8_t mask = kAllFrustumPlanes;
+  EXPECT_EQ(classify(frustum, Box{{-0.1f, -0.1f, -6}, {0.1f, 0.1f, -5}}, mask), FrustumSide::kInside);
+  mask = kAllFrustumPlanes;
+  EXPECT_EQ(classify(frustum, Box{{-0.1f, -0.1f, -0.9f}, {0.1f, 0.1f, -0.5f}}, mask), FrustumSide::kOutside);
+}
+
+// Clip space's depth is what a very far plane makes it.
+TEST(ClipFromScene, WithAnInfiniteFarDistanceIsTheLimit) {
+  for (const bool orthographic : {false, true}) {
+    View view = viewAlong({1, 0.5, -2});
+    view.orthographic = orthographic;
+    view.far = 1e15;
+    const Mat4 far_away = clipFromScene(view);
+    view.far = kInfinite;
+    const Mat4 infinite = clipFromScene(view);
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        EXPECT_NEAR(infinite(row, column), far_away(row, column), 1e-12);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline
