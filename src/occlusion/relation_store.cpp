@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 namespace sightline::occlusion_detail {
 
@@ -162,6 +163,7 @@ void RelationStore::clear() {
 
 void RelationStore::beginFrame() {
   ++frame_;
+  evicted_ = 0;
   const bool little = std::max(used_, quads_used_) + max_ / 8 >= max_;
   if (little && frame_ >= next_sweep_) {
     makeRoom();

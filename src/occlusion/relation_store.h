@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "occlusion/relation.h"
@@ -22,7 +21,7 @@ class RelationStore {
 
   explicit RelationStore(std::size_t max_bytes);
 
-  // Makes room when there is little.
+  // Makes room when there is little. Begins to count what is evicted.
   void beginFrame();
 
   // Counts as use. An index is valid until the next keep(), forget() or beginFrame().
@@ -39,7 +38,8 @@ class RelationStore {
 
   std::uint32_t size() const { return used_; }                        // relations
   std::size_t bytes() const;                                          // of relations, table and items
-  std::uint32_t takeEvicted() { return std::exchange(evicted_, 0); }  // since the last call
+  // Relations that went for want of room, or found none, since beginFrame().
+  std::uint32_t evicted() const { return evicted_; }
 
  private:
   struct Entry {

@@ -399,12 +399,12 @@ void SupportingPlanes::forgetAll() {
   impl_->store.clear();
 }
 
-const SupportingPlanesStats& SupportingPlanes::stats() const {
-  RelationStats& relations = impl_->stats.relations;
-  relations.evicted += impl_->store.takeEvicted();
-  relations.kept = impl_->store.size();
-  relations.bytes = impl_->store.bytes();
-  return impl_->stats;
+SupportingPlanesStats SupportingPlanes::stats() const {
+  SupportingPlanesStats stats = impl_->stats;
+  stats.relations.evicted = impl_->store.evicted();
+  stats.relations.kept = impl_->store.size();
+  stats.relations.bytes = impl_->store.bytes();
+  return stats;
 }
 
 std::span<const OccluderId> SupportingPlanes::occluders() const {

@@ -527,6 +527,29 @@ INSTANTIATE_TEST_SUITE_P(Budgets, KeptRelations,
                                            Budget{"Enough", 64u << 20}),
                          [](const auto& param) { return std::string(param.param.name); });
 
+// Relations that went for want of room are those of one frame, whether or not somebody asked in between.
+TEST(SupportingPlanes, AskingForStatsChangesNothing) {
+  const std::vector<OraclePolygon> walls{wall(-1, 1, -1, 1, -5), wall(-1, 1, -1, 1, -6)};
+  const OccluderSet set = setOf(walls);
+  const SupportingPlanesSettings little_room{.form = PlaneForm::kThroughBox, .relation_bytes = 1000};
+  SupportingPlanes asked(little_room), alone(little_room);
+  const auto frame = [&](SupportingPlanes& planes, std::uint32_t items) {
+    planes.build(kLookingBack, set, all(set));
+    for (std::uint32_t item = 0; item < items; ++item) {
+      OccluderList touching;
+      planes.classify(Box{{-2, -1, -12}, {2, 1, -10}}, item, planes.all(), touching);
+    }
+  };
+  frame(asked, 20);
+  EXPECT_GT(asked.stats().relations.evicted, 0u);
+  EXPECT_EQ(asked.stats().relations.evicted, asked.stats().relations.evicted);
+  frame(alone, 20);
+  frame(asked, 0);
+  frame(alone, 0);
+  EXPECT_EQ(alone.stats().relations.evicted, asked.stats().relations.evicted);
+  EXPECT_EQ(alone.stats().relations.kept, asked.stats().relations.kept);
+}
+
 TEST(SupportingPlanes, KeptRelationsAreReusedAndLeftUnlookedAtWhileTheEyeIsNear) {
   const std::vector<OraclePolygon> walls{wall(-1, 1, -1, 1, -5), wall(4, 5, -1, 1, -5)};
   const OccluderSet set = setOf(walls);

@@ -36,7 +36,7 @@ struct SupportingPlanesSettings {
   TangentSearch tangent_search = TangentSearch::kTables;
 };
 
-// Of one frame, but for `kept` and `bytes`.
+// Of one frame, since build(), but for `kept` and `bytes`.
 struct RelationStats {
   std::uint32_t reused = 0;     // looked at again with the planes of an earlier frame
   std::uint32_t unchanged = 0;  // of these: the eye had not come far enough for a sign to change
@@ -91,7 +91,7 @@ class SupportingPlanes {
   // Drops all relations (after a change of boxes or of the occluder set).
   void forgetAll();
 
-  const SupportingPlanesStats& stats() const;
+  SupportingPlanesStats stats() const;
   // Those of the chosen ones that can be used from this view.
   std::span<const OccluderId> occluders() const;
 
