@@ -91,7 +91,9 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
   ChoiceSettings each = settings;
   each.bodies = false;
   for (const OccluderId id : candidates) {
-    rank(view, set, id, each);
+    if (id.value < set.occluders.size()) {
+      rank(view, set, id, each);
+    }
   }
   return takeBest(view, set, each);
 }
@@ -102,6 +104,9 @@ std::span<const OccluderId> OccluderChooser::takeFirst(const View& view, const O
   chosen_.clear();
   const Frustum frustum = frustumOf(view);
   for (std::size_t i = 0; i < candidates.size() && chosen_.size() < count; ++i) {
+    if (candidates[i].value >= set.occluders.size()) {
+      continue;
+    }
     const Occluder& occluder = set[candidates[i]];
     if (areaAngle(occluder, view, AreaAngleDirection::kOccluder) > 0.0 &&
         insideFrustum(frustum, set, occluder)) {

@@ -121,7 +121,10 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   });
   OccluderSet set;
   const std::vector<RankedPolygon> ranked = rank(scene, results, settings, set.report);
-  occluder_detail::assembleSet(scene.positions, ranked, scene.objects.size(), set);
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    set.objects.push_back(ObjectId(o));
+  }
+  occluder_detail::assembleSet(scene.positions, ranked, set);
   return set;
 }
 
@@ -138,7 +141,7 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
 
   std::vector<RankedPolygon> ranked;
   OccluderSet set;
-  std::size_t first = 0, object_count = 0;
+  std::size_t first = 0;
   double largest_of_all = 0.0;
   for (const OccluderPolygon& polygon : polygons) {
     FoundPolygon found;
@@ -153,7 +156,6 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
                       Vec3d(polygon.vertices[(i + 1) % polygon.vertices.size()]) - origin);
     }
     first += polygon.vertices.size();
-    object_count = std::max<std::size_t>(object_count, polygon.object.value + std::size_t{1});
     if (found.loop.size() < 3 || !std::isfinite(largest) || !(length(normal) > 0.0)) {
       ++set.report.degenerate;
       continue;
@@ -180,10 +182,13 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
     by_object[polygon.object.value].push_back(&polygon.polygon);
   }
   for (const auto& [object, of_object] : by_object) {
+    if (ObjectId(object).valid()) {
+      set.objects.push_back(ObjectId(object));
+    }
     occluder_detail::findBodies(corners.positions, of_object,
                                 occluder_detail::roundingTolerance(largest_of_all));
   }
-  occluder_detail::assembleSet(corners.positions, ranked, object_count, set);
+  occluder_detail::assembleSet(corners.positions, ranked, set);
   return set;
 }
 

@@ -258,28 +258,30 @@ bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   return true;
 }
 
-// Those that listed(id) says, in the order of their ids.
+// Those of an object that listed(id) says, in the order of their ids.
 template <typename Listed>
-void listByObject(std::size_t object_count, std::span<const Occluder> occluders, Listed&& listed,
-                  std::vector<std::uint32_t>& first, std::vector<OccluderId>& ids) {
-  first.assign(object_count + 1, 0);
-  for (std::size_t o = 0; o < occluders.size(); ++o) {
-    first[occluders[o].object.value + 1] += listed(OccluderId(o)) ? 1u : 0u;
-  }
+void listByObject(const OccluderSet& set, Listed&& listed, std::vector<std::uint32_t>& first,
+                  std::vector<OccluderId>& ids) {
+  const auto forEachListed = [&](auto&& visit) {
+    for (std::size_t o = 0; o < set.occluders.size(); ++o) {
+      const std::size_t place = set.placeOf(set.occluders[o].object);
+      if (place < set.objects.size() && listed(OccluderId(o))) {
+        visit(place, OccluderId(o));
+      }
+    }
+  };
+  first.assign(set.objects.size() + 1, 0);
+  forEachListed([&](std::size_t place, OccluderId) { ++first[place + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
   ids.resize(first.back());
-  for (std::size_t o = 0; o < occluders.size(); ++o) {
-    if (listed(OccluderId(o))) {
-      ids[next[occluders[o].object.value]++] = OccluderId(o);
-    }
-  }
+  forEachListed([&](std::size_t place, OccluderId id) { ids[next[place]++] = id; });
 }
 
 }  // namespace
 
 void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
-                 std::size_t object_count, OccluderSet& set) {
+                 OccluderSet& set) {
   for (const RankedPolygon& ranked : polygons) {
     const FoundPolygon& polygon = ranked.polygon;
     Occluder occluder;
@@ -303,12 +305,12 @@ void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon
   Linker(positions, polygons, set).run();
   assembleBodies(positions, polygons, set);
   listByObject(
-      object_count, set.occluders, [](OccluderId) { return true; }, set.first_of_object, set.of_object);
+      set, [](OccluderId) { return true; }, set.first_of_object, set.of_object);
   const auto stands_for_all = [&](OccluderId id) {
     const OccluderBody* body = set.bodyOf(id);
     return body == nullptr || set.facesOf(*body).front().occluder == id;
   };
-  listByObject(object_count, set.occluders, stands_for_all, set.first_unit_of_object, set.unit_of_object);
+  listByObject(set, stands_for_all, set.first_unit_of_object, set.unit_of_object);
 }
 
 }  // namespace sightline::occluder_detail

@@ -15,7 +15,7 @@ struct RankedPolygon {
 };
 
 // Fills vertices, edges, lines, covers and the per-object lists of a set from its polygons, in their order.
-void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
-                 std::size_t object_count, OccluderSet& set);
+// set.objects is there already, and has all valid objects of the polygons.
+void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set);
 
 }  // namespace sightline::occluder_detail

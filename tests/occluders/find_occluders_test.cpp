@@ -462,6 +462,33 @@ TEST(MakeOccluders, CountsWhatItLeavesOutAndKeepsTheRest) {
   EXPECT_EQ(set.report.degenerate, 1u);
 }
 
+TEST(MakeOccluders, TakesObjectsOfAnyNumberAndOfNone) {
+  const std::vector<Vec3f> wall{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const ObjectId far_off(4'000'000'000u), last(0xfffffffeu);
+  const OccluderPolygon input[] = {{wall, false, far_off},
+                                   {wall, false, ObjectId()},
+                                   {wall, false, ObjectId(7u)},
+                                   {wall, false, last},
+                                   {wall, false, far_off}};
+  const OccluderSet set = makeOccluders(input);
+  EXPECT_EQ(set.occluders.size(), 5u);
+  EXPECT_LE(set.first_of_object.capacity() + set.first_unit_of_object.capacity(), 64u);
+  EXPECT_EQ(set.occludersOf(far_off).size(), 2u);
+  EXPECT_EQ(set.unitsOf(far_off).size(), 2u);
+  EXPECT_EQ(set.occludersOf(ObjectId(7u)).size(), 1u);
+  EXPECT_EQ(set.occludersOf(last).size(), 1u);
+  for (const ObjectId other :
+       {ObjectId(), ObjectId(0u), ObjectId(3u), ObjectId(8u), ObjectId(4'000'000'001u)}) {
+    EXPECT_TRUE(set.occludersOf(other).empty()) << other.value;
+    EXPECT_TRUE(set.unitsOf(other).empty()) << other.value;
+  }
+  for (const ObjectId object : {far_off, ObjectId(7u), last}) {
+    for (const OccluderId id : set.occludersOf(object)) {
+      EXPECT_EQ(set[id].object, object);
+    }
+  }
+}
+
 TEST(MakeOccluders, ClosesTheSeamOfEdgesWithEqualEnds) {
   const std::vector<Vec3f> left{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
       right{{1, 0, 0}, {2, 0, 1}, {2, 1, 1}, {1, 1, 0}}, apart{{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {5, 1, 0}};

@@ -309,6 +309,18 @@ TEST(Bake, RefusesSettingsThatMakeNoSense) {
   EXPECT_FALSE(Bake::plan({}, {}, {})) << "nothing to see";
 }
 
+TEST(Bake, RefusesOccludersOfNoObjectOfTheScene) {
+  const Scene scene = randomScene(1);
+  for (const ObjectId object : {ObjectId(), ObjectId(scene.objects.size()), ObjectId(4'000'000'000u)}) {
+    OccluderSet occluders = allOccluders(scene);
+    occluders.occluders.back().object = object;
+    const Result<Bake> bake = Bake::plan(scene.view(), occluders);
+    ASSERT_FALSE(bake) << object.value;
+    const std::string owner = object.valid() ? "object " + std::to_string(object.value) : "no object";
+    EXPECT_NE(bake.error().message.find("bake: an occluder belongs to " + owner), std::string::npos);
+  }
+}
+
 TEST(Bake, TakesBrokenBoxesFlatScenesAndNoOccluders) {
   Scene scene =
       sceneOf({{{{0, 0, 0}, {4, 0, 0}, {4, 0, 4}, {0, 0, 4}}, {{0, 3, 2, 1}}}, block({1, 0, 1}, {2, 0, 2})});

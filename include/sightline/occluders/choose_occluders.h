@@ -39,11 +39,12 @@ class OccluderChooser {
                                      const ChoiceSettings& settings);
 
   // The best of these occluders (each named at most once), in the same way; max_distance and bodies are not
-  // regarded.
+  // regarded. What is not in the set, as of a database of another one, is passed over.
   std::span<const OccluderId> choose(const View& view, const OccluderSet& set,
                                      std::span<const OccluderId> candidates, const ChoiceSettings& settings);
 
-  // The first of these occluders that may hide something in the view, in their order.
+  // The first of these occluders that may hide something in the view, in their order; what is not in the set
+  // is passed over.
   std::span<const OccluderId> takeFirst(const View& view, const OccluderSet& set,
                                         std::span<const OccluderId> candidates, std::uint32_t count);
 

@@ -2,6 +2,7 @@
 
 // The potential occluders of a scene: convex polygons merged out of coplanar opaque triangles.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -21,7 +22,7 @@ struct Occluder {
   std::uint16_t vertex_count = 0;
   bool double_sided = false;
   bool seals = false;  // no sharp corner: it may close the seam to a neighbour (see docs/conservative.md)
-  ObjectId object;     // that its triangles belong to
+  ObjectId object;     // that its triangles belong to; not valid: none
   float area = 0.0f;   // square metres
   float slack =
       0.0f;        // metres: bounds how far the polygon and its triangles lie apart, in and across its plane
@@ -88,8 +89,10 @@ struct OccluderSet {
   std::vector<OccluderEdge> edges;          // edge i starts at vertex i
   std::vector<std::array<Vec3f, 2>> lines;  // two points on each line
   std::vector<EdgeCover> covers;
-  std::vector<Vec3f> joints;                   // mesh vertices along edges, between the corners
-  std::vector<std::uint32_t> first_of_object;  // object_count + 1 entries into of_object
+  std::vector<Vec3f> joints;  // mesh vertices along edges, between the corners
+  // Ascending: all objects of the scene in which occluders were found, or those that given polygons name.
+  std::vector<ObjectId> objects;
+  std::vector<std::uint32_t> first_of_object;  // by place in objects, and one more; into of_object
   std::vector<OccluderId> of_object;           // occluders by object
   // The same without the faces of bodies but the first one, which stands for the body.
   std::vector<std::uint32_t> first_unit_of_object;
@@ -127,20 +130,36 @@ struct OccluderSet {
     return std::span(body_faces).subspan(b.first_face, b.face_count);
   }
   std::span<const OccluderId> occludersOf(ObjectId object) const {
-    return listOf(object, first_of_object, of_object);
+    return listOf(placeOf(object), first_of_object, of_object);
   }
   std::span<const OccluderId> unitsOf(ObjectId object) const {
-    return listOf(object, first_unit_of_object, unit_of_object);
+    return listOf(placeOf(object), first_unit_of_object, unit_of_object);
+  }
+  // The object's place in objects, or objects.size(). Where objects has all from 0 on, that is its number.
+  std::size_t placeOf(ObjectId object) const {
+    if (object.value < objects.size() && objects[object.value] == object) {
+      return object.value;
+    }
+    const auto at = std::lower_bound(objects.begin(), objects.end(), object);
+    return at != objects.end() && *at == object ? static_cast<std::size_t>(at - objects.begin())
+                                                : objects.size();
   }
 
  private:
-  static std::span<const OccluderId> listOf(ObjectId object, std::span<const std::uint32_t> first,
+  static std::span<const OccluderId> listOf(std::size_t place, std::span<const std::uint32_t> first,
                                             std::span<const OccluderId> ids) {
-    if (object.value + 1 >= first.size()) {
+    if (place + 1 >= first.size()) {
       return {};
     }
-    return ids.subspan(first[object.value], first[object.value + 1] - first[object.value]);
+    return ids.subspan(first[place], first[place + 1] - first[place]);
   }
+};
+
+// Some occluders of one set, for structures made of several sets, as of a scene and of what moves in it. Sets
+// know nothing of each other: a seam between occluders of two sets stays open.
+struct ChosenOccluders {
+  const OccluderSet* set = nullptr;
+  std::span<const OccluderId> chosen;
 };
 
 // Finds them in raw triangles. Deterministic, whatever the number of threads.
@@ -151,6 +170,10 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
 struct OccluderPolygon {
   std::span<const Vec3f> vertices;  // scene space, counter-clockwise from the front, convex, in one plane
   bool double_sided = false;
+  // The object that shows this polygon: OccluderChooser, and so a Culler, looks for occluders among the
+  // objects in view. Any number; those in between cost nothing. ObjectId(): no object. Such an occluder is
+  // used where it is named, as by the caller of an OcclusionTree, and where it moves: Culler::cull uses all
+  // that move, whatever this is.
   ObjectId object = ObjectId(0u);
 };
 

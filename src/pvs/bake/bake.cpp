@@ -125,6 +125,15 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   if (!region) {
     return Error{"bake: the scene has no object with a finite box, so there is nothing to see"};
   }
+  for (const Occluder& occluder : occluders.occluders) {
+    if (occluder.object.value >= scene.objects.size()) {
+      const std::string owner =
+          occluder.object.valid() ? "object " + std::to_string(occluder.object.value) : "no object";
+      return Error{"bake: an occluder belongs to " + owner + ", but the scene has " +
+                   std::to_string(scene.objects.size()) +
+                   " objects; give the occluders that findOccluders finds in it"};
+    }
+  }
   const auto data = std::make_shared<Data>(scene, occluders, settings, *region);
   data->hash = hashOf(data->scene_id, occluders, settings, *region);
   CellBaker baker(data->scene);

@@ -61,8 +61,9 @@ struct BakeStats {
 class Bake {
  public:
   // Computes the top of the octree, down to the parts. scene, occluders: need not outlive it. An error where
-  // settings are out of range, or where there is no region and no object with a finite box.
-  // occluders: all that are to be considered; area_fraction = 1 leaves none out.
+  // settings are out of range, where there is no region and no object with a finite box, and where an
+  // occluder belongs to no object of the scene. occluders: all that are to be considered; area_fraction = 1
+  // leaves none out.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {});
 
