@@ -15,14 +15,38 @@ namespace sightline {
 
 using namespace occlusion_detail;
 
+namespace {
+
+std::size_t sizeOf(std::span<const ChosenOccluders> sets) {
+  std::size_t size = 0;
+  for (const ChosenOccluders& part : sets) {
+    size += part.chosen.size();
+  }
+  return size;
+}
+
+}  // namespace
+
 struct OcclusionTree::Impl {
   OcclusionTreeSettings settings;
   TreeBuilder builder;
   TreeData tree;
   SplittingQuery splitting;
   OcclusionTreeStats stats;
-  bool usable_view = false;  // there was one, and it was one: see validate()
-  std::vector<OccluderId> used;
+  bool usable_view = false;            // there was one, and it was one: see validate()
+  std::vector<ChosenOccluders> parts;  // of the chosen occluders, those that the tree is built from
+  std::vector<OccluderId> used;        // of the first set
+
+  // As many of the chosen occluders as may find room: each needs three nodes at least.
+  void takeFirst(std::span<const ChosenOccluders> sets) {
+    parts.clear();
+    std::size_t room = settings.max_nodes / 3;
+    for (const ChosenOccluders& part : sets) {
+      parts.push_back({part.set, part.chosen.first(std::min(part.chosen.size(), room))});
+      room -= parts.back().chosen.size();
+    }
+  }
+  std::size_t partSize() const { return sizeOf(parts); }
 
   bool modified() const {
     return settings.variant == OcclusionTreeVariant::kFME || settings.variant == OcclusionTreeVariant::kFMC;
@@ -39,25 +63,31 @@ OcclusionTree::~OcclusionTree() = default;
 OcclusionTree::OcclusionTree(OcclusionTree&&) noexcept = default;
 OcclusionTree& OcclusionTree::operator=(OcclusionTree&&) noexcept = default;
 
-void OcclusionTree::build(const View& given, const OccluderSet& set, std::span<const OccluderId> chosen) {
+void OcclusionTree::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
+  const ChosenOccluders only{&set, chosen};
+  build(view, {&only, 1});
+}
+
+void OcclusionTree::build(const View& given, std::span<const ChosenOccluders> sets) {
   Impl& impl = *impl_;
   View view = given;
   impl.usable_view = makeUsable(view) == nullptr;
   const TreeLimits limits{impl.modified(), impl.settings.clip_to_frustum, impl.settings.max_nodes};
-  // Each occluder needs three nodes at least.
-  std::span<const OccluderId> part =
-      chosen.first(std::min<std::size_t>(chosen.size(), impl.settings.max_nodes / 3));
-  while (!impl.builder.build(view, set, part, limits, impl.tree) && !part.empty()) {
-    part = part.first(part.size() / 2);
+  impl.takeFirst(sets);
+  while (!impl.builder.build(view, impl.parts, limits, impl.tree) && impl.partSize() > 0) {
+    for (ChosenOccluders& part : impl.parts) {
+      part.chosen = part.chosen.first(part.chosen.size() / 2);
+    }
   }
+  const VolumeBuilder& volumes = impl.tree.volumes;
   impl.used.clear();
-  for (const OcclusionVolume& volume : impl.tree.volumes.volumes) {
-    impl.used.push_back(volume.occluder);
+  for (std::size_t v = 0; !sets.empty() && v < volumes.volumes_of_set[0]; ++v) {
+    impl.used.push_back(volumes.volumes[v].occluder);
   }
   OcclusionTreeStats& stats = impl.stats;
-  stats.occluders = static_cast<std::uint32_t>(impl.used.size());
-  stats.dropped = static_cast<std::uint32_t>(chosen.size() - part.size());
-  stats.unusable = static_cast<std::uint32_t>(part.size()) - stats.occluders;
+  stats.occluders = static_cast<std::uint32_t>(volumes.volumes.size());
+  stats.dropped = static_cast<std::uint32_t>(sizeOf(sets) - impl.partSize());
+  stats.unusable = static_cast<std::uint32_t>(impl.partSize()) - stats.occluders;
   stats.nodes = static_cast<std::uint32_t>(impl.tree.nodes.size());
   stats.leaves = static_cast<std::uint32_t>(impl.tree.leaves.size());
   stats.depth = impl.tree.depth;

@@ -164,16 +164,25 @@ void VolumeBuilder::addVolume(const OccluderSet& set, const EyeOccluder& candida
   volumes.push_back(volume);
 }
 
-void VolumeBuilder::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
+void VolumeBuilder::build(const View& view, std::span<const ChosenOccluders> sets) {
   eye = Eye(view);
   volumes.clear();
   corners.clear();
   planes.clear();
   tolerances.clear();
   cuts.clear();
+  volumes_of_set.clear();
+  reach = 0.0;
+  for (const ChosenOccluders& part : sets) {
+    const std::size_t before = volumes.size();
+    addSet(*part.set, part.chosen);
+    volumes_of_set.push_back(volumes.size() - before);
+  }
+}
+
+void VolumeBuilder::addSet(const OccluderSet& set, std::span<const OccluderId> chosen) {
   candidates_.clear();
   used_lines_.clear();
-  reach = 0.0;
   candidate_of_.resize(std::max(candidate_of_.size(), set.occluders.size()), kNone);
   plane_of_line_.resize(std::max(plane_of_line_.size(), set.lines.size()), kNone);
   for (const OccluderId id : chosen) {

@@ -41,7 +41,7 @@ struct EdgeCut {
 };
 
 struct OcclusionVolume {
-  OccluderId occluder;
+  OccluderId occluder;       // of its set
   Plane support;             // of the polygon, unit normal towards the eye, relative to the eye
   double depth_slack = 0.0;  // metres that a point must be behind it, in addition to kDepthMargin
   Vec3d centroid;            // of the unclipped polygon, relative to the eye
@@ -51,8 +51,9 @@ struct OcclusionVolume {
 
 class VolumeBuilder {
  public:
-  // Fills volumes, corners and planes. Occluders that are of no use from here get no volume.
-  void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen);
+  // Fills volumes, corners and planes, set by set. Occluders that are of no use from here get no volume.
+  // Seams are sealed between occluders of one set only.
+  void build(const View& view, std::span<const ChosenOccluders> sets);
 
   // Adds a shadow plane.
   PlaneRef addPlane(const Plane& plane, double tolerance = 0.0);
@@ -65,10 +66,12 @@ class VolumeBuilder {
   // vertices may lie, with a gap between two occluders beyond. Relative to the distance from the eye
   // (perspective), or in metres (orthographic); 0 for all others, which are drawn in instead.
   std::vector<double> tolerances;
-  std::vector<EdgeCut> cuts;  // volume after volume
-  double reach = 0.0;         // largest of the volumes
+  std::vector<EdgeCut> cuts;                // volume after volume
+  std::vector<std::size_t> volumes_of_set;  // how many of the volumes are of each set
+  double reach = 0.0;                       // largest of the volumes
 
  private:
+  void addSet(const OccluderSet& set, std::span<const OccluderId> chosen);
   bool fitsInset(const OccluderSet& set, const EyeOccluder& candidate) const;
   void addVolume(const OccluderSet& set, const EyeOccluder& candidate);
   void addEdge(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline);
@@ -79,8 +82,8 @@ class VolumeBuilder {
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<EyeOccluder> candidates_;
-  std::vector<std::uint32_t> candidate_of_;   // by OccluderId, kNone between builds
-  std::vector<std::uint32_t> plane_of_line_;  // by line, kNone between builds
+  std::vector<std::uint32_t> candidate_of_;   // by OccluderId, kNone between sets
+  std::vector<std::uint32_t> plane_of_line_;  // by line, kNone between sets
   std::vector<std::uint32_t> used_lines_;
   std::vector<Corner> clipped_;
   std::uint32_t candidate_first_corner_ = 0;  // of the volume that is being added

@@ -40,8 +40,8 @@ struct Relation {
   std::uint64_t satisfied = 0;  // supporting planes, a bit an edge; when it touches
   double until = 0.0;           // this holds while the eye's path is not longer than that, metres
 
-  bool fits(std::int16_t exponent, bool seen_from_back) const {
-    return inset_exponent == exponent && flipped == seen_from_back;
+  bool fits(std::int16_t exponent, bool seen_from_back, std::uint32_t edges) const {
+    return inset_exponent == exponent && flipped == seen_from_back && edge_count == edges;
   }
   std::uint64_t allEdges() const {
     return edge_count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge_count) - 1;
@@ -58,6 +58,7 @@ struct InsetEdge {
 // An occluder in use for one view.
 struct Member {
   EyeOccluder seen;
+  std::uint32_t set = 0;   // its set, by the number in SupportingPlanes::build()
   Vec3d origin;            // its first vertex, scene space
   Vec3d eye;               // relative to the origin; orthographic: the direction to the eye
   double eye_w = 1.0;      // 0: orthographic

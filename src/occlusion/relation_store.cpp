@@ -100,8 +100,11 @@ RelationStore::Index RelationStore::takeQuad() {
 
 void RelationStore::keep(Item item, const Relation& relation, std::span<const PlaneQuad> planes) {
   Index r = find(item, relation.occluder);
+  if (r != kNone && entries_[r].relation.quads() != relation.quads()) {
+    forget(item);  // of a set of occluders that is another one now
+    r = kNone;
+  }
   if (r != kNone) {
-    // Of the same occluder, so with as many planes.
     entries_[r].relation = relation;
     Index q = entries_[r].quad;
     for (const PlaneQuad& own : planes) {

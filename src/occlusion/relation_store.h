@@ -36,8 +36,8 @@ class RelationStore {
   std::uint32_t forget(Item item);
   void clear();
 
-  std::uint32_t size() const { return used_; }                        // relations
-  std::size_t bytes() const;                                          // of relations, table and items
+  std::uint32_t size() const { return used_; }  // relations
+  std::size_t bytes() const;                    // of relations, table and items
   // Relations that went for want of room, or found none, since beginFrame().
   std::uint32_t evicted() const { return evicted_; }
 

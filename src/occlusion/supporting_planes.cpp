@@ -31,10 +31,21 @@ struct SupportingPlanes::Impl {
 
   explicit Impl(const SupportingPlanesSettings& s) : settings(s), store(s.relation_bytes) {}
 
-  void build(const View& view, const OccluderSet& new_set, std::span<const OccluderId> chosen);
+  // A set of build(). Its occluders have the numbers from first_number on, after those of the sets before.
+  struct Source {
+    const OccluderSet* set = nullptr;
+    std::uint32_t first_number = 0;
+  };
+
+  void build(const View& view, std::span<const ChosenOccluders> sets);
   void follow(const Eye& next);
-  std::uint32_t memberOf(OccluderId id);
-  OccluderList listOf(std::span<const OccluderId> ids);
+  void takeSources(std::span<const ChosenOccluders> sets);
+  const OccluderSet& setOf(const Member& member) const { return *sources[member.set].set; }
+  std::uint32_t& memberSlot(std::uint32_t source, OccluderId id) {
+    return member_of[sources[source].first_number + id.value];
+  }
+  std::uint32_t memberOf(std::uint32_t source, OccluderId id);
+  OccluderList listOf(std::uint32_t source, std::span<const OccluderId> ids);
   std::span<const InsetEdge> edgesOf(const Member& member) const;
   void findSeams(Member& member);
   EyeLook lookThrough(const Box& box, Item item, std::uint32_t index);
@@ -43,25 +54,25 @@ struct SupportingPlanes::Impl {
   Visibility classify(const Box& box, Item item, OccluderList among, OccluderList& touching);
   bool hiddenJointly(const Box& box);
   bool survives(const Partial& partial, const Box& box);
-  bool recruit(OccluderId id, const Box& box);
+  bool recruit(std::uint32_t source, OccluderId id, const Box& box);
 
   SupportingPlanesSettings settings;
   SupportingPlanesStats stats;
-  const OccluderSet* set = nullptr;
+  std::vector<Source> sources;
   Eye eye;
   bool has_eye = false;
   bool usable_view = false;  // of the last build(): see validate(). Without one, no occluder hides
   double path = 0.0;         // of the eye, metres; orthographic: of its direction on the unit sphere
   std::vector<Member> members;
   std::uint32_t recruitable = 0;         // so many of them are those of build()
-  std::vector<std::uint32_t> member_of;  // by OccluderId
-  std::vector<OccluderId> asked;         // that have an entry there
-  std::vector<OccluderId> used;          // of build()
+  std::vector<std::uint32_t> member_of;  // by the number of an occluder, see Source
+  std::vector<std::uint32_t> asked;      // numbers that have an entry there
+  std::vector<OccluderId> used;          // of build(), of the first set
   std::vector<InsetEdge> inset_edges;
   std::vector<EyeShape> shapes;  // by member
   std::vector<EyeQuad> eye_quads;
   std::vector<Plane> seams;          // by edge of a member, the member behind it, relative to the eye
-  std::vector<std::uint32_t> lists;  // members, ascending by OccluderId in each list
+  std::vector<std::uint32_t> lists;  // members; in each list set by set, ascending by OccluderId
   OccluderList all;
   RelationStore store;
 
@@ -88,18 +99,27 @@ void SupportingPlanes::Impl::follow(const Eye& next) {
   eye = next;
 }
 
-void SupportingPlanes::Impl::build(const View& given, const OccluderSet& new_set,
-                                   std::span<const OccluderId> chosen) {
-  View view = given;
-  usable_view = makeUsable(view) == nullptr;
-  for (const OccluderId id : asked) {
-    member_of[id.value] = kNone;
+void SupportingPlanes::Impl::takeSources(std::span<const ChosenOccluders> sets) {
+  for (const std::uint32_t number : asked) {
+    member_of[number] = kNone;
   }
   asked.clear();
-  if (set != &new_set) {
+  if (sources.empty() || sources[0].set != sets[0].set) {
     store.clear();
-    set = &new_set;
   }
+  sources.clear();
+  std::size_t numbers = 0;
+  for (const ChosenOccluders& part : sets) {
+    sources.push_back({part.set, static_cast<std::uint32_t>(numbers)});
+    numbers += part.set->occluders.size();
+  }
+  member_of.resize(std::max(member_of.size(), numbers), kNone);
+}
+
+void SupportingPlanes::Impl::build(const View& given, std::span<const ChosenOccluders> sets) {
+  View view = given;
+  usable_view = makeUsable(view) == nullptr;
+  takeSources(sets);
   follow(Eye(view));
   store.beginFrame();
   members.clear();
@@ -110,29 +130,35 @@ void SupportingPlanes::Impl::build(const View& given, const OccluderSet& new_set
   lists.clear();
   used.clear();
   roles.clear();
-  member_of.resize(std::max(member_of.size(), set->occluders.size()), kNone);
   stats = {};
-  all = listOf(chosen);
+  for (std::uint32_t source = 0; source < sets.size(); ++source) {
+    listOf(source, sets[source].chosen);
+  }
+  all = {0, static_cast<std::uint32_t>(lists.size())};
   recruitable = static_cast<std::uint32_t>(members.size());
   for (const Member& member : members) {
-    used.push_back(member.seen.id);
+    if (member.set == 0) {
+      used.push_back(member.seen.id);
+    }
   }
-  stats.occluders = static_cast<std::uint32_t>(used.size());
+  stats.occluders = recruitable;
   stats.unusable = static_cast<std::uint32_t>(asked.size()) - stats.occluders;
 }
 
 // kNone where the occluder can't be used from here.
-std::uint32_t SupportingPlanes::Impl::memberOf(OccluderId id) {
+std::uint32_t SupportingPlanes::Impl::memberOf(std::uint32_t source, OccluderId id) {
   constexpr std::uint32_t kUnusable = kNone - 1;
-  std::uint32_t& index = member_of[id.value];
+  const OccluderSet& set = *sources[source].set;
+  std::uint32_t& index = memberSlot(source, id);
   if (index == kNone) {
-    asked.push_back(id);
+    asked.push_back(sources[source].first_number + id.value);
     index = kUnusable;
-    if (const std::optional<Member> member = makeMember(eye, *set, id)) {
+    if (const std::optional<Member> member = makeMember(eye, set, id)) {
       index = static_cast<std::uint32_t>(members.size());
       members.push_back(*member);
+      members.back().set = source;
       members.back().first_edge = static_cast<std::uint32_t>(inset_edges.size());
-      appendInsetEdges(*set, *member, inset_edges);
+      appendInsetEdges(set, *member, inset_edges);
       shapes.push_back(eyeShapeOf(eye, *member, edgesOf(members.back()), eye_quads));
       roles.push_back(Role::kUnknown);
     }
@@ -140,11 +166,12 @@ std::uint32_t SupportingPlanes::Impl::memberOf(OccluderId id) {
   return index == kUnusable ? kNone : index;
 }
 
-OccluderList SupportingPlanes::Impl::listOf(std::span<const OccluderId> ids) {
+OccluderList SupportingPlanes::Impl::listOf(std::uint32_t source, std::span<const OccluderId> ids) {
   const std::size_t first = lists.size();
   for (const OccluderId id : ids) {
-    const bool known = usable_view && set != nullptr && id.value < set->occluders.size();
-    const std::uint32_t member = known ? memberOf(id) : kNone;
+    const bool known =
+        usable_view && source < sources.size() && id.value < sources[source].set->occluders.size();
+    const std::uint32_t member = known ? memberOf(source, id) : kNone;
     if (member != kNone) {
       lists.push_back(member);
     }
@@ -164,12 +191,13 @@ void SupportingPlanes::Impl::findSeams(Member& member) {
   if (member.first_seam != Member::kNotYet) {
     return;
   }
-  const Occluder& occluder = (*set)[member.seen.id];
+  const OccluderSet& set = setOf(member);
+  const Occluder& occluder = set[member.seen.id];
   member.first_seam = static_cast<std::uint32_t>(seams.size());
   seams.resize(seams.size() + occluder.vertex_count);
   for (std::uint32_t side = 0; side < occluder.vertex_count; ++side) {
-    const Outline outline = outlineOf(eye, *set, member.seen, side);
-    if (const std::optional<Seam> seam = seamOf(eye, *set, member.seen, outline)) {
+    const Outline outline = outlineOf(eye, set, member.seen, side);
+    if (const std::optional<Seam> seam = seamOf(eye, set, member.seen, outline)) {
       const std::uint32_t e = outline.edge - occluder.first_vertex;
       seams[member.first_seam + e] = seam->oriented();
       member.sealable |= std::uint64_t{1} << e;
@@ -178,8 +206,8 @@ void SupportingPlanes::Impl::findSeams(Member& member) {
 }
 
 // An occluder that need not touch the box: it may still be what an edge of another one goes on in.
-bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
-  const std::uint32_t index = member_of[id.value];
+bool SupportingPlanes::Impl::recruit(std::uint32_t source, OccluderId id, const Box& box) {
+  const std::uint32_t index = memberSlot(source, id);
   if (index >= recruitable || roles[index] != Role::kUnknown || partials.size() >= kMaxJoint) {
     return false;
   }
@@ -203,22 +231,24 @@ bool SupportingPlanes::Impl::recruit(OccluderId id, const Box& box) {
 
 // Whether what lies beyond each failing edge is covered by occluders that are alive, or are now made so.
 bool SupportingPlanes::Impl::survives(const Partial& partial, const Box& box) {
-  const Occluder& occluder = (*set)[members[partial.member].seen.id];
-  const auto centroidOf = [this](OccluderId id) -> const Vec3d* {
-    const std::uint32_t other = member_of[id.value];
+  const std::uint32_t source = members[partial.member].set;
+  const OccluderSet& set = *sources[source].set;
+  const Occluder& occluder = set[members[partial.member].seen.id];
+  const auto centroidOf = [&](OccluderId id) -> const Vec3d* {
+    const std::uint32_t other = memberSlot(source, id);
     return other < members.size() && roles[other] == Role::kAlive ? &members[other].seen.centroid : nullptr;
   };
   for (std::uint32_t e = 0; e < occluder.vertex_count; ++e) {
     if ((partial.failing >> e & 1) == 0) {
       continue;
     }
-    const OccluderEdge& edge = set->edges[occluder.first_vertex + e];
+    const OccluderEdge& edge = set.edges[occluder.first_vertex + e];
     const Plane seam = seams[members[partial.member].first_seam + e];
-    std::uint64_t open = openElements(*set, edge, seam, centroidOf);
+    std::uint64_t open = openElements(set, edge, seam, centroidOf);
     for (std::uint32_t c = 0; c < edge.cover_count && open != 0; ++c) {
-      const EdgeCover& cover = set->covers[edge.first_cover + c];
-      if ((open >> cover.element & 1) != 0 && recruit(cover.occluder, box)) {
-        open = openElements(*set, edge, seam, centroidOf);
+      const EdgeCover& cover = set.covers[edge.first_cover + c];
+      if ((open >> cover.element & 1) != 0 && recruit(source, cover.occluder, box)) {
+        open = openElements(set, edge, seam, centroidOf);
       }
     }
     if (open != 0) {
@@ -279,9 +309,13 @@ Relation SupportingPlanes::Impl::relate(Item item, const Box& box, const Member&
 }
 
 // One occluder and the box, by planes through the box. Where the near plane cuts the occluder, its outline
-// changes with every step: then by planes through the eye.
+// changes with every step: then by planes through the eye. Of an occluder that may move nothing is kept: its
+// id may be another's in the next frame.
 EyeLook SupportingPlanes::Impl::lookThrough(const Box& box, Item item, std::uint32_t index) {
   const Member& member = members[index];
+  if (member.set != 0) {
+    item = kNoItem;
+  }
   if (member.near_clipped) {
     EyeLook look;
     lookPast(shapes, eye_quads, {&index, 1}, EyeBox::of(box, eye.position), {&look, 1});
@@ -301,7 +335,8 @@ EyeLook SupportingPlanes::Impl::lookThrough(const Box& box, Item item, std::uint
 // A kept relation, looked at again where a sign may have changed; null: there is none.
 const Relation* SupportingPlanes::Impl::lookAgain(Item item, const Member& member) {
   const RelationStore::Index kept = store.find(item, member.seen.id);
-  if (kept == RelationStore::kNone || !store[kept].fits(member.inset_exponent, member.seen.flipped)) {
+  if (kept == RelationStore::kNone ||
+      !store[kept].fits(member.inset_exponent, member.seen.flipped, member.edge_count)) {
     return nullptr;
   }
   Relation& relation = store[kept];
@@ -367,11 +402,16 @@ SupportingPlanes::SupportingPlanes(SupportingPlanes&&) noexcept = default;
 SupportingPlanes& SupportingPlanes::operator=(SupportingPlanes&&) noexcept = default;
 
 void SupportingPlanes::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen) {
-  impl_->build(view, set, chosen);
+  const ChosenOccluders only{&set, chosen};
+  impl_->build(view, {&only, 1});
+}
+
+void SupportingPlanes::build(const View& view, std::span<const ChosenOccluders> sets) {
+  impl_->build(view, sets);
 }
 
 OccluderList SupportingPlanes::add(std::span<const OccluderId> more) {
-  return impl_->listOf(more);
+  return impl_->sources.empty() ? OccluderList{} : impl_->listOf(0, more);
 }
 
 OccluderList SupportingPlanes::all() const {

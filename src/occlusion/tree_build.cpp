@@ -119,8 +119,8 @@ void TreeBuilder::makeFragments() {
   }
 }
 
-bool TreeBuilder::build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
-                        const TreeLimits& limits, TreeData& tree) {
+bool TreeBuilder::build(const View& view, std::span<const ChosenOccluders> sets, const TreeLimits& limits,
+                        TreeData& tree) {
   tree_ = &tree;
   limits_ = limits;
   failed_ = false;
@@ -130,7 +130,7 @@ bool TreeBuilder::build(const View& view, const OccluderSet& set, std::span<cons
   tree.leaves.clear();
   tree.corners.clear();
   tree.depth = 0;
-  tree.volumes.build(view, set, chosen);
+  tree.volumes.build(view, sets);
   tree.on_plane_scale = view.orthographic ? tree.volumes.reach : 0.0;
   if (limits.clip_to_frustum) {
     addFrustum(view);

@@ -15,8 +15,8 @@ struct TreeLimits {
 class TreeBuilder {
  public:
   // False when the limits did not suffice: the tree is then not usable.
-  bool build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
-             const TreeLimits& limits, TreeData& tree);
+  bool build(const View& view, std::span<const ChosenOccluders> sets, const TreeLimits& limits,
+             TreeData& tree);
 
  private:
   static constexpr std::uint32_t kMaxDepth =

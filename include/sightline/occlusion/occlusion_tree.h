@@ -28,7 +28,7 @@ struct OcclusionTreeSettings {
 };
 
 struct OcclusionTreeStats {
-  std::uint32_t occluders = 0;  // whose shadow is in the tree
+  std::uint32_t occluders = 0;  // of all sets, whose shadow is in the tree
   std::uint32_t unusable = 0;   // chosen, but seen from behind, edge-on, or wholly before the near plane
   std::uint32_t dropped = 0;    // left out for want of nodes
   std::uint32_t nodes = 0, leaves = 0;  // inner nodes, leaves in shadow
@@ -47,13 +47,15 @@ class OcclusionTree {
 
   // The tree of the chosen occluders for the view. The set must outlive the call only.
   void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen);
+  // The same of several sets, as of a scene and of what moves in it.
+  void build(const View& view, std::span<const ChosenOccluders> sets);
 
   // Of a box in scene space, as seen from the eye of the last build(). Boxes that are not well formed are
   // kVisible.
   Visibility classify(const Box& box);
 
   const OcclusionTreeStats& stats() const;
-  // Those of the chosen ones whose shadow is in the tree.
+  // Those of the first set's chosen ones whose shadow is in the tree.
   std::span<const OccluderId> occluders() const;
 
  private:

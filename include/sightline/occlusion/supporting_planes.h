@@ -48,7 +48,7 @@ struct RelationStats {
 };
 
 struct SupportingPlanesStats {
-  std::uint32_t occluders = 0;  // that can be used from this view
+  std::uint32_t occluders = 0;  // of all sets, that can be used from this view
   std::uint32_t unusable = 0;   // chosen, but seen from behind, edge-on, or wholly before the near plane
   RelationStats relations;
 };
@@ -75,7 +75,10 @@ class SupportingPlanes {
 
   // The chosen occluders for the view. The set must outlive the use of this; kept relations belong to it.
   void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen);
-  // Further occluders for the same view, to be asked with. Best first is best.
+  // The same of several sets, at least one. Relations are kept of the first set alone: the others may move,
+  // and must outlive the use of this until the next build().
+  void build(const View& view, std::span<const ChosenOccluders> sets);
+  // Further occluders of the first set for the same view, to be asked with. Best first is best.
   OccluderList add(std::span<const OccluderId> more);
 
   // Of a box in scene space, as seen from the eye of the last build(), against all occluders of build().
@@ -92,7 +95,7 @@ class SupportingPlanes {
   void forgetAll();
 
   SupportingPlanesStats stats() const;
-  // Those of the chosen ones that can be used from this view.
+  // Those of the first set's chosen ones that can be used from this view.
   std::span<const OccluderId> occluders() const;
 
  private:
