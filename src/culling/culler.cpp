@@ -1,5 +1,6 @@
 #include "sightline/culling/culler.h"
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -179,9 +180,9 @@ struct Culler::Impl {
     stats.walk_us = microseconds(built_at, Clock::now());
   }
 
-  void cullWithTree(const View& view, const Frustum& frustum) {
+  void cullWithTree(const View& view, const Frustum& frustum, const OccluderSet* moving) {
     cullWith(
-        view, frustum, [&](std::span<const OccluderId> chosen) { tree.build(view, occluders, chosen); },
+        view, frustum, [&](std::span<const OccluderId> chosen) { tree.build(view, inUse(chosen, moving)); },
         [&] {
           walkWith(frustum, settings.temporal_coherence,
                    AskAll{[this](const Box& box) { return tree.classify(box); }});
@@ -192,13 +193,27 @@ struct Culler::Impl {
   }
 
   // Supporting planes have temporal coherence of their own, which needs every node's lists.
-  void cullWithPlanes(const View& view, const Frustum& frustum) {
+  void cullWithPlanes(const View& view, const Frustum& frustum, const OccluderSet* moving) {
     cullWith(
-        view, frustum, [&](std::span<const OccluderId> chosen) { planes.build(view, occluders, chosen); },
+        view, frustum, [&](std::span<const OccluderId> chosen) { planes.build(view, inUse(chosen, moving)); },
         [&] {
           walkWith(frustum, false, KeptPlanes{planes, hierarchy, entered});
         });
     stats.occluders = planes.stats().occluders;
+  }
+
+  // The chosen occluders of the culler's own set, and then all that move. Valid until the next call.
+  std::span<const ChosenOccluders> inUse(std::span<const OccluderId> chosen, const OccluderSet* moving) {
+    in_use[0] = {&occluders, chosen};
+    if (moving == nullptr) {
+      return std::span(in_use).first(1);
+    }
+    all_moving.clear();
+    for (std::size_t i = 0; i < moving->occluders.size(); ++i) {
+      all_moving.push_back(OccluderId(i));
+    }
+    in_use[1] = {moving, all_moving};
+    return in_use;
   }
 
   // Returns how many of the map's occluders are of the culler's own set: what moves has ids of its own.
@@ -206,14 +221,11 @@ struct Culler::Impl {
   std::size_t draw(Map& map, const View& view, std::span<const OccluderId> chosen,
                    const OccluderSet* moving) {
     map.begin(view);
-    map.draw(occluders, chosen, parallel_for);
+    const std::span<const ChosenOccluders> parts = inUse(chosen, moving);
+    map.draw(*parts[0].set, parts[0].chosen, parallel_for);
     const std::size_t own = map.occluders().size();
-    if (moving != nullptr) {
-      all_moving.clear();
-      for (std::size_t i = 0; i < moving->occluders.size(); ++i) {
-        all_moving.push_back(OccluderId(i));
-      }
-      map.draw(*moving, all_moving, parallel_for);
+    for (const ChosenOccluders& part : parts.subspan(1)) {
+      map.draw(*part.set, part.chosen, parallel_for);
     }
     return own;
   }
@@ -425,7 +437,8 @@ struct Culler::Impl {
   culling_detail::SetWalk set_walk;  // with the method
   ParallelFor parallel_for = serialFor;
   std::vector<OccluderId> all_moving;
-  std::size_t used_count = 0;  // of the map's occluders those of the culler's own set
+  std::array<ChosenOccluders, 2> in_use;  // see inUse()
+  std::size_t used_count = 0;             // of the map's occluders those of the culler's own set
   std::vector<ObjectId> visible, candidates;
   std::vector<Visibility> dynamic_states;
   CullStats stats;
@@ -461,10 +474,10 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
       impl_->cullByFrustum(frustum);
       break;
     case CullMethod::kOcclusionTree:
-      impl_->cullWithTree(view, frustum);
+      impl_->cullWithTree(view, frustum, moving);
       break;
     case CullMethod::kSupportingPlanes:
-      impl_->cullWithPlanes(view, frustum);
+      impl_->cullWithPlanes(view, frustum, moving);
       break;
     case CullMethod::kOpacityMap:
       impl_->cullWithOpacityMap(view, frustum, moving);

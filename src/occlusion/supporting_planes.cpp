@@ -104,7 +104,7 @@ void SupportingPlanes::Impl::takeSources(std::span<const ChosenOccluders> sets) 
     member_of[number] = kNone;
   }
   asked.clear();
-  if (sources.empty() || sources[0].set != sets[0].set) {
+  if (sources.empty() || sets.empty() || sources[0].set != sets[0].set) {
     store.clear();
   }
   sources.clear();

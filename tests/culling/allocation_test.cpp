@@ -60,6 +60,34 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
   }
 }
 
+TEST(Allocations, DoNotHappenWithOccludersThatMove) {
+  const DemoScene& demo = smallCity();
+  const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 20);
+  // A wall before the eye of each frame.
+  std::vector<OccluderSet> moving;
+  for (const View& view : views) {
+    std::vector<Vec3f> corners;
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+      corners.push_back(Vec3f(view.eye + view.forward * 6.0 + view.right * (3.0 * x) + view.up * (2.0 * y)));
+    }
+    const OccluderPolygon wall{corners, true, ObjectId()};
+    moving.push_back(makeOccluders({&wall, 1}));
+    ASSERT_EQ(moving.back().occluders.size(), 1u);
+  }
+  for (const auto& [name, settings] : allSettings()) {
+    Culler culler = demo.culler(HierarchyKind::kBvh, settings);
+    std::size_t counted = 0;
+    for (int round = 0; round < 3; ++round) {
+      const std::size_t before = allocations;
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        culler.cull(views[v], {}, v % 5 == 4 ? nullptr : &moving[v]);
+      }
+      counted = allocations - before;
+    }
+    EXPECT_EQ(counted, 0u) << name;
+  }
+}
+
 TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
   const DemoScene& demo = smallCity();
   const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 24);

@@ -441,8 +441,8 @@ class Structure {
   DepthPyramid pyramid_;
 };
 
-// Walls that move are drawn with the others, in their own frame only.
-TEST(Culler, OccludersThatMoveHideInTheMapsOfTheirFrame) {
+// Walls that move are used with the others, in their own frame only.
+TEST(Culler, OccludersThatMoveHideInTheirFrame) {
   const WallScene scene;
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {});
   const Box box{{12, -1, -12}, {13, 1, -10}};  // beside the wall's shadow
@@ -450,14 +450,14 @@ TEST(Culler, OccludersThatMoveHideInTheMapsOfTheirFrame) {
   const OccluderPolygon wall{corners};
   const OccluderSet moving = makeOccluders({&wall, 1});
   ASSERT_EQ(moving.occluders.size(), 1u);
-  for (const CullMethod method : {CullMethod::kOpacityMap, CullMethod::kDepthPyramid}) {
-    Culler culler(hierarchy, scene.bounds, scene.occluders, {.method = method});
+  for (const auto& [name, settings] : kStructures) {
+    Culler culler(hierarchy, scene.bounds, scene.occluders, settings);
     culler.cull(scene.view, {&box, 1});
-    EXPECT_NE(culler.dynamicStates()[0], Visibility::kHidden);
+    EXPECT_NE(culler.dynamicStates()[0], Visibility::kHidden) << name;
     culler.cull(scene.view, {&box, 1}, &moving);
-    EXPECT_EQ(culler.dynamicStates()[0], Visibility::kHidden);
+    EXPECT_EQ(culler.dynamicStates()[0], Visibility::kHidden) << name;
     culler.cull(scene.view, {&box, 1});
-    EXPECT_NE(culler.dynamicStates()[0], Visibility::kHidden);
+    EXPECT_NE(culler.dynamicStates()[0], Visibility::kHidden) << name;
   }
 }
 

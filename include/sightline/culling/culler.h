@@ -138,9 +138,9 @@ class Culler {
 
   // One frame. dynamic_boxes: moving occludees, classified in the same call; sets say nothing about them.
   // Does not fail, and does not allocate after a few frames; with a view that validate() refuses, everything
-  // is visible (CullStats::view_fault). moving: occluders of this frame only (makeOccluders), all of which
-  // are used in addition; opacity map and depth pyramid draw them like others, the other methods leave them
-  // out.
+  // is visible (CullStats::view_fault). moving: occluders of this frame only (makeOccluders), in scene space,
+  // all of which are used in addition by all methods that use occluders; the second test of detail_objects
+  // leaves them out. They need to outlive the call only.
   void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr);
 
   // Answers of the last cull(). Objects that may be seen, ascending.
