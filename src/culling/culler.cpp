@@ -8,6 +8,7 @@
 #include "culling/adaptive_coverage.h"
 #include "culling/hierarchical_walk.h"
 #include "culling/kept_planes.h"
+#include "culling/scene_fit.h"
 #include "culling/set_members.h"
 #include "culling/set_walk.h"
 #include "culling/wide_walk.h"
@@ -24,6 +25,7 @@ double microseconds(Clock::time_point from, Clock::time_point to) {
 
 using culling_detail::AskAll;
 using culling_detail::KeptPlanes;
+using culling_detail::SceneSizes;
 using culling_detail::SetMembers;
 
 auto seeEverything() {
@@ -36,25 +38,28 @@ struct Culler::Impl {
   using WalkOptions = culling_detail::WalkOptions;
 
   Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s,
-       const OccluderDatabases& d, VisibleSets* sets)
+       const OccluderDatabases& d, VisibleSets* v)
       : hierarchy(h),
         object_bounds(bounds),
         occluders(o),
         settings(s),
         databases(d),
-        walk(h, bounds),
-        search(h, bounds),
+        sets(v),
+        prepared(culling_detail::isOf(h, bounds)),
+        sizes(SceneSizes::of(h, o)),
+        walk(preparedOf(h), bounds),
+        search(preparedOf(h), bounds),
         tree(OcclusionTreeSettings{.variant = s.variant}),
         planes(planesSettings(s)),
         entered(h.nodes.size()),
         coverage(s.coverage_ratio),
-        members(h, bounds.size(), usesSets(s) ? sets : nullptr, marksFor(s)),
+        members(preparedOf(h), bounds, usesSets(s) ? v : nullptr, marksFor(s)),
         set_walk(s.method == CullMethod::kVisibilityOctree ? bounds.size() : 0) {
     if (s.method == CullMethod::kOpacityMap) {
       opacity_map.emplace(OpacityMapSettings{s.raster, s.depth_comparison, s.tolerance, s.coverage_ratio});
     } else if (s.method == CullMethod::kDepthPyramid) {
       pyramid.emplace(DepthPyramidSettings{s.raster});
-      wide_walk.emplace(h, bounds);
+      wide_walk.emplace(preparedOf(h), bounds);
       if (s.focus.magnification > 1.0 && s.raster.coverage == Coverage::kInner) {
         const DepthMapView map = pyramid->map();
         window.emplace(s.focus, map.width, map.height);
@@ -63,6 +68,23 @@ struct Culler::Impl {
         fine_pyramid.emplace(DepthPyramidSettings{fine});
       }
     }
+  }
+
+  // A hierarchy of other boxes is not looked into.
+  const Hierarchy& preparedOf(const Hierarchy& h) const {
+    static const Hierarchy kNone;
+    return prepared ? h : kNone;
+  }
+
+  // Whether the scene is what the constructor saw, as far as that can be told in constant time.
+  bool fits() const { return prepared && sizes == SceneSizes::of(hierarchy, occluders); }
+
+  // Nothing is known of this frame's scene, or of its view.
+  bool keepsEverything() const { return stats.unfit || stats.view_fault != nullptr; }
+  void keepEverything() {
+    visible.clear();
+    culling_detail::appendAll(hierarchy, object_bounds.size(), visible);
+    has_previous = false;
   }
 
   static SupportingPlanesSettings planesSettings(const CullerSettings& settings) {
@@ -347,14 +369,6 @@ struct Culler::Impl {
     stats.walk_us = microseconds(start, Clock::now());
   }
 
-  // For a view that is none. everywhere: a frustum that holds all of space.
-  void keepEverything(const Frustum& everywhere, std::size_t dynamic_boxes) {
-    has_previous = false;
-    visible.clear();
-    walk.run(everywhere, {.temporal_coherence = false}, seeEverything(), stats, visible);
-    dynamic_states.assign(dynamic_boxes, Visibility::kVisible);
-  }
-
   // No more than the set of the eye's cell, as far as it meets the frustum.
   void cullBySet(const Frustum& frustum) {
     if (members.everything()) {
@@ -391,7 +405,7 @@ struct Culler::Impl {
   }
 
   Visibility classifyDynamic(const Box& box) {
-    if (!box.wellFormed()) {
+    if (!box.wellFormed() || keepsEverything()) {
       return Visibility::kVisible;
     }
     switch (settings.method) {
@@ -420,6 +434,9 @@ struct Culler::Impl {
   const OccluderSet& occluders;
   CullerSettings settings;
   OccluderDatabases databases;
+  VisibleSets* sets;
+  bool prepared;                                  // the hierarchy is of the boxes
+  SceneSizes sizes;                               // as the constructor saw them
   culling_detail::HierarchicalWalk walk, search;  // search: for occluders
   OccluderChooser chooser;
   OcclusionTree tree;
@@ -461,9 +478,11 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
   const char* fault = makeUsable(view);
   const Frustum frustum = frustumOf(view);
   impl_->stats = {};
-  if (fault != nullptr) {
-    impl_->stats.view_fault = fault;
-    impl_->keepEverything(frustum, dynamic_boxes.size());
+  impl_->stats.view_fault = fault;
+  impl_->stats.unfit = !impl_->fits();
+  if (impl_->keepsEverything()) {
+    impl_->keepEverything();
+    impl_->classifyAll(frustum, dynamic_boxes);
     return;
   }
   impl_->view_jumped = impl_->jumped(view);
@@ -504,7 +523,7 @@ std::span<const Visibility> Culler::dynamicStates() const {
   return impl_->dynamic_states;
 }
 std::span<const OccluderId> Culler::occludersUsed() const {
-  if (impl_->stats.view_fault != nullptr) {
+  if (impl_->keepsEverything()) {
     return {};
   }
   switch (impl_->settings.method) {
@@ -527,7 +546,7 @@ const CullStats& Culler::stats() const {
   return impl_->stats;
 }
 DepthMapView Culler::depthMap() const {
-  if (impl_->stats.view_fault != nullptr) {
+  if (impl_->keepsEverything()) {
     return {};
   }
   if (impl_->opacity_map) {
@@ -541,16 +560,14 @@ void Culler::setParallelFor(ParallelFor parallel_for) {
 }
 
 void Culler::reset() {
-  impl_->has_previous = false;
-  impl_->last_step = 0.0;
-  impl_->frames_between_searches = 0;
-  impl_->members.forget();
-  impl_->walk.forget();
-  if (impl_->wide_walk) {
-    impl_->wide_walk->forget();
-  }
-  impl_->planes.forgetAll();
-  impl_->entered.assign(impl_->entered.size(), false);
+  reset(impl_->hierarchy, impl_->object_bounds, impl_->occluders, impl_->databases, impl_->sets);
+}
+
+void Culler::reset(const Hierarchy& hierarchy, std::span<const Box> object_bounds,
+                   const OccluderSet& occluders, const OccluderDatabases& databases, VisibleSets* sets) {
+  auto anew = std::make_unique<Impl>(hierarchy, object_bounds, occluders, impl_->settings, databases, sets);
+  anew->parallel_for = std::move(impl_->parallel_for);
+  impl_ = std::move(anew);
 }
 
 }  // namespace sightline

@@ -76,9 +76,6 @@ class HierarchicalWalk {
     decided_.clear();
   }
 
-  // Forgets which nodes were found partly visible.
-  void forget() { partial_.assign(partial_.size(), false); }
-
  private:
   static constexpr std::uint32_t kNoParent = 0xffffffffu;
 

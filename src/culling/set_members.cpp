@@ -1,20 +1,9 @@
 #include "culling/set_members.h"
 
+#include "culling/scene_fit.h"
+
 namespace sightline::culling_detail {
 namespace {
-
-// Whether the tree has each of so many objects once: a set of any other tree would hide what it does not
-// know.
-bool holdsAll(const BoxTreeView& tree, std::size_t object_count) {
-  std::vector<bool> found(object_count, false);
-  for (const ObjectId object : tree.objects) {
-    if (object.value >= object_count || found[object.value]) {
-      return false;
-    }
-    found[object.value] = true;
-  }
-  return tree.objects.size() == object_count;
-}
 
 TreeMarks marksOf(const Hierarchy& hierarchy, std::size_t object_count) {
   std::vector<std::uint32_t> parents(hierarchy.nodes.size(), TreeMarks::kTop);
@@ -35,19 +24,24 @@ TreeMarks marksOf(const Hierarchy& hierarchy, std::size_t object_count) {
 
 }  // namespace
 
-SetMembers::SetMembers(const Hierarchy& hierarchy, std::size_t object_count, VisibleSets* sets, Marks marks)
-    : sets_(sets != nullptr && holdsAll(sets->boxes(), object_count) ? sets : nullptr) {
-  if (sets_ != nullptr && marks == Marks::kAll) {
-    node_marks_.emplace(marksOf(hierarchy, object_count));
-    object_marks_.resize(object_count);
-    list_.reserve(object_count);
+SetMembers::SetMembers(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets,
+                       Marks marks)
+    : sets_(sets != nullptr && isOf(sets->boxes(), object_bounds) ? sets : nullptr) {
+  if (sets_ == nullptr) {
+    return;
+  }
+  tree_ = sets_->boxes();
+  if (marks == Marks::kAll) {
+    node_marks_.emplace(marksOf(hierarchy, object_bounds.size()));
+    object_marks_.resize(object_bounds.size());
+    list_.reserve(object_bounds.size());
   }
 }
 
 bool SetMembers::find(const View& view) {
   VisibleSet set;
   // From an orthographic view's eye nothing is looked at.
-  if (sets_ != nullptr && !view.orthographic) {
+  if (sets_ != nullptr && !view.orthographic && treeIsTheSame()) {
     set = sets_->find(view.eye, nearDistance(view));
   }
   nodes_ = set.nodes;
@@ -56,9 +50,8 @@ bool SetMembers::find(const View& view) {
   id_ = set.id;
   if (another || everything()) {
     object_count_ = 0;
-    const BoxTreeView tree = boxes();
     for (const std::uint32_t node : nodes_) {
-      object_count_ += tree.nodes[node].object_count;
+      object_count_ += tree_.nodes[node].object_count;
     }
   }
   if (another && !everything() && node_marks_) {
@@ -67,14 +60,20 @@ bool SetMembers::find(const View& view) {
   return another;
 }
 
+// Sets that were replaced by others in the same place have their boxes elsewhere.
+bool SetMembers::treeIsTheSame() const {
+  const BoxTreeView now = sets_->boxes();
+  return now.nodes.data() == tree_.nodes.data() && now.nodes.size() == tree_.nodes.size() &&
+         now.objects.data() == tree_.objects.data() && now.objects.size() == tree_.objects.size();
+}
+
 void SetMembers::mark() {
   for (const ObjectId object : list_) {
     object_marks_[object.value] = 0;
   }
   list_.clear();
-  const BoxTreeView tree = sets_->boxes();
   for (const std::uint32_t node : nodes_) {
-    const std::span<const ObjectId> below = tree.objectsBelow(node);
+    const std::span<const ObjectId> below = tree_.objectsBelow(node);
     list_.insert(list_.end(), below.begin(), below.end());
   }
   for (const ObjectId object : list_) {

@@ -20,19 +20,17 @@ class SetMembers {
   // What is asked for: the set's nodes alone, or marks at objects and nodes of the hierarchy too.
   enum class Marks : std::uint8_t { kNone, kAll };
 
-  // sets: null for none; not used either where it is of other objects than the hierarchy, by their number.
-  SetMembers(const Hierarchy& hierarchy, std::size_t object_count, VisibleSets* sets, Marks marks);
+  // The hierarchy is of these boxes. sets: null for none; not used either where it is of other boxes.
+  SetMembers(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets, Marks marks);
 
   // Finds the set of the view. True when it is not the one of the call before.
   bool find(const View& view);
-  // The next set counts as another one.
-  void forget() { known_ = false; }
 
   // Of the last find(). Everything may be seen: there is no set, or the sets know nothing of the view.
   bool everything() const { return id_ == VisibleSet::kEverything; }
   // Of sets.boxes(); until the next find(). Empty where there is no set.
   std::span<const std::uint32_t> nodes() const { return nodes_; }
-  BoxTreeView boxes() const { return sets_ != nullptr ? sets_->boxes() : BoxTreeView{}; }
+  BoxTreeView boxes() const { return tree_; }
   std::uint32_t objectCount() const { return object_count_; }
 
   // With marks. Valid until the next find().
@@ -44,7 +42,10 @@ class SetMembers {
  private:
   void mark();
 
+  bool treeIsTheSame() const;
+
   VisibleSets* sets_;
+  BoxTreeView tree_;    // of the sets, as the constructor saw it
   bool known_ = false;  // id_ is the last find()'s
   std::uint32_t id_ = VisibleSet::kEverything;
   std::uint32_t object_count_ = 0;

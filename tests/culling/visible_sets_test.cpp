@@ -147,6 +147,33 @@ TEST(VisibilityOctreeCulling, WithoutASetIsFrustumCulling) {
   }
 }
 
+// Of as many objects with the same ids: everything is in the set, as without one.
+TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
+  const std::vector<Box>& own = smallCity().bounds;
+  std::vector<Box> moved = own, one_off = own, exchanged = own;
+  for (Box& box : moved) {
+    box = {box.min + Vec3f(30, 0, 0), box.max + Vec3f(30, 0, 0)};
+  }
+  one_off[40].max.y = std::nextafter(one_off[40].max.y, 1e9f);
+  std::swap(exchanged[10], exchanged[11]);
+  ASSERT_NE(exchanged, own);
+  std::vector<NamedSettings> all(std::begin(kMethods), std::end(kMethods));
+  all.push_back({"visibility octree", {.method = CullMethod::kVisibilityOctree}});
+  for (auto& [name, settings] : all) {
+    settings.visible_sets = true;
+    settings.occluder_count = 0;  // nothing is hidden but by the set
+    for (const std::vector<Box>& others : {moved, one_off, exchanged}) {
+      FakeSets sets(others);
+      sets.use(1, std::vector<bool>(own.size(), false));
+      Culler culler = cullerWith(smallCity(), HierarchyKind::kBvh, settings, &sets);
+      Culler frustum = smallCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+      const View view = smallCity().frames(smallCity().scene.paths[0], 10, 1)[0];
+      EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view)) << name;
+      EXPECT_EQ(culler.stats().set_nodes, 0u) << name;
+    }
+  }
+}
+
 TEST(VisibilityOctreeCulling, OrthographicViewsAskForNoSet) {
   FakeSets sets(smallCity().bounds);
   sets.use(1, std::vector<bool>(smallCity().bounds.size(), false));

@@ -90,6 +90,9 @@ struct CullStats {
   // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything was
   // kept.
   const char* view_fault = nullptr;
+  // The scene does not fit together, or has changed without reset(): every object was kept, also outside the
+  // frustum, and no other count is made.
+  bool unfit = false;
   bool focused = false;                // see FocusSettings
   std::uint32_t nodes_visited = 0;     // frustum tests of nodes
   std::uint32_t nodes_tested = 0;      // nodes asked of the occlusion structure
@@ -126,9 +129,14 @@ struct OccluderDatabases {
 
 class Culler {
  public:
-  // Views of the caller's data, which must outlive this. sets: for kVisibilityOctree and visible_sets, used
-  // by this culler alone. Without them, where they are of other objects, and for orthographic views,
-  // everything is in the set.
+  // Views of the caller's data, which must outlive this, and which do not change without reset(). Boxes are
+  // by ObjectId, and the hierarchy is of these boxes: where it is not, because it names other objects or a
+  // box lies outside the leaves that name it, cull() keeps everything (CullStats::unfit).
+  //
+  // sets: for kVisibilityOctree and visible_sets, used by this culler alone. Without them, where they are of
+  // other boxes, and for orthographic views, everything is in the set. They are of the scene if every
+  // object's box is exactly the baked one; that triangles within equal boxes are others cannot be seen here,
+  // see SightFile::matches.
   Culler(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
          const CullerSettings& settings = {}, const OccluderDatabases& databases = {},
          VisibleSets* sets = nullptr);
@@ -158,8 +166,18 @@ class Culler {
   // at first.
   void setParallelFor(ParallelFor parallel_for);
 
-  // Forgets the previous frame (after a change of scene).
+  // After any change of scene: boxes that moved, objects that came or went, another hierarchy, other
+  // occluders, databases or sets. The culler is then as new, with the same settings: all that it made of the
+  // scene, and of earlier frames, is made anew, which takes as long as the constructor and allocates. Answers
+  // are empty until the next cull().
+  //
+  // This form takes the same memory as before, changed in place: for boxes in a vector that has grown, and
+  // for other objects, call the other form. A change without reset() is noticed where the number of nodes, of
+  // their objects, of occluders or of their corners is another one: then cull() keeps everything
+  // (CullStats::unfit). What keeps all these numbers, as boxes that moved, cannot be noticed.
   void reset();
+  void reset(const Hierarchy& hierarchy, std::span<const Box> object_bounds, const OccluderSet& occluders,
+             const OccluderDatabases& databases = {}, VisibleSets* sets = nullptr);
 
  private:
   struct Impl;

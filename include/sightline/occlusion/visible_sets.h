@@ -25,6 +25,8 @@ class VisibleSets {
  public:
   virtual ~VisibleSets() = default;
 
+  // Each leaf is one object with its box, as the sets were made for it. A Culler compares them with its own
+  // boxes, and uses no sets of other ones. They stay where they are as long as the sets are in use.
   virtual BoxTreeView boxes() const = 0;
 
   // For a perspective view from `eye` (scene space) in any direction. near_distance: how far from the eye the

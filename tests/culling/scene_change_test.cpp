@@ -1,0 +1,358 @@
+// Scenes that grow, shrink and move under a culler, and parts of scenes that do not belong together.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "oracle/exact_visibility.h"
+#include "tests/culling/demo_frames.h"
+#include "tests/culling/fake_sets.h"
+#include "tests/occlusion/small_scenes.h"
+
+namespace sightline {
+namespace {
+
+using namespace demo_frames;
+using fake_sets::FakeSets;
+
+using Objects = std::vector<ObjectId>;
+
+Objects visibleOf(Culler& culler, const View& view) {
+  culler.cull(view);
+  return {culler.visible().begin(), culler.visible().end()};
+}
+
+Objects firstObjects(std::size_t count) {
+  Objects objects;
+  for (std::size_t i = 0; i < count; ++i) {
+    objects.push_back(ObjectId(i));
+  }
+  return objects;
+}
+
+// Every method.
+std::vector<NamedSettings> allMethods() {
+  std::vector<NamedSettings> all(std::begin(kMethods), std::end(kMethods));
+  all.push_back({"frustum", {.method = CullMethod::kFrustum}});
+  all.push_back({"visibility octree", {.method = CullMethod::kVisibilityOctree}});
+  all.push_back({"depth pyramid within sets", {.method = CullMethod::kDepthPyramid, .visible_sets = true}});
+  NamedSettings detail = kMethods[2];
+  detail.name = "planes through the box, detail objects";
+  detail.settings.detail_objects = true;
+  detail.settings.occluders = OccluderChoice::kDatabase;
+  all.push_back(detail);
+  return all;
+}
+
+// The city with everything in it moved.
+Scene movedCity(std::uint32_t copies, const Vec3f& by) {
+  Scene scene = makeCity({.copies = copies});
+  for (Vec3f& position : scene.positions) {
+    position += by;
+  }
+  updateBounds(scene);
+  return scene;
+}
+
+const DemoScene& oneCopy() {
+  static const DemoScene kScene(makeCity({.copies = 1}));
+  return kScene;
+}
+const DemoScene& oneCopyMoved() {
+  static const DemoScene kScene(movedCity(1, {25, 0, 13}));
+  return kScene;
+}
+
+// A scene that is replaced in place, with sets of every object.
+struct LiveScene {
+  DemoScene demo;
+  std::unique_ptr<FakeSets> sets;
+
+  explicit LiveScene(const DemoScene& first) : demo(first) { makeSets(); }
+  void become(const DemoScene& other) {
+    demo = other;
+    makeSets();
+  }
+  Culler culler(HierarchyKind kind, const CullerSettings& settings) const {
+    return Culler(demo.hierarchy(kind), demo.bounds, demo.occluders, settings, databases(), sets.get());
+  }
+  OccluderDatabases databases() const { return {&demo.database, &demo.detail_database}; }
+
+ private:
+  void makeSets() {
+    sets = std::make_unique<FakeSets>(demo.bounds);
+    sets->use(1, std::vector<bool>(demo.bounds.size(), true));
+  }
+};
+
+// The culler's next frames are those of a new one, and leave out nothing that a ray reaches.
+void expectAsNew(Culler& culler, const LiveScene& live, HierarchyKind kind, const CullerSettings& settings,
+                 const std::string& where) {
+  Culler fresh = live.culler(kind, settings);
+  const ExactVisibility exact(live.demo.scene.view());
+  for (const View& view : live.demo.frames(live.demo.scene.paths[0], 60, 4)) {
+    const Objects visible = visibleOf(culler, view);
+    EXPECT_EQ(visible, visibleOf(fresh, view)) << where;
+    EXPECT_FALSE(culler.stats().unfit) << where;
+    EXPECT_LT(visible.size(), live.demo.bounds.size()) << where;
+    for (const Witness& witness : exact.visibleThroughPixels(view, 96, 54)) {
+      if (!std::binary_search(visible.begin(), visible.end(), witness.object)) {
+        EXPECT_FALSE(exact.confirm(view, witness)) << where << ": object " << witness.object.value;
+      }
+    }
+  }
+}
+
+TEST(ResetCuller, IsRightInASceneThatGrewShrankOrMoved) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const auto& [name, settings] : allMethods()) {
+      LiveScene live(oneCopy());
+      Culler culler = live.culler(kind, settings);
+      expectAsNew(culler, live, kind, settings, std::string(name) + ", at first");
+      for (const auto& [change, scene] :
+           {std::pair{", grown", &smallCity()}, {", shrunk", &oneCopy()}, {", moved", &oneCopyMoved()}}) {
+        live.become(*scene);
+        culler.reset(live.demo.hierarchy(kind), live.demo.bounds, live.demo.occluders, live.databases(),
+                     live.sets.get());
+        expectAsNew(culler, live, kind, settings, name + nameOf(kind) + change);
+      }
+    }
+  }
+}
+
+// The sets that the culler holds stay those of the old place: they are not trusted any more.
+TEST(ResetCuller, IsRightInASceneThatMovedInTheSameMemory) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const auto& [name, settings] : allMethods()) {
+      LiveScene live(oneCopy());
+      const Box* memory = live.demo.bounds.data();
+      Culler culler = live.culler(kind, settings);
+      expectAsNew(culler, live, kind, settings, std::string(name) + ", at first");
+      live.demo = oneCopyMoved();
+      ASSERT_EQ(live.demo.bounds.data(), memory);
+      culler.reset();
+      expectAsNew(culler, live, kind, settings, name + nameOf(kind) + ", moved");
+    }
+  }
+}
+
+TEST(ResetCuller, HasNoAnswersUntilTheNextFrame) {
+  Culler culler = oneCopy().culler(HierarchyKind::kBvh, {});
+  const std::vector<View> views = oneCopy().frames(oneCopy().scene.paths[0], 60, 1);
+  EXPECT_FALSE(visibleOf(culler, views[0]).empty());
+  culler.reset();
+  EXPECT_TRUE(culler.visible().empty());
+  EXPECT_TRUE(culler.occludersUsed().empty());
+}
+
+TEST(Culler, KeepsEverythingOfASceneThatGrewOrShrankWithoutReset) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const auto& [name, settings] : allMethods()) {
+      LiveScene live(oneCopy());
+      Culler culler = live.culler(kind, settings);
+      const std::size_t count = live.demo.bounds.size();
+      const std::vector<View> views = live.demo.frames(live.demo.scene.paths[0], 60, 4);
+      EXPECT_LT(visibleOf(culler, views[0]).size(), count);
+      live.become(smallCity());
+      ASSERT_GT(live.demo.bounds.size(), count);
+      for (const View& view : views) {
+        EXPECT_EQ(visibleOf(culler, view), firstObjects(live.demo.bounds.size())) << name;
+        EXPECT_TRUE(culler.stats().unfit);
+        EXPECT_TRUE(culler.occludersUsed().empty());
+        EXPECT_TRUE(culler.depthMap().nearness.empty());
+      }
+      live.become(DemoScene{Scene{}});
+      EXPECT_EQ(visibleOf(culler, views[0]), firstObjects(count)) << name;
+      live.become(oneCopyMoved());
+      culler.reset(live.demo.hierarchy(kind), live.demo.bounds, live.demo.occluders, live.databases(),
+                   live.sets.get());
+      expectAsNew(culler, live, kind, settings, name);
+    }
+  }
+}
+
+TEST(Culler, KeepsEverythingWhereTheOccludersAreOthersWithoutReset) {
+  for (const auto& [name, settings] : allMethods()) {
+    LiveScene live(oneCopy());
+    Culler culler = live.culler(HierarchyKind::kBvh, settings);
+    const std::vector<View> views = live.demo.frames(live.demo.scene.paths[0], 60, 2);
+    culler.cull(views[0]);
+    live.demo.occluders = smallCity().occluders;
+    const Box behind{Vec3f(views[1].eye - views[1].forward * 9.0),
+                     Vec3f(views[1].eye - views[1].forward * 9.0)};
+    const Box ahead{Vec3f(views[1].eye + views[1].forward * 90.0),
+                    Vec3f(views[1].eye + views[1].forward * 90.0)};
+    const Box dynamic_boxes[] = {behind, ahead};
+    culler.cull(views[1], dynamic_boxes);
+    EXPECT_EQ(Objects(culler.visible().begin(), culler.visible().end()),
+              firstObjects(live.demo.bounds.size()));
+    ASSERT_EQ(culler.dynamicStates().size(), 2u);
+    EXPECT_EQ(culler.dynamicStates()[0], Visibility::kHidden) << "outside the frustum";
+    EXPECT_EQ(culler.dynamicStates()[1], Visibility::kVisible) << name;
+  }
+}
+
+TEST(Culler, KeepsEverythingInViewWhereTheSetsAreOthersWithoutReset) {
+  const DemoScene& demo = oneCopy();
+  const View view = demo.frames(demo.scene.paths[0], 60, 1)[0];
+  Culler frustum = demo.culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+  for (const DemoScene* other : {&smallCity(), &smallBuilding()}) {
+    for (CullerSettings settings :
+         {CullerSettings{.method = CullMethod::kVisibilityOctree},
+          CullerSettings{.occluder_count = 0, .visible_sets = true},
+          CullerSettings{.method = CullMethod::kDepthPyramid, .occluder_count = 0, .visible_sets = true}}) {
+      FakeSets sets(demo.bounds);
+      sets.use(1, std::vector<bool>(demo.bounds.size(), false));
+      Culler culler(demo.bvh, demo.bounds, demo.occluders, settings, {}, &sets);
+      EXPECT_TRUE(visibleOf(culler, view).empty());
+      sets = FakeSets(other->bounds);
+      sets.use(2, std::vector<bool>(other->bounds.size(), true));
+      EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view));
+    }
+  }
+}
+
+// Boxes before and behind a wall of object 0, seen from the origin along -z.
+struct Street {
+  std::vector<Box> bounds{
+      {{-4, -4, -5}, {4, 4, -5}}, {{-1, -1, -12}, {1, 1, -10}}, {{-1, -1, 10}, {1, 1, 12}}};
+  std::vector<Vec3f> corners{{-4, -4, -5}, {4, -4, -5}, {4, 4, -5}, {-4, 4, -5}};
+  View view = test::kLookingBack;
+
+  OccluderSet wallOf(ObjectId object) const {
+    const OccluderPolygon wall{corners, false, object};
+    return makeOccluders({&wall, 1});
+  }
+};
+
+TEST(Culler, KeepsEverythingWhereTheHierarchyIsOfOtherBoxes) {
+  const Street street;
+  const OccluderSet occluders = street.wallOf(ObjectId(0u));
+  for (const HierarchyKind kind : kKinds) {
+    const Hierarchy fitting = buildHierarchy(street.bounds, {}, {.kind = kind, .max_leaf_objects = 1});
+    std::vector<Box> more = street.bounds, moved = street.bounds;
+    more.push_back({{2, 2, -3}, {3, 3, -2}});
+    moved[1] = {{-1, 9, -12}, {1, 10, -10}};
+    Hierarchy beyond = fitting, invalid = fitting, twice = fitting;
+    beyond.objects.back() = ObjectId(70'000u);
+    invalid.objects.back() = ObjectId();
+    twice.objects.front() = twice.objects.back();
+    for (const auto& [name, settings] : allMethods()) {
+      const auto keptBy = [&](const Hierarchy& hierarchy, std::span<const Box> bounds) {
+        Culler culler(hierarchy, bounds, occluders, settings);
+        visibleOf(culler, street.view);
+        const Objects kept = visibleOf(culler, street.view);
+        EXPECT_TRUE(culler.stats().unfit) << name;
+        return kept;
+      };
+      Culler culler(fitting, street.bounds, occluders, settings);
+      EXPECT_LT(visibleOf(culler, street.view).size(), 3u) << name;
+      EXPECT_FALSE(culler.stats().unfit) << name;
+      EXPECT_EQ(keptBy(fitting, more), firstObjects(4)) << name;
+      EXPECT_EQ(keptBy(fitting, std::span(street.bounds).first(1)), firstObjects(3)) << name;
+      EXPECT_EQ(keptBy(fitting, moved), firstObjects(3)) << name;
+      Objects with_beyond = firstObjects(3);
+      with_beyond.push_back(ObjectId(70'000u));
+      EXPECT_EQ(keptBy(beyond, street.bounds), with_beyond) << name;
+      EXPECT_EQ(keptBy(invalid, street.bounds), firstObjects(3)) << name;
+      EXPECT_EQ(keptBy(twice, street.bounds), firstObjects(3)) << name;
+      EXPECT_EQ(keptBy(Hierarchy{}, street.bounds), firstObjects(3)) << name;
+    }
+  }
+}
+
+TEST(Culler, OccludersOfObjectsBeyondTheBoxesAreNotLookedFor) {
+  const Street street;
+  const Hierarchy hierarchy = buildHierarchy(street.bounds, {});
+  for (const ObjectId object : {ObjectId(3u), ObjectId(4'000'000'000u), ObjectId()}) {
+    const OccluderSet occluders = street.wallOf(object);
+    for (const auto& [name, settings] : allMethods()) {
+      Culler culler(hierarchy, street.bounds, occluders, settings);
+      EXPECT_EQ(visibleOf(culler, street.view), firstObjects(2)) << name;
+    }
+  }
+}
+
+TEST(Culler, ADatabaseOfOtherOccludersHidesNothingWrongly) {
+  const DemoScene& demo = oneCopy();
+  const ExactVisibility exact(demo.scene.view());
+  ASSERT_GT(smallCity().occluders.occluders.size(), demo.occluders.occluders.size());
+  for (const NamedSettings& method : kMethods) {
+    CullerSettings settings = method.settings;
+    settings.occluders = OccluderChoice::kDatabase;
+    settings.detail_objects = true;
+    Culler culler(demo.bvh, demo.bounds, demo.occluders, settings,
+                  {&smallCity().database, &smallCity().detail_database});
+    for (const View& view : demo.frames(demo.scene.paths[0], 60, 4)) {
+      const Objects visible = visibleOf(culler, view);
+      EXPECT_FALSE(culler.stats().unfit);
+      for (const Witness& witness : exact.visibleThroughPixels(view, 96, 54)) {
+        EXPECT_TRUE(std::binary_search(visible.begin(), visible.end(), witness.object)) << method.name;
+      }
+    }
+  }
+}
+
+// Walls and boxes at random, all of them elsewhere in each step; the same memory, the same counts.
+struct RestlessScene {
+  test::Random random{5};
+  std::vector<test::OraclePolygon> walls;
+  std::vector<Box> bounds;
+  Hierarchy hierarchy;
+  OccluderSet occluders;
+
+  RestlessScene() : walls(6), bounds(6 + 60) { move(HierarchyKind::kBvh); }
+
+  void move(HierarchyKind kind) {
+    std::vector<OccluderPolygon> input;
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      const auto x = static_cast<float>(random.in(-9, 5)), y = static_cast<float>(random.in(-5, 1)),
+                 z = static_cast<float>(random.in(-9, -5));
+      walls[w] = test::wall(x, x + 5, y, y + 5, z);
+      bounds[w] = {walls[w].vertices[0], walls[w].vertices[2]};
+      input.push_back({walls[w].vertices, false, ObjectId(w)});
+    }
+    for (std::size_t i = walls.size(); i < bounds.size(); ++i) {
+      const Vec3d middle(random.in(-15, 15), random.in(-8, 8), random.in(-25, -12));
+      bounds[i] = {Vec3f(middle - Vec3d(0.4, 0.4, 0.4)), Vec3f(middle + Vec3d(0.4, 0.4, 0.4))};
+    }
+    hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
+    occluders = makeOccluders(input);
+  }
+};
+
+TEST(ResetCuller, HidesNothingThatARayReachesWhenAllMovedInPlace) {
+  for (const HierarchyKind kind : kKinds) {
+    for (const NamedSettings& structure : kStructures) {
+      CullerSettings settings = structure.settings;
+      settings.raster = {.width = 256, .height = 256};
+      RestlessScene scene;
+      scene.move(kind);
+      Culler culler(scene.hierarchy, scene.bounds, scene.occluders, settings);
+      std::size_t hidden = 0;
+      for (int step = 0; step < 12; ++step) {
+        for (int frame = 0; frame < 2; ++frame) {
+          const Objects visible = visibleOf(culler, test::kLookingBack);
+          EXPECT_FALSE(culler.stats().unfit);
+          for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
+            if (std::binary_search(visible.begin(), visible.end(), ObjectId(i))) {
+              continue;
+            }
+            ++hidden;
+            EXPECT_FALSE(
+                test::lookAt(scene.bounds[i], test::kLookingBack, scene.walls, 100, scene.random.engine).seen)
+                << structure.name << " step " << step << " object " << i;
+          }
+        }
+        scene.move(kind);
+        culler.reset();
+      }
+      EXPECT_GT(hidden, 50u) << structure.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline
