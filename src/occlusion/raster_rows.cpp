@@ -190,10 +190,10 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
     insideRows(polygons.outline(polygon), y, band, part.runs);
   }
   std::uint32_t y = rows.first;
-  const auto part_at = [&](std::uint32_t row) -> RasterScratch::Part& {
+  const auto part_at = [&](std::uint32_t row) HWY_ATTR -> RasterScratch::Part& {
     return scratch.insides[(row - rows.first) / RowRuns::kRows];
   };
-  const auto row_in_part = [&](std::uint32_t row) { return (row - rows.first) % RowRuns::kRows; };
+  const auto row_in_part = [&](std::uint32_t row) HWY_ATTR { return (row - rows.first) % RowRuns::kRows; };
   while (y < rows.end && hiddenRow(band.nearness + std::size_t{y} * band.stride,
                                    Run::of(part_at(y).runs, row_in_part(y)), polygon.nearest)) {
     ++y;
@@ -211,7 +211,7 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
     }
     float* row = band.nearness + std::size_t{y} * band.stride;
     const RowNearness nearness(part, in_part);
-    forRun(Run::of(part.runs, in_part), [&](std::uint32_t x, auto mask) {
+    forRun(Run::of(part.runs, in_part), [&](std::uint32_t x, auto mask) HWY_ATTR {
       const auto old = hn::LoadU(d, row + x);
       hn::StoreU(hn::IfThenElse(mask, hn::Max(old, nearness.from(x)), old), d, row + x);
     });
@@ -378,7 +378,7 @@ class SeamDrawer {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
         float* seam_row = seamRow(row);
         const RowNearness nearness(seam, row);
-        forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) {
+        forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
           const auto old = hn::LoadU(d, seam_row + x);
           hn::StoreU(hn::IfThenElse(mask, hn::Min(old, nearness.from(x)), old), d, seam_row + x);
         });
@@ -391,7 +391,7 @@ class SeamDrawer {
     for (const RowRuns& ends : scratch_.ends) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
         float* seam_row = seamRow(row);
-        forRun(Run::of(ends, row), [&](std::uint32_t x, auto mask) {
+        forRun(Run::of(ends, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
           const auto old = hn::LoadU(d, seam_row + x);
           const auto touched = hn::And(mask, hn::Ne(old, hn::Set(d, kUntouched)));
           hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kUncovered), old), d, seam_row + x);
@@ -406,7 +406,7 @@ class SeamDrawer {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
         const float* seam_row = seamRow(row);
         float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
-        forRun(Run::of(seam.own, row), [&](std::uint32_t x, auto mask) {
+        forRun(Run::of(seam.own, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
           const auto old = hn::LoadU(d, map_row + x);
           hn::StoreU(hn::IfThenElse(mask, hn::Max(old, hn::LoadU(d, seam_row + x)), old), d, map_row + x);
         });
@@ -415,7 +415,7 @@ class SeamDrawer {
     for (std::uint32_t row = 0; row < row_count_; ++row) {
       float* seam_row = seamRow(row);
       forRun(Run::of(all_, row),
-             [&](std::uint32_t x, auto) { hn::StoreU(hn::Set(d, kUntouched), d, seam_row + x); });
+             [&](std::uint32_t x, auto) HWY_ATTR { hn::StoreU(hn::Set(d, kUntouched), d, seam_row + x); });
     }
   }
 

@@ -90,5 +90,48 @@ TEST(Repository, TheReadmesCodeIsPartOfTheExampleThatIsCompiled) {
       << code;
 }
 
+// What comes behind the parameters of each lambda of a text, up to its body.
+std::vector<std::string> lambdaSpecifiers(const std::string& text) {
+  std::vector<std::string> specifiers;
+  // A subscript follows a name or a bracket, a capture list does not.
+  for (const std::smatch& match : allMatches(text, std::regex(R"([\s(,={&|]\[[^\[\]]*\]\s*(?=[({]))"))) {
+    auto at = static_cast<std::size_t>(match.position() + match.length());
+    int depth = 0;
+    do {
+      depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
+      at += text[at] == '{' && depth == 0 ? 0 : 1;
+    } while (depth > 0 && at < text.size());
+    specifiers.push_back(text.substr(at, text.find('{', at) - at));
+  }
+  return specifiers;
+}
+
+TEST(Repository, LambdaSpecifiersAreFoundWhateverTheParametersHold) {
+  EXPECT_EQ(lambdaSpecifiers("f(a[i], [&](int v[2], auto (*g)(int)) KIND -> int { return v[0]; });\n"
+                             "const auto h = [this, x] { return x[1](y); };\nint k[] = {1};"),
+            (std::vector<std::string>{" KIND -> int ", ""}));
+}
+
+// A lambda does not inherit the instruction set of the function around it.
+TEST(Repository, EveryLambdaInAHighwayKernelIsCompiledForTheKernelsInstructionSet) {
+  std::size_t kernels = 0;
+  for (const std::string& file : projectFiles()) {
+    const std::string extension = std::filesystem::path(file).extension();
+    const std::string text = extension == ".cpp" || extension == ".h" ? contentOf(file) : "";
+    const std::string begin_mark = "\nHWY_BEFORE_NAMESPACE();";
+    const std::size_t begin = text.find(begin_mark);
+    if (begin == std::string::npos) {
+      continue;
+    }
+    ++kernels;
+    const std::string kernel = text.substr(begin, text.find("\nHWY_AFTER_NAMESPACE();") - begin);
+    for (const std::string& specifiers : lambdaSpecifiers(kernel)) {
+      EXPECT_NE(specifiers.find("HWY_ATTR"), std::string::npos)
+          << file << ": a lambda between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE lacks HWY_ATTR";
+    }
+  }
+  EXPECT_GT(kernels, 5u);
+}
+
 }  // namespace
 }  // namespace sightline::repository
