@@ -10,25 +10,29 @@ extern "C" {
 namespace sightline::layers {
 namespace {
 
-// Qhull writes what goes wrong to a file; it must have one.
+// Qhull reports what goes wrong to a stream; without one it ends the program. This one keeps nothing, and
+// needs neither a file nor a device: each hull has its own, in memory.
 class Discarded {
  public:
-  Discarded() : file_(std::fopen("/dev/null", "w")) {
-    if (file_ == nullptr) {
-      file_ = std::tmpfile();
-    }
-  }
+#if defined(_WIN32)
+  Discarded() : stream_(std::fopen("NUL", "w")) {}
+#else
+  Discarded() : stream_(fmemopen(bytes_, sizeof bytes_, "w")) {}
+#endif
   ~Discarded() {
-    if (file_ != nullptr) {
-      std::fclose(file_);
+    if (stream_ != nullptr) {
+      std::fclose(stream_);
     }
   }
   Discarded(const Discarded&) = delete;
   Discarded& operator=(const Discarded&) = delete;
-  std::FILE* get() const { return file_; }
+  std::FILE* get() const {
+    return stream_;
+  }  // null: no memory
 
  private:
-  std::FILE* file_;
+  char bytes_[16] = {};  // where the stream begins; what does not fit is dropped
+  std::FILE* stream_;
 };
 
 void release(qhT* qh) {
