@@ -27,14 +27,6 @@ std::vector<Group> groupsOf(const LayerOrder& order) {
   return Answer(order).in_order;
 }
 
-Mat4 shifted(const Vec3d& by) {
-  Mat4 m;
-  for (int axis = 0; axis < 3; ++axis) {
-    m(axis, 3) = by[axis];
-  }
-  return m;
-}
-
 // Two cubes that reach a little into each other across the plane z = 0.
 MadeScene overlapping() {
   return {{solid(shapes::box({-1, -1, -0.25}, {1, 1, 2})), solid(shapes::box({-1, -1, -2}, {1, 1, 0.25}))},

@@ -275,6 +275,14 @@ inline Points randomHull(Random& random) {
   }
 }
 
+inline Mat4 shifted(const Vec3d& by) {
+  Mat4 m;
+  for (int axis = 0; axis < 3; ++axis) {
+    m(axis, 3) = by[axis];
+  }
+  return m;
+}
+
 // Moves by whole numbers; one in three also turns, stretches or shears, still by whole numbers.
 inline Mat4 randomWholeTransform(Random& random, int reach) {
   Mat4 m;

@@ -1,0 +1,234 @@
+// What a sort begins with: distances from the eye at first, the last frame's order from then on (section 4).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/layers/made_parts.h"
+#include "tests/layers/moving_sorter.h"
+
+namespace sightline {
+namespace {
+
+using namespace made;
+
+MadePart cubeAt(const Vec3d& centre) {
+  return {.hulls = {shapes::cube()}, .world_from_part = shifted(centre), .settings = {}, .enabled = true};
+}
+
+MadeScene cubesAt(const std::vector<Vec3d>& centres, const Vec3d& eye) {
+  MadeScene scene;
+  for (const Vec3d& centre : centres) {
+    scene.parts.push_back(cubeAt(centre));
+  }
+  scene.view = viewFrom(eye);
+  return scene;
+}
+
+LayerSettings unconditioned(LayerSort sort) {
+  LayerSettings settings;
+  settings.sort = sort;
+  settings.conditioning_axis = -1;
+  return settings;
+}
+
+constexpr LayerSort kSorts[] = {LayerSort::kDepthFirst, LayerSort::kIncremental};
+
+std::vector<std::uint32_t> partsOf(const LayerOrder& order) {
+  std::vector<std::uint32_t> parts;
+  for (const PartId part : order.parts) {
+    parts.push_back(part.value);
+  }
+  return parts;
+}
+
+// Part numbers, nearest to the eye first.
+std::vector<std::uint32_t> byDistance(const std::vector<Vec3d>& centres, const Vec3d& eye) {
+  std::vector<std::uint32_t> parts(centres.size());
+  for (std::uint32_t i = 0; i < parts.size(); ++i) {
+    parts[i] = i;
+  }
+  std::sort(parts.begin(), parts.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return length(centres[a] - eye) < length(centres[b] - eye);
+  });
+  return parts;
+}
+
+// No two of them are before each other, from either of the eyes below.
+const std::vector<Vec3d> kSideBySide{{20, 0, 0}, {0, 0, 0}, {40, 0, 0}, {10, 0, 0}, {30, 0, 0}};
+const Vec3d kLeft{-5, 0, 50}, kRight{45, 0, 50};
+
+TEST(LayerSorterCoherence, TheFirstOrderIsByDistanceWhereNothingIsOccluded) {
+  for (const LayerSort sort : kSorts) {
+    for (const Vec3d& eye : {kLeft, kRight}) {
+      LayerSorter sorter = sorterOf(cubesAt(kSideBySide, eye), unconditioned(sort));
+      EXPECT_EQ(partsOf(sorter.update(viewFrom(eye))), byDistance(kSideBySide, eye));
+    }
+  }
+}
+
+// Sorted by depth, what is behind the eye would come in reverse.
+TEST(LayerSorterCoherence, TheFirstOrderIsRightBehindTheEyeToo) {
+  const std::vector<Vec3d> row{{0, 0, 15}, {0, 0, -30}, {0, 0, 5}, {0, 0, -10}, {0, 0, 25}, {0, 0, -20}};
+  LayerSorter sorter = sorterOf(cubesAt(row, {}), unconditioned(LayerSort::kIncremental));
+  const LayerOrder& order = sorter.update(viewFrom({}));
+  EXPECT_EQ(partsOf(order), byDistance(row, {}));
+  EXPECT_EQ(order.stats.reinsertions, 0u);
+  EXPECT_EQ(order.stats.occluder_queries, row.size());
+}
+
+TEST(LayerSorterCoherence, TheFirstOrderOfAnOrthographicViewIsAlongItsDirection) {
+  const std::vector<Vec3d> spread{{90, 0, -10}, {0, 0, -30}, {-50, 0, -20}, {20, 0, 5}};
+  for (const LayerSort sort : kSorts) {
+    LayerSorter sorter = sorterOf(cubesAt(spread, {}), unconditioned(sort));
+    View view = viewFrom({});
+    view.orthographic = true;
+    EXPECT_EQ(partsOf(sorter.update(view)), (std::vector<std::uint32_t>{3, 0, 2, 1}));
+  }
+}
+
+TEST(LayerSorterCoherence, AnOrderThatIsStillRightStaysUntilItIsReset) {
+  for (const LayerSort sort : kSorts) {
+    LayerSorter sorter = sorterOf(cubesAt(kSideBySide, kLeft), unconditioned(sort));
+    sorter.update(viewFrom(kLeft));
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kRight))), byDistance(kSideBySide, kLeft));
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kRight))), byDistance(kSideBySide, kLeft));
+    sorter.reset();
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kRight))), byDistance(kSideBySide, kRight));
+  }
+}
+
+TEST(LayerSorterCoherence, WhatIsNewFollowsTheLastOrderByDistance) {
+  for (const LayerSort sort : kSorts) {
+    LayerSorter sorter = sorterOf(cubesAt(kSideBySide, kLeft), unconditioned(sort));
+    sorter.setEnabled(PartId(3u), false);
+    sorter.setEnabled(PartId(1u), false);
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kLeft))), (std::vector<std::uint32_t>{0, 4, 2}));
+    sorter.setEnabled(PartId(3u), true);
+    sorter.setEnabled(PartId(1u), true);
+    addMade(sorter, cubeAt({50, 0, 0}));
+    EXPECT_EQ(partsOf(sorter.update(viewFrom(kRight))), (std::vector<std::uint32_t>{0, 4, 2, 5, 3, 1}));
+  }
+}
+
+TEST(LayerSorterCoherence, ConditioningBringsTheNearestForwardWhateverTheLastOrder) {
+  const std::vector<Vec3d> at{{20, 0, -3}, {0, 0, 9}, {40, 0, -6}, {10, 0, 3}, {30, 0, 6}};
+  const std::vector<std::uint32_t> by_depth{1, 4, 3, 0, 2};
+  for (const LayerSort sort : kSorts) {
+    LayerSettings settings = unconditioned(sort);
+    LayerSorter plain = sorterOf(cubesAt(at, kLeft), settings);
+    ASSERT_EQ(partsOf(plain.update(viewFrom(kLeft))), byDistance(at, kLeft));
+    ASSERT_NE(byDistance(at, kLeft), by_depth);
+    settings.conditioning_axis = 2;
+    LayerSorter sorter = sorterOf(cubesAt(at, kLeft), settings);
+    const LayerOrder& first = sorter.update(viewFrom(kLeft));
+    EXPECT_EQ(partsOf(first), by_depth);
+    EXPECT_GT(first.stats.conditioned, 0u);
+    // The conditioned order is what the next sort begins with.
+    const LayerOrder& second = sorter.update(viewFrom(kRight));
+    EXPECT_EQ(partsOf(second), by_depth);
+    EXPECT_EQ(second.stats.conditioned, 0u);
+  }
+}
+
+// A row of plates across the view's axis that reach far to one side: each occludes all behind it, and how far
+// its middle is says nothing about its place in the row.
+struct Plates {
+  static constexpr std::uint32_t kCount = 40;
+  MadeScene scene;
+
+  Plates() {
+    Random random(4);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const double reach = random.whole(2, 400);
+      scene.parts.push_back({.hulls = {shapes::box({-1, -1, 0}, {reach, 1, 0.5})},
+                             .world_from_part = shifted({0, 0, depthOf(i)}),
+                             .settings = {},
+                             .enabled = true});
+    }
+    scene.view = viewFrom({});
+  }
+  // Numbers say nothing about places either.
+  static std::uint32_t place(std::uint32_t part) { return part * 17 % kCount; }
+  static double depthOf(std::uint32_t part) { return -10.0 - 2.0 * place(part); }
+  static std::vector<std::uint32_t> rightOrder() {
+    std::vector<std::uint32_t> order(kCount);
+    for (std::uint32_t part = 0; part < kCount; ++part) {
+      order[place(part)] = part;
+    }
+    return order;
+  }
+};
+
+TEST(LayerSorterCoherence, AFrameInWhichNothingChangesFindsItsOrderConfirmed) {
+  const Plates plates;
+  for (const LayerSort sort : kSorts) {
+    LayerSorter sorter = sorterOf(plates.scene, unconditioned(sort));
+    const LayerOrder& cold = sorter.update(plates.scene.view);
+    ASSERT_EQ(partsOf(cold), Plates::rightOrder());
+    const LayerStats cold_stats = cold.stats;
+    const LayerOrder& warm = sorter.update(plates.scene.view);
+    EXPECT_EQ(partsOf(warm), Plates::rightOrder());
+    EXPECT_EQ(warm.stats.occluder_queries, Plates::kCount);
+    EXPECT_EQ(warm.stats.reinsertions, 0u);
+    // Whatever is still active lies behind the part that is asked about.
+    EXPECT_EQ(warm.stats.candidates, 0u);
+    EXPECT_EQ(warm.stats.pair_queries, 0u);
+    EXPECT_GT(cold_stats.candidates, Plates::kCount);
+    EXPECT_EQ(cold_stats.reinsertions > 0, sort == LayerSort::kIncremental);
+    sorter.reset();
+    EXPECT_EQ(sorter.update(plates.scene.view).stats.candidates, cold_stats.candidates);
+  }
+}
+
+TEST(LayerSorterCoherence, TwoNeighboursThatChangePlacesCostOneReinsertionAndOneCandidate) {
+  const Plates plates;
+  const std::vector<std::uint32_t> order = Plates::rightOrder();
+  for (const LayerSort sort : kSorts) {
+    for (const std::size_t at : {std::size_t{0}, std::size_t{20}, order.size() - 2}) {
+      LayerSorter sorter = sorterOf(plates.scene, unconditioned(sort));
+      sorter.update(plates.scene.view);
+      std::vector<std::uint32_t> expected = order;
+      std::swap(expected[at], expected[at + 1]);
+      ASSERT_TRUE(sorter.setTransform(PartId(order[at]), shifted({0, 0, Plates::depthOf(order[at + 1])})));
+      ASSERT_TRUE(sorter.setTransform(PartId(order[at + 1]), shifted({0, 0, Plates::depthOf(order[at])})));
+      const LayerOrder& warm = sorter.update(plates.scene.view);
+      EXPECT_EQ(partsOf(warm), expected);
+      EXPECT_EQ(warm.stats.candidates, 1u);
+      EXPECT_EQ(warm.stats.pair_queries, 1u);
+      EXPECT_EQ(warm.stats.reinsertions, sort == LayerSort::kIncremental ? 1u : 0u);
+    }
+  }
+}
+
+TEST(LayerSorterCoherence, SmallMotionsCostFewerExactTestsThanSortingAnew) {
+  const MovingScene scene = makeToothpicks({.count = 200});
+  for (const LayerSort sort : kSorts) {
+    LayerSettings settings;
+    settings.sort = sort;
+    MovingSorter warm(scene, settings), cold(scene, settings);
+    LayerStats warm_sum, cold_sum;
+    const auto add = [](LayerStats& sum, const LayerStats& stats) {
+      sum.candidates += stats.candidates;
+      sum.pair_queries += stats.pair_queries;
+      sum.reinsertions += stats.reinsertions;
+    };
+    for (std::uint32_t frame = 0; frame < 30; ++frame) {
+      cold.sorter().reset();
+      const LayerStats of_warm = warm.update(frame).stats, of_cold = cold.update(frame).stats;
+      if (frame > 0) {
+        add(warm_sum, of_warm);
+        add(cold_sum, of_cold);
+      }
+    }
+    EXPECT_LT(warm_sum.candidates, cold_sum.candidates);
+    EXPECT_LT(warm_sum.pair_queries, cold_sum.pair_queries);
+    EXPECT_EQ(warm_sum.reinsertions < cold_sum.reinsertions, sort == LayerSort::kIncremental);
+  }
+}
+
+}  // namespace
+}  // namespace sightline
