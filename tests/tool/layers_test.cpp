@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -121,6 +122,7 @@ TEST(Layers, ThePapersTablesStandBesideOursAndInAReportWithItsPictures) {
   EXPECT_NE(contents(folder.file("report/1-snyder-lengyel/figure17_lines.svg")).find("<svg"),
             std::string::npos);
   const json result = parse(outcome.out);
+  expectDocumented(result, {"reproduce"});
   const std::map<std::string, std::size_t> rows{{"components", 3},  {"growth", 7},     {"builds", 7},
                                                 {"velocities", 11}, {"directions", 6}, {"canyon", 10},
                                                 {"hidden_lines", 1}};

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
 
 namespace sightline::tool_test {
@@ -29,6 +30,7 @@ json reproduced(const std::vector<std::string>& more) {
 
 TEST(Reproduce, CoorgTellerHasATableForEachExperiment) {
   const json result = reproduced({"--scene", "demo:city?copies=1"});
+  expectDocumented(result, {"reproduce"});
   EXPECT_EQ(result["paper"], "coorg-teller");
   EXPECT_EQ(result["scenes"], json::array({"demo:city?copies=1"}));
   const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
@@ -124,6 +126,7 @@ json reproducedShip(const std::vector<std::string>& more = {}) {
 
 TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
   const json result = reproducedShip();
+  expectDocumented(result, {"reproduce"});
   const std::vector<std::string> spread{"mean", "deviation", "min", "max"};
   const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
       {"leaves", spread},

@@ -1,0 +1,157 @@
+// docs/formats.md describes every key that the tool writes.
+
+#include <gtest/gtest-spi.h>
+
+#include "tests/support/pictures.h"
+#include "tests/tool/formats_page.h"
+#include "tests/tool/run_tool.h"
+
+namespace sightline::tool_test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kCity = "demo:city?copies=1";
+
+json written(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--json", "-"});
+  const Outcome outcome = runTool(arguments);
+  EXPECT_EQ(outcome.code, 0) << ::testing::PrintToString(arguments) << outcome.err;
+  return parse(outcome.out);
+}
+
+TEST(Formats, AKeyThatThePageDoesNotNameIsFound) {
+  const std::set<std::string> words{"a", "b"};
+  EXPECT_NONFATAL_FAILURE(expectDocumented(json{{"a", {{{"b", 1}}, {{"c", 2}}}}}, words, "form"),
+                          "does not describe form.a.c");
+  EXPECT_TRUE(wordsOfSection("## Points (read)").contains("points"));
+  EXPECT_FALSE(wordsOfSection("## Points (read)").contains("frames"));
+  EXPECT_FALSE(wordsOfSection("### scene").contains("hierarchy"));
+}
+
+TEST(Formats, TheKeysOfInfoAreDescribed) {
+  expectDocumented(written({"info", kCity}), {"info"});
+}
+
+TEST(Formats, TheKeysOfBakeInfoOfABakedFileAndQueryAreDescribed) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("city.sight");
+  expectDocumented(written({"bake", kCity, "-o", file, "--depth", "2"}), {"bake", "info of a baked file"});
+  expectDocumented(written({"info", file}), {"info of a baked file"});
+  expectDocumented(written({"query", file, "--points", "0,2,0", "--points", "0,9999,0"}), {"query"});
+  expectDocumented(written({"cull", kCity, "--frames", "0:2", "--baked", file, "--visible-sets", "on"}),
+                   {"cull"});
+  expectDocumented(
+      written({"cull", kCity, "--frames", "0:2", "--baked", file, "--method", "visibility-octree"}),
+      {"cull"});
+}
+
+TEST(Formats, TheKeysOfCullAreDescribedWhateverTheMethod) {
+  for (const std::vector<std::string>& method :
+       std::vector<std::vector<std::string>>{{"frustum"},
+                                             {"occlusion-tree"},
+                                             {"occlusion-tree", "--detail-objects", "on"},
+                                             {"occlusion-tree", "--occluders", "database"},
+                                             {"occlusion-tree", "--occluders", "minimum-sets"},
+                                             {"supporting-planes"},
+                                             {"supporting-planes", "--planes", "through-box"},
+                                             {"opacity-map", "--triangle-us", "1"},
+                                             {"depth-pyramid"}}) {
+    expectDocumented(written(joined({"cull", kCity, "--frames", "0:2", "--method"}, method)), {"cull"});
+  }
+}
+
+TEST(Formats, TheKeysOfVerifyAreDescribedForOneSettingAndForSeveral) {
+  const std::vector<std::string> verify{"verify", kCity, "--frames", "0", "--width", "32", "--height", "18"};
+  expectDocumented(written(verify), {"verify"});
+  expectDocumented(written(joined(verify, {"--hierarchy", "kd,bvh"})), {"verify"});
+  // With the centres of pixels there are false culls, if any, in coarse maps.
+  const Outcome wrong = runTool(joined(verify, {"--method", "depth-pyramid", "--coverage", "centre",
+                                                "--resolution", "8x4", "--focus", "0", "--json", "-"}));
+  const json witnesses = parse(wrong.out);
+  EXPECT_EQ(wrong.code, 1);
+  EXPECT_FALSE(witnesses["witnesses"].empty());
+  expectDocumented(witnesses, {"verify"});
+}
+
+TEST(Formats, TheKeysOfWalkAreDescribed) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> walk{"walk",     kCity,
+                                      "--frames", "0:2",
+                                      "--width",  "64",
+                                      "--height", "36",
+                                      "--method", "occlusion-tree,depth-pyramid",
+                                      "-o",       folder.file("report")};
+  const json result = written(walk);
+  expectDocumented(result, {"walk"});
+  EXPECT_EQ(parse(contents(folder.file("report/walk.json"))), result);
+}
+
+TEST(Formats, TheKeysOfLayersAreDescribed) {
+  expectDocumented(written({"layers", "demo:toothpicks?n=10", "--frames", "0:2", "--arcs", "all"}),
+                   {"layers"});
+}
+
+TEST(Formats, TheKeysOfLayersDrawnAreDescribed) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  const TemporaryFolder folder;
+  const json drawn = written({"layers",
+                              "demo:glass",
+                              "--frames",
+                              "0",
+                              "--width",
+                              "32",
+                              "--height",
+                              "18",
+                              "--without",
+                              "3",
+                              "--image",
+                              folder.file("image.png"),
+                              "--by-distance",
+                              folder.file("distance.png"),
+                              "--depth-of-field",
+                              "layers",
+                              "--focus",
+                              "3",
+                              "--aperture",
+                              "0.05",
+                              "--reference-passes",
+                              "2",
+                              "--blurred",
+                              folder.file("blurred.png"),
+                              "--compare",
+                              folder.file("compare.png"),
+                              "--svg",
+                              folder.file("lines.svg"),
+                              "--pdf",
+                              folder.file("lines.pdf"),
+                              "--line-picture",
+                              folder.file("lines.png")});
+  for (const char* key : {"picture", "lens", "drawing", "line_picture"}) {
+    EXPECT_TRUE(drawn["frames"][0].contains(key)) << key;
+  }
+  expectDocumented(drawn, {"layers"});
+}
+
+TEST(Formats, TheKeysOfAPapersTablesAreDescribed) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  expectDocumented(written({"reproduce", "poon-wang", "--short", "--scene", kCity, "--width", "32",
+                            "--height", "18", "--frames", "0:2"}),
+                   {"reproduce"});
+}
+
+// What readers promise: keys that they do not know are ignored.
+TEST(Formats, UnknownKeysOfPathsAndPointsAreIgnored) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.write("path.json", R"({"author":"me","width":64,"height":36,"frames":[)"
+                                R"({"eye":[0,2,0],"forward":[0,0,-1],"time_us":5,"tags":{"a":1}}]})");
+  EXPECT_EQ(written({"cull", kCity, "--path", path})["frames"].size(), 1u);
+  const std::string file = folder.file("city.sight");
+  ASSERT_EQ(runTool({"bake", kCity, "-o", file, "--depth", "1"}).code, 0);
+  const std::string points = folder.write("points.json", R"({"unit":"m","points":[[0,2,0]]})");
+  EXPECT_EQ(written({"query", file, "--points", points})["points"].size(), 1u);
+}
+
+}  // namespace
+}  // namespace sightline::tool_test
