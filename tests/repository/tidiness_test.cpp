@@ -90,6 +90,69 @@ TEST(Repository, TheReadmesCodeIsPartOfTheExampleThatIsCompiled) {
       << code;
 }
 
+// The members of a header's structs that have no default, as "Struct: type name".
+std::vector<std::string> membersWithoutDefault(const std::string& header) {
+  const std::string text = std::regex_replace(header, std::regex("//[^\n]*"), "");
+  const std::regex no_member(
+      R"(^\s*$|^\s*(using|friend|static|enum|struct|class|union|template)\b|\(|&\s*\w+$)");
+  std::vector<std::string> members;
+  for (const std::smatch& match : allMatches(text, std::regex(R"(\bstruct (\w+)[^;{()]*\{)"))) {
+    int depth = 1;
+    std::string statement;  // what it holds in braces left out
+    for (auto at = static_cast<std::size_t>(match.position() + match.length()); depth > 0; ++at) {
+      const char c = text.at(at);
+      depth += c == '{' ? 1 : c == '}' ? -1 : 0;
+      if (c == '}' && depth == 1) {
+        statement += "{}";
+        const char next = text.at(text.find_first_not_of(" \n", at + 1));
+        if (next != ';' && next != ',') {
+          statement.clear();  // of a function
+        }
+      } else if (c == ':' && std::regex_match(statement, std::regex(R"(\s*(public|private|protected))"))) {
+        statement.clear();
+      } else if (depth == 1 && c != ';') {
+        statement += c;
+      } else if (depth == 1) {
+        const bool is_member = !std::regex_search(statement, no_member);
+        // Commas of template arguments separate nothing.
+        for (std::string last; last != statement;) {
+          last = statement;
+          statement = std::regex_replace(statement, std::regex("<[^<>]*>"), "");
+        }
+        std::string::size_type begin = 0;
+        while (is_member && begin <= statement.size()) {
+          const std::size_t end = std::min(statement.find(',', begin), statement.size());
+          const std::string declarator = statement.substr(begin, end - begin);
+          if (declarator.find_first_of("={") == std::string::npos) {
+            members.push_back(match[1].str() + ": " +
+                              std::regex_replace(declarator, std::regex(R"(^\s+|\s+$)"), ""));
+          }
+          begin = end + 1;
+        }
+        statement.clear();
+      }
+    }
+  }
+  return members;
+}
+
+TEST(Repository, MembersWithoutDefaultAreFound) {
+  const std::string header =
+      "struct A : B {\n  int a, b = 2;  // of c;\n  std::map<int, int> d{1, 2}, e;\n  int f() const { return "
+      "a; }\n"
+      "  struct C {\n    int g = 1;\n  };\n  C h{};\n  static int s;\n\n private:\n  int i;\n};\n";
+  EXPECT_EQ(membersWithoutDefault(header), (std::vector<std::string>{"A: int a", "A: e", "A: int i"}));
+}
+
+// So that designated initialisers may leave any of them out, without a warning in anybody's project.
+TEST(Repository, EveryMemberOfAPublicStructHasADefault) {
+  for (const std::string& file : projectFiles()) {
+    if (file.rfind("include/", 0) == 0) {
+      EXPECT_EQ(membersWithoutDefault(contentOf(file)), std::vector<std::string>()) << file;
+    }
+  }
+}
+
 // What comes behind the parameters of each lambda of a text, up to its body.
 std::vector<std::string> lambdaSpecifiers(const std::string& text) {
   std::vector<std::string> specifiers;

@@ -12,7 +12,7 @@ namespace sightline {
 
 // Says what is wrong, where, and what to do. One line.
 struct Error {
-  std::string message;
+  std::string message{};
 };
 
 template <typename T>

@@ -55,9 +55,9 @@ struct FocusSettings {
 struct CullerSettings {
   CullMethod method = CullMethod::kOcclusionTree;
   OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
-  SupportingPlanesSettings supporting_planes;  // keep_relations: see temporal_coherence
-  RasterSettings raster;                       // opacity map and depth pyramid
-  FocusSettings focus;
+  SupportingPlanesSettings supporting_planes{};  // keep_relations: see temporal_coherence
+  RasterSettings raster{};                       // opacity map and depth pyramid
+  FocusSettings focus{};
   // Opacity map, see OpacityMapSettings.
   DepthComparison depth_comparison = DepthComparison::kSparse;
   std::uint32_t tolerance = 0;  // other than 0 it is NOT conservative
@@ -102,9 +102,9 @@ struct CullStats {
   std::uint32_t occluders_hidden = 0;  // of them: behind what the map had already
   std::uint32_t tree_nodes = 0;        // of the occlusion tree
   std::uint32_t tree_dropped =
-      0;                    // occluder fragments that found no room (costs tightness, never correctness)
-  RelationStats relations;  // of the supporting planes
-  OpacityMapStats opacity;
+      0;                      // occluder fragments that found no room (costs tightness, never correctness)
+  RelationStats relations{};  // of the supporting planes
+  OpacityMapStats opacity{};
   std::uint64_t hidden_triangles = 0;  // of nodes and objects found hidden, about; not with the depth pyramid
   double coverage_ratio = 0.0;         // the opacity map's in this frame
   bool suspended = false;              // occlusion culling, which did not pay (CullerSettings::triangle_us)

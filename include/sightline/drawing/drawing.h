@@ -21,21 +21,21 @@ using PagePath = std::vector<PagePoint>;
 
 // One object of a drawing. Strokes lie over the outline.
 struct DrawingObject {
-  ObjectId object;
-  std::string name;
-  std::vector<PagePath> outline;  // rings, to be filled even-odd; the first point is not repeated
-  std::vector<PagePath> strokes;  // open or (first == last) closed polylines
+  ObjectId object{};
+  std::string name{};
+  std::vector<PagePath> outline{};  // rings, to be filled even-odd; the first point is not repeated
+  std::vector<PagePath> strokes{};  // open or (first == last) closed polylines
 };
 
 // Objects that are drawn together: all outlines, then all strokes.
 struct DrawingGroup {
-  std::vector<DrawingObject> objects;
+  std::vector<DrawingObject> objects{};
 };
 
 struct Drawing {
-  double width = 0.0, height = 0.0;  // page units
-  std::vector<DrawingGroup> groups;  // in the order of drawing, back to front
-  HiddenLineStats stats;
+  double width = 0.0, height = 0.0;    // page units
+  std::vector<DrawingGroup> groups{};  // in the order of drawing, back to front
+  HiddenLineStats stats{};
   // Of objects that may show something on the page: pairs of a line and an object that it was tested against,
   // and how many they would be if each line were tested against all objects.
   std::uint64_t pairs = 0, all_pairs = 0;
@@ -44,12 +44,12 @@ struct Drawing {
 std::uint64_t countStrokes(const Drawing& drawing);
 
 struct DrawingSettings {
-  FeatureSettings features;
+  FeatureSettings features{};
   double page_height = 720.0;
   // For plots: the parts that the sorter was told to draw in front of or behind all others
   // (PartSettings::place). It has no arcs of them, so lines are tested against all overlays, and those of a
   // backdrop against everything. What hides there is still decided by depth.
-  std::vector<ObjectId> overlays, backdrops;
+  std::vector<ObjectId> overlays{}, backdrops{};
   // Called after each object with the share of them that is drawn, ascending to 1.
   std::function<void(double done)> progress = {};
 };
@@ -88,7 +88,7 @@ class Draughtsman {
 struct DrawingStyle {
   double stroke_width = 1.0;                          // page units
   std::string stroke = "#000000", paper = "#ffffff";  // #rrggbb
-  std::string title;
+  std::string title{};
 };
 
 // An SVG 1.1 document. Each object is a <g>, whose id is made of its name, with the name itself as

@@ -21,9 +21,9 @@ struct PagePoint {
 };
 
 struct LinePiece {
-  PagePoint from, to;                       // within the page
+  PagePoint from{}, to{};                   // within the page
   double from_share = 0.0, to_share = 1.0;  // where they lie on the line from a to b, in space
-  FeatureLine line;
+  FeatureLine line{};
 };
 
 struct HiddenLineStats {

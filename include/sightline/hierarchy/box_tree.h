@@ -15,7 +15,7 @@ namespace sightline {
 // Nodes lie in depth-first order: the first child of an inner node follows it, the next sibling of any node
 // is at its `end`. The objects below a node are one range of BoxTree::objects. 40 bytes.
 struct BoxNode {
-  Box bounds;                      // of all objects below it
+  Box bounds{};                    // of all objects below it
   std::uint32_t end = 0;           // one past the last node below it; a leaf's is its own number + 1
   std::uint32_t first_object = 0;  // into objects
   std::uint32_t object_count = 0;  // at least 1
@@ -24,8 +24,8 @@ struct BoxNode {
 static_assert(sizeof(BoxNode) == 40);
 
 struct BoxTreeView {
-  std::span<const BoxNode> nodes;     // [0] is the root; empty without objects
-  std::span<const ObjectId> objects;  // each once, in the order of the leaves
+  std::span<const BoxNode> nodes{};     // [0] is the root; empty without objects
+  std::span<const ObjectId> objects{};  // each once, in the order of the leaves
 
   bool leaf(std::uint32_t node) const { return nodes[node].end == node + 1; }
   std::span<const ObjectId> objectsBelow(std::uint32_t node) const {
@@ -34,8 +34,8 @@ struct BoxTreeView {
 };
 
 struct BoxTree {
-  std::vector<BoxNode> nodes;
-  std::vector<ObjectId> objects;
+  std::vector<BoxNode> nodes{};
+  std::vector<ObjectId> objects{};
 
   BoxTreeView view() const { return {nodes, objects}; }
 };

@@ -15,7 +15,7 @@ namespace sightline {
 
 // Nodes lie in depth-first order: the left child follows its parent. 32 bytes.
 struct HierarchyNode {
-  Box bounds;              // encloses what its objects have in its region
+  Box bounds{};            // encloses what its objects have in its region
   std::uint32_t link = 0;  // leaf: first entry in Hierarchy::objects. Inner: one past the last node below it
   std::uint16_t leaf_count = 0;  // leaf: number of entries, at least 1. Inner: 0
   std::uint16_t cost = 0;        // triangles below it, at most 65,535
@@ -28,9 +28,9 @@ enum class HierarchyKind : std::uint8_t { kKdTree, kBvh };
 
 struct Hierarchy {
   HierarchyKind kind = HierarchyKind::kBvh;
-  std::vector<HierarchyNode> nodes;  // [0] is the root; empty for a scene without objects
+  std::vector<HierarchyNode> nodes{};  // [0] is the root; empty for a scene without objects
   std::vector<ObjectId>
-      objects;  // of the leaves, leaf after leaf; a kd-tree may name an object several times
+      objects{};  // of the leaves, leaf after leaf; a kd-tree may name an object several times
   std::uint32_t object_count = 0;  // different objects
   std::uint32_t depth = 0;         // levels
 

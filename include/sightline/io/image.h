@@ -12,7 +12,7 @@ namespace sightline {
 // 8-bit RGBA, rows from the top, 4 * width * height bytes.
 struct Image {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;
+  std::vector<std::uint8_t> rgba{};
 
   friend bool operator==(const Image&, const Image&) = default;
 };

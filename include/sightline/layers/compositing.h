@@ -25,17 +25,17 @@ using LayerId = Id<struct LayerTag>;  // layer of a FrameLayers, from 0, group a
 
 // Parts of layer `front` occlude parts of layer `back`.
 struct LayerOcclusion {
-  LayerId front, back;
+  LayerId front{}, back{};
 
   friend auto operator<=>(const LayerOcclusion&, const LayerOcclusion&) = default;
 };
 
 // What to draw into one image each. Plain data: what a recorded animation keeps of a frame.
 struct FrameLayers {
-  std::vector<PartId> parts;               // layer after layer; in a layer as in the order
-  std::vector<std::uint32_t> first_part;   // layers + 1: where each layer's begin in parts
-  std::vector<std::uint32_t> first_layer;  // groups + 1: the first layer of each; groups front to back
-  std::vector<LayerOcclusion> occlusions;  // between layers of one group; ascending; never both ways
+  std::vector<PartId> parts{};               // layer after layer; in a layer as in the order
+  std::vector<std::uint32_t> first_part{};   // layers + 1: where each layer's begin in parts
+  std::vector<std::uint32_t> first_layer{};  // groups + 1: the first layer of each; groups front to back
+  std::vector<LayerOcclusion> occlusions{};  // between layers of one group; ascending; never both ways
 
   std::size_t layers() const { return first_part.empty() ? 0 : first_part.size() - 1; }
   std::size_t groups() const { return first_layer.empty() ? 0 : first_layer.size() - 1; }
@@ -78,7 +78,7 @@ enum class CompositingOp : std::uint8_t {
 
 struct CompositingStep {
   CompositingOp op = CompositingOp::kLoad;
-  LayerId layer;  // not valid: the register. kLoad, kIn and kOut always have one
+  LayerId layer{};  // not valid: the register. kLoad, kIn and kOut always have one
 
   friend bool operator==(const CompositingStep&, const CompositingStep&) = default;
 };
@@ -94,9 +94,9 @@ struct CompositingCounts {
 
 // The image is in Rover after the last step. Without steps it is transparent.
 struct CompositingProgram {
-  std::vector<CompositingStep> steps;
-  std::vector<std::uint32_t> first_of;  // groups + 1: where each group's steps begin
-  std::size_t layers = 0;               // of the FrameLayers: so many images it takes
+  std::vector<CompositingStep> steps{};
+  std::vector<std::uint32_t> first_of{};  // groups + 1: where each group's steps begin
+  std::size_t layers = 0;                 // of the FrameLayers: so many images it takes
 
   std::span<const CompositingStep> group(std::size_t i) const {
     return std::span(steps).subspan(first_of[i], first_of[i + 1] - first_of[i]);

@@ -25,7 +25,7 @@ using PartId = Id<struct PartTag>;  // part of a LayerSorter, from 0 in the orde
 
 // `front` occludes `back`: some ray from the eye meets the hulls of one and then those of the other.
 struct LayerArc {
-  PartId front, back;
+  PartId front{}, back{};
 
   friend auto operator<=>(const LayerArc&, const LayerArc&) = default;
 };
@@ -54,7 +54,7 @@ struct LayerSettings {
   LayerSort sort = LayerSort::kDepthFirst;
   std::vector<ExtentAxis> extents = cameraExtents();  // at most kMostExtentAxes
   OccluderSearch search = OccluderSearch::kAutomatic;
-  ExtentTreeSettings tree;
+  ExtentTreeSettings tree{};
   // After the sort, groups move to the front of others that do not occlude them and lie farther along this
   // axis of `extents` (a spatial one); none: -1. Keeps the order near what later frames need.
   int conditioning_axis = 2;
@@ -87,12 +87,12 @@ struct LayerStats {
 
 // One frame's answer; valid until the next call of update().
 struct LayerOrder {
-  std::span<const PartId> parts;            // all enabled parts, group after group, front to back
-  std::span<const std::uint32_t> first_of;  // groups + 1: where each begins in parts
-  std::span<const LayerArc> arcs;           // within groups, or all (all_arcs); ascending
-  std::span<const LayerArc> collisions;  // pairs of parts whose hulls meet or touch, front < back; ascending.
-                                         // Pairs with a rule are not looked at
-  LayerStats stats;
+  std::span<const PartId> parts{};            // all enabled parts, group after group, front to back
+  std::span<const std::uint32_t> first_of{};  // groups + 1: where each begins in parts
+  std::span<const LayerArc> arcs{};           // within groups, or all (all_arcs); ascending
+  std::span<const LayerArc> collisions{};     // pairs of parts whose hulls meet or touch, front < back;
+                                           // ascending. Pairs with a rule are not looked at
+  LayerStats stats{};
 
   std::size_t groups() const { return first_of.empty() ? 0 : first_of.size() - 1; }
   std::span<const PartId> group(std::size_t i) const {

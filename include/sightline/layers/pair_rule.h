@@ -22,7 +22,7 @@ struct PairOrder {
 // that part. Neither may reach through it, or both show the same where they do. The normal may have any
 // length > 0.
 struct PairPlane {
-  Plane plane;
+  Plane plane{};
 };
 
 // A cylinder whose end cap's rim lies on a sphere, as upper arm and shoulder; it reaches to where the sphere
@@ -30,7 +30,7 @@ struct PairPlane {
 // neither of them. Source: Snyder, Lengyel. MSR-TR-97-11, appendix C, with its l put right:
 // (s^2 - h^2) / h + h = s^2 / h.
 struct SphereCylinderJoint {
-  Vec3d centre;  // of the sphere
+  Vec3d centre{};  // of the sphere
   double sphere_radius = 1.0;
   Vec3d axis{0, 1, 0};           // of the cylinder, away from the sphere; any length > 0
   double cylinder_radius = 1.0;  // > 0, at most sphere_radius

@@ -28,15 +28,15 @@ struct CellSlab {
 // Convex cells that fill space, or a part of it, without overlapping. Each lies between two planes along each
 // of `directions`, and, if there are sectors, between two half planes that end in the axis.
 struct SplitCells {
-  std::vector<Vec3d> directions;  // unit length
-  std::vector<double> widths;     // of a cell, one a direction: what inflation is a fraction of
-  std::vector<CellSlab> slabs;    // of cell c along direction d: [c * directions + d]
+  std::vector<Vec3d> directions{};  // unit length
+  std::vector<double> widths{};     // of a cell, one a direction: what inflation is a fraction of
+  std::vector<CellSlab> slabs{};    // of cell c along direction d: [c * directions + d]
 
   // Sectors about an axis; 0: none.
   std::uint32_t sectors = 0;
-  std::vector<std::uint32_t> sector_of;  // one a cell, if there are sectors
-  Vec3d axis_point;
-  Vec3d zero, quarter;        // unit vectors across the axis: where angles of 0 and of a quarter turn are
+  std::vector<std::uint32_t> sector_of{};  // one a cell, if there are sectors
+  Vec3d axis_point{};
+  Vec3d zero{}, quarter{};    // unit vectors across the axis: where angles of 0 and of a quarter turn are
   double sector_width = 0.0;  // of a sector at the rim
 
   std::uint32_t count = 0;  // of cells
@@ -44,7 +44,7 @@ struct SplitCells {
 
 // `count` >= 1 slabs of the same width from low to high > low. The first and the last are open outwards.
 struct SplitAxis {
-  Vec3d direction;  // any length > 0; heights are those along the unit vector
+  Vec3d direction{};  // any length > 0; heights are those along the unit vector
   double low = 0.0, high = 1.0;
   std::uint32_t count = 1;
 };
@@ -53,7 +53,7 @@ struct SplitAxis {
 SplitCells gridCells(std::span<const SplitAxis> axes);
 
 struct CylinderOptions {
-  Vec3d axis_point;              // any point of the axis
+  Vec3d axis_point{};            // any point of the axis
   Vec3d axis{0, 1, 0};           // any length > 0
   Vec3d zero{1, 0, 0};           // the first sector begins there; not along the axis
   std::uint32_t sectors = 8;     // >= 1
@@ -66,7 +66,7 @@ struct CylinderOptions {
 SplitCells cylinderCells(const CylinderOptions& options);
 
 struct HexagonOptions {
-  Vec3d origin;                  // the middle of a hexagon
+  Vec3d origin{};                // the middle of a hexagon
   Vec3d u{1, 0, 0}, v{0, 0, 1};  // unit vectors, perpendicular to each other: the plane of the hexagons
   double width = 1.0;            // of a hexagon, between two sides: > 0
   double low_u = 0.0, high_u = 1.0, low_v = 0.0, high_v = 1.0;  // from the origin
@@ -85,26 +85,26 @@ std::vector<Plane> cellPlanes(const SplitCells& cells, std::uint32_t cell, doubl
 Plane planeBetween(const SplitCells& cells, std::uint32_t first, std::uint32_t second);
 
 struct SplitTriangle {
-  std::array<Vec3d, 3> positions;
-  std::array<Vec3d, 3> weights;  // of each corner: barycentric coordinates in the source triangle
-  std::uint32_t source = 0;      // triangle of the mesh
+  std::array<Vec3d, 3> positions{};
+  std::array<Vec3d, 3> weights{};  // of each corner: barycentric coordinates in the source triangle
+  std::uint32_t source = 0;        // triangle of the mesh
 };
 
 // What of the mesh lies in an inflated cell: at least one triangle.
 struct SplitPiece {
   std::uint32_t cell = 0;
-  std::vector<SplitTriangle> triangles;  // by source; winding as there
+  std::vector<SplitTriangle> triangles{};  // by source; winding as there
 };
 
 // Two pieces whose boxes meet; the rule is that of the cells, which stands whatever the inflation.
 struct SplitNeighbours {
   std::uint32_t first = 0, second = 0;  // into pieces, first < second
-  PairPlane rule;                       // in the mesh's space
+  PairPlane rule{};                     // in the mesh's space
 };
 
 struct SplitMesh {
-  std::vector<SplitPiece> pieces;           // by cell
-  std::vector<SplitNeighbours> neighbours;  // ascending
+  std::vector<SplitPiece> pieces{};           // by cell
+  std::vector<SplitNeighbours> neighbours{};  // ascending
 };
 
 // Cuts every triangle to each inflated cell that it meets. Without inflation, what lies exactly between two

@@ -11,7 +11,7 @@ namespace sightline {
 // The visible volume of a view: six planes with normals pointing inwards (left, right, bottom, top, near,
 // far).
 struct Frustum {
-  std::array<Plane, 6> planes;  // unit normals
+  std::array<Plane, 6> planes{};  // unit normals
 };
 
 enum class FrustumSide : std::uint8_t { kOutside, kIntersects, kInside };

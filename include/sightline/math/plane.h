@@ -6,7 +6,7 @@ namespace sightline {
 
 // The plane dot(normal, p) + offset = 0. The normal need not be of unit length unless a user says so.
 struct Plane {
-  Vec3d normal;
+  Vec3d normal{};
   double offset = 0.0;
 
   // Signed distance times the normal's length: positive in front, where the normal points.

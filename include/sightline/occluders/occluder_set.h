@@ -22,12 +22,12 @@ struct Occluder {
   std::uint16_t vertex_count = 0;
   bool double_sided = false;
   bool seals = false;  // no sharp corner: it may close the seam to a neighbour (see docs/conservative.md)
-  ObjectId object;     // that its triangles belong to; not valid: none
+  ObjectId object{};   // that its triangles belong to; not valid: none
   float area = 0.0f;   // square metres
   float slack =
-      0.0f;        // metres: bounds how far the polygon and its triangles lie apart, in and across its plane
-  Vec3f centroid;  // of area
-  Plane plane;     // unit normal, towards the front; scene space
+      0.0f;  // metres: bounds how far the polygon and its triangles lie apart, in and across its plane
+  Vec3f centroid{};  // of area
+  Plane plane{};     // unit normal, towards the front; scene space
 };
 
 // The edge from one corner of an occluder to the next.
@@ -41,7 +41,7 @@ struct OccluderEdge {
 
 // Another occluder that has one mesh edge of an edge's chain in its own boundary.
 struct EdgeCover {
-  OccluderId occluder;
+  OccluderId occluder{};
   std::uint32_t element = 0;  // which mesh edge of the chain, from 0
 };
 
@@ -50,7 +50,7 @@ struct OccluderBody {
   std::uint32_t first_vertex = 0, first_edge = 0, first_face = 0;  // into OccluderSet::body_...
   std::uint8_t vertex_count = 0, edge_count = 0, face_count = 0;
   float slack = 0.0f;  // metres, as of an occluder; of all faces
-  Box bounds;
+  Box bounds{};
 };
 // From vertex `from` to vertex `to`, with face `left` on its left as seen from outside, `right` on its right;
 // numbers within the body.
@@ -58,8 +58,8 @@ struct BodyEdge {
   std::uint8_t from = 0, to = 0, left = 0, right = 0;
 };
 struct BodyFace {
-  Plane plane;  // the occluder's
-  OccluderId occluder;
+  Plane plane{};  // the occluder's
+  OccluderId occluder{};
   std::uint8_t vertex = 0;  // on the plane, number within the body
 };
 
@@ -84,26 +84,26 @@ struct OccluderSettings {
 // Ranked by area, largest first: a smaller OccluderId is a larger polygon. Made by the functions below and
 // not to be changed by hand: bodies have corners and planes of their own.
 struct OccluderSet {
-  std::vector<Occluder> occluders;
-  std::vector<Vec3f> vertices;              // corners of all occluders, scene space
-  std::vector<OccluderEdge> edges;          // edge i starts at vertex i
-  std::vector<std::array<Vec3f, 2>> lines;  // two points on each line
-  std::vector<EdgeCover> covers;
-  std::vector<Vec3f> joints;  // mesh vertices along edges, between the corners
+  std::vector<Occluder> occluders{};
+  std::vector<Vec3f> vertices{};              // corners of all occluders, scene space
+  std::vector<OccluderEdge> edges{};          // edge i starts at vertex i
+  std::vector<std::array<Vec3f, 2>> lines{};  // two points on each line
+  std::vector<EdgeCover> covers{};
+  std::vector<Vec3f> joints{};  // mesh vertices along edges, between the corners
   // Ascending: all objects of the scene in which occluders were found, or those that given polygons name.
-  std::vector<ObjectId> objects;
-  std::vector<std::uint32_t> first_of_object;  // by place in objects, and one more; into of_object
-  std::vector<OccluderId> of_object;           // occluders by object
+  std::vector<ObjectId> objects{};
+  std::vector<std::uint32_t> first_of_object{};  // by place in objects, and one more; into of_object
+  std::vector<OccluderId> of_object{};           // occluders by object
   // The same without the faces of bodies but the first one, which stands for the body.
-  std::vector<std::uint32_t> first_unit_of_object;
-  std::vector<OccluderId> unit_of_object;
+  std::vector<std::uint32_t> first_unit_of_object{};
+  std::vector<OccluderId> unit_of_object{};
   static constexpr std::uint32_t kNoBody = 0xffffffffu;
-  std::vector<OccluderBody> bodies;
-  std::vector<Vec3f> body_vertices;  // scene space
-  std::vector<BodyEdge> body_edges;
-  std::vector<BodyFace> body_faces;    // of a body: ascending by occluder
-  std::vector<std::uint32_t> body_of;  // by OccluderId: into bodies, or kNoBody
-  OccluderReport report;
+  std::vector<OccluderBody> bodies{};
+  std::vector<Vec3f> body_vertices{};  // scene space
+  std::vector<BodyEdge> body_edges{};
+  std::vector<BodyFace> body_faces{};    // of a body: ascending by occluder
+  std::vector<std::uint32_t> body_of{};  // by OccluderId: into bodies, or kNoBody
+  OccluderReport report{};
   double area = 0.0;  // of all occluders, square metres
 
   const Occluder& operator[](OccluderId id) const { return occluders[id.value]; }
@@ -159,7 +159,7 @@ struct OccluderSet {
 // know nothing of each other: a seam between occluders of two sets stays open.
 struct ChosenOccluders {
   const OccluderSet* set = nullptr;
-  std::span<const OccluderId> chosen;
+  std::span<const OccluderId> chosen{};
 };
 
 // Finds them in raw triangles. Deterministic, whatever the number of threads.
@@ -168,7 +168,7 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
 
 // A polygon of the caller's own: what he really draws and nobody sees through.
 struct OccluderPolygon {
-  std::span<const Vec3f> vertices;  // scene space, counter-clockwise from the front, convex, in one plane
+  std::span<const Vec3f> vertices{};  // scene space, counter-clockwise from the front, convex, in one plane
   bool double_sided = false;
   // The object that shows this polygon: OccluderChooser, and so a Culler, looks for occluders among the
   // objects in view. Any number; those in between cost nothing. ObjectId(): no object. Such an occluder is

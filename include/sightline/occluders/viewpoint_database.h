@@ -48,7 +48,7 @@ struct ViewpointDatabaseSettings {
   double min_occluder_pixels = 2.0;  // smaller images are left out; also those that cover no pixel's centre
   std::uint32_t sets_per_occludee = 4;  // the cheapest that are kept, 0 to 64
   std::uint32_t search_limit = 256;     // occluders tried in the search for one occludee's sets, up to 2^20
-  MinimumSetWeights weights;
+  MinimumSetWeights weights{};
 };
 
 // Does not change once it is built: any number of threads may ask it. Copies share one memory.

@@ -15,11 +15,11 @@
 namespace sightline {
 
 struct DepthPyramidSettings {
-  RasterSettings raster;
+  RasterSettings raster{};
 };
 
 struct DepthPyramidStats {
-  RasterStats raster;
+  RasterStats raster{};
 };
 
 struct BoxAnswer {
@@ -33,7 +33,7 @@ struct BoxAnswer {
 struct BoxHints {
   // As many as boxes, or none. Not 0: the box was not hidden a short while ago, and is not looked for again:
   // kPartial unless it is wholly outside the view.
-  std::span<const std::uint8_t> seen;
+  std::span<const std::uint8_t> seen{};
   // Of the boxes from this one on it does not matter whether they are kVisible or kPartial.
   std::size_t plain_from = static_cast<std::size_t>(-1);
   // First and last pixels of a window of which there is a better map. A box whose rectangle lies in it is

@@ -22,7 +22,7 @@ enum class DepthComparison : std::uint8_t {
 };
 
 struct OpacityMapSettings {
-  RasterSettings raster;
+  RasterSettings raster{};
   DepthComparison depth = DepthComparison::kSparse;
   // Approximate overlap test: so many pixels of a box's rectangle may be uncovered; its depth is compared
   // with the covered ones. Other than 0 it is NOT conservative. A box of which nothing is covered is never
@@ -34,7 +34,7 @@ struct OpacityMapSettings {
 };
 
 struct OpacityMapStats {
-  RasterStats raster;
+  RasterStats raster{};
   // All since begin() or build().
   std::uint32_t overlap_tests = 0;    // boxes with a rectangle on the map
   std::uint32_t overlap_failed = 0;   // of those: more uncovered pixels than the tolerance

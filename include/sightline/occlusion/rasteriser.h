@@ -36,7 +36,8 @@ inline constexpr float kUncovered = -std::numeric_limits<float>::max();
 
 // The lowest row comes first. Valid until the map is drawn again.
 struct DepthMapView {
-  std::span<const float> nearness;  // greater is nearer; 1 / depth (1 / metres), orthographic -depth (metres)
+  std::span<const float>
+      nearness{};  // greater is nearer; 1 / depth (1 / metres), orthographic -depth (metres)
   std::uint32_t width = 0, height = 0;
   std::uint32_t stride = 0;  // from one row to the next; what lies beyond the width has no meaning
 

@@ -50,7 +50,7 @@ struct RelationStats {
 struct SupportingPlanesStats {
   std::uint32_t occluders = 0;  // of all sets, that can be used from this view
   std::uint32_t unusable = 0;   // chosen, but seen from behind, edge-on, or wholly before the near plane
-  RelationStats relations;
+  RelationStats relations{};
 };
 
 // Occluders that may still hide what lies below a node; valid until the next build().

@@ -17,7 +17,7 @@ struct VisibleSet {
   std::uint32_t id = kEverything;  // equal ids of one VisibleSets are equal sets
   // Of VisibleSets::boxes(), ascending, none below another: all objects below them, and no other ones, may be
   // seen. The root alone: everything.
-  std::span<const std::uint32_t> nodes;
+  std::span<const std::uint32_t> nodes{};
 };
 
 // Used by one thread at a time.

@@ -16,7 +16,7 @@ namespace sightline {
 
 // An image put in place of a layer (an external stream on a proxy).
 struct LayerReplacement {
-  LayerId layer;
+  LayerId layer{};
   const LayerImage* image = nullptr;  // of the renderer's size
 };
 
@@ -33,9 +33,9 @@ struct CompositeSettings {
   };
   Peel peel = Peel::kWhereNeeded;
   CompositingForm form = CompositingForm::kCheapest;
-  bool sky = true;                // behind everything
-  std::vector<LayerId> left_out;  // others than the frame's do not matter; before `replaced`
-  std::vector<LayerReplacement> replaced;
+  bool sky = true;                  // behind everything
+  std::vector<LayerId> left_out{};  // others than the frame's do not matter; before `replaced`
+  std::vector<LayerReplacement> replaced{};
   // Draws a layer's image, of the renderer's size, in place of LayerRenderer::draw (depth of field, motion
   // blur, reuse). Empty: draw().
   std::function<void(std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image)> draw_layer;
@@ -46,7 +46,7 @@ struct CompositeStats {
   std::uint32_t peeled = 0;            // of them
   std::uint32_t unordered_groups = 0;  // see LayerCompositor::unorderedGroups
   std::uint64_t triangles = 0;         // sent to OpenGL; none of what draw_layer draws
-  CompositingCounts operations;
+  CompositingCounts operations{};
 };
 
 // Part i of the order is object i of the renderer's scene. Holds the images of one group at a time. For one

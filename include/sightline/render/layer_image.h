@@ -14,10 +14,10 @@ namespace sightline {
 // Linear light, colour times opacity, rows from the top.
 struct LayerImage {
   std::uint32_t width = 0, height = 0;
-  std::vector<ShapedPixel> pixels;  // width * height
+  std::vector<ShapedPixel> pixels{};  // width * height
   // Metres along the view's forward to the nearest surface of the pixel; kNoDepth where there is none. As
   // many as pixels, or none where depth was not asked for.
-  std::vector<float> depths;
+  std::vector<float> depths{};
 
   static constexpr float kNoDepth = std::numeric_limits<float>::infinity();
 

@@ -49,7 +49,7 @@ struct LayerDraw {
   // LayerImage::depths too; of the nearest surface, opaque or not. Their error is a few units of a float's
   // last place; in orthographic views, of the far distance.
   bool depths = false;
-  LensPoint lens;
+  LensPoint lens{};
 };
 
 struct LayerDrawStats {

@@ -44,7 +44,7 @@ enum class LayerBlur : std::uint8_t {
 };
 
 struct PartBlur {
-  PartId part;
+  PartId part{};
   LayerBlur blur = LayerBlur::kAutomatic;
 };
 
@@ -59,7 +59,7 @@ struct FrameMotion {
 
 struct LensSettings {
   LensMethod method = LensMethod::kLayers;
-  Lens lens;                  // aperture 0: everything sharp, for motion blur alone
+  Lens lens{};                // aperture 0: everything sharp, for motion blur alone
   std::uint32_t passes = 21;  // of accumulation, at least 1
   // Automatic choice, by the largest less the smallest circle of confusion of a layer's pixels (before the
   // focus and behind it counted apart): up to the first even, beyond the second accumulated, between them by

@@ -42,14 +42,14 @@ constexpr PlanColor paleOf(const PlanColor& color) {
 
 // Right is +x, up is -z. All coordinates in scene space.
 struct PlanView {
-  View camera;                  // its eye is in the middle; its frustum is outlined
+  View camera{};                // its eye is in the middle; its frustum is outlined
   double radius = 50.0;         // metres from the eye to each border of the square picture
   std::uint32_t size_px = 900;  // width and height, 1 to 16384
   double cut_height = std::numeric_limits<double>::infinity();  // what is above (y) is cut away; inf: nothing
-  std::span<const ObjectState> states;                          // one an object of the scene
-  std::span<const Object> objects;  // the scene's: what is larger than half the picture is pale; or empty
+  std::span<const ObjectState> states{};                        // one an object of the scene
+  std::span<const Object> objects{};  // the scene's: what is larger than half the picture is pale; or empty
   const OccluderSet* occluders = nullptr;
-  std::span<const OccluderId> occluders_used;  // of *occluders; drawn on top of everything
+  std::span<const OccluderId> occluders_used{};  // of *occluders; drawn on top of everything
 };
 
 }  // namespace sightline

@@ -19,16 +19,16 @@ struct ReportFact {
 
 // One method's line of the summary table; means over all frames.
 struct ReportRow {
-  std::string method, options;   // "occlusion-tree", "FME, 32 occluders"
-  double triangles = 0.0;        // drawn
-  double triangles_share = 1.0;  // of those that view-frustum culling draws
-  double objects = 0.0;          // drawn
+  std::string method{}, options{};  // "occlusion-tree", "FME, 32 occluders"
+  double triangles = 0.0;           // drawn
+  double triangles_share = 1.0;     // of those that view-frustum culling draws
+  double objects = 0.0;             // drawn
   double cull_ms = 0.0, draw_ms = 0.0, frame_ms = 0.0;
   double speed_up = 1.0;      // frame time of view-frustum culling / this one's
   double nodes_tested = 0.0;  // asked of the occlusion structure
   double occluders = 0.0;
-  std::optional<std::uint64_t> frames_differing;  // from the picture without culling; empty: not compared
-  std::uint64_t frames_tied = 0;                  // besides those: differ by ties of the depth buffer only
+  std::optional<std::uint64_t> frames_differing{};  // from the picture without culling; empty: not compared
+  std::uint64_t frames_tied = 0;                    // besides those: differ by ties of the depth buffer only
 };
 
 // Pictures of one frame stand side by side, frames in ascending order.
@@ -41,14 +41,14 @@ struct ReportPicture {
 };
 
 struct Report {
-  std::string title;    // the scene's name
-  std::string summary;  // one sentence under the title; may be empty
-  std::string command;  // the command line that made it
-  std::vector<ReportFact> facts;
-  std::vector<ReportRow> rows;  // view-frustum culling first
-  std::vector<Plot> plots;
-  std::vector<ReportPicture> pictures;
-  std::vector<std::string> notes;
+  std::string title{};    // the scene's name
+  std::string summary{};  // one sentence under the title; may be empty
+  std::string command{};  // the command line that made it
+  std::vector<ReportFact> facts{};
+  std::vector<ReportRow> rows{};  // view-frustum culling first
+  std::vector<Plot> plots{};
+  std::vector<ReportPicture> pictures{};
+  std::vector<std::string> notes{};
 };
 
 // Any text is taken as untrusted and escaped.

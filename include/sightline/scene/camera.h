@@ -13,8 +13,8 @@ namespace sightline {
 
 // One viewpoint with its projection, scene space. The camera looks along forward. See validate().
 struct View {
-  Vec3d eye;
-  Vec3d right, up, forward;  // orthonormal, right-handed: forward = up x right
+  Vec3d eye{};
+  Vec3d right{}, up{}, forward{};  // orthonormal, right-handed: forward = up x right
   bool orthographic = false;
   double tan_half_fovy = 0.5;  // perspective: tangent of half the vertical angle of view
   double ortho_height = 10.0;  // orthographic: metres from the lower to the upper border
@@ -48,19 +48,19 @@ Frustum frustumOf(const View& view);
 double nearDistance(const View& view);
 
 struct CameraFrame {
-  Vec3d eye;      // world space
-  Vec3d forward;  // any length > 0
-  Vec3d up;       // hint, any length
+  Vec3d eye{};      // world space
+  Vec3d forward{};  // any length > 0
+  Vec3d up{};       // hint, any length
 };
 
 // A camera with one viewpoint a frame; the JSON form "path". World space.
 struct CameraPath {
-  std::string name;
+  std::string name{};
   double fovy_deg = 60.0;                    // perspective, when ortho_height is 0
   double ortho_height = 0.0;                 // metres; > 0 makes the camera orthographic
   std::uint32_t width = 1280, height = 720;  // pixels
   double near = 0.1, far = 2000.0;           // metres
-  std::vector<CameraFrame> frames;
+  std::vector<CameraFrame> frames{};
 
   // The view of one frame in the space of a scene with this origin.
   View view(std::size_t frame, const Vec3d& scene_origin) const;

@@ -13,7 +13,7 @@ enum class Opacity : std::uint8_t {
 };
 
 struct Material {
-  std::string name;
+  std::string name{};
   Opacity opacity = Opacity::kOpaque;
   bool double_sided = false;                                // backs are drawn too, and hide
   std::array<float, 4> base_color{0.8f, 0.8f, 0.8f, 1.0f};  // linear RGBA, for pictures only

@@ -29,9 +29,9 @@ enum class OccluderMark : std::uint8_t {
 struct Object {
   std::uint32_t first_index = 0;  // into Scene::indices
   std::uint32_t index_count = 0;  // three a triangle
-  MaterialId material;
+  MaterialId material{};
   OccluderMark mark = OccluderMark::kAutomatic;
-  Box bounds;  // of its vertices, exact, scene space
+  Box bounds{};  // of its vertices, exact, scene space
 
   std::uint32_t triangleCount() const { return index_count / 3; }
 };
@@ -39,10 +39,10 @@ struct Object {
 // Views of the caller's own memory, all in scene space; what the library's functions take.
 // Triangles are counter-clockwise seen from their front.
 struct SceneView {
-  std::span<const Vec3f> positions;
-  std::span<const std::uint32_t> indices;  // into positions
-  std::span<const Object> objects;         // ObjectId is the index here
-  std::span<const Material> materials;     // MaterialId is the index here
+  std::span<const Vec3f> positions{};
+  std::span<const std::uint32_t> indices{};  // into positions
+  std::span<const Object> objects{};         // ObjectId is the index here
+  std::span<const Material> materials{};     // MaterialId is the index here
 
   std::span<const std::uint32_t> indicesOf(const Object& object) const {
     return indices.subspan(object.first_index, object.index_count);
@@ -52,13 +52,13 @@ struct SceneView {
 
 // A scene that owns its memory. Identical positions are stored once (see weldPositions).
 struct Scene {
-  std::vector<Vec3f> positions;
-  std::vector<std::uint32_t> indices;
-  std::vector<Object> objects;
-  std::vector<Material> materials;
-  std::vector<std::string> object_names;  // one an object
-  std::vector<CameraPath> paths;          // of the file's cameras or of the procedural scene; world space
-  Vec3d origin;                           // world position of scene space's origin
+  std::vector<Vec3f> positions{};
+  std::vector<std::uint32_t> indices{};
+  std::vector<Object> objects{};
+  std::vector<Material> materials{};
+  std::vector<std::string> object_names{};  // one an object
+  std::vector<CameraPath> paths{};          // of the file's cameras or of the procedural scene; world space
+  Vec3d origin{};                           // world position of scene space's origin
 
   SceneView view() const { return {positions, indices, objects, materials}; }
   std::uint64_t triangleCount() const { return indices.size() / 3; }

@@ -24,7 +24,7 @@ struct BakeSettings {
   // only from closer does not count. Viewers with a greater one get everything as their set.
   double near_distance = 0.25;
   // Viewers are in this box, scene space; an empty one: in the bounds of the scene.
-  Box region;
+  Box region{};
   // Occluders are looked for within so many metres of a viewpoint, at first; 0: chosen. Doubled where that
   // helps.
   double search_distance = 0.0;

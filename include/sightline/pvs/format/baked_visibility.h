@@ -19,7 +19,7 @@ struct BakeRecord {
   double near_distance = 0.0;  // metres, BakeSettings::near_distance
   std::uint64_t triangle_budget = 0;
   std::uint32_t max_depth = 0;
-  std::string settings;  // all of them as JSON, one line
+  std::string settings{};  // all of them as JSON, one line
 
   friend bool operator==(const BakeRecord&, const BakeRecord&) = default;
 };
@@ -27,7 +27,7 @@ struct BakeRecord {
 // Sets of nodes of a BoxTree, equal ones once. Each ascending, none below another.
 struct NodeSets {
   std::vector<std::uint64_t> first{0};  // one more than there are sets, into nodes
-  std::vector<std::uint32_t> nodes;
+  std::vector<std::uint32_t> nodes{};
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(first.size() - 1); }
   std::span<const std::uint32_t> operator[](std::uint32_t set) const {
@@ -37,18 +37,18 @@ struct NodeSets {
 
 // What OccluderDatabase::save and ViewpointDatabase::save give.
 struct DatabaseBlob {
-  std::string name;         // "area-angle", "detail", "minimum-sets", "first-hit", "projected-size"
-  std::uint64_t occluders;  // hash of the OccluderSet whose ids it names
-  std::vector<std::byte> bytes;
+  std::string name{};         // "area-angle", "detail", "minimum-sets", "first-hit", "projected-size"
+  std::uint64_t occluders{};  // hash of the OccluderSet whose ids it names
+  std::vector<std::byte> bytes{};
 };
 
 struct BakedVisibility {
-  SceneId scene;
-  BakeRecord record;
-  BoxTree boxes;
-  VisibilityOctree octree;
-  NodeSets sets;  // that the octree's leaves name
-  std::vector<DatabaseBlob> databases;
+  SceneId scene{};
+  BakeRecord record{};
+  BoxTree boxes{};
+  VisibilityOctree octree{};
+  NodeSets sets{};  // that the octree's leaves name
+  std::vector<DatabaseBlob> databases{};
 };
 
 }  // namespace sightline

@@ -35,7 +35,7 @@ inline constexpr std::uint32_t kStopReasons = 5;
 // eyes of the cell with dot(normal, eye) >= front - m, back_set for those with dot(normal, eye) <= back + m.
 // Whoever makes planes sees to it.
 struct CellPlane {
-  Vec3d normal;  // unit length
+  Vec3d normal{};  // unit length
   double front = 0.0, back = 0.0;
 
   friend bool operator==(const CellPlane&, const CellPlane&) = default;
@@ -69,20 +69,20 @@ using OctreeLink = std::uint32_t;
 inline constexpr OctreeLink kOctreeLeaf = 0x80000000u;
 
 struct OctreeView {
-  Vec3d min, max;                     // scene space, of the root
-  std::span<const OctreeLink> nodes;  // [0] is the root; children have greater indices than their parent
-  std::span<const OctreeLeaf> leaves;
-  std::span<const std::uint8_t> depths;   // by leaf
-  std::span<const std::uint8_t> reasons;  // by leaf, StopReason
-  std::span<const CellPlane> planes;
+  Vec3d min{}, max{};                   // scene space, of the root
+  std::span<const OctreeLink> nodes{};  // [0] is the root; children have greater indices than their parent
+  std::span<const OctreeLeaf> leaves{};
+  std::span<const std::uint8_t> depths{};   // by leaf
+  std::span<const std::uint8_t> reasons{};  // by leaf, StopReason
+  std::span<const CellPlane> planes{};
 };
 
 struct VisibilityOctree {
-  Vec3d min, max;
-  std::vector<OctreeLink> nodes;
-  std::vector<OctreeLeaf> leaves;
-  std::vector<std::uint8_t> depths, reasons;
-  std::vector<CellPlane> planes;
+  Vec3d min{}, max{};
+  std::vector<OctreeLink> nodes{};
+  std::vector<OctreeLeaf> leaves{};
+  std::vector<std::uint8_t> depths{}, reasons{};
+  std::vector<CellPlane> planes{};
 
   OctreeView view() const { return {min, max, nodes, leaves, depths, reasons, planes}; }
 };
@@ -116,8 +116,8 @@ inline Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
 template <typename Visit>
 void forEachLeaf(const OctreeView& octree, Visit&& visit) {
   struct Entry {
-    std::uint32_t node;
-    OctreeCell cell;
+    std::uint32_t node{};
+    OctreeCell cell{};
   };
   std::vector<Entry> stack;
   if (!octree.nodes.empty()) {

@@ -31,7 +31,7 @@ struct CellPlace {
 
   std::uint32_t leaf = kOutside;  // into OctreeView::leaves
   std::uint32_t set = 0;          // of its side; where it is outside: meaningless
-  OctreeCell cell;
+  OctreeCell cell{};
 };
 
 // Used by one thread at a time; several may share one SightFile.

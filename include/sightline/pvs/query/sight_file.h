@@ -52,7 +52,7 @@ class SightFile {
   Result<DatabaseBlob> readDatabase(const std::string& name) const;
 
   struct Section {
-    std::string name;
+    std::string name{};
     std::uint64_t bytes = 0;      // in the file
     std::uint64_t raw_bytes = 0;  // before compression
   };
