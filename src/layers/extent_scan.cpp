@@ -63,6 +63,7 @@ struct Scan {
   const ScanRows& rows;
   AxisQuery axes[kMostExtentAxes];
   std::vector<std::uint32_t>& found;
+  std::uint64_t blocks = 0;  // of kFanOut rows that were compared
 
   // Of kFanOut rows of a level, those whose cells overlap along all axes.
   HWY_INLINE std::uint64_t overlapBits(std::size_t level, std::size_t first) const {
@@ -96,6 +97,7 @@ struct Scan {
     if (there == 0) {
       return;
     }
+    ++blocks;
     for (std::uint64_t bits = there & overlapBits(level, first); bits != 0; bits &= bits - 1) {
       const std::size_t row = first + static_cast<std::size_t>(std::countr_zero(bits));
       if (level == 0) {
@@ -107,12 +109,13 @@ struct Scan {
   }
 };
 
-void scan(const ScanRows& rows, const Extent& query, std::vector<std::uint32_t>& found) {
+std::uint64_t scan(const ScanRows& rows, const Extent& query, std::vector<std::uint32_t>& found) {
   Scan scan{rows, {}, found};
   for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
     scan.axes[axis] = axisQuery(rows, axis, query[axis]);
   }
   scan.visit(rows.levels - 1, 0);
+  return scan.blocks;
 }
 
 }  // namespace sightline::layers::HWY_NAMESPACE
@@ -270,7 +273,7 @@ void ExtentScan::query(const Extent& query, std::vector<std::uint32_t>& parts) {
     return;
   }
   found_.clear();
-  HWY_DYNAMIC_DISPATCH(scan)(rows_, query, found_);
+  blocks_compared_ += HWY_DYNAMIC_DISPATCH(scan)(rows_, query, found_);
   const auto before = static_cast<std::ptrdiff_t>(parts.size());
   for (const std::uint32_t row : found_) {
     if (overlaps(*table_, query, part_[row])) {

@@ -52,6 +52,9 @@ class ExtentScan {
   // Appends the active parts that overlap, ascending.
   void query(const Extent& query, std::vector<std::uint32_t>& parts);
 
+  // For tests: blocks of ScanRows::kFanOut rows that all queries so far have compared.
+  std::uint64_t blocksCompared() const { return blocks_compared_; }
+
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
 
@@ -67,6 +70,7 @@ class ExtentScan {
   std::vector<std::uint32_t> place_;  // one a part: its row, or kNowhere
   std::vector<std::uint64_t> keys_;   // scratch
   std::vector<std::uint32_t> found_;
+  std::uint64_t blocks_compared_ = 0;
 };
 
 }  // namespace sightline::layers

@@ -181,5 +181,39 @@ TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
   EXPECT_EQ(parts, (std::vector<std::uint32_t>{7, 12, 40}));
 }
 
+TEST(ExtentScan, ComparesOnlyBlocksWhoseUnionOverlapsAndThatHoldActiveParts) {
+  constexpr std::size_t kFanOut = ScanRows::kFanOut;
+  // One behind the other along an axis.
+  ExtentTable table;
+  table.parts = kFanOut * kFanOut;
+  table.kinds = {ExtentAxis::Kind::kSpatial};
+  table.lows.resize(1);
+  table.highs.resize(1);
+  std::vector<std::uint32_t> order(table.parts);
+  for (std::size_t part = 0; part < table.parts; ++part) {
+    order[part] = static_cast<std::uint32_t>(part);
+    table.lows[0].push_back(static_cast<float>(part));
+    table.highs[0].push_back(static_cast<float>(part) + 0.5f);
+  }
+  ExtentScan scan;
+  scan.begin(table, order);
+  const auto blocksOf = [&](const Interval& interval, std::size_t answers) {
+    const std::uint64_t before = scan.blocksCompared();
+    std::vector<std::uint32_t> found;
+    Extent query{};
+    query[0] = interval;
+    scan.query(query, found);
+    EXPECT_EQ(found.size(), answers);
+    return scan.blocksCompared() - before;
+  };
+  // One block of unions, and the block of the answer, or two where the query's cell lies across a border.
+  EXPECT_LE(blocksOf({1000.0f, 1000.4f}, 1), 3u);
+  EXPECT_EQ(blocksOf({-kInfinity, kInfinity}, table.parts), 1 + kFanOut);
+  for (std::uint32_t part = 0; part + kFanOut < table.parts; ++part) {
+    scan.setActive(part, false);
+  }
+  EXPECT_EQ(blocksOf({-kInfinity, kInfinity}, kFanOut), 2u);
+}
+
 }  // namespace
 }  // namespace sightline::layers

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -70,6 +71,15 @@ TEST(LayerSorterCoherence, TheFirstOrderIsByDistanceWhereNothingIsOccluded) {
   }
 }
 
+TEST(LayerSorterCoherence, TheFirstOrderTakesAPartByTheMeanOfItsHulls) {
+  MadeScene scene = cubesAt({{}, {12, 0, -16}, {-18, 0, -24}}, {});
+  scene.parts[0].hulls = {shapes::cube({0, 0, -10}), shapes::cube({0, 0, -40})};
+  for (const LayerSort sort : kSorts) {
+    LayerSorter sorter = sorterOf(scene, unconditioned(sort));
+    EXPECT_EQ(partsOf(sorter.update(scene.view)), (std::vector<std::uint32_t>{1, 0, 2}));
+  }
+}
+
 // Sorted by depth, what is behind the eye would come in reverse.
 TEST(LayerSorterCoherence, TheFirstOrderIsRightBehindTheEyeToo) {
   const std::vector<Vec3d> row{{0, 0, 15}, {0, 0, -30}, {0, 0, 5}, {0, 0, -10}, {0, 0, 25}, {0, 0, -20}};
@@ -131,6 +141,26 @@ TEST(LayerSorterCoherence, ConditioningBringsTheNearestForwardWhateverTheLastOrd
     const LayerOrder& second = sorter.update(viewFrom(kRight));
     EXPECT_EQ(partsOf(second), by_depth);
     EXPECT_EQ(second.stats.conditioned, 0u);
+  }
+}
+
+// Two parts that reach into each other, 23 and 35 m away; single ones at 26 m and at 32 m.
+TEST(LayerSorterCoherence, ConditioningTakesAGroupByTheMeanOfItsParts) {
+  MadeScene scene;
+  for (const auto& [x, near, far] : {std::array{80.0, -31.0, -33.0}, std::array{0.0, -25.0, -45.0},
+                                     std::array{40.0, -25.0, -27.0}, std::array{0.0, -20.0, -26.0}}) {
+    scene.parts.push_back({.hulls = {shapes::box({x - 1, -1, far}, {x + 1, 1, near})},
+                           .world_from_part = {},
+                           .settings = {},
+                           .enabled = true});
+  }
+  for (const LayerSort sort : kSorts) {
+    LayerSettings settings;
+    settings.sort = sort;
+    LayerSorter sorter = sorterOf(scene, settings);
+    const LayerOrder& order = sorter.update(viewFrom({}));
+    ASSERT_EQ(order.groups(), 3u);
+    EXPECT_EQ(partsOf(order), (std::vector<std::uint32_t>{2, 3, 1, 0}));
   }
 }
 
@@ -227,6 +257,25 @@ TEST(LayerSorterCoherence, SmallMotionsCostFewerExactTestsThanSortingAnew) {
     EXPECT_LT(warm_sum.candidates, cold_sum.candidates);
     EXPECT_LT(warm_sum.pair_queries, cold_sum.pair_queries);
     EXPECT_EQ(warm_sum.reinsertions < cold_sum.reinsertions, sort == LayerSort::kIncremental);
+  }
+}
+
+// What is kept of a pair lives as long as the settings say.
+TEST(LayerSorterCoherence, WhatIsKnownOfPairsShortensTheNextFrameUnlessItExpires) {
+  const MovingScene scene = makeToothpicks({.count = 200});
+  for (const LayerSort sort : kSorts) {
+    LayerSettings settings;
+    settings.sort = sort;
+    MovingSorter keeping(scene, settings);
+    settings.pair_expiry = 0;
+    MovingSorter forgetting(scene, settings);
+    const auto stepsOf = [](const LayerStats& stats) { return stats.chung_steps + stats.gilbert_steps; };
+    const std::uint64_t first = stepsOf(keeping.update(0).stats);
+    EXPECT_EQ(stepsOf(forgetting.update(0).stats), first);
+    const std::uint64_t kept = stepsOf(keeping.update(1).stats),
+                        forgotten = stepsOf(forgetting.update(1).stats);
+    EXPECT_LT(kept, forgotten);
+    EXPECT_GT(keeping.sorter().update(keeping.view(1)).stats.known_pairs, 0u);
   }
 }
 
