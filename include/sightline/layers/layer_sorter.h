@@ -91,7 +91,7 @@ struct LayerOrder {
   std::span<const std::uint32_t> first_of{};  // groups + 1: where each begins in parts
   std::span<const LayerArc> arcs{};           // within groups, or all (all_arcs); ascending
   std::span<const LayerArc> collisions{};     // pairs of parts whose hulls meet or touch, front < back;
-                                           // ascending. Pairs with a rule are not looked at
+                                              // ascending. Pairs with a rule are not looked at
   LayerStats stats{};
 
   std::size_t groups() const { return first_of.empty() ? 0 : first_of.size() - 1; }
