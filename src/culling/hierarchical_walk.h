@@ -134,7 +134,7 @@ class HierarchicalWalk {
         }
       }
     } else if (node.leaf()) {
-      keepLeaf(node, frustum, planes, surely_visible, options, occluders, structure, stats);
+      keepLeaf(NodeIndex(entry.node), frustum, planes, surely_visible, options, occluders, structure, stats);
     } else {
       if (!surely_visible) {
         partial_[entry.node] = true;
@@ -159,11 +159,13 @@ class HierarchicalWalk {
   }
 
   template <typename Structure>
-  void keepLeaf(const HierarchyNode& leaf, const Frustum& frustum, std::uint8_t planes, bool surely_visible,
+  void keepLeaf(NodeIndex index, const Frustum& frustum, std::uint8_t planes, bool surely_visible,
                 const WalkOptions& options, OccluderList occluders, Structure&& structure, CullStats& stats) {
     const bool test_objects = !surely_visible && options.test_objects;
-    for (std::uint32_t i = 0; i < leaf.leaf_count; ++i) {
-      const ObjectId object = hierarchy_.objects[leaf.link + i];
+    const HierarchyNode& leaf = hierarchy_.nodes[index.value];
+    const std::span<const ObjectId> objects = hierarchy_.objectsBelow(index);
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+      const ObjectId object = objects[i];
       if (!isMember(object, options)) {
         continue;
       }
@@ -183,7 +185,7 @@ class HierarchicalWalk {
           OccluderList touching;
           const auto item = static_cast<std::uint32_t>(hierarchy_.nodes.size() + leaf.link + i);
           if (structure.classify(box, item, occluders, touching) == Visibility::kHidden) {
-            stats.hidden_triangles += leaf.cost / leaf.leaf_count;
+            stats.hidden_triangles += leaf.cost / objects.size();
             continue;
           }
         }

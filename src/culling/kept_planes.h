@@ -30,7 +30,7 @@ struct KeptPlanes {
     entered[node.value] = false;
     const HierarchyNode& n = hierarchy.nodes[node.value];
     if (n.leaf()) {
-      for (std::uint32_t i = 0; i < n.leaf_count; ++i) {
+      for (std::uint32_t i = 0; i < hierarchy.objectsBelow(node).size(); ++i) {
         planes.forget(static_cast<std::uint32_t>(hierarchy.nodes.size()) + n.link + i);
       }
     } else {

@@ -10,13 +10,23 @@ bool isOf(const Hierarchy& hierarchy, std::span<const Box> object_bounds) {
     return false;
   }
   std::vector<Box> around(object_bounds.size());  // by object: the leaves that name it
-  for (const HierarchyNode& node : hierarchy.nodes) {
-    if (std::size_t{node.leaf_count} + (node.leaf() ? node.link : 0) > hierarchy.objects.size()) {
+  // From the last leaf to the first: a leaf's entries end where those of the next one begin.
+  std::size_t end = hierarchy.objects.size();
+  for (std::size_t n = hierarchy.nodes.size(); n-- > 0;) {
+    const HierarchyNode& node = hierarchy.nodes[n];
+    if (!node.leaf()) {
+      continue;
+    }
+    if (node.link >= end) {
       return false;
     }
-    for (std::uint32_t i = 0; i < node.leaf_count; ++i) {
-      around[hierarchy.objects[node.link + i].value].extend(node.bounds);
+    for (std::size_t i = node.link; i < end; ++i) {
+      around[hierarchy.objects[i].value].extend(node.bounds);
     }
+    end = node.link;
+  }
+  if (end != 0) {
+    return false;
   }
   return std::equal(
       object_bounds.begin(), object_bounds.end(), around.begin(), [](const Box& box, const Box& leaves) {

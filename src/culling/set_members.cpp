@@ -11,8 +11,8 @@ TreeMarks marksOf(const Hierarchy& hierarchy, std::size_t object_count) {
   for (std::uint32_t n = 0; n < hierarchy.nodes.size(); ++n) {
     const HierarchyNode& node = hierarchy.nodes[n];
     if (node.leaf()) {
-      for (std::uint32_t i = 0; i < node.leaf_count; ++i) {
-        places.push_back({hierarchy.objects[node.link + i], n});
+      for (const ObjectId object : hierarchy.objectsBelow(NodeIndex(n))) {
+        places.push_back({object, n});
       }
     } else {
       parents[hierarchy.left(NodeIndex(n)).value] = n;

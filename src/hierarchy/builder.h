@@ -20,7 +20,7 @@ class FlatWriter {
   FlatWriter(Hierarchy& hierarchy, std::span<const std::uint32_t> object_cost)
       : hierarchy_(hierarchy), object_cost_(object_cost) {}
 
-  // Appends leaves for these items: one, or several where a leaf's counter would overflow.
+  // Appends a leaf with these items, of which there is at least one.
   void leaf(std::span<const Item> items, std::uint32_t level);
   // Appends an inner node; its left subtree must be appended next, then its right one, then finish(it).
   NodeIndex beginInner(std::span<const Item> items, std::uint32_t level);

@@ -10,8 +10,6 @@ namespace sightline {
 namespace hierarchy_detail {
 namespace {
 
-constexpr std::uint32_t kMaxLeafCount = std::numeric_limits<std::uint16_t>::max();
-
 Box infiniteBox() {
   const float inf = std::numeric_limits<float>::infinity();
   return {{-inf, -inf, -inf}, {inf, inf, inf}};
@@ -30,21 +28,14 @@ HierarchyNode FlatWriter::enclosing(std::span<const Item> items) const {
     }
     cost += object_cost_.empty() ? 1u : object_cost_[item.object.value];
   }
-  node.cost = static_cast<std::uint16_t>(std::min<std::uint64_t>(cost, 0xffff));
+  node.cost = std::min<std::uint64_t>(cost, HierarchyNode::kMaxCost) & HierarchyNode::kMaxCost;
   return node;
 }
 
 void FlatWriter::leaf(std::span<const Item> items, std::uint32_t level) {
-  if (items.size() > kMaxLeafCount) {
-    const NodeIndex inner = beginInner(items, level);
-    leaf(items.first(items.size() / 2), level + 1);
-    leaf(items.subspan(items.size() / 2), level + 1);
-    finish(inner);
-    return;
-  }
   HierarchyNode node = enclosing(items);
   node.link = static_cast<std::uint32_t>(hierarchy_.objects.size());
-  node.leaf_count = static_cast<std::uint16_t>(items.size());
+  node.is_leaf = 1;
   for (const Item& item : items) {
     hierarchy_.objects.push_back(item.object);
   }
@@ -92,7 +83,7 @@ Hierarchy buildHierarchy(std::span<const Box> object_bounds, std::span<const std
   const auto levels = static_cast<std::uint32_t>(std::bit_width(good.size()));
   const bool kd = settings.kind == HierarchyKind::kKdTree;
   BuildLimits limits;
-  limits.max_leaf_objects = std::clamp(settings.max_leaf_objects, 1u, 0xffffu);
+  limits.max_leaf_objects = std::max(settings.max_leaf_objects, 1u);
   limits.max_depth = settings.max_depth != 0 ? settings.max_depth : kd ? levels + 6 : 2 * levels + 16;
   limits.median_window = settings.median_window;
 

@@ -119,7 +119,7 @@ class Collapser {
     node.first_child = first_child;
     node.child_end = static_cast<std::uint32_t>(wide_.boxes.size());
     node.first_node = first_node;
-    node.node_count = static_cast<std::uint16_t>(children_.size());
+    node.node_count = static_cast<std::uint32_t>(children_.size());
   }
 
   void addChild(const Box& box, ObjectId object) {

@@ -20,10 +20,10 @@ struct WideNode {
   std::uint32_t child_end = 0;
   std::uint32_t first_node = 0;                    // the number of its first child that is a node
   std::uint32_t first_object = 0, object_end = 0;  // what is below it, in Hierarchy::objects
-  std::uint16_t node_count = 0;                    // children that are nodes
-  std::uint16_t cost = 0;                          // triangles below it, at most 65,535
+  std::uint32_t node_count = 0;                    // children that are nodes
+  std::uint32_t cost = 0;                          // triangles below it, at most HierarchyNode::kMaxCost
 };
-static_assert(sizeof(WideNode) == 24);
+static_assert(sizeof(WideNode) == 28);
 
 // Made by collapsing a binary hierarchy; the root is node 0. Some 36 bytes an object. Boxes that are not well
 // formed are children like any other.

@@ -43,9 +43,9 @@ struct CellTree {
 };
 
 // Splits the cell with the longest diagonal (of equal ones, the one made first) as the kd-tree does, until
-// there are max_cells of them or all that is left are leaves. A node that no plane separates (an over-full
-// leaf) is one cell, and so is what is not a kd-tree; objects with a broken box do not count.
-// default_bounds: the region where the tree has no finite box of its own.
+// there are max_cells of them or all that is left are leaves. A node that no plane separates is one cell, and
+// so is what is not a kd-tree; objects with a broken box do not count. default_bounds: the region where the
+// tree has no finite box of its own.
 CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::uint32_t max_cells);
 
 // So many cells (at least 1, at most kMaxCells), for which the caller has to know that the bytes are enough.

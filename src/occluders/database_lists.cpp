@@ -77,7 +77,7 @@ CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
     double polygon_radius = 0.0;
     if (source.leaf()) {
       node.first = source.link;
-      node.after = source.link + source.leaf_count;
+      node.after = source.link + static_cast<std::uint32_t>(bvh.objectsBelow(NodeIndex(i)).size());
       for (std::uint32_t c = node.first; c < node.after; ++c) {
         node.max_area = std::max(node.max_area, candidates_[c].area);
         polygon_radius = std::max(polygon_radius, candidates_[c].radius);

@@ -183,7 +183,7 @@ TEST(Culler, ANodeBelowTheMinimumCostIsTakenAsVisible) {
   for (const HierarchyKind kind : kKinds) {
     Culler all = city().culler(kind, {.min_node_cost = 0});
     Culler some = city().culler(kind, {.min_node_cost = 400});
-    Culler none = city().culler(kind, {.min_node_cost = 0x10000});
+    Culler none = city().culler(kind, {.min_node_cost = 1'000'000'000});
     Culler frustum = city().culler(kind, {.method = CullMethod::kFrustum});
     std::size_t all_tests = 0, some_tests = 0;
     for (const View& view : city().frames(city().scene.paths[0], 40, 8)) {
@@ -198,6 +198,32 @@ TEST(Culler, ANodeBelowTheMinimumCostIsTakenAsVisible) {
       some_tests += some.stats().nodes_tested;
     }
     EXPECT_LT(some_tests, all_tests);
+  }
+}
+
+TEST(Culler, NodesOfManyTrianglesAreTestedWithALargeMinimumCost) {
+  // Two objects of 100,000 triangles each behind a wall.
+  const std::vector<Box> bounds{
+      {{-8, -8, -5}, {8, 8, -5}}, {{-1, -1, -9}, {0, 1, -8}}, {{0.5f, -1, -9}, {1, 1, -8}}};
+  const std::vector<std::uint32_t> triangles{2, 100'000, 100'000};
+  const std::vector<Vec3f> corners{{-8, -8, -5}, {8, -8, -5}, {8, 8, -5}, {-8, 8, -5}};
+  const std::vector<OccluderPolygon> polygons{{corners, false, ObjectId(0u)}};
+  const OccluderSet wall = makeOccluders(polygons);
+  View view;
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.near = 0.1;
+  for (const HierarchyKind kind : kKinds) {
+    const Hierarchy hierarchy = buildHierarchy(bounds, triangles, {.kind = kind, .max_leaf_objects = 1});
+    for (auto [name, settings] : kStructures) {
+      for (const std::uint32_t cost : {0u, 65'535u, 65'536u, 100'000u}) {
+        settings.min_node_cost = cost;
+        Culler culler(hierarchy, bounds, wall, settings);
+        EXPECT_EQ(visibleOf(culler, view), Objects{ObjectId(0u)}) << name << " " << cost;
+      }
+      settings.min_node_cost = 200'003;
+      Culler none(hierarchy, bounds, wall, settings);
+      EXPECT_EQ(visibleOf(none, view).size(), 3u) << name;
+    }
   }
 }
 

@@ -52,7 +52,7 @@ std::string whatIsWrong(const WideHierarchy& wide, const Hierarchy& hierarchy, s
     if (range != reached(wide, node)) {
       return "the range of objects" + where;
     }
-    std::uint16_t cost = 0xffff;
+    std::uint32_t cost = HierarchyNode::kMaxCost;
     for (std::uint32_t i = 0; i < count; ++i) {
       const Box& box = wide.boxes[n.first_child + i];
       if (i >= n.node_count) {

@@ -15,12 +15,15 @@ namespace sightline {
 
 // Nodes lie in depth-first order: the left child follows its parent. 32 bytes.
 struct HierarchyNode {
-  Box bounds{};            // encloses what its objects have in its region
-  std::uint32_t link = 0;  // leaf: first entry in Hierarchy::objects. Inner: one past the last node below it
-  std::uint16_t leaf_count = 0;  // leaf: number of entries, at least 1. Inner: 0
-  std::uint16_t cost = 0;        // triangles below it, at most 65,535
+  Box bounds{};  // encloses what its objects have in its region
+  // Leaf: its first entry in Hierarchy::objects; Hierarchy::objectsBelow() finds where they end. Inner node:
+  // one past the last node below it.
+  std::uint32_t link = 0;
+  std::uint32_t cost : 31 = 0;  // triangles below it, at most kMaxCost
+  std::uint32_t is_leaf : 1 = 0;
 
-  bool leaf() const { return leaf_count != 0; }
+  static constexpr std::uint32_t kMaxCost = 0x7fffffff;
+  bool leaf() const { return is_leaf != 0; }
 };
 static_assert(sizeof(HierarchyNode) == 32);
 
@@ -41,7 +44,8 @@ struct Hierarchy {
     const HierarchyNode& node = nodes[n.value];
     return node.leaf() ? n.value + 1 : node.link;
   }
-  // Entries of `objects` that are named below n: one contiguous range.
+  // Entries of `objects` that are named below n: one contiguous range, not empty. A leaf's end is where the
+  // next leaf begins, so this looks at the few inner nodes between them.
   std::span<const ObjectId> objectsBelow(NodeIndex n) const;
   std::uint32_t duplicates() const { return static_cast<std::uint32_t>(objects.size()) - object_count; }
 };
