@@ -27,9 +27,10 @@ using culling_detail::AskAll;
 using culling_detail::KeptPlanes;
 using culling_detail::SceneSizes;
 using culling_detail::SetMembers;
+using culling_detail::WalkBox;
 
 auto seeEverything() {
-  return AskAll{[](const Box&) { return Visibility::kVisible; }};
+  return AskAll{[](const WalkBox&) { return Visibility::kVisible; }};
 }
 
 }  // namespace
@@ -206,11 +207,13 @@ struct Culler::Impl {
     cullWith(
         view, frustum, [&](std::span<const OccluderId> chosen) { tree.build(view, inUse(chosen, moving)); },
         [&] {
-          walkWith(frustum, settings.temporal_coherence,
-                   AskAll{[this](const Box& box) { return tree.classify(box); }});
+          walkWith(frustum, settings.temporal_coherence, AskAll{[this](const WalkBox& asked) {
+                     return tree.classify(asked.box, asked.frustum_planes);
+                   }});
         });
     stats.occluders = tree.stats().occluders;
     stats.tree_nodes = tree.stats().nodes;
+    stats.tree_plane_tests = tree.stats().plane_tests;
     stats.tree_dropped = tree.stats().dropped;
   }
 
@@ -293,7 +296,8 @@ struct Culler::Impl {
             opacity_map->finish();
           },
           [&] {
-            walkWith(frustum, false, AskAll{[this](const Box& box) { return opacity_map->classify(box); }});
+            walkWith(frustum, false,
+                     AskAll{[this](const WalkBox& asked) { return opacity_map->classify(asked.box); }});
           });
       stats.opacity = opacity_map->stats();
       takeRasterStats(stats.opacity.raster);
@@ -399,18 +403,19 @@ struct Culler::Impl {
     for (const Box& box : dynamic_boxes) {
       std::uint8_t cut = kAllFrustumPlanes;
       const bool outside = sightline::classify(frustum, box, cut) == FrustumSide::kOutside;
-      dynamic_states.push_back(outside ? Visibility::kHidden : classifyDynamic(box));
+      dynamic_states.push_back(outside ? Visibility::kHidden : classifyDynamic(box, cut));
     }
     stats.walk_us += microseconds(start, Clock::now());
   }
 
-  Visibility classifyDynamic(const Box& box) {
+  // frustum_planes: those that the box may cross.
+  Visibility classifyDynamic(const Box& box, std::uint8_t frustum_planes) {
     if (!box.wellFormed() || keepsEverything()) {
       return Visibility::kVisible;
     }
     switch (settings.method) {
       case CullMethod::kOcclusionTree:
-        return tree.classify(box);
+        return tree.classify(box, frustum_planes);
       case CullMethod::kSupportingPlanes:
         return planes.classify(box);
       case CullMethod::kOpacityMap:

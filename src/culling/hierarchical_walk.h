@@ -20,11 +20,17 @@
 
 namespace sightline::culling_detail {
 
+// A box that the walk asks about.
+struct WalkBox {
+  const Box& box;
+  std::uint32_t item;  // a node's number, or the number of nodes plus an entry's in Hierarchy::objects
+  std::uint8_t frustum_planes;  // bit i is clear where it is inside of the frustum's plane i
+};
+
 // What the walk needs of an occlusion structure:
 //
-//   Visibility classify(const Box&, std::uint32_t item, OccluderList among, OccluderList& touching)
-//     The box's state. item: a node's number, or the number of nodes plus an entry's in Hierarchy::objects.
-//     among: what was touching the node above, or start() at the root.
+//   Visibility classify(const WalkBox&, OccluderList among, OccluderList& touching)
+//     The box's state. among: what was touching the node above, or start() at the root.
 //   OccluderList start()
 //   void settled(NodeIndex)
 //     The node was found hidden or visible, so the walk ends here.
@@ -32,11 +38,9 @@ namespace sightline::culling_detail {
 // This one asks all occluders, whatever lies above.
 template <typename Classify>
 struct AskAll {
-  Classify classify_box;  // Box -> Visibility
+  Classify classify_box;  // WalkBox -> Visibility
 
-  Visibility classify(const Box& box, std::uint32_t /*item*/, OccluderList, OccluderList&) {
-    return classify_box(box);
-  }
+  Visibility classify(const WalkBox& box, OccluderList, OccluderList&) { return classify_box(box); }
   OccluderList start() const { return {}; }
   void settled(NodeIndex) {}
 };
@@ -115,7 +119,7 @@ class HierarchicalWalk {
         state = Visibility::kPartial;
       } else {
         ++stats.nodes_tested;
-        state = structure.classify(node.bounds, entry.node, entry.occluders, occluders);
+        state = structure.classify({node.bounds, entry.node, planes}, entry.occluders, occluders);
       }
     }
     if (state != Visibility::kPartial) {
@@ -184,7 +188,7 @@ class HierarchicalWalk {
           ++stats.objects_tested;
           OccluderList touching;
           const auto item = static_cast<std::uint32_t>(hierarchy_.nodes.size() + leaf.link + i);
-          if (structure.classify(box, item, occluders, touching) == Visibility::kHidden) {
+          if (structure.classify({box, item, object_planes}, occluders, touching) == Visibility::kHidden) {
             stats.hidden_triangles += leaf.cost / objects.size();
             continue;
           }

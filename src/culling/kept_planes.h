@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "culling/hierarchical_walk.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/supporting_planes.h"
 
@@ -16,10 +17,10 @@ struct KeptPlanes {
   std::vector<bool>& entered;  // by node: the walk went on below it, and what is there may have relations
 
   OccluderList start() const { return planes.all(); }
-  Visibility classify(const Box& box, std::uint32_t item, OccluderList among, OccluderList& touching) {
-    const Visibility state = planes.classify(box, item, among, touching);
-    if (item < entered.size() && state == Visibility::kPartial) {
-      entered[item] = true;
+  Visibility classify(const WalkBox& asked, OccluderList among, OccluderList& touching) {
+    const Visibility state = planes.classify(asked.box, asked.item, among, touching);
+    if (asked.item < entered.size() && state == Visibility::kPartial) {
+      entered[asked.item] = true;
     }
     return state;
   }

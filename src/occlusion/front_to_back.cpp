@@ -83,7 +83,12 @@ std::uint32_t FrontToBack::chooseSplitter(std::size_t begin, std::size_t end) co
   return best;
 }
 
-void FrontToBack::visit(std::size_t begin, std::size_t end, std::uint32_t depth) {
+void FrontToBack::visit(const Range& range) {
+  const auto [begin, end, depth, before, work_needed] = range;
+  work_.resize(work_needed);
+  if (before != kNone) {
+    ordered_.push_back(before);
+  }
   if (depth > kMaxDepth) {
     ordered_.insert(ordered_.end(), work_.begin() + static_cast<std::ptrdiff_t>(begin),
                     work_.begin() + static_cast<std::ptrdiff_t>(end));
@@ -122,10 +127,8 @@ void FrontToBack::visit(std::size_t begin, std::size_t end, std::uint32_t depth)
       work_[begin + back_count++] = fragment;
     }
   }
-  visit(front_begin, work_.size(), depth + 1);
-  work_.resize(front_begin);
-  ordered_.push_back(splitter);
-  visit(begin, begin + back_count, depth + 1);
+  ranges_.push_back({begin, begin + back_count, depth + 1, splitter, front_begin});
+  ranges_.push_back({front_begin, work_.size(), depth + 1, kNone, work_.size()});
 }
 
 void FrontToBack::order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments) {
@@ -137,7 +140,13 @@ void FrontToBack::order(VolumeBuilder& volumes, PolygonStack& stack, std::vector
   for (std::uint32_t i = 0; i < all_.size(); ++i) {
     work_.push_back(i);
   }
-  visit(0, work_.size(), 0);
+  ranges_.clear();
+  ranges_.push_back({0, work_.size(), 0, kNone, work_.size()});
+  while (!ranges_.empty()) {
+    const Range range = ranges_.back();
+    ranges_.pop_back();
+    visit(range);
+  }
   fragments.clear();
   for (const std::uint32_t i : ordered_) {
     fragments.push_back(all_[i]);

@@ -31,9 +31,19 @@ class FrontToBack {
   void order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments);
 
  private:
-  static constexpr std::uint32_t kMaxDepth = 400;  // deeper, the order stays as it is
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  // Deeper, the order stays as it is: a level costs as much as there are occluders in it.
+  static constexpr std::uint32_t kMaxDepth = 400;
 
-  void visit(std::size_t begin, std::size_t end, std::uint32_t depth);
+  // Fragments to be ordered: work_[begin, end).
+  struct Range {
+    std::size_t begin = 0, end = 0;
+    std::uint32_t depth = 0;
+    std::uint32_t splitter = kNone;  // comes before them
+    std::size_t work_needed = 0;     // of work_, from its beginning on
+  };
+
+  void visit(const Range& range);
   std::uint32_t chooseSplitter(std::size_t begin, std::size_t end) const;
   Side sideOf(std::uint32_t fragment, std::uint32_t splitter) const;
 
@@ -42,6 +52,7 @@ class FrontToBack {
   std::vector<Fragment> all_;
   std::vector<std::uint32_t> work_;  // fragments waiting, a stack of ranges
   std::vector<std::uint32_t> ordered_;
+  std::vector<Range> ranges_;  // still to be visited, the next one last
 };
 
 }  // namespace sightline::occlusion_detail

@@ -1,7 +1,7 @@
 // Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998.
 // Differs from the paper in: the frustum's side planes are the tree's first nodes, so that only what is in
 // view counts; outlines are drawn in by a margin where nothing adjoins them and shared exactly where
-// something does (see docs/conservative.md); and in the exact leaf test (see tree_classify.cpp).
+// something does (see docs/conservative.md); and in how boxes are asked about (see tree_classify.cpp).
 
 #include "sightline/occlusion/occlusion_tree.h"
 
@@ -32,6 +32,7 @@ struct OcclusionTree::Impl {
   TreeBuilder builder;
   TreeData tree;
   SplittingQuery splitting;
+  PlaneQuery planes;
   OcclusionTreeStats stats;
   bool usable_view = false;            // there was one, and it was one: see validate()
   std::vector<ChosenOccluders> parts;  // of the chosen occluders, those that the tree is built from
@@ -91,9 +92,11 @@ void OcclusionTree::build(const View& given, std::span<const ChosenOccluders> se
   stats.nodes = static_cast<std::uint32_t>(impl.tree.nodes.size());
   stats.leaves = static_cast<std::uint32_t>(impl.tree.leaves.size());
   stats.depth = impl.tree.depth;
+  impl.splitting.counts = impl.planes.counts = {};
+  stats.plane_tests = stats.cuts = 0;
 }
 
-Visibility OcclusionTree::classify(const Box& box) {
+Visibility OcclusionTree::classify(const Box& box, std::uint8_t frustum_planes) {
   Impl& impl = *impl_;
   if (!box.wellFormed() || !impl.usable_view) {
     return Visibility::kVisible;
@@ -104,8 +107,12 @@ Visibility OcclusionTree::classify(const Box& box) {
       relative.max.x >= 0.0 && relative.max.y >= 0.0 && relative.max.z >= 0.0) {
     return Visibility::kPartial;  // the eye is inside: never hidden, but what else is in it may be
   }
-  const State state = impl.modified() ? classifyByPlanes(impl.tree, relative, impl.exact())
-                                      : impl.splitting.classify(impl.tree, relative, impl.exact());
+  const BoxQuestion question{relative, impl.exact(), frustum_planes};
+  const State state = impl.modified() ? impl.planes.classify(impl.tree, question)
+                                      : impl.splitting.classify(impl.tree, question);
+  const QueryCounts& counts = impl.modified() ? impl.planes.counts : impl.splitting.counts;
+  impl.stats.plane_tests = counts.plane_tests;
+  impl.stats.cuts = counts.cuts;
   switch (state) {
     case State::kVisible:
       return Visibility::kVisible;

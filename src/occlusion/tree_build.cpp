@@ -23,12 +23,13 @@ void TreeBuilder::addFrustum(const View& view) {
     tree_->node_plane.push_back(tree_->volumes.addPlane(outwards, kTouching));
   }
   tree_->root = Link::node(0);
+  tree_->frustum_nodes = 4;
 }
 
 // The subtree for one lit fragment: a node for each edge, in-shadow behind all of them.
 Link TreeBuilder::occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth) {
   TreeData& tree = *tree_;
-  if (tree.nodes.size() + piece.count > limits_.max_nodes || depth + piece.count > kMaxDepth) {
+  if (tree.nodes.size() + piece.count > limits_.max_nodes || depth + piece.count > kMaxTreeDepth) {
     failed_ = true;
     return Link::out();
   }
@@ -55,41 +56,54 @@ Link TreeBuilder::occlusionVolume(Piece piece, std::uint32_t volume, std::uint32
   return link;
 }
 
-void TreeBuilder::filterDown(Link& link, Piece piece, std::uint32_t volume, std::uint32_t depth) {
-  if (failed_) {
-    return;
+Link& TreeBuilder::at(Place place) {
+  if (place.node == Place::kRoot) {
+    return tree_->root;
   }
-  if (link.isNode()) {
-    filterDownNode(link.nodeIndex(), piece, volume, depth);
-  } else if (link.isOut()) {
-    // occlusionVolume appends nodes, which moves the one that `link` is in: never keep references across it.
-    const Link made = occlusionVolume(piece, volume, depth);
-    link = made;
+  TreeNode& node = tree_->nodes[place.node];
+  return place.front ? node.front : node.back;
+}
+
+// Follows a piece to a leaf; of a piece that is split, the part behind waits.
+void TreeBuilder::filterDown(Waiting moving, std::uint32_t volume) {
+  while (at(moving.place).isNode()) {
+    const auto index = static_cast<std::uint32_t>(at(moving.place).nodeIndex());
+    const SplitResult split = stack_.split(moving.piece, tree_->nodes[index].plane, tree_->node_plane[index],
+                                           tree_->on_plane_scale);
+    ++moving.depth;
+    switch (split.side) {
+      case Side::kFront:
+        moving.place = {index, true};
+        break;
+      case Side::kBack:
+        moving.place = {index, false};
+        break;
+      case Side::kBoth:
+        waiting_.push_back({{index, false}, split.back, moving.depth, stack_.corners.size()});
+        moving.place = {index, true};
+        moving.piece = split.front;
+        break;
+      case Side::kOnPlane:
+        return;  // thinner than rounding: it hides nothing
+    }
+  }
+  if (at(moving.place).isOut()) {
+    // occlusionVolume appends nodes, which moves the one that the link is in: never keep references across
+    // it.
+    const Link made = occlusionVolume(moving.piece, volume, moving.depth);
+    at(moving.place) = made;
   }
 }
 
-void TreeBuilder::filterDownNode(std::size_t node, Piece piece, std::uint32_t volume, std::uint32_t depth) {
-  const Plane plane = tree_->nodes[node].plane;
+void TreeBuilder::filterDown(Piece piece, std::uint32_t volume) {
   const std::size_t stack_size = stack_.corners.size();
-  const SplitResult split = stack_.split(piece, plane, tree_->node_plane[node], tree_->on_plane_scale);
-  const auto descend = [&](bool front, Piece part) {
-    Link link = front ? tree_->nodes[node].front : tree_->nodes[node].back;
-    filterDown(link, part, volume, depth + 1);
-    (front ? tree_->nodes[node].front : tree_->nodes[node].back) = link;
-  };
-  switch (split.side) {
-    case Side::kFront:
-      descend(true, piece);
-      break;
-    case Side::kBack:
-      descend(false, piece);
-      break;
-    case Side::kBoth:
-      descend(true, split.front);
-      descend(false, split.back);
-      break;
-    case Side::kOnPlane:
-      break;  // thinner than rounding: it hides nothing
+  waiting_.clear();
+  waiting_.push_back({Place{}, piece, 0, stack_size});
+  while (!waiting_.empty() && !failed_) {
+    const Waiting next = waiting_.back();
+    waiting_.pop_back();
+    stack_.corners.resize(next.corners_needed);
+    filterDown(next, volume);
   }
   stack_.corners.resize(stack_size);
 }
@@ -130,6 +144,7 @@ bool TreeBuilder::build(const View& view, std::span<const ChosenOccluders> sets,
   tree.leaves.clear();
   tree.corners.clear();
   tree.depth = 0;
+  tree.frustum_nodes = 0;
   tree.volumes.build(view, sets);
   tree.on_plane_scale = view.orthographic ? tree.volumes.reach : 0.0;
   if (limits.clip_to_frustum) {
@@ -142,7 +157,7 @@ bool TreeBuilder::build(const View& view, std::span<const ChosenOccluders> sets,
   makeFragments();
   front_to_back_.order(tree.volumes, stack_, fragments_);
   for (const Fragment& fragment : fragments_) {
-    filterDown(tree.root, fragment.piece, fragment.volume, 0);
+    filterDown(fragment.piece, fragment.volume);
   }
   return !failed_ && !stack_.overflow;
 }

@@ -19,19 +19,32 @@ class TreeBuilder {
              TreeData& tree);
 
  private:
-  static constexpr std::uint32_t kMaxDepth =
-      1500;  // the recursion of queries stays within any thread's stack
+  // A link of the tree: one of a node's, or the root.
+  struct Place {
+    static constexpr std::uint32_t kRoot = 0xffffffffu;
+    std::uint32_t node = kRoot;
+    bool front = false;
+  };
+  // A piece on its way down.
+  struct Waiting {
+    Place place;
+    Piece piece;
+    std::uint32_t depth = 0;         // of the place
+    std::size_t corners_needed = 0;  // of the stack, from its bottom on
+  };
 
   void addFrustum(const View& view);
   void makeFragments();
-  void filterDown(Link& link, Piece piece, std::uint32_t volume, std::uint32_t depth);
-  void filterDownNode(std::size_t node, Piece piece, std::uint32_t volume, std::uint32_t depth);
+  Link& at(Place place);
+  void filterDown(Piece piece, std::uint32_t volume);
+  void filterDown(Waiting piece, std::uint32_t volume);
   Link occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth);
 
   TreeData* tree_ = nullptr;
   TreeLimits limits_;
   bool failed_ = false;
   PolygonStack stack_;
+  std::vector<Waiting> waiting_;
   FrontToBack front_to_back_;
   std::vector<Fragment> fragments_;
 };

@@ -1,13 +1,16 @@
 // Asking the occlusion tree: Bittner, Havran, Slavik, CGI 1998, sections 5.1, 5.2 and 6.2.
-// Differs from the paper in: a box that crosses the plane of a leaf's occluder without meeting the occluder
-// is called hidden there only if it also stays out of the pyramid between the eye and the occluder. The
-// paper's test of the intersection alone takes a box that is in front of the occluder, and crosses its plane
-// beside it, for a hidden one.
+// Differs from the paper in: faces are not compared with planes of the frustum that the box is inside of; the
+// conservative test of a region (6.2) does not believe a leaf that would change the answer before the box's
+// image, split by the planes that the box crosses on the way there, reaches it; and a box that crosses the
+// plane of a leaf's occluder without meeting the occluder is called hidden there only if it also stays out of
+// the pyramid between the eye and the occluder. The paper's test of the intersection alone takes a box that
+// is in front of the occluder, and crosses its plane beside it, for a hidden one.
 
 #include "occlusion/tree_classify.h"
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace sightline::occlusion_detail {
 namespace {
@@ -50,76 +53,113 @@ State boxBehindSupport(const OcclusionVolume& volume, const EyeBox& box) {
   return distance - radius > -margin ? State::kVisible : State::kPartial;
 }
 
-State SplittingQuery::leaf(const ShadowLeaf& leaf, Piece piece) const {
-  const OcclusionVolume& volume = tree_->volumes.volumes[leaf.volume];
-  if (!exact_) {
-    return boxBehindSupport(volume, *box_);
+State SplittingQuery::leaf(Link link, Piece piece) const {
+  if (link.isOut()) {
+    return State::kVisible;
+  }
+  if (link.isOutside()) {
+    return State::kNothing;
+  }
+  const OcclusionVolume& volume = tree_->volumes.volumes[tree_->leaves[link.leafIndex()].volume];
+  if (!question_->exact) {
+    return boxBehindSupport(volume, question_->box);
   }
   for (const Corner& corner : stack_.of(piece)) {
     if (!(volume.support.evaluate(corner.position) < -supportMargin(volume, corner.position))) {
       // A part of the face is seen. Whether all of the box is depends on what of it lies behind the occluder.
-      return boxBehindSupport(volume, *box_) == State::kVisible ? State::kVisible : State::kPartial;
+      return boxBehindSupport(volume, question_->box) == State::kVisible ? State::kVisible : State::kPartial;
     }
   }
   return State::kHidden;
 }
 
-// The part of the piece in front of a plane, or behind it; empty when there is none.
-Piece SplittingQuery::part(const SplitResult& split, Piece whole, bool front) {
-  switch (split.side) {
-    case Side::kFront:
-      return front ? whole : Piece{};
-    case Side::kBack:
-      return front ? Piece{} : whole;
-    case Side::kBoth:
-      return front ? split.front : split.back;
-    default:
-      return whole;
-  }
+// By the node's plane, moved against its normal by the shift.
+SplitResult SplittingQuery::split(const TreeNode& node, Piece piece, double shift) {
+  const Plane plane{node.plane.normal, node.plane.offset + shift};
+  const SplitResult result = stack_.split(piece, plane, PlaneRef{}, on_plane_scale_, 0.0);
+  counts.cuts += result.side == Side::kBoth ? 1 : 0;
+  return result;
 }
 
-State SplittingQuery::bothSides(const TreeNode& node, Piece front, Piece back) {
-  State state = front.count != 0 ? polygon(node.front, front) : State::kNothing;
-  if (state != State::kPartial && back.count != 0) {
-    state = combine(state, polygon(node.back, back));
-  }
-  return stack_.overflow ? State::kPartial : state;
-}
-
-State SplittingQuery::node(const TreeNode& node, Piece piece) {
-  const std::size_t stack_size = stack_.corners.size();
-  const auto splitBy = [&](double shift) {
-    const Plane plane{node.plane.normal, node.plane.offset + shift};
-    return stack_.split(piece, plane, PlaneRef{}, on_plane_scale_, 0.0);
+SplittingQuery::Parts SplittingQuery::partsOf(const TreeNode& node, Piece piece) {
+  ++counts.plane_tests;
+  const auto partsIn = [&](const SplitResult& split) {
+    switch (split.side) {
+      case Side::kFront:
+        return Parts{piece, {}};
+      case Side::kBack:
+        return Parts{{}, piece};
+      case Side::kBoth:
+        return Parts{split.front, split.back};
+      default:
+        return Parts{piece, piece};
+    }
   };
-  State state = State::kNothing;
   if (node.tolerance == 0.0) {
-    const SplitResult split = splitBy(0.0);
-    state = bothSides(node, part(split, piece, true), part(split, piece, false));
-  } else {
-    // The parts that the two sides of a seam get overlap.
-    const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
-    const Piece front = part(splitBy(node.repeated ? -width : width), piece, true);
-    state = bothSides(node, front, part(splitBy(-width), piece, false));
+    return partsIn(split(node, piece, 0.0));
   }
-  stack_.corners.resize(stack_size);
-  return state;
+  // The parts that the two sides of a seam get overlap.
+  const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
+  const double front_from = node.repeated ? width : -width;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Corner& corner : stack_.of(piece)) {
+    const double distance = node.plane.evaluate(corner.position);
+    low = std::min(low, distance);
+    high = std::max(high, distance);
+  }
+  if (low >= width) {
+    return {piece, {}};
+  }
+  if (high <= front_from) {
+    return {{}, piece};
+  }
+  const Piece front = low >= front_from ? piece : partsIn(split(node, piece, -front_from)).front;
+  return {front, high <= width ? piece : partsIn(split(node, piece, -width)).back};
 }
 
 State SplittingQuery::polygon(Link link, Piece piece) {
-  if (link.isNode()) {
-    return node(tree_->nodes[link.nodeIndex()], piece);
+  State state = State::kNothing;
+  waiting_.clear();
+  waiting_.push_back({link, piece, stack_.corners.size()});
+  while (!waiting_.empty() && state != State::kPartial) {
+    Waiting moving = waiting_.back();
+    waiting_.pop_back();
+    stack_.corners.resize(moving.corners_needed);
+    while (moving.link.isNode()) {
+      const TreeNode& node = tree_->nodes[moving.link.nodeIndex()];
+      const Parts parts = partsOf(node, moving.piece);
+      if (stack_.overflow) {
+        return State::kPartial;
+      }
+      const bool in_front = parts.front.count != 0;
+      if (in_front && parts.back.count != 0) {
+        waiting_.push_back({node.back, parts.back, stack_.corners.size()});
+      }
+      moving.link = in_front ? node.front : node.back;
+      moving.piece = in_front ? parts.front : parts.back;
+    }
+    state = combine(state, leaf(moving.link, moving.piece));
   }
-  if (link.isOut()) {
-    return State::kVisible;
-  }
-  return link.isOutside() ? State::kNothing : leaf(tree_->leaves[link.leafIndex()], piece);
+  return state;
 }
 
-State SplittingQuery::classify(const TreeData& tree, const EyeBox& box, bool exact) {
+// What of a face is in the frustum, among the occluders.
+State SplittingQuery::face(Piece piece) {
+  for (std::size_t i = 0; i < tree_->frustum_nodes; ++i) {
+    if (question_->mayCross(i)) {
+      piece = partsOf(tree_->nodes[i], piece).back;
+      if (piece.count == 0) {
+        return State::kNothing;
+      }
+    }
+  }
+  return polygon(tree_->belowFrustum(), piece);
+}
+
+State SplittingQuery::classify(const TreeData& tree, const BoxQuestion& question) {
   tree_ = &tree;
-  box_ = &box;
-  exact_ = exact;
+  question_ = &question;
+  const EyeBox& box = question.box;
   reach_ = magnitude(max(abs(box.min), abs(box.max)));
   // Of the box's nearest point: a corner far away may be the end of an edge that passes close by.
   on_plane_scale_ = magnitude(max(max(box.min, -box.max), Vec3d())) + tree.on_plane_scale;
@@ -134,59 +174,120 @@ State SplittingQuery::classify(const TreeData& tree, const EyeBox& box, bool exa
     for (const Vec3d& p : faceOf(box, axis, side > 0)) {
       stack_.corners.push_back({p, PlaneRef{}, false});
     }
-    state = combine(state, polygon(tree.root, {0, 4}));
+    state = combine(state, face({0, 4}));
   }
   return state;
 }
 
-namespace {
-
-class PlaneQuery {
- public:
-  PlaneQuery(const TreeData& tree, const EyeBox& box, bool exact)
-      : tree_(tree), box_(box), exact_(exact), center_(box.center()), half_(box.half()) {
-    reach_ = magnitude(center_) + magnitude(half_);
+State PlaneQuery::leaf(Link link, State so_far) {
+  if (link.isOutside()) {
+    return State::kNothing;
   }
-
-  State ask(Link link) const {
-    if (link.isOut()) {
-      return State::kVisible;
-    }
-    if (link.isOutside()) {
-      return State::kNothing;
-    }
-    if (!link.isNode()) {
-      return leaf(tree_.leaves[link.leafIndex()]);
-    }
-    const TreeNode& node = tree_.nodes[link.nodeIndex()];
-    const double distance = node.plane.evaluate(center_);
-    const double radius = dot(abs(node.plane.normal), half_);
-    const double width = overlapWidth(node.tolerance, reach_, tree_.volumes.eye, tree_.on_plane_scale);
-    if (distance - radius >= width) {
-      return ask(node.front);
-    }
-    if (distance + radius <= (node.repeated ? width : -width)) {
-      return ask(node.back);
-    }
-    const State front = ask(node.front);
-    return front == State::kPartial ? front : combine(front, ask(node.back));
-  }
-
- private:
-  State leaf(const ShadowLeaf& leaf) const {
-    const State state = boxBehindSupport(tree_.volumes.volumes[leaf.volume], box_);
-    if (exact_ && state == State::kPartial && disjointFromPyramid(tree_, leaf, box_)) {
-      return State::kHidden;
-    }
+  const bool lit = link.isOut();
+  State state =
+      lit ? State::kVisible
+          : boxBehindSupport(tree_->volumes.volumes[tree_->leaves[link.leafIndex()].volume], question_->box);
+  // The image costs more than the planes. A leaf that changes nothing is believed, and so is shadow as long
+  // as nothing else is known.
+  if (combine(so_far, state) == so_far || (so_far == State::kNothing && state == State::kHidden)) {
     return state;
   }
+  if (!imageReaches()) {
+    return State::kNothing;
+  }
+  if (state == State::kPartial && question_->exact &&
+      disjointFromPyramid(*tree_, tree_->leaves[link.leafIndex()], question_->box)) {
+    return State::kHidden;
+  }
+  return state;
+}
 
-  const TreeData& tree_;
-  const EyeBox& box_;
-  bool exact_;
-  Vec3d center_, half_;
-  double reach_;
-};
+// Whether the box's image has a point on the right side of all planes of the path. Where it has none, what
+// waits behind the planes that suffice to see that is forgotten.
+bool PlaneQuery::imageReaches() {
+  if (path_.size() < 2 || path_.size() > BoxImage::kMaxCuts) {
+    return true;  // one plane: the box crosses it
+  }
+  if (!has_image_) {
+    image_.begin(question_->box, tree_->volumes.eye, tree_->on_plane_scale);
+    has_image_ = true;
+  }
+  while (image_.cutCount() < path_.size()) {
+    const Crossing crossing = path_[image_.cutCount()];
+    ++counts.cuts;
+    if (!image_.cut(tree_->nodes[crossing.node], crossing.front)) {
+      while (!waiting_.empty() && waiting_.back().crossings > image_.cutCount()) {
+        waiting_.pop_back();
+      }
+      return false;
+    }
+  }
+  return true;
+}
+
+Side PlaneQuery::sideOf(const TreeNode& node) {
+  ++counts.plane_tests;
+  const double distance = node.plane.evaluate(center_);
+  const double radius = dot(abs(node.plane.normal), half_);
+  const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
+  return distance - radius >= width ? Side::kFront : distance + radius <= -width ? Side::kBack : Side::kBoth;
+}
+
+// To a leaf; where the box crosses a plane, its back waits.
+Link PlaneQuery::descend(Link link) {
+  while (link.isNode()) {
+    const TreeNode& node = tree_->nodes[link.nodeIndex()];
+    const Side side = sideOf(node);
+    if (side == Side::kBoth) {
+      path_.push_back({static_cast<std::uint32_t>(link.nodeIndex()), true});
+      waiting_.push_back({node.back, static_cast<std::uint32_t>(path_.size())});
+    }
+    link = side == Side::kBack ? node.back : node.front;
+  }
+  return link;
+}
+
+State PlaneQuery::walk(Link link) {
+  State state = leaf(descend(link), State::kNothing);
+  while (state != State::kPartial && !waiting_.empty()) {
+    const Waiting next = waiting_.back();
+    waiting_.pop_back();
+    path_.resize(next.crossings);
+    path_.back().front = false;
+    if (has_image_) {
+      image_.keepCuts(next.crossings - 1);
+    }
+    state = combine(state, leaf(descend(next.link), state));
+  }
+  return state;
+}
+
+State PlaneQuery::classify(const TreeData& tree, const BoxQuestion& question) {
+  tree_ = &tree;
+  question_ = &question;
+  center_ = question.box.center();
+  half_ = question.box.half();
+  reach_ = magnitude(center_) + magnitude(half_);
+  has_image_ = false;
+  waiting_.clear();
+  path_.clear();
+  for (std::uint32_t i = 0; i < tree.frustum_nodes; ++i) {
+    if (question.mayCross(i)) {
+      const Side side = sideOf(tree.nodes[i]);
+      if (side == Side::kFront) {
+        return State::kNothing;
+      }
+      // What is in front of it counts for nothing, so it does not wait. Without occluders the tree says what
+      // the frustum's planes say one by one, and no more.
+      if (side == Side::kBoth && tree.belowFrustum().isNode()) {
+        path_.push_back({i, false});
+      }
+    }
+  }
+  return walk(tree.belowFrustum());
+}
+
+namespace {
 
 // Separating-axis test of the box against a set of points. Grows the box by the margin.
 class SeparatingAxis {
@@ -255,10 +356,6 @@ bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const Eye
     }
   }
   return false;
-}
-
-State classifyByPlanes(const TreeData& tree, const EyeBox& box, bool exact) {
-  return PlaneQuery(tree, box, exact).ask(tree.root);
 }
 
 }  // namespace sightline::occlusion_detail

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "occlusion/box_image.h"
 #include "occlusion/eye_box.h"
 #include "occlusion/tree_data.h"
 #include "sightline/occlusion/visibility.h"
@@ -13,31 +17,94 @@ constexpr State combine(State a, State b) {
   return a == State::kNothing ? b : b == State::kNothing || a == b ? a : State::kPartial;
 }
 
+// What queries did since they were last reset.
+struct QueryCounts {
+  std::uint64_t plane_tests = 0;  // boxes, faces or parts of faces compared with a plane of the tree
+  std::uint64_t cuts = 0;         // faces or parts of faces that were split, images that were cut
+};
+
+// A box to be classified.
+struct BoxQuestion {
+  EyeBox box;
+  // exact: in a leaf in shadow, fragments of faces against the occluder's plane (standard algorithm), or what
+  // crosses that plane against the fragment's pyramid (modified). Else the whole box against the plane.
+  bool exact = true;
+  // Bit i set: the box may reach beyond the frustum's plane i.
+  std::uint8_t frustum_planes = 0xff;
+
+  bool mayCross(std::size_t frustum_plane) const { return (frustum_planes >> frustum_plane & 1) != 0; }
+};
+
 // The standard algorithm (sections 5.1, 5.2): the faces of the box that face the eye are split by the tree's
 // planes.
 class SplittingQuery {
  public:
-  // exact: fragments against the occluder's plane in a leaf; else the whole box.
-  State classify(const TreeData& tree, const EyeBox& box, bool exact);
+  State classify(const TreeData& tree, const BoxQuestion& question);
+
+  QueryCounts counts;
 
  private:
+  // What of a piece is in front of a plane and behind it; empty where nothing is.
+  struct Parts {
+    Piece front, back;
+  };
+  // A piece on its way down.
+  struct Waiting {
+    Link link;
+    Piece piece;
+    std::size_t corners_needed = 0;  // of the stack, from its bottom on
+  };
+
+  State face(Piece piece);
   State polygon(Link link, Piece piece);
-  State node(const TreeNode& node, Piece piece);
-  static Piece part(const SplitResult& split, Piece whole, bool front);
-  State bothSides(const TreeNode& node, Piece front, Piece back);
-  State leaf(const ShadowLeaf& leaf, Piece piece) const;
+  Parts partsOf(const TreeNode& node, Piece piece);
+  SplitResult split(const TreeNode& node, Piece piece, double shift);
+  State leaf(Link link, Piece piece) const;
 
   const TreeData* tree_ = nullptr;
-  const EyeBox* box_ = nullptr;
-  bool exact_ = true;
+  const BoxQuestion* question_ = nullptr;
   double reach_ = 0.0;           // largest magnitude in the box
   double on_plane_scale_ = 0.0;  // smallest, and the tree's
   PolygonStack stack_;
+  std::vector<Waiting> waiting_;
 };
 
-// The modified algorithm (section 6.2): the box is only put before or behind the tree's planes.
-// exact: in a leaf whose occluder's plane the box crosses, the box against the fragment's pyramid.
-State classifyByPlanes(const TreeData& tree, const EyeBox& box, bool exact);
+// The modified algorithm (section 6.2): the box is only put before or behind the tree's planes. Where it is
+// put to both sides of several, it need not reach a leaf behind them: a leaf that would change the answer is
+// asked whether the box's image reaches it.
+class PlaneQuery {
+ public:
+  State classify(const TreeData& tree, const BoxQuestion& question);
+
+  QueryCounts counts;
+
+ private:
+  // A plane on the path that the box crosses, and the side on which the path goes on.
+  struct Crossing {
+    std::uint32_t node = 0;
+    bool front = false;
+  };
+  // The side of a crossed plane that is still to be visited.
+  struct Waiting {
+    Link link;
+    std::uint32_t crossings = 0;  // on the path to it; the last one is of that plane
+  };
+
+  Side sideOf(const TreeNode& node);
+  State walk(Link link);
+  Link descend(Link link);
+  State leaf(Link link, State so_far);
+  bool imageReaches();
+
+  const TreeData* tree_ = nullptr;
+  const BoxQuestion* question_ = nullptr;
+  Vec3d center_, half_;
+  double reach_ = 0.0;
+  std::vector<Waiting> waiting_;
+  std::vector<Crossing> path_;
+  bool has_image_ = false;  // image_ is this box's
+  BoxImage image_;          // cut by the first planes of path_
+};
 
 // A whole box against the plane of a leaf's occluder: hidden only when all of it lies behind.
 State boxBehindSupport(const OcclusionVolume& volume, const EyeBox& box);

@@ -22,6 +22,10 @@ struct Link {
   std::size_t leafIndex() const { return static_cast<std::size_t>(-3 - value); }
 };
 
+// Nodes on a path at most, which bounds what queries keep for a path. They use no recursion, nor does
+// building, so the size of the thread's stack does not matter.
+inline constexpr std::uint32_t kMaxTreeDepth = 1500;
+
 // A shadow plane; the occluder that made it lies behind. Positions are relative to the eye.
 struct TreeNode {
   Plane plane;             // unit normal
@@ -52,6 +56,12 @@ struct TreeData {
   VolumeBuilder volumes;
   double on_plane_scale = 0.0;  // see PolygonStack::split
   std::uint32_t depth = 0;
+  // The first nodes, one a side plane of the frustum in its order, if the tree has them: node i + 1 is behind
+  // node i, and outside() in front of each.
+  std::uint32_t frustum_nodes = 0;
+
+  // Where the occluders' own planes begin.
+  Link belowFrustum() const { return frustum_nodes == 0 ? root : nodes[frustum_nodes - 1].back; }
 };
 
 }  // namespace sightline::occlusion_detail

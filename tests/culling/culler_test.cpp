@@ -227,6 +227,64 @@ TEST(Culler, NodesOfManyTrianglesAreTestedWithALargeMinimumCost) {
   }
 }
 
+TEST(Culler, KeepsNoMoreWithMoreOccluders) {
+  const auto expectNoMore = [](const DemoScene& demo, const char* scene, std::size_t step) {
+    const CameraPath& path = demo.scene.paths[0];
+    for (const auto variant : {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
+                               OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC}) {
+      std::size_t before = std::numeric_limits<std::size_t>::max();
+      for (const std::uint32_t count : {16u, 32u, 64u, 128u, 256u}) {
+        Culler culler = demo.culler(HierarchyKind::kBvh, {.variant = variant, .occluder_count = count});
+        std::size_t kept = 0;
+        for (std::size_t frame = 0; frame < path.frames.size(); frame += step) {
+          culler.reset();
+          culler.cull(path.view(frame, demo.scene.origin));
+          kept += culler.visible().size();
+        }
+        EXPECT_LE(kept, before) << scene << ", variant " << static_cast<int>(variant) << ", " << count;
+        before = kept;
+      }
+    }
+  };
+  expectNoMore(city(), "city", 25);
+  static const DemoScene kBuilding(makeBuilding({.floors = 4}));
+  expectNoMore(kBuilding, "building", 25);
+}
+
+TEST(Culler, TheModifiedTreeKeepsAsLittleAsTheStandardOne) {
+  // They differ by what is within rounding of a shadow plane.
+  for (const std::uint32_t count : {32u, 128u, 256u}) {
+    std::size_t standard_kept = 0, modified_kept = 0;
+    for (const std::size_t place : kPlaces) {
+      const View view = city().scene.paths[0].view(place, city().scene.origin);
+      const auto keptBy = [&](OcclusionTreeVariant variant) {
+        Culler culler = city().culler(HierarchyKind::kBvh, {.variant = variant, .occluder_count = count});
+        return visibleOf(culler, view).size();
+      };
+      standard_kept += keptBy(OcclusionTreeVariant::kFSE);
+      modified_kept += keptBy(OcclusionTreeVariant::kFME);
+    }
+    EXPECT_GE(modified_kept, standard_kept) << count;
+    EXPECT_LE(modified_kept, standard_kept + standard_kept / 50) << count;
+  }
+}
+
+TEST(Culler, BoxesInsideTheFrustumAreNotComparedWithItsPlanes) {
+  // From far away all of the city is in view, so there is nothing for the tree without occluders to compare.
+  View view;
+  const Box all = sceneBounds(city().scene.view());
+  view.eye = Vec3d(center(all)) + Vec3d(0, 5000, 1);
+  setOrientation(view, {0, -1, 0}, {0, 0, 1});
+  view.far = 1e5;
+  for (const auto variant : {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
+                             OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC}) {
+    Culler culler = city().culler(HierarchyKind::kBvh, {.variant = variant, .occluder_count = 0});
+    EXPECT_EQ(visibleOf(culler, view).size(), city().bounds.size());
+    EXPECT_GT(culler.stats().nodes_tested, 0u);
+    EXPECT_EQ(culler.stats().tree_plane_tests, 0u) << static_cast<int>(variant);
+  }
+}
+
 TEST(Culler, WithoutTestsOfObjectsKeepsASuperset) {
   for (const HierarchyKind kind : kKinds) {
     Culler with = city().culler(kind, {});

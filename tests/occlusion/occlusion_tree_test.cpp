@@ -223,6 +223,96 @@ TEST(OcclusionTree, ABoxInFrontThatCrossesTheSupportingPlaneBesideTheOccluderIsN
   }
 }
 
+TEST(OcclusionTree, ABoxThatCrossesAnOccludersPlaneBesideItIsHiddenOnlyByTheExactTest) {
+  // The nearer wall hides the left of the box. What the slanted one hides lies behind it; the box crosses its
+  // plane only to the left of it.
+  const std::vector<OraclePolygon> walls{wall(-9, 0.2f, -9, 9, -5),
+                                         {{{0, -20, -10}, {0, 20, -10}, {4, 20, -6}, {4, -20, -6}}, true}};
+  const Box box{{-2.5f, -1, -12}, {1, 1, -11}};
+  std::mt19937_64 random(5);
+  ASSERT_TRUE(test::lookAt(box, kLookingBack, walls, 2000, random).blocked);
+  EXPECT_EQ(ask(OcclusionTreeVariant::kFSE, kLookingBack, walls, box), Visibility::kHidden);
+  EXPECT_EQ(ask(OcclusionTreeVariant::kFME, kLookingBack, walls, box), Visibility::kHidden);
+  EXPECT_EQ(ask(OcclusionTreeVariant::kFSC, kLookingBack, walls, box), Visibility::kPartial);
+  EXPECT_EQ(ask(OcclusionTreeVariant::kFMC, kLookingBack, walls, box), Visibility::kPartial);
+}
+
+TEST(OcclusionTree, PlanesOfTheFrustumThatABoxIsInsideOfAreNotAsked) {
+  const OccluderSet nothing, one = setOf({{wall(-1, 1, -1, 1, -5)}});
+  const Box ahead{{-1, -1, -12}, {1, 1, -10}}, across{{-12, -1, -12}, {1, 1, -10}};
+  for (const auto variant : kVariants) {
+    OcclusionTree tree({.variant = variant});
+    tree.build(kLookingBack, nothing, {});
+    EXPECT_EQ(tree.classify(ahead, 0), Visibility::kVisible);
+    EXPECT_EQ(tree.stats().plane_tests, 0u);
+    EXPECT_EQ(tree.classify(ahead), Visibility::kVisible);
+    EXPECT_EQ(tree.stats().plane_tests, 4u) << "one face, each plane once";
+    EXPECT_EQ(tree.stats().cuts, 0u);
+    EXPECT_EQ(tree.classify({{-12, -1, -12}, {-10.5f, 1, -11.5f}}, 1), Visibility::kVisible)
+        << "the plane that it crosses";
+    EXPECT_EQ(tree.classify({{-12, -1, -9}, {-10.5f, 1, -8}}, 1), Visibility::kHidden) << "wholly outside";
+    EXPECT_GT(tree.stats().plane_tests, 4u);
+
+    tree.build(kLookingBack, one, all(one));
+    EXPECT_EQ(tree.stats().plane_tests, 0u);
+    EXPECT_EQ(tree.classify(ahead, 0), Visibility::kHidden);
+    EXPECT_EQ(tree.stats().cuts, 0u);
+    EXPECT_EQ(tree.classify(across, 1), tree.classify(across));
+  }
+}
+
+TEST(OcclusionTree, NeverHidesWhatShowsAmongSilhouettesThatCoincide) {
+  // Panels with gaps between them, and the same ones twice and three times as far and as large: from the eye
+  // all silhouettes coincide. Boxes end at the same lines of sight, or a little beside them.
+  Random random(17);
+  for (const bool orthographic : {false, true}) {
+    std::vector<OraclePolygon> panels;
+    for (int layer = 1; layer <= 3; ++layer) {
+      const auto s = static_cast<float>(orthographic ? 1 : layer);
+      for (int i = -4; i < 4; ++i) {
+        for (int j = -2; j < 2; ++j) {
+          if ((i + 3 * j + 7 * layer) % 4 == 0) {
+            continue;
+          }
+          const auto x = static_cast<float>(i), y = static_cast<float>(j);
+          panels.push_back(wall(s * x, s * (x + ((i + j) % 3 == 0 ? 0.75f : 1.0f)), s * y, s * (y + 1.0f),
+                                -4.0f * static_cast<float>(layer)));
+        }
+      }
+    }
+    View view = kLookingBack;
+    view.orthographic = orthographic;
+    view.ortho_height = 10;
+    const OccluderSet set = setOf(panels);
+    std::vector<OcclusionTree> trees;
+    for (const auto variant : kVariants) {
+      trees.emplace_back(OcclusionTreeSettings{.variant = variant});
+      trees.back().build(view, set, all(set));
+    }
+    int hidden = 0, seen = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const double s = orthographic ? 1.0 : 3.5;
+      const auto at = [&](int from, int to) {
+        const double exact = 0.25 * (from + static_cast<int>(random.engine() % (to - from)));
+        return static_cast<float>(s * (exact + (random.engine() % 3 == 0 ? random.in(-1e-6, 1e-6) : 0.0)));
+      };
+      Box box;
+      box.extend(Vec3f(at(-16, 16), at(-8, 8), -14.0f));
+      box.extend(Vec3f(at(-16, 16), at(-8, 8), random.engine() % 2 == 0 ? -14.0f : -15.0f));
+      const test::Sight sight = test::lookAt(box, view, panels, 300, random.engine);
+      for (std::size_t v = 0; v < trees.size(); ++v) {
+        const bool hides = trees[v].classify(box) == Visibility::kHidden;
+        hidden += hides ? 1 : 0;
+        EXPECT_FALSE(hides && sight.seen)
+            << "box " << i << ", variant " << v << ", orthographic " << orthographic;
+      }
+      seen += sight.seen ? 1 : 0;
+    }
+    EXPECT_GT(hidden, 50);
+    EXPECT_GT(seen, 50);
+  }
+}
+
 class OcclusionTreeFamilies : public ::testing::TestWithParam<Family> {};
 
 TEST_P(OcclusionTreeFamilies, NothingThatARayReachesIsHidden) {

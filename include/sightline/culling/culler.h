@@ -101,6 +101,7 @@ struct CullStats {
   std::uint32_t occluders = 0;         // in the occlusion structure
   std::uint32_t occluders_hidden = 0;  // of them: behind what the map had already
   std::uint32_t tree_nodes = 0;        // of the occlusion tree
+  std::uint64_t tree_plane_tests = 0;  // OcclusionTreeStats::plane_tests
   std::uint32_t tree_dropped =
       0;                      // occluder fragments that found no room (costs tightness, never correctness)
   RelationStats relations{};  // of the supporting planes

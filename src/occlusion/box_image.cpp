@@ -1,0 +1,73 @@
+#include "occlusion/box_image.h"
+
+#include <algorithm>
+
+#include "geometry/box_tangents.h"
+
+namespace sightline::occlusion_detail {
+
+void BoxImage::begin(const EyeBox& box, const Eye& eye, double scale) {
+  eye_ = &eye;
+  // A corner far away may be the end of an edge that passes close by, so points of an orthographic image are
+  // measured by the nearest one.
+  reach_ = eye.orthographic ? box.farthest() : 1.0;
+  scale_ = eye.orthographic ? scale : 0.0;
+  on_plane_scale_ = eye.orthographic ? magnitude(max(max(box.min, -box.max), Vec3d())) + scale : 0.0;
+  stack_.overflow = false;
+  stack_.corners.clear();
+  parts_.clear();
+  // An orthographic eye is infinitely far behind.
+  const int region = eye.orthographic ? geometry_detail::regionOfOrigin(eye.forward, eye.forward)
+                                      : geometry_detail::regionOfOrigin(box.min, box.max);
+  const geometry_detail::Silhouette& loop = geometry_detail::silhouetteFrom(region);
+  for (int i = 0; i < loop.count; ++i) {
+    const Vec3d corner =
+        geometry_detail::cornerOf(box.min, box.max, loop.corners[static_cast<std::size_t>(i)]);
+    stack_.corners.push_back({eye.orthographic ? corner : normalized(corner), PlaneRef{}, false});
+  }
+  if (!eye.orthographic) {
+    measureDirections();
+  }
+  parts_.push_back({{0, static_cast<std::uint32_t>(stack_.corners.size())}, stack_.corners.size()});
+}
+
+// Every point p of the polygon has |p| >= p . middle, which is least at a corner.
+void BoxImage::measureDirections() {
+  Vec3d middle;
+  for (const Corner& corner : stack_.corners) {
+    middle += corner.position;
+  }
+  middle = normalized(middle);
+  double nearest = 1.0;
+  for (const Corner& corner : stack_.corners) {
+    nearest = std::min(nearest, dot(middle, corner.position));
+  }
+  if (nearest > kNearest) {
+    on_plane_scale_ = nearest;
+  } else {
+    stack_.corners.clear();
+  }
+}
+
+void BoxImage::keepCuts(std::uint32_t count) {
+  if (count < cutCount()) {
+    parts_.resize(count + 1);
+    stack_.corners.resize(parts_.back().corners_needed);
+  }
+}
+
+bool BoxImage::cut(const TreeNode& node, bool front) {
+  const double width = node.tolerance == 0.0 ? 0.0 : overlapWidth(node.tolerance, reach_, *eye_, scale_);
+  const Plane plane{node.plane.normal, node.plane.offset + (front ? width : -width)};
+  Piece piece = parts_.back().piece;
+  const SplitResult split = stack_.split(piece, plane, PlaneRef{}, on_plane_scale_, 0.0);
+  if (split.side == Side::kBoth) {
+    piece = front ? split.front : split.back;
+  } else if (split.side == (front ? Side::kBack : Side::kFront)) {
+    piece = {};
+  }
+  parts_.push_back({piece, stack_.corners.size()});
+  return piece.count != 0 || parts_.front().piece.count == 0;  // of an image that is not known, all is left
+}
+
+}  // namespace sightline::occlusion_detail
