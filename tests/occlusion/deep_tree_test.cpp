@@ -49,11 +49,6 @@ View viewOf(bool orthographic) {
   return view;
 }
 
-// The deepest tree of these boards, for their order in front of each other is free.
-void buildDeep(OcclusionTree& tree, const View& view, const OccluderSet& set) {
-  tree.build(view, set, all(set));
-}
-
 TEST(DeepTree, IsBuiltAndAskedOnASmallStack) {
   const OccluderSet set = setOf(fence(740));
   for (const bool orthographic : {false, true}) {
@@ -61,7 +56,7 @@ TEST(DeepTree, IsBuiltAndAskedOnASmallStack) {
       onASmallStack([&] {
         OcclusionTree tree({.variant = variant});
         const View view = viewOf(orthographic);
-        buildDeep(tree, view, set);
+        tree.build(view, set, all(set));
         EXPECT_EQ(tree.stats().dropped, 0u);
         EXPECT_GT(tree.stats().depth, 700u);
         EXPECT_LE(tree.stats().depth, kDepthLimit);
@@ -89,7 +84,7 @@ TEST(DeepTree, IsNeverDeeperThanItsLimit) {
       onASmallStack([&] {
         OcclusionTree tree({.variant = variant, .max_nodes = 1 << 20});
         const View view = viewOf(orthographic);
-        buildDeep(tree, view, set);
+        tree.build(view, set, all(set));
         EXPECT_GT(tree.stats().dropped, 0u);
         EXPECT_GT(tree.stats().occluders, 0u);
         EXPECT_LE(tree.stats().depth, kDepthLimit);
