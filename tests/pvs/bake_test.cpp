@@ -56,6 +56,40 @@ Scene randomScene(std::uint32_t seed) {
   return sceneOf(solids);
 }
 
+// Two rows of houses along a street, crates behind them, on a plate that goes on for so many metres.
+Scene streetScene(float plate) {
+  std::vector<Solid> solids{block({-plate, -1, -plate}, {120 + plate, 0, plate})};
+  for (int i = 0; i < 10; ++i) {
+    const auto x = static_cast<float>(12 * i);
+    solids.push_back(block({x, 0, 8}, {x + 12, 9, 18}));
+    solids.push_back(block({x, 0, -18}, {x + 11, 8, -8}));
+    for (const float z : {21.0f, 24.0f, -22.0f, -25.0f}) {
+      solids.push_back(block({x + 4, 0, z}, {x + 5, 1, z + 1}));
+    }
+  }
+  return sceneOf(solids);
+}
+
+// Of all objects, the mean part that is seen from viewers at eye height in the street.
+double keptInTheStreet(const BakedVisibility& baked) {
+  double kept = 0.0;
+  constexpr int kEyes = 11;
+  for (int i = 0; i < kEyes; ++i) {
+    const Vec3d eye(5.0 + 11.0 * i, 1.7, 0.5);
+    forEachLeaf(baked.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
+      const Vec3d low = cellMin(baked.octree.min, baked.octree.max, cell);
+      const Vec3d high = cellMax(baked.octree.min, baked.octree.max, cell);
+      if (low.x <= eye.x && eye.x < high.x && low.y <= eye.y && eye.y < high.y && low.z <= eye.z &&
+          eye.z < high.z) {
+        const std::vector<bool> members = membersOf(baked, test::setAt(baked.octree.view(), leaf, eye));
+        kept += static_cast<double>(std::count(members.begin(), members.end(), true)) /
+                static_cast<double>(members.size());
+      }
+    });
+  }
+  return kept / kEyes;
+}
+
 TEST(Bake, LeavesOutNothingThatIsSeenFromAnywhereInACell) {
   std::size_t hidden = 0, seen = 0;
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
@@ -85,6 +119,45 @@ TEST(Bake, LeavesOutNothingThatIsSeenOnAShip) {
   BakeJudge judge(scene, result);
   judge.judge(1, 13, 0.1, 8);
   EXPECT_GT(judge.hidden, judge.seen);
+}
+
+TEST(Bake, LeavesOutNothingThatIsSeenInAStreet) {
+  for (const float plate : {20.0f, 2000.0f}) {
+    const Scene scene = streetScene(plate);
+    const BakedVisibility result = baked(scene, {.triangle_budget = 100});
+    BakeJudge judge(scene, result);
+    judge.judge(1, static_cast<std::uint32_t>(result.octree.leaves.size() / 200 + 1), 0.1, 9);
+    EXPECT_GT(judge.hidden, judge.seen) << plate;
+  }
+}
+
+// The root is so much larger than the houses that no point looked at in it is behind one.
+TEST(Bake, DividesCellsThatAreTooLargeForTheOccludersInThem) {
+  EXPECT_LT(keptInTheStreet(baked(streetScene(2000.0f), {.triangle_budget = 100, .max_depth = 10})), 0.7);
+}
+
+TEST(Bake, ChoosesADepthThatSuitsTheOccludersHoweverWideTheGroundAndWithFewCells) {
+  for (const float plate : {20.0f, 2000.0f, 20000.0f}) {
+    const BakedVisibility result = baked(streetScene(plate), {.triangle_budget = 100});
+    EXPECT_LT(keptInTheStreet(result), 0.7) << plate;
+    EXPECT_LT(result.octree.leaves.size(), 65536u) << plate;
+    EXPECT_LE(result.record.max_depth, kMaxOctreeDepth);
+  }
+}
+
+TEST(Bake, ChoosesTheDepthByTheSceneAloneAndCountsItsOccluders) {
+  const Scene scene = streetScene(2000.0f);
+  const OccluderSet occluders = allOccluders(scene);
+  const Result<Bake> bake = Bake::plan(scene.view(), occluders, {});
+  ASSERT_TRUE(bake);
+  EXPECT_EQ(bake->occluders().all, 61u);
+  EXPECT_EQ(bake->occluders().inner, 60u) << "all but the plate, beneath which is nothing";
+  EXPECT_EQ(bake->occluders().of_use, 20u) << "the houses";
+  EXPECT_EQ(bake->occluders().largest_area, 120.0);
+  const Result<Bake> none = Bake::plan(scene.view(), OccluderSet{}, {});
+  ASSERT_TRUE(none);
+  EXPECT_LT(none->settings().max_depth, bake->settings().max_depth);
+  EXPECT_EQ(none->occluders().inner, 0u);
 }
 
 TEST(Bake, HidesWhatIsBehindAWallFromACellBeforeIt) {
@@ -228,6 +301,39 @@ TEST(Bake, CellsThatNoViewerIsInHoldEverything) {
   EXPECT_GT(outside, 0);
 }
 
+// Depth first, the last of those known first.
+template <typename BakePart>
+BakedParts partsOf(const Bake& bake, BakePart&& bake_part) {
+  BakedParts parts;
+  for (std::vector<PartTask> open{bake.firstPart()}; !open.empty();) {
+    const PartTask part = open.back();
+    open.pop_back();
+    const BakedPart& bytes = parts.emplace(part.id, bake_part(part)).first->second;
+    const std::vector<PartTask> below = bake.partsBelow(bytes);
+    open.insert(open.end(), below.begin(), below.end());
+  }
+  return parts;
+}
+
+TEST(Bake, PartsAreFewCellsSoThatLittleIsLostWhenOneIsNotFinished) {
+  const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
+  for (const std::uint32_t depth : {4u, 5u}) {
+    const Result<Bake> bake =
+        Bake::plan(scene.view(), allOccluders(scene), {.max_depth = depth, .merge_tolerance = 0.0});
+    ASSERT_TRUE(bake);
+    double share = 0.0;
+    std::uint32_t leaves = 0;
+    for (const auto& [id, part] : bake->bakeAll()) {
+      EXPECT_TRUE(bake->isPart(id, part));
+      EXPECT_LE(bake->summaryOf(part).leaves, 64u) << depth;
+      leaves += bake->summaryOf(part).leaves;
+      share += bake->summaryOf(part).share;
+    }
+    EXPECT_NEAR(share, 1.0, 1e-9) << "parts fill the viewers' region";
+    EXPECT_GT(leaves, 64u);
+  }
+}
+
 TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
   const OccluderSet occluders = allOccluders(scene);
@@ -239,16 +345,18 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   const Result<Bake> forgetful = Bake::plan(scene.view(), occluders, small);
   ASSERT_TRUE(forgetful);
   EXPECT_EQ(bake->hash(), forgetful->hash());
-  ASSERT_GT(bake->partCount(), 1u);
-  std::vector<BakedPart> forwards(bake->partCount()), backwards(bake->partCount()), poor(bake->partCount());
   Bake::Worker one(*bake), third(*forgetful);
-  for (std::uint32_t i = 0; i < bake->partCount(); ++i) {
-    forwards[i] = one.bake(i);
-    poor[i] = third.bake(i);
+  const BakedParts forwards = partsOf(*bake, [&](const PartTask& part) { return one.bake(part); });
+  const BakedParts poor = partsOf(*forgetful, [&](const PartTask& part) { return third.bake(part); });
+  BakedParts backwards;
+  for (std::vector<PartTask> open{bake->firstPart()}; !open.empty();) {
+    const PartTask part = open.front();
+    open.erase(open.begin());
+    const BakedPart& bytes = backwards.emplace(part.id, Bake::Worker(*bake).bake(part)).first->second;
+    const std::vector<PartTask> below = bake->partsBelow(bytes);
+    open.insert(open.end(), below.rbegin(), below.rend());
   }
-  for (std::uint32_t i = bake->partCount(); i-- > 0;) {
-    backwards[i] = Bake::Worker(*bake).bake(i);
-  }
+  ASSERT_GT(forwards.size(), 1u);
   EXPECT_GT(third.stats().forgotten, one.stats().forgotten);
   EXPECT_GT(third.stats().shadows, one.stats().shadows);
   const Result<BakedVisibility> a = bake->assemble(forwards), b = bake->assemble(backwards),
@@ -266,24 +374,29 @@ TEST(Bake, RefusesPartsOfAnotherPlanAndBrokenOnes) {
   const Result<Bake> other = Bake::plan(scene.view(), occluders, {.max_depth = 3, .near_distance = 0.5});
   ASSERT_TRUE(bake && other);
   EXPECT_NE(bake->hash(), other->hash());
-  std::vector<BakedPart> parts(bake->partCount());
-  Bake::Worker worker(*bake), stranger(*other);
-  for (std::uint32_t i = 0; i < bake->partCount(); ++i) {
-    parts[i] = worker.bake(i);
-    EXPECT_GT(Bake::summaryOf(parts[i]).leaves, 0u);
-  }
+  const BakedParts parts = bake->bakeAll();
+  ASSERT_GT(parts.size(), 2u);
   ASSERT_TRUE(bake->assemble(parts));
-  EXPECT_FALSE(bake->assemble(std::span(parts).first(parts.size() - 1)));
-  std::vector<BakedPart> foreign = parts;
-  foreign[0] = stranger.bake(0);
+  const std::uint64_t last = parts.rbegin()->first;
+  EXPECT_FALSE(bake->isPart(last, other->bakeAll().begin()->second));
+  for (const auto& [id, part] : parts) {
+    BakedParts missing = parts;
+    missing.erase(id);
+    EXPECT_FALSE(bake->assemble(missing)) << id;
+  }
+  BakedParts foreign = parts;
+  foreign[1] = other->bakeAll().at(1);
   EXPECT_FALSE(bake->assemble(foreign));
-  std::vector<BakedPart> swapped = parts;
-  std::swap(swapped[0], swapped[1]);
+  BakedParts swapped = parts;
+  std::swap(swapped[last], swapped[last - 1]);
   EXPECT_FALSE(bake->assemble(swapped));
-  for (std::size_t length = 0; length < parts[0].size(); length += 1 + length / 16) {
-    std::vector<BakedPart> torn = parts;
-    torn[0].resize(length);
-    EXPECT_FALSE(bake->assemble(torn)) << length << " bytes";
+  for (const std::uint64_t id : {std::uint64_t{1}, last}) {
+    const BakedPart& whole = parts.at(id);
+    for (std::size_t length = 0; length < whole.size(); length += 1 + length / 16) {
+      BakedParts torn = parts;
+      torn[id].resize(length);
+      EXPECT_FALSE(bake->assemble(torn)) << length << " bytes of part " << id;
+    }
   }
 }
 

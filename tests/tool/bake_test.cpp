@@ -1,5 +1,9 @@
 // `bake`: the same file however it is spread, and what it refuses.
 
+#include <fmt/format.h>
+
+#include <array>
+
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/io/import.h"
 #include "sightline/occluders/occluder_database.h"
@@ -156,7 +160,77 @@ TEST(Bake, ChoosesABudgetAndSaysIt) {
   const std::string scene = folder.write("walls.obj", kWalls);
   const Outcome outcome = runTool(bakeArguments(scene, folder.file("F.sight")));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("1000 triangles a cell (chosen"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("100 triangles a cell (chosen"), std::string::npos) << outcome.out;
+}
+
+// A box with its lower corner there.
+void addBox(std::string& obj, int& corners, double x, double z, double width, double height, double depth) {
+  obj += fmt::format("o box{}\n", corners / 8);
+  for (int i = 0; i < 8; ++i) {
+    obj += fmt::format("v {} {} {}\n", x + (i % 2) * width, (i / 2 % 2) * height, z + (i / 4) * depth);
+  }
+  for (const auto& face : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 4, 6, 2},
+                           std::array{1, 3, 7, 5}, std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3}}) {
+    obj += fmt::format("f {} {} {} {}\n", corners + face[0] + 1, corners + face[1] + 1, corners + face[2] + 1,
+                       corners + face[3] + 1);
+  }
+  corners += 8;
+}
+
+// A street between two rows of houses with crates behind, 240 m long.
+std::string streetObj() {
+  std::string obj;
+  int corners = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (const double side : {-1.0, 1.0}) {
+      addBox(obj, corners, 12.0 * i, side > 0 ? 8.0 : -18.0, 12.0, 9.0, 10.0);
+      addBox(obj, corners, 12.0 * i + 5.0, side > 0 ? 20.0 : -21.0, 1.0, 1.0, 1.0);
+    }
+  }
+  return obj;
+}
+
+// The line that a bake says on stderr; what the report and `info` say as well.
+std::string warningOf(const TemporaryFolder& folder, const std::string& scene,
+                      const std::vector<std::string>& more = {}) {
+  const std::string file = folder.file("F.sight");
+  std::vector<std::string> arguments{"bake", scene, "-o", file, "--json", "-"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = runTool(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const json report = parse(outcome.out), info = parse(runTool({"info", file, "--json", "-"}).out);
+  EXPECT_EQ(report["warning"], info["warning"]);
+  const std::string text = runTool({"info", file}).out;
+  if (report["warning"].is_null()) {
+    EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+    EXPECT_EQ(text.find("warning"), std::string::npos) << text;
+    return {};
+  }
+  const std::string warning = report["warning"];
+  EXPECT_NE(outcome.err.find(fmt::format("sightline: warning: {}: {}\n", file, warning)), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(text.find(warning), std::string::npos) << text;
+  return warning;
+}
+
+TEST(Bake, WarnsWhenItsSetsHideNothingAndSaysWhy) {
+  const TemporaryFolder folder;
+  const std::string street = folder.write("street.obj", streetObj());
+  EXPECT_EQ(warningOf(folder, street), "");
+  const auto expectSays = [&](const std::string& word, const std::string& scene,
+                              const std::vector<std::string>& more) {
+    const std::string warning = warningOf(folder, scene, more);
+    EXPECT_NE(warning.find(word), std::string::npos) << "'" << warning << "' should name " << word;
+  };
+  expectSays("too small for the smallest cells", street, {"--depth", "2"});
+  expectSays("--depth 5 or more", street, {"--depth", "2"});
+  expectSays("--near-distance", street, {"--depth", "5", "--near-distance", "100"});
+  expectSays("--triangle-budget", street, {"--triangle-budget", "960"});
+  expectSays("one object", folder.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), {});
+  // Two tiles of a floor.
+  const std::string floor =
+      "v 0 0 0\nv 9 0 0\nv 0 0 9\nv 9 0 9\nv 0 5 0\nv 0 5 1\no a\nf 1 3 4 2\no b\nf 1 5 5\nf 1 6 6\n";
+  expectSays("can occlude", folder.write("floor.obj", floor), {"--triangle-budget", "1"});
 }
 
 TEST(Bake, TakesAndAnswersPointsInWorldSpace) {
@@ -187,7 +261,7 @@ TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
   const auto leave = [&](std::uint64_t plan, bool with_a_part = false) {
     Result<tool::Checkpoint> left = tool::Checkpoint::open(parts, tool::CheckpointUse::kRestart);
     ASSERT_TRUE(left);
-    ASSERT_TRUE(left->begin(plan, report["parts"].get<std::uint32_t>()));
+    ASSERT_TRUE(left->begin(plan));
     if (with_a_part) {
       ASSERT_TRUE(left->append(0, BakedPart(100)));
     }

@@ -14,6 +14,7 @@
 #include "tools/sightline/bake_options.h"
 #include "tools/sightline/bake_report.h"
 #include "tools/sightline/bake_run.h"
+#include "tools/sightline/bake_warning.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
@@ -26,7 +27,6 @@ namespace {
 // What a process bakes with.
 struct Planned {
   Scene scene;
-  BakeSettings settings;
   Bake bake;
   double load_us = 0.0, plan_us = 0.0;
 };
@@ -72,18 +72,18 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!bake) {
     return bake.error();
   }
-  return Planned{std::move(*scene), settings, std::move(*bake), load_us, watch.lap()};
+  return Planned{std::move(*scene), std::move(*bake), load_us, watch.lap()};
 }
 
 // From all parts to the file, and what is in it.
 Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, BakeReport& report,
-                        std::vector<BakedPart> parts, Checkpoint& checkpoint) {
+                        BakedParts parts, Checkpoint& checkpoint) {
   Result<BakedVisibility> baked = planned.bake.assemble(parts);
   if (!baked) {
     return baked.error();
   }
   parts = {};
-  baked->record.settings = dump(settingsJson(planned.settings, planned.scene.origin));
+  baked->record.settings = dump(settingsJson(planned.bake, planned.scene.origin));
   Stopwatch watch;
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());
@@ -111,6 +111,9 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
       return ok.error();
     }
   }
+  if (const std::string warning = bakeWarning(*file, *facts); !warning.empty()) {
+    fmt::print(stderr, "sightline: warning: {}: {}\n", options.output, warning);
+  }
   if (options.common.textOnStdout()) {
     fmt::print("{}", bakeText(report, options.output, *file, *facts));
   }
@@ -129,11 +132,11 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
     return own.error();
   }
   Result<Planned> planned = planBake(options);
-  std::vector<std::optional<BakedPart>> parts;
+  BakedParts parts;
   if (!planned) {
     own = planned.error();
   } else if (checkpoint) {
-    auto known = checkpoint->begin(planned->bake.hash(), planned->bake.partCount());
+    auto known = checkpoint->begin(planned->bake.hash());
     known ? void(parts = std::move(*known)) : void(own = known.error());
   }
   if (own = agree(world, own, planned ? planned->bake.hash() : 0); !own) {
@@ -144,18 +147,18 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
     return kOk;
   }
   BakeReport report{.plan = planned->bake.hash(),
-                    .parts = planned->bake.partCount(),
-                    .occluders = planned->bake.occluderCount(),
+                    .occluders = planned->bake.occluders().all,
                     .budget_chosen = options.settings.triangle_budget == 0};
   report.times.load = planned->load_us;
   report.times.plan = planned->plan_us;
   Stopwatch watch;
-  Result<std::vector<BakedPart>> all =
+  Result<BakedParts> all =
       bakeAsFirst(planned->bake, world, options.common.threads, *checkpoint, std::move(parts), report.effort);
   if (!all) {
     return all.error();
   }
   report.times.bake = watch.lap();
+  report.parts = all->size();
   return finish(options, *planned, report, std::move(*all), *checkpoint);
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double kMost = 1e6;        // metres, or a factor
 constexpr double kLeastNear = 1e-6;  // metres
 constexpr std::uint32_t kMostMib = 1u << 20;
-constexpr std::uint64_t kLeastBudget = 1000, kBudgetShare = 50;
+constexpr std::uint64_t kLeastBudget = 100, kBudgetShare = 50;
 
 // CLI::Range lets "nan" through.
 CLI::Validator decimal(double least, double most) {
@@ -84,9 +84,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                       "of the scene's, at least {})",
                       kBudgetShare, kLeastBudget))
       ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max() / 2));
-  command.add_option("--depth", settings.max_depth, "of the octree: a cell is halved so often at most")
-      ->check(CLI::Range(0u, kMaxOctreeDepth))
-      ->capture_default_str();
+  command
+      .add_option("--depth", settings.max_depth,
+                  "of the octree: a cell is halved so often at most (default: 6, or deeper where cells would "
+                  "be too large for the occluders and do not become too many)")
+      ->check(CLI::Range(0u, kMaxOctreeDepth));
   addDecimal(command, "--near-distance", settings.near_distance, kLeastNear, kMost,
              "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
              "tan(fovy / 2)^2 * (1 + aspect^2))");
@@ -163,7 +165,9 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene) {
   return settings;
 }
 
-Json settingsJson(const BakeSettings& settings, const Vec3d& origin) {
+Json settingsJson(const Bake& bake, const Vec3d& origin) {
+  const BakeSettings& settings = bake.settings();
+  const OccluderCounts& occluders = bake.occluders();
   const Box& region = settings.region;
   const Vec3d min = Vec3d(region.min) + origin, max = Vec3d(region.max) + origin;
   return {{"triangle_budget", settings.triangle_budget},
@@ -175,6 +179,11 @@ Json settingsJson(const BakeSettings& settings, const Vec3d& origin) {
           {"similarity", settings.similarity},
           {"least_gain", settings.least_gain},
           {"merge_tolerance", settings.merge_tolerance},
+          {"occluders",
+           {{"all", occluders.all},
+            {"inner", occluders.inner},
+            {"of_use", occluders.of_use},
+            {"largest_area", occluders.largest_area}}},
           {"origin", {origin.x, origin.y, origin.z}}};
 }
 

@@ -35,8 +35,8 @@ Status checkOptions(const BakeOptions& options);
 // For a scene. Precondition: checkOptions.
 BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene);
 
-// What BakeRecord::settings holds: what the parts depend on, and the scene's origin, so that points in world
-// space can be asked for. Not the threads, nor what bounds their memory.
-Json settingsJson(const BakeSettings& settings, const Vec3d& origin);
+// What BakeRecord::settings holds: what the parts depend on, the scene's origin, so that points in world
+// space can be asked for, and which occluders there were. Not the threads, nor what bounds their memory.
+Json settingsJson(const Bake& bake, const Vec3d& origin);
 
 }  // namespace sightline::tool

@@ -17,7 +17,8 @@ struct BakeTimes {  // microseconds
 
 struct BakeReport {
   std::uint64_t plan = 0;  // Bake::hash
-  std::uint32_t parts = 0, occluders = 0;
+  std::uint64_t parts = 0;
+  std::uint32_t occluders = 0;
   bool budget_chosen = false;  // not given by the user
   BakeTimes times{};
   BakeEffort effort{};

@@ -8,10 +8,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "tools/sightline/part_queue.h"
 #include "tools/sightline/progress_bar.h"
@@ -28,8 +31,8 @@ enum Tag : int {
   kReady,   // number, error: how the process fares
   kGo,      // number: 1, or 0 to give up
   kWant,    // number: so many threads have nothing to do
-  kParts,   // their numbers; fewer than wanted: there are no more
-  kDone,    // number of the part, its bytes
+  kParts,   // their ids and search distances; none: there will be no more
+  kDone,    // id of the part, its bytes
   kTotals,  // stats and peak memory, when all is done
   kFailed,  // text: why
 };
@@ -63,12 +66,13 @@ class SignalGuard {
   std::array<struct sigaction, 2> old_;
 };
 
-// The baking threads of this process.
+// The baking threads of this process. divide: parts that a part was divided into go to the queue at once.
 class BakeThreads {
  public:
-  BakeThreads(const Bake& bake, PartQueue& queue, std::uint32_t count) : queue_(queue), stats_(count) {
+  BakeThreads(const Bake& bake, PartQueue& queue, std::uint32_t count, bool divide)
+      : queue_(queue), divide_(divide), stats_(count) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      threads_.emplace_back([this, &bake, i] { work(bake, stats_[i]); });
+      threads_.emplace_back([this, &bake, i] { work(bake, i); });
     }
   }
   // Parts that are being baked are finished.
@@ -93,12 +97,15 @@ class BakeThreads {
   }
 
  private:
-  void work(const Bake& bake, BakeStats& stats) {
+  void work(const Bake& bake, std::uint32_t taker) {
     try {
       Bake::Worker worker(bake);
-      while (const std::optional<std::uint32_t> part = queue_.take()) {
-        queue_.finish({*part, worker.bake(*part)});
-        stats = worker.stats();
+      while (const std::optional<PartTask> part = queue_.take(taker)) {
+        BakedPart bytes = worker.bake(*part);
+        const std::vector<PartTask> below = divide_ ? bake.partsBelow(bytes) : std::vector<PartTask>{};
+        queue_.finish({part->id, std::move(bytes)});  // before its parts can be finished
+        queue_.add(taker, below);
+        stats_[taker] = worker.stats();
       }
     } catch (const std::exception& error) {
       queue_.fail(
@@ -109,6 +116,7 @@ class BakeThreads {
   }
 
   PartQueue& queue_;
+  bool divide_;
   std::vector<BakeStats> stats_;
   std::vector<std::thread> threads_;
 };
@@ -117,21 +125,22 @@ class BakeThreads {
 class FirstBaker {
  public:
   FirstBaker(const Bake& bake, MpiWorld& world, std::uint32_t threads, Checkpoint& checkpoint,
-             std::vector<std::optional<BakedPart>> parts, BakeEffort& effort)
+             BakeEffort& effort)
       : bake_(bake),
         world_(world),
         threads_(threads),
         checkpoint_(checkpoint),
-        parts_(std::move(parts)),
-        effort_(effort) {}
+        effort_(effort),
+        queue_(threads + static_cast<std::uint32_t>(world.size()) - 1),
+        wanted_(static_cast<std::size_t>(world.size()), 0) {}
 
-  Result<std::vector<BakedPart>> run() {
-    begin();
+  Result<BakedParts> run(BakedParts known) {
+    begin(std::move(known));
     const SignalGuard guard;
-    ProgressBar bar("baking", fraction());
-    BakeThreads threads(bake_, queue_, threads_);
+    ProgressBar bar("baking", share_);
+    BakeThreads threads(bake_, queue_, threads_, true);
     const auto start = std::chrono::steady_clock::now();
-    while (done_ < parts_.size() || totals_ + 1 < world_.size()) {
+    while (open_ > 0 || totals_ + 1 < world_.size()) {
       if (const Status ok = look(); !ok) {
         fail(ok.error());
         return ok.error();
@@ -139,31 +148,39 @@ class FirstBaker {
       if (told_to_end != 0) {
         endEarly(bar);
       }
-      if (!said_ && done_ < parts_.size() && std::chrono::steady_clock::now() - start > kSayHowToGoOn) {
+      if (!said_ && open_ > 0 && std::chrono::steady_clock::now() - start > kSayHowToGoOn) {
         bar.say("should this be interrupted, the same command with --resume goes on");
         said_ = true;
       }
-      bar.update(fraction(), note());
+      bar.update(std::min(share_, 1.0), note());
     }
+    queue_.close();
     add(effort_.stats, threads.join());
-    return taken();
+    return std::move(parts_);
   }
 
  private:
-  void begin() {
-    std::vector<std::uint32_t> missing;
-    for (std::uint32_t p = 0; p < parts_.size(); ++p) {
-      if (parts_[p]) {
-        count(*parts_[p]);
-      } else {
-        missing.push_back(p);
+  // Goes through what is known; what is missing goes to the queue.
+  void begin(BakedParts known) {
+    std::vector<PartTask> missing, next{bake_.firstPart()};
+    open_ = 1;
+    while (!next.empty()) {
+      const PartTask task = next.back();
+      next.pop_back();
+      const auto part = known.find(task.id);
+      if (part == known.end() || !bake_.isPart(task.id, part->second)) {
+        missing.push_back(task);
+        continue;
       }
+      const std::vector<PartTask> below = bake_.partsBelow(part->second);
+      next.insert(next.end(), below.rbegin(), below.rend());
+      count(part->second);
+      parts_.emplace(task.id, std::move(part->second));
     }
     effort_.processes = static_cast<std::uint32_t>(world_.size());
     effort_.threads = threads_;
-    effort_.parts_before = done_;
-    queue_.add(missing);
-    queue_.close();
+    effort_.parts_before = static_cast<std::uint32_t>(parts_.size());
+    queue_.add(0, missing);
   }
 
   // At what threads and other processes have done meanwhile.
@@ -181,8 +198,30 @@ class FirstBaker {
         return ok;
       }
     }
+    handOut();
     return Success{};
   }
+
+  // To the other processes that have asked: what there is, or that there will be no more.
+  void handOut() {
+    for (int other = 1; other < world_.size(); ++other) {
+      std::uint64_t& wanted = wanted_[static_cast<std::size_t>(other)];
+      const std::vector<PartTask> tasks =
+          wanted > 0 ? queue_.takeNow(takerOf(other), wanted) : std::vector<PartTask>{};
+      if (wanted == 0 || (tasks.empty() && open_ > 0)) {
+        continue;
+      }
+      MessageWriter message;
+      for (const PartTask& task : tasks) {
+        message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
+      }
+      // So short that MPI does not wait for the receiver, who may be sending as well.
+      world_.send(other, kParts, message.bytes());
+      wanted = 0;
+    }
+  }
+
+  std::uint32_t takerOf(int other) const { return threads_ + static_cast<std::uint32_t>(other) - 1; }
 
   Status answer(const MpiWorld::Message& message) {
     MessageReader reader(message.bytes);
@@ -190,16 +229,13 @@ class FirstBaker {
       return Error{reader.text()};
     }
     if (message.tag == kDone) {
-      const auto part = static_cast<std::uint32_t>(reader.number());
-      return keep({part, BakedPart(reader.rest().begin(), reader.rest().end())});
+      const std::uint64_t id = reader.number();
+      FinishedPart part{id, BakedPart(reader.rest().begin(), reader.rest().end())};
+      queue_.add(takerOf(message.from), bake_.partsBelow(part.bytes));
+      return keep(std::move(part));
     }
     if (message.tag == kWant) {
-      MessageWriter parts;
-      for (const std::uint32_t part : queue_.takeNow(reader.number())) {
-        parts.number(part);
-      }
-      // So short that MPI does not wait for the receiver, who may be sending as well.
-      world_.send(message.from, kParts, parts.bytes());
+      wanted_[static_cast<std::size_t>(message.from)] = reader.number();
     }
     if (message.tag == kTotals) {
       BakeStats stats;
@@ -217,27 +253,23 @@ class FirstBaker {
   }
 
   Status keep(FinishedPart finished) {
-    if (finished.part >= parts_.size() || parts_[finished.part]) {
-      return Success{};  // nobody was given such a part
-    }
-    if (const Status ok = checkpoint_.append(finished.part, finished.bytes); !ok) {
+    if (const Status ok = checkpoint_.append(finished.id, finished.bytes); !ok) {
       return ok;
     }
     count(finished.bytes);
-    parts_[finished.part] = std::move(finished.bytes);
+    parts_.emplace(finished.id, std::move(finished.bytes));
     return Success{};
   }
 
   void count(const BakedPart& part) {
-    const PartSummary summary = Bake::summaryOf(part);
-    done_ += 1;
+    const PartSummary summary = bake_.summaryOf(part);
+    open_ += bake_.partsBelow(part).size();
+    open_ -= 1;
     leaves_ += summary.leaves;
     triangles_ += summary.mean_triangles * summary.leaves;
+    share_ += summary.share;
   }
 
-  double fraction() const {
-    return parts_.empty() ? 1.0 : static_cast<double>(done_) / static_cast<double>(parts_.size());
-  }
   std::string note() const {
     return leaves_ == 0 ? std::string()
                         : fmt::format("{} cells, {:.0f} triangles a set", leaves_,
@@ -254,30 +286,28 @@ class FirstBaker {
 
   [[noreturn]] void endEarly(ProgressBar& bar) {
     const bool kept = checkpoint_.flush().has_value();
-    bar.say(fmt::format("interrupted; {} of {} parts are {}; the same command with --resume goes on", done_,
-                        parts_.size(), kept ? "kept" : "kept, as far as they could be written"));
+    bar.say(
+        fmt::format("interrupted; {} of the {} parts known so far are {}, {:.1f} % of the viewers' space; "
+                    "the same command "
+                    "with --resume goes on",
+                    parts_.size(), parts_.size() + open_,
+                    kept ? "kept" : "kept, as far as they could be written", 100.0 * std::min(share_, 1.0)));
     std::fflush(stderr);
     std::_Exit(128 + told_to_end);  // threads are in the middle of parts
-  }
-
-  std::vector<BakedPart> taken() {
-    std::vector<BakedPart> parts;
-    for (std::optional<BakedPart>& part : parts_) {
-      parts.push_back(std::move(*part));
-    }
-    return parts;
   }
 
   const Bake& bake_;
   MpiWorld& world_;
   std::uint32_t threads_;
   Checkpoint& checkpoint_;
-  std::vector<std::optional<BakedPart>> parts_;
+  BakedParts parts_;
   BakeEffort& effort_;
   PartQueue queue_;
-  std::uint32_t done_ = 0;
+  std::vector<std::uint64_t> wanted_;  // by process: so many threads of it have nothing to do
+  std::uint64_t open_ = 0;             // parts that are known and not baked
   std::uint64_t leaves_ = 0;
   double triangles_ = 0.0;  // of all sets
+  double share_ = 0.0;      // of the viewers' space that is baked
   int totals_ = 0;          // processes that are through
   bool said_ = false;
 };
@@ -310,22 +340,21 @@ Status agree(MpiWorld& world, const Status& own, std::uint64_t number) {
   return all;
 }
 
-Result<std::vector<BakedPart>> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
-                                           Checkpoint& checkpoint,
-                                           std::vector<std::optional<BakedPart>> parts, BakeEffort& effort) {
-  return FirstBaker(bake, world, threads, checkpoint, std::move(parts), effort).run();
+Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
+                               Checkpoint& checkpoint, BakedParts known, BakeEffort& effort) {
+  return FirstBaker(bake, world, threads, checkpoint, effort).run(std::move(known));
 }
 
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
-  PartQueue queue;
-  BakeThreads bakers(bake, queue, threads);
+  PartQueue queue(threads);
+  BakeThreads bakers(bake, queue, threads, false);
   std::uint32_t out = 0;    // parts that this process has and has not sent back
   std::uint32_t asked = 0;  // for so many, not yet answered
   bool more = true;
   while (more || out > 0) {
     for (const FinishedPart& finished : queue.finished(kLook)) {
       MessageWriter done;
-      if (!world.send(0, kDone, done.number(finished.part).rest(finished.bytes).bytes())) {
+      if (!world.send(0, kDone, done.number(finished.id).rest(finished.bytes).bytes())) {
         queue.fail("a part takes more than 2 GiB; bake with a larger --depth or in one process");
       }
       out -= 1;
@@ -339,12 +368,13 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
       world.send(0, kWant, MessageWriter().number(asked).bytes());
     }
     while (const std::optional<MpiWorld::Message> message = world.receive()) {
-      const std::size_t given = message->bytes.size() / sizeof(std::uint64_t);
+      const std::size_t given = message->bytes.size() / (2 * sizeof(std::uint64_t));
       MessageReader reader(message->bytes);
-      more = given >= asked;
+      more = given > 0;
       for (std::size_t i = 0; i < given; ++i) {
-        const auto part = static_cast<std::uint32_t>(reader.number());
-        queue.add(std::span(&part, 1));
+        const std::uint64_t id = reader.number();
+        const PartTask part{id, std::bit_cast<double>(reader.number())};
+        queue.add(static_cast<std::uint32_t>(i % threads), std::span(&part, 1));
       }
       out += static_cast<std::uint32_t>(given);
       asked = 0;
@@ -355,13 +385,6 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
   MessageWriter totals;
   totals.number(stats.samples).number(stats.shadows).number(stats.forgotten).number(stats.most_sample_bytes);
   world.send(0, kTotals, totals.number(peakBytes()).bytes());
-}
-
-void add(BakeStats& sum, const BakeStats& stats) {
-  sum.samples += stats.samples;
-  sum.shadows += stats.shadows;
-  sum.forgotten += stats.forgotten;
-  sum.most_sample_bytes += stats.most_sample_bytes;
 }
 
 std::uint64_t peakBytes() {

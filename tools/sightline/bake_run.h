@@ -3,8 +3,6 @@
 // Baking all parts of a plan: in the threads of one process, or of several.
 
 #include <cstdint>
-#include <optional>
-#include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/bake/bake.h"
@@ -26,17 +24,13 @@ struct BakeEffort {
 // there is one. number: has to be the same in all.
 Status agree(MpiWorld& world, const Status& own, std::uint64_t number);
 
-// The first process: hands parts out, keeps what is finished, and bakes as well. parts: what is known
-// already. Where the process is told to end (SIGINT, SIGTERM), it ends here, the checkpoint whole.
-Result<std::vector<BakedPart>> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
-                                           Checkpoint& checkpoint,
-                                           std::vector<std::optional<BakedPart>> parts, BakeEffort& effort);
+// The first process: hands parts out, keeps what is finished, and bakes as well. known: parts that were baked
+// before. Where the process is told to end (SIGINT, SIGTERM), it ends here, the checkpoint whole.
+Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
+                               Checkpoint& checkpoint, BakedParts known, BakeEffort& effort);
 
 // The others: bake what the first process gives them, until there is no more.
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads);
-
-// Of several workers together.
-void add(BakeStats& sum, const BakeStats& stats);
 
 std::uint64_t peakBytes();  // of this process so far
 

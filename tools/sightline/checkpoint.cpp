@@ -21,15 +21,14 @@
 namespace sightline::tool {
 namespace {
 
-constexpr char kMagic[8] = {'S', 'L', 'p', 'a', 'r', 't', 's', '1'};
+constexpr char kMagic[8] = {'S', 'L', 'p', 'a', 'r', 't', 's', '2'};
 constexpr std::chrono::seconds kFlushEvery{1};
 
 struct Header {
   char magic[8];
   std::uint64_t plan;
-  std::uint64_t part_count;
 };
-static_assert(sizeof(Header) == 24);
+static_assert(sizeof(Header) == 16);
 
 struct RecordHead {
   std::uint64_t part;
@@ -43,18 +42,18 @@ std::uint64_t checksumOf(std::uint64_t part, const std::byte* bytes, std::uint64
 }
 
 // The record at the beginning of `bytes`; its size, or 0 where it is torn.
-std::size_t readRecord(std::string_view bytes, std::vector<std::optional<BakedPart>>& parts) {
+std::size_t readRecord(std::string_view bytes, BakedParts& parts) {
   RecordHead head;
   if (bytes.size() < sizeof(head)) {
     return 0;
   }
   std::memcpy(&head, bytes.data(), sizeof(head));
   const auto* begin = reinterpret_cast<const std::byte*>(bytes.data()) + sizeof(head);
-  if (head.length > bytes.size() - sizeof(head) || head.part >= parts.size() ||
+  if (head.length > bytes.size() - sizeof(head) ||
       checksumOf(head.part, begin, head.length) != head.checksum) {
     return 0;
   }
-  parts[head.part] = BakedPart(begin, begin + head.length);
+  parts.insert_or_assign(head.part, BakedPart(begin, begin + head.length));
   return sizeof(head) + head.length;
 }
 
@@ -105,13 +104,11 @@ Checkpoint::~Checkpoint() {
   }
 }
 
-Result<std::vector<std::optional<BakedPart>>> Checkpoint::begin(std::uint64_t plan,
-                                                                std::uint32_t part_count) {
-  std::vector<std::optional<BakedPart>> parts(part_count);
+Result<BakedParts> Checkpoint::begin(std::uint64_t plan) {
+  BakedParts parts;
   Header header{};
   std::memcpy(header.magic, kMagic, sizeof(kMagic));
   header.plan = plan;
-  header.part_count = part_count;
   const std::string_view wanted(reinterpret_cast<const char*>(&header), sizeof(header));
   std::size_t whole = 0;
   if (use_ == CheckpointUse::kResume) {
@@ -144,7 +141,7 @@ Result<std::vector<std::optional<BakedPart>>> Checkpoint::begin(std::uint64_t pl
   return parts;
 }
 
-Status Checkpoint::append(std::uint32_t part, const BakedPart& bytes) {
+Status Checkpoint::append(std::uint64_t part, const BakedPart& bytes) {
   const RecordHead head{part, bytes.size(), checksumOf(part, bytes.data(), bytes.size())};
   if (const Status ok = writeAll(&head, sizeof(head)); !ok) {
     return ok;

@@ -5,9 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/bake/bake.h"
@@ -29,12 +27,12 @@ class Checkpoint {
   Checkpoint& operator=(Checkpoint&&) = delete;
   ~Checkpoint();  // an empty file is removed
 
-  // The parts that are in it, by number; those that are not are empty. An error where it was made by another
-  // plan. What follows a broken record is dropped. To be called once, before append.
-  Result<std::vector<std::optional<BakedPart>>> begin(std::uint64_t plan, std::uint32_t part_count);
+  // The parts that are in it. An error where it was made by another plan. What follows a broken record is
+  // dropped. To be called once, before append.
+  Result<BakedParts> begin(std::uint64_t plan);
 
   // Survives the process at once, the machine after the next flush: one a second at most is made here.
-  Status append(std::uint32_t part, const BakedPart& bytes);
+  Status append(std::uint64_t part, const BakedPart& bytes);
   Status flush();   // on the disk
   Status remove();  // the bake is complete
 

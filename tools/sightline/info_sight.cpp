@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "tools/sightline/bake_warning.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/text_table.h"
 
@@ -119,6 +120,9 @@ void print(const std::string& name, const SightFile& file, const SightFacts& fac
              record.near_distance);
   fmt::print("settings      {}\n", dump(recordedSettings(record)));
   fmt::print("{}", factsText(facts));
+  if (const std::string warning = bakeWarning(file, facts); !warning.empty()) {
+    fmt::print("warning       {}\n", warning);
+  }
   fmt::print("sets          {} different ones, of a tree of {} boxes\n", file.setCount(),
              file.boxes().nodes.size());
   for (const SightFile::Section& section : file.sections()) {
@@ -190,10 +194,14 @@ Result<SightFacts> factsOf(const SightFile& file) {
     }
     const double part = std::ldexp(1.0, -3 * static_cast<int>(cell.level));
     facts.mean_triangles_by_volume += triangles * part;
+    facts.reason_volumes[std::min<std::size_t>(octree.reasons[index], kStopReasons - 1)] += part;
     volume += part;
     facts.cells_with_plane += divided ? 1 : 0;
   });
   facts.mean_triangles_by_volume /= volume > 0.0 ? volume : 1.0;
+  for (double& part : facts.reason_volumes) {
+    part /= volume > 0.0 ? volume : 1.0;
+  }
   facts.level_cells.resize(facts.deepest + 1);
   const double all_triangles = static_cast<double>(file.scene().triangles);
   for (std::uint32_t level = 0; level <= facts.deepest; ++level) {
@@ -254,6 +262,25 @@ Vec3d originOf(const BakeRecord& record) {
   return settings.contains("origin") ? pointOf(settings["origin"]).value_or(Vec3d()) : Vec3d();
 }
 
+std::optional<OccluderFacts> occludersOf(const BakeRecord& record) {
+  const Json settings = recordedSettings(record);
+  const auto numberIn = [](const Json& json, const char* key) {
+    return json.contains(key) && json[key].is_number() ? std::optional(json[key].get<double>())
+                                                       : std::nullopt;
+  };
+  if (!settings.contains("occluders") || !settings["occluders"].is_object()) {
+    return std::nullopt;
+  }
+  const Json& occluders = settings["occluders"];
+  const auto inner = numberIn(occluders, "inner"), of_use = numberIn(occluders, "of_use"),
+             area = numberIn(occluders, "largest_area"), size = numberIn(settings, "occluder_size");
+  if (!inner || !of_use || !area || !size) {
+    return std::nullopt;
+  }
+  return OccluderFacts{
+      .none = *inner < 1.0, .none_of_use = *of_use < 1.0, .largest_area = *area, .size = *size};
+}
+
 Json sightJson(const SightFile& file, const SightFacts& facts) {
   const SceneId& scene = file.scene();
   Json sections = Json::array();
@@ -274,6 +301,8 @@ Json sightJson(const SightFile& file, const SightFacts& facts) {
                {"boxes", file.boxes().nodes.size()},
                {"planes", octree.planes.size()}};
   json.update(factsJson(facts));
+  const std::string warning = bakeWarning(file, facts);
+  json["warning"] = warning.empty() ? Json() : Json(warning);
   json["sections"] = sections;
   json["databases"] = file.databaseNames();
   return json;

@@ -38,6 +38,7 @@ struct SightFacts {
   SetSizes sizes;                          // of all levels
   double mean_triangles_by_volume = 0.0;   // of a viewer who is anywhere with equal chance
   std::array<std::uint64_t, kStopReasons> reasons{};
+  std::array<double, kStopReasons> reason_volumes{};  // of the viewers' space, 0 to 1
   std::uint64_t cells_with_plane = 0;
   std::uint64_t grid_cells = 0;  // of a uniform grid with the smallest cell
 };
@@ -51,6 +52,15 @@ std::string factsText(const SightFacts& facts);  // lines as `info` prints them
 
 // Where the baked scene's origin lies in world space. Files that do not say have it at zero.
 Vec3d originOf(const BakeRecord& record);
+
+// Of the convex occluders that were considered, as the record says it.
+struct OccluderFacts {
+  bool none = false;          // but for the floor, ceiling and outer walls of the viewers' region
+  bool none_of_use = false;   // none of the others is large enough for the smallest cells
+  double largest_area = 0.0;  // of the others, square metres
+  double size = 1.0;          // BakeSettings::occluder_size
+};
+std::optional<OccluderFacts> occludersOf(const BakeRecord& record);
 
 // Three finite numbers, or nothing.
 std::optional<Vec3d> pointOf(const Json& json);

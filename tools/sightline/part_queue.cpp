@@ -5,9 +5,12 @@
 
 namespace sightline::tool {
 
-void PartQueue::add(std::span<const std::uint32_t> parts) {
+void PartQueue::add(std::uint32_t taker, std::span<const PartTask> parts) {
   const std::lock_guard lock(mutex_);
-  parts_.insert(parts_.end(), parts.begin(), parts.end());
+  if (closed_) {
+    return;  // nobody wants the rest
+  }
+  parts_[taker].insert(parts_[taker].end(), parts.rbegin(), parts.rend());
   more_parts_.notify_all();
 }
 
@@ -19,27 +22,48 @@ void PartQueue::close() {
 
 void PartQueue::clear() {
   const std::lock_guard lock(mutex_);
-  parts_.clear();
+  for (std::deque<PartTask>& own : parts_) {
+    own.clear();
+  }
   closed_ = true;
   more_parts_.notify_all();
 }
 
-std::optional<std::uint32_t> PartQueue::take() {
-  std::unique_lock lock(mutex_);
-  more_parts_.wait(lock, [&] { return closed_ || !parts_.empty(); });
-  if (parts_.empty()) {
+// Ids grow with the level, so the least is of the largest cell.
+std::optional<PartTask> PartQueue::next(std::uint32_t taker) {
+  if (std::deque<PartTask>& own = parts_[taker]; !own.empty()) {
+    const PartTask part = own.back();
+    own.pop_back();
+    return part;
+  }
+  const auto other = std::ranges::min_element(parts_, {}, [](const std::deque<PartTask>& others) {
+    return others.empty() ? ~std::uint64_t{0} : others.front().id;
+  });
+  if (other->empty()) {
     return std::nullopt;
   }
-  const std::uint32_t part = parts_.front();
-  parts_.pop_front();
+  const PartTask part = other->front();
+  other->pop_front();
   return part;
 }
 
-std::vector<std::uint32_t> PartQueue::takeNow(std::uint64_t most) {
+std::optional<PartTask> PartQueue::take(std::uint32_t taker) {
+  std::unique_lock lock(mutex_);
+  std::optional<PartTask> part;
+  more_parts_.wait(lock, [&] { return (part = next(taker)) || closed_; });
+  return part;
+}
+
+std::vector<PartTask> PartQueue::takeNow(std::uint32_t taker, std::uint64_t most) {
   const std::lock_guard lock(mutex_);
-  const auto end = parts_.begin() + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(most, parts_.size()));
-  const std::vector<std::uint32_t> taken(parts_.begin(), end);
-  parts_.erase(parts_.begin(), end);
+  std::vector<PartTask> taken;
+  while (taken.size() < most) {
+    const std::optional<PartTask> part = next(taker);
+    if (!part) {
+      break;
+    }
+    taken.push_back(*part);
+  }
   return taken;
 }
 

@@ -17,21 +17,27 @@
 namespace sightline::tool {
 
 struct FinishedPart {
-  std::uint32_t part = 0;
+  std::uint64_t id = 0;
   BakedPart bytes{};
 };
 
-// Any thread may call anything.
+// Whoever takes parts has a number: the threads of this process, and other processes. What a part is divided
+// into is first offered to who baked it, who has most of its viewpoints at hand. Any thread may call
+// anything.
 class PartQueue {
  public:
-  void add(std::span<const std::uint32_t> parts);
+  explicit PartQueue(std::uint32_t takers) : parts_(takers) {}
+
+  // For this taker first; the first of them before the others.
+  void add(std::uint32_t taker, std::span<const PartTask> parts);
   void close();  // nothing will be added any more
   void clear();  // drops what was not taken, and closes
 
-  // The next part; waits for one. Nothing: there will be none.
-  std::optional<std::uint32_t> take();
-  // Up to so many of the next parts, without waiting.
-  std::vector<std::uint32_t> takeNow(std::uint64_t most);
+  // The taker's own next part; where there is none the largest of another's. Waits for one. Nothing: there
+  // will be none.
+  std::optional<PartTask> take(std::uint32_t taker);
+  // Up to so many of them, without waiting.
+  std::vector<PartTask> takeNow(std::uint32_t taker, std::uint64_t most);
 
   void finish(FinishedPart part);
   void fail(const std::string& reason);  // instead
@@ -40,9 +46,11 @@ class PartQueue {
   std::optional<std::string> failure() const;  // the first
 
  private:
+  std::optional<PartTask> next(std::uint32_t taker);  // under the lock
+
   mutable std::mutex mutex_;
   std::condition_variable more_parts_, more_finished_;
-  std::deque<std::uint32_t> parts_;
+  std::vector<std::deque<PartTask>> parts_;  // by taker; the next one is the last
   std::vector<FinishedPart> finished_;
   std::optional<std::string> failure_;
   bool closed_ = false;

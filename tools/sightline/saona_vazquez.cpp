@@ -9,7 +9,6 @@
 #include <stdlib.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 
@@ -46,31 +45,6 @@ Result<SightFile> written(const BakedVisibility& baked) {
   return file;
 }
 
-// Each thread takes the next part as long as there is one.
-std::vector<BakedPart> bakeParts(const Bake& bake, std::uint32_t threads, const ParallelFor& parallel_for,
-                                 BakeStats& stats) {
-  std::vector<BakedPart> parts(bake.partCount());
-  std::vector<BakeStats> of_thread(threads);
-  std::atomic<std::uint32_t> next = 0;
-  ProgressBar progress("baking");
-  parallel_for(threads, [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t thread = begin; thread < end; ++thread) {
-      Bake::Worker worker(bake);
-      for (std::uint32_t part = next++; part < parts.size(); part = next++) {
-        parts[part] = worker.bake(part);
-        if (thread == 0) {
-          progress.update(static_cast<double>(part + 1) / static_cast<double>(parts.size()));
-        }
-      }
-      of_thread[thread] = worker.stats();
-    }
-  });
-  for (const BakeStats& one : of_thread) {
-    add(stats, one);
-  }
-  return parts;
-}
-
 // Those of `sightline bake`, for viewers with these cameras.
 BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigations,
                          const ReproduceOptions& options) {
@@ -90,8 +64,7 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
   return bakeSettings(bake, scene);
 }
 
-Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, std::uint32_t threads,
-                        const ParallelFor& parallel_for) {
+Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const ParallelFor& parallel_for) {
   Effort effort;
   Stopwatch watch;
   const OccluderSet occluders = findOccluders(scene.view(), {.area_fraction = 1.0}, parallel_for);
@@ -100,14 +73,15 @@ Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, std::u
     return bake.error();
   }
   effort.plan_s = 1e-6 * watch.lap();
-  effort.occluders = bake->occluderCount();
-  const std::vector<BakedPart> parts = bakeParts(*bake, threads, parallel_for, effort.stats);
-  Result<BakedVisibility> baked = bake->assemble(parts);
+  effort.occluders = bake->occluders().all;
+  ProgressBar bar("baking");
+  const Progress progress = [&](double done) { bar.update(done); };
+  Result<BakedVisibility> baked = bake->assemble(bake->bakeAll(parallel_for, progress, &effort.stats));
   if (!baked) {
     return baked.error();
   }
   effort.bake_s = 1e-6 * watch.lap();
-  baked->record.settings = settingsJson(settings, scene.origin).dump();
+  baked->record.settings = settingsJson(*bake, scene.origin).dump();
   Result<SightFile> file = written(*baked);
   if (!file) {
     return file.error();
@@ -197,8 +171,7 @@ Result<std::vector<Walk>> navigationsOf(const SceneAndWalk& input, const Reprodu
 
 Result<Measured> bakeAndMeasure(const std::string& name, const Scene& scene, const std::vector<Walk>& walks,
                                 const ReproduceOptions& options, const ParallelFor& parallel_for) {
-  Result<Baked> baked =
-      bakeScene(scene, settingsFor(scene, walks, options), options.output.threads, parallel_for);
+  Result<Baked> baked = bakeScene(scene, settingsFor(scene, walks, options), parallel_for);
   if (!baked) {
     return baked.error();
   }

@@ -1,6 +1,8 @@
 #include "sightline/pvs/bake/bake.h"
 
 #include <algorithm>
+#include <bit>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,23 +25,31 @@ struct Bake::Data {
   BakeScene scene;
   SceneId scene_id;
   std::uint64_t hash = 0;
-  BakedCell top;                // down to the parts, which are leaves here
-  std::vector<CellTask> parts;  // in the order of a walk through the top
 };
 
 namespace {
 
-constexpr std::uint32_t kVersion = 1;  // of the method: other cells for the same input need another number
+constexpr std::uint32_t kVersion = 2;  // of the method: other cells for the same input need another number
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
-// Parts are the cells of this level: few enough to share most samples within, many enough to hand out.
+// Cells above this level are divided into parts. Below it a part has at most 73 cells, so that little is lost
+// when a bake is interrupted, and most of a part's samples are shared within.
 std::uint32_t partLevel(const BakeSettings& settings) {
-  return std::min(settings.max_depth, settings.max_depth > 6 ? 3u : 2u);
+  return settings.max_depth - std::min(settings.max_depth, 2u);
+}
+
+OctreeCell cellOf(std::uint64_t id) {
+  const auto level = static_cast<std::uint32_t>((std::bit_width(id) - 1) / 3);
+  OctreeCell cell;
+  for (std::uint32_t i = level; i-- > 0;) {
+    cell = cell.child(static_cast<std::uint32_t>(id >> 3 * i & 7));
+  }
+  return cell;
 }
 
 std::string problemWith(const BakeSettings& s) {
   const auto usable = [](double value, double least, double most) { return value >= least && value <= most; };
-  if (s.max_depth > kMaxOctreeDepth) {
+  if (s.max_depth > kMaxOctreeDepth && s.max_depth != BakeSettings::kChooseDepth) {
     return "max_depth is " + std::to_string(s.max_depth) + "; at most " + std::to_string(kMaxOctreeDepth);
   }
   if (!usable(s.near_distance, 0.0, 1e12) || !usable(s.search_distance, 0.0, 1e12)) {
@@ -95,24 +105,16 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   return sight_format::checksumOf(bytes.take());
 }
 
-// The cells above the parts. The parts are named in order.
-BakedCell bakeTop(CellBaker& baker, const BakeScene& scene, const CellTask& task,
-                  std::vector<CellTask>& parts) {
-  BakedCell cell;
-  cell.level = static_cast<std::uint8_t>(task.cell.level);
-  if (task.cell.level == partLevel(scene.settings)) {
-    parts.push_back(task);
-    return cell;
+// Of the region, how much lies in the cell. An axis along which the region has no extent does not count.
+double shareOf(const BakeScene& scene, const OctreeCell& cell) {
+  const CellBox box = scene.boxOf(cell);
+  const Vec3d common = min(box.max, scene.region.max) - max(box.min, scene.region.min);
+  const Vec3d all = scene.region.extent();
+  double share = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    share *= all[axis] > 0.0 ? std::clamp(common[axis] / all[axis], 0.0, 1.0) : 1.0;
   }
-  CellOutcome outcome = decide(baker, scene, task);
-  baker.forgetOldest();
-  if (!outcome.divide) {
-    return std::move(outcome.leaf);
-  }
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    cell.children.push_back(bakeTop(baker, scene, {task.cell.child(i), outcome.search_distance}, parts));
-  }
-  return cell;
+  return share;
 }
 
 }  // namespace
@@ -135,22 +137,30 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
     }
   }
   const auto data = std::make_shared<Data>(scene, occluders, settings, *region);
-  data->hash = hashOf(data->scene_id, occluders, settings, *region);
-  CellBaker baker(data->scene);
-  data->top = bakeTop(baker, data->scene, {{}, firstSearchDistance(data->scene)}, data->parts);
+  data->hash = hashOf(data->scene_id, occluders, data->scene.settings, *region);
   Bake bake;
   bake.data_ = data;
   return bake;
 }
 
-std::uint32_t Bake::partCount() const {
-  return static_cast<std::uint32_t>(data_->parts.size());
+const BakeSettings& Bake::settings() const {
+  return data_->scene.settings;
 }
-std::uint32_t Bake::occluderCount() const {
-  return data_->scene.occluders.size();
+const OccluderCounts& Bake::occluders() const {
+  return data_->scene.counts;
 }
 std::uint64_t Bake::hash() const {
   return data_->hash;
+}
+PartTask Bake::firstPart() const {
+  return {1, firstSearchDistance(data_->scene)};
+}
+
+void add(BakeStats& sum, const BakeStats& stats) {
+  sum.samples += stats.samples;
+  sum.shadows += stats.shadows;
+  sum.forgotten += stats.forgotten;
+  sum.most_sample_bytes += stats.most_sample_bytes;
 }
 
 struct Bake::Worker::Impl {
@@ -177,21 +187,57 @@ void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& lea
   }
 }
 
+// How a part begins. After it: of one that was divided the search distance of those below, else the cells.
+struct PartHead {
+  std::uint64_t magic = kPartMagic, plan = 0, id = 0;
+  PartSummary summary;
+};
+
+void write(const PartHead& head, ByteWriter& bytes) {
+  bytes.add(head.magic);
+  bytes.add(head.plan);
+  bytes.add(head.id);
+  bytes.add(head.summary.leaves);
+  bytes.add(head.summary.mean_triangles);
+  bytes.add(head.summary.share);
+}
+
+PartHead readHead(ByteReader& bytes) {
+  PartHead head;
+  head.magic = bytes.read<std::uint64_t>();
+  head.plan = bytes.read<std::uint64_t>();
+  head.id = bytes.read<std::uint64_t>();
+  head.summary.leaves = bytes.read<std::uint32_t>();
+  head.summary.mean_triangles = bytes.read<double>();
+  head.summary.share = bytes.read<double>();
+  return head;
+}
+
 }  // namespace
 
-// A part: magic, hash of the plan, number, leaves, mean triangles, the cell.
-BakedPart Bake::Worker::bake(std::uint32_t part) {
+BakedPart Bake::Worker::bake(const PartTask& part) {
   const BakeScene& scene = impl_->data->scene;
-  const BakedCell cell = bakeCell(impl_->baker, scene, impl_->data->parts[part]);
-  std::uint32_t leaves = 0;
-  double triangles = 0.0;
-  summarize(scene, cell, leaves, triangles);
+  const CellTask task{cellOf(part.id), part.search_distance};
+  PartHead head{.plan = impl_->data->hash, .id = part.id, .summary = {}};
   ByteWriter bytes;
-  bytes.add(kPartMagic);
-  bytes.add(impl_->data->hash);
-  bytes.add(part);
-  bytes.add(leaves);
-  bytes.add(triangles / leaves);
+  BakedCell cell;
+  if (task.cell.level < partLevel(scene.settings)) {
+    CellOutcome outcome = decide(impl_->baker, scene, task);
+    impl_->baker.forgetOldest();
+    if (outcome.divide) {
+      write(head, bytes);
+      bytes.add(outcome.search_distance);
+      return bytes.take();
+    }
+    cell = std::move(outcome.leaf);
+  } else {
+    cell = bakeCell(impl_->baker, scene, task);
+  }
+  double triangles = 0.0;
+  summarize(scene, cell, head.summary.leaves, triangles);
+  head.summary.mean_triangles = triangles / head.summary.leaves;
+  head.summary.share = shareOf(scene, task.cell);
+  write(head, bytes);
   write(cell, bytes);
   return bytes.take();
 }
@@ -200,67 +246,130 @@ const BakeStats& Bake::Worker::stats() const {
   return impl_->baker.stats();
 }
 
-PartSummary Bake::summaryOf(std::span<const std::byte> part) {
+PartSummary Bake::summaryOf(std::span<const std::byte> part) const {
   ByteReader bytes(part);
-  bytes.readBytes(2 * sizeof(std::uint64_t) + sizeof(std::uint32_t));
-  PartSummary summary;
-  summary.leaves = bytes.read<std::uint32_t>();
-  summary.mean_triangles = bytes.read<double>();
-  return summary;
+  return readHead(bytes).summary;
+}
+
+std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
+  ByteReader bytes(part);
+  const PartHead head = readHead(bytes);
+  std::vector<PartTask> below;
+  if (head.summary.leaves == 0) {
+    const auto search_distance = bytes.read<double>();
+    for (std::uint64_t i = 0; i < 8; ++i) {
+      below.push_back({8 * head.id + i, search_distance});
+    }
+  }
+  return below;
+}
+
+bool Bake::isPart(std::uint64_t id, std::span<const std::byte> part) const {
+  ByteReader bytes(part);
+  const PartHead head = readHead(bytes);
+  return bytes.ok() && head.magic == kPartMagic && head.plan == data_->hash && head.id == id;
+}
+
+BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progress, BakeStats* stats) const {
+  BakedParts parts;
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Worker>> resting;  // as many as threads ever baked at the same time
+  double share = 0.0;
+  const auto bakeRange = [&](std::span<const PartTask> tasks) {
+    std::unique_ptr<Worker> worker;
+    {
+      const std::lock_guard lock(mutex);
+      if (!resting.empty()) {
+        worker = std::move(resting.back());
+        resting.pop_back();
+      }
+    }
+    if (!worker) {
+      worker = std::make_unique<Worker>(*this);
+    }
+    for (const PartTask& task : tasks) {
+      BakedPart part = worker->bake(task);
+      const std::lock_guard lock(mutex);
+      share += summaryOf(part).share;
+      parts.emplace(task.id, std::move(part));
+    }
+    const std::lock_guard lock(mutex);
+    resting.push_back(std::move(worker));
+  };
+  // Level by level: all parts of one level, then those that they were divided into.
+  for (std::vector<PartTask> level{firstPart()}; !level.empty();) {
+    parallel_for(static_cast<std::uint32_t>(level.size()), [&](std::uint32_t begin, std::uint32_t end) {
+      bakeRange(std::span(level).subspan(begin, end - begin));
+    });
+    std::vector<PartTask> next;
+    for (const PartTask& task : level) {
+      const std::vector<PartTask> below = partsBelow(parts.at(task.id));
+      next.insert(next.end(), below.begin(), below.end());
+    }
+    level = std::move(next);
+    if (progress) {
+      progress(std::min(share, 1.0));
+    }
+  }
+  for (const std::unique_ptr<Worker>& worker : resting) {
+    if (stats != nullptr) {
+      add(*stats, worker->stats());
+    }
+  }
+  return parts;
 }
 
 namespace {
 
-// Puts the parts where they belong in the top, in the order in which they were named, and merges what can be.
-void fillIn(const BakeScene& scene, BakedCell& cell, std::uint32_t part_level, std::vector<BakedCell>& parts,
-            std::size_t& next) {
-  if (cell.leaf()) {
-    if (cell.level == part_level) {
-      cell = std::move(parts[next++]);
-    }
-    return;
+// The cell of a part with all below it, merged. Nothing: a part is missing, broken or of another plan; broken
+// is its id then.
+std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, const BakedParts& parts,
+                                    std::uint64_t id, std::uint64_t& broken) {
+  const std::uint32_t level = cellOf(id).level;
+  const auto part = parts.find(id);
+  broken = id;
+  if (part == parts.end() || !bake.isPart(id, part->second)) {
+    return std::nullopt;
   }
-  for (BakedCell& child : cell.children) {
-    fillIn(scene, child, part_level, parts, next);
+  ByteReader bytes(part->second);
+  if (readHead(bytes).summary.leaves > 0) {
+    std::optional<BakedCell> cell =
+        readCell(bytes, level, static_cast<std::uint32_t>(scene.boxes.objects.size()));
+    return bytes.atEnd() ? std::move(cell) : std::nullopt;
+  }
+  bytes.read<double>();
+  if (!bytes.ok() || !bytes.atEnd() || level >= partLevel(scene.settings)) {
+    return std::nullopt;
+  }
+  BakedCell cell;
+  cell.level = static_cast<std::uint8_t>(level);
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    std::optional<BakedCell> child = cellOfPart(bake, scene, parts, 8 * id + i, broken);
+    if (!child) {
+      return std::nullopt;
+    }
+    cell.children.push_back(std::move(*child));
   }
   mergeChildren(scene, cell);
+  return cell;
 }
 
 }  // namespace
 
-Result<BakedVisibility> Bake::assemble(std::span<const BakedPart> parts) const {
+Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   const BakeScene& scene = data_->scene;
-  if (parts.size() != data_->parts.size()) {
-    return Error{"bake: " + std::to_string(parts.size()) + " parts of " +
-                 std::to_string(data_->parts.size())};
+  std::uint64_t broken = 0;
+  const std::optional<BakedCell> top = cellOfPart(*this, scene, parts, firstPart().id, broken);
+  if (!top) {
+    return Error{"bake: part " + std::to_string(broken) + " is missing, broken or of another plan"};
   }
-  std::vector<BakedCell> cells;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    ByteReader bytes(parts[i]);
-    const bool ours = bytes.read<std::uint64_t>() == kPartMagic &&
-                      bytes.read<std::uint64_t>() == data_->hash && bytes.read<std::uint32_t>() == i;
-    bytes.readBytes(sizeof(std::uint32_t) + sizeof(double));
-    std::optional<BakedCell> cell;
-    if (ours) {
-      cell =
-          readCell(bytes, data_->parts[i].cell.level, static_cast<std::uint32_t>(scene.boxes.objects.size()));
-    }
-    if (!cell || !bytes.atEnd()) {
-      return Error{"bake: part " + std::to_string(i) + " is broken or of another plan"};
-    }
-    cells.push_back(std::move(*cell));
-  }
-  BakedCell top = data_->top;
-  std::size_t next = 0;
-  fillIn(scene, top, partLevel(scene.settings), cells, next);
-
   BakedVisibility baked;
   baked.scene = data_->scene_id;
   baked.record = {scene.settings.near_distance, scene.settings.triangle_budget, scene.settings.max_depth, {}};
   baked.boxes = scene.boxes;
   baked.octree.min = scene.root.min;
   baked.octree.max = scene.root.max;
-  flatten(top, baked.boxes.view(), baked.octree, baked.sets);
+  flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
   return baked;
 }
 
@@ -270,14 +379,7 @@ Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet
   if (!bake) {
     return bake.error();
   }
-  std::vector<BakedPart> parts(bake->partCount());
-  parallel_for(bake->partCount(), [&](std::uint32_t begin, std::uint32_t end) {
-    Bake::Worker worker(*bake);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      parts[i] = worker.bake(i);
-    }
-  });
-  return bake->assemble(parts);
+  return bake->assemble(bake->bakeAll(parallel_for));
 }
 
 }  // namespace sightline

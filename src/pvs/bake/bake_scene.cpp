@@ -1,6 +1,7 @@
 #include "pvs/bake/bake_scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sightline::bake_detail {
 namespace {
@@ -21,20 +22,30 @@ std::vector<std::uint32_t> trianglesOf(const SceneView& scene) {
   return triangles;
 }
 
-// Calls visit(number of the box) for all boxes that meet this one, ascending.
-template <typename Visit>
-void forEachMeeting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
+// Whether test(number of the box) holds for one of the boxes that meet this one; asks no more after it.
+template <typename Test>
+bool anyMeeting(const BoxTree& tree, const CellBox& box, Test&& test) {
   for (std::uint32_t n = 0; n < tree.nodes.size();) {
     const BoxNode& node = tree.nodes[n];
     if (!meet(box, node.bounds)) {
       n = node.end;
       continue;
     }
-    if (node.end == n + 1) {
-      visit(tree.objects[node.first_object].value);
+    if (node.end == n + 1 && test(tree.objects[node.first_object].value)) {
+      return true;
     }
     n += 1;
   }
+  return false;
+}
+
+// Calls visit(number of the box) for all boxes that meet this one.
+template <typename Visit>
+void forEachMeeting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
+  anyMeeting(tree, box, [&](std::uint32_t i) {
+    visit(i);
+    return false;
+  });
 }
 
 // The cube that begins where the box does, on every axis a little wider than its longest edge.
@@ -56,6 +67,61 @@ double diagonalOf(const SceneView& scene, const CellBox& box) {
   return length(high - low);
 }
 
+// Whether the occluder is large enough for cells of this size.
+bool isOfUse(const ConvexOccluder& occluder, const CellBox& cell, double occluder_size) {
+  const Vec3d extent = cell.extent();
+  return occluder.area >= occluder_size * cell.smallestFace() ||
+         occluder.volume >= occluder_size * extent.x * extent.y * extent.z;
+}
+
+// A chosen depth has so many cells at most, where it is not the least.
+constexpr std::uint32_t kLeastChosenDepth = 6;
+constexpr std::uint64_t kMostChosenCells = 1u << 15;
+constexpr std::uint32_t kLargeInLevels = 3;  // at most kLeastChosenDepth
+// Cells are no smaller than so many near distances: from them, what is closest would not occlude any more.
+constexpr double kLeastEdgeInNears = 4.0;
+// The region's floor, ceiling or outer wall: hides nothing that lies in the region. In parts of the region's
+// extent.
+constexpr double kSpans = 0.9, kTouches = 1e-3, kThin = 0.125;
+
+bool isBorder(const Box& box, const CellBox& region) {
+  const Vec3d all = region.extent(), min(box.min), max(box.max);
+  const auto spans = [&](int axis) { return max[axis] - min[axis] >= kSpans * all[axis]; };
+  const auto touches = [&](int axis) {
+    return max[axis] - min[axis] <= kThin * all[axis] &&
+           std::min(min[axis] - region.min[axis], region.max[axis] - max[axis]) <= kTouches * all[axis];
+  };
+  return (touches(0) && spans(1) && spans(2)) || (touches(1) && spans(2) && spans(0)) ||
+         (touches(2) && spans(0) && spans(1));
+}
+
+// Cells of a level that meet the region.
+std::uint64_t cellsOfRegion(const CellBox& root, const CellBox& region, std::uint32_t level) {
+  const double edge = root.extent().x / std::ldexp(1.0, static_cast<int>(level));
+  std::uint64_t count = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    count *= 1 + static_cast<std::uint64_t>(region.extent()[axis] / edge);
+  }
+  return count;
+}
+
+// The same, of them those within reach of the boxes; counts to the limit.
+std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox& region,
+                        const OctreeCell& cell, std::uint32_t level, std::uint64_t limit) {
+  const CellBox box{cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
+  if (!meet(box, region) || !anyMeeting(boxes, box, [](std::uint32_t) { return true; })) {
+    return 0;
+  }
+  if (cell.level == level) {
+    return 1;
+  }
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < 8 && count < limit; ++i) {
+    count += cellsNear(boxes, root, region, cell.child(i), level, limit - count);
+  }
+  return count;
+}
+
 }  // namespace
 
 BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& s,
@@ -74,6 +140,8 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
   }
+  chooseDepth();
+  countOccluders();
   for (std::uint32_t level = 0; level <= settings.max_depth; ++level) {
     levels_.push_back(occludersFor(level));
   }
@@ -94,15 +162,76 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   face_tree_ = buildBoxTree(bounds, {});
 }
 
+// Cells as small as the region can have without becoming too many; below them those near an occluder, as long
+// as they are not too many.
+void BakeScene::chooseDepth() {
+  base_depth_ = settings.max_depth;
+  if (settings.max_depth != BakeSettings::kChooseDepth) {
+    return;
+  }
+  const auto small = [&](std::uint32_t level) {
+    return boxOf({level, {}}).extent().x < kLeastEdgeInNears * settings.near_distance;
+  };
+  base_depth_ = kLeastChosenDepth;
+  while (base_depth_ < kMaxOctreeDepth && !small(base_depth_ + 1) &&
+         cellsOfRegion(root, region, base_depth_ + 1) <= kMostChosenCells) {
+    ++base_depth_;
+  }
+  settings.max_depth = base_depth_;
+  for (std::uint32_t level = base_depth_ + 1; level <= kMaxOctreeDepth && !small(level); ++level) {
+    BoxTree near = reachOfOccluders(level);
+    const std::uint64_t count = cellsNear(near, root, region, {}, level, kMostChosenCells + 1);
+    if (count > kMostChosenCells) {
+      break;
+    }
+    if (count > 0) {
+      settings.max_depth = level;
+      reach_tree_ = std::move(near);
+    }
+  }
+}
+
+// An occluder reaches as far as it is large: from farther away it hides little. None that is of no use to
+// cells of the level; nor one so large that cells much larger can use it, as the ground is.
+BoxTree BakeScene::reachOfOccluders(std::uint32_t level) const {
+  std::vector<Box> reached;
+  for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+    const ConvexOccluder& occluder = occluders[i];
+    if (ofUse(occluder, level) && !ofUse(occluder, level - kLargeInLevels)) {
+      const auto far = static_cast<float>(std::sqrt(occluder.area));
+      reached.push_back(
+          {occluder.bounds.min - Vec3f(far, far, far), occluder.bounds.max + Vec3f(far, far, far)});
+    }
+  }
+  return buildBoxTree(reached, {});
+}
+
+void BakeScene::countOccluders() {
+  counts.all = occluders.size();
+  for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+    if (!isBorder(occluders[i].bounds, region)) {
+      counts.inner += 1;
+      counts.of_use += ofUse(occluders[i], settings.max_depth) ? 1 : 0;
+      counts.largest_area = std::max(counts.largest_area, occluders[i].area);
+    }
+  }
+}
+
+bool BakeScene::mayDivide(const OctreeCell& cell) const {
+  return cell.level < base_depth_ ||
+         (cell.level < settings.max_depth &&
+          anyMeeting(reach_tree_, boxOf(cell), [](std::uint32_t) { return true; }));
+}
+
+bool BakeScene::ofUse(const ConvexOccluder& occluder, std::uint32_t level) const {
+  return isOfUse(occluder, boxOf({level, {}}), settings.occluder_size);
+}
+
 BakeScene::LevelOccluders BakeScene::occludersFor(std::uint32_t level) const {
-  const CellBox cell = boxOf({level, {}});
-  const Vec3d extent = cell.extent();
-  const double least_area = settings.occluder_size * cell.smallestFace();
-  const double least_volume = settings.occluder_size * extent.x * extent.y * extent.z;
   LevelOccluders found;
   std::vector<Box> bounds;
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {
-    if (occluders[i].area >= least_area || occluders[i].volume >= least_volume) {
+    if (ofUse(occluders[i], level)) {
       found.occluders.push_back(i);
       bounds.push_back(occluders[i].bounds);
     }
@@ -126,6 +255,12 @@ void BakeScene::findFaces(const CellBox& box, std::vector<DividingFace>& found) 
   for (const std::uint32_t i : numbers) {
     found.push_back(faces_[i]);
   }
+}
+
+bool BakeScene::holdsSmallOccluders(const CellBox& box, std::uint32_t level) const {
+  const LevelOccluders& of_any_use = levels_.back();
+  return anyMeeting(of_any_use.tree, box,
+                    [&](std::uint32_t i) { return !ofUse(occluders[of_any_use.occluders[i]], level); });
 }
 
 bool BakeScene::holdsAllOccluders(const CellBox& box) const {

@@ -22,7 +22,7 @@ struct BakeScene {
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
-  BakeSettings settings;
+  BakeSettings settings;  // max_depth: chosen, where it was to be
   CellBox region;
   CellBox root;   // a cube
   BoxTree boxes;  // of the objects; sets are made of its nodes
@@ -30,6 +30,7 @@ struct BakeScene {
   TriangleCounts triangles;
   std::vector<std::uint32_t> position_of;  // by object, into BoxTree::objects
   ConvexOccluders occluders;
+  OccluderCounts counts;
   double side_margin = 0.0;  // metres, of the root
   double diagonal = 0.0;     // metres, of the region and all objects
   double reach = 0.0;        // metres, from any viewer to any box
@@ -37,14 +38,22 @@ struct BakeScene {
   CellBox boxOf(const OctreeCell& cell) const {
     return {cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
   }
+  // Whether the depth lets the cell be divided.
+  bool mayDivide(const OctreeCell& cell) const;
   // Appends, ascending, the occluders that meet the box and are of use to cells of this level.
   void findOccluders(const CellBox& box, std::uint32_t level, std::vector<std::uint32_t>& found) const;
   // Appends the faces that meet the box.
   void findFaces(const CellBox& box, std::vector<DividingFace>& found) const;
+  // Whether some occluder that meets the box is too small for cells of this level, and of use to smaller
+  // ones.
+  bool holdsSmallOccluders(const CellBox& box, std::uint32_t level) const;
   // Whether no occluder is of use to any cell and outside the box.
   bool holdsAllOccluders(const CellBox& box) const;
 
  private:
+  // Deeper than the base, down to settings.max_depth, only cells that meet one of the boxes are divided.
+  std::uint32_t base_depth_ = 0;
+  BoxTree reach_tree_;
   std::vector<ConvexEdge> face_edges_;
   std::vector<DividingFace> faces_;  // of all occluders, also of those of bodies
   BoxTree face_tree_;
@@ -53,6 +62,10 @@ struct BakeScene {
     std::vector<std::uint32_t> occluders;  // ascending
     BoxTree tree;                          // its objects are numbers into `occluders`
   };
+  void chooseDepth();
+  void countOccluders();
+  BoxTree reachOfOccluders(std::uint32_t level) const;
+  bool ofUse(const ConvexOccluder& occluder, std::uint32_t level) const;
   LevelOccluders occludersFor(std::uint32_t level) const;
   std::vector<LevelOccluders> levels_;
 };

@@ -62,6 +62,10 @@ void ObjectMask::complement(Runs& out) const {
   }
 }
 
+// How far from a cell an occluder is near it, in its edges. Where it is farther away it is small, seen from
+// there, unless it is as large as the cell.
+constexpr double kNearInEdges = 0.5;
+
 CellBaker::CellBaker(const BakeScene& scene)
     : scene_(scene), samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes) {}
 
@@ -73,6 +77,11 @@ CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) con
 
 bool CellBaker::searchedAll(const OctreeCell& cell, double search_distance) const {
   return scene_.holdsAllOccluders(searchBox(cell, search_distance));
+}
+
+bool CellBaker::tooLargeForItsOccluders(const OctreeCell& cell) const {
+  return scene_.holdsSmallOccluders(searchBox(cell, kNearInEdges * scene_.boxOf(cell).extent().x),
+                                    cell.level);
 }
 
 void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level) {

@@ -52,6 +52,9 @@ class CellBaker {
   // Whether cells within this one are likely to see clearly less: a corner or centre of it, or a centre of
   // its children, does, with all occluders that are of use to the smallest cells.
   bool dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets);
+  // Whether the cell is larger than occluders near it are of use to: then points within are no fair sample of
+  // what smaller cells see.
+  bool tooLargeForItsOccluders(const OctreeCell& cell) const;
   // Whether a larger search box holds nothing new.
   bool searchedAll(const OctreeCell& cell, double search_distance) const;
 

@@ -21,7 +21,7 @@ BakedCell leafOf(const OctreeCell& cell, CellSets&& sets, StopReason reason) {
 
 CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
   const BakeSettings& settings = scene.settings;
-  const bool deepest = task.cell.level == settings.max_depth;
+  const bool deepest = !scene.mayDivide(task.cell);
   double distance = task.search_distance;
   if (!meet(scene.boxOf(task.cell), scene.region)) {
     CellSets everything;
@@ -34,7 +34,8 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
     if (triangles <= settings.triangle_budget) {
       return {false, 0.0, leafOf(task.cell, std::move(sets), StopReason::kBudgetMet)};
     }
-    if (!deepest && baker.dividingHelps(task.cell, distance, sets)) {
+    if (!deepest &&
+        (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
       return {true, distance, {}};
     }
     bool gained = false;

@@ -5,11 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
+#include "sightline/base/progress.h"
 #include "sightline/base/result.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/pvs/format/baked_visibility.h"
@@ -19,7 +21,10 @@ namespace sightline {
 
 struct BakeSettings {
   std::uint64_t triangle_budget = 0;  // a cell with so few is not divided (the target frame rate)
-  std::uint32_t max_depth = 6;        // of the octree (the memory), at most kMaxOctreeDepth
+  // Of the octree (the memory): at most kMaxOctreeDepth, or kChooseDepth for one that suits the sizes of the
+  // region and of the occluders.
+  static constexpr std::uint32_t kChooseDepth = 0xffffffffu;
+  std::uint32_t max_depth = kChooseDepth;
   // The farthest from a viewer's eye that its near plane clips, metres (nearDistance): what occluders hide
   // only from closer does not count. Viewers with a greater one get everything as their set.
   double near_distance = 0.25;
@@ -41,12 +46,22 @@ struct BakeSettings {
   std::size_t sample_bytes = 256u << 20;
 };
 
-// One part's cells as plain bytes, the same wherever it was baked.
+// A cell of the octree that one thread bakes, or divides into eight such parts: which parts there are comes
+// out as the bake goes.
+struct PartTask {
+  std::uint64_t id = 1;          // 1: the root; 8 * id + i: child number i of it
+  double search_distance = 0.0;  // metres, from the part that it is a child of
+  friend bool operator==(const PartTask&, const PartTask&) = default;
+};
+
+// What became of one part, as plain bytes, the same wherever it was baked.
 using BakedPart = std::vector<std::byte>;
+using BakedParts = std::map<std::uint64_t, BakedPart>;  // by PartTask::id
 
 struct PartSummary {
-  std::uint32_t leaves = 0;
-  double mean_triangles = 0.0;  // of their sets
+  std::uint32_t leaves = 0;     // 0: it was divided into parts
+  double mean_triangles = 0.0;  // of the leaves' sets
+  double share = 0.0;           // of the viewers' region that the leaves cover, 0 to 1
 };
 
 struct BakeStats {
@@ -57,20 +72,39 @@ struct BakeStats {
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };
 
+void add(BakeStats& sum, const BakeStats& stats);  // of several workers together
+
+// Potential occluders: convex bodies and convex polygons.
+struct OccluderCounts {
+  std::uint32_t all = 0;
+  std::uint32_t inner = 0;    // that are not the region's floor, ceiling or outer wall
+  std::uint32_t of_use = 0;   // of those, large enough for the smallest cells
+  double largest_area = 0.0;  // of those, square metres of the largest face
+};
+
 // The plan of a bake: what all of its parts share. Does not change; any number of threads may bake parts.
+//
+//   std::vector<PartTask> open{bake.firstPart()};   // until it is empty: take one, bake it, add partsBelow
+//   BakedParts parts;                               // then assemble
 class Bake {
  public:
-  // Computes the top of the octree, down to the parts. scene, occluders: need not outlive it. An error where
-  // settings are out of range, where there is no region and no object with a finite box, and where an
-  // occluder belongs to no object of the scene. occluders: all that are to be considered; area_fraction = 1
-  // leaves none out.
+  // scene, occluders: need not outlive it. An error where settings are out of range, where there is no region
+  // and no object with a finite box, and where an occluder belongs to no object of the scene. occluders: all
+  // that are to be considered; area_fraction = 1 leaves none out.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {});
 
-  std::uint32_t partCount() const;
-  std::uint32_t occluderCount() const;  // potential occluders: convex bodies and convex polygons
+  const BakeSettings& settings() const;  // with the depth that was chosen
+  const OccluderCounts& occluders() const;
   // Says which plan it is: parts and checkpoints of one plan are of no use to another.
   std::uint64_t hash() const;
+
+  PartTask firstPart() const;
+  // The parts that a baked one was divided into: eight or none.
+  std::vector<PartTask> partsBelow(std::span<const std::byte> part) const;
+  PartSummary summaryOf(std::span<const std::byte> part) const;
+  // Whether these bytes say that they are this part of this plan.
+  bool isPart(std::uint64_t id, std::span<const std::byte> part) const;
 
   // Holds the samples of the parts that it bakes, one after the other. For one thread at a time.
   class Worker {
@@ -78,8 +112,8 @@ class Bake {
     explicit Worker(const Bake& bake);  // keeps its plan alive
     ~Worker();
     Worker(Worker&&) noexcept;
-    // part < partCount(). Depends on nothing but the plan and the part.
-    BakedPart bake(std::uint32_t part);
+    // part: the first one, or one of partsBelow. Depends on nothing but the plan and the part.
+    BakedPart bake(const PartTask& part);
     const BakeStats& stats() const;
 
    private:
@@ -87,11 +121,13 @@ class Bake {
     std::unique_ptr<Impl> impl_;
   };
 
-  static PartSummary summaryOf(std::span<const std::byte> part);
+  // All parts, in the threads of parallel_for. stats: of all workers, if asked for.
+  BakedParts bakeAll(const ParallelFor& parallel_for = serialFor, const Progress& progress = {},
+                     BakeStats* stats = nullptr) const;
 
-  // parts: all, by number. The same for the same plan, whoever baked the parts. An error where bytes are not
-  // of this plan.
-  Result<BakedVisibility> assemble(std::span<const BakedPart> parts) const;
+  // parts: all. The same for the same plan, whoever baked the parts. An error where one is missing, or bytes
+  // are not of this plan.
+  Result<BakedVisibility> assemble(const BakedParts& parts) const;
 
  private:
   struct Data;
