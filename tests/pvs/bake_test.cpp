@@ -70,22 +70,28 @@ Scene streetScene(float plate) {
   return sceneOf(solids);
 }
 
-// Of all objects, the mean part that is seen from viewers at eye height in the street.
+// Of all objects, the part that the set of a viewer there keeps.
+double keptAt(const BakedVisibility& baked, const Vec3d& eye) {
+  double kept = 0.0;
+  forEachLeaf(baked.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
+    const Vec3d low = cellMin(baked.octree.min, baked.octree.max, cell);
+    const Vec3d high = cellMax(baked.octree.min, baked.octree.max, cell);
+    if (low.x <= eye.x && eye.x < high.x && low.y <= eye.y && eye.y < high.y && low.z <= eye.z &&
+        eye.z < high.z) {
+      const std::vector<bool> members = membersOf(baked, test::setAt(baked.octree.view(), leaf, eye));
+      kept = static_cast<double>(std::count(members.begin(), members.end(), true)) /
+             static_cast<double>(members.size());
+    }
+  });
+  return kept;
+}
+
+// The mean of viewers at eye height in the street.
 double keptInTheStreet(const BakedVisibility& baked) {
   double kept = 0.0;
   constexpr int kEyes = 11;
   for (int i = 0; i < kEyes; ++i) {
-    const Vec3d eye(5.0 + 11.0 * i, 1.7, 0.5);
-    forEachLeaf(baked.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
-      const Vec3d low = cellMin(baked.octree.min, baked.octree.max, cell);
-      const Vec3d high = cellMax(baked.octree.min, baked.octree.max, cell);
-      if (low.x <= eye.x && eye.x < high.x && low.y <= eye.y && eye.y < high.y && low.z <= eye.z &&
-          eye.z < high.z) {
-        const std::vector<bool> members = membersOf(baked, test::setAt(baked.octree.view(), leaf, eye));
-        kept += static_cast<double>(std::count(members.begin(), members.end(), true)) /
-                static_cast<double>(members.size());
-      }
-    });
+    kept += keptAt(baked, {5.0 + 11.0 * i, 1.7, 0.5});
   }
   return kept / kEyes;
 }
@@ -131,9 +137,19 @@ TEST(Bake, LeavesOutNothingThatIsSeenInAStreet) {
   }
 }
 
-// The root is so much larger than the houses that no point looked at in it is behind one.
+// A court between four walls hides nearly all that lies around, and none of the few points that a root of two
+// kilometres is asked about is in the court or behind much of it.
 TEST(Bake, DividesCellsThatAreTooLargeForTheOccludersInThem) {
-  EXPECT_LT(keptInTheStreet(baked(streetScene(2000.0f), {.triangle_budget = 100, .max_depth = 10})), 0.7);
+  std::vector<Solid> solids{block({290, -1, 160}, {310, 9, 161}), block({290, -1, 181}, {310, 9, 182}),
+                            block({289, -1, 161}, {290, 9, 181}), block({310, -1, 161}, {311, 9, 181})};
+  for (int i = 0; i < 48; ++i) {
+    const double angle = 2.0 * 3.14159265 * i / 48;
+    const Vec3f at(Vec3d(1000.0 * std::cos(angle), 0.0, 1000.0 * std::sin(angle)));
+    solids.push_back(block(at, at + Vec3f(1, 1, 1)));
+  }
+  const BakedVisibility result = baked(sceneOf(solids), {.max_depth = 9});
+  EXPECT_LT(keptAt(result, {300.3, 1.7, 171.2}), 0.5);
+  EXPECT_GT(keptAt(result, {-500.3, 1.7, 171.2}), 0.9);
 }
 
 TEST(Bake, ChoosesADepthThatSuitsTheOccludersHoweverWideTheGroundAndWithFewCells) {
