@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -14,6 +16,40 @@ namespace {
 using nlohmann::json;
 
 constexpr double kLargestSide = 65536.0;  // pixels
+
+constexpr std::array<std::string_view, 8> kPathKeys{"name",   "fovy_deg", "ortho_height", "width",
+                                                    "height", "near",     "far",          "frames"};
+constexpr std::array<std::string_view, 3> kFrameKeys{"eye", "forward", "up"};
+
+void noteUnknownKeys(const json& object, std::span<const std::string_view> known,
+                     std::optional<std::size_t> frame, std::vector<UnknownKey>& unknown) {
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) {
+      continue;
+    }
+    const auto noted = std::find_if(unknown.begin(), unknown.end(), [&](const UnknownKey& other) {
+      return other.key == key && other.frame.has_value() == frame.has_value();
+    });
+    if (noted == unknown.end()) {
+      unknown.push_back({key, frame, frame ? std::size_t{1} : 0, known});
+    } else {
+      noted->frames += 1;
+    }
+  }
+}
+
+void noteUnknownKeys(const json& document, std::vector<UnknownKey>& unknown) {
+  if (!document.is_object()) {
+    return;
+  }
+  noteUnknownKeys(document, kPathKeys, std::nullopt, unknown);
+  const auto frames = document.find("frames");
+  for (std::size_t i = 0; frames != document.end() && frames->is_array() && i < frames->size(); ++i) {
+    if ((*frames)[i].is_object()) {
+      noteUnknownKeys((*frames)[i], kFrameKeys, i, unknown);
+    }
+  }
+}
 
 Error missing(const std::string& where, const char* key, const char* wanted) {
   return failure("{}: \"{}\" must be {}", where, key, wanted);
@@ -148,17 +184,22 @@ json toArray(const Vec3d& vector) {
 
 }  // namespace
 
-Result<CameraPath> parseCameraPath(std::string_view text, const std::string& name_in_errors) {
+Result<CameraPath> parseCameraPath(std::string_view text, const std::string& name_in_errors,
+                                   std::vector<UnknownKey>* unknown_keys) {
   try {
-    return readPath(json::parse(text), name_in_errors);
+    const json document = json::parse(text);
+    if (unknown_keys != nullptr) {
+      noteUnknownKeys(document, *unknown_keys);
+    }
+    return readPath(document, name_in_errors);
   } catch (const std::exception& exception) {
     return failure("{}: is not valid JSON: {}", name_in_errors, exception.what());
   }
 }
 
-Result<CameraPath> readCameraPath(const std::string& file) {
+Result<CameraPath> readCameraPath(const std::string& file, std::vector<UnknownKey>* unknown_keys) {
   const Result<std::string> text = readFile(file);
-  return text ? parseCameraPath(*text, file) : Result<CameraPath>(text.error());
+  return text ? parseCameraPath(*text, file, unknown_keys) : Result<CameraPath>(text.error());
 }
 
 std::string toJson(const CameraPath& path) {

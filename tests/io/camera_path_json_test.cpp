@@ -34,6 +34,34 @@ TEST(CameraPathJson, ReadsEveryKey) {
   EXPECT_EQ(path->frames[0].up, Vec3d(0, 1, 0));
 }
 
+TEST(CameraPathJson, NamesKeysThatItDoesNotKnowOnceEach) {
+  json document = soundPath();
+  document["fovydeg"] = 1;
+  document["frames"].push_back(document["frames"][0]);
+  document["frames"].push_back(document["frames"][0]);
+  document["frames"][1]["fovydeg"] = document["frames"][2]["fovydeg"] = 1;
+  std::vector<UnknownKey> unknown;
+  EXPECT_TRUE(parseCameraPath(document.dump(), "walk", &unknown));
+  ASSERT_EQ(unknown.size(), 2u);
+  EXPECT_EQ(unknown[0].key, "fovydeg");
+  EXPECT_FALSE(unknown[0].frame);
+  EXPECT_EQ(unknown[0].known.size(), 8u);
+  EXPECT_EQ(unknown[1].key, "fovydeg");
+  EXPECT_EQ(unknown[1].frame, 1u);
+  EXPECT_EQ(unknown[1].frames, 2u);
+  EXPECT_EQ(unknown[1].known.size(), 3u);
+}
+
+TEST(CameraPathJson, KnowsEveryKeyThatItWrites) {
+  CameraPath path;
+  path.frames = {{{1, 2, 3}, {1, 0, 0}, {0, 0, 1}}};
+  std::vector<UnknownKey> unknown;
+  EXPECT_TRUE(parseCameraPath(toJson(path), "walk", &unknown));
+  path.ortho_height = 2.0;
+  EXPECT_TRUE(parseCameraPath(toJson(path), "walk", &unknown));
+  EXPECT_TRUE(unknown.empty());
+}
+
 TEST(CameraPathJson, WritesWhatItReadsBackBitForBit) {
   CameraPath path;
   path.name = "a \"quoted\" walk";
