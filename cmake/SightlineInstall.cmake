@@ -1,5 +1,6 @@
 # cmake --install: sightline::runtime and, where they are built, sightline::pvs and sightline::layers, their
-# headers, and the package that find_package(sightline) reads. The other libraries serve the tool and are not installed.
+# headers, and the package that find_package(sightline) reads. The other libraries serve the tool and are not installed;
+# the tool is, as the component `tool`, with its manual and its completion.
 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -29,6 +30,15 @@ if(TARGET sightline_layers)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline/layers
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT layers FILES_MATCHING PATTERN "*.h")
   install(EXPORT sightlineLayersTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT layers)
+endif()
+
+if(TARGET sightline_tool)
+  # The manual and the completion are printed by the tool when it is linked, see tools/sightline/CMakeLists.txt.
+  set(tool_dir $<TARGET_FILE_DIR:sightline_tool>)
+  install(TARGETS sightline_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+  install(FILES ${tool_dir}/sightline.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+  install(FILES ${tool_dir}/sightline.bash RENAME sightline
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tool)
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sightlineConfig.cmake.in

@@ -41,6 +41,18 @@ if(TOOL)
   endif()
 endif()
 
+# The tool, with its manual and its completion, in a place of its own.
+if(TOOL)
+  file(REMOVE_RECURSE ${WORK}/tool)
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/tool --component tool)
+  run(${WORK}/tool/bin/sightline version)
+  foreach(file share/man/man1/sightline.1 share/bash-completion/completions/sightline)
+    if(NOT EXISTS ${WORK}/tool/${file})
+      message(FATAL_ERROR "the component tool lacks ${file}")
+    endif()
+  endforeach()
+endif()
+
 # The tool's own libraries stay at home.
 foreach(room io render pvs/bake)
   if(EXISTS ${WORK}/prefix/include/sightline/${room})

@@ -302,7 +302,7 @@ TEST(Bake, RefusesOutputsThatCannotBe) {
   expectRefused(bakeArguments(scene, ""), "--output");
   expectRefused(bakeArguments(scene, scene), "the input itself");
   expectRefused(bakeArguments(scene, folder.file("F.sight"), {"--json", folder.file("F.sight")}),
-                "the output itself");
+                "the file of --output too");
   expectRefused({"info", scene, "--json", scene}, "the input itself");
   expectRefused(bakeArguments(scene, folder.file("F.sight"), {"--json", folder.file("no/such.json")}),
                 "such.json");

@@ -19,7 +19,6 @@ TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
 }
 
 TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
-  expectRefused({}, "--help");
   expectRefused({"bogus"}, "info, walk, cull, verify, reproduce");
   expectRefused({"cull"}, "SCENE");
   expectRefused({"cull", kCity, "--bogus"}, "--bogus");
@@ -119,6 +118,27 @@ TEST(Tool, FilesThatAreNoPathsAreRefused) {
 }
 
 const std::string kTriangle = "v 0 0 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 3\n";
+
+TEST(Tool, KeysThatAPathDoesNotHaveAreNamed) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("walk.json", R"({"fovydeg":90,"author":"me","frames":[
+      {"eye":[0,2,0],"forward":[0,0,-1]},
+      {"eye":[0,2,0],"forward":[0,0,-1],"upp":[1,0,0]},
+      {"eye":[0,2,0],"forward":[0,0,-1],"upp":[1,0,0]}]})");
+  const Outcome outcome = runTool({"cull", kCity, "--path", file, "--json", "-"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.errorLines(), 3) << outcome.err;
+  for (const std::string words :
+       {"walk.json: the key \"fovydeg\" is not known and ignored; did you mean 'fovy_deg'?\n",
+        "walk.json: the key \"author\" is not known and ignored\n",
+        "walk.json: frame 1 (and 1 more): the key \"upp\" is not known and ignored; did you mean 'up'?\n"}) {
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << words << outcome.err;
+  }
+  const std::string needed =
+      folder.write("needed.json", R"({"frames":[{"eyes":[0,2,0],"forward":[0,0,-1]}]})");
+  expectRefused({"cull", kCity, "--path", needed}, "did you mean 'eye'?");
+  expectRefused({"cull", kCity, "--path", needed}, "\"eye\" is missing");
+}
 
 TEST(Tool, AFileWithoutCameraNeedsAPath) {
   const TemporaryFolder folder;

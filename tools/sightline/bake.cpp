@@ -16,8 +16,11 @@
 #include "tools/sightline/bake_run.h"
 #include "tools/sightline/bake_warning.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/info_sight.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
+#include "tools/sightline/output_files.h"
+#include "tools/sightline/signals.h"
 #include "tools/sightline/stopwatch.h"
 #include "tools/sightline/threads.h"
 
@@ -37,23 +40,35 @@ CheckpointUse useOf(const BakeOptions& options) {
                            : CheckpointUse::kNew;
 }
 
+// Baked files, and empty ones, hold nothing that another bake would not make again.
+bool mayBeReplaced(const std::string& file) {
+  std::error_code error;
+  return beginsAsSightFile(file) || (std::filesystem::file_size(file, error) == 0 && !error);
+}
+
 // Before the work, by the process that writes.
 Result<Checkpoint> openOutputs(const BakeOptions& options) {
-  for (const std::string& target : {options.output, options.common.json}) {
-    if (const Status ok = checkOutput(target, options.common.scene); !ok) {
-      return ok.error();
-    }
-  }
-  std::error_code ignored;
   if (options.output.empty() || options.output == "-") {
     return Error{"--output: give the name of a file, F.sight"};
   }
-  if (std::filesystem::exists(options.output, ignored) &&
-      !std::filesystem::is_regular_file(options.output, ignored)) {
-    return Error{fmt::format("{}: is not a file; name another output", options.output)};
+  if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .outputs = {{"--output", options.output},
+                                                {"--output, for its parts,", options.partsFile()},
+                                                {"--json", options.common.json}}});
+      !ok) {
+    return ok.error();
   }
-  if (options.output == options.common.json) {
-    return Error{fmt::format("--json {}: is the output itself; name another file", options.output)};
+  std::error_code ignored;
+  if (std::filesystem::exists(options.output, ignored)) {
+    if (!std::filesystem::is_regular_file(options.output, ignored)) {
+      return Error{fmt::format("--output {}: is not a file; name another output", options.output)};
+    }
+    if (!options.force && !mayBeReplaced(options.output)) {
+      return Error{
+          fmt::format("--output {}: is there and is not a baked file; name another output, or give --force "
+                      "to write over it",
+                      options.output)};
+    }
   }
   return Checkpoint::open(options.partsFile(), useOf(options));
 }
@@ -88,6 +103,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());
   report.times.databases = watch.lap();
+  const SignalGuard guard;  // from here on it is quicker to finish
   if (const Status ok = writeSight(options.output, *baked); !ok) {
     return ok.error();
   }
@@ -127,6 +143,8 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   if (own && world.first()) {
     Result<Checkpoint> opened = openOutputs(options);
     opened ? void(checkpoint.emplace(std::move(*opened))) : void(own = opened.error());
+    keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
+                             options.partsFile()));
   }
   if (own = agree(world, own, 0); !own) {
     return own.error();

@@ -76,7 +76,9 @@ Box enclosing(const Vec3d& min, const Vec3d& max) {
 void addBakeOptions(CLI::App& command, BakeOptions& options) {
   BakeSettings& settings = options.settings;
   addCommonOptions(command, options.common);
-  command.add_option("-o,--output", options.output, "the baked file to write, F.sight")->required();
+  command.add_option("-o,--output", options.output, "the baked file to write, F.sight")
+      ->required()
+      ->type_name(kFileType);
   command
       .add_option(
           "--triangle-budget", settings.triangle_budget,
@@ -112,11 +114,13 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                   "MiB for what was seen from the corners of cells, of each process; more is faster")
       ->check(CLI::Range(1u, kMostMib))
       ->capture_default_str();
-  command.add_option("--databases", options.databases,
-                     "occluder databases to store as well: " + listBakedDatabases() + " (several: a,b,c)");
+  command
+      .add_option("--databases", options.databases, "occluder databases to store as well (several: a,b,c)")
+      ->check(isOneOf({kBakedDatabases.begin(), kBakedDatabases.end()}, true));
   CLI::Option* resume = command.add_flag("--resume", options.resume,
                                          "go on with an unfinished bake of the same scene and settings");
   command.add_flag("--restart", options.restart, "throw away what an unfinished bake left")->excludes(resume);
+  command.add_flag("--force", options.force, "write over F.sight also where it is not a baked file");
 }
 
 Result<std::vector<std::string>> databaseNames(const BakeOptions& options) {

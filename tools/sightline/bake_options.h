@@ -21,6 +21,7 @@ struct BakeOptions {
   std::uint32_t sample_mib = 1024;
   std::string databases;  // names, separated by commas
   bool resume = false, restart = false;
+  bool force = false;  // to write over a file that is no baked one
 
   std::string partsFile() const { return output + ".parts"; }
 };

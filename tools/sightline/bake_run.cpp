@@ -7,10 +7,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <optional>
 #include <thread>
@@ -18,6 +16,7 @@
 
 #include "tools/sightline/part_queue.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/signals.h"
 
 namespace sightline::tool {
 namespace {
@@ -35,35 +34,6 @@ enum Tag : int {
   kDone,    // id of the part, its bytes
   kTotals,  // stats and peak memory, when all is done
   kFailed,  // text: why
-};
-
-volatile std::sig_atomic_t told_to_end = 0;
-extern "C" void noteSignal(int signal) {
-  told_to_end = signal;
-}
-
-// While it lives, SIGINT and SIGTERM are noted, but for what the process was started to ignore.
-class SignalGuard {
- public:
-  SignalGuard() {
-    struct sigaction action {};
-    action.sa_handler = noteSignal;
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      sigaction(kSignals[i], nullptr, &old_[i]);
-      if (old_[i].sa_handler != SIG_IGN) {
-        sigaction(kSignals[i], &action, nullptr);
-      }
-    }
-  }
-  ~SignalGuard() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-      sigaction(kSignals[i], &old_[i], nullptr);
-    }
-  }
-
- private:
-  static constexpr std::array<int, 2> kSignals{SIGINT, SIGTERM};
-  std::array<struct sigaction, 2> old_;
 };
 
 // The baking threads of this process. divide: parts that a part was divided into go to the queue at once.
@@ -145,7 +115,7 @@ class FirstBaker {
         fail(ok.error());
         return ok.error();
       }
-      if (told_to_end != 0) {
+      if (toldToEnd() != 0) {
         endEarly(bar);
       }
       if (!said_ && open_ > 0 && std::chrono::steady_clock::now() - start > kSayHowToGoOn) {
@@ -293,7 +263,7 @@ class FirstBaker {
                     parts_.size(), parts_.size() + open_,
                     kept ? "kept" : "kept, as far as they could be written", 100.0 * std::min(share_, 1.0)));
     std::fflush(stderr);
-    std::_Exit(128 + told_to_end);  // threads are in the middle of parts
+    std::_Exit(interruptedExitCode());  // threads are in the middle of parts
   }
 
   const Bake& bake_;

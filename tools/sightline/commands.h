@@ -3,6 +3,7 @@
 // The commands. Each adds itself to the command line; the one that the user names becomes `chosen`.
 
 #include <functional>
+#include <string>
 
 #include "sightline/base/result.h"
 
@@ -12,8 +13,9 @@ class App;
 
 namespace sightline::tool {
 
-// Exit codes of a command that ran: kOk or kCheckFailed. An Error is kBadUsage, with one line on stderr.
-enum ExitCode { kOk = 0, kCheckFailed = 1, kBadUsage = 2 };
+// Exit codes of a command that ran: kOk or kCheckFailed; where it was told to end, interruptedExitCode(). An
+// Error is kBadUsage, with one line on stderr.
+enum ExitCode : int { kOk = 0, kCheckFailed = 1, kBadUsage = 2 };
 
 using Command = std::function<Result<ExitCode>()>;
 
@@ -25,5 +27,10 @@ void addReproduce(CLI::App& app, Command& chosen);
 void addBake(CLI::App& app, Command& chosen);
 void addQuery(CLI::App& app, Command& chosen);
 void addLayers(CLI::App& app, Command& chosen);
+// help, version, completion and manual, which tell what the others declare; so these are added last.
+void addFrontDoor(CLI::App& app, Command& chosen);
+
+// What `sightline --help` prints.
+std::string overview(const CLI::App& app);
 
 }  // namespace sightline::tool

@@ -297,7 +297,7 @@ Report reportOf(const Measured& measured, const std::vector<Experiment>& experim
 
 Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
                                           const std::vector<SceneAndWalk>& inputs) {
-  const Threads threads(options.output.threads);
+  const Threads threads(options.threads);
   Reproduction result;
   std::vector<Measured> scenes;
   scenes.reserve(inputs.size());  // cullers hold on to their scene's data

@@ -10,6 +10,7 @@
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/load.h"
 #include "tools/sightline/names.h"
+#include "tools/sightline/output_files.h"
 #include "tools/sightline/threads.h"
 
 namespace sightline::tool {
@@ -209,10 +210,16 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
 }
 
 Result<ExitCode> runInfo(const InfoOptions& options) {
-  if (const Status ok = checkOutput(options.common.json, options.common.scene); !ok) {
+  if (const Status ok =
+          checkFiles({.scenes = {options.common.scene}, .outputs = {{"--json", options.common.json}}});
+      !ok) {
     return ok.error();
   }
   if (isSightFile(options.common.scene)) {
+    if (options.common.threads > 1) {
+      return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
+                               options.common.threads)};
+    }
     const Status ok = informOnSight(options.common.scene, options.common.json);
     return ok ? Result<ExitCode>(kOk) : ok.error();
   }

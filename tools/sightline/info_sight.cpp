@@ -308,14 +308,15 @@ Json sightJson(const SightFile& file, const SightFacts& facts) {
   return json;
 }
 
-bool isSightFile(const std::string& name) {
-  if (name.ends_with(".sight")) {
-    return true;
-  }
+bool beginsAsSightFile(const std::string& name) {
   std::array<char, 8> start{};
   std::ifstream stream(name, std::ios::binary);
   return stream.read(start.data(), start.size()) &&
          std::string_view(start.data() + 4, kIdentifier.size()) == kIdentifier;
+}
+
+bool isSightFile(const std::string& name) {
+  return name.ends_with(".sight") || beginsAsSightFile(name);
 }
 
 Status informOnSight(const std::string& name, const std::string& json_target) {

@@ -65,7 +65,8 @@ std::optional<OccluderFacts> occludersOf(const BakeRecord& record);
 // Three finite numbers, or nothing.
 std::optional<Vec3d> pointOf(const Json& json);
 
-bool isSightFile(const std::string& name);  // by its name or its first bytes
+bool beginsAsSightFile(const std::string& name);  // by its first bytes
+bool isSightFile(const std::string& name);        // by its name or its first bytes
 
 // `info F.sight`.
 Status informOnSight(const std::string& name, const std::string& json_target);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 
 #include "sightline/io/file.h"
+#include "tools/sightline/signals.h"
 
 namespace sightline::tool {
 
@@ -23,40 +23,11 @@ std::string dumpWithList(const Json& head, const std::string& key, const std::ve
   return text + "]}";
 }
 
-Status checkOutput(const std::string& target, const std::string& input) {
-  if (target.empty() || target == "-") {
-    return Success{};
-  }
-  std::error_code ignored;
-  const std::filesystem::path path(target);
-  if (std::filesystem::is_directory(path, ignored)) {
-    return Error{fmt::format("{}: is a folder; give the name of a file", target)};
-  }
-  if (!input.empty() && std::filesystem::equivalent(path, input, ignored)) {
-    return Error{fmt::format("{}: is the input itself; name another output", target)};
-  }
-  const std::filesystem::path folder =
-      path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    return Error{fmt::format("{}: there is no folder {}; make it first", target, folder.string())};
-  }
-  return Success{};
-}
-
-Status makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    return Error{
-        fmt::format("{}: cannot make this folder: {}", folder, error ? error.message() : "a file is there")};
-  }
-  return Success{};
-}
-
 Status writeOutput(const std::string& target, const std::string& text) {
   if (target.empty()) {
     return Success{};
   }
+  const SignalGuard guard;
   if (target != "-") {
     return writeFile(target, text + "\n");
   }

@@ -15,14 +15,8 @@ std::string dump(const Json& json);
 // together so, as text, to need a tenth of the memory.
 std::string dumpWithList(const Json& head, const std::string& key, const std::vector<std::string>& items);
 
-// Whether output can go there, to be asked before the work: "" and "-" can, a file in an existing folder.
-// input: a file that is read, and must not be written over; empty for none.
-Status checkOutput(const std::string& target, const std::string& input = {});
-
-// Makes the folder, and those above it, where there is none.
-Status makeFolder(const std::string& folder);
-
-// To the file, or to standard output for "-"; nothing for "".
+// To the file, or to standard output for "-"; nothing for "". Told to end meanwhile, the process writes all
+// of it and goes on.
 Status writeOutput(const std::string& target, const std::string& text);
 
 }  // namespace sightline::tool

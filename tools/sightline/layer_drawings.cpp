@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "sightline/drawing/drawing.h"
-#include "sightline/io/file.h"
+#include "tools/sightline/output_files.h"
 #include "tools/sightline/stopwatch.h"
 
 namespace sightline::tool {
@@ -123,7 +123,7 @@ class LayerDrawings : public FrameMaker {
       total += bytes.size();
       json[key] = file;
       json[std::string(key) + "_bytes"] = bytes.size();
-      return writeFile(file, bytes);
+      return saveFile(file, bytes);
     };
     if (!options_.svg.empty()) {
       if (Status ok = put(options_.svg, toSvg(drawing, style_), "svg", totals_.svg_bytes); !ok) {
@@ -151,28 +151,33 @@ void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options) {
   command
       .add_option("--svg", options.svg,
                   "write a hidden-line drawing of each frame, objects as named groups, to this .svg file")
+      ->type_name(kFileType)
       ->check(isNotEmpty());
-  command.add_option("--pdf", options.pdf, "the same as a .pdf file, objects as layers")->check(isNotEmpty());
+  command.add_option("--pdf", options.pdf, "the same as a .pdf file, objects as layers")
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
   command
       .add_option(
           "--line-picture", options.line_picture,
           "the same lines in pixels, hidden by a depth buffer, to this .png file: to compare drawings "
           "with")
+      ->type_name(kFileType)
       ->check(isNotEmpty());
   command.add_flag("--plot", options.plot,
                    "draw the visible pieces of lines alone, for plotters and CAD, instead of filled outlines "
                    "back to front");
-  command
-      .add_option("--crease", options.crease_deg,
-                  "edges between two faces are drawn from this angle of their normals on, degrees")
-      ->check(CLI::Range(0.0, 180.0))
-      ->capture_default_str();
-  command.add_flag("--no-creases", options.no_creases, "draw no edges inside of surfaces");
+  CLI::Option* crease =
+      command
+          .add_option("--crease", options.crease_deg,
+                      "edges between two faces are drawn from this angle of their normals on, degrees")
+          ->check(CLI::Range(0.0, 180.0))
+          ->capture_default_str();
+  command.add_flag("--no-creases", options.no_creases, "draw no edges inside of surfaces")->excludes(crease);
   command.add_flag("--no-silhouettes", options.no_silhouettes, "draw no edges at which a surface turns away");
   command.add_flag("--no-boundaries", options.no_boundaries, "draw no borders of open surfaces");
   command
       .add_option("--stroke-width", options.stroke_width,
-                  "of drawings; the page is as high as --height says, in the same unit")
+                  "width of lines in drawings; the page is as high as --height says, in the same unit")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
 }

@@ -29,7 +29,7 @@ struct SortedFrame {
 // What a maker works with. Outlives it.
 struct FrameMakerInput {
   const LayerInput& input;
-  std::string scene_file;       // as the user named it: must not be written over
+  std::string scene_file;       // as the user named it
   std::uint32_t width, height;  // of the pictures, pixels
   std::uint32_t samples = 1;    // a side of each pixel: 1, 2 or 4
   bool tints = true;            // see LayerRendererOptions
@@ -40,7 +40,7 @@ struct FrameMakerInput {
 // Makes files of frames. A maker is created before anything is sorted, by
 //   Result<std::unique_ptr<FrameMaker>> make...(const ...Options&, const FrameMakerInput&)
 // which gives nullptr where the options ask for nothing, and checks all that can be checked then: options and
-// OpenGL; output files were checked before (checkFrameFiles).
+// OpenGL; output files were checked before (checkFiles).
 class FrameMaker {
  public:
   virtual ~FrameMaker() = default;
@@ -56,15 +56,5 @@ Result<LayerRenderer> makeRenderer(const FrameMakerInput& input);
 // Where a frame's file goes: `target` itself, or, of several frames, with the number before the extension:
 // "dir/out_0012.png".
 std::string frameFile(const std::string& target, std::uint32_t frame, bool several_frames);
-
-// An option that names a file.
-struct NamedFile {
-  std::string option, file;  // file empty or "-": none
-  std::string extension;     // that the name must have (".png"); empty: any
-};
-// As checkOutput; and that no two outputs are the same file, by whatever names, and none is one of the
-// inputs.
-Status checkFrameFiles(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
-                       const std::string& scene_file);
 
 }  // namespace sightline::tool

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "scenes/procedural.h"
-#include "tools/sightline/json_output.h"
 #include "tools/sightline/progress_bar.h"
 
 namespace sightline::tool {
@@ -69,12 +68,9 @@ Status setPlaces(MovingScene& scene, const std::vector<std::uint32_t>& parts, Pa
 
 }  // namespace
 
-Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions& path,
+Result<LayerInput> loadLayerInput(const std::string& scene_name, const PathOptions& path,
                                   const LayerPlaces& places) {
-  if (const Status ok = checkOutput(common.json, common.scene); !ok) {
-    return ok.error();
-  }
-  Result<MovingScene> scene = loadMoving(common.scene);
+  Result<MovingScene> scene = loadMoving(scene_name);
   if (!scene) {
     return scene.error();
   }
@@ -90,7 +86,7 @@ Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions
   if (const Status ok = setPlaces(*scene, places.overlays, PartSettings::Place::kOverlay, "--overlay"); !ok) {
     return ok.error();
   }
-  Result<Walk> walk = loadWalk(path, common.scene, scene->scene);
+  Result<Walk> walk = loadWalk(path, scene_name, scene->scene);
   if (!walk) {
     return walk.error();
   }

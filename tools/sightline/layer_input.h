@@ -22,9 +22,9 @@ struct LayerPlaces {
   std::vector<std::uint32_t> backdrops, overlays;
 };
 
-// Asks first whether the output can be written, before the work. Where the scene moves, a frame of the walk
-// is a frame of the motion; a path of the user's own may be longer.
-Result<LayerInput> loadLayerInput(const CommonOptions& common, const PathOptions& path,
+// Where the scene moves, a frame of the walk is a frame of the motion; a path of the user's own may be
+// longer.
+Result<LayerInput> loadLayerInput(const std::string& scene_name, const PathOptions& path,
                                   const LayerPlaces& places = {});
 
 }  // namespace sightline::tool

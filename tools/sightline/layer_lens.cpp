@@ -12,6 +12,7 @@
 #include "sightline/io/image.h"
 #include "sightline/render/lens_picture.h"
 #include "tools/sightline/names.h"
+#include "tools/sightline/output_files.h"
 #include "tools/sightline/parse_text.h"
 #include "tools/sightline/picture_difference.h"
 
@@ -65,7 +66,7 @@ class LayerLens : public FrameMaker {
     }
     if (!options_.blurred.empty()) {
       const std::string file = frameFile(options_.blurred, frame.number, input_.several_frames);
-      if (const Status ok = writePng(toImage(picture_), file); !ok) {
+      if (const Status ok = savePicture(toImage(picture_), file); !ok) {
         return ok.error();
       }
       json["file"] = file;
@@ -192,6 +193,13 @@ Status checkNumbers(const LayerLensOptions& options) {
   if (!options.blur_layer.empty() && !by_layers) {
     return Error{"--blur-layer: goes with --depth-of-field layers"};
   }
+  if (options.passes != LayerLensOptions{}.passes && !by_layers && method != LensMethod::kAccumulation) {
+    return Error{fmt::format("--passes: --depth-of-field {} accumulates nothing; leave it out",
+                             options.depth_of_field)};
+  }
+  if (options.reference_passes != LayerLensOptions{}.reference_passes && options.compare.empty()) {
+    return Error{"--reference-passes: goes with --compare"};
+  }
   return Success{};
 }
 
@@ -232,26 +240,31 @@ void addLayerLensOptions(CLI::App& command, LayerLensOptions& options) {
                       "blur what is out of focus: each layer by itself, one picture of everything (potmesil: "
                       "normalised; rokita: as it arrives), or by accumulating pictures from points of the "
                       "lens")
-          ->check(CLI::IsMember(textsOf(kLensMethods)))
+          ->check(isOneOf(textsOf(kLensMethods)))
           ->needs(focus, aperture);
   focus->needs(depth_of_field);
   aperture->needs(depth_of_field);
   command.add_option("--motion-blur", options.motion_blur,
                      "blur what moves, by layers or accumulation: how much of a frame's time the shutter is "
                      "open, 0 to 1");
-  command.add_option("--passes", options.passes, "of each accumulation")->capture_default_str();
+  command.add_option("--passes", options.passes, "pictures that each accumulation takes")
+      ->capture_default_str();
   command.add_option("--blur-layer", options.blur_layer,
                      "PART=even|depth|accumulate: how the layer of this part is blurred (else chosen by its "
                      "depth)");
   command
       .add_option("--blurred", options.blurred, "write the blurred picture of each frame to this .png file")
+      ->type_name(kFileType)
       ->check(isNotEmpty());
   command
       .add_option("--compare", options.compare,
                   "write the blurred picture, beside it the accumulation of whole pictures, and where they "
                   "differ, to this .png file")
+      ->type_name(kFileType)
       ->check(isNotEmpty());
-  command.add_option("--reference-passes", options.reference_passes, "of the accumulation of --compare")
+  command
+      .add_option("--reference-passes", options.reference_passes,
+                  "pictures that the accumulation of --compare takes")
       ->capture_default_str();
 }
 

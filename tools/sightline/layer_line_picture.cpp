@@ -10,6 +10,7 @@
 
 #include "sightline/drawing/feature_edges.h"
 #include "sightline/io/image.h"
+#include "tools/sightline/output_files.h"
 
 namespace sightline::tool {
 namespace {
@@ -173,7 +174,7 @@ class LinePicture : public FrameMaker {
     Image picture = whitePicture(input_.width, input_.height);
     const std::uint64_t lines = drawLines(frame.view, surfaces, picture), ink = inkOf(picture);
     const std::string file = frameFile(file_, frame.number, input_.several_frames);
-    if (const Status ok = writePng(picture, file); !ok) {
+    if (const Status ok = savePicture(picture, file); !ok) {
       return ok.error();
     }
     ++frames_;

@@ -13,6 +13,7 @@
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/layer_by_distance.h"
 #include "tools/sightline/names.h"
+#include "tools/sightline/output_files.h"
 #include "tools/sightline/parse_text.h"
 #include "tools/sightline/picture_difference.h"
 
@@ -105,7 +106,7 @@ class LayerPictures : public FrameMaker {
     lines_.push_back(line_);
     if (!options_.image.empty()) {
       const std::string file = frameFile(options_.image, frame.number, input_.several_frames);
-      if (const Status ok = writePng(toImage(picture_), file); !ok) {
+      if (const Status ok = savePicture(toImage(picture_), file); !ok) {
         return ok.error();
       }
       json["file"] = file;
@@ -322,17 +323,18 @@ void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
           "--image", options.image,
           "write a picture of each frame, composited from layers, to this .png file; of several frames, the "
           "frame's number goes before .png")
+      ->type_name(kFileType)
       ->check(isNotEmpty());
   CLI::Option* by_distance = command.add_option(
       "--by-distance", options.by_distance,
       "write the picture, beside it the one with see-through parts ordered by distances of their centres, "
       "and where they differ, to this .png file");
-  by_distance->check(isNotEmpty());
+  by_distance->type_name(kFileType)->check(isNotEmpty());
   command
       .add_option("--peel", options.peel,
                   "depth peeling of see-through parts whose order is not known (else they are drawn by "
                   "number)")
-      ->check(CLI::IsMember(textsOf(kPeels)))
+      ->check(isOneOf(textsOf(kPeels)))
       ->capture_default_str();
   command.add_option("--without", options.without, "leave out the layers of these parts, by number")
       ->check(isNotEmpty())

@@ -18,13 +18,14 @@
 #include "tools/sightline/layer_totals.h"
 #include "tools/sightline/names.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/signals.h"
 #include "tools/sightline/stopwatch.h"
 
 namespace sightline::tool {
 namespace {
 
 struct LayersOptions {
-  CommonOptions common;
+  SceneOptions common;
   PathOptions path;
   LayerPlaces places;
   std::string sort = "depth-first", search = "automatic", extents = "camera", arcs = "groups",
@@ -248,21 +249,38 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   return kOk;
 }
 
-Status checkFilesOf(const LayersOptions& options) {
-  std::vector<NamedFile> inputs;
+std::vector<NamedFile> outputsOf(const LayersOptions& options) {
+  return {{"--json", options.common.json},
+          {"--image", options.pictures.image, ".png"},
+          {"--by-distance", options.pictures.by_distance, ".png"},
+          {"--blurred", options.lens.blurred, ".png"},
+          {"--compare", options.lens.compare, ".png"},
+          {"--svg", options.drawings.svg, ".svg"},
+          {"--pdf", options.drawings.pdf, ".pdf"},
+          {"--line-picture", options.drawings.line_picture, ".png"}};
+}
+
+Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs) {
+  std::vector<NamedFile> inputs = walkInputs(options.common.scene, options.path);
   for (const std::string& replace : options.pictures.replace) {
     const std::size_t equals = std::min(replace.find('='), replace.size() - 1);
-    inputs.push_back({"--replace", replace.substr(equals + 1), ""});
+    inputs.push_back({"--replace", replace.substr(equals + 1)});
   }
-  return checkFrameFiles({{"--json", options.common.json, ""},
-                          {"--image", options.pictures.image, ".png"},
-                          {"--by-distance", options.pictures.by_distance, ".png"},
-                          {"--blurred", options.lens.blurred, ".png"},
-                          {"--compare", options.lens.compare, ".png"},
-                          {"--svg", options.drawings.svg, ".svg"},
-                          {"--pdf", options.drawings.pdf, ".pdf"},
-                          {"--line-picture", options.drawings.line_picture, ".png"}},
-                         inputs, options.common.scene);
+  return checkFiles({.scenes = {options.common.scene}, .inputs = inputs, .outputs = outputs});
+}
+
+// Of several frames each file has a name of its own, known when the path is.
+Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::uint32_t>& frames) {
+  std::vector<NamedFile> outputs;
+  for (const NamedFile& output : outputsOf(options)) {
+    if (output.file.empty() || output.option == "--json") {
+      continue;
+    }
+    for (const std::uint32_t frame : frames) {
+      outputs.push_back({output.option, frameFile(output.file, frame, frames.size() > 1), output.extension});
+    }
+  }
+  return checkFilesOf(options, outputs);
 }
 
 Status checkPictureOptions(const LayersOptions& options) {
@@ -275,14 +293,17 @@ Status checkPictureOptions(const LayersOptions& options) {
 }
 
 Result<ExitCode> runLayers(const LayersOptions& options) {
-  for (const Status& ok : {checkFilesOf(options), checkPictureOptions(options)}) {
+  for (const Status& ok : {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options)}) {
     if (!ok) {
       return ok.error();
     }
   }
-  const Result<LayerInput> input = loadLayerInput(options.common, options.path, options.places);
+  const Result<LayerInput> input = loadLayerInput(options.common.scene, options.path, options.places);
   if (!input) {
     return input.error();
+  }
+  if (const Status ok = checkFilesOfFrames(options, input->walk.frames); !ok) {
+    return ok.error();
   }
   const PictureOptions size = pictureSize(options.size, input->walk.path);
   const FrameMakerInput made_from{.input = *input,
@@ -294,6 +315,9 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .form = valueOf(kCompositingForms, options.expression),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
+  if (makers && !makers->empty()) {
+    keepWhenTold("pictures and drawings that were finished are kept, and no JSON is written");
+  }
   return makers ? sortWalk(options, *input, *makers) : makers.error();
 }
 
@@ -303,14 +327,14 @@ void addLayers(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand(
       "layers", "the order in which parts must be drawn, cycles, and compositing programs, frame by frame");
   const auto options = std::make_shared<LayersOptions>();
-  addCommonOptions(*command, options->common);
+  addSceneOptions(*command, options->common);
   addPathOptions(*command, options->path);
   for (const char* option : {"SCENE", "--json"}) {
     command->get_option(option)->check(isNotEmpty());
   }
   const auto addChoice = [&](const char* name, std::string& value, const std::vector<std::string>& values,
                              const char* help) {
-    command->add_option(name, value, help)->check(CLI::IsMember(values))->capture_default_str();
+    command->add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
   };
   addChoice("--sort", options->sort, textsOf(kLayerSorts),
             "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
@@ -334,7 +358,7 @@ void addLayers(CLI::App& app, Command& chosen) {
   addLayerDrawingOptions(*command, options->drawings);
   addPictureOptions(*command, options->size);
   command->add_option("--samples", options->samples, "a side of each pixel of the pictures: 1, 2 or 4")
-      ->check(CLI::IsMember({1u, 2u, 4u}))
+      ->check(isOneOf({"1", "2", "4"}))
       ->capture_default_str();
   addChoice(
       "--tints", options->tints, textsOf(kSwitch),

@@ -7,12 +7,12 @@
 #include <filesystem>
 
 #include "scenes/procedural.h"
-#include "sightline/io/camera_path_json.h"
 #include "sightline/io/import.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/cell_path.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/names.h"
+#include "tools/sightline/path_file.h"
 #include "tools/sightline/progress_bar.h"
 
 namespace sightline::tool {
@@ -36,7 +36,7 @@ Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
   }
   std::error_code ignored;
   if (std::filesystem::exists(name, ignored)) {
-    return readCameraPath(name);
+    return readPathFile(name);
   }
   const std::string walks = pathNames(scene);
   return Error{fmt::format(
@@ -45,17 +45,20 @@ Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
       name == kCellsPath ? "; the cells of a baked file are walked when it is given with --baked" : "")};
 }
 
+// The path's file beside the scene's file; empty where there is none.
+std::string pathBeside(const std::string& scene_name) {
+  const std::filesystem::path beside = std::filesystem::path(scene_name).parent_path() / kPathBesideScene;
+  std::error_code ignored;
+  return !isDemoUrl(scene_name) && std::filesystem::is_regular_file(beside, ignored) ? beside.string() : "";
+}
+
 Result<CameraPath> defaultPath(const std::string& scene_name, const Scene& scene) {
-  if (!isDemoUrl(scene_name)) {
-    const std::filesystem::path beside = std::filesystem::path(scene_name).parent_path() / kPathBesideScene;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(beside, ignored)) {
-      Result<CameraPath> path = readCameraPath(beside.string());
-      if (path) {
-        fmt::print(stderr, "sightline: using the camera path {}\n", beside.string());
-      }
-      return path;
+  if (const std::string beside = pathBeside(scene_name); !beside.empty()) {
+    Result<CameraPath> path = readPathFile(beside);
+    if (path) {
+      fmt::print(stderr, "sightline: using the camera path {}\n", beside);
     }
+    return path;
   }
   if (!scene.paths.empty()) {
     return scene.paths.front();
@@ -112,12 +115,14 @@ Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name,
   return Walk{std::move(*path), std::move(*frames), std::move(at_cells.eyes)};
 }
 
-Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path,
+std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptions& path,
+                                  const std::string& baked) {
+  return {{"--path", path.path.empty() ? pathBeside(scene_name) : path.path}, {"--baked", baked}};
+}
+
+Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
                                       const std::string& baked) {
-  if (const Status ok = checkOutput(common.json, common.scene); !ok) {
-    return ok.error();
-  }
-  Result<Scene> scene = loadScene(common.scene);
+  Result<Scene> scene = loadScene(scene_name);
   if (!scene) {
     return scene.error();
   }
@@ -125,7 +130,7 @@ Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOpt
   if (!file) {
     return file.error();
   }
-  Result<Walk> walk = loadWalk(path, common.scene, *scene, *file);
+  Result<Walk> walk = loadWalk(path, scene_name, *scene, *file);
   if (!walk) {
     return walk.error();
   }

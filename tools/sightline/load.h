@@ -15,6 +15,7 @@
 #include "sightline/scene/scene.h"
 #include "tools/sightline/method_options.h"
 #include "tools/sightline/options.h"
+#include "tools/sightline/output_files.h"
 
 namespace sightline::tool {
 
@@ -39,14 +40,19 @@ struct Walk {
 Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene,
                       const std::optional<SightFile>& baked = {});
 
-// What a command along a walk begins with. Asks first whether its output can be written, before the work.
+// The files of these options that a command along a walk reads, but for the scene: those of the options that
+// name none are passed over by checkFiles.
+std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptions& path,
+                                  const std::string& baked = "");
+
+// What a command along a walk begins with.
 struct SceneAndWalk {
   Scene scene;
   Walk walk;
   std::optional<SightFile> baked{};
 };
 // baked: a .sight file, or empty.
-Result<SceneAndWalk> loadSceneAndWalk(const CommonOptions& common, const PathOptions& path,
+Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
                                       const std::string& baked = "");
 
 // What cullers of one scene share.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -7,7 +8,10 @@
 #include <string_view>
 
 #include "tools/sightline/commands.h"
+#include "tools/sightline/declarations.h"
 #include "tools/sightline/mpi_world.h"
+#include "tools/sightline/signals.h"
+#include "tools/sightline/suggest.h"
 
 namespace sightline::tool {
 namespace {
@@ -26,16 +30,30 @@ bool speaks(int argc, char** argv) {
   return !(argc > 1 && std::string_view(argv[1]) == "bake" && isOtherMpiProcess());
 }
 
-std::string commandNames(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.append(names.empty() ? "" : ", ").append(command->get_name());
-  }
-  return names;
-}
-
 bool isCommand(const CLI::App& app, const std::string& word) {
   return !app.get_subcommands([&](const CLI::App* command) { return command->get_name() == word; }).empty();
+}
+
+Error noSuchCommand(const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = commandNames(app);
+  return Error{fmt::format("there is no command '{}'; choose from: {}{}", word, fmt::join(names, ", "),
+                           didYouMean(word, names))};
+}
+
+// Why words were refused. An option that does not exist comes first: what else is wrong often follows from
+// it.
+Error whyRefused(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const std::string see = chosen.empty() ? "sightline --help" : "sightline " + command.get_name() + " --help";
+  for (const std::string& word : app.remaining(true)) {
+    if (word.size() > 1 && word[0] == '-') {
+      const std::string name = word.substr(0, word.find('='));
+      return Error{fmt::format("there is no option {}{} (see {})", name,
+                               didYouMean(name, allSpellings(command)), see)};
+    }
+  }
+  return Error{fmt::format("{} (see {})", error.what(), see)};
 }
 
 int run(int argc, char** argv) {
@@ -47,8 +65,9 @@ int run(int argc, char** argv) {
       "SCENE is a file (.glb .gltf .obj .ply .stl ...) or a built-in scene: demo:city?copies=30&seed=1, "
       "demo:building, demo:boxes, demo:ship, demo:glass, demo:toothpicks?n=200&scaling=ud, "
       "demo:canyon?grid=14.\n"
-      "Exit code: 0 fine, 1 a check failed, 2 bad usage or input.\n"
-      "sightline COMMAND --help shows a command's options and examples.");
+      "Exit code: 0 fine, 1 a check failed, 2 bad usage or input, 130 interrupted (Ctrl-C), 143 told to end "
+      "(SIGTERM).\n"
+      "sightline help COMMAND, or COMMAND --help, shows a command's options and examples.");
   Command chosen;
   addInfo(app, chosen);
   addWalk(app, chosen);
@@ -58,16 +77,23 @@ int run(int argc, char** argv) {
   addBake(app, chosen);
   addQuery(app, chosen);
   addLayers(app, chosen);
-  if (const std::string word = argc > 1 ? argv[1] : "";
-      !word.empty() && word[0] != '-' && !isCommand(app, word)) {
-    return fail(fmt::format("there is no command '{}'; choose from: {}", word, commandNames(app)));
+  addFrontDoor(app, chosen);
+  if (argc < 2) {
+    fmt::print("{}", overview(app));
+    return kOk;
+  }
+  if (const std::string word = argv[1]; !word.empty() && word[0] != '-' && !isCommand(app, word)) {
+    return fail(noSuchCommand(app, word).message);
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return speaks(argc, argv) ? app.exit(help) : kOk;
   } catch (const CLI::ParseError& error) {
-    return speaks(argc, argv) ? fail(std::string(error.what()) + " (see sightline --help)") : kOk;
+    return speaks(argc, argv) ? fail(whyRefused(app, error).message) : kOk;
+  }
+  if (speaks(argc, argv)) {
+    endWhenTold(app.get_subcommands().front()->get_name());
   }
   const Result<ExitCode> result = chosen();
   if (result && std::fflush(stdout) != 0) {

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "tools/sightline/names.h"
+#include "tools/sightline/options.h"
 #include "tools/sightline/parse_text.h"
 
 namespace sightline::tool {
@@ -29,6 +30,7 @@ struct Value {
   std::string expected;                                                // "a whole number from 1 to 9"
   std::function<bool(const std::string& text, Setting& setting)> set;  // false: not what was expected
   std::function<Json(Setting setting)> get;
+  std::vector<std::string> words{};  // that it can be; none: it is a number
 };
 
 template <typename T>
@@ -44,8 +46,8 @@ Value oneOf(const std::array<Name<T>, N>& names, Field<T> field) {
     }
     return found != names.end();
   };
-  return {": " + listNames(names), "one of: " + listNames(names), set,
-          [&names, field](Setting setting) { return Json(nameOf(names, field(setting))); }};
+  return {"", "one of: " + listNames(names), set,
+          [&names, field](Setting setting) { return Json(nameOf(names, field(setting))); }, textsOf(names)};
 }
 
 Value whole(std::uint32_t least, std::uint32_t most, Field<std::uint32_t> field) {
@@ -411,11 +413,22 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
     const Option& option = allOptions()[i];
     const std::string help =
         option.help + option.value.help + (lists && option.list ? " (several: a,b,c)" : "");
-    command.add_option("--" + option.name, options.texts[i], help)->capture_default_str();
+    CLI::Option* added = command.add_option("--" + option.name, options.texts[i], help);
+    added->capture_default_str();
+    if (!option.value.words.empty()) {
+      added->check(isOneOf(option.value.words, option.list));
+    }
   }
-  command.add_option("--baked", options.baked,
-                     "a .sight file of the scene: its visible sets, and its occluder databases in place of "
-                     "those that would be built");
+  command
+      .add_option("--baked", options.baked,
+                  "a .sight file of the scene: its visible sets, and its occluder databases in place of "
+                  "those that would be built")
+      ->type_name(kFileType);
+  if (CLI::Option* path = command.get_option_no_throw("--path")) {
+    path->description(path->get_description() +
+                      "; cells: a view from each cell of the --baked file, most of them from the cell's "
+                      "borders");
+  }
 }
 
 Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {

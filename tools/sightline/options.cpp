@@ -1,11 +1,13 @@
 #include "tools/sightline/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 
 #include "tools/sightline/parse_text.h"
+#include "tools/sightline/suggest.h"
 
 namespace sightline::tool {
 namespace {
@@ -19,34 +21,78 @@ CLI::Validator isNotEmpty() {
   return {[](std::string& word) { return std::string(word.empty() ? "is empty" : ""); }, ""};
 }
 
-void addCommonOptions(CLI::App& command, CommonOptions& options) {
+namespace {
+
+// By these names an option's validators are found again.
+constexpr const char *kOneWord = "one word", *kListOfWords = "list of words";
+
+}  // namespace
+
+CLI::Validator isOneOf(const std::vector<std::string>& words, bool list) {
+  const auto check = [words, list](const std::string& text) {
+    for (const std::string& word : list ? splitAt(text, ',') : std::vector{text}) {
+      if (std::find(words.begin(), words.end(), word) == words.end()) {
+        return fmt::format("'{}' is not one of: {}{}", word, fmt::join(words, ", "), didYouMean(word, words));
+      }
+    }
+    return std::string();
+  };
+  return CLI::Validator(check, fmt::format("{{{}}}", fmt::join(words, ",")), list ? kListOfWords : kOneWord);
+}
+
+OptionWords wordsOf(const CLI::Option& option) {
+  for (const bool list : {false, true}) {
+    try {
+      // CLI11 has no such look-up for options that do not change.
+      const CLI::Validator* validator =
+          const_cast<CLI::Option&>(option).get_validator(list ? kListOfWords : kOneWord);
+      const std::string braced = validator->get_description();
+      return {splitAt(braced.substr(1, braced.size() - 2), ','), list};
+    } catch (const CLI::OptionNotFound&) {
+    }
+  }
+  return {};
+}
+
+void addSceneOptions(CLI::App& command, SceneOptions& options) {
   command
       .add_option("SCENE", options.scene, "a file (.glb .gltf .obj .ply .stl ...) or demo:NAME?key=value&...")
-      ->required();
+      ->required()
+      ->type_name(kFileType);
   addOutputOptions(command, options);
 }
 
+void addCommonOptions(CLI::App& command, CommonOptions& options) {
+  addSceneOptions(command, options);
+  addThreadsOption(command, options.threads);
+}
+
 void addOutputOptions(CLI::App& command, OutputOptions& options) {
-  command.add_option("--json", options.json, "write the result as JSON to this file; - is standard output");
-  command.add_option("--threads", options.threads, "threads to use")
+  command.add_option("--json", options.json, "write the result as JSON to this file; - is standard output")
+      ->type_name(kFileType);
+}
+
+void addThreadsOption(CLI::App& command, std::uint32_t& threads) {
+  command.add_option("--threads", threads, "threads to use")
       ->check(CLI::Range(1u, kMaxThreads))
       ->capture_default_str();
 }
 
 void addPathOptions(CLI::App& command, PathOptions& options) {
-  command.add_option(
-      "--path", options.path,
-      "camera path: a JSON file or the name of a walk of the scene (default: walk.path.json beside the "
-      "scene's file, or else the scene's first walk or camera); cells: with --baked, a view from each cell "
-      "of the file, most of them from the cell's borders");
+  command
+      .add_option(
+          "--path", options.path,
+          "camera path: a JSON file or the name of a walk of the scene (default: walk.path.json beside the "
+          "scene's file, or else the scene's first walk or camera)")
+      ->type_name(kFileType);
   command.add_option("--frames", options.frames,
                      "only frames A, A+STEP, ... before B, as A:B[:STEP]; or one frame's number");
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
-  command.add_option("--width", options.width, "of the pictures, in pixels (default: the path's)")
+  command.add_option("--width", options.width, "width of the pictures, pixels (default: the path's)")
       ->check(CLI::Range(1u, kMaxPixels));
-  command.add_option("--height", options.height, "of the pictures, in pixels (default: the path's)")
+  command.add_option("--height", options.height, "height of the pictures, pixels (default: the path's)")
       ->check(CLI::Range(1u, kMaxPixels));
 }
 

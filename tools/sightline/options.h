@@ -11,6 +11,7 @@
 
 namespace CLI {
 class App;
+class Option;
 class Validator;
 }  // namespace CLI
 
@@ -19,18 +20,37 @@ namespace sightline::tool {
 // Refuses an empty word, as of a variable that a script has not set.
 CLI::Validator isNotEmpty();
 
+// What an option takes, as --help, the manual and the shells' completion tell it.
+inline constexpr const char *kFileType = "FILE", *kFolderType = "DIR";
+
+// Refuses what is none of these words. list: several of them, separated by commas.
+CLI::Validator isOneOf(const std::vector<std::string>& words, bool list = false);
+// The words of the option's isOneOf; none where it has no such validator.
+struct OptionWords {
+  std::vector<std::string> words{};
+  bool list = false;
+};
+OptionWords wordsOf(const CLI::Option& option);
+
 // What every command takes.
 struct OutputOptions {
   std::string json;  // a file, "-" for stdout, empty for none
-  std::uint32_t threads = 1;
 
   bool textOnStdout() const { return json != "-"; }
 };
 void addOutputOptions(CLI::App& command, OutputOptions& options);
 
 // What commands take that work on one scene.
-struct CommonOptions : OutputOptions {
+struct SceneOptions : OutputOptions {
   std::string scene;
+};
+void addSceneOptions(CLI::App& command, SceneOptions& options);
+
+void addThreadsOption(CLI::App& command, std::uint32_t& threads);
+
+// What commands take that work on one scene with several threads.
+struct CommonOptions : SceneOptions {
+  std::uint32_t threads = 1;
 };
 void addCommonOptions(CLI::App& command, CommonOptions& options);
 

@@ -4,6 +4,7 @@
 
 #include "sightline/io/image.h"
 #include "sightline/render/compare.h"
+#include "tools/sightline/output_files.h"
 
 namespace sightline::tool {
 
@@ -24,7 +25,7 @@ std::string differenceText(const PictureDifference& difference) {
 
 Status writeComparison(const LayerImage& ours, const LayerImage& theirs, const std::string& file) {
   const Image left = toImage(ours), right = toImage(theirs);
-  return writePng(sideBySide(sideBySide(left, right), differenceImage(left, right)), file);
+  return savePicture(sideBySide(sideBySide(left, right), differenceImage(left, right)), file);
 }
 
 }  // namespace sightline::tool

@@ -418,7 +418,7 @@ std::vector<Experiment> emptyExperiments(const PictureOptions& picture) {
 
 Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
                                        const std::vector<SceneAndWalk>& inputs) {
-  const Threads threads(options.output.threads);
+  const Threads threads(options.threads);
   Reproduction result;
   result.experiments = emptyExperiments(pictureOf(options));
   std::vector<std::vector<Walk>> routes;

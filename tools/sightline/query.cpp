@@ -7,14 +7,15 @@
 #include <memory>
 #include <optional>
 
-#include "sightline/io/camera_path_json.h"
 #include "sightline/io/file.h"
 #include "sightline/pvs/query/set_query.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/info_sight.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/options.h"
+#include "tools/sightline/output_files.h"
 #include "tools/sightline/parse_text.h"
+#include "tools/sightline/path_file.h"
 #include "tools/sightline/text_table.h"
 
 namespace sightline::tool {
@@ -55,7 +56,7 @@ Result<std::vector<Vec3d>> pointsOfFile(const std::string& name) {
   const Json json = Json::parse(*text, nullptr, false);
   std::vector<Vec3d> points;
   if (json.is_object() && json.contains("frames")) {
-    const Result<CameraPath> path = parseCameraPath(*text, name);
+    const Result<CameraPath> path = parsePathFile(*text, name);
     if (!path) {
       return path.error();
     }
@@ -187,7 +188,11 @@ void print(const SightFile& file, const std::vector<PointAnswer>& answers) {
 }
 
 Result<ExitCode> runQuery(const QueryOptions& options) {
-  if (const Status ok = checkOutput(options.json, options.file); !ok) {
+  std::vector<NamedFile> inputs{{"FILE", options.file}};
+  for (const std::string& points : options.points) {
+    inputs.push_back({"--points", points});
+  }
+  if (const Status ok = checkFiles({.inputs = inputs, .outputs = {{"--json", options.json}}}); !ok) {
     return ok.error();
   }
   const Result<std::vector<Vec3d>> points = allPoints(options.points);
@@ -223,15 +228,19 @@ void addQuery(CLI::App& app, Command& chosen) {
   CLI::App* command =
       app.add_subcommand("query", "visible objects from a baked file, from anywhere in the points' cells");
   const auto options = std::make_shared<QueryOptions>();
-  command->add_option("FILE", options->file, "what `sightline bake` wrote, F.sight")->required();
+  command->add_option("FILE", options->file, "what `sightline bake` wrote, F.sight")
+      ->required()
+      ->type_name(kFileType);
   command
       ->add_option(
           "--points", options->points,
           "a point X,Y,Z in world space, a JSON file {\"points\":[[x,y,z],...]}, or a camera path, of "
           "which the eyes are taken; may be given several times")
       ->required()
+      ->type_name(kFileType)
       ->allow_extra_args(false);
-  command->add_option("--json", options->json, "write the result as JSON to this file; - is standard output");
+  command->add_option("--json", options->json, "write the result as JSON to this file; - is standard output")
+      ->type_name(kFileType);
   command->footer(
       "A point outside the baked cells is in none: from there, all objects may be seen.\n"
       "Examples:\n"

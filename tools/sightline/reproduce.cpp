@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -13,10 +14,15 @@
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/names.h"
+#include "tools/sightline/output_files.h"
 #include "tools/sightline/reproduction.h"
+#include "tools/sightline/signals.h"
 
 namespace sightline::tool {
 namespace {
+
+// In the folder.
+constexpr const char *kTables = "tables.txt", *kJson = "reproduce.json";
 
 struct Paper {
   const char* title;
@@ -53,28 +59,24 @@ const std::vector<std::pair<std::string, Paper>>& papers() {
   return kPapers;
 }
 
-std::string paperNames() {
-  std::string names;
+std::vector<std::string> paperNames() {
+  std::vector<std::string> names;
   for (const auto& [name, paper] : papers()) {
-    names += (names.empty() ? "" : ", ") + name;
+    names.push_back(name);
   }
   return names;
 }
 
-Result<const Paper*> findPaper(const std::string& name) {
-  for (const auto& [known, paper] : papers()) {
-    if (known == name) {
-      return &paper;
-    }
-  }
-  return Error{fmt::format("there is no paper '{}'; choose from: {}", name, paperNames())};
+// name: one of paperNames.
+const Paper& findPaper(const std::string& name) {
+  return std::ranges::find(papers(), name, &std::pair<std::string, Paper>::first)->second;
 }
 
 // All of them before the work, which takes longer.
 Result<std::vector<SceneAndWalk>> loadAll(const ReproduceOptions& options) {
   std::vector<SceneAndWalk> inputs;
   for (const std::string& scene : options.scenes) {
-    Result<SceneAndWalk> input = loadSceneAndWalk({options.output, scene}, options.path);
+    Result<SceneAndWalk> input = loadSceneAndWalk(scene, options.path);
     if (!input) {
       return input.error();
     }
@@ -127,11 +129,31 @@ Status writeFiles(const std::vector<ReportFile>& files, const std::string& folde
   return Success{};
 }
 
+// The folder of the report of scene i; of the paper where it makes its own scenes.
+std::string reportFolder(const ReproduceOptions& options, std::size_t i) {
+  const std::string& name = options.scenes.empty() ? options.paper : options.scenes[i];
+  return fmt::format("{}-{}", i + 1, folderName(name));
+}
+
+Status checkFilesOf(const ReproduceOptions& options) {
+  CommandFiles files{.scenes = options.scenes,
+                     .outputs = {{"--json", options.output.json}},
+                     .folder = {"--output", options.folder, {kTables, kJson}}};
+  for (const std::string& scene : options.scenes) {
+    for (const NamedFile& input : walkInputs(scene, options.path)) {
+      files.inputs.push_back(input);
+    }
+  }
+  for (std::size_t i = 0; i < std::max<std::size_t>(options.scenes.size(), 1); ++i) {
+    files.folder.files.push_back(reportFolder(options, i) + "/index.html");
+  }
+  return checkFiles(files);
+}
+
 Status writeFolder(const ReproduceOptions& options, const std::string& text, const std::string& json,
                    const Reproduction& result) {
   for (std::size_t i = 0; i < result.reports.size(); ++i) {
-    const std::string& name = options.scenes.empty() ? options.paper : options.scenes[i];
-    const std::string folder = fmt::format("{}/{}-{}", options.folder, i + 1, folderName(name));
+    const std::string folder = options.folder + "/" + reportFolder(options, i);
     if (const Status made = makeFolder(folder); !made) {
       return made;
     }
@@ -142,12 +164,13 @@ Status writeFolder(const ReproduceOptions& options, const std::string& text, con
       return written;
     }
   }
-  const Status tables = writeFile(options.folder + "/tables.txt", text);
-  return tables ? writeOutput(options.folder + "/reproduce.json", json) : tables;
+  const Status tables = writeFile(options.folder + "/" + kTables, text);
+  return tables ? writeOutput(options.folder + "/" + kJson, json) : tables;
 }
 
 Result<ExitCode> writeResult(const ReproduceOptions& options, const Paper& paper,
                              const Reproduction& result) {
+  const SignalGuard guard;  // all of it or nothing
   const std::string text = toText(paper, result), json = toJson(options, paper, result);
   if (const Status written = writeOutput(options.output.json, json); !written) {
     return written.error();
@@ -164,11 +187,7 @@ Result<ExitCode> writeResult(const ReproduceOptions& options, const Paper& paper
 }
 
 Result<ExitCode> runReproduce(ReproduceOptions options) {
-  const Result<const Paper*> found = findPaper(options.paper);
-  if (!found) {
-    return found.error();
-  }
-  const Paper& paper = **found;
+  const Paper& paper = findPaper(options.paper);
   if (!paper.bakes && (options.depth > 0 || options.triangle_budget > 0)) {
     return Error{
         fmt::format("--depth and --triangle-budget: {} bakes nothing; leave them out", options.paper)};
@@ -181,8 +200,15 @@ Result<ExitCode> runReproduce(ReproduceOptions options) {
                     "them out",
                     options.paper)};
   }
+  if (paper.scenes.empty() && options.threads > 1) {
+    return Error{
+        fmt::format("--threads {}: {} works with one thread; leave it out", options.threads, options.paper)};
+  }
   if (options.scenes.empty()) {
     options.scenes = options.fewer_frames && !paper.short_scenes.empty() ? paper.short_scenes : paper.scenes;
+  }
+  if (const Status ok = checkFilesOf(options); !ok) {
+    return ok.error();
   }
   const Result<std::vector<SceneAndWalk>> inputs = loadAll(options);
   if (!inputs) {
@@ -202,16 +228,21 @@ Result<ExitCode> runReproduce(ReproduceOptions options) {
 void addReproduce(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand("reproduce", "a paper's experiments, on the scenes of today");
   const auto options = std::make_shared<ReproduceOptions>();
-  command->add_option("PAPER", options->paper, "one of: " + paperNames())->required();
+  command->add_option("PAPER", options->paper, "the paper, by its authors")
+      ->required()
+      ->check(isOneOf(paperNames()));
   command
       ->add_option("--scene", options->scenes,
                    "a file or demo:NAME?key=value&...; several: once for each (default: the paper's)")
+      ->type_name(kFileType)
       ->allow_extra_args(false);
   addOutputOptions(*command, options->output);
+  addThreadsOption(*command, options->threads);
   addPathOptions(*command, options->path);
   addPictureOptions(*command, options->picture);
-  for (const char* name : {"--width", "--height"}) {
-    command->get_option(name)->description("of the pictures, in pixels (default: the paper's or the path's)");
+  for (const char* side : {"width", "height"}) {
+    command->get_option(std::string("--") + side)
+        ->description(fmt::format("{} of the pictures, pixels (default: the paper's or the path's)", side));
   }
   command->add_flag(
       "--short", options->fewer_frames,
@@ -224,8 +255,10 @@ void addReproduce(CLI::App& app, Command& chosen) {
       ->add_option("--triangle-budget", options->triangle_budget,
                    "saona-vazquez: of a leaf (default: that of `sightline bake`)")
       ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max() / 2));
-  command->add_option("-o,--output", options->folder,
-                      "folder of the tables and a report for each scene; made if needed");
+  command
+      ->add_option("-o,--output", options->folder,
+                   "folder of the tables and a report for each scene; made if needed")
+      ->type_name(kFolderType);
   command->footer(
       "poon-wang has routes of its own where the scene has walks best, average and worst, saona-vazquez "
       "where "

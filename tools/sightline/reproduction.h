@@ -16,6 +16,7 @@ namespace sightline::tool {
 struct ReproduceOptions {
   std::string paper;
   OutputOptions output;
+  std::uint32_t threads = 1;
   PathOptions path;
   PictureOptions picture;
   std::vector<std::string> scenes;

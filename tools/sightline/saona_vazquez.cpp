@@ -49,7 +49,7 @@ Result<SightFile> written(const BakedVisibility& baked) {
 BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigations,
                          const ReproduceOptions& options) {
   BakeOptions bake;
-  bake.common.threads = options.output.threads;
+  bake.common.threads = options.threads;
   bake.settings.triangle_budget = options.triangle_budget;
   if (options.depth > 0 || options.fewer_frames) {
     bake.settings.max_depth = options.depth > 0 ? options.depth : kShortDepth;
@@ -200,7 +200,7 @@ void navigateAll(Measured& measured, const std::vector<Walk>& walks, std::vector
 
 Result<Reproduction> reproduceSaonaVazquez(const ReproduceOptions& options,
                                            const std::vector<SceneAndWalk>& inputs) {
-  const Threads threads(options.output.threads);
+  const Threads threads(options.threads);
   std::vector<std::vector<Walk>> walks;
   for (const SceneAndWalk& input : inputs) {  // all of them before the work
     Result<std::vector<Walk>> of_scene = navigationsOf(input, options);

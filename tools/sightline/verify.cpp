@@ -279,7 +279,14 @@ Result<ExitCode> runVerify(const VerifyOptions& options) {
   if (!settings) {
     return settings.error();
   }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path, options.method.baked);
+  const std::string& baked = options.method.baked;
+  if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .inputs = walkInputs(options.common.scene, options.path, baked),
+                                    .outputs = {{"--json", options.common.json}}});
+      !ok) {
+    return ok.error();
+  }
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, baked);
   if (!input) {
     return input.error();
   }

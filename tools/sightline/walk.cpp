@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -16,6 +17,7 @@
 #include "tools/sightline/commands.h"
 #include "tools/sightline/json_output.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/signals.h"
 #include "tools/sightline/threads.h"
 #include "tools/sightline/walk_pictures.h"
 #include "tools/sightline/walk_report.h"
@@ -26,6 +28,16 @@ namespace {
 
 constexpr std::size_t kEverythingEvery =
     10;  // frames: so often the baseline is compared with all objects drawn
+
+// In the folder of the report, beside pictures of frames.
+constexpr const char* kJsonFile = "walk.json";
+constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
+                                                "nodes_tested.svg"};
+std::vector<std::string> filesOfFolder() {
+  std::vector<std::string> files(kPlotFiles.begin(), kPlotFiles.end());
+  files.insert(files.end(), {"index.html", kJsonFile});
+  return files;
+}
 
 struct WalkOptions {
   CommonOptions common;
@@ -55,15 +67,16 @@ std::vector<Setting> withBaseline(std::vector<Setting> settings) {
 class Walker {
  public:
   Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer& renderer,
-         const std::string& folder)
+         const std::string& folder, std::vector<WalkRun> runs)
       : scene_(scene), walk_(walk), data_(data), renderer_(renderer), folder_(folder), chooser_(walk.frames) {
+    record_.runs = std::move(runs);
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
       everything_.push_back(ObjectId(o));
     }
   }
 
-  Result<WalkRecord> run(const std::vector<Setting>& settings) {
-    record_.runs = makeRuns(settings, data_);
+  // Told to end, it ends after the frame that it is at.
+  Result<WalkRecord> run() {
     record_.shown = record_.runs.size() > 1 ? 1 : 0;
     record_.device = renderer_.device();
     images_.resize(record_.runs.size());
@@ -73,6 +86,9 @@ class Walker {
         return drawn.error();
       }
       progress.update(static_cast<double>(i + 1) / static_cast<double>(walk_.frames.size()));
+      if (toldToEnd() != 0) {
+        break;
+      }
     }
     record_.pictures = chooser_.chosen();
     return std::move(record_);
@@ -173,10 +189,8 @@ class Walker {
 };
 
 Status writePlots(const Report& report, const std::string& folder) {
-  const char* names[] = {"triangles", "frame_time", "cull_time", "nodes_tested"};
   for (std::size_t i = 0; i < report.plots.size(); ++i) {
-    if (const Status ok = writeFile(fmt::format("{}/{}.svg", folder, names[i]), toSvg(report.plots[i]));
-        !ok) {
+    if (const Status ok = writeFile(folder + "/" + kPlotFiles[i], toSvg(report.plots[i])); !ok) {
       return ok;
     }
   }
@@ -194,7 +208,7 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
   report.command = options.command_line;
   const std::string json = walkJson(input, record);
   for (const Status& status :
-       {writePlots(report, options.folder), writeOutput(options.folder + "/walk.json", json),
+       {writePlots(report, options.folder), writeOutput(options.folder + "/" + kJsonFile, json),
         writeReport(report, options.folder), writeOutput(options.common.json, json)}) {
     if (!status) {
       return status;
@@ -216,10 +230,14 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   }
   const Threads threads(options.common.threads);
   CullingData data(scene, threads.parallelFor(), walk, baked);
-  Result<WalkRecord> record = Walker(scene, walk, data, *renderer, options.folder).run(settings);
+  Walker walker(scene, walk, data, *renderer, options.folder, makeRuns(settings, data));
+  const SignalGuard guard;  // told to end, the walker ends early, and what it has done is written
+  Result<WalkRecord> record = walker.run();
   if (!record) {
     return record.error();
   }
+  const std::size_t done = record->baseline().frames.size();
+  const bool interrupted = done < walk.frames.size();
   data.noteUnknownSets();
   record->width = width;
   record->height = height;
@@ -231,6 +249,12 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
     printWalk(*record);
     fmt::print("report: {}\n", (std::filesystem::path(options.folder) / "index.html").string());
   }
+  if (interrupted) {
+    fmt::print(stderr,
+               "sightline: walk was interrupted after {} of {} frames; the report in {} is of these\n", done,
+               walk.frames.size(), options.folder);
+    return static_cast<ExitCode>(interruptedExitCode());
+  }
   return record->differing() == 0 ? kOk : kCheckFailed;
 }
 
@@ -239,7 +263,15 @@ Result<ExitCode> runWalk(const WalkOptions& options) {
   if (!settings) {
     return settings.error();
   }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common, options.path, options.method.baked);
+  const std::string& baked = options.method.baked;
+  if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .inputs = walkInputs(options.common.scene, options.path, baked),
+                                    .outputs = {{"--json", options.common.json}},
+                                    .folder = {"--output", options.folder, filesOfFolder()}});
+      !ok) {
+    return ok.error();
+  }
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, baked);
   if (!input) {
     return input.error();
   }
@@ -256,12 +288,15 @@ void addWalk(CLI::App& app, Command& chosen) {
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
   addMethodOptions(*command, options->method, true);
-  command->add_option("-o,--output", options->folder, "folder of the report; made if needed")->required();
+  command->add_option("-o,--output", options->folder, "folder of the report; made if needed")
+      ->required()
+      ->type_name(kFolderType);
   addPictureOptions(*command, options->picture);
   command->footer(
       "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
       "picture, "
       "ties of the depth buffer apart.\n"
+      "Interrupted (Ctrl-C), it writes the report of the frames walked so far and ends with exit code 130.\n"
       "Examples:\n"
       "  sightline walk demo:city -o report\n"
       "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"

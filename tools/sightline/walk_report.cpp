@@ -207,11 +207,15 @@ std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk) {
 }
 
 std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& record) {
+  const std::size_t done = record.baseline().frames.size();
   std::vector<ReportFact> facts{
       {"objects", grouped(input.scene.objects.size())},
       {"triangles", grouped(input.scene.triangleCount())},
       {"potential occluders", grouped(input.data.occluders().occluders.size())},
-      {"walk", fmt::format("{}, {} frames", pathName(input.walk), input.walk.frames.size())}};
+      {"walk",
+       fmt::format(
+           "{}, {} frames{}", pathName(input.walk), input.walk.frames.size(),
+           done < input.walk.frames.size() ? fmt::format(", INTERRUPTED after the first {}", done) : "")}};
   const auto addDatabase = [&](const char* name, const CullingData::TimedDatabase* timed) {
     if (timed != nullptr) {
       facts.push_back(

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace sightline::tool {
+
+// sightline.1, in the language of man(7), from the declarations that --help prints.
+std::string manualPage(const CLI::App& app);
+
+}  // namespace sightline::tool
