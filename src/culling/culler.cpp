@@ -213,7 +213,6 @@ struct Culler::Impl {
         });
     stats.occluders = tree.stats().occluders;
     stats.tree_nodes = tree.stats().nodes;
-    stats.tree_plane_tests = tree.stats().plane_tests;
     stats.tree_dropped = tree.stats().dropped;
   }
 
@@ -519,6 +518,9 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
     impl_->testDetailObjects(view);
   }
   impl_->stats.relations = impl_->planes.stats().relations;
+  if (method == CullMethod::kOcclusionTree) {
+    impl_->stats.tree_plane_tests = impl_->tree.stats().plane_tests;
+  }
 }
 
 std::span<const ObjectId> Culler::visible() const {

@@ -31,7 +31,8 @@ struct KeptPlanes {
     entered[node.value] = false;
     const HierarchyNode& n = hierarchy.nodes[node.value];
     if (n.leaf()) {
-      for (std::uint32_t i = 0; i < hierarchy.objectsBelow(node).size(); ++i) {
+      const std::size_t entries = hierarchy.objectsBelow(node).size();
+      for (std::uint32_t i = 0; i < entries; ++i) {
         planes.forget(static_cast<std::uint32_t>(hierarchy.nodes.size()) + n.link + i);
       }
     } else {

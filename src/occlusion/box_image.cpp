@@ -1,3 +1,7 @@
+// The image of a box, cut by the planes on the path to a leaf of an occlusion tree.
+// Differs from Bittner, Havran, Slavik, CGI 1998, section 6.2 in: the paper's modified tree never splits what
+// it classifies, so a box also comes to leaves that its image does not reach.
+
 #include "occlusion/box_image.h"
 
 #include <algorithm>
@@ -57,7 +61,10 @@ void BoxImage::keepCuts(std::uint32_t count) {
 }
 
 bool BoxImage::cut(const TreeNode& node, bool front) {
-  const double width = node.tolerance == 0.0 ? 0.0 : overlapWidth(node.tolerance, reach_, *eye_, scale_);
+  // Orthographic distances are of all sizes, and an edge is drawn in by a part of its own occluder's reach
+  // alone: there each plane is taken as a seam's, whose two sides overlap.
+  const bool overlaps = node.tolerance != 0.0 || eye_->orthographic;
+  const double width = overlaps ? overlapWidth(node.tolerance, reach_, *eye_, scale_) : 0.0;
   const Plane plane{node.plane.normal, node.plane.offset + (front ? width : -width)};
   Piece piece = parts_.back().piece;
   const SplitResult split = stack_.split(piece, plane, PlaneRef{}, on_plane_scale_, 0.0);

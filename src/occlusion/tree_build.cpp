@@ -65,7 +65,7 @@ Link& TreeBuilder::at(Place place) {
 }
 
 // Follows a piece to a leaf; of a piece that is split, the part behind waits.
-void TreeBuilder::filterDown(Waiting moving, std::uint32_t volume) {
+void TreeBuilder::followToLeaf(Waiting moving, std::uint32_t volume) {
   while (at(moving.place).isNode()) {
     const auto index = static_cast<std::uint32_t>(at(moving.place).nodeIndex());
     const SplitResult split = stack_.split(moving.piece, tree_->nodes[index].plane, tree_->node_plane[index],
@@ -103,7 +103,7 @@ void TreeBuilder::filterDown(Piece piece, std::uint32_t volume) {
     const Waiting next = waiting_.back();
     waiting_.pop_back();
     stack_.corners.resize(next.corners_needed);
-    filterDown(next, volume);
+    followToLeaf(next, volume);
   }
   stack_.corners.resize(stack_size);
 }

@@ -37,7 +37,7 @@ class TreeBuilder {
   void makeFragments();
   Link& at(Place place);
   void filterDown(Piece piece, std::uint32_t volume);
-  void filterDown(Waiting piece, std::uint32_t volume);
+  void followToLeaf(Waiting piece, std::uint32_t volume);
   Link occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth);
 
   TreeData* tree_ = nullptr;

@@ -95,11 +95,12 @@ SplittingQuery::Parts SplittingQuery::partsOf(const TreeNode& node, Piece piece)
         return Parts{piece, piece};
     }
   };
-  if (node.tolerance == 0.0) {
+  const Eye& eye = tree_->volumes.eye;
+  if (node.tolerance == 0.0 && !eye.orthographic) {
     return partsIn(split(node, piece, 0.0));
   }
-  // The parts that the two sides of a seam get overlap.
-  const double width = overlapWidth(node.tolerance, reach_, tree_->volumes.eye, tree_->on_plane_scale);
+  // The parts that the two sides of a seam get overlap; for orthographic eyes see BoxImage::cut.
+  const double width = overlapWidth(node.tolerance, reach_, eye, tree_->on_plane_scale);
   const double front_from = node.repeated ? width : -width;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Corner& corner : stack_.of(piece)) {
@@ -306,7 +307,8 @@ class SeparatingAxis {
     const double c = dot(axis, center_);
     const double r = dot(abs(axis), half_);
     double low = 0.0, high = 0.0;  // of the pyramid; its apex is the eye at 0
-    const double along = dot(axis, forward_);
+    const double along =
+        dot(axis, forward_) / dot(forward_, forward_);  // forward_ is of length 1 but for rounding
     for (std::size_t i = 0; i < base_.size(); ++i) {
       const double d = dot(axis, base_[i]);
       // Orthographic: from the base back to the camera's plane.

@@ -23,7 +23,10 @@ void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
 
 Mat4 clipFromScene(const View& view) {
   Mat4 camera_from_scene;
-  const Vec3d axes[3] = {view.right, view.up, -view.forward};
+  Vec3d axes[3] = {view.right, view.up, -view.forward};
+  for (Vec3d& axis : axes) {
+    makeUnit(axis);  // not makeUsable: the picture of a left-handed view is mirrored
+  }
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       camera_from_scene(row, column) = axes[row][column];
@@ -85,15 +88,24 @@ Frustum frustumOf(const View& given) {
   return frustum;
 }
 
-double nearDistance(const View& view) {
+double nearDistance(const View& given) {
+  View view = given;
+  makeUsable(view);
   if (view.orthographic) {
     // Its eyes are as far away as one likes.
     return std::numeric_limits<double>::infinity();
   }
-  // A corner lies at forward + x right + y up, times near. Rounded up.
+  // Corners lie at forward +- x right +- y up, times near. Axes that lack a little of being perpendicular
+  // move them apart. Rounded up.
   const double y = view.tan_half_fovy;
   const double x = view.tan_half_fovy * view.aspect;
-  return view.near * std::sqrt(1.0 + x * x + y * y) * (1.0 + 0x1p-48);
+  double farthest = std::sqrt(1.0 + x * x + y * y);
+  for (const double side : {-x, x}) {
+    for (const double height : {-y, y}) {
+      farthest = std::max(farthest, length(view.forward + view.right * side + view.up * height));
+    }
+  }
+  return view.near * farthest * (1.0 + 0x1p-48);
 }
 
 View CameraPath::view(std::size_t frame, const Vec3d& scene_origin) const {

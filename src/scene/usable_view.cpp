@@ -8,15 +8,35 @@ namespace {
 
 // Axes that are this close to unit length are taken as they are: single precision is four times better.
 constexpr double kUnitSlack = 0x1p-20;
-// The cosine between two axes from which on they are not perpendicular. Below it the frustum is the one that
-// the axes span, which is what a renderer draws whose view matrix has these axes as rows.
-constexpr double kSkewCosine = 0x1p-10;
+// The cosine between two axes from which on they are not perpendicular.
+constexpr double kSkewCosine = 0x1p-20;
 
 bool isPositive(double value) {
   return std::isfinite(value) && value > 0.0;
 }
 
-// False for a vector without a direction.
+const char* projectionFault(const View& view) {
+  if (view.orthographic ? !isPositive(view.ortho_height) : !isPositive(view.tan_half_fovy)) {
+    return view.orthographic ? "View::ortho_height must be greater than 0 and finite"
+                             : "View::tan_half_fovy must be greater than 0 and finite";
+  }
+  if (!isPositive(view.aspect)) {
+    return "View::aspect (width / height) must be greater than 0 and finite";
+  }
+  if (!isPositive(view.aspect * (view.orthographic ? view.ortho_height : view.tan_half_fovy))) {
+    return "View::aspect times the height of the view must be greater than 0 and finite";
+  }
+  if (!(std::isfinite(view.near) && view.near >= 0.0)) {
+    return "View::near must be 0 or more metres and finite; to see what is behind the eye, move the eye back";
+  }
+  if (!(view.far > view.near)) {
+    return "View::far must be greater than View::near; it may be infinite";
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 bool makeUnit(Vec3d& axis) {
   const double square = dot(axis, axis);
   if (std::abs(square - 1.0) <= kUnitSlack) {
@@ -29,25 +49,6 @@ bool makeUnit(Vec3d& axis) {
   axis = normalized(axis / largest);
   return isFinite(axis) && dot(axis, axis) > 0.5;
 }
-
-const char* projectionFault(const View& view) {
-  if (view.orthographic ? !isPositive(view.ortho_height) : !isPositive(view.tan_half_fovy)) {
-    return view.orthographic ? "View::ortho_height must be greater than 0 and finite"
-                             : "View::tan_half_fovy must be greater than 0 and finite";
-  }
-  if (!isPositive(view.aspect)) {
-    return "View::aspect (width / height) must be greater than 0 and finite";
-  }
-  if (!(std::isfinite(view.near) && view.near >= 0.0)) {
-    return "View::near must be 0 or more metres and finite; to see what is behind the eye, move the eye back";
-  }
-  if (!(view.far > view.near)) {
-    return "View::far must be greater than View::near; it may be infinite";
-  }
-  return nullptr;
-}
-
-}  // namespace
 
 const char* makeUsable(View& view) {
   if (!isFinite(view.eye)) {

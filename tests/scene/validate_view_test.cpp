@@ -105,6 +105,15 @@ TEST(ValidateView, NamesTheMemberThatMakesNoView) {
     view.*vector = normalized(good.right + good.up * 0.3 - good.forward * 0.2);
     expectError(view, "perpendicular");
   }
+  View askew = good;  // by less than a tenth of a degree
+  askew.forward = normalized(good.forward + good.right * 0.0009);
+  expectError(askew, "perpendicular");
+  for (const bool orthographic : {false, true}) {
+    View endless = good;
+    endless.orthographic = orthographic;
+    endless.tan_half_fovy = endless.ortho_height = endless.aspect = 1e155;
+    expectError(endless, "View::aspect");
+  }
   View twice = good;
   twice.up = twice.right;
   expectError(twice, "perpendicular");
@@ -160,6 +169,20 @@ TEST(FrustumOfAnOddView, MeasuresNearAndFarInMetresWhateverTheLengthOfForward) {
   EXPECT_EQ(classify(frustum, Box{{-0.1f, -0.1f, -6}, {0.1f, 0.1f, -5}}, mask), FrustumSide::kInside);
   mask = kAllFrustumPlanes;
   EXPECT_EQ(classify(frustum, Box{{-0.1f, -0.1f, -0.9f}, {0.1f, 0.1f, -0.5f}}, mask), FrustumSide::kOutside);
+}
+
+TEST(ClipFromScene, TakesAxesOfOtherLengthsAsTheFrustumDoes) {
+  View view = viewAlong({0, 0, -1});
+  const Mat4 unit = clipFromScene(view);
+  view.right = view.right * 0.5;
+  view.up = view.up * 3.0;
+  view.forward = view.forward * 0.1;
+  const Mat4 scaled = clipFromScene(view);
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      EXPECT_NEAR(scaled(row, column), unit(row, column), 1e-12);
+    }
+  }
 }
 
 // Clip space's depth is what a very far plane makes it.

@@ -132,7 +132,8 @@ class Culler {
  public:
   // Views of the caller's data, which must outlive this, and which do not change without reset(). Boxes are
   // by ObjectId, and the hierarchy is of these boxes: where it is not, because it names other objects or a
-  // box lies outside the leaves that name it, cull() keeps everything (CullStats::unfit).
+  // box lies outside the leaves that name it (kd-tree: outside the box around them), cull() keeps everything
+  // (CullStats::unfit).
   //
   // sets: for kVisibilityOctree and visible_sets, used by this culler alone. Without them, where they are of
   // other boxes, and for orthographic views, everything is in the set. They are of the scene if every
