@@ -170,6 +170,12 @@ TEST(Bake, ChoosesTheDepthByTheSceneAloneAndCountsItsOccluders) {
   EXPECT_EQ(bake->occluders().inner, 60u) << "all but the plate, beneath which is nothing";
   EXPECT_EQ(bake->occluders().of_use, 20u) << "the houses";
   EXPECT_EQ(bake->occluders().largest_area, 120.0);
+  // With the same depth asked for, all cells may be divided so far: that is another plan.
+  EXPECT_LT(bake->baseDepth(), bake->settings().max_depth);
+  const Result<Bake> asked = Bake::plan(scene.view(), occluders, bake->settings());
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->settings().max_depth, bake->settings().max_depth);
+  EXPECT_NE(asked->hash(), bake->hash());
   const Result<Bake> none = Bake::plan(scene.view(), OccluderSet{}, {});
   ASSERT_TRUE(none);
   EXPECT_LT(none->settings().max_depth, bake->settings().max_depth);

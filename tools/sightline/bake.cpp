@@ -143,8 +143,6 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   if (own && world.first()) {
     Result<Checkpoint> opened = openOutputs(options);
     opened ? void(checkpoint.emplace(std::move(*opened))) : void(own = opened.error());
-    keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
-                             options.partsFile()));
   }
   if (own = agree(world, own, 0); !own) {
     return own.error();
@@ -156,6 +154,8 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   } else if (checkpoint) {
     auto known = checkpoint->begin(planned->bake.hash());
     known ? void(parts = std::move(*known)) : void(own = known.error());
+    keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
+                             options.partsFile()));
   }
   if (own = agree(world, own, planned ? planned->bake.hash() : 0); !own) {
     return own.error();
@@ -166,7 +166,8 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   }
   BakeReport report{.plan = planned->bake.hash(),
                     .occluders = planned->bake.occluders().all,
-                    .budget_chosen = options.settings.triangle_budget == 0};
+                    .budget_chosen = options.settings.triangle_budget == 0,
+                    .depth_chosen = options.settings.max_depth == BakeSettings::kChooseDepth};
   report.times.load = planned->load_us;
   report.times.plan = planned->plan_us;
   Stopwatch watch;

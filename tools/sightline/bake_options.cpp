@@ -87,9 +87,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                       kBudgetShare, kLeastBudget))
       ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max() / 2));
   command
-      .add_option("--depth", settings.max_depth,
-                  "of the octree: a cell is halved so often at most (default: 6, or deeper where cells would "
-                  "be too large for the occluders and do not become too many)")
+      .add_option(
+          "--depth", settings.max_depth,
+          "of the octree: a cell is halved so often at most (default: chosen by the scene, at least 6)")
       ->check(CLI::Range(0u, kMaxOctreeDepth));
   addDecimal(command, "--near-distance", settings.near_distance, kLeastNear, kMost,
              "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
@@ -176,6 +176,7 @@ Json settingsJson(const Bake& bake, const Vec3d& origin) {
   const Vec3d min = Vec3d(region.min) + origin, max = Vec3d(region.max) + origin;
   return {{"triangle_budget", settings.triangle_budget},
           {"depth", settings.max_depth},
+          {"base_depth", bake.baseDepth()},
           {"near_distance", settings.near_distance},
           {"region", region.empty() ? Json() : Json({min.x, min.y, min.z, max.x, max.y, max.z})},
           {"search_distance", settings.search_distance},

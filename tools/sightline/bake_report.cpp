@@ -41,6 +41,8 @@ std::string bakeText(const BakeReport& report, const std::string& name, const Si
   std::string text = fmt::format("{}: {} bytes\n", name, file.fileBytes());
   text += fmt::format("budget        {} triangles a cell{}\n", file.record().triangle_budget,
                       report.budget_chosen ? " (chosen; --triangle-budget sets it)" : "");
+  text += fmt::format("depth         {} levels{}\n", file.record().max_depth,
+                      report.depth_chosen ? " (chosen; --depth sets it)" : "");
   text += fmt::format("occluders     {} convex ones\n", report.occluders);
   text += fmt::format("parts         {}, {} of them from the checkpoint; {} processes of {} threads\n",
                       report.parts, effort.parts_before, effort.processes, effort.threads);

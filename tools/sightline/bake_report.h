@@ -20,6 +20,7 @@ struct BakeReport {
   std::uint64_t parts = 0;
   std::uint32_t occluders = 0;
   bool budget_chosen = false;  // not given by the user
+  bool depth_chosen = false;
   BakeTimes times{};
   BakeEffort effort{};
 };

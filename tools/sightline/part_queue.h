@@ -33,8 +33,8 @@ class PartQueue {
   void close();  // nothing will be added any more
   void clear();  // drops what was not taken, and closes
 
-  // The taker's own next part; where there is none the largest of another's. Waits for one. Nothing: there
-  // will be none.
+  // Takes the taker's own next part, or, where it has none, the first one of another taker, which is mostly
+  // the largest. Waits for one. Nothing: there will be none.
   std::optional<PartTask> take(std::uint32_t taker);
   // Up to so many of them, without waiting.
   std::vector<PartTask> takeNow(std::uint32_t taker, std::uint64_t most);

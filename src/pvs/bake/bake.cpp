@@ -84,17 +84,17 @@ std::optional<CellBox> regionOf(const SceneView& scene, const BakeSettings& sett
   return CellBox{Vec3d(bounds.min), Vec3d(bounds.max)};
 }
 
-// An eighth of all there is: a few rooms, a few streets.
+// An eighth of the scene's diagonal, which reaches over a few rooms or a few streets.
 double firstSearchDistance(const BakeScene& scene) {
   return scene.settings.search_distance > 0.0 ? scene.settings.search_distance : 0.125 * scene.diagonal;
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,
-                     const CellBox& region) {
+                     std::uint32_t base_depth, const CellBox& region) {
   ByteWriter bytes;
   for (const std::uint64_t number :
        {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
-        s.triangle_budget, std::uint64_t{s.max_depth}}) {
+        s.triangle_budget, std::uint64_t{s.max_depth}, std::uint64_t{base_depth}}) {
     bytes.add(number);
   }
   for (const double number :
@@ -105,7 +105,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   return sight_format::checksumOf(bytes.take());
 }
 
-// Of the region, how much lies in the cell. An axis along which the region has no extent does not count.
+// The share of the region that lies in the cell. An axis along which the region has no extent does not count.
 double shareOf(const BakeScene& scene, const OctreeCell& cell) {
   const CellBox box = scene.boxOf(cell);
   const Vec3d common = min(box.max, scene.region.max) - max(box.min, scene.region.min);
@@ -137,7 +137,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
     }
   }
   const auto data = std::make_shared<Data>(scene, occluders, settings, *region);
-  data->hash = hashOf(data->scene_id, occluders, data->scene.settings, *region);
+  data->hash = hashOf(data->scene_id, occluders, data->scene.settings, data->scene.baseDepth(), *region);
   Bake bake;
   bake.data_ = data;
   return bake;
@@ -145,6 +145,9 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
 
 const BakeSettings& Bake::settings() const {
   return data_->scene.settings;
+}
+std::uint32_t Bake::baseDepth() const {
+  return data_->scene.baseDepth();
 }
 const OccluderCounts& Bake::occluders() const {
   return data_->scene.counts;
@@ -176,7 +179,7 @@ Bake::Worker::Worker(Worker&&) noexcept = default;
 
 namespace {
 
-// Of all leaves of a part.
+// Adds the leaves of the cell, and the triangles that their sets keep, to the sums.
 void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& leaves, double& triangles) {
   for (const BakedCell& child : cell.children) {
     summarize(scene, child, leaves, triangles);

@@ -105,7 +105,7 @@ std::uint64_t cellsOfRegion(const CellBox& root, const CellBox& region, std::uin
   return count;
 }
 
-// The same, of them those within reach of the boxes; counts to the limit.
+// The number of those of these cells that meet one of the boxes; counting ends at the limit.
 std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox& region,
                         const OctreeCell& cell, std::uint32_t level, std::uint64_t limit) {
   const CellBox box{cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};

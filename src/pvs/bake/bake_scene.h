@@ -38,6 +38,8 @@ struct BakeScene {
   CellBox boxOf(const OctreeCell& cell) const {
     return {cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
   }
+  // All cells down to this level may be divided; below it, only those near occluders.
+  std::uint32_t baseDepth() const { return base_depth_; }
   // Whether the depth lets the cell be divided.
   bool mayDivide(const OctreeCell& cell) const;
   // Appends, ascending, the occluders that meet the box and are of use to cells of this level.

@@ -95,6 +95,9 @@ class Bake {
                            const BakeSettings& settings = {});
 
   const BakeSettings& settings() const;  // with the depth that was chosen
+  // Down to this level any cell may be divided; below it, down to settings().max_depth, only those near
+  // occluders.
+  std::uint32_t baseDepth() const;
   const OccluderCounts& occluders() const;
   // Says which plan it is: parts and checkpoints of one plan are of no use to another.
   std::uint64_t hash() const;
