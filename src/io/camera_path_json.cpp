@@ -21,6 +21,8 @@ constexpr std::array<std::string_view, 8> kPathKeys{"name",   "fovy_deg", "ortho
                                                     "height", "near",     "far",          "frames"};
 constexpr std::array<std::string_view, 3> kFrameKeys{"eye", "forward", "up"};
 
+constexpr std::size_t kMostUnknownKeys = 20;
+
 void noteUnknownKeys(const json& object, std::span<const std::string_view> known,
                      std::optional<std::size_t> frame, std::vector<UnknownKey>& unknown) {
   for (const auto& [key, value] : object.items()) {
@@ -30,6 +32,9 @@ void noteUnknownKeys(const json& object, std::span<const std::string_view> known
     const auto noted = std::find_if(unknown.begin(), unknown.end(), [&](const UnknownKey& other) {
       return other.key == key && other.frame.has_value() == frame.has_value();
     });
+    if (noted == unknown.end() && unknown.size() == kMostUnknownKeys) {
+      continue;
+    }
     if (noted == unknown.end()) {
       unknown.push_back({key, frame, frame ? std::size_t{1} : 0, known});
     } else {
@@ -197,9 +202,9 @@ Result<CameraPath> parseCameraPath(std::string_view text, const std::string& nam
   }
 }
 
-Result<CameraPath> readCameraPath(const std::string& file, std::vector<UnknownKey>* unknown_keys) {
+Result<CameraPath> readCameraPath(const std::string& file) {
   const Result<std::string> text = readFile(file);
-  return text ? parseCameraPath(*text, file, unknown_keys) : Result<CameraPath>(text.error());
+  return text ? parseCameraPath(*text, file) : Result<CameraPath>(text.error());
 }
 
 std::string toJson(const CameraPath& path) {

@@ -29,6 +29,17 @@ class OutputFiles : public ::testing::Test {
   const std::string path_ = folder_.write("p.json", kPath);
 };
 
+TEST_F(OutputFiles, OfFramesAreNoInputsAndNoOtherOutputs) {
+  const std::string texture = folder_.write("frame_0000.png", "not a picture");
+  folder_.write("paint.mtl", "newmtl red\nmap_Kd frame_0000.png\n");
+  const std::string folder = fs::path(scene_).parent_path().string();
+  expectKept({"walk", scene_, "--path", path_, "-o", folder});
+  EXPECT_EQ(contents(texture), "not a picture");
+  expectKept({"layers", scene_, "--path", path_, "--image", folder_.file("a.png"), "--json",
+              folder_.file("a_0001.png")},
+             "a_0001.png");
+}
+
 TEST_F(OutputFiles, AreNeverTheSceneOrThePath) {
   for (const std::string command : {"cull", "verify", "layers"}) {
     expectKept({command, scene_, "--path", path_, "--json", path_});

@@ -273,7 +273,11 @@ Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& 
 Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::uint32_t>& frames) {
   std::vector<NamedFile> outputs;
   for (const NamedFile& output : outputsOf(options)) {
-    if (output.file.empty() || output.option == "--json") {
+    if (output.file.empty()) {
+      continue;
+    }
+    if (output.option == "--json") {
+      outputs.push_back(output);  // one for all frames
       continue;
     }
     for (const std::uint32_t frame : frames) {

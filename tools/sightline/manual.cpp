@@ -21,6 +21,7 @@ std::string escaped(const std::string& text) {
     }
     result += c == '\\'  ? "\\e"
               : c == '-' ? "\\-"
+              : c == '`' ? "\\(ga"
               : c == '~' ? "\\(ti"
               : c == '^' ? "\\(ha"
                          : std::string(1, c);

@@ -58,7 +58,8 @@ void addSceneOptions(CLI::App& command, SceneOptions& options) {
   command
       .add_option("SCENE", options.scene, "a file (.glb .gltf .obj .ply .stl ...) or demo:NAME?key=value&...")
       ->required()
-      ->type_name(kFileType);
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
   addOutputOptions(command, options);
 }
 

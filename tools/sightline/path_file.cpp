@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "sightline/io/camera_path_json.h"
@@ -18,7 +19,11 @@ std::string describe(const UnknownKey& unknown) {
     where = fmt::format("frame {}{}: ", *unknown.frame,
                         unknown.frames > 1 ? fmt::format(" (and {} more)", unknown.frames - 1) : "");
   }
-  return fmt::format("{}the key \"{}\" is not known and ignored{}", where, unknown.key,
+  // A terminal obeys control characters.
+  std::string key = unknown.key;
+  std::replace_if(
+      key.begin(), key.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return fmt::format("{}the key \"{}\" is not known and ignored{}", where, key,
                      didYouMean(unknown.key, known));
 }
 

@@ -16,6 +16,7 @@
 #include "tools/sightline/bake_options.h"
 #include "tools/sightline/bake_run.h"
 #include "tools/sightline/progress_bar.h"
+#include "tools/sightline/signals.h"
 #include "tools/sightline/stopwatch.h"
 #include "tools/sightline/threads.h"
 #include "tools/sightline/walk_runs.h"
@@ -38,6 +39,7 @@ Result<SightFile> written(const BakedVisibility& baked) {
     return Error{
         fmt::format("{}: no such folder can be made; set TMPDIR to one that can be written", folder)};
   }
+  const SignalGuard guard;  // the folder is removed in any case
   const std::string name = folder + "/baked.sight";
   const Status status = writeSight(name, baked);
   Result<SightFile> file = status ? SightFile::open(name) : Result<SightFile>(status.error());

@@ -8,6 +8,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "sightline/io/file.h"
 #include "sightline/render/compare.h"
@@ -33,9 +34,19 @@ constexpr std::size_t kEverythingEvery =
 constexpr const char* kJsonFile = "walk.json";
 constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
                                                 "nodes_tested.svg"};
-std::vector<std::string> filesOfFolder() {
+// frames, runs: pictures of these frames are made, as far as they are known; one for each of so many runs
+// where they differ.
+std::vector<std::string> filesOfFolder(std::span<const std::uint32_t> frames = {}, std::size_t runs = 0) {
   std::vector<std::string> files(kPlotFiles.begin(), kPlotFiles.end());
   files.insert(files.end(), {"index.html", kJsonFile});
+  for (const std::uint32_t frame : frames) {
+    for (const char* picture : {"frame", "plan", "coverage", "depth"}) {
+      files.push_back(fmt::format("{}_{:04}.png", picture, frame));
+    }
+    for (std::size_t run = 0; run < runs; ++run) {
+      files.push_back(fmt::format("differs_{}_{:04}.png", run, frame));
+    }
+  }
   return files;
 }
 
@@ -258,22 +269,30 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   return record->differing() == 0 ? kOk : kCheckFailed;
 }
 
+Status checkFilesOf(const WalkOptions& options, const std::vector<std::string>& in_folder) {
+  return checkFiles({.scenes = {options.common.scene},
+                     .inputs = walkInputs(options.common.scene, options.path, options.method.baked),
+                     .outputs = {{"--json", options.common.json}},
+                     .folder = {"--output", options.folder, in_folder}});
+}
+
 Result<ExitCode> runWalk(const WalkOptions& options) {
   const Result<std::vector<Setting>> settings = settingsOf(options.method);
   if (!settings) {
     return settings.error();
   }
-  const std::string& baked = options.method.baked;
-  if (const Status ok = checkFiles({.scenes = {options.common.scene},
-                                    .inputs = walkInputs(options.common.scene, options.path, baked),
-                                    .outputs = {{"--json", options.common.json}},
-                                    .folder = {"--output", options.folder, filesOfFolder()}});
-      !ok) {
+  if (const Status ok = checkFilesOf(options, filesOfFolder()); !ok) {
     return ok.error();
   }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, baked);
+  const Result<SceneAndWalk> input =
+      loadSceneAndWalk(options.common.scene, options.path, options.method.baked);
   if (!input) {
     return input.error();
+  }
+  if (const Status ok =
+          checkFilesOf(options, filesOfFolder(input->walk.frames, withBaseline(*settings).size()));
+      !ok) {
+    return ok.error();
   }
   return walkScene(options, withBaseline(*settings), *input);
 }
@@ -290,7 +309,8 @@ void addWalk(CLI::App& app, Command& chosen) {
   addMethodOptions(*command, options->method, true);
   command->add_option("-o,--output", options->folder, "folder of the report; made if needed")
       ->required()
-      ->type_name(kFolderType);
+      ->type_name(kFolderType)
+      ->check(isNotEmpty());
   addPictureOptions(*command, options->picture);
   command->footer(
       "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
