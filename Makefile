@@ -15,7 +15,7 @@ cpp_files = find include src scenes oracle tools bench fuzz tests examples -name
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo                   bake and walk the built-in city and building; opens the way to the reports"
+	@echo "make demo                   walk the built-in city and building, then bake and walk them; reports with pictures"
 	@echo "make demo SCENE=path.glb    walk your own scene (CAMERA=path.json: along your own path)"
 	@echo "make test                   build, then run all tests"
 	@echo "make bench                  build, then run the benchmarks (SHORT=1: briefly)"
@@ -27,10 +27,15 @@ help:
 setup:
 	@scripts/setup
 
+# What a first picture needs is built first.
 demo: setup
 	@$(configure)
+	@echo "== building what walks through a scene (three minutes of processor time)"
+	@$(build) --target sightline_walk
+	@CAMERA="$(CAMERA)" scripts/demo first $(BUILD)/bin/sightline-walk "$(SCENE)"
+	@echo && echo "== building the rest of the tool (three minutes of processor time)"
 	@$(build) --target sightline_tool
-	@SHORT="$(SHORT)" CAMERA="$(CAMERA)" scripts/demo $(BUILD)/bin/sightline "$(SCENE)"
+	@SHORT="$(SHORT)" CAMERA="$(CAMERA)" scripts/demo all $(BUILD)/bin/sightline "$(SCENE)"
 
 # ctest comes last: its closing lines are the result.
 test: setup
@@ -40,7 +45,7 @@ test: setup
 
 bench: setup
 	@$(configure)
-	@$(build)
+	@$(build) --target benchmarks
 	@for program in $$(find $(BUILD)/bench -maxdepth 1 -type f -executable | sort); do \
 	  $$program $(if $(SHORT),--benchmark_min_time=0.05) || exit 1; \
 	done
@@ -59,8 +64,10 @@ format-check:
 	@$(cpp_files) | xargs clang-format --dry-run -Werror
 	@echo "format: as .clang-format says"
 
+# Of the preset dev, which compiles each source alone, so that clang-tidy finds how.
 tidy:
 	@scripts/setup --checks
-	@$(configure)
-	@{ find $(TIDY) -name '*.cpp' | sort | xargs -P $(JOBS) -n 1 clang-tidy --quiet $(if $(CHECKS),--checks=$(CHECKS)) -p $(BUILD); } 2> /dev/null
+	@cmake --preset dev --log-level=WARNING
+	@cmake --build build/dev --target sight_schema_header
+	@{ find $(TIDY) -name '*.cpp' | sort | xargs -P $(JOBS) -n 1 clang-tidy --quiet $(if $(CHECKS),--checks=$(CHECKS)) -p build/dev; } 2> /dev/null
 	@echo "tidy: nothing to say"

@@ -30,7 +30,8 @@ void addLayers(CLI::App& app, Command& chosen);
 // help, version, completion and manual, which tell what the others declare; so these are added last.
 void addFrontDoor(CLI::App& app, Command& chosen);
 
-// What `sightline --help` prints.
-std::string overview(const CLI::App& app);
+// Those that this program has: all (all_commands.cpp), or walk alone (walk_command.cpp), which is built in a
+// few minutes.
+void addCommands(CLI::App& app, Command& chosen);
 
 }  // namespace sightline::tool

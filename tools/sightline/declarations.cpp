@@ -54,4 +54,8 @@ std::string typeOf(const CLI::Option& option) {
   return type.substr(0, type.find(':'));
 }
 
+std::string overview(const CLI::App& app) {
+  return app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
+}
+
 }  // namespace sightline::tool

@@ -12,6 +12,9 @@ class Option;
 
 namespace sightline::tool {
 
+// What `sightline --help` prints.
+std::string overview(const CLI::App& app);
+
 // The commands that --help lists, in its order.
 std::vector<const CLI::App*> listedCommands(const CLI::App& app);
 std::vector<std::string> commandNames(const CLI::App& app);

@@ -73,8 +73,4 @@ void addFrontDoor(CLI::App& app, Command& chosen) {
   addHelp(app, chosen);
 }
 
-std::string overview(const CLI::App& app) {
-  return app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
-}
-
 }  // namespace sightline::tool

@@ -69,15 +69,7 @@ int run(int argc, char** argv) {
       "(SIGTERM).\n"
       "sightline help COMMAND, or COMMAND --help, shows a command's options and examples.");
   Command chosen;
-  addInfo(app, chosen);
-  addWalk(app, chosen);
-  addCull(app, chosen);
-  addVerify(app, chosen);
-  addReproduce(app, chosen);
-  addBake(app, chosen);
-  addQuery(app, chosen);
-  addLayers(app, chosen);
-  addFrontDoor(app, chosen);
+  addCommands(app, chosen);
   if (argc < 2) {
     fmt::print("{}", overview(app));
     return kOk;
