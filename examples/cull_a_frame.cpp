@@ -32,16 +32,15 @@ int main() {
     bounds.push_back(object.bounds);
   }
 
-  // Once a scene: a hierarchy over the objects, and what can hide them.
-  const Hierarchy hierarchy = buildHierarchy(bounds, {});
-  const OccluderSet occluders = findOccluders(scene.view());
-  Culler culler(hierarchy, bounds, occluders);
-
-  // Every frame: from a view to the objects that may be seen.
   View view;
   view.eye = {0, 1.7, 0};
   setOrientation(view, /*forward=*/{0, 0, -1}, /*up_hint=*/{0, 1, 0});
-  culler.cull(view);
+
+  // A hierarchy over the objects, and what can hide them; then from views to the objects that may be seen.
+  const Hierarchy hierarchy = buildHierarchy(bounds, {});  // once a scene
+  const OccluderSet occluders = findOccluders(scene.view());
+  Culler culler(hierarchy, bounds, occluders);
+  culler.cull(view);  // every frame
   for (ObjectId id : culler.visible()) {
     std::printf("visible: %u\n", id.value);
   }
