@@ -147,7 +147,8 @@ TEST(VisibilityOctreeCulling, WithoutASetIsFrustumCulling) {
   }
 }
 
-// Of as many objects with the same ids: everything is in the set, as without one.
+// Sets of another scene with as many objects and the same ids are not used: everything is in the set, as
+// without one.
 TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
   const std::vector<Box>& own = smallCity().bounds;
   std::vector<Box> moved = own, one_off = own, exchanged = own;

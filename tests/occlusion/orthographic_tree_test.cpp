@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 
 constexpr OcclusionTreeVariant kFourVariants[] = {OcclusionTreeVariant::kFSE, OcclusionTreeVariant::kFSC,
-                                              OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
+                                                  OcclusionTreeVariant::kFME, OcclusionTreeVariant::kFMC};
 
 View parallelView(double height) {
   View view = viewFrom({0, 0, 0}, {0, 0, -1});

@@ -13,7 +13,7 @@ namespace {
 
 using test::all, test::kLookingBack, test::lookAt, test::OraclePolygon, test::setOf, test::wall;
 
-// What it takes to try both structures in the same way.
+// Lets a test try both structures in the same way.
 struct Tree {
   OcclusionTree structure;
   explicit Tree(OcclusionTreeVariant variant) : structure({.variant = variant}) {}

@@ -70,7 +70,7 @@ Scene streetScene(float plate) {
   return sceneOf(solids);
 }
 
-// Of all objects, the part that the set of a viewer there keeps.
+// The share of all objects that the set of a viewer there keeps.
 double keptAt(const BakedVisibility& baked, const Vec3d& eye) {
   double kept = 0.0;
   forEachLeaf(baked.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {

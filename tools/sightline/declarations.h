@@ -27,7 +27,7 @@ std::vector<std::string> spellings(const CLI::Option& option);
 std::vector<std::string> allSpellings(const CLI::App& command);
 
 bool isFlag(const CLI::Option& option);  // takes no value
-// What it takes: kFileType, kFolderType, "TEXT", "UINT", "FLOAT".
+// The type of value that the option takes: kFileType, kFolderType, "TEXT", "UINT", "FLOAT".
 std::string typeOf(const CLI::Option& option);
 
 }  // namespace sightline::tool

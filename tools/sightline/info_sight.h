@@ -53,7 +53,7 @@ std::string factsText(const SightFacts& facts);  // lines as `info` prints them
 // Where the baked scene's origin lies in world space. Files that do not say have it at zero.
 Vec3d originOf(const BakeRecord& record);
 
-// Of the convex occluders that were considered, as the record says it.
+// What the record says about the convex occluders that were considered.
 struct OccluderFacts {
   bool none = false;          // but for the floor, ceiling and outer walls of the viewers' region
   bool none_of_use = false;   // none of the others is large enough for the smallest cells

@@ -35,7 +35,7 @@ struct OcclusionTreeStats {
   std::uint32_t dropped = 0;    // left out for want of nodes
   std::uint32_t nodes = 0, leaves = 0;  // inner nodes, leaves in shadow
   std::uint32_t depth = 0;              // nodes on a path, at most 1,500
-  // Of all boxes classified since the tree was built: comparisons of a box or of a part of its faces with a
+  // Counted over all boxes classified since build(): comparisons of a box or of a part of its faces with a
   // plane, and cuts of such parts or of the box's image.
   std::uint64_t plane_tests = 0, cuts = 0;
 };

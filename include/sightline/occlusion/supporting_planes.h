@@ -36,7 +36,7 @@ struct SupportingPlanesSettings {
   TangentSearch tangent_search = TangentSearch::kTables;
 };
 
-// Of one frame, since build(), but for `kept` and `bytes`.
+// Counts since build(), that is of one frame; `kept` and `bytes` are of all that is kept.
 struct RelationStats {
   std::uint32_t reused = 0;     // looked at again with the planes of an earlier frame
   std::uint32_t unchanged = 0;  // of these: the eye had not come far enough for a sign to change

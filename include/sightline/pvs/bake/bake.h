@@ -21,8 +21,8 @@ namespace sightline {
 
 struct BakeSettings {
   std::uint64_t triangle_budget = 0;  // a cell with so few is not divided (the target frame rate)
-  // Of the octree (the memory): at most kMaxOctreeDepth, or kChooseDepth for one that suits the sizes of the
-  // region and of the occluders.
+  // How often a cell of the octree is halved, which decides on memory: at most kMaxOctreeDepth, or
+  // kChooseDepth for one that suits the sizes of the region and of the occluders.
   static constexpr std::uint32_t kChooseDepth = 0xffffffffu;
   std::uint32_t max_depth = kChooseDepth;
   // The farthest from a viewer's eye that its near plane clips, metres (nearDistance): what occluders hide
