@@ -25,7 +25,8 @@ constexpr std::size_t kMostUnknownKeys = 20;
 
 void noteUnknownKeys(const json& object, std::span<const std::string_view> known,
                      std::optional<std::size_t> frame, std::vector<UnknownKey>& unknown) {
-  for (const auto& [key, value] : object.items()) {
+  for (const auto& item : object.items()) {
+    const std::string& key = item.key();
     if (std::find(known.begin(), known.end(), key) != known.end()) {
       continue;
     }
