@@ -99,6 +99,7 @@ TEST(FrontDoor, TheManualTellsAllAndRendersWithoutWarnings) {
     EXPECT_NE(manual.out.find(word), std::string::npos) << word;
   }
   std::string output;
+  // Only groff can judge the page; scripts/setup installs it, but not where packages are provided otherwise.
   if (run("command -v groff", output) != 0) {
     GTEST_SKIP() << "groff is not there to render the manual";
   }
@@ -127,6 +128,7 @@ std::vector<std::string> completed(const std::vector<std::string>& words) {
 
 TEST(FrontDoor, BashCompletesCommandsOptionsWordsAndFiles) {
   std::string ignored;
+  // The script is for bash alone, and some builds of bash leave out its programmable completion.
   if (run("bash -c 'type compgen mapfile'", ignored) != 0) {
     GTEST_SKIP() << "bash with its completion is not there";
   }

@@ -269,7 +269,7 @@ Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& 
   return checkFiles({.scenes = {options.common.scene}, .inputs = inputs, .outputs = outputs});
 }
 
-// Of several frames each file has a name of its own, known when the path is.
+// Checks the files of each frame, whose names are known once the camera path has been read.
 Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::uint32_t>& frames) {
   std::vector<NamedFile> outputs;
   for (const NamedFile& output : outputsOf(options)) {
