@@ -44,20 +44,25 @@ TEST(QhullCandidates, PointsInAPlaneHaveNone) {
 }
 
 #if defined(__unix__) || defined(__APPLE__)
-// A server that has no descriptor left, and a changed root without devices.
+// A server may have no descriptor left, and a changed root directory has no devices.
 TEST(QhullCandidates, NoFileNeedBeOpened) {
   rlimit limit{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
   rlimit none = limit;
   none.rlim_cur = 0;
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  // Some containers forbid the change, and some accept it without limiting anything.
+  if (setrlimit(RLIMIT_NOFILE, &none) != 0) {
+    GTEST_SKIP() << "the system does not let a process limit its open files";
+  }
   const bool opens = std::ifstream("/").is_open();
   const std::vector<std::uint32_t> solid = qhullCandidates(cubeWithPointsInside(2), {});
   const std::vector<std::uint32_t> flat = qhullCandidates(shapes::flatPolygon(8), {});
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
-  EXPECT_FALSE(opens);
+  const bool restored = setrlimit(RLIMIT_NOFILE, &limit) == 0;
   EXPECT_EQ(solid, numbersBelow(8));
   EXPECT_TRUE(flat.empty());
+  if (opens || !restored) {
+    GTEST_SKIP() << "the system does not hold the limit of open files that a process sets";
+  }
 }
 #endif
 
