@@ -1,8 +1,8 @@
 // What does a hidden-line drawing cost, and how large is its file? In the same run, of the same view, with
 // the same lines:
 //
-//   painter    Draughtsman::paint: sort, outlines filled back to front, whole strokes
-//   plot       Draughtsman::plot: sort with all arcs, visible pieces
+//   painter    HiddenLineRenderer::paint: sort, outlines filled back to front, whole strokes
+//   plot       HiddenLineRenderer::plot: sort with all arcs, visible pieces
 //   gl2ps      its BSP tree (GL2PS_BEST_ROOT) of all triangles and lines, which splits what crosses; far ones
 //              first
 //   culled     the same with its occlusion culling (GL2PS_OCCLUSION_CULL), which leaves out what is hidden
@@ -43,7 +43,7 @@ using namespace sightline::bench;
 
 constexpr int kHeight = 720;
 constexpr float kDepthRange = 1000.0f;  // what gl2ps makes of OpenGL's 0 to 1
-constexpr rlim_t kMostMemory = rlim_t{8} << 30;
+constexpr rlim_t kMaxMemory = rlim_t{8} << 30;
 
 struct Limits {
   rlim_t seconds = 120;
@@ -88,7 +88,7 @@ LayerSorter sorterOf(const Scene& scene, bool all_arcs) {
 
 // The first sort of a view, not one from the frame before, with hulls and edges made before.
 Measured measureOurs(const Scene& scene, const View& view, bool plot) {
-  Draughtsman draughtsman(scene.view());
+  HiddenLineRenderer renderer(scene.view());
   LayerSorter sorter = sorterOf(scene, plot);
   Drawing drawing;
   Measured result;
@@ -96,8 +96,8 @@ Measured measureOurs(const Scene& scene, const View& view, bool plot) {
   result.time_us = microseconds([&] {
     const LayerOrder& order = sorter.update(view);
     const DrawingSettings settings{.page_height = kHeight};
-    drawing = plot ? draughtsman.plot(scene.view(), scene.object_names, view, order, settings)
-                   : draughtsman.paint(scene.view(), scene.object_names, view, order, settings);
+    drawing = plot ? renderer.plot(scene.view(), scene.object_names, view, order, settings)
+                   : renderer.paint(scene.view(), scene.object_names, view, order, settings);
     svg = toSvg(drawing);
   });
   result.svg_bytes = static_cast<double>(svg.size());
@@ -272,7 +272,7 @@ std::optional<double> limitedGl2ps(std::vector<Primitive>& primitives, const Vie
   }
   const pid_t child = fork();
   if (child == 0) {
-    const rlimit cpu{limits.seconds, limits.seconds}, memory{kMostMemory, kMostMemory}, core{0, 0},
+    const rlimit cpu{limits.seconds, limits.seconds}, memory{kMaxMemory, kMaxMemory}, core{0, 0},
         stack{rlim_t{1} << 30, rlim_t{1} << 30};
     setrlimit(RLIMIT_CPU, &cpu);
     setrlimit(RLIMIT_AS, &memory);
@@ -316,7 +316,7 @@ void print(const char* method, const std::optional<Measured>& result, const Limi
     fmt::print("  {:<10}{:12.1f}{:12.1f}{:12.1f}{:10.0f}\n", method, result->time_us / 1000.0,
                result->svg_bytes / 1000.0, result->pdf_bytes / 1000.0, result->strokes);
   } else {
-    fmt::print("  {:<10}not finished within {} s and {} GiB\n", method, limits.seconds, kMostMemory >> 30);
+    fmt::print("  {:<10}not finished within {} s and {} GiB\n", method, limits.seconds, kMaxMemory >> 30);
   }
   std::fflush(stdout);
 }

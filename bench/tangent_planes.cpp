@@ -24,8 +24,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Lanes are the planes of vertices. `low`, `high`: bit v: all vertices are on that side of the plane of v.
-geometry_detail::BoxTangents tangentsOfVectors(const Vec3d& box_min, const Vec3d& box_max,
-                                               const Vec3d& direction) {
+geometry::BoxTangents tangentsOfVectors(const Vec3d& box_min, const Vec3d& box_max, const Vec3d& direction) {
   const hn::CappedTag<double, 8> d;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN const double xs[8] = {box_min.x, box_max.x, box_min.x, box_max.x,
@@ -87,8 +86,8 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::tangent_bench {
 namespace {
 
-using geometry_detail::BoxTangents;
-using geometry_detail::cornerOf;
+using geometry::BoxTangents;
+using geometry::cornerOf;
 
 HWY_EXPORT(tangentsOfVectors);
 
@@ -223,7 +222,7 @@ void compare(benchmark::State& state, const auto& run, Find method) {
   std::vector<double> method_s, tables_s;
   for ([[maybe_unused]] auto _ : state) {
     method_s.push_back(seconds([&] { run(method); }));
-    tables_s.push_back(seconds([&] { run(geometry_detail::tangentsByTables); }));
+    tables_s.push_back(seconds([&] { run(geometry::tangentsByTables); }));
     state.SetIterationTime(method_s.back());
   }
   state.counters["ns"] = median(method_s) * 1e9 / static_cast<double>(kCount);
@@ -281,8 +280,8 @@ int main(int argc, char** argv) {
   const struct {
     const char* name;
     Find find;
-  } methods[] = {{"tables", geometry_detail::tangentsByTables},
-                 {"vertices", geometry_detail::tangentsOfAllVertices},
+  } methods[] = {{"tables", geometry::tangentsByTables},
+                 {"vertices", geometry::tangentsOfAllVertices},
                  {"extremes", tangentsOfExtremes},
                  {"vertices_simd", tangentsInLanes}};
   for (const auto& method : methods) {

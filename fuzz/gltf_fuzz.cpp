@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "io/gltf.h"
+#include "src/io/gltf/gltf.h"
 
 namespace {
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "pvs/format/set_code.h"
-#include "pvs/format/sight_view.h"
 #include "sightline/pvs/query/set_query.h"
 #include "sightline/pvs/query/sight_file.h"
+#include "src/pvs/format/set_code.h"
+#include "src/pvs/format/sight_view.h"
 
 namespace {
 
@@ -144,9 +144,9 @@ std::vector<BoxNode> treeOfSets() {
 
 void decode(std::span<const std::byte> bytes) {
   static const std::vector<BoxNode> tree = treeOfSets();
-  static const std::vector<std::uint32_t> ends = sight_format::endsOf(tree);
+  static const std::vector<std::uint32_t> ends = pvs::endsOf(tree);
   std::vector<std::uint32_t> nodes;
-  if (sight_format::decodeSet(bytes, ends, nodes)) {
+  if (pvs::decodeSet(bytes, ends, nodes)) {
     checkNodes(nodes, {tree, {}});
   } else {
     require(nodes.empty());
@@ -163,7 +163,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   open(bytes);
   Bytes sealed(bytes.begin(), bytes.end());
-  sight_format::seal(sealed);
+  pvs::seal(sealed);
   open(sealed);
   return 0;
 }

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 
-#include "pvs/bake/encode_sight.h"
-#include "pvs/format/set_code.h"
+#include "src/pvs/bake/encode_sight.h"
+#include "src/pvs/format/set_code.h"
 #include "tests/support/made_visibility.h"
 
 namespace {
@@ -25,7 +25,7 @@ bool write(const std::string& file, const std::vector<std::byte>& bytes) {
 }
 
 bool writeFile(const std::string& file, const made::Visibility& settings) {
-  const auto bytes = sight_bake::encodeSight(made::visibility(settings));
+  const auto bytes = pvs::encodeSight(made::visibility(settings));
   return bytes && write(file, *bytes);
 }
 
@@ -35,7 +35,7 @@ bool writeSet(const std::string& file, const std::vector<std::uint32_t>& nodes) 
     leaves[i].end = i + 1;
   }
   std::vector<std::byte> bytes;
-  sight_format::appendSet(bytes, nodes, leaves);
+  pvs::appendSet(bytes, nodes, leaves);
   return write(file, bytes);
 }
 

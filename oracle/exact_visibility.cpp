@@ -26,7 +26,7 @@ std::uint64_t packHit(std::uint32_t pixel, float t) {
   return (static_cast<std::uint64_t>(pixel) << 32) | std::bit_cast<std::uint32_t>(std::max(t, 0.0f));
 }
 
-void storeLeast(std::atomic<std::uint64_t>& least, std::uint64_t value) {
+void storeMin(std::atomic<std::uint64_t>& least, std::uint64_t value) {
   std::uint64_t known = least.load(std::memory_order_relaxed);
   while (value < known && !least.compare_exchange_weak(known, value, std::memory_order_relaxed)) {
   }
@@ -116,7 +116,7 @@ std::vector<Witness> ExactVisibility::visibleThroughPixels(const View& view, std
     impl_->traceRows(view, width, height, begin, end,
                      [&](std::uint32_t pixel, const RayScene::Batch&, const std::vector<RayHit>& hits) {
                        for (const RayHit& hit : hits) {
-                         storeLeast(first_hit[hit.object.value], packHit(pixel + hit.ray, hit.t));
+                         storeMin(first_hit[hit.object.value], packHit(pixel + hit.ray, hit.t));
                        }
                      });
   });

@@ -19,11 +19,11 @@ Wide3 cross(const Wide3& a, const Wide3& b) {
 Wide dot(const Wide3& a, const Wide3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-Wide magnitude(Wide a) {
+Wide l1Norm(Wide a) {
   return a < 0 ? -a : a;
 }
-Wide maxMagnitude(const Wide3& a) {
-  const Wide x = magnitude(a.x), y = magnitude(a.y), z = magnitude(a.z);
+Wide maxNorm(const Wide3& a) {
+  const Wide x = l1Norm(a.x), y = l1Norm(a.y), z = l1Norm(a.z);
   return x > y ? (x > z ? x : z) : (y > z ? y : z);
 }
 Wide3 wide(const Vec3f& p) {
@@ -33,7 +33,7 @@ Wide3 wide(const Vec3f& p) {
 // Sign of dot(d, cross(p, q)); 0 within rounding.
 int signOfVolume(const Wide3& d, const Wide3& p, const Wide3& q) {
   const Wide volume = dot(d, cross(p, q));
-  const Wide bound = Wide(kWideError) * 6 * maxMagnitude(d) * maxMagnitude(p) * maxMagnitude(q);
+  const Wide bound = Wide(kWideError) * 6 * maxNorm(d) * maxNorm(p) * maxNorm(q);
   return volume > bound ? 1 : volume < -bound ? -1 : 0;
 }
 
@@ -96,8 +96,7 @@ std::optional<Wide> WideRay::intersect(const Vec3f& a, const Vec3f& b, const Vec
   }
   const Wide3 normal = cross(wide(b) - wide(a), wide(c) - wide(a));
   const Wide slope = dot(normal, d);  // negative: the front is met
-  if (magnitude(slope) <= Wide(kWideError) * 3 * maxMagnitude(normal) * maxMagnitude(d) ||
-      (slope > 0 && !both_sides)) {
+  if (l1Norm(slope) <= Wide(kWideError) * 3 * maxNorm(normal) * maxNorm(d) || (slope > 0 && !both_sides)) {
     return std::nullopt;
   }
   return dot(normal, p[0]) / slope;

@@ -12,7 +12,7 @@
 #include "scenes/walk.h"
 
 namespace sightline {
-namespace procedural {
+namespace scenes {
 namespace {
 
 // Metres. A block's origin is its south-west corner; the streets south and west of it are its own.
@@ -199,10 +199,10 @@ CameraPath views(const BoxGrid& grid, std::uint32_t seed) {
 }
 
 }  // namespace
-}  // namespace procedural
+}  // namespace scenes
 
 Scene makeBoxCity(const BoxCityOptions& options) {
-  using namespace procedural;
+  using namespace scenes;
   Scene scene;
   scene.materials = palette();
   const BoxGrid grid(options.buildings);

@@ -5,7 +5,7 @@
 #include "scenes/procedural.h"
 
 namespace sightline {
-namespace procedural {
+namespace scenes {
 namespace {
 
 // Where a plant may stand: x and y in the placement.
@@ -67,10 +67,10 @@ void addPlants(MeshBuilder& mesh, const std::vector<PlantSpot>& spots, std::uint
 }
 
 }  // namespace
-}  // namespace procedural
+}  // namespace scenes
 
 Scene makeBuilding(const BuildingOptions& options) {
-  using namespace procedural;
+  using namespace scenes;
   Scene scene;
   scene.materials = buildingMaterials();
   const BuildingPlan plan = planBuilding(options.floors, options.seed);

@@ -15,7 +15,7 @@
 #include "scenes/placement.h"
 #include "scenes/random.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 inline constexpr double kWallThickness = 0.25, kHalfWall = 0.125;
 inline constexpr double kStorey = 3.25, kSlab = 0.25;
@@ -109,4 +109,4 @@ void addStairs(MeshBuilder& mesh, const BuildingPlan& plan);
 Rectangle furnish(MeshBuilder& mesh, const Room& room, Random random);
 CameraPath buildingWalk(const BuildingPlan& plan);
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -3,7 +3,7 @@
 
 #include "scenes/building_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 BuildingPlan planBuilding(std::uint32_t floors, std::uint32_t seed) {
   BuildingPlan plan;
@@ -93,4 +93,4 @@ std::vector<Material> buildingMaterials() {
   };
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -3,7 +3,7 @@
 #include "scenes/building_parts.h"
 #include "scenes/furniture.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 struct Arrangement {
@@ -115,4 +115,4 @@ Rectangle furnish(MeshBuilder& mesh, const Room& room, Random random) {
   return free;
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -3,7 +3,7 @@
 #include "scenes/building_parts.h"
 #include "scenes/stairs.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr std::uint32_t kRisers = 10;  // of one flight
@@ -52,4 +52,4 @@ void addStairs(MeshBuilder& mesh, const BuildingPlan& plan) {
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

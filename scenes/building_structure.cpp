@@ -4,7 +4,7 @@
 
 #include "scenes/building_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr double kWindowSill = 0.875, kWindowHeight = 1.5, kWindowWidth = 1.375;
@@ -27,7 +27,7 @@ struct Wall {
   bool outer = false;
   std::vector<Rectangle> openings;  // x along the wall from a, y above the floor
 
-  double length() const { return procedural::length(b - a); }
+  double length() const { return scenes::length(b - a); }
 };
 
 void addWall(const Context& at, const Wall& wall) {
@@ -233,4 +233,4 @@ void addStructure(MeshBuilder& mesh, const BuildingPlan& plan, Random random) {
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

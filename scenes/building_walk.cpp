@@ -3,7 +3,7 @@
 #include "scenes/building_parts.h"
 #include "scenes/walk.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr double kEyeHeight = 1.7;
@@ -76,8 +76,8 @@ CameraPath buildingWalk(const BuildingPlan& plan) {
   } else {
     route.visit(rooms[3]);
   }
-  const WalkOptions options{.name = "smooth", .look_ahead = 1.2, .calm = 2, .most_turn = 0.04, .far = 200.0};
+  const WalkOptions options{.name = "smooth", .look_ahead = 1.2, .calm = 2, .max_turn = 0.04, .far = 200.0};
   return walkAlong(roundedRoute(route.corners(), 0.6), options);
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -17,7 +17,7 @@
 #include "sightline/layers/pre_split.h"
 
 namespace sightline {
-namespace procedural::canyon {
+namespace scenes::canyon {
 namespace {
 
 constexpr std::uint32_t kAircraftCount = 6;
@@ -189,11 +189,11 @@ std::vector<Material> materials() {
 }
 
 }  // namespace
-}  // namespace procedural::canyon
+}  // namespace scenes::canyon
 
 MovingScene makeCanyon(const CanyonOptions& options) {
-  using namespace procedural;
-  using namespace procedural::canyon;
+  using namespace scenes;
+  using namespace scenes::canyon;
   MovingScene scene;
   scene.classes = {"aircraft", "terrain", "sky"};
   scene.scene.materials = materials();

@@ -10,7 +10,7 @@
 #include "scenes/canyon_parts.h"
 #include "scenes/moving_parts.h"
 
-namespace sightline::procedural::canyon {
+namespace sightline::scenes::canyon {
 namespace {
 
 constexpr double kUnderBody = -1.0005, kOverBody = 1.0005;  // heights of planes, metres
@@ -155,4 +155,4 @@ Vec3d hingePoint() {
   return worldFromPlan({kHingeX, 0.0, kHingeHeight});
 }
 
-}  // namespace sightline::procedural::canyon
+}  // namespace sightline::scenes::canyon

@@ -11,7 +11,7 @@
 #include "scenes/moving_scene.h"
 #include "scenes/placement.h"
 
-namespace sightline::procedural::canyon {
+namespace sightline::scenes::canyon {
 
 inline constexpr double kSize = 720.0;  // side of the terrain, which lies round the origin; metres
 
@@ -37,4 +37,4 @@ std::vector<MovingPlane> aircraftPlanes();
 // Where the hinge's axis is in the aircraft's space.
 Vec3d hingePoint();
 
-}  // namespace sightline::procedural::canyon
+}  // namespace sightline::scenes::canyon

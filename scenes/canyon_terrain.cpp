@@ -9,7 +9,7 @@
 #include "scenes/moving_parts.h"
 #include "scenes/random.h"
 
-namespace sightline::procedural::canyon {
+namespace sightline::scenes::canyon {
 namespace {
 
 constexpr std::uint32_t kQuads = 36;  // along each side
@@ -85,4 +85,4 @@ Scene terrainMesh(std::uint32_t seed) {
   });
 }
 
-}  // namespace sightline::procedural::canyon
+}  // namespace sightline::scenes::canyon

@@ -6,7 +6,7 @@
 #include "scenes/procedural.h"
 
 namespace sightline {
-namespace procedural {
+namespace scenes {
 namespace {
 
 CityPlan planCity(const CityOptions& options) {
@@ -37,10 +37,10 @@ void addSurroundings(MeshBuilder& mesh, const CityPlan& plan) {
 }
 
 }  // namespace
-}  // namespace procedural
+}  // namespace scenes
 
 Scene makeCity(const CityOptions& options) {
-  using namespace procedural;
+  using namespace scenes;
   Scene scene;
   scene.materials = cityMaterials();
   const CityPlan plan = planCity(options);

@@ -2,7 +2,7 @@
 
 #include "scenes/city_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr double kGroundStorey = 4.0;  // of passages and arcades
@@ -189,4 +189,4 @@ std::vector<CityBuilding> planBlock(BlockKind kind, const Placement& block, Rand
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -6,7 +6,7 @@
 
 #include "scenes/city_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr double kPaneWidth = 1.3, kPaneHeight = 1.5, kSillHeight = 0.85;
@@ -253,4 +253,4 @@ void addBuilding(MeshBuilder& mesh, const CityBuilding& building, double spacing
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

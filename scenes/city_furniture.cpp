@@ -5,7 +5,7 @@
 
 #include "scenes/city_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 void addTree(MeshBuilder& mesh, Random& random, const std::string& name) {
@@ -130,4 +130,4 @@ void addFurniture(MeshBuilder& mesh, Furniture what, const Placement& placement,
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -2,7 +2,7 @@
 
 #include "scenes/city_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 std::vector<Material> cityMaterials() {
   constexpr Opacity kOpaque = Opacity::kOpaque;
@@ -42,4 +42,4 @@ std::vector<Material> cityMaterials() {
   return materials;
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -10,7 +10,7 @@
 #include "scenes/placement.h"
 #include "scenes/random.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 // One copy is a square quarter. Streets run along its borders (half of each is the neighbour's), lanes cross
 // in its middle; the four blocks between them are raised by a kerb.
@@ -142,4 +142,4 @@ struct CityPlan {
 };
 std::vector<CameraPath> cityWalks(const CityPlan& plan);
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 // Something of the street that may stand here.
@@ -217,4 +217,4 @@ void addQuarter(MeshBuilder& mesh, QuarterPlan plan) {
   addSlots(mesh, plan, plan.random, start_count);
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -6,7 +6,7 @@
 
 #include "scenes/city_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 struct QuarterPlan {
   Placement corner;                      // south-west, on the road
@@ -22,4 +22,4 @@ Point2 blockCorner(std::uint32_t block);  // within the quarter
 Placement blockPlacement(const QuarterPlan& plan, std::uint32_t block);
 void addQuarter(MeshBuilder& mesh, QuarterPlan plan);
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

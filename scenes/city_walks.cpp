@@ -3,7 +3,7 @@
 #include "scenes/city_parts.h"
 #include "scenes/walk.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr double kEyeHeight = 1.7;
@@ -64,4 +64,4 @@ std::vector<CameraPath> cityWalks(const CityPlan& plan) {
   return {smoothWalk(plan), bestWalk(plan), averageWalk(plan), worstWalk(plan)};
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -5,7 +5,7 @@
 
 #include "scenes/building_parts.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 struct BoxShape {
@@ -190,4 +190,4 @@ void addPiece(MeshBuilder& mesh, Piece piece, const Placement& at, Random& rando
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -9,7 +9,7 @@
 #include "scenes/mesh_builder.h"
 #include "scenes/random.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 enum class Piece : std::uint8_t {
   kDesk,   // with a screen and drawers
@@ -30,4 +30,4 @@ enum class Piece : std::uint8_t {
 void addPiece(MeshBuilder& mesh, Piece piece, const Placement& placement, Random& random,
               const std::string& name);
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -8,7 +8,7 @@
 #include "scenes/random.h"
 
 namespace sightline {
-namespace procedural {
+namespace scenes {
 namespace {
 
 constexpr double kAbove = 0.004;  // metres between what stands and what it stands on: they do not touch
@@ -224,20 +224,20 @@ CameraPath walkAlongHall(double east) {
 }
 
 }  // namespace
-}  // namespace procedural
+}  // namespace scenes
 
 Scene makeGlass(const GlassOptions& options) {
   Scene scene;
-  scene.materials = procedural::materials();
+  scene.materials = scenes::materials();
   double east = 0.0;
   {
-    procedural::Hall hall(scene, options);
+    scenes::Hall hall(scene, options);
     hall.build();
     east = hall.east();
   }
   weldPositions(scene);
   updateBounds(scene);
-  scene.paths = {procedural::walkAlongHall(east)};
+  scene.paths = {scenes::walkAlongHall(east)};
   return scene;
 }
 

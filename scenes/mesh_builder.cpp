@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 bool insideTriangle(Point2 p, Point2 a, Point2 b, Point2 c) {
@@ -269,4 +269,4 @@ void MeshBuilder::ridgeRoof(const Rectangle& area, double z0, double rise, doubl
   quad(d, c, b, a);
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -12,7 +12,7 @@
 #include "scenes/placement.h"
 #include "sightline/scene/scene.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 // The faces of a box, or of an extruded figure: bottom and top are its two ends along z.
 enum Faces : std::uint32_t {
@@ -80,4 +80,4 @@ class MeshBuilder {
   Placement placement_;
 };
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 Scene buildPartMesh(const std::function<void(MeshBuilder&)>& build) {
   Scene mesh;
@@ -61,4 +61,4 @@ Mat4 rigid(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin) 
   return m;
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -9,7 +9,7 @@
 #include "scenes/mesh_builder.h"
 #include "scenes/moving_scene.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 // What `build` makes, in one object: a part's mesh, in the part's own space (Y up; the builder's is plan
 // space).
@@ -26,4 +26,4 @@ void addMovingPart(MovingScene& scene, MovingPart part, const Scene& mesh, const
 // Columns x, y, z and then the origin.
 Mat4 rigid(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin);
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

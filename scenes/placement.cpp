@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 Point2 unitVector(double turns) {
   // Whole quarters are turned exactly; the rest, at most an eighth of a turn, by Taylor series to the last
@@ -29,4 +29,4 @@ Point2 unitVector(double turns) {
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -7,7 +7,7 @@
 
 #include "sightline/math/vec3.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 // A point of a plan, or of any other flat figure.
 struct Point2 {
@@ -57,4 +57,4 @@ struct Placement {
   }
 };
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

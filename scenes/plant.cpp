@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 constexpr std::uint32_t kStems = 5, kLeaves = 61;
@@ -76,4 +76,4 @@ void addPlant(MeshBuilder& mesh, const Placement& placement, Random random) {
   }
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -3,7 +3,7 @@
 #include "scenes/mesh_builder.h"
 #include "scenes/random.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 inline constexpr std::uint32_t kPlantTriangles = 644;
 inline constexpr double kPlantRadius = 0.42;  // nothing of a plant is farther from its axis, metres
@@ -12,4 +12,4 @@ inline constexpr double kPlantRadius = 0.42;  // nothing of a plant is farther f
 // sheets: the object's material is to be double-sided.
 void addPlant(MeshBuilder& mesh, const Placement& placement, Random random);
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

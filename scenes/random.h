@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 // Of two calls in one function's arguments the order is the compiler's choice: name one of the values first.
 class Random {
@@ -41,4 +41,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

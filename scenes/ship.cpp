@@ -6,7 +6,7 @@
 namespace sightline {
 
 Scene makeShip(const ShipOptions& options) {
-  using namespace procedural;
+  using namespace scenes;
   const ship::Plan plan{.decks = options.decks, .rooms = options.rooms};
   Scene scene;
   scene.materials = ship::materials();

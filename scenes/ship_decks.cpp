@@ -4,7 +4,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 constexpr double kWallHeight = kStorey - kSlab;
@@ -183,4 +183,4 @@ void addDecks(MeshBuilder& mesh, const Plan& plan, std::uint32_t seed) {
   addRoof(mesh, plan);
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

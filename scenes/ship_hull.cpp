@@ -5,7 +5,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 constexpr double kFrame = 5.0;  // metres between the frames, longest
@@ -150,4 +150,4 @@ void addHull(MeshBuilder& mesh, const Plan& plan) {
   }
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

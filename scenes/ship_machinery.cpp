@@ -4,7 +4,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 constexpr double kEngineY = -4.0;  // its middle; the aisle beside it runs along y = 0
@@ -256,4 +256,4 @@ void addMachinery(MeshBuilder& mesh, const Plan& plan, std::uint32_t machines, s
   }
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

@@ -19,7 +19,7 @@
 #include "scenes/procedural.h"
 #include "scenes/random.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 
 inline constexpr double kHullLength = 180.0, kHalfBeam = 15.0, kShell = 0.3;
 inline constexpr double kTankTop = 2.0, kMainDeck = 18.25, kBulwarkTop = 19.0;
@@ -140,4 +140,4 @@ CameraPath walk(const Plan& plan);
 // Needs the bounds of the finished scene's objects.
 CameraPath randomViews(const Plan& plan, const Scene& scene, Random random);
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

@@ -4,7 +4,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 
 double halfBreadth(double x, double z) {
   const double depth = 1.0 - std::min(z / kMainDeck, 1.0);
@@ -73,4 +73,4 @@ std::vector<Material> materials() {
   };
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

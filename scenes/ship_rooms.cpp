@@ -2,7 +2,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 // Places pieces of furniture in one room; each box is an object.
@@ -207,4 +207,4 @@ void furnish(MeshBuilder& mesh, const Plan& plan, const Room& room, Random rando
   }
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

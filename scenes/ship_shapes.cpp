@@ -4,7 +4,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 // Points of a circle about `middle`, anticlockwise seen against the direction.
@@ -103,4 +103,4 @@ void addWall(MeshBuilder& mesh, const Wall& wall) {
   piece(x, wall.length, 0.0, wall.height);
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

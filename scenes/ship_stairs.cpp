@@ -3,7 +3,7 @@
 #include "scenes/ship_parts.h"
 #include "scenes/stairs.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 constexpr std::uint32_t kRisers = 10;  // of one flight
@@ -65,4 +65,4 @@ void addStairs(MeshBuilder& mesh, const Plan& plan) {
   }
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

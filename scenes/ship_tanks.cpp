@@ -5,7 +5,7 @@
 
 #include "scenes/ship_parts.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 struct Hold {
@@ -190,4 +190,4 @@ void addDeckGear(MeshBuilder& mesh, const Plan& plan, Random random) {
   addWinches(mesh);
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

@@ -5,7 +5,7 @@
 #include "scenes/ship_parts.h"
 #include "scenes/walk.h"
 
-namespace sightline::procedural::ship {
+namespace sightline::scenes::ship {
 namespace {
 
 constexpr double kFar = 400.0;
@@ -97,7 +97,7 @@ CameraPath walk(const Plan& plan) {
   }
   route.to(stairs + kStairUp, 0.0);
   route.to(kBlockStart + 1.5, 0.0);
-  const WalkOptions options{.name = "walk", .look_ahead = 1.5, .calm = 2, .most_turn = 0.06, .far = kFar};
+  const WalkOptions options{.name = "walk", .look_ahead = 1.5, .calm = 2, .max_turn = 0.06, .far = kFar};
   return walkAlong(roundedRoute(route.corners(), 0.5), options);
 }
 
@@ -118,4 +118,4 @@ CameraPath randomViews(const Plan& plan, const Scene& scene, Random random) {
   return path;
 }
 
-}  // namespace sightline::procedural::ship
+}  // namespace sightline::scenes::ship

@@ -1,6 +1,6 @@
 #include "scenes/stairs.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 
 std::vector<Point2> flightProfile(std::uint32_t risers, double rise, double tread) {
   constexpr double kThickness = 0.2;
@@ -15,4 +15,4 @@ std::vector<Point2> flightProfile(std::uint32_t risers, double rise, double trea
   return profile;
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

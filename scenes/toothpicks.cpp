@@ -17,7 +17,7 @@
 #include "scenes/random.h"
 
 namespace sightline {
-namespace procedural {
+namespace scenes {
 namespace {
 
 constexpr double kHalfLength = 0.077, kHalfWidth = 0.0084;  // metres, at scale 1
@@ -217,10 +217,10 @@ CameraPath cameraPath(double velocity, double side, std::uint32_t frames) {
 }
 
 }  // namespace
-}  // namespace procedural
+}  // namespace scenes
 
 MovingScene makeToothpicks(const ToothpickOptions& options) {
-  using namespace procedural;
+  using namespace scenes;
   MovingScene scene;
   scene.classes = {"toothpick", "corner", "edge"};
   scene.scene.materials = {{.name = "wood", .base_color = {0.8f, 0.62f, 0.36f, 1.0f}},

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 // Points of a line by the distance walked on it.
@@ -49,8 +49,8 @@ void calmLooks(std::vector<CameraFrame>& frames, std::size_t reach) {
 }
 
 // Lets no look turn farther from the one before than so much of a full turn.
-void limitTurns(std::vector<CameraFrame>& frames, double most_turn) {
-  const Point2 most = unitVector(most_turn);
+void limitTurns(std::vector<CameraFrame>& frames, double max_turn) {
+  const Point2 most = unitVector(max_turn);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const Vec3d before = frames[i - 1].forward;
     Vec3d& look = frames[i].forward;
@@ -94,8 +94,8 @@ CameraPath walkAlong(std::span<const Vec3d> line, const WalkOptions& options) {
   for (int pass = 0; pass < 2 && options.calm > 0; ++pass) {
     calmLooks(path.frames, options.calm);
   }
-  limitTurns(path.frames, options.most_turn);
+  limitTurns(path.frames, options.max_turn);
   return path;
 }
 
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

@@ -1,9 +1,9 @@
-#include "culling/adaptive_coverage.h"
+#include "src/culling/adaptive_coverage.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 namespace {
 
 // Culling pays clearly where it saves so many times what it takes; in between nothing is changed.
@@ -14,10 +14,10 @@ constexpr double kHopeless = 4.0;
 }  // namespace
 
 AdaptiveCoverage::AdaptiveCoverage(double ratio)
-    : least_ratio_(std::isnan(ratio) ? 0.0 : std::clamp(ratio, 0.0, 1.0)) {}
+    : min_ratio_(std::isnan(ratio) ? 0.0 : std::clamp(ratio, 0.0, 1.0)) {}
 
 double AdaptiveCoverage::ratio() const {
-  return least_ratio_ + (1.0 - least_ratio_) * step_ / kSteps;
+  return min_ratio_ + (1.0 - min_ratio_) * step_ / kSteps;
 }
 
 void AdaptiveCoverage::frame(double culling_us, double saved_us) {
@@ -101,4 +101,4 @@ void AdaptiveCoverage::startWindow() {
   culling_us_ = saved_us_ = 0.0;
 }
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

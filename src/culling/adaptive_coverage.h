@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // The coverage ratio below which an opacity map gives up a node, adjusted by measured times (Poon and Wang
 // 1999, section 5.2, who leave open how). From the configured ratio it rises in steps to 1 while culling
@@ -43,7 +43,7 @@ class AdaptiveCoverage {
   void suspend();
   void startWindow();
 
-  double least_ratio_ = 0.0;
+  double min_ratio_ = 0.0;
   std::uint32_t step_ = 0;                    // 0: the configured ratio; kSteps: 1
   std::uint32_t rest_ = 0, trial_ = 0;        // frames left of each
   std::uint32_t frames_ = 0;                  // in this window
@@ -52,4 +52,4 @@ class AdaptiveCoverage {
   bool lowered_ = false;                      // the window before ended with a step down
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -5,14 +5,14 @@
 #include <optional>
 #include <utility>
 
-#include "culling/adaptive_coverage.h"
-#include "culling/hierarchical_walk.h"
-#include "culling/kept_planes.h"
-#include "culling/scene_fit.h"
-#include "culling/set_members.h"
-#include "culling/set_walk.h"
-#include "culling/wide_walk.h"
-#include "scene/usable_view.h"
+#include "src/culling/adaptive_coverage.h"
+#include "src/culling/hierarchical_walk.h"
+#include "src/culling/kept_planes.h"
+#include "src/culling/scene_fit.h"
+#include "src/culling/set_members.h"
+#include "src/culling/set_walk.h"
+#include "src/culling/wide_walk.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 namespace {
@@ -23,11 +23,11 @@ double microseconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double, std::micro>(to - from).count();
 }
 
-using culling_detail::AskAll;
-using culling_detail::KeptPlanes;
-using culling_detail::SceneSizes;
-using culling_detail::SetMembers;
-using culling_detail::WalkBox;
+using culling::AskAll;
+using culling::KeptPlanes;
+using culling::SceneSizes;
+using culling::SetMembers;
+using culling::WalkBox;
 
 auto seeEverything() {
   return AskAll{[](const WalkBox&) { return Visibility::kVisible; }};
@@ -36,7 +36,7 @@ auto seeEverything() {
 }  // namespace
 
 struct Culler::Impl {
-  using WalkOptions = culling_detail::WalkOptions;
+  using WalkOptions = culling::WalkOptions;
 
   Impl(const Hierarchy& h, std::span<const Box> bounds, const OccluderSet& o, const CullerSettings& s,
        const OccluderDatabases& d, VisibleSets* v)
@@ -46,7 +46,7 @@ struct Culler::Impl {
         settings(s),
         databases(d),
         sets(v),
-        prepared(culling_detail::isOf(h, bounds)),
+        prepared(culling::isOf(h, bounds)),
         sizes(SceneSizes::of(h, o)),
         walk(preparedOf(h), bounds),
         search(preparedOf(h), bounds),
@@ -84,7 +84,7 @@ struct Culler::Impl {
   bool keepsEverything() const { return stats.unfit || stats.view_fault != nullptr; }
   void keepEverything() {
     visible.clear();
-    culling_detail::appendAll(hierarchy, object_bounds.size(), visible);
+    culling::appendAll(hierarchy, object_bounds.size(), visible);
     has_previous = false;
   }
 
@@ -325,8 +325,8 @@ struct Culler::Impl {
           }
         },
         [&] {
-          const culling_detail::WalkMaps maps{*pyramid, window ? &*window : nullptr,
-                                              stats.focused ? &*fine_pyramid : nullptr};
+          const culling::WalkMaps maps{*pyramid, window ? &*window : nullptr,
+                                       stats.focused ? &*fine_pyramid : nullptr};
           wide_walk->run(maps, walkOptions(settings.temporal_coherence), stats, visible, parallel_for);
         });
     takeRasterStats(pyramid->stats().raster);
@@ -439,23 +439,23 @@ struct Culler::Impl {
   CullerSettings settings;
   OccluderDatabases databases;
   VisibleSets* sets;
-  bool prepared;                                  // the hierarchy is of the boxes
-  SceneSizes sizes;                               // as the constructor saw them
-  culling_detail::HierarchicalWalk walk, search;  // search: for occluders
+  bool prepared;                           // the hierarchy is of the boxes
+  SceneSizes sizes;                        // as the constructor saw them
+  culling::HierarchicalWalk walk, search;  // search: for occluders
   OccluderChooser chooser;
   OcclusionTree tree;
   SupportingPlanes planes;
   std::vector<bool> entered;              // by node, see KeptPlanes
   std::optional<OpacityMap> opacity_map;  // with the method
   std::optional<DepthPyramid> pyramid;    // with the method
-  std::optional<culling_detail::WideWalk> wide_walk;
-  std::optional<culling_detail::FocusWindow> window;  // with the settings
-  std::optional<DepthPyramid> fine_pyramid;           // of the window
+  std::optional<culling::WideWalk> wide_walk;
+  std::optional<culling::FocusWindow> window;  // with the settings
+  std::optional<DepthPyramid> fine_pyramid;    // of the window
   OccluderChooser fine_chooser;
   std::vector<OccluderId> fine_chosen;
-  culling_detail::AdaptiveCoverage coverage;
+  culling::AdaptiveCoverage coverage;
   SetMembers members;
-  culling_detail::SetWalk set_walk;  // with the method
+  culling::SetWalk set_walk;  // with the method
   ParallelFor parallel_for = serialFor;
   std::vector<OccluderId> all_moving;
   std::array<ChosenOccluders, 2> in_use;  // see inUse()

@@ -1,21 +1,21 @@
-#include "culling/focus_window.h"
+#include "src/culling/focus_window.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 namespace {
 
-constexpr std::uint32_t kMostCells = 64;  // along a side of the map
-constexpr double kLeastCosine = 0.1;      // of a window's corners, to the viewing direction
-constexpr double kLeastTangent = 1e-6;    // of half a window's angle
+constexpr std::uint32_t kMaxCells = 64;  // along a side of the map
+constexpr double kMinCosine = 0.1;       // of a window's corners, to the viewing direction
+constexpr double kMinTangent = 1e-6;     // of half a window's angle
 constexpr double kNearMargin = 1.0 + 1e-6;
 
 }  // namespace
 
 FocusWindow::FocusWindow(const FocusSettings& settings, std::uint32_t width, std::uint32_t height)
     : settings_(settings), width_(width), height_(height) {
-  while ((std::max(width, height) >> cell_shift_) > kMostCells) {
+  while ((std::max(width, height) >> cell_shift_) > kMaxCells) {
     ++cell_shift_;
   }
   const std::uint32_t cell = 1u << cell_shift_;
@@ -58,7 +58,7 @@ bool FocusWindow::findDirection(Vec3d& direction) {
       }
     }
   }
-  if (most < settings_.least_objects) {
+  if (most < settings_.min_objects) {
     return false;
   }
   const double cell = 1u << cell_shift_;
@@ -73,7 +73,7 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
   const double half_width = 0.5 * settings_.raster.width / settings_.magnification;
   const double half_height = 0.5 * settings_.raster.height / settings_.magnification;
   const double tan_x = half_width / map.scale_x, tan_y = half_height / map.scale_y;
-  if (!(tan_x > kLeastTangent && tan_y > kLeastTangent)) {
+  if (!(tan_x > kMinTangent && tan_y > kMinTangent)) {
     return false;
   }
   window_ = view;
@@ -87,7 +87,7 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
     for (const double sy : {-1.0, 1.0}) {
       const Vec3d corner = window_.forward + window_.right * (sx * tan_x) + window_.up * (sy * tan_y);
       const double of_corner = dot(corner, view.forward) / length(corner);
-      if (!(of_corner > kLeastCosine)) {
+      if (!(of_corner > kMinCosine)) {
         return false;
       }
       cosine = std::min(cosine, of_corner);
@@ -120,4 +120,4 @@ bool FocusWindow::mayShow(const Box& box) const {
   return aside <= std::max(depth, 0.0) * tan_half_diagonal_ + 1.5 * radius;
 }
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

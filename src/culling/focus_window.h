@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/pixel_view.h"
 #include "sightline/culling/culler.h"
+#include "src/scene/pixel_view.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 class FocusWindow {
  public:
@@ -41,14 +41,14 @@ class FocusWindow {
   bool mayShow(const Box& box) const;
 
  private:
-  static constexpr std::uint32_t kLeastCellShift = 2;
+  static constexpr std::uint32_t kMinCellShift = 2;
 
   bool findDirection(Vec3d& direction);
   bool setWindow(const View& view, const Vec3d& direction);
 
   FocusSettings settings_;
   std::uint32_t width_, height_;                // of the map
-  std::uint32_t cell_shift_ = kLeastCellShift;  // a cell's side is 1 << this, pixels
+  std::uint32_t cell_shift_ = kMinCellShift;    // a cell's side is 1 << this, pixels
   std::uint32_t columns_, rows_;                // cells
   std::uint32_t window_columns_, window_rows_;  // cells
   std::vector<std::uint32_t> heat_;             // by cell; the first row and column are of zeros
@@ -59,4 +59,4 @@ class FocusWindow {
   std::uint16_t x0_ = 1, y0_ = 1, x1_ = 0, y1_ = 0;  // of the map, first and last pixels
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -11,14 +11,14 @@
 #include <span>
 #include <vector>
 
-#include "culling/object_bits.h"
-#include "culling/set_members.h"
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/math/frustum.h"
 #include "sightline/occlusion/supporting_planes.h"
+#include "src/culling/object_bits.h"
+#include "src/culling/set_members.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // A box that the walk asks about.
 struct WalkBox {
@@ -205,4 +205,4 @@ class HierarchicalWalk {
   std::vector<Entry> stack_;
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

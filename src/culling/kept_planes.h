@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "culling/hierarchical_walk.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/supporting_planes.h"
+#include "src/culling/hierarchical_walk.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // The supporting planes as the walk asks them: relations of what lies below a node go when the walk ends at
 // it. They stay while it is merely outside the frustum.
@@ -44,4 +44,4 @@ struct KeptPlanes {
   }
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -6,7 +6,7 @@
 
 #include "sightline/base/ids.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // A set of objects in which insertion, clearing and enumeration in ascending order cost what is in it, not
 // what could be: a bit an object, and a bit for each 64 of those.
@@ -56,4 +56,4 @@ class ObjectBits {
   std::vector<std::uint64_t> words_, summary_;
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

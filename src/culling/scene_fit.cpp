@@ -1,8 +1,8 @@
-#include "culling/scene_fit.h"
+#include "src/culling/scene_fit.h"
 
 #include <algorithm>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 bool isOf(const Hierarchy& hierarchy, std::span<const Box> object_bounds) {
   const auto hasABox = [&](ObjectId object) { return object.value < object_bounds.size(); };
@@ -73,4 +73,4 @@ void appendAll(const Hierarchy& hierarchy, std::size_t box_count, std::vector<Ob
   out.erase(std::unique(out.begin() + first, out.end()), out.end());
 }
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -12,7 +12,7 @@
 #include "sightline/math/box.h"
 #include "sightline/occluders/occluder_set.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // Whether the hierarchy is of these boxes, by ObjectId: its leaves name every object and no other one, and
 // the box around the leaves that name an object holds the object's box. It takes time in proportion to both.
@@ -36,4 +36,4 @@ struct SceneSizes {
 // Appends all objects that have a box or that the hierarchy names, ascending.
 void appendAll(const Hierarchy& hierarchy, std::size_t box_count, std::vector<ObjectId>& out);
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

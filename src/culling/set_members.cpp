@@ -1,8 +1,8 @@
-#include "culling/set_members.h"
+#include "src/culling/set_members.h"
 
-#include "culling/scene_fit.h"
+#include "src/culling/scene_fit.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 namespace {
 
 TreeMarks marksOf(const Hierarchy& hierarchy, std::size_t object_count) {
@@ -82,4 +82,4 @@ void SetMembers::mark() {
   node_marks_->mark(list_);
 }
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "culling/tree_marks.h"
 #include "sightline/base/ids.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/visible_sets.h"
 #include "sightline/scene/camera.h"
+#include "src/culling/tree_marks.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 class SetMembers {
  public:
@@ -55,4 +55,4 @@ class SetMembers {
   std::vector<ObjectId> list_;              // what is marked
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -1,8 +1,8 @@
-#include "culling/set_walk.h"
+#include "src/culling/set_walk.h"
 
 #include <algorithm>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 void SetWalk::run(const Frustum& frustum, const BoxTreeView& tree, std::span<const std::uint32_t> set,
                   CullStats& stats, std::vector<ObjectId>& out) {
@@ -70,4 +70,4 @@ void SetWalk::pushChildren(const Entry& parent, std::uint8_t planes, const BoxTr
   }
 }
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -9,12 +9,12 @@
 #include <span>
 #include <vector>
 
-#include "culling/object_bits.h"
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/math/frustum.h"
+#include "src/culling/object_bits.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 class SetWalk {
  public:
@@ -42,4 +42,4 @@ class SetWalk {
   std::vector<Entry> stack_;
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -10,7 +10,7 @@
 
 #include "sightline/base/ids.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // Objects in two forms.
 struct ObjectSet {
@@ -79,4 +79,4 @@ class TreeMarks {
   std::vector<std::uint32_t> marked_;
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -1,15 +1,15 @@
-#include "culling/wide_walk.h"
+#include "src/culling/wide_walk.h"
 
 #include <algorithm>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
-using hierarchy_detail::kWideChildren;
-using hierarchy_detail::WideNode;
+using hierarchy::kWideChildren;
+using hierarchy::WideNode;
 
 namespace {
 // Views that a box is kept without a question after it was found not hidden; up to three more.
-constexpr std::uint8_t kLeastRest = 6;
+constexpr std::uint8_t kMinRest = 6;
 }  // namespace
 
 class WideWalk::Walker {
@@ -39,7 +39,7 @@ class WideWalk::Walker {
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
   const Hierarchy& hierarchy_;
-  const hierarchy_detail::WideHierarchy& wide_;
+  const hierarchy::WideHierarchy& wide_;
   std::span<std::uint8_t> rest_;
   ObjectSet in_set_;
   std::span<const std::uint8_t> child_marks_;  // unless everything is in the set
@@ -58,7 +58,7 @@ void WideWalk::run(const WalkMaps& maps, const WalkOptions& options, CullStats& 
   // Level by level until there is enough to share.
   Found& first = found_[0];
   std::size_t next = 0;
-  while (next < entries_.size() && entries_.size() - next < kMostRanges - kWideChildren) {
+  while (next < entries_.size() && entries_.size() - next < kMaxRanges - kWideChildren) {
     Walker(*this, maps, options, first).visit(entries_[next++]);
     entries_.insert(entries_.end(), first.stack.begin(), first.stack.end());
     first.stack.clear();
@@ -185,7 +185,7 @@ void WideWalk::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint3
   for (std::size_t i = 0; options_.temporal_coherence && i < rest.size(); ++i) {
     const bool hidden = answers[i].visibility == Visibility::kHidden;
     // Of many that come into view together not all are asked about again in the same view.
-    rest[i] = static_cast<std::uint8_t>(hidden ? 0u : rest[i] != 0 ? rest[i] - 1u : kLeastRest + (i & 3));
+    rest[i] = static_cast<std::uint8_t>(hidden ? 0u : rest[i] != 0 ? rest[i] - 1u : kMinRest + (i & 3));
   }
 }
 
@@ -298,4 +298,4 @@ void WideWalk::Walker::keepNode(std::uint32_t node, const BoxAnswer& answer, boo
   }
 }
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -8,17 +8,17 @@
 #include <span>
 #include <vector>
 
-#include "culling/focus_window.h"
-#include "culling/hierarchical_walk.h"
-#include "culling/object_bits.h"
-#include "culling/tree_marks.h"
-#include "hierarchy/wide_hierarchy.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/depth_pyramid.h"
+#include "src/culling/focus_window.h"
+#include "src/culling/hierarchical_walk.h"
+#include "src/culling/object_bits.h"
+#include "src/culling/tree_marks.h"
+#include "src/hierarchy/wide_hierarchy.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 
 // What the walk asks: the map of the view, and the finer one of a window of it where there is one.
 struct WalkMaps {
@@ -32,11 +32,11 @@ class WideWalk {
   // The hierarchy must outlive this; the boxes are copied.
   WideWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
       : hierarchy_(hierarchy),
-        wide_(hierarchy_detail::collapse(hierarchy, object_bounds)),
+        wide_(hierarchy::collapse(hierarchy, object_bounds)),
         object_count_(object_bounds.size()),
         visible_(object_bounds.size()),
         rest_(wide_.boxes.size(), 0),
-        found_(kMostRanges) {}
+        found_(kMaxRanges) {}
 
   // Appends the objects that may be seen to out, ascending, and adds to the counts of stats. With
   // options.temporal_coherence what was not hidden is not asked about again for a few views (it is kept
@@ -52,7 +52,7 @@ class WideWalk {
   void forget() { std::fill(rest_.begin(), rest_.end(), std::uint8_t{0}); }
 
  private:
-  static constexpr std::uint32_t kMostRanges = 64;
+  static constexpr std::uint32_t kMaxRanges = 64;
 
   struct Entry {
     std::uint32_t node;
@@ -84,7 +84,7 @@ class WideWalk {
   TreeMarks marksOfChildren() const;
 
   const Hierarchy& hierarchy_;
-  hierarchy_detail::WideHierarchy wide_;
+  hierarchy::WideHierarchy wide_;
   std::size_t object_count_;
   ObjectBits visible_;
   std::vector<std::uint8_t> rest_;  // by child: so many views it is not asked about
@@ -94,4 +94,4 @@ class WideWalk {
   std::vector<Found> found_;              // by the first entry of a range
 };
 
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -1,4 +1,4 @@
-#include "drawing/drawing_text.h"
+#include "src/drawing/drawing_text.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 namespace sightline::drawing {
 namespace {
 
-constexpr int kMostDecimals = 15;
+constexpr int kMaxDecimals = 15;
 constexpr double kLargestCoordinate = 1e16;  // units; hundredths of it are below 2^63
 
 bool isContinuation(char c) {
@@ -37,9 +37,9 @@ std::pair<char32_t, std::size_t> decodeOne(std::string_view text) {
     }
     code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3fu);
   }
-  constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::array<char32_t, 5> kMin{0, 0, 0x80, 0x800, 0x10000};
   const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-  const bool is_valid = code >= kLeast[length] && code <= 0x10ffff && !is_surrogate;
+  const bool is_valid = code >= kMin[length] && code <= 0x10ffff && !is_surrogate;
   return {code, is_valid ? length : 0};
 }
 
@@ -47,7 +47,7 @@ std::pair<char32_t, std::size_t> decodeOne(std::string_view text) {
 
 DecimalGrid::DecimalGrid(const Drawing& drawing) {
   const double side = std::max(drawing.width, drawing.height);
-  for (double unit = side; unit < 100.0 && unit > 0.0 && decimals_ < kMostDecimals; unit *= 10.0) {
+  for (double unit = side; unit < 100.0 && unit > 0.0 && decimals_ < kMaxDecimals; unit *= 10.0) {
     ++decimals_;
     steps_ *= 10;
   }

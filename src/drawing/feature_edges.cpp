@@ -6,8 +6,8 @@
 #include <numbers>
 #include <optional>
 
-#include "drawing/feature_edges_build.h"
-#include "drawing/triangle_side.h"
+#include "src/drawing/feature_edges_build.h"
+#include "src/drawing/triangle_side.h"
 
 namespace sightline {
 namespace {
@@ -39,7 +39,7 @@ class Fan {
     const auto same = [&](const Wing& other) {
       return angleBetween(wing.normal, other.normal) <= wing.tilt_rad + other.tilt_rad;
     };
-    if (std::none_of(wings_.begin(), wings_.begin() + count_, same) && count_ < kMost) {
+    if (std::none_of(wings_.begin(), wings_.begin() + count_, same) && count_ < kMax) {
       wings_[static_cast<std::size_t>(count_++)] = wing;
     }
   }
@@ -62,7 +62,7 @@ class Fan {
   }
 
  private:
-  static constexpr int kMost = 8;  // more directions than these add nothing to the answer
+  static constexpr int kMax = 8;  // more directions than these add nothing to the answer
 
   bool flatSeam() const {
     return count_ == 2 &&
@@ -79,7 +79,7 @@ class Fan {
     return sharpest;
   }
 
-  std::array<Wing, kMost> wings_;
+  std::array<Wing, kMax> wings_;
   int count_ = 0;
   bool drawn_ = false, left_ = false, right_ = false;
 };

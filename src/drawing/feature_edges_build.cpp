@@ -1,4 +1,4 @@
-#include "drawing/feature_edges_build.h"
+#include "src/drawing/feature_edges_build.h"
 
 #include <algorithm>
 #include <bit>

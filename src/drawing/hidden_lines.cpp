@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drawing/hidden_lines_occluders.h"
-#include "drawing/line_intervals.h"
-#include "drawing/line_view.h"
+#include "src/drawing/hidden_lines_occluders.h"
+#include "src/drawing/line_intervals.h"
+#include "src/drawing/line_view.h"
 
 namespace sightline {
 namespace {
@@ -34,8 +34,8 @@ struct PageLine {
   double inSpace(double on_screen) const {
     double share = on_screen;
     if (!view->view().orthographic) {
-      const double start = (1.0 - on_screen) * screen.from.nearness;
-      const double end = on_screen * screen.to.nearness;
+      const double start = (1.0 - on_screen) * screen.from.reciprocal_depth;
+      const double end = on_screen * screen.to.reciprocal_depth;
       share = end / (start + end);
     }
     return line.from + (line.to - line.from) * share;

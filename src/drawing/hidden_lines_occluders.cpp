@@ -1,9 +1,9 @@
-#include "drawing/hidden_lines_occluders.h"
+#include "src/drawing/hidden_lines_occluders.h"
 
 #include <algorithm>
 
-#include "drawing/triangle_side.h"
 #include "sightline/geometry/tolerance.h"
+#include "src/drawing/triangle_side.h"
 
 namespace sightline {
 namespace {
@@ -31,7 +31,7 @@ HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
 bool onScreen(const HidingBox& box, const LineView& view) {
   const bool beside = box.min_x > view.halfWidth() || box.max_x < -view.halfWidth() ||
                       box.min_y > view.halfHeight() || box.max_y < -view.halfHeight();
-  return !beside && box.nearness >= view.onScreen({0.0, 0.0, view.view().far}).nearness;
+  return !beside && box.reciprocal_depth >= view.onScreen({0.0, 0.0, view.view().far}).reciprocal_depth;
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ void HidingTriangles::addTriangle(const SceneView& scene, std::span<const std::u
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3f& position = scene.positions[corners[k]];
     triangle.corners[k] = view.cameraPoint(position);
-    triangle.reach = std::max(triangle.reach, magnitude(triangle.corners[k]));
+    triangle.reach = std::max(triangle.reach, l1Norm(triangle.corners[k]));
     triangle.size = std::max(triangle.size, maxComponent(abs(Vec3d(position))));
   }
   if (!turnToEye(triangle, view.view().orthographic)) {

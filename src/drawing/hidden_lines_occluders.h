@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "drawing/hidden_lines_tree.h"
-#include "drawing/triangle_hiding.h"
 #include "sightline/scene/scene.h"
+#include "src/drawing/hidden_lines_tree.h"
+#include "src/drawing/triangle_hiding.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "drawing/hidden_lines_tree.h"
+#include "src/drawing/hidden_lines_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ HidingBox HidingBox::none() {
 }
 
 void HidingBox::extend(const ScreenPoint& point) {
-  extend(HidingBox{point.x, point.y, point.x, point.y, point.nearness});
+  extend(HidingBox{point.x, point.y, point.x, point.y, point.reciprocal_depth});
 }
 
 void HidingBox::extend(const HidingBox& box) {
@@ -20,7 +20,7 @@ void HidingBox::extend(const HidingBox& box) {
   min_y = std::min(min_y, box.min_y);
   max_x = std::max(max_x, box.max_x);
   max_y = std::max(max_y, box.max_y);
-  nearness = std::max(nearness, box.nearness);
+  reciprocal_depth = std::max(reciprocal_depth, box.reciprocal_depth);
 }
 
 void HidingBox::widen() {
@@ -30,7 +30,7 @@ void HidingBox::widen() {
   min_y -= size;
   max_x += size;
   max_y += size;
-  nearness += kWider * std::abs(nearness);
+  reciprocal_depth += kWider * std::abs(reciprocal_depth);
 }
 
 bool ScreenLine::meets(const HidingBox& box, double& first, double& last) const {
@@ -42,8 +42,8 @@ bool ScreenLine::meets(const HidingBox& box, double& first, double& last) const 
       !narrow(box.max_y - from.y, box.max_y - to.y, first, last)) {
     return false;
   }
-  const double slope = to.nearness - from.nearness;
-  return from.nearness + slope * (slope > 0.0 ? first : last) <= box.nearness;
+  const double slope = to.reciprocal_depth - from.reciprocal_depth;
+  return from.reciprocal_depth + slope * (slope > 0.0 ? first : last) <= box.reciprocal_depth;
 }
 
 void HidingTrees::clear() {

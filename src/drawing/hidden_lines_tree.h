@@ -1,20 +1,20 @@
 #pragma once
 
-// Trees over boxes on the screen, each with the nearness of the nearest thing in it: what may hide a line is
-// found without looking at what lies beside it or behind it.
+// Trees over boxes on the screen, each with the reciprocal depth of the nearest thing in it: what may hide a
+// line is found without looking at what lies beside it or behind it.
 
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "drawing/line_view.h"
+#include "src/drawing/line_view.h"
 
 namespace sightline {
 
 struct HidingBox {
   double min_x = 0.0, min_y = 0.0, max_x = 0.0, max_y = 0.0;  // screen
-  double nearness = 0.0;                                      // of the nearest point, rounded up
+  double reciprocal_depth = 0.0;                              // of the nearest point, rounded up
 
   static HidingBox none();
   void extend(const ScreenPoint& point);
@@ -63,7 +63,7 @@ class HidingTrees {
       }
       if (node.count == 0) {
         const std::uint32_t left = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
-        const bool left_first = nodes_[left].box.nearness >= nodes_[node.first].box.nearness;
+        const bool left_first = nodes_[left].box.reciprocal_depth >= nodes_[node.first].box.reciprocal_depth;
         waiting[count++] = left_first ? node.first : left;
         waiting[count++] = left_first ? left : node.first;
       }

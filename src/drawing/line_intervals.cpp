@@ -1,4 +1,4 @@
-#include "drawing/line_intervals.h"
+#include "src/drawing/line_intervals.h"
 
 #include <algorithm>
 #include <iterator>

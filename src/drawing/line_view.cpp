@@ -1,4 +1,4 @@
-#include "drawing/line_view.h"
+#include "src/drawing/line_view.h"
 
 #include <algorithm>
 #include <cmath>

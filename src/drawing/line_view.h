@@ -1,7 +1,7 @@
 #pragma once
 
 // A view as lines and triangles are taken to it: camera space (x right, y up, z forward, the eye at zero) and
-// the screen. On the screen a line stays a line, and what is called nearness here is linear along it.
+// the screen. On the screen a line stays a line, and what is called reciprocal depth here is linear along it.
 
 #include "sightline/math/vec3.h"
 #include "sightline/scene/camera.h"
@@ -9,8 +9,8 @@
 namespace sightline {
 
 struct ScreenPoint {
-  double x = 0.0, y = 0.0;  // perspective: at unit depth; orthographic: metres
-  double nearness = 0.0;    // greater is nearer: 1 / depth, or -depth
+  double x = 0.0, y = 0.0;        // perspective: at unit depth; orthographic: metres
+  double reciprocal_depth = 0.0;  // greater is nearer: 1 / depth, or -depth
 };
 
 // Whether a view can be drawn on a page of this height: sizes and directions are finite, sizes above zero,

@@ -1,10 +1,10 @@
-#include "drawing/outline.h"
+#include "src/drawing/outline.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "drawing/outline_union.h"
-#include "geometry/clip_convex.h"
+#include "src/drawing/outline_union.h"
+#include "src/geometry/clip_convex.h"
 
 namespace sightline::drawing {
 namespace {
@@ -133,7 +133,7 @@ void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<PagePath
     addTriangle(scene, indices.subspan(i, 3), double_sided);
   }
   chain_.takeLoops(loops_);
-  uniteLoops(loops_, kLeastWidth);
+  uniteLoops(loops_, kMinWidth);
   for (const GridPath& loop : loops_) {
     PagePath& ring = rings.emplace_back();
     ring.reserve(loop.size());

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "drawing/line_view.h"
-#include "drawing/outline_chain.h"
 #include "sightline/base/ids.h"
 #include "sightline/drawing/drawing.h"
 #include "sightline/math/vec3.h"
 #include "sightline/scene/scene.h"
+#include "src/drawing/line_view.h"
+#include "src/drawing/outline_chain.h"
 
 namespace sightline::drawing {
 
@@ -22,7 +22,7 @@ class Outliner {
   // Outlines end this share of the page's height beyond its borders, so that the cut is not seen.
   static constexpr double kMargin = 1.0 / 64.0;
   // Rings whose mean width is below this many grid lines are slivers of rounding, and left out.
-  static constexpr double kLeastWidth = 4.0;
+  static constexpr double kMinWidth = 4.0;
 
   // Precondition: isDrawable().
   void setView(const View& view, double page_height);

@@ -1,4 +1,4 @@
-#include "drawing/outline_chain.h"
+#include "src/drawing/outline_chain.h"
 
 #include <algorithm>
 #include <tuple>

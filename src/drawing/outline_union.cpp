@@ -1,4 +1,4 @@
-#include "drawing/outline_union.h"
+#include "src/drawing/outline_union.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ void take(const ClipperLib::Paths& united, int bits, std::vector<GridPath>& loop
   }
 }
 
-bool isSliver(const GridPath& ring, double least_width) {
+bool isSliver(const GridPath& ring, double min_width) {
   double area = 0.0, perimeter = 0.0;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const GridPoint& a = ring[i];
@@ -53,7 +53,7 @@ bool isSliver(const GridPath& ring, double least_width) {
     area += 0.5 * (ax * by - ay * bx);
     perimeter += std::hypot(bx - ax, by - ay);
   }
-  return 2.0 * std::abs(area) < least_width * perimeter;
+  return 2.0 * std::abs(area) < min_width * perimeter;
 }
 
 }  // namespace
@@ -79,9 +79,9 @@ bool isConvexRing(const GridPath& ring) {
   return changes == 2;
 }
 
-void uniteLoops(std::vector<GridPath>& loops, double least_width) {
+void uniteLoops(std::vector<GridPath>& loops, double min_width) {
   const auto dropSlivers = [&] {
-    std::erase_if(loops, [&](const GridPath& ring) { return isSliver(ring, least_width); });
+    std::erase_if(loops, [&](const GridPath& ring) { return isSliver(ring, min_width); });
   };
   if (loops.empty() || (loops.size() == 1 && isConvexRing(loops[0]))) {
     dropSlivers();

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "drawing/drawing_text.h"
-#include "drawing/pdf_file.h"
 #include "sightline/drawing/drawing.h"
+#include "src/drawing/drawing_text.h"
+#include "src/drawing/pdf_file.h"
 
 namespace sightline {
 namespace {

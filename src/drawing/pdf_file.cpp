@@ -1,4 +1,4 @@
-#include "drawing/pdf_file.h"
+#include "src/drawing/pdf_file.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "drawing/drawing_text.h"
+#include "src/drawing/drawing_text.h"
 
 namespace sightline::drawing {
 namespace {

@@ -1,4 +1,4 @@
-#include "drawing/polylines.h"
+#include "src/drawing/polylines.h"
 
 #include <algorithm>
 #include <cmath>

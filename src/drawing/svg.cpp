@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "drawing/drawing_text.h"
-#include "drawing/svg_names.h"
 #include "sightline/drawing/drawing.h"
+#include "src/drawing/drawing_text.h"
+#include "src/drawing/svg_names.h"
 
 namespace sightline {
 namespace {

@@ -1,6 +1,6 @@
-#include "drawing/svg_names.h"
+#include "src/drawing/svg_names.h"
 
-#include "drawing/drawing_text.h"
+#include "src/drawing/drawing_text.h"
 
 namespace sightline::drawing {
 namespace {

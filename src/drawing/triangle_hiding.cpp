@@ -1,4 +1,4 @@
-#include "drawing/triangle_hiding.h"
+#include "src/drawing/triangle_hiding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ double flatCross(const Vec3d& p, const Vec3d& q) {
 // Narrows [from, to] to where the line is on the inner side of the edge from p to q.
 bool insideEdge(const HidingTriangle& triangle, const Vec3d& p, const Vec3d& q, const HidableLine& line,
                 bool orthographic, double& from, double& to) {
-  const double size_a = magnitude(line.a);
-  const double size_b = magnitude(line.b);
+  const double size_a = l1Norm(line.a);
+  const double size_b = l1Norm(line.b);
   if (!orthographic) {
     const Vec3d inwards = cross(p, q);
     const double wider = kSideRounding * triangle.reach * triangle.reach;
@@ -60,7 +60,7 @@ bool behindPlane(const HidingTriangle& triangle, const Vec3d& normal, const Hida
     const double rest = 1.0 - share;
     behind = rest * behind_a + share * behind_b;
     const double size = std::max(triangle.size, rest * line.size_a + share * line.size_b);
-    const double reach = triangle.reach + rest * magnitude(line.a) + share * magnitude(line.b);
+    const double reach = triangle.reach + rest * l1Norm(line.a) + share * l1Norm(line.b);
     const double bound = kCornerRounding * size + kCameraRounding * reach;
     return behind > bound ? 1 : behind < -bound ? -1 : 0;
   };

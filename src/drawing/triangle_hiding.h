@@ -19,7 +19,7 @@
 
 #include <array>
 
-#include "drawing/line_view.h"
+#include "src/drawing/line_view.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "drawing/triangle_side.h"
+#include "src/drawing/triangle_side.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "geometry/box_tangents.h"
+#include "src/geometry/box_tangents.h"
 
 #include <bit>
 #include <cmath>
@@ -16,7 +16,7 @@
 // Rounding is monotone: products that differ after rounding differed so before. Only equal ones need a look
 // at what rounding took away.
 
-namespace sightline::geometry_detail {
+namespace sightline::geometry {
 namespace {
 
 constexpr unsigned kSigns = 6, kAllSigns = (1u << kSigns) - 1;
@@ -244,4 +244,4 @@ BoxTangents tangentsOfAllVertices(const Vec3d& box_min, const Vec3d& box_max, co
   return tangents;
 }
 
-}  // namespace sightline::geometry_detail
+}  // namespace sightline::geometry

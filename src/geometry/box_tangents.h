@@ -18,7 +18,7 @@
 
 #include "sightline/math/vec3.h"
 
-namespace sightline::geometry_detail {
+namespace sightline::geometry {
 
 // Number of a box's corner, 0 to 7. Bit 0 set: maximal x, bit 1: maximal y, bit 2: maximal z.
 using BoxCorner = std::uint8_t;
@@ -77,4 +77,4 @@ struct TangentPositions {
 };
 const TangentPositions& tangentPositions(unsigned positive);
 
-}  // namespace sightline::geometry_detail
+}  // namespace sightline::geometry

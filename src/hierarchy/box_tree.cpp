@@ -7,7 +7,7 @@
 // the boxes that a ray through the scene is expected to be compared with. An object becomes one more child of
 // an inner node, or makes a pair with a leaf. On the way down, the child whose area grows least is followed.
 //
-// Differs from the paper in: a node has at most kMostChildren children, or equal boxes would all be children
+// Differs from the paper in: a node has at most kMaxChildren children, or equal boxes would all be children
 // of one; the order of insertion is a fixed random one, not the best of several; below kCostLevels levels the
 // child with the fewest objects is followed, so that no input makes a deep tree.
 
@@ -22,7 +22,7 @@
 namespace sightline {
 namespace {
 
-constexpr std::uint32_t kMostChildren = 8;
+constexpr std::uint32_t kMaxChildren = 8;
 constexpr std::uint32_t kCostLevels = 48;
 constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -50,7 +50,7 @@ class Inserter {
     ObjectId object;  // leaf
     std::uint32_t objects = 1;
     std::uint32_t child_count = 0;
-    std::array<std::uint32_t, kMostChildren> children{};
+    std::array<std::uint32_t, kMaxChildren> children{};
   };
 
   explicit Inserter(std::size_t object_count) { nodes_.reserve(2 * object_count); }
@@ -91,7 +91,7 @@ class Inserter {
       if (above >= best.cost) {
         break;
       }
-      if (node.child_count < kMostChildren) {
+      if (node.child_count < kMaxChildren) {
         take({path_.size() - 1, kNone, above + grown}, best);
       }
       at = path_.size() < kCostLevels ? nextByCost(node, box, above, best)
@@ -128,7 +128,7 @@ class Inserter {
 
   // Fills one node after the other: as deep as the logarithm of the number of objects.
   std::uint32_t nextByCount(const Node& node, const Box& box, double above, Place& best) const {
-    if (node.child_count < kMostChildren) {
+    if (node.child_count < kMaxChildren) {
       return kNone;
     }
     std::uint32_t fewest = 0;

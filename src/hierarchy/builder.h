@@ -7,7 +7,7 @@
 
 #include "sightline/hierarchy/hierarchy.h"
 
-namespace sightline::hierarchy_detail {
+namespace sightline::hierarchy {
 
 // An object's box, or what of it lies in a kd-tree's region.
 struct Item {
@@ -43,4 +43,4 @@ struct BuildLimits {
 void buildKdTree(FlatWriter& writer, std::vector<Item> items, const BuildLimits& limits, std::uint32_t level);
 void buildBvh(FlatWriter& writer, std::span<Item> items, const BuildLimits& limits, std::uint32_t level);
 
-}  // namespace sightline::hierarchy_detail
+}  // namespace sightline::hierarchy

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "hierarchy/builder.h"
+#include "src/hierarchy/builder.h"
 
-namespace sightline::hierarchy_detail {
+namespace sightline::hierarchy {
 namespace {
 
 constexpr int kBins = 16;
@@ -96,4 +96,4 @@ void buildBvh(FlatWriter& writer, std::span<Item> items, const BuildLimits& limi
   writer.finish(inner);
 }
 
-}  // namespace sightline::hierarchy_detail
+}  // namespace sightline::hierarchy

@@ -4,10 +4,10 @@
 #include <bit>
 #include <limits>
 
-#include "hierarchy/builder.h"
+#include "src/hierarchy/builder.h"
 
 namespace sightline {
-namespace hierarchy_detail {
+namespace hierarchy {
 namespace {
 
 Box infiniteBox() {
@@ -53,7 +53,7 @@ void FlatWriter::finish(NodeIndex inner) {
   hierarchy_.nodes[inner.value].link = static_cast<std::uint32_t>(hierarchy_.nodes.size());
 }
 
-}  // namespace hierarchy_detail
+}  // namespace hierarchy
 
 std::span<const ObjectId> Hierarchy::objectsBelow(NodeIndex n) const {
   const auto firstObject = [this](std::uint32_t node) {
@@ -71,7 +71,7 @@ std::span<const ObjectId> Hierarchy::objectsBelow(NodeIndex n) const {
 
 Hierarchy buildHierarchy(std::span<const Box> object_bounds, std::span<const std::uint32_t> object_cost,
                          const HierarchySettings& settings) {
-  using namespace hierarchy_detail;
+  using namespace hierarchy;
   Hierarchy hierarchy;
   hierarchy.kind = settings.kind;
   hierarchy.object_count = static_cast<std::uint32_t>(object_bounds.size());

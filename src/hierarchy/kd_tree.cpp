@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 
-#include "hierarchy/builder.h"
+#include "src/hierarchy/builder.h"
 
-namespace sightline::hierarchy_detail {
+namespace sightline::hierarchy {
 namespace {
 
 struct Split {
@@ -119,4 +119,4 @@ void buildKdTree(FlatWriter& writer, std::vector<Item> items, const BuildLimits&
   writer.finish(inner);
 }
 
-}  // namespace sightline::hierarchy_detail
+}  // namespace sightline::hierarchy

@@ -2,11 +2,11 @@
 // Multi-branching BVHs. Symposium on Interactive Ray Tracing 2008.
 // Differs from the paper in: children are opened by surface area alone, and objects are children too.
 
-#include "hierarchy/wide_hierarchy.h"
+#include "src/hierarchy/wide_hierarchy.h"
 
 #include <algorithm>
 
-namespace sightline::hierarchy_detail {
+namespace sightline::hierarchy {
 namespace {
 
 class Collapser {
@@ -140,4 +140,4 @@ WideHierarchy collapse(const Hierarchy& hierarchy, std::span<const Box> object_b
   return Collapser(hierarchy, object_bounds).run();
 }
 
-}  // namespace sightline::hierarchy_detail
+}  // namespace sightline::hierarchy

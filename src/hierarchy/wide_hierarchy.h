@@ -8,7 +8,7 @@
 
 #include "sightline/hierarchy/hierarchy.h"
 
-namespace sightline::hierarchy_detail {
+namespace sightline::hierarchy {
 
 // Children that a node has at most, but for one made of a leaf with more objects.
 inline constexpr std::uint32_t kWideChildren = 16;
@@ -41,4 +41,4 @@ struct WideHierarchy {
 // of so few objects are never cut. object_bounds: as many boxes as there are objects.
 WideHierarchy collapse(const Hierarchy& hierarchy, std::span<const Box> object_bounds);
 
-}  // namespace sightline::hierarchy_detail
+}  // namespace sightline::hierarchy

@@ -1,6 +1,6 @@
 // OBJ, PLY, STL, FBX, COLLADA and the rest. Assimp parses; what it hands over is checked here like a glTF's.
 
-#include "assimp.h"
+#include "src/io/assimp.h"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -11,8 +11,8 @@
 #include <exception>
 #include <vector>
 
-#include "failure.h"
 #include "sightline/math/mat4.h"
+#include "src/io/failure.h"
 
 namespace sightline {
 namespace {

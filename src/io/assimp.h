@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "scene_builder.h"
 #include "sightline/base/result.h"
 #include "sightline/scene/scene.h"
+#include "src/io/scene_builder.h"
 
 namespace sightline {
 

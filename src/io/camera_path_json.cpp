@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "failure.h"
 #include "sightline/io/file.h"
+#include "src/io/failure.h"
 
 namespace sightline {
 namespace {
@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 8> kPathKeys{"name",   "fovy_deg", "ortho
                                                     "height", "near",     "far",          "frames"};
 constexpr std::array<std::string_view, 3> kFrameKeys{"eye", "forward", "up"};
 
-constexpr std::size_t kMostUnknownKeys = 20;
+constexpr std::size_t kMaxUnknownKeys = 20;
 
 void noteUnknownKeys(const json& object, std::span<const std::string_view> known,
                      std::optional<std::size_t> frame, std::vector<UnknownKey>& unknown) {
@@ -33,7 +33,7 @@ void noteUnknownKeys(const json& object, std::span<const std::string_view> known
     const auto noted = std::find_if(unknown.begin(), unknown.end(), [&](const UnknownKey& other) {
       return other.key == key && other.frame.has_value() == frame.has_value();
     });
-    if (noted == unknown.end() && unknown.size() == kMostUnknownKeys) {
+    if (noted == unknown.end() && unknown.size() == kMaxUnknownKeys) {
       continue;
     }
     if (noted == unknown.end()) {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "failure.h"
+#include "src/io/failure.h"
 
 namespace sightline {
 namespace fs = std::filesystem;

@@ -2,8 +2,8 @@
 
 #include <png.h>
 
-#include "failure.h"
 #include "sightline/io/file.h"
+#include "src/io/failure.h"
 
 namespace sightline {
 
@@ -29,7 +29,7 @@ Status writePng(const Image& image, const std::string& file) {
 }
 
 Result<Image> readPng(const std::string& file) {
-  constexpr std::uint32_t kMostPixels = 16384;
+  constexpr std::uint32_t kMaxPixels = 16384;
   const Result<std::string> bytes = readFile(file);
   if (!bytes) {
     return bytes.error();
@@ -39,9 +39,9 @@ Result<Image> readPng(const std::string& file) {
   if (png_image_begin_read_from_memory(&png, bytes->data(), bytes->size()) == 0) {
     return failure("{}: cannot be read as PNG: {}", file, png.message);
   }
-  if (png.width > kMostPixels || png.height > kMostPixels) {
+  if (png.width > kMaxPixels || png.height > kMaxPixels) {
     const Error error = failure("{}: has {} x {} pixels; at most {} a side can be read", file, png.width,
-                                png.height, kMostPixels);
+                                png.height, kMaxPixels);
     png_image_free(&png);
     return error;
   }

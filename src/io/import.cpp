@@ -4,10 +4,10 @@
 #include <cctype>
 #include <filesystem>
 
-#include "assimp.h"
-#include "failure.h"
-#include "ply_check.h"
 #include "sightline/io/file.h"
+#include "src/io/assimp.h"
+#include "src/io/failure.h"
+#include "src/io/ply_check.h"
 
 namespace sightline {
 

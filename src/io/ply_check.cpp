@@ -1,19 +1,19 @@
-#include "ply_check.h"
+#include "src/io/ply_check.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <sstream>
 
-#include "failure.h"
+#include "src/io/failure.h"
 
 namespace sightline {
 namespace {
 
 struct Header {
   bool ascii = true;
-  double elements = 0.0;     // of all kinds together
-  double least_bytes = 0.0;  // of all elements in binary form; lists taken as empty
-  std::size_t size = 0;      // bytes of the header itself; 0: not understood
+  double elements = 0.0;   // of all kinds together
+  double min_bytes = 0.0;  // of all elements in binary form; lists taken as empty
+  std::size_t size = 0;    // bytes of the header itself; 0: not understood
 };
 
 double sizeOf(const std::string& type) {
@@ -50,7 +50,7 @@ Header readHeader(std::string_view bytes) {
       if (type == "list") {
         words >> type;  // of the length
       }
-      header.least_bytes += count * sizeOf(type);
+      header.min_bytes += count * sizeOf(type);
     }
   }
   return header;
@@ -65,10 +65,10 @@ Status checkPlyIsWhole(std::string_view bytes, const std::string& name) {
   }
   const std::string_view body = bytes.substr(header.size);
   if (!header.ascii) {
-    return static_cast<double>(body.size()) >= header.least_bytes
+    return static_cast<double>(body.size()) >= header.min_bytes
                ? Status(Success{})
                : failure("{}: is cut off: its elements need at least {:.0f} bytes, but {} are there", name,
-                         header.least_bytes, body.size());
+                         header.min_bytes, body.size());
   }
   // One line an element; the last may lack its end.
   const bool open_end = !body.empty() && body.back() != '\n';

@@ -1,4 +1,4 @@
-#include "scene_builder.h"
+#include "src/io/scene_builder.h"
 
 #include <cmath>
 

@@ -1,15 +1,15 @@
-#include "occluders/bodies.h"
+#include "src/occluders/bodies.h"
 
 #include <algorithm>
 #include <tuple>
 
-#include "occluders/union_find.h"
+#include "src/occluders/union_find.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 // Of a body; vertices, faces and edges are numbered in bytes.
-constexpr std::size_t kMostFaces = 32, kMostEdges = 64, kMostVertices = 32;
+constexpr std::size_t kMaxFaces = 32, kMaxEdges = 64, kMaxVertices = 32;
 
 // The mesh vertices from one corner of a polygon to the next, both included.
 struct Chain {
@@ -177,8 +177,8 @@ void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const>
     edges /= 2;
     // Euler: as many vertices as edges and two, less the faces.
     const std::size_t faces = component[p].size();
-    if (faces >= 4 && closed[p] && faces <= kMostFaces && edges <= kMostEdges &&
-        edges + 2 - faces <= kMostVertices && isConvex(positions, component[p], tolerance)) {
+    if (faces >= 4 && closed[p] && faces <= kMaxFaces && edges <= kMaxEdges &&
+        edges + 2 - faces <= kMaxVertices && isConvex(positions, component[p], tolerance)) {
       number[p] = next++;
     }
   }
@@ -213,4 +213,4 @@ void assembleBodies(std::span<const Vec3f> positions, std::span<const RankedPoly
   }
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

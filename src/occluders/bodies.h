@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "occluders/links.h"
-#include "occluders/polygon_merge.h"
 #include "sightline/occluders/occluder_set.h"
+#include "src/occluders/links.h"
+#include "src/occluders/polygon_merge.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // Numbers the bodies among the polygons of one object from 0, and fills FoundPolygon::body and body_size.
 // Polygons make a body where each edge is, mesh edge by mesh edge, an edge of one other, and no vertex lies
@@ -23,4 +23,4 @@ void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const>
 void assembleBodies(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
                     OccluderSet& set);
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

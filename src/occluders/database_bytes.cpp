@@ -1,12 +1,12 @@
-#include "occluders/database_bytes.h"
+#include "src/occluders/database_bytes.h"
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "occluders/sphere_directions.h"
+#include "src/occluders/sphere_directions.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 constexpr std::uint32_t kVersion = 1;
@@ -53,4 +53,4 @@ Error databaseError(const DatabaseKind& kind, const ByteReader& reader, const Er
                                            std::to_string(reader.position()) + " on")};
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

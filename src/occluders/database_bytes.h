@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <string_view>
 
-#include "base/byte_stream.h"
 #include "sightline/base/result.h"
+#include "src/base/byte_stream.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 struct DatabaseKind {
   std::string_view name;     // for errors
@@ -31,4 +31,4 @@ Result<std::uint32_t> readDatabaseHead(ByteReader& reader, const DatabaseKind& k
 // One line for what went wrong. part: null where all parts were sound, but other bytes follow.
 Error databaseError(const DatabaseKind& kind, const ByteReader& reader, const Error* part);
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

@@ -1,10 +1,10 @@
-#include "occluders/database_cells.h"
+#include "src/occluders/database_cells.h"
 
 #include <algorithm>
 #include <limits>
 #include <queue>
 
-namespace sightline::database_detail {
+namespace sightline::occluders {
 namespace {
 
 // A cell that may still be split.
@@ -217,4 +217,4 @@ Result<CellTree> loadCells(ByteReader& reader, std::uint32_t cells) {
   return tree;
 }
 
-}  // namespace sightline::database_detail
+}  // namespace sightline::occluders

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/byte_stream.h"
 #include "sightline/base/result.h"
 #include "sightline/hierarchy/hierarchy.h"
+#include "src/base/byte_stream.h"
 
-namespace sightline::database_detail {
+namespace sightline::occluders {
 
 // Inner: points with p[axis] < plane are in nodes[link], all others, NaN too, in nodes[link + 1].
 // A cell: axis is kCell and link its number.
@@ -51,4 +51,4 @@ CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::ui
 // So many cells (at least 1, at most kMaxCells), for which the caller has to know that the bytes are enough.
 Result<CellTree> loadCells(ByteReader& reader, std::uint32_t cells);
 
-}  // namespace sightline::database_detail
+}  // namespace sightline::occluders

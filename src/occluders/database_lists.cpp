@@ -23,16 +23,16 @@
 // every operation is monotonic. So occluders arrive in descending order of what they can at most be worth
 // for a direction, and a direction is finished when that is worse than the last entry of its full list.
 
-#include "occluders/database_lists.h"
+#include "src/occluders/database_lists.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "occluders/occluder_radius.h"
+#include "src/occluders/occluder_radius.h"
 
-namespace sightline::database_detail {
+namespace sightline::occluders {
 namespace {
 
 constexpr double kFullSolidAngle = 2.0 * std::numbers::pi;
@@ -56,7 +56,7 @@ CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < set.occluders.size(); ++i) {
     const Occluder& o = set.occluders[i];
-    const double radius = occluder_detail::radiusOf(set, o);
+    const double radius = occluders::radiusOf(set, o);
     if (isFinite(o.centroid) && std::isfinite(radius) && std::isfinite(o.area) && o.area > 0.0f) {
       usable.push_back({Vec3d(o.centroid), turned_away ? o.plane.flipped() : o.plane, o.area, radius,
                         OccluderId(i), o.double_sided});
@@ -94,7 +94,7 @@ CandidateTree::CandidateTree(const OccluderSet& set, bool turned_away) {
   }
 }
 
-ListFinder::ListFinder(const CandidateTree& tree, const occluder_detail::SphereDirections& directions,
+ListFinder::ListFinder(const CandidateTree& tree, const occluders::SphereDirections& directions,
                        const ListSettings& settings)
     : tree_(tree), directions_(directions), settings_(settings), best_(directions.count()) {
   const double view_angle = settings.view_angle_deg > 0.0 ? std::min(settings.view_angle_deg, 360.0) : 0.0;
@@ -161,7 +161,7 @@ double ListFinder::scoreAlong(const Vec3d& direction, const Candidate& candidate
 
 // A sphere of this radius at this offset from the middle of the cell is in the cone of a unit direction d,
 // as seen from somewhere in the cell, when dot(d, from_cell) is at least this.
-double ListFinder::leastDotInCone(const Vec3d& from_cell, double radius) const {
+double ListFinder::minDotInCone(const Vec3d& from_cell, double radius) const {
   const double distance = length(from_cell);
   const double reach = radius + cell_.radius;
   if (!(distance > reach)) {
@@ -185,7 +185,7 @@ void ListFinder::open(std::uint32_t index) {
   const CandidateTree::Node& node = tree_.nodes()[index];
   const Vec3d from_cell = 0.5 * (node.min + node.max) - cell_.center;
   const double radius = node.radius + kRounding * (node.radius + length(from_cell));
-  const double least = leastDotInCone(from_cell, radius);
+  const double least = minDotInCone(from_cell, radius);
   if (std::none_of(open_.begin(), open_.end(),
                    [&](std::uint32_t d) { return dot(directions_[d], from_cell) >= least; })) {
     return;
@@ -208,7 +208,7 @@ void ListFinder::open(std::uint32_t index) {
 // whatever follows it in the queue, could not improve.
 void ListFinder::take(const Candidate& candidate, double bound) {
   const Vec3d from_cell = candidate.centroid - cell_.center;
-  const double least = leastDotInCone(from_cell, candidate.radius);
+  const double least = minDotInCone(from_cell, candidate.radius);
   const bool along_view = settings_.direction == AreaAngleDirection::kView;
   const Sight sight = along_view ? sightOf(candidate) : Sight{};
   const auto finished = [&](std::uint32_t d) {
@@ -269,4 +269,4 @@ void ListFinder::find(const Box& cell, std::span<OccluderId> ids, std::span<std:
   }
 }
 
-}  // namespace sightline::database_detail
+}  // namespace sightline::occluders

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "occluders/sphere_directions.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
 #include "sightline/occluders/occluder_set.h"
+#include "src/occluders/sphere_directions.h"
 
-namespace sightline::database_detail {
+namespace sightline::occluders {
 
 // What the score of an occluder depends on. Metres, square metres.
 struct Candidate {
@@ -60,7 +60,7 @@ struct ListSettings {
 // Keeps its storage from cell to cell. One for each thread.
 class ListFinder {
  public:
-  ListFinder(const CandidateTree& tree, const occluder_detail::SphereDirections& directions,
+  ListFinder(const CandidateTree& tree, const occluders::SphereDirections& directions,
              const ListSettings& settings);
 
   // Exactly the k best by score for each direction, best first, ties by id: those of direction d are written
@@ -93,14 +93,14 @@ class ListFinder {
   double boundOf(const CandidateTree::Node& node) const;
   double boundOf(const Candidate& candidate) const;
   double scoreAlong(const Vec3d& direction, const Candidate& candidate, const Sight& sight) const;
-  double leastDotInCone(const Vec3d& from_cell, double radius) const;
+  double minDotInCone(const Vec3d& from_cell, double radius) const;
   void push(const Entry& entry);
   void open(std::uint32_t node);
   void take(const Candidate& candidate, double bound);
   void insert(const Ranked& entry, std::vector<Ranked>& list) const;
 
   const CandidateTree& tree_;
-  const occluder_detail::SphereDirections& directions_;
+  const occluders::SphereDirections& directions_;
   ListSettings settings_;
   double cos_cone_ = 0.0, sin_cone_ = 0.0;          // of the half angle in which occluders count
   double cos_covering_ = 0.0, sin_covering_ = 0.0;  // of the directions' covering angle
@@ -111,4 +111,4 @@ class ListFinder {
   std::vector<std::vector<Ranked>> best_;  // by direction: a heap, the worst on top
 };
 
-}  // namespace sightline::database_detail
+}  // namespace sightline::occluders

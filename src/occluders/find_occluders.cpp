@@ -3,16 +3,16 @@
 #include <set>
 #include <utility>
 
-#include "occluders/bodies.h"
-#include "occluders/links.h"
-#include "occluders/polygon_merge.h"
 #include "sightline/occluders/occluder_set.h"
+#include "src/occluders/bodies.h"
+#include "src/occluders/links.h"
+#include "src/occluders/polygon_merge.h"
 
 namespace sightline {
 namespace {
 
-using occluder_detail::FoundPolygon;
-using occluder_detail::RankedPolygon;
+using occluders::FoundPolygon;
+using occluders::RankedPolygon;
 
 struct ObjectResult {
   std::vector<FoundPolygon> polygons;
@@ -35,13 +35,12 @@ ObjectResult findInObject(const SceneView& scene, const Object& object, std::uin
     result.report.degenerate = object.triangleCount();
     return result;
   }
-  const double tolerance = occluder_detail::roundingTolerance(largest);
-  const auto found = occluder_detail::findPatches(scene.positions, scene.indicesOf(object),
-                                                  material.double_sided, tolerance);
+  const double tolerance = occluders::roundingTolerance(largest);
+  const auto found =
+      occluders::findPatches(scene.positions, scene.indicesOf(object), material.double_sided, tolerance);
   std::uint64_t in_polygons = 0;
-  for (const occluder_detail::Patch& patch : found.patches) {
-    for (FoundPolygon& polygon :
-         occluder_detail::mergePatch(scene.positions, patch, tolerance, max_vertices)) {
+  for (const occluders::Patch& patch : found.patches) {
+    for (FoundPolygon& polygon : occluders::mergePatch(scene.positions, patch, tolerance, max_vertices)) {
       polygon.double_sided = material.double_sided;
       in_polygons += polygon.triangle_count;
       result.polygons.push_back(std::move(polygon));
@@ -52,7 +51,7 @@ ObjectResult findInObject(const SceneView& scene, const Object& object, std::uin
   for (FoundPolygon& polygon : result.polygons) {
     pointers.push_back(&polygon);
   }
-  occluder_detail::findBodies(scene.positions, pointers, tolerance);
+  occluders::findBodies(scene.positions, pointers, tolerance);
   return result;
 }
 
@@ -124,7 +123,7 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     set.objects.push_back(ObjectId(o));
   }
-  occluder_detail::assembleSet(scene.positions, ranked, set);
+  occluders::assembleSet(scene.positions, ranked, set);
   return set;
 }
 
@@ -166,8 +165,8 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
       found.slack = std::max(found.slack, std::abs(found.plane.evaluate(Vec3d(vertex))));
     }
     found.triangle_count = static_cast<std::uint32_t>(found.loop.size() - 2);
-    const double tolerance = occluder_detail::roundingTolerance(largest);
-    if (found.slack > tolerance || !occluder_detail::finishPolygon(corners.positions, tolerance, 64, found)) {
+    const double tolerance = occluders::roundingTolerance(largest);
+    if (found.slack > tolerance || !occluders::finishPolygon(corners.positions, tolerance, 64, found)) {
       ++set.report.degenerate;
       continue;
     }
@@ -185,10 +184,9 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
     if (ObjectId(object).valid()) {
       set.objects.push_back(ObjectId(object));
     }
-    occluder_detail::findBodies(corners.positions, of_object,
-                                occluder_detail::roundingTolerance(largest_of_all));
+    occluders::findBodies(corners.positions, of_object, occluders::roundingTolerance(largest_of_all));
   }
-  occluder_detail::assembleSet(corners.positions, ranked, set);
+  occluders::assembleSet(corners.positions, ranked, set);
   return set;
 }
 

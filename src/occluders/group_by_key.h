@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace sightline::viewpoint_detail {
+namespace sightline::occluders {
 
 // From pairs to lists: values of key k are at [first[k], first[k + 1]), in the order of the pairs.
 // for_each_pair(body) calls body(key, value) for all pairs, each time it is called the same ones. key < keys.
@@ -22,4 +22,4 @@ void groupByKey(std::uint32_t keys, std::vector<std::uint32_t>& values, std::vec
   first[0] = 0;
 }
 
-}  // namespace sightline::viewpoint_detail
+}  // namespace sightline::occluders

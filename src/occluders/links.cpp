@@ -3,16 +3,16 @@
 // mesh vertices, and each edge knows which polygons lie beyond each of the mesh edges that it was merged
 // from.
 
-#include "occluders/links.h"
+#include "src/occluders/links.h"
 
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 
-#include "occluders/bodies.h"
-#include "occluders/union_find.h"
+#include "src/occluders/bodies.h"
+#include "src/occluders/union_find.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 // One mesh edge in the chain of one occluder edge.
@@ -313,4 +313,4 @@ void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon
   listByObject(set, stands_for_all, set.first_unit_of_object, set.unit_of_object);
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

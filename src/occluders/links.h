@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "occluders/polygon_merge.h"
 #include "sightline/occluders/occluder_set.h"
+#include "src/occluders/polygon_merge.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // A found polygon with what the set says of it.
 struct RankedPolygon {
@@ -18,4 +18,4 @@ struct RankedPolygon {
 // set.objects is there already, and has all valid objects of the polygons.
 void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set);
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

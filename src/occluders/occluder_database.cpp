@@ -12,21 +12,21 @@
 #include <utility>
 #include <vector>
 
-#include "occluders/database_bytes.h"
-#include "occluders/database_cells.h"
-#include "occluders/database_lists.h"
-#include "occluders/packed_lists.h"
-#include "occluders/sphere_directions.h"
-#include "occluders/step_progress.h"
+#include "src/occluders/database_bytes.h"
+#include "src/occluders/database_cells.h"
+#include "src/occluders/database_lists.h"
+#include "src/occluders/packed_lists.h"
+#include "src/occluders/sphere_directions.h"
+#include "src/occluders/step_progress.h"
 
 namespace sightline {
 
-using namespace database_detail;
-using occluder_detail::DatabaseKind;
-using occluder_detail::ListPacker;
-using occluder_detail::PackedLists;
-using occluder_detail::SphereDirections;
-using occluder_detail::StepProgress;
+using namespace occluders;
+using occluders::DatabaseKind;
+using occluders::ListPacker;
+using occluders::PackedLists;
+using occluders::SphereDirections;
+using occluders::StepProgress;
 
 struct OccluderDatabase::Data {
   Data(std::uint32_t direction_count, std::uint32_t occluders)

@@ -5,7 +5,7 @@
 
 #include "sightline/occluders/occluder_set.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // Of a sphere around the centroid that holds the polygon, metres. Vertices with NaN are passed over; infinite
 // ones make it infinite.
@@ -18,4 +18,4 @@ inline double radiusOf(const OccluderSet& set, const Occluder& occluder) {
   return std::sqrt(squared);
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

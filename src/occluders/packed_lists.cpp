@@ -1,10 +1,10 @@
-#include "occluders/packed_lists.h"
+#include "src/occluders/packed_lists.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 std::uint64_t hashOf(std::span<const OccluderId> list) {  // FNV-1a
@@ -123,4 +123,4 @@ PackedLists ListPacker::finish() {
   return std::exchange(packed_, {});
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

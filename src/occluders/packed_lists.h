@@ -7,11 +7,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "base/byte_stream.h"
 #include "sightline/base/ids.h"
 #include "sightline/base/result.h"
+#include "src/base/byte_stream.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // Does not change once a ListPacker has made it, or load.
 class PackedLists {
@@ -65,4 +65,4 @@ class ListPacker {
   std::unordered_map<std::uint64_t, std::size_t> first_of_hash_;  // the number of a list
 };
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

@@ -5,9 +5,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "occluders/polygon_merge.h"
+#include "src/occluders/polygon_merge.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -193,4 +193,4 @@ PatchResult findPatches(std::span<const Vec3f> positions, std::span<const std::u
   return result;
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

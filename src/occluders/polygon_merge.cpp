@@ -5,13 +5,13 @@
 // convex). Differs in: the order, largest first and compact first; several edges of a common boundary go in
 // one step.
 
-#include "occluders/polygon_merge.h"
+#include "src/occluders/polygon_merge.h"
 
 #include <algorithm>
 #include <numeric>
 #include <unordered_map>
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
@@ -296,4 +296,4 @@ std::vector<FoundPolygon> mergePatch(std::span<const Vec3f> positions, const Pat
   return Merger(positions, patch, tolerance, max_vertices).run();
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

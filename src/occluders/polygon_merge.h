@@ -10,7 +10,7 @@
 #include "sightline/math/plane.h"
 #include "sightline/math/vec3.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // A convex polygon over shared vertices, before ranking.
 struct FoundPolygon {
@@ -58,4 +58,4 @@ std::vector<FoundPolygon> mergePatch(std::span<const Vec3f> positions, const Pat
 bool finishPolygon(std::span<const Vec3f> positions, double tolerance, std::uint32_t max_vertices,
                    FoundPolygon& polygon);
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

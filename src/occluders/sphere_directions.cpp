@@ -3,14 +3,14 @@
 // golden angle against point i - 1. Differs from the paper in: the points run from pole to pole, and their
 // azimuths come from repeated rotation, so that every platform gets the same bits.
 
-#include "occluders/sphere_directions.h"
+#include "src/occluders/sphere_directions.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 constexpr double kCosGoldenAngle = -0.7373688780783197;
@@ -174,4 +174,4 @@ std::size_t SphereDirections::bytes() const {
          candidates_.capacity() * sizeof(std::uint16_t);
 }
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

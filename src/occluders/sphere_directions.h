@@ -7,7 +7,7 @@
 
 #include "sightline/math/vec3.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 inline constexpr std::uint32_t kMaxDirections = 4096;
 
@@ -45,4 +45,4 @@ class SphereDirections {
   double covering_angle_ = 0.0;
 };
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

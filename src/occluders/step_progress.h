@@ -5,7 +5,7 @@
 
 #include "sightline/base/progress.h"
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // Counts finished steps, from any thread, and passes their fraction on, one call at a time.
 class StepProgress {
@@ -26,4 +26,4 @@ class StepProgress {
   std::uint32_t steps_, done_ = 0;
 };
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 
 // Sets that grow together; each is named by its smallest member.
 struct UnionFind {
@@ -24,4 +24,4 @@ struct UnionFind {
   }
 };
 
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

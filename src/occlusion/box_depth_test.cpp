@@ -1,18 +1,18 @@
-#include "occlusion/box_depth_test.h"
+#include "src/occlusion/box_depth_test.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "occlusion/box_outline.h"
+#include "src/occlusion/box_outline.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "occlusion/box_depth_test.cpp"
+#define HWY_TARGET_INCLUDE "src/occlusion/box_depth_test.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -60,7 +60,7 @@ HWY_INLINE std::uint32_t bitsOf(hn::Mask<Lanes> mask, std::size_t lane) {
   return static_cast<std::uint32_t>(bits[0]) << lane;
 }
 
-// Every cell's nearness is greater.
+// Every cell's reciprocal depth is greater.
 HWY_INLINE bool allNearer(const DepthLevel& level, const CellRange& range, float than) {
   const Lanes d;
   const std::uint32_t from = readFrom(level, range);
@@ -117,7 +117,7 @@ struct Refinement {
     const float size = static_cast<float>(1u << (kBlockShift * level));
     const float y_px = static_cast<float>(y) * size - static_cast<float>(image.y0);
     const auto x_origin = hn::Set(d, static_cast<float>(image.x0));
-    const float* least_row = levels[level].least + std::size_t{y} * levels[level].stride + from;
+    const float* min_row = levels[level].least + std::size_t{y} * levels[level].stride + from;
     Row row;
     forLanes(range, from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
@@ -131,7 +131,7 @@ struct Refinement {
       for (std::uint32_t i = 0; i < outline.face_count; ++i) {
         own = hn::Min(own, greatest(outline.faces[i]));
       }
-      const auto least = hn::LoadU(d, least_row + lane);
+      const auto least = hn::LoadU(d, min_row + lane);
       auto met = hn::And(in_range, hn::Le(least, own));
       if (hn::AllFalse(d, met)) {
         return;
@@ -236,11 +236,11 @@ void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::spa
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 HWY_EXPORT(testAll);
 
@@ -249,5 +249,5 @@ void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::s
   HWY_DYNAMIC_DISPATCH(testAll)(levels, view, boxes, images, answers, hints);
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 #endif

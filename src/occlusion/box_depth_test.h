@@ -4,13 +4,13 @@
 
 #include <span>
 
-#include "occlusion/depth_levels.h"
-#include "occlusion/pixel_boxes.h"
-#include "scene/pixel_view.h"
 #include "sightline/math/box.h"
 #include "sightline/occlusion/depth_pyramid.h"
+#include "src/occlusion/depth_levels.h"
+#include "src/occlusion/pixel_boxes.h"
+#include "src/scene/pixel_view.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The image of each box is given; all are of one view and one size of the map. A box is hidden where every
 // pixel of its rectangle is either nearer than the box's nearest point, or not met by the box's outline, or
@@ -20,4 +20,4 @@ namespace sightline::occlusion_detail {
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

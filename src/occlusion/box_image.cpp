@@ -2,13 +2,13 @@
 // Differs from Bittner, Havran, Slavik, CGI 1998, section 6.2 in: the paper's modified tree never splits what
 // it classifies, so a box also comes to leaves that its image does not reach.
 
-#include "occlusion/box_image.h"
+#include "src/occlusion/box_image.h"
 
 #include <algorithm>
 
-#include "geometry/box_tangents.h"
+#include "src/geometry/box_tangents.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 void BoxImage::begin(const EyeBox& box, const Eye& eye, double scale) {
   eye_ = &eye;
@@ -16,17 +16,16 @@ void BoxImage::begin(const EyeBox& box, const Eye& eye, double scale) {
   // measured by the nearest one.
   reach_ = eye.orthographic ? box.farthest() : 1.0;
   scale_ = eye.orthographic ? scale : 0.0;
-  on_plane_scale_ = eye.orthographic ? magnitude(max(max(box.min, -box.max), Vec3d())) + scale : 0.0;
+  on_plane_scale_ = eye.orthographic ? l1Norm(max(max(box.min, -box.max), Vec3d())) + scale : 0.0;
   stack_.overflow = false;
   stack_.corners.clear();
   parts_.clear();
   // An orthographic eye is infinitely far behind.
-  const int region = eye.orthographic ? geometry_detail::regionOfOrigin(eye.forward, eye.forward)
-                                      : geometry_detail::regionOfOrigin(box.min, box.max);
-  const geometry_detail::Silhouette& loop = geometry_detail::silhouetteFrom(region);
+  const int region = eye.orthographic ? geometry::regionOfOrigin(eye.forward, eye.forward)
+                                      : geometry::regionOfOrigin(box.min, box.max);
+  const geometry::Silhouette& loop = geometry::silhouetteFrom(region);
   for (int i = 0; i < loop.count; ++i) {
-    const Vec3d corner =
-        geometry_detail::cornerOf(box.min, box.max, loop.corners[static_cast<std::size_t>(i)]);
+    const Vec3d corner = geometry::cornerOf(box.min, box.max, loop.corners[static_cast<std::size_t>(i)]);
     stack_.corners.push_back({eye.orthographic ? corner : normalized(corner), PlaneRef{}, false});
   }
   if (!eye.orthographic) {
@@ -77,4 +76,4 @@ bool BoxImage::cut(const TreeNode& node, bool front) {
   return piece.count != 0 || parts_.front().piece.count == 0;  // of an image that is not known, all is left
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

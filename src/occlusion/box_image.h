@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "occlusion/eye_box.h"
-#include "occlusion/polygon_split.h"
-#include "occlusion/tree_data.h"
+#include "src/occlusion/eye_box.h"
+#include "src/occlusion/polygon_split.h"
+#include "src/occlusion/tree_data.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The image is a convex polygon: the box's outline. Its corners are directions from the eye, unit vectors at
 // first; orthographic: points of the outline. It is split as SplittingQuery splits faces, with the same
@@ -55,4 +55,4 @@ class BoxImage {
   std::vector<Part> parts_;  // [i]: after i cuts
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -11,15 +11,15 @@
 //
 // Each is a sum of three terms, with a few roundings in every one.
 
-#include "occlusion/box_outline.h"
+#include "src/occlusion/box_outline.h"
 
 #include <bit>
 #include <cmath>
 
-#include "geometry/box_tangents.h"
-#include "occlusion/eye_box.h"
+#include "src/geometry/box_tangents.h"
+#include "src/occlusion/eye_box.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 constexpr double kWideRounding = 0x1p-48;    // of the terms in double precision, with a factor of 8
@@ -69,7 +69,7 @@ Vec3d crossedWith(const Vec3d& v, int axis) {
 
 int regionOfEye(const PixelView& view, const EyeBox& box) {
   if (!view.orthographic) {
-    return geometry_detail::regionOfOrigin(box.min, box.max);
+    return geometry::regionOfOrigin(box.min, box.max);
   }
   // An eye infinitely far behind.
   const auto digit = [](double forward) { return forward > 0.0 ? 1 : forward < 0.0 ? 2 : 0; };
@@ -82,7 +82,7 @@ void addEdge(const PixelView& view, const Origin& origin, const Vec3d& corner, i
   const Vec3d f(dot(n, view.unit_x), dot(n, view.unit_y),
                 view.orthographic ? -dot(n, corner) : dot(n, view.unit_z));
   // The axes are as good as unit vectors.
-  const double size = magnitude(n) * (view.orthographic ? 1.0 + magnitude(corner) : 1.0);
+  const double size = l1Norm(n) * (view.orthographic ? 1.0 + l1Norm(corner) : 1.0);
   if (bounded(origin, f, size, outline.edges[outline.edge_count])) {
     ++outline.edge_count;
   }
@@ -104,13 +104,13 @@ BoxOutline outlineOf(const PixelView& view, const Box& box, std::uint32_t x, std
   const Origin origin = originAt(view, x, y, reach);
   BoxOutline outline;
   int region = regionOfEye(view, eye_box);
-  const geometry_detail::Silhouette& loop = geometry_detail::silhouetteFrom(region);
+  const geometry::Silhouette& loop = geometry::silhouetteFrom(region);
   for (int i = 0; i < loop.count; ++i) {
     const auto from = loop.corners[static_cast<std::size_t>(i)];
     const auto to = loop.corners[static_cast<std::size_t>(i + 1 < loop.count ? i + 1 : 0)];
     const int axis = std::countr_zero(static_cast<unsigned>(from ^ to));
     const double sign = to > from ? 1.0 : -1.0;
-    addEdge(view, origin, geometry_detail::cornerOf(eye_box.min, eye_box.max, from), axis, sign, outline);
+    addEdge(view, origin, geometry::cornerOf(eye_box.min, eye_box.max, from), axis, sign, outline);
   }
   for (int axis = 0; axis < 3; ++axis, region /= 3) {
     if (region % 3 != 0) {
@@ -120,4 +120,4 @@ BoxOutline outlineOf(const PixelView& view, const Box& box, std::uint32_t x, std
   return outline;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "scene/pixel_view.h"
 #include "sightline/math/box.h"
+#include "src/scene/pixel_view.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // x, y pixels from a place of the map -> along_x x + along_y y + at_origin, rounded up.
 struct MapFunction {
@@ -19,8 +19,8 @@ struct BoxOutline {
   // that is not, with the eye.
   MapFunction edges[6];
   std::uint32_t edge_count = 0;  // 4 or 6; 0: no outline is known
-  // Where a ray meets the box, its nearness there is the least of these: the planes of the faces that are
-  // seen.
+  // Where a ray meets the box, its reciprocal depth there is the least of these: the planes of the faces that
+  // are seen.
   MapFunction faces[3];
   std::uint32_t face_count = 0;
 };
@@ -30,4 +30,4 @@ struct BoxOutline {
 // each axis.
 BoxOutline outlineOf(const PixelView& view, const Box& box, std::uint32_t x, std::uint32_t y, double reach);
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

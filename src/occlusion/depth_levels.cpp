@@ -1,15 +1,15 @@
-#include "occlusion/depth_levels.h"
+#include "src/occlusion/depth_levels.h"
 
 #include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "occlusion/depth_levels.cpp"
+#define HWY_TARGET_INCLUDE "src/occlusion/depth_levels.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -17,12 +17,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 // One row of a level from up to eight rows of the level below, whose cells beyond the width are left out.
 // Minima and maxima do not depend on their order.
 void reduceRow(const DepthLevel& below, std::uint32_t row, float* least, float* greatest) {
-  constexpr float kMost = std::numeric_limits<float>::max();
+  constexpr float kMax = std::numeric_limits<float>::max();
   const hn::CappedTag<float, kBlock> d;
   const std::size_t lanes = hn::Lanes(d);
   const std::uint32_t first = row * kBlock, rows = std::min(kBlock, below.height - first);
   for (std::uint32_t x = 0; x < below.width; x += kBlock) {
-    auto low = hn::Set(d, kMost), high = hn::Set(d, -kMost);
+    auto low = hn::Set(d, kMax), high = hn::Set(d, -kMax);
     for (std::size_t lane = 0; lane < kBlock && x + lane < below.width; lane += lanes) {
       const std::size_t at = std::size_t{first} * below.stride + x + lane;
       auto column_low = hn::LoadU(d, below.least + at), column_high = hn::LoadU(d, below.greatest + at);
@@ -49,11 +49,11 @@ void reduceRows(const DepthLevel& below, const DepthLevel& level, float* least, 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 HWY_EXPORT(reduceRows);
@@ -69,16 +69,16 @@ std::uint32_t blocksOf(std::uint32_t cells) {
 void DepthLevels::useMap(const DepthMapView& map) {
   const std::uint32_t whole = blocksOf(map.width) * kBlock;
   const bool fits = map.stride % kBlock == 0 && map.stride >= whole &&
-                    map.nearness.size() >= std::size_t{map.stride} * (map.height - 1) + whole;
-  const float* nearness = map.nearness.data();
+                    map.reciprocal_depth.size() >= std::size_t{map.stride} * (map.height - 1) + whole;
+  const float* reciprocal_depth = map.reciprocal_depth.data();
   if (!fits) {
     copy_.resize(std::size_t{whole} * map.height);
     for (std::uint32_t y = 0; y < map.height; ++y) {
       std::ranges::copy(map.row(y), copy_.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * whole));
     }
-    nearness = copy_.data();
+    reciprocal_depth = copy_.data();
   }
-  levels_[0] = {nearness, nearness, map.width, map.height, fits ? map.stride : whole};
+  levels_[0] = {reciprocal_depth, reciprocal_depth, map.width, map.height, fits ? map.stride : whole};
 }
 
 void DepthLevels::build(const DepthMapView& map, const ParallelFor& parallel_for) {
@@ -94,9 +94,9 @@ void DepthLevels::build(const DepthMapView& map, const ParallelFor& parallel_for
     level.width = blocksOf(below.width);
     level.height = blocksOf(below.height);
     level.stride = blocksOf(level.width) * kBlock;
-    least_[count_].resize(std::size_t{level.stride} * level.height);
+    min_[count_].resize(std::size_t{level.stride} * level.height);
     greatest_[count_].resize(std::size_t{level.stride} * level.height);
-    level.least = least_[count_].data();
+    level.least = min_[count_].data();
     level.greatest = greatest_[count_].data();
     if (count_ == 1) {
       // Bands of rows; small enough a capture to need no memory.
@@ -113,8 +113,8 @@ void DepthLevels::build(const DepthMapView& map, const ParallelFor& parallel_for
 
 void DepthLevels::reduce(std::uint32_t level, std::uint32_t begin_row, std::uint32_t end_row) {
   HWY_DYNAMIC_DISPATCH(reduceRows)
-  (levels_[level - 1], levels_[level], least_[level].data(), greatest_[level].data(), begin_row, end_row);
+  (levels_[level - 1], levels_[level], min_[level].data(), greatest_[level].data(), begin_row, end_row);
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 #endif

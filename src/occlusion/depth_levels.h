@@ -1,6 +1,6 @@
 #pragma once
 
-// The least and the greatest nearness of blocks of a depth map, level by level.
+// The least and the greatest reciprocal depth of blocks of a depth map, level by level.
 
 #include <cstdint>
 #include <span>
@@ -9,7 +9,7 @@
 #include "sightline/base/parallel_for.h"
 #include "sightline/occlusion/rasteriser.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // Cells along the side of a block that becomes one cell of the next level.
 inline constexpr std::uint32_t kBlock = 8, kBlockShift = 3;
@@ -39,8 +39,8 @@ class DepthLevels {
 
   DepthLevel levels_[kMaxLevels];
   std::uint32_t count_ = 0;
-  std::vector<float> copy_;                                      // of a map of another layout
-  std::vector<float> least_[kMaxLevels], greatest_[kMaxLevels];  // of level k >= 1
+  std::vector<float> copy_;                                    // of a map of another layout
+  std::vector<float> min_[kMaxLevels], greatest_[kMaxLevels];  // of level k >= 1
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

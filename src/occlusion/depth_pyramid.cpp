@@ -7,13 +7,13 @@
 
 #include <algorithm>
 
-#include "occlusion/box_depth_test.h"
-#include "occlusion/depth_levels.h"
-#include "occlusion/pixel_boxes.h"
+#include "src/occlusion/box_depth_test.h"
+#include "src/occlusion/depth_levels.h"
+#include "src/occlusion/pixel_boxes.h"
 
 namespace sightline {
 
-using namespace occlusion_detail;
+using namespace occlusion;
 
 struct DepthPyramid::Impl {
   explicit Impl(const DepthPyramidSettings& settings) : raster(settings.raster) {}

@@ -3,7 +3,7 @@
 #include "sightline/geometry/tolerance.h"
 #include "sightline/math/box.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // A box relative to the eye.
 struct EyeBox {
@@ -13,7 +13,7 @@ struct EyeBox {
   Vec3d center() const { return (min + max) * 0.5; }
   Vec3d half() const { return (max - min) * 0.5; }
   // Magnitude of its farthest corner.
-  double farthest() const { return magnitude(sightline::max(abs(min), abs(max))); }
+  double farthest() const { return l1Norm(sightline::max(abs(min), abs(max))); }
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -1,9 +1,9 @@
-#include "occlusion/eye_occluder.h"
+#include "src/occlusion/eye_occluder.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 // Seams that may appear to lie farther from their line than this (radians; orthographic: metres) are not
@@ -68,7 +68,7 @@ std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, 
   for (const Vec3f& vertex : set.verticesOf(occluder)) {
     const Vec3d r = Vec3d(vertex) - eye.position;
     const double depth = dot(eye.forward, r);
-    seen.reach = std::max(seen.reach, magnitude(r));
+    seen.reach = std::max(seen.reach, l1Norm(r));
     farthest = std::max(farthest, length(r));
     deepest = std::max(deepest, depth);
     seen.nearest = std::min(seen.nearest, depth);
@@ -129,4 +129,4 @@ std::optional<Seam> seamOf(const Eye& eye, const OccluderSet& set, const EyeOccl
   return seam;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -10,7 +10,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/scene/camera.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The eye as occluders need it: a point, or a direction for orthographic views. Everything is relative to it.
 struct Eye {
@@ -109,4 +109,4 @@ std::uint64_t openElements(const OccluderSet& set, const OccluderEdge& edge, con
   return open;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -1,14 +1,14 @@
-#include "occlusion/eye_planes.h"
+#include "src/occlusion/eye_planes.h"
 
 #include "sightline/geometry/tolerance.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "occlusion/eye_planes.cpp"
+#define HWY_TARGET_INCLUDE "src/occlusion/eye_planes.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -60,11 +60,11 @@ std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQua
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 HWY_EXPORT(lookPastAll);
 
@@ -73,5 +73,5 @@ std::size_t lookPast(std::span<const EyeShape> shapes, std::span<const EyeQuad> 
   return HWY_DYNAMIC_DISPATCH(lookPastAll)(shapes, quads, list, box, looks);
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 #endif

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <span>
 
-#include "occlusion/eye_box.h"
+#include "src/occlusion/eye_box.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // Rounding of a plane through the eye, times the distances involved.
 inline constexpr double kEyePlane = 0x1p-36;
@@ -46,4 +46,4 @@ struct EyeLook {
 std::size_t lookPast(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
                      std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks);
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

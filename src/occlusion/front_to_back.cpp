@@ -1,8 +1,8 @@
-#include "occlusion/front_to_back.h"
+#include "src/occlusion/front_to_back.h"
 
 #include <algorithm>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& volumes, PolygonStack& stack,
                  Fragment& front, Fragment& back) {
@@ -153,4 +153,4 @@ void FrontToBack::order(VolumeBuilder& volumes, PolygonStack& stack, std::vector
   }
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "occlusion/occlusion_volume.h"
-#include "occlusion/polygon_split.h"
+#include "src/occlusion/occlusion_volume.h"
+#include "src/occlusion/polygon_split.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // A part of an occluder; corners on the stack of the tree's builder.
 struct Fragment {
@@ -55,4 +55,4 @@ class FrontToBack {
   std::vector<Range> ranges_;  // still to be visited, the next one last
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

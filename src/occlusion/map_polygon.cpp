@@ -1,12 +1,12 @@
-#include "occlusion/map_polygon.h"
+#include "src/occlusion/map_polygon.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/clip_convex.h"
+#include "src/geometry/clip_convex.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 // The half-spaces of what is drawn, affine in camera space; positive inside.
@@ -161,7 +161,7 @@ bool MapPolygons::addBody(const OccluderSet& set, OccluderId id, const OccluderB
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     relative[i] = Vec3d(vertices[i]) - eye_.position;
     body_corners_[i] = view_.toCamera(relative[i]);
-    reach = std::max(reach, magnitude(relative[i]));
+    reach = std::max(reach, l1Norm(relative[i]));
     farthest = std::max(farthest, dot(relative[i], relative[i]));
     nearest = std::min(nearest, body_corners_[i].z);
   }
@@ -207,7 +207,8 @@ bool MapPolygons::addBody(const OccluderSet& set, OccluderId id, const OccluderB
   MapPolygon polygon;
   startPolygon(id, inset, polygon);
   for (std::uint32_t i = 0; i < face_count; ++i) {
-    addNearness(faces[i].support, faces[i].depth_slack + 4.0 * kDepthMargin * reach, settings, polygon);
+    addReciprocalDepth(faces[i].support, faces[i].depth_slack + 4.0 * kDepthMargin * reach, settings,
+                       polygon);
   }
   polygons.push_back(polygon);
   return true;
@@ -339,12 +340,12 @@ float MapPolygons::marginAt(double inset, double inverse_depth) const {
 }
 
 // The plane is moved away by what triangles may lie behind it.
-void MapPolygons::addNearness(const Plane& support, double slack, const RasterSettings& settings,
-                              MapPolygon& polygon) const {
+void MapPolygons::addReciprocalDepth(const Plane& support, double slack, const RasterSettings& settings,
+                                     MapPolygon& polygon) const {
   const Vec3d n = view_.normalToCamera(support.normal);
   const double offset = support.offset + (settings.coverage == Coverage::kInner ? slack : 0.0);
   const double scale = view_.orthographic ? 1.0 / n.z : -1.0 / offset;
-  NearnessPlane plane;
+  ReciprocalDepthPlane plane;
   plane.along_x = scale * n.x / view_.scale_x;
   plane.along_y = scale * n.y / view_.scale_y;
   plane.at_origin = scale * (view_.orthographic ? offset : n.z) - plane.along_x * view_.middle_x -
@@ -431,8 +432,8 @@ void MapPolygons::addPolygon(const OccluderSet& set, std::uint32_t index, double
       ++polygon.gap_count;
     }
   }
-  addNearness(member.seen.support, member.seen.depth_slack + 4.0 * kDepthMargin * member.seen.reach, settings,
-              polygon);
+  addReciprocalDepth(member.seen.support, member.seen.depth_slack + 4.0 * kDepthMargin * member.seen.reach,
+                     settings, polygon);
   polygons.push_back(polygon);
 }
 
@@ -465,4 +466,4 @@ void MapPolygons::build(const PixelView& view, const RasterSettings& settings, c
   }
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -1,18 +1,18 @@
 #pragma once
 
 // Occluders as a map of pixels has them: clipped, projected, with the edges at which they end and those at
-// which others go on. Map space and nearness: scene/pixel_view.h.
+// which others go on. Map space and reciprocal depth: scene/pixel_view.h.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "geometry/centre_spans.h"
-#include "occlusion/eye_occluder.h"
-#include "scene/pixel_view.h"
 #include "sightline/occlusion/rasteriser.h"
+#include "src/geometry/centre_spans.h"
+#include "src/occlusion/eye_occluder.h"
+#include "src/scene/pixel_view.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // What is computed of an edge's place in the map is off by less than this, pixels; see docs/conservative.md.
 constexpr double mapRounding(std::uint32_t width, std::uint32_t height) {
@@ -39,10 +39,10 @@ struct MapEdge {
   bool flat() const { return low == high; }
 };
 
-// Nearness in pixel (x, y): at_origin + along_x * x + along_y * y. Inner coverage: at most that of any point
-// of the plane in the pixel, by more than the rounding of this sum to single precision. Centre coverage: at
-// the pixel's centre.
-struct NearnessPlane {
+// ReciprocalDepth in pixel (x, y): at_origin + along_x * x + along_y * y. Inner coverage: at most that of any
+// point of the plane in the pixel, by more than the rounding of this sum to single precision. Centre
+// coverage: at the pixel's centre.
+struct ReciprocalDepthPlane {
   double at_origin = 0.0, along_x = 0.0, along_y = 0.0;
 };
 
@@ -57,10 +57,10 @@ struct MapPolygon {
   float low = 0.0f, high = 0.0f;                 // of its image
   float left = 0.0f, right = 0.0f;
   float margin = 0.0f;  // the greatest of its edges
-  // Its nearness is the least of these.
-  NearnessPlane planes[kMaxPlanes];
+  // Its reciprocal depth is the least of these.
+  ReciprocalDepthPlane planes[kMaxPlanes];
   std::uint32_t plane_count = 0;
-  float farthest = 0.0f, nearest = 0.0f;  // bounds of nearness over its image
+  float farthest = 0.0f, nearest = 0.0f;  // bounds of reciprocal depth over its image
   // Polygons that share sealed edges, directly or not, have the same.
   static constexpr std::uint32_t kNoGroup = 0xffffffffu;  // bodies
   std::uint32_t group = kNoGroup;
@@ -119,8 +119,8 @@ class MapPolygons {
   void addGaps(const OccluderSet& set, const Member& member, std::uint32_t edge, std::uint64_t open);
   bool clipGap(const Vec3d& from, const Vec3d& to, double clip_depth, Vec3d& a, Vec3d& b) const;
   // support: relative to the eye, unit normal towards it; slack: metres that it is moved away.
-  void addNearness(const Plane& support, double slack, const RasterSettings& settings,
-                   MapPolygon& polygon) const;
+  void addReciprocalDepth(const Plane& support, double slack, const RasterSettings& settings,
+                          MapPolygon& polygon) const;
   float marginAt(double inset, double inverse_depth) const;
   std::uint32_t rootOf(std::uint32_t member);
 
@@ -138,4 +138,4 @@ class MapPolygons {
   std::vector<std::pair<Vec3d, Vec3d>> gaps_;  // of the polygon that is being added, camera space
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -7,13 +7,13 @@
 
 #include <algorithm>
 
-#include "occlusion/tree_build.h"
-#include "occlusion/tree_classify.h"
-#include "scene/usable_view.h"
+#include "src/occlusion/tree_build.h"
+#include "src/occlusion/tree_classify.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
-using namespace occlusion_detail;
+using namespace occlusion;
 
 namespace {
 

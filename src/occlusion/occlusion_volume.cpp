@@ -1,8 +1,8 @@
-#include "occlusion/occlusion_volume.h"
+#include "src/occlusion/occlusion_volume.h"
 
 #include <algorithm>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The shadow plane of an open edge, drawn in by the candidate's inset.
 Plane VolumeBuilder::insetPlane(const EyeOccluder& candidate, const Outline& outline, double& sine) const {
@@ -206,4 +206,4 @@ void VolumeBuilder::addSet(const OccluderSet& set, std::span<const OccluderId> c
   }
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "occlusion/eye_occluder.h"
+#include "src/occlusion/eye_occluder.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // A plane that may be used from both sides. Occluders lie behind (at negative values of) their own shadow
 // planes.
@@ -89,4 +89,4 @@ class VolumeBuilder {
   std::uint32_t candidate_first_corner_ = 0;  // of the volume that is being added
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -5,15 +5,15 @@
 
 #include "sightline/occlusion/opacity_map.h"
 
-#include "occlusion/pixel_boxes.h"
-#include "occlusion/sparse_depth.h"
-#include "occlusion/summed_area.h"
+#include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/sparse_depth.h"
+#include "src/occlusion/summed_area.h"
 
 namespace sightline {
 
-using occlusion_detail::areaOf;
-using occlusion_detail::BoxPlace;
-using occlusion_detail::PixelBox;
+using occlusion::areaOf;
+using occlusion::BoxPlace;
+using occlusion::PixelBox;
 
 struct OpacityMap::Impl {
   explicit Impl(const OpacityMapSettings& s)
@@ -66,9 +66,9 @@ struct OpacityMap::Impl {
 
   OpacityMapSettings settings;
   Rasteriser raster;
-  occlusion_detail::BoxProjection projection;
-  occlusion_detail::SummedArea opacity;
-  occlusion_detail::SparseDepth sparse_depth;
+  occlusion::BoxProjection projection;
+  occlusion::SummedArea opacity;
+  occlusion::SparseDepth sparse_depth;
   double coverage_ratio;
   bool ready = false;  // the map is finished
   OpacityMapStats stats;
@@ -109,7 +109,7 @@ Visibility OpacityMap::classify(const Box& box) {
     return Visibility::kVisible;
   }
   PixelBox image;
-  occlusion_detail::projectBoxes(impl_->projection, {&box, 1}, {&image, 1});
+  occlusion::projectBoxes(impl_->projection, {&box, 1}, {&image, 1});
   if (image.place == BoxPlace::kOutside) {
     return Visibility::kHidden;
   }

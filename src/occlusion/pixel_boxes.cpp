@@ -13,7 +13,7 @@
 // The bound of q grows more slowly than q itself, so that the extremes over the corners give those of the
 // bounds too.
 
-#include "occlusion/pixel_boxes.h"
+#include "src/occlusion/pixel_boxes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +23,12 @@
 // take the best one that is left; no test is left out, all run on every set that is left.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "occlusion/pixel_boxes.cpp"
+#define HWY_TARGET_INCLUDE "src/occlusion/pixel_boxes.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -171,14 +171,14 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   const hn::RebindToSigned<Lanes> di;
   const EyeBoxes boxes = load(d, p, floats);
   const Corners x(d, boxes, p.right), y(d, boxes, p.up), z(d, boxes, p.forward);
-  const Vec z_least = hn::Sub(z.least(), boxes.error), z_greatest = hn::Add(z.greatest(), boxes.error);
+  const Vec z_min = hn::Sub(z.least(), boxes.error), z_greatest = hn::Add(z.greatest(), boxes.error);
 
-  Mask bounded = hn::And(boxes.usable, hn::Gt(z_least, hn::Set(d, p.near_most)));
+  Mask bounded = hn::And(boxes.usable, hn::Gt(z_min, hn::Set(d, p.near_max)));
   Vec q_error = boxes.error;
   if (!orthographic) {
-    bounded = hn::And(bounded, hn::Gt(z_least, hn::Mul(boxes.error, hn::Set(d, kWellConditioned))));
+    bounded = hn::And(bounded, hn::Gt(z_min, hn::Mul(boxes.error, hn::Set(d, kWellConditioned))));
     q_error =
-        hn::Add(hn::Mul(hn::Div(boxes.error, z_least), hn::Set(d, kSlackGrowth)), hn::Set(d, kMapRounding));
+        hn::Add(hn::Mul(hn::Div(boxes.error, z_min), hn::Set(d, kSlackGrowth)), hn::Set(d, kMapRounding));
   }
   const Extent q = extentOf(d, x, y, z, orthographic);
   const auto toMap = [&](Vec at, float scale, float middle, bool upwards) HWY_ATTR {
@@ -193,7 +193,7 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   const Mask off_map =
       hn::Or(hn::Or(hn::Lt(x1, zero), hn::Gt(x0, width)), hn::Or(hn::Lt(y1, zero), hn::Gt(y0, height)));
   const Mask off_depth =
-      hn::Or(hn::Lt(z_greatest, hn::Set(d, p.near_least)), hn::Gt(z_least, hn::Set(d, p.far_most)));
+      hn::Or(hn::Lt(z_greatest, hn::Set(d, p.near_min)), hn::Gt(z_min, hn::Set(d, p.far_max)));
   Mask outside =
       hn::Or(hn::And(boxes.usable, off_depth), hn::And(orthographic ? boxes.usable : bounded, off_map));
   const Mask unbounded = hn::AndNot(bounded, hn::AndNot(outside, boxes.usable));
@@ -203,7 +203,7 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   const Mask on_map = hn::AndNot(outside, bounded);
   const Mask within =
       hn::And(hn::And(hn::Ge(x0, zero), hn::Le(x1, width)), hn::And(hn::Ge(y0, zero), hn::Le(y1, height)));
-  const Mask whole = hn::And(hn::And(on_map, within), hn::Lt(z_greatest, hn::Set(d, p.far_least)));
+  const Mask whole = hn::And(hn::And(on_map, within), hn::Lt(z_greatest, hn::Set(d, p.far_min)));
 
   const auto mask = [&](Mask m) HWY_ATTR { return hn::RebindMask(di, m); };
   auto place = hn::IfThenElse(mask(on_map), hn::Set(di, static_cast<std::int32_t>(BoxPlace::kOnMap)),
@@ -219,7 +219,7 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   storePixel(y0, height, out.y0);
   storePixel(y1, height, out.y1);
   const Vec one = hn::Set(d, 1.0f);
-  const Vec nearest = orthographic ? hn::Neg(z_least) : hn::Mul(hn::Div(one, z_least), hn::Set(d, kUp));
+  const Vec nearest = orthographic ? hn::Neg(z_min) : hn::Mul(hn::Div(one, z_min), hn::Set(d, kUp));
   const Vec farthest =
       orthographic ? hn::Neg(z_greatest) : hn::Mul(hn::Div(one, z_greatest), hn::Set(d, kDown));
   hn::Store(hn::IfThenElseZero(on_map, nearest), d, out.nearest);
@@ -259,11 +259,11 @@ void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<Pi
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 HWY_EXPORT(projectAll);
@@ -305,10 +305,10 @@ BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std
   sides[2] = rounded(view.up + view.forward * tan_y);
   sides[3] = rounded(view.forward * tan_y - view.up);
   side_size = roundedUp(1.0 + std::max(tan_x, tan_y));
-  near_least = roundedDown(view.frustum_near);
-  near_most = roundedUp(view.near);
-  far_least = roundedDown(view.far);
-  far_most = roundedUp(view.far);
+  near_min = roundedDown(view.frustum_near);
+  near_max = roundedUp(view.near);
+  far_min = roundedDown(view.far);
+  far_max = roundedUp(view.far);
   scale_x = static_cast<float>(view.scale_x);
   scale_y = static_cast<float>(view.scale_y);
   middle_x = static_cast<float>(view.middle_x);
@@ -333,5 +333,5 @@ void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t heig
   projectBoxes(BoxProjection(view, width, height), boxes, images);
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 #endif

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <span>
 
-#include "scene/pixel_view.h"
 #include "sightline/math/box.h"
 #include "sightline/occlusion/depth_pyramid.h"
+#include "src/scene/pixel_view.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 enum class BoxPlace : std::uint8_t {
   kOutside,    // wholly off the map, before the near plane or beyond the far plane
@@ -24,7 +24,7 @@ struct PixelBox {
   bool whole = false;  // all of it surely lies within the view's volume
   std::uint16_t x0 = 0, y0 = 0, x1 = 0,
                 y1 = 0;                   // first and last pixels, cut at the map's borders; for kOnMap
-  float nearest = 0.0f, farthest = 0.0f;  // nearness, see PixelView; for kOnMap
+  float nearest = 0.0f, farthest = 0.0f;  // reciprocal depth, see PixelView; for kOnMap
   friend bool operator==(const PixelBox&, const PixelBox&) = default;
 
   BoxAnswer answer(Visibility visibility) const {
@@ -49,8 +49,8 @@ struct BoxProjection {
   Axis right, up, forward;
   Axis sides[4];           // planes of the view's volume through the eye, normals inwards; perspective
   float side_size = 0.0f;  // the largest normal's, at least
-  float near_least = 0.0f, near_most = 0.0f, far_least = 0.0f, far_most = 0.0f;  // rounded down and up
-  float scale_x = 0.0f, scale_y = 0.0f, middle_x = 0.0f, middle_y = 0.0f;        // see PixelView
+  float near_min = 0.0f, near_max = 0.0f, far_min = 0.0f, far_max = 0.0f;  // rounded down and up
+  float scale_x = 0.0f, scale_y = 0.0f, middle_x = 0.0f, middle_y = 0.0f;  // see PixelView
   float width = 0.0f, height = 0.0f;
   float eye_rounding = 0.0f;  // metres that a coordinate relative to the eye may be off
 };
@@ -60,4 +60,4 @@ void projectBoxes(const BoxProjection& projection, std::span<const Box> boxes, s
 void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t height,
                   std::span<const Box> boxes, std::span<PixelBox> images);
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -1,6 +1,6 @@
-#include "occlusion/polygon_split.h"
+#include "src/occlusion/polygon_split.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 constexpr PlaneRef kNoPlane{};
@@ -54,7 +54,7 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
   for (std::uint32_t i = 0; i < n; ++i) {
     const Vec3d& p = corners[first + i].position;
     distance_[i] = plane.evaluate(p);
-    const double on_plane = kOnPlane * (relative * magnitude(p) + scale);
+    const double on_plane = kOnPlane * (relative * l1Norm(p) + scale);
     sign_[i] = static_cast<std::int8_t>(distance_[i] > on_plane ? 1 : distance_[i] < -on_plane ? -1 : 0);
     any_front |= distance_[i] > 4.0 * on_plane;
     any_back |= distance_[i] < -4.0 * on_plane;
@@ -108,4 +108,4 @@ SplitResult PolygonStack::split(Piece piece, const Plane& plane, PlaneRef ref, d
   return result;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -5,9 +5,9 @@
 #include <array>
 #include <vector>
 
-#include "occlusion/occlusion_volume.h"
+#include "src/occlusion/occlusion_volume.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // A polygon on the stack.
 struct Piece {
@@ -60,4 +60,4 @@ class PolygonStack {
   std::array<std::int8_t, kMaxCorners> sign_{};
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

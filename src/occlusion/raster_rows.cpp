@@ -1,16 +1,16 @@
-#include "occlusion/raster_rows.h"
+#include "src/occlusion/raster_rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "occlusion/raster_rows.cpp"
+#define HWY_TARGET_INCLUDE "src/occlusion/raster_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -66,11 +66,11 @@ HWY_INLINE Vector rowsFrom(std::uint32_t y) {
   return hn::Iota(Lanes(), static_cast<float>(y));
 }
 
-// The polygon's nearness in the first pixel of each run. A row's bits must not depend on where the part
-// begins.
+// The polygon's reciprocal depth in the first pixel of each run. A row's bits must not depend on where the
+// part begins.
 void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
   for (std::uint32_t p = 0; p < part.polygon->plane_count; ++p) {
-    const NearnessPlane& plane = part.polygon->planes[p];
+    const ReciprocalDepthPlane& plane = part.polygon->planes[p];
     for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
       part.at_first[p][i] =
           static_cast<float>(plane.at_origin + plane.along_y * (y + i) + plane.along_x * part.runs.first[i]);
@@ -78,13 +78,13 @@ void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
   }
 }
 
-// A polygon's nearness along one row of a part.
-struct RowNearness {
+// A polygon's reciprocal depth along one row of a part.
+struct RowReciprocalDepth {
   float at_first[MapPolygon::kMaxPlanes], step[MapPolygon::kMaxPlanes];
   float farthest = 0.0f;
   std::uint32_t planes = 0, first = 0;
 
-  HWY_INLINE RowNearness(const RasterScratch::Part& part, std::uint32_t row)
+  HWY_INLINE RowReciprocalDepth(const RasterScratch::Part& part, std::uint32_t row)
       : farthest(part.polygon->farthest),
         planes(part.polygon->plane_count),
         first(static_cast<std::uint32_t>(part.runs.first[row])) {
@@ -194,7 +194,7 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
     return scratch.insides[(row - rows.first) / RowRuns::kRows];
   };
   const auto row_in_part = [&](std::uint32_t row) HWY_ATTR { return (row - rows.first) % RowRuns::kRows; };
-  while (y < rows.end && hiddenRow(band.nearness + std::size_t{y} * band.stride,
+  while (y < rows.end && hiddenRow(band.reciprocal_depth + std::size_t{y} * band.stride,
                                    Run::of(part_at(y).runs, row_in_part(y)), polygon.nearest)) {
     ++y;
   }
@@ -209,11 +209,11 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
     if (in_part == 0) {
       findAtFirst(y, part);
     }
-    float* row = band.nearness + std::size_t{y} * band.stride;
-    const RowNearness nearness(part, in_part);
+    float* row = band.reciprocal_depth + std::size_t{y} * band.stride;
+    const RowReciprocalDepth reciprocal_depth(part, in_part);
     forRun(Run::of(part.runs, in_part), [&](std::uint32_t x, auto mask) HWY_ATTR {
       const auto old = hn::LoadU(d, row + x);
-      hn::StoreU(hn::IfThenElse(mask, hn::Max(old, nearness.from(x)), old), d, row + x);
+      hn::StoreU(hn::IfThenElse(mask, hn::Max(old, reciprocal_depth.from(x)), old), d, row + x);
     });
   }
   return false;
@@ -315,7 +315,7 @@ class SeamDrawer {
   bool allHidden() const {
     for (const RasterScratch::Part& seam : scratch_.seams) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
-        const float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
+        const float* map_row = band_.reciprocal_depth + std::size_t{first_ + row} * band_.stride;
         if (!hiddenRow(map_row, Run::of(seam.own, row), seam.polygon->nearest)) {
           return false;
         }
@@ -377,10 +377,10 @@ class SeamDrawer {
     for (const RasterScratch::Part& seam : scratch_.seams) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
         float* seam_row = seamRow(row);
-        const RowNearness nearness(seam, row);
+        const RowReciprocalDepth reciprocal_depth(seam, row);
         forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
           const auto old = hn::LoadU(d, seam_row + x);
-          hn::StoreU(hn::IfThenElse(mask, hn::Min(old, nearness.from(x)), old), d, seam_row + x);
+          hn::StoreU(hn::IfThenElse(mask, hn::Min(old, reciprocal_depth.from(x)), old), d, seam_row + x);
         });
       }
     }
@@ -405,7 +405,7 @@ class SeamDrawer {
     for (const RasterScratch::Part& seam : scratch_.seams) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
         const float* seam_row = seamRow(row);
-        float* map_row = band_.nearness + std::size_t{first_ + row} * band_.stride;
+        float* map_row = band_.reciprocal_depth + std::size_t{first_ + row} * band_.stride;
         forRun(Run::of(seam.own, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
           const auto old = hn::LoadU(d, map_row + x);
           hn::StoreU(hn::IfThenElse(mask, hn::Max(old, hn::LoadU(d, seam_row + x)), old), d, map_row + x);
@@ -434,24 +434,24 @@ void drawSeamsOf(const MapPolygons& polygons, std::span<const std::uint32_t> gro
   SeamDrawer(polygons, group, band, rounding, scratch).draw();
 }
 
-void fillAll(std::span<float> nearness, float value) {
+void fillAll(std::span<float> reciprocal_depth, float value) {
   const hn::ScalableTag<float> d;
   const auto v = hn::Set(d, value);
   std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= nearness.size(); i += hn::Lanes(d)) {
-    hn::StoreU(v, d, nearness.data() + i);
+  for (; i + hn::Lanes(d) <= reciprocal_depth.size(); i += hn::Lanes(d)) {
+    hn::StoreU(v, d, reciprocal_depth.data() + i);
   }
-  for (; i < nearness.size(); ++i) {
-    nearness[i] = value;
+  for (; i < reciprocal_depth.size(); ++i) {
+    reciprocal_depth[i] = value;
   }
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 HWY_EXPORT(drawInsidesOf);
 HWY_EXPORT(drawSeamsOf);
@@ -467,8 +467,8 @@ void drawSeams(const MapPolygons& polygons, std::span<const std::uint32_t> group
   HWY_DYNAMIC_DISPATCH(drawSeamsOf)(polygons, group, band, rounding, scratch);
 }
 
-void fillMap(std::span<float> nearness, float value) {
-  HWY_DYNAMIC_DISPATCH(fillAll)(nearness, value);
+void fillMap(std::span<float> reciprocal_depth, float value) {
+  HWY_DYNAMIC_DISPATCH(fillAll)(reciprocal_depth, value);
 }
 
 void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band) {
@@ -480,8 +480,8 @@ void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> ord
                         if (y < band.first_row) {
                           return;
                         }
-                        float* row = band.nearness + std::size_t{y} * band.stride;
-                        const NearnessPlane& plane = polygon.planes[0];
+                        float* row = band.reciprocal_depth + std::size_t{y} * band.stride;
+                        const ReciprocalDepthPlane& plane = polygon.planes[0];
                         const double at_row = plane.at_origin + plane.along_y * y;
                         for (std::uint32_t x = first; x <= last; ++x) {
                           const auto value = static_cast<float>(at_row + plane.along_x * x);
@@ -491,5 +491,5 @@ void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> ord
   }
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion
 #endif

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "occlusion/map_polygon.h"
+#include "src/occlusion/map_polygon.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // Some rows of a map.
 struct RasterBand {
-  float* nearness = nullptr;  // of the whole map
+  float* reciprocal_depth = nullptr;  // of the whole map
   std::uint32_t width = 0, stride = 0;
   std::uint32_t first_row = 0, end_row = 0;  // to be drawn
 };
@@ -30,7 +30,8 @@ inline constexpr std::uint32_t kRowSlack = RowRuns::kRows;
 
 // Of one thread; kept from one use to the next.
 struct RasterScratch {
-  // A polygon's pixels in RowRuns::kRows rows, with the nearness of its planes in the first one of each row.
+  // A polygon's pixels in RowRuns::kRows rows, with the reciprocal depth of its planes in the first one of
+  // each row.
   struct Part {
     const MapPolygon* polygon = nullptr;
     RowRuns runs;
@@ -40,7 +41,7 @@ struct RasterScratch {
   std::vector<Part> insides;  // of a polygon, from its lowest row on
   std::vector<Part> seams;    // of a group, in the same rows
   std::vector<RowRuns> ends;
-  std::vector<float> seam_rows;  // of nearness: RowRuns::kRows rows
+  std::vector<float> seam_rows;  // of reciprocal depth: RowRuns::kRows rows
 };
 
 // Draws the pixels that lie wholly inside each polygon; order: indices into polygons. drawn: a byte for each
@@ -55,6 +56,6 @@ void drawSeams(const MapPolygons& polygons, std::span<const std::uint32_t> group
 // Draws the pixels whose centres a polygon covers.
 void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band);
 
-void fillMap(std::span<float> nearness, float value);
+void fillMap(std::span<float> reciprocal_depth, float value);
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

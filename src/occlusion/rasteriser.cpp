@@ -9,12 +9,12 @@
 
 #include <algorithm>
 
-#include "occlusion/map_polygon.h"
-#include "occlusion/raster_rows.h"
+#include "src/occlusion/map_polygon.h"
+#include "src/occlusion/raster_rows.h"
 
 namespace sightline {
 
-using namespace occlusion_detail;
+using namespace occlusion;
 
 struct Rasteriser::Impl {
   // Rows that a thread draws together at least.
@@ -24,7 +24,7 @@ struct Rasteriser::Impl {
     settings.width = std::clamp(settings.width, 1u, kMaxMapSize);
     settings.height = std::clamp(settings.height, 1u, kMaxMapSize);
     stride = (settings.width + kRowSlack - 1) / kRowSlack * kRowSlack + kRowSlack;
-    nearness.resize(std::size_t{stride} * settings.height, kUncovered);
+    reciprocal_depth.resize(std::size_t{stride} * settings.height, kUncovered);
     bands = (settings.height + kBandRows - 1) / kBandRows;
     scratch.resize(bands);
   }
@@ -49,7 +49,7 @@ struct Rasteriser::Impl {
   }
 
   RasterBand bandOf(std::uint32_t begin, std::uint32_t end) {
-    return {nearness.data(), settings.width, stride, begin * kBandRows,
+    return {reciprocal_depth.data(), settings.width, stride, begin * kBandRows,
             std::min(end * kBandRows, settings.height)};
   }
 
@@ -99,7 +99,7 @@ struct Rasteriser::Impl {
 
   RasterSettings settings;
   std::uint32_t stride = 0, bands = 0;
-  std::vector<float> nearness;
+  std::vector<float> reciprocal_depth;
   PixelView view;
   MapPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
@@ -116,7 +116,7 @@ Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
 
 void Rasteriser::begin(const View& view) {
   impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height);
-  fillMap(impl_->nearness, kUncovered);
+  fillMap(impl_->reciprocal_depth, kUncovered);
   impl_->used.clear();
   impl_->stats = {};
 }
@@ -130,7 +130,7 @@ const RasterSettings& Rasteriser::settings() const {
   return impl_->settings;
 }
 DepthMapView Rasteriser::map() const {
-  return {impl_->nearness, impl_->settings.width, impl_->settings.height, impl_->stride};
+  return {impl_->reciprocal_depth, impl_->settings.width, impl_->settings.height, impl_->stride};
 }
 const RasterStats& Rasteriser::stats() const {
   return impl_->stats;

@@ -1,15 +1,15 @@
-#include "occlusion/relation.h"
+#include "src/occlusion/relation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/box_tangents.h"
+#include "src/geometry/box_tangents.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
-using geometry_detail::BoxTangents;
+using geometry::BoxTangents;
 
 // The inset of planes that are kept is a power of two, so that it changes seldom, and at least this times the
 // occluder's reach. See docs/conservative.md.
@@ -107,7 +107,7 @@ PlaneSide sideOf(const Member& member, const Box& box) {
   const Vec3d at_low{n.x * low.x, n.y * low.y, n.z * low.z},
       at_high{n.x * high.x, n.y * high.y, n.z * high.z};
   const Vec3d nearest = max(at_low, at_high), farthest = min(at_low, at_high);
-  const double span = magnitude(max(abs(low), abs(high)));
+  const double span = l1Norm(max(abs(low), abs(high)));
   const double margin = member.inset + kDepthMargin * span;
   if (farthest.x + farthest.y + farthest.z >= -margin) {
     return PlaneSide::kFront;
@@ -130,11 +130,11 @@ void makeRelation(const Member& member, std::span<const InsetEdge> edges, const 
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const Vec3d from = low - edges[e].point, to = high - edges[e].point;
     const BoxTangents touched = search == TangentSearch::kTables
-                                    ? geometry_detail::tangentsByTables(from, to, edges[e].direction)
-                                    : geometry_detail::tangentsOfAllVertices(from, to, edges[e].direction);
+                                    ? geometry::tangentsByTables(from, to, edges[e].direction)
+                                    : geometry::tangentsOfAllVertices(from, to, edges[e].direction);
     // The box lies in front of `a` and behind `b`.
-    const Vec3d at_a = geometry_detail::cornerOf(from, to, touched.low),
-                at_b = geometry_detail::cornerOf(from, to, touched.high);
+    const Vec3d at_a = geometry::cornerOf(from, to, touched.low),
+                at_b = geometry::cornerOf(from, to, touched.high);
     const Plane a = planeThrough(edges[e], at_a), b = planeThrough(edges[e], at_b);
     Plane first = none, second = none;
     if (touched.exist && relation.behind) {
@@ -210,4 +210,4 @@ EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetE
   return shape;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -16,11 +16,11 @@
 #include <span>
 #include <vector>
 
-#include "occlusion/eye_occluder.h"
-#include "occlusion/eye_planes.h"
 #include "sightline/occlusion/supporting_planes.h"
+#include "src/occlusion/eye_occluder.h"
+#include "src/occlusion/eye_planes.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The planes of four edges, two an edge. The occluder lies in front of them.
 struct PlaneQuad {
@@ -98,4 +98,4 @@ void evaluate(const Member& member, std::span<const PlaneQuad> planes, double pa
 EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
                     std::vector<EyeQuad>& quads);
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

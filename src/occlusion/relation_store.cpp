@@ -1,11 +1,11 @@
-#include "occlusion/relation_store.h"
+#include "src/occlusion/relation_store.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <utility>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 RelationStore::RelationStore(std::size_t max_bytes)
     : max_(static_cast<std::uint32_t>(
@@ -215,4 +215,4 @@ std::size_t RelationStore::bytes() const {
          items_.capacity() * sizeof(Index);
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

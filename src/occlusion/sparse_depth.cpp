@@ -1,9 +1,9 @@
-#include "occlusion/sparse_depth.h"
+#include "src/occlusion/sparse_depth.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 // A step from peak to peak takes about as long as comparing this many pixels in vector code.
@@ -14,14 +14,14 @@ constexpr std::uint32_t kWorthwhileWidth = 20;
 constexpr std::uint32_t kWorthwhileQuestions = 8;
 
 // Uncovered pixels are nearer than anything.
-float comparable(float nearness) {
-  return nearness > kUncovered ? nearness : std::numeric_limits<float>::infinity();
+float comparable(float reciprocal_depth) {
+  return reciprocal_depth > kUncovered ? reciprocal_depth : std::numeric_limits<float>::infinity();
 }
 
 // Not branching, so that the compiler makes vector code of it.
-std::uint32_t fails(float nearness, float nearest) {
-  return static_cast<std::uint32_t>(!(nearness > nearest)) &
-         static_cast<std::uint32_t>(nearness > kUncovered);
+std::uint32_t fails(float reciprocal_depth, float nearest) {
+  return static_cast<std::uint32_t>(!(reciprocal_depth > nearest)) &
+         static_cast<std::uint32_t>(reciprocal_depth > kUncovered);
 }
 
 // No early end, for the same reason.
@@ -131,4 +131,4 @@ bool SparseDepth::allNearer(const PixelBox& rect) {
   return true;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "occlusion/pixel_boxes.h"
 #include "sightline/occlusion/rasteriser.h"
+#include "src/occlusion/pixel_boxes.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // Both ways of comparing give the same answer: true where every covered pixel of the rectangle, which lies in
 // the map, is nearer than the box's nearest point, and not as near. Uncovered pixels are left out: whether
@@ -62,4 +62,4 @@ class SparseDepth {
   std::uint64_t compared_ = 0;
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

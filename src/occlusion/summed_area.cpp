@@ -1,14 +1,14 @@
-#include "occlusion/summed_area.h"
+#include "src/occlusion/summed_area.h"
 
 #include <algorithm>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 // Written apart so that the compiler makes vector code of it.
-void addCovered(const float* nearness, std::size_t width, std::uint32_t* columns) {
+void addCovered(const float* reciprocal_depth, std::size_t width, std::uint32_t* columns) {
   for (std::size_t x = 0; x < width; ++x) {
-    columns[x] += nearness[x] > kUncovered ? 1u : 0u;
+    columns[x] += reciprocal_depth[x] > kUncovered ? 1u : 0u;
   }
 }
 
@@ -31,4 +31,4 @@ void SummedArea::build(const DepthMapView& map) {
   }
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "occlusion/pixel_boxes.h"
 #include "sightline/occlusion/rasteriser.h"
+#include "src/occlusion/pixel_boxes.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The opacity map of Poon and Wang 1999, section 5.1: each entry counts the covered pixels below and to the
 // left of it; a row and a column of zeros go before them. Empty until built.
@@ -36,4 +36,4 @@ inline std::uint32_t areaOf(const PixelBox& rect) {
   return (std::uint32_t{rect.x1} - rect.x0 + 1) * (std::uint32_t{rect.y1} - rect.y0 + 1);
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <vector>
 
-#include "occlusion/relation.h"
-#include "occlusion/relation_store.h"
-#include "scene/usable_view.h"
+#include "src/occlusion/relation.h"
+#include "src/occlusion/relation_store.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
-using namespace occlusion_detail;
+using namespace occlusion;
 
 struct SupportingPlanes::Impl {
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -1,11 +1,11 @@
 // Building the occlusion tree: Bittner, Havran, Slavik, CGI 1998, sections 5 and 6.1; the shadow volume BSP
 // tree of Chin and Feiner, SIGGRAPH 1990.
 
-#include "occlusion/tree_build.h"
+#include "src/occlusion/tree_build.h"
 
 #include <algorithm>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The frustum's side planes at the top: what is outside them says nothing, and no shadow is stored there.
 void TreeBuilder::addFrustum(const View& view) {
@@ -162,4 +162,4 @@ bool TreeBuilder::build(const View& view, std::span<const ChosenOccluders> sets,
   return !failed_ && !stack_.overflow;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

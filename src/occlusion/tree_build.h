@@ -1,9 +1,9 @@
 #pragma once
 
-#include "occlusion/front_to_back.h"
-#include "occlusion/tree_data.h"
+#include "src/occlusion/front_to_back.h"
+#include "src/occlusion/tree_data.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 struct TreeLimits {
   bool modified = true;  // MOBSP: edges embedded in planes above add no node
@@ -49,4 +49,4 @@ class TreeBuilder {
   std::vector<Fragment> fragments_;
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

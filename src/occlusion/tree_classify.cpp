@@ -6,17 +6,17 @@
 // the pyramid between the eye and the occluder. The paper's test of the intersection alone takes a box that
 // is in front of the occluder, and crosses its plane beside it, for a hidden one.
 
-#include "occlusion/tree_classify.h"
+#include "src/occlusion/tree_classify.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 double supportMargin(const OcclusionVolume& volume, const Vec3d& p) {
-  return volume.depth_slack + kDepthMargin * magnitude(p);
+  return volume.depth_slack + kDepthMargin * l1Norm(p);
 }
 
 // The four corners of the face of the box on one side of an axis.
@@ -161,9 +161,9 @@ State SplittingQuery::classify(const TreeData& tree, const BoxQuestion& question
   tree_ = &tree;
   question_ = &question;
   const EyeBox& box = question.box;
-  reach_ = magnitude(max(abs(box.min), abs(box.max)));
+  reach_ = l1Norm(max(abs(box.min), abs(box.max)));
   // Of the box's nearest point: a corner far away may be the end of an edge that passes close by.
-  on_plane_scale_ = magnitude(max(max(box.min, -box.max), Vec3d())) + tree.on_plane_scale;
+  on_plane_scale_ = l1Norm(max(max(box.min, -box.max), Vec3d())) + tree.on_plane_scale;
   stack_.overflow = false;
   State state = State::kNothing;
   for (int axis = 0; axis < 3 && state != State::kPartial; ++axis) {
@@ -268,7 +268,7 @@ State PlaneQuery::classify(const TreeData& tree, const BoxQuestion& question) {
   question_ = &question;
   center_ = question.box.center();
   half_ = question.box.half();
-  reach_ = magnitude(center_) + magnitude(half_);
+  reach_ = l1Norm(center_) + l1Norm(half_);
   has_image_ = false;
   waiting_.clear();
   path_.clear();
@@ -360,4 +360,4 @@ bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const Eye
   return false;
 }
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "occlusion/box_image.h"
-#include "occlusion/eye_box.h"
-#include "occlusion/tree_data.h"
 #include "sightline/occlusion/visibility.h"
+#include "src/occlusion/box_image.h"
+#include "src/occlusion/eye_box.h"
+#include "src/occlusion/tree_data.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // The states of Visibility, and one more for parts outside the frustum, which do not count.
 enum class State : std::uint8_t { kHidden, kPartial, kVisible, kNothing };
@@ -113,4 +113,4 @@ State boxBehindSupport(const OcclusionVolume& volume, const EyeBox& box);
 // camera's plane). True is certain; near ties are false.
 bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const EyeBox& box);
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "occlusion/occlusion_volume.h"
-#include "occlusion/polygon_split.h"
+#include "src/occlusion/occlusion_volume.h"
+#include "src/occlusion/polygon_split.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 
 // Where a branch of the tree leads: to a node, or to one of three kinds of leaves.
 struct Link {
@@ -64,4 +64,4 @@ struct TreeData {
   Link belowFrustum() const { return frustum_nodes == 0 ? root : nodes[frustum_nodes - 1].back; }
 };
 
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

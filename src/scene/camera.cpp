@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "scene/usable_view.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 

@@ -4,13 +4,13 @@
 //
 // Camera space: x to the right, y upwards, z the depth along the viewing direction, metres, relative to the
 // eye. Map space: pixels from the map's lower left corner, x to the right, y upwards; pixel (i, j) is the
-// square from (i, j) to (i + 1, j + 1). Nearness is what a map stores of a depth: greater is nearer, and over
-// a plane's image it is linear. Perspective: 1 / depth; orthographic: -depth.
+// square from (i, j) to (i + 1, j + 1). ReciprocalDepth is what a map stores of a depth: greater is nearer,
+// and over a plane's image it is linear. Perspective: 1 / depth; orthographic: -depth.
 
 #include <algorithm>
 #include <cstdint>
 
-#include "scene/usable_view.h"
+#include "src/scene/usable_view.h"
 
 namespace sightline {
 
@@ -74,7 +74,7 @@ struct PixelView {
   // Of a point in camera space; perspective: z > 0.
   double mapX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
   double mapY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
-  double nearness(double depth) const { return orthographic ? -depth : 1.0 / depth; }
+  double reciprocal_depth(double depth) const { return orthographic ? -depth : 1.0 / depth; }
 
  private:
   static constexpr double kLargestScale = 0x1p40;

@@ -1,4 +1,4 @@
-#include "scene/usable_view.h"
+#include "src/scene/usable_view.h"
 
 #include <cmath>
 #include <string>

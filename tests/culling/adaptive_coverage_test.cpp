@@ -1,4 +1,4 @@
-#include "culling/adaptive_coverage.h"
+#include "src/culling/adaptive_coverage.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 namespace {
 
 // What a frame would take and save with a ratio.
@@ -212,4 +212,4 @@ TEST(AdaptiveCoverage, TheRatioIsWithinZeroAndOne) {
 }
 
 }  // namespace
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

@@ -7,15 +7,15 @@
 #include <optional>
 #include <vector>
 
-#include "culling/hierarchical_walk.h"
 #include "sightline/scene/camera.h"
+#include "src/culling/hierarchical_walk.h"
 
 namespace sightline {
 namespace {
 
-using culling_detail::AskAll;
-using culling_detail::HierarchicalWalk;
-using culling_detail::WalkBox;
+using culling::AskAll;
+using culling::HierarchicalWalk;
+using culling::WalkBox;
 
 using Nodes = std::vector<std::uint32_t>;
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "culling/object_bits.h"
+#include "src/culling/object_bits.h"
 #include "tests/culling/demo_frames.h"
 
 namespace sightline {
@@ -611,7 +611,7 @@ TEST(Culler, NeedsAtMost64BytesAnObjectAnd32ANode) {
 TEST(ObjectBits, ReturnTheirMembersOnceAndInOrder) {
   for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 5000u, 70000u}) {
     std::mt19937_64 random(count);
-    culling_detail::ObjectBits bits(count);
+    culling::ObjectBits bits(count);
     for (int round = 0; round < 3; ++round) {
       Objects expected;
       for (std::size_t i = 0; i < count; i += 1 + random() % 40) {

@@ -35,7 +35,7 @@ constexpr NamedSettings kStructures[] = {
       .supporting_planes = {.joint_occlusion = false, .form = PlaneForm::kThroughBox}}},
     {"opacity map", {.method = CullMethod::kOpacityMap, .raster = {.width = 64, .height = 36}}},
     {"depth pyramid", {.method = CullMethod::kDepthPyramid}},
-    {"depth pyramid, focused", {.method = CullMethod::kDepthPyramid, .focus = {.least_objects = 0}}},
+    {"depth pyramid, focused", {.method = CullMethod::kDepthPyramid, .focus = {.min_objects = 0}}},
 };
 // One of each method.
 constexpr NamedSettings kMethods[] = {kStructures[2], kStructures[4], kStructures[5],

@@ -1,4 +1,4 @@
-#include "culling/focus_window.h"
+#include "src/culling/focus_window.h"
 
 #include <gtest/gtest.h>
 
@@ -13,13 +13,13 @@
 #include "tests/occlusion/small_scenes.h"
 #include "tests/support/solids.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 namespace {
 
 using test::Random;
 
 constexpr std::uint32_t kWidth = 320, kHeight = 180;
-const FocusSettings kTen{.least_objects = 10};
+const FocusSettings kTen{.min_objects = 10};
 
 View anyView(Random& random) {
   View view;
@@ -92,7 +92,7 @@ TEST(FocusWindow, LiesBeyondTheViewsNearPlane) {
   Random random(3);
   int found = 0;
   for (int i = 0; i < 300; ++i) {
-    FocusWindow window({.magnification = random.in(1.5, 20.0), .least_objects = 1}, kWidth, kHeight);
+    FocusWindow window({.magnification = random.in(1.5, 20.0), .min_objects = 1}, kWidth, kHeight);
     const View view = anyView(random);
     window.begin(view, false);
     window.add(static_cast<std::uint32_t>(random.in(0, kWidth)),
@@ -154,7 +154,7 @@ TEST(FocusWindow, IsNotFoundAtAbsurdMagnifications) {
   const View view = anyView(random);
   for (const double magnification : {1e9, 1e300, std::numeric_limits<double>::infinity(), 1e-300}) {
     for (const std::uint32_t least : {0u, 10u}) {
-      const FocusSettings settings{.magnification = magnification, .least_objects = least};
+      const FocusSettings settings{.magnification = magnification, .min_objects = least};
       EXPECT_FALSE(isFound(settings, view, view, true, 100)) << magnification;
     }
   }
@@ -278,7 +278,7 @@ bool kept(const Culler& culler, std::size_t object) {
 }
 
 CullerSettings focused(bool coherent) {
-  CullerSettings settings{.method = CullMethod::kDepthPyramid, .focus = {.least_objects = 0}};
+  CullerSettings settings{.method = CullMethod::kDepthPyramid, .focus = {.min_objects = 0}};
   settings.raster = {.width = 96, .height = 96};  // coarse, so that it leaks
   settings.temporal_coherence = coherent;
   return settings;
@@ -369,7 +369,7 @@ std::vector<View> smoothFrames(std::size_t first, std::size_t count) {
 }
 
 CullerSettings focusedCity(double magnification) {
-  CullerSettings settings{.method = CullMethod::kDepthPyramid, .focus = {.least_objects = 0}};
+  CullerSettings settings{.method = CullMethod::kDepthPyramid, .focus = {.min_objects = 0}};
   settings.focus.magnification = magnification;
   settings.temporal_coherence = false;
   return settings;
@@ -429,4 +429,4 @@ TEST(FocusedCuller, CullsNothingThatIsSeenInTheBoxCity) {
 }
 
 }  // namespace
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

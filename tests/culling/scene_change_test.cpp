@@ -161,7 +161,7 @@ TEST(Culler, KeepsEverythingOfASceneThatGrewOrShrankWithoutReset) {
         EXPECT_EQ(visibleOf(culler, view), firstObjects(live.demo.bounds.size())) << name;
         EXPECT_TRUE(culler.stats().unfit);
         EXPECT_TRUE(culler.occludersUsed().empty());
-        EXPECT_TRUE(culler.depthMap().nearness.empty());
+        EXPECT_TRUE(culler.depthMap().reciprocal_depth.empty());
       }
       live.become(DemoScene{Scene{}});
       EXPECT_EQ(visibleOf(culler, views[0]), firstObjects(count)) << name;

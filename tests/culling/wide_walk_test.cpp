@@ -1,4 +1,4 @@
-#include "culling/wide_walk.h"
+#include "src/culling/wide_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/culling/demo_frames.h"
 #include "tests/occlusion/small_scenes.h"
 
-namespace sightline::culling_detail {
+namespace sightline::culling {
 namespace {
 
 using demo_frames::nameOf;
@@ -218,4 +218,4 @@ TEST(WideWalk, OfDemoScenesKeepsWhatAskingBoxByBoxKeeps) {
 }
 
 }  // namespace
-}  // namespace sightline::culling_detail
+}  // namespace sightline::culling

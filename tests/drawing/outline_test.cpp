@@ -1,6 +1,6 @@
 // Outlines of objects: the union of drawn triangles on the page.
 
-#include "drawing/outline.h"
+#include "src/drawing/outline.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "drawing/outline_chain.h"
-#include "drawing/outline_union.h"
+#include "src/drawing/outline_chain.h"
+#include "src/drawing/outline_union.h"
 #include "tests/drawing/page_geometry.h"
 #include "tests/support/layer_shapes.h"
 #include "tests/support/solids.h"

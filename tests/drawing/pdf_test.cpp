@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "drawing/pdf_file.h"
 #include "sightline/drawing/drawing.h"
+#include "src/drawing/pdf_file.h"
 #include "tests/drawing/made_drawings.h"
 
 namespace sightline {

@@ -1,6 +1,6 @@
 // Visible pieces of lines, joined to strokes.
 
-#include "drawing/polylines.h"
+#include "src/drawing/polylines.h"
 
 #include <gtest/gtest.h>
 

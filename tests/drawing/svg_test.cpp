@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "drawing/drawing_text.h"
-#include "drawing/svg_names.h"
 #include "sightline/drawing/drawing.h"
+#include "src/drawing/drawing_text.h"
+#include "src/drawing/svg_names.h"
 #include "tests/drawing/made_drawings.h"
 #include "tests/support/layer_shapes.h"
 

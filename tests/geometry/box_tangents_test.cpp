@@ -1,4 +1,4 @@
-#include "geometry/box_tangents.h"
+#include "src/geometry/box_tangents.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace sightline::geometry_detail {
+namespace sightline::geometry {
 namespace {
 
 // The judge works on whole numbers of up to 40 bits, whose determinants are exact in 128 bits.
@@ -390,4 +390,4 @@ TEST(BoxTangents, AnOppositeDirectionExchangesThePlanes) {
 }
 
 }  // namespace
-}  // namespace sightline::geometry_detail
+}  // namespace sightline::geometry

@@ -16,7 +16,7 @@ namespace {
 
 using namespace box_families;
 
-constexpr std::uint32_t kMostTriangles = 0xffffffffu;
+constexpr std::uint32_t kMaxTriangles = 0xffffffffu;
 
 // Reads a tree by its links alone, from the last node to the first, and compares all that the header
 // promises. Empty when nothing is wrong.
@@ -78,14 +78,14 @@ std::string whatIsWrong(const BoxTree& built, std::span<const Box> boxes,
     expect(children >= 2, "inner node with one child", n);
     expect(bounds == node.bounds, "bounds not those of the children", n);
     expect(objects == node.object_count, "wrong number of objects", n);
-    expect(std::min<std::uint64_t>(sum, kMostTriangles) == node.triangles, "wrong sum of triangles", n);
+    expect(std::min<std::uint64_t>(sum, kMaxTriangles) == node.triangles, "wrong sum of triangles", n);
   }
   return findings;
 }
 
 // Children of the inner nodes, and levels.
 struct Shape {
-  std::uint32_t most_children = 0, depth = 0;
+  std::uint32_t max_children = 0, depth = 0;
 };
 Shape shapeOf(const BoxTree& tree) {
   Shape shape;
@@ -97,7 +97,7 @@ Shape shapeOf(const BoxTree& tree) {
       level[c] = level[n] + 1;
       ++children;
     }
-    shape.most_children = std::max(shape.most_children, children);
+    shape.max_children = std::max(shape.max_children, children);
   }
   return shape;
 }
@@ -215,7 +215,7 @@ TEST(BoxTree, EveryFamilyOfBoxesKeepsWhatTheHeaderPromises) {
       const BoxTree tree = buildBoxTree(boxes, triangles);
       EXPECT_EQ(whatIsWrong(tree, boxes, triangles), "")
           << "family " << static_cast<int>(family) << " seed " << seed;
-      EXPECT_LE(shapeOf(tree).most_children, 8u) << "family " << static_cast<int>(family) << " seed " << seed;
+      EXPECT_LE(shapeOf(tree).max_children, 8u) << "family " << static_cast<int>(family) << " seed " << seed;
     }
   }
 }
@@ -285,7 +285,7 @@ TEST(BoxTree, CountsOfTrianglesSaturate) {
   const std::vector<std::uint32_t> triangles{3000000000u, 3000000000u, 5u};
   const BoxTree tree = buildBoxTree(boxes, triangles);
   EXPECT_EQ(whatIsWrong(tree, boxes, triangles), "");
-  EXPECT_EQ(tree.nodes[0].triangles, kMostTriangles);
+  EXPECT_EQ(tree.nodes[0].triangles, kMaxTriangles);
 }
 
 // What makes trees deep, wide, or slow to build where nothing bounds them.
@@ -311,7 +311,7 @@ TEST(BoxTree, NoInputMakesItDeepOrWide) {
   for (const auto& [name, boxes] : inputs) {
     const BoxTree tree = buildBoxTree(boxes, {});
     EXPECT_EQ(whatIsWrong(tree, boxes), "") << name;
-    EXPECT_LE(shapeOf(tree).most_children, 8u) << name;
+    EXPECT_LE(shapeOf(tree).max_children, 8u) << name;
     EXPECT_LE(shapeOf(tree).depth, 64u) << name;
   }
 }

@@ -1,4 +1,4 @@
-#include "hierarchy/wide_hierarchy.h"
+#include "src/hierarchy/wide_hierarchy.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/hierarchy/box_families.h"
 
-namespace sightline::hierarchy_detail {
+namespace sightline::hierarchy {
 namespace {
 
 using namespace box_families;
@@ -168,4 +168,4 @@ TEST(WideHierarchy, TakesFewerThanFortyEightBytesForAnObject) {
 }
 
 }  // namespace
-}  // namespace sightline::hierarchy_detail
+}  // namespace sightline::hierarchy

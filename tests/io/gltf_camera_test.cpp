@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "glb_builder.h"
-#include "scene_checks.h"
+#include "tests/io/glb_builder.h"
+#include "tests/io/scene_checks.h"
 
 namespace sightline {
 namespace {

@@ -11,8 +11,8 @@
 #include <limits>
 #include <random>
 
-#include "glb_builder.h"
-#include "scene_checks.h"
+#include "tests/io/glb_builder.h"
+#include "tests/io/scene_checks.h"
 
 namespace sightline {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "glb_builder.h"
-#include "scene_checks.h"
+#include "tests/io/glb_builder.h"
+#include "tests/io/scene_checks.h"
 
 namespace sightline {
 namespace {

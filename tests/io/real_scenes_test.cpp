@@ -8,8 +8,8 @@
 #include <map>
 #include <sstream>
 
-#include "scene_checks.h"
 #include "sightline/io/camera_path_json.h"
+#include "tests/io/scene_checks.h"
 #include "tests/support/real_scenes.h"
 
 namespace sightline {

@@ -8,13 +8,13 @@
 #include <random>
 #include <vector>
 
-#include "layers/conditioning_sort.h"
-#include "layers/depth_first_sort.h"
-#include "layers/extent_scan.h"
-#include "layers/extent_tree.h"
-#include "layers/incremental_sort.h"
-#include "layers/part_extents.h"
 #include "sightline/layers/shaped_image.h"
+#include "src/comparison/layers/extent_tree.h"
+#include "src/comparison/layers/incremental_sort.h"
+#include "src/layers/extents/extent_scan.h"
+#include "src/layers/extents/part_extents.h"
+#include "src/layers/sort/conditioning_sort.h"
+#include "src/layers/sort/depth_first_sort.h"
 #include "tests/layers/extent_scene.h"
 #include "tests/layers/graph_source.h"
 #include "tests/layers/made_extents.h"

@@ -1,4 +1,4 @@
-#include "layers/conditioning_sort.h"
+#include "src/layers/sort/conditioning_sort.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "layers/depth_first_sort.h"
+#include "src/layers/sort/depth_first_sort.h"
 #include "tests/layers/graph_source.h"
 
 namespace sightline::layers {
@@ -23,7 +23,7 @@ GroupedOrder singles(std::span<const std::uint32_t> parts) {
   return order;
 }
 
-std::vector<double> leastKeys(const GroupedOrder& order, std::span<const double> part_keys) {
+std::vector<double> minKeys(const GroupedOrder& order, std::span<const double> part_keys) {
   std::vector<double> keys(order.groups(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < order.groups(); ++i) {
     for (const std::uint32_t part : order.group(i)) {
@@ -100,10 +100,10 @@ TEST(ConditioningSort, TheOrderStaysValidAndNoAdjacentPairThatMayBeSwappedIsLeft
     }
     GroupedOrder order;
     DepthFirstSort().sort(shuffledOrder(parts, random), graph, order);
-    const std::vector<double> before = leastKeys(order, part_keys);
+    const std::vector<double> before = minKeys(order, part_keys);
     const std::uint64_t moved = conditioning.sort(before, part_keys, {ask, &graph}, {}, order);
     ASSERT_EQ(faultOf(order, graph, componentsOf(graph)), "");
-    const std::vector<double> after = leastKeys(order, part_keys);
+    const std::vector<double> after = minKeys(order, part_keys);
     EXPECT_LE(inversions(after), inversions(before));
     EXPECT_EQ(moved == 0, inversions(after) == inversions(before));
     for (std::size_t i = 1; i < after.size(); ++i) {
@@ -128,7 +128,7 @@ TEST(ConditioningSort, NoMorePairsAreAskedAboutThanTheLimit) {
   for (const std::uint64_t most : {0u, 1u, 2u, 10u, 100u, 434u, 435u, 1000u}) {
     GroupedOrder order = singles(parts);
     graph.reset();
-    ConditioningSort().sort(keys, keys, {ask, &graph}, {.most_tests = most}, order);
+    ConditioningSort().sort(keys, keys, {ask, &graph}, {.max_tests = most}, order);
     EXPECT_EQ(graph.pair_questions, std::min<std::uint64_t>(most, 30 * 29 / 2));
     std::vector<std::uint32_t> sorted = order.parts;
     std::sort(sorted.begin(), sorted.end());

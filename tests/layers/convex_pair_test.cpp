@@ -1,4 +1,4 @@
-#include "layers/convex_pair.h"
+#include "src/layers/pairs/convex_pair.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <ostream>
 #include <vector>
 
-#include "layers/support.h"
+#include "src/layers/hull/support.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
@@ -397,7 +397,7 @@ TEST(ConvexPair, AskedAgainAPairCostsOneSupportIfApartAndNoneIfItMeets) {
     EXPECT_EQ(meeting(a.set, b.set, witness, counts), answer);
     EXPECT_EQ(counts.questions, 1u);
     EXPECT_EQ(counts.chung_steps, answer == Meeting::kApart ? 1u : 0u);
-    EXPECT_EQ(counts.gilbert_steps, 0u);
+    EXPECT_EQ(counts.gjk_steps, 0u);
     ++seen[answer == Meeting::kApart ? 1 : 0];
   }
   EXPECT_GT(seen[0], 50);
@@ -438,7 +438,7 @@ TEST(ConvexPair, WhatIsNotFiniteIsUndecidedAtOnce) {
         PairCounts counts;
         EXPECT_EQ(meeting(set, ConvexSet{&cube}, witness, counts), Meeting::kUndecided) << entry;
         EXPECT_EQ(meeting(ConvexSet{&cube}, set, witness, counts), Meeting::kUndecided) << entry;
-        EXPECT_EQ(counts.chung_steps + counts.gilbert_steps, 0u);
+        EXPECT_EQ(counts.chung_steps + counts.gjk_steps, 0u);
       }
     }
   }

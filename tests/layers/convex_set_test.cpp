@@ -1,4 +1,4 @@
-#include "layers/convex_set.h"
+#include "src/layers/pairs/convex_set.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "layers/support.h"
+#include "src/layers/hull/support.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 

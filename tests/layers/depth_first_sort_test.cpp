@@ -1,4 +1,4 @@
-#include "layers/depth_first_sort.h"
+#include "src/layers/sort/depth_first_sort.h"
 
 #include <gtest/gtest.h>
 

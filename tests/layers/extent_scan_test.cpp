@@ -1,4 +1,4 @@
-#include "layers/extent_scan.h"
+#include "src/layers/extents/extent_scan.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -40,7 +40,7 @@ Extent randomExtent(Random& random, const ExtentTable& table) {
 ExtentTable randomTable(Random& random) {
   ExtentTable table;
   table.parts = random.below(300);
-  const std::size_t axes = 1 + random.below(random.below(5) == 0 ? kMostExtentAxes : 4);
+  const std::size_t axes = 1 + random.below(random.below(5) == 0 ? kMaxExtentAxes : 4);
   const std::size_t padded = (table.parts + 15) / 16 * 16;
   for (std::size_t axis = 0; axis < axes; ++axis) {
     table.kinds.push_back(random.below(2) == 0 ? ExtentAxis::Kind::kAngular : ExtentAxis::Kind::kSpatial);

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "layers/extent_table.h"
-#include "layers/part_store.h"
 #include "sightline/scene/camera.h"
+#include "src/layers/extents/extent_table.h"
+#include "src/layers/pairs/part_store.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline::layers::extent_tests {

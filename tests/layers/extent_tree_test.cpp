@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "layers/extent_tree.h"
+#include "src/comparison/layers/extent_tree.h"
 #include "tests/layers/made_extents.h"
 
 namespace sightline::layers {
@@ -35,7 +35,7 @@ Case anyCase(unsigned seed) {
   one.seed = seed;
   one.parts = pick(random, 3) == 0 ? pick(random, 12) : 20 + pick(random, 400);
   one.kinds = kindsOf(1 + seed % 6, static_cast<unsigned>(random()));
-  one.settings.least_gain = pick(random, 2) == 0 ? 10 : pick(random, 5);
+  one.settings.min_gain = pick(random, 2) == 0 ? 10 : pick(random, 5);
   one.settings.tree_axes = pick(random, 2) == 0 ? 0xffffffffu : pick(random, 64);
   one.settings.rebuild_after = pick(random, 2) == 0 ? 0 : 1 + pick(random, 6);
   one.settings.rebuild_steps = 1 + pick(random, 20);
@@ -131,7 +131,7 @@ TEST(ExtentTree, KeepsPartsAcrossTheCutWithThoseOnBothSides) {
   set(table, 0, 32, {-2.0f, -2.0f});
   set(table, 0, 33, {1.9f, std::nextafter(2.0f, 0.0f)});
   set(table, 0, 34, {1.9f, 2.0f});
-  ExtentTree tree({.least_gain = 2});
+  ExtentTree tree({.min_gain = 2});
   tree.update(table);
   const std::vector<bool> active(60, true);
   Random random(1);
@@ -188,7 +188,7 @@ TEST(ExtentTree, DoesNotCopyPartsWithoutEnd) {
       set(table, axis, part, {low, low + uniform(random, 0.2f, 1.0f)});
     }
   }
-  ExtentTree tree({.least_gain = 1});
+  ExtentTree tree({.min_gain = 1});
   tree.update(table);
   std::size_t in_leaves = 0;
   for (std::uint32_t node = 0; node < tree.nodes().nodes().size(); ++node) {
@@ -196,7 +196,7 @@ TEST(ExtentTree, DoesNotCopyPartsWithoutEnd) {
       in_leaves += tree.nodes().partsOfLeaf(node).size();
     }
   }
-  EXPECT_LE(in_leaves, ExtentNodes::kMostCopies * 2000u);
+  EXPECT_LE(in_leaves, ExtentNodes::kMaxCopies * 2000u);
   expectSound(tree, std::vector<bool>(2000, true));
 }
 

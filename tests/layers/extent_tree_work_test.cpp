@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "layers/extent_tree.h"
+#include "src/comparison/layers/extent_tree.h"
 #include "tests/layers/made_extents.h"
 
 namespace sightline::layers {

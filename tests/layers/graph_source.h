@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "layers/occluder_source.h"
+#include "src/layers/sort/occluder_source.h"
 
 namespace sightline::layers {
 

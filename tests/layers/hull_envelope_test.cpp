@@ -1,4 +1,4 @@
-#include "layers/hull_envelope.h"
+#include "src/layers/hull/hull_envelope.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "layers/convex_pair.h"
+#include "src/layers/pairs/convex_pair.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline::layers {

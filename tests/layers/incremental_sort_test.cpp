@@ -1,4 +1,4 @@
-#include "layers/incremental_sort.h"
+#include "src/comparison/layers/incremental_sort.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "layers/depth_first_sort.h"
+#include "src/layers/sort/depth_first_sort.h"
 #include "tests/layers/graph_source.h"
 
 namespace sightline::layers {

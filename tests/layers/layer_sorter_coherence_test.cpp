@@ -269,7 +269,7 @@ TEST(LayerSorterCoherence, WhatIsKnownOfPairsShortensTheNextFrameUnlessItExpires
     MovingSorter keeping(scene, settings);
     settings.pair_expiry = 0;
     MovingSorter forgetting(scene, settings);
-    const auto stepsOf = [](const LayerStats& stats) { return stats.chung_steps + stats.gilbert_steps; };
+    const auto stepsOf = [](const LayerStats& stats) { return stats.chung_steps + stats.gjk_steps; };
     const std::uint64_t first = stepsOf(keeping.update(0).stats);
     EXPECT_EQ(stepsOf(forgetting.update(0).stats), first);
     const std::uint64_t kept = stepsOf(keeping.update(1).stats),

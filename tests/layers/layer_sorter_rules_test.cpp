@@ -255,7 +255,7 @@ TEST(LayerSorterRules, SettingsOutOfRangeAreMadeUsable) {
       }
       settings.pair_expiry = axes == 3 ? 0 : 0xffffffffu;
       settings.tree = {
-          .least_gain = 0, .rebuild_after = 1, .rebuild_imbalance = kNan, .rebuild_steps = 0, .tree_axes = 0};
+          .min_gain = 0, .rebuild_after = 1, .rebuild_imbalance = kNan, .rebuild_steps = 0, .tree_axes = 0};
       settings.search = axes % 2 == 0 ? OccluderSearch::kTree : OccluderSearch::kAutomatic;
       LayerSorter sorter = sorterOf(scene, settings);
       for (int frame = 0; frame < 4; ++frame) {

@@ -1,4 +1,4 @@
-#include "layers/leaf_overlap.h"
+#include "src/comparison/layers/leaf_overlap.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>

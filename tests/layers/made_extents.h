@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "layers/extent_tree.h"
+#include "src/comparison/layers/extent_tree.h"
 
 namespace sightline::layers::made {
 

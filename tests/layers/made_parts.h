@@ -236,7 +236,7 @@ inline std::vector<Way> allWays(bool all_arcs) {
         LayerSettings settings;
         settings.sort = sort;
         settings.search = search;
-        settings.tree.least_gain = 1;
+        settings.tree.min_gain = 1;
         settings.all_arcs = all_arcs;
         settings.extents = extents == 0   ? camera
                            : extents == 1 ? worldExtents()

@@ -1,4 +1,4 @@
-#include "layers/min_cost.h"
+#include "src/comparison/layers/min_cost.h"
 
 #include <gtest/gtest.h>
 

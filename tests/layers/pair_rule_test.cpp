@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "layers/pair_eye.h"
+#include "src/layers/pairs/pair_eye.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline {

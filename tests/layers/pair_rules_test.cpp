@@ -1,4 +1,4 @@
-#include "layers/pair_rules.h"
+#include "src/layers/pairs/pair_rules.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "layers/pair_table.h"
+#include "src/layers/pairs/pair_table.h"
 
 #include <gtest/gtest.h>
 

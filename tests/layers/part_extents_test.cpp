@@ -1,10 +1,10 @@
-#include "layers/part_extents.h"
+#include "src/layers/extents/part_extents.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "layers/angular_extent.h"
+#include "src/layers/extents/angular_extent.h"
 #include "tests/layers/extent_scene.h"
 
 namespace sightline::layers::extent_tests {

@@ -1,4 +1,4 @@
-#include "layers/part_occlusion.h"
+#include "src/layers/pairs/part_occlusion.h"
 
 #include <gtest/gtest.h>
 
@@ -558,7 +558,7 @@ TEST(PartOcclusion, AskingAgainCostsAtMostAStepAQuestion) {
   EXPECT_EQ(world.occlusion.occludes(a, b), answer);
   const PairCounts& counts = world.occlusion.counts();
   EXPECT_GT(counts.questions, 0u);
-  EXPECT_LE(counts.chung_steps + counts.gilbert_steps, counts.questions);
+  EXPECT_LE(counts.chung_steps + counts.gjk_steps, counts.questions);
 }
 
 TEST(PartOcclusion, CountsBeginAnewWithEachFrame) {

@@ -9,10 +9,10 @@
 #include <limits>
 #include <vector>
 
-#include "layers/extent_table.h"
-#include "layers/pair_rules.h"
-#include "layers/part_occlusion.h"
-#include "layers/part_store.h"
+#include "src/layers/extents/extent_table.h"
+#include "src/layers/pairs/pair_rules.h"
+#include "src/layers/pairs/part_occlusion.h"
+#include "src/layers/pairs/part_store.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 

@@ -14,7 +14,7 @@
 namespace sightline {
 namespace {
 
-using procedural::Random;
+using scenes::Random;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::uint64_t kSeed = 20240611;

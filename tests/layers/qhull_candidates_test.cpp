@@ -1,4 +1,4 @@
-#include "layers/qhull_candidates.h"
+#include "src/layers/hull/qhull_candidates.h"
 
 #include <gtest/gtest.h>
 

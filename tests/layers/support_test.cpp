@@ -1,4 +1,4 @@
-#include "layers/support.h"
+#include "src/layers/hull/support.h"
 
 #include <gtest/gtest.h>
 

@@ -128,11 +128,11 @@ void expectBody(const Solid& solid, const Shape& shape) {
     expectSound(set, set.bodies[0]);
   }
 }
-void expectNoBody(const Solid& solid, std::size_t least_occluders) {
+void expectNoBody(const Solid& solid, std::size_t min_occluders) {
   for (const OccluderSet& set : {found({{solid}}), made({{solid}})}) {
     EXPECT_TRUE(set.bodies.empty());
     EXPECT_TRUE(set.body_faces.empty());
-    EXPECT_GE(set.occluders.size(), least_occluders) << "or it says nothing";
+    EXPECT_GE(set.occluders.size(), min_occluders) << "or it says nothing";
     EXPECT_EQ(set.body_of.size(), set.occluders.size());
     for (std::size_t i = 0; i < set.occluders.size(); ++i) {
       EXPECT_EQ(set.bodyOf(OccluderId(i)), nullptr);

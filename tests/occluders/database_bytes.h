@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/occluders/occluder_database.h"
-#include "sightline/occluders/viewpoint_database.h"
 #include "tests/occluders/flat_mesh.h"
 
 namespace sightline::database_bytes {

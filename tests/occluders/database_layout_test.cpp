@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "base/byte_stream.h"
+#include "src/base/byte_stream.h"
 #include "tests/occluders/database_bytes.h"
 
 namespace sightline {
@@ -239,9 +239,9 @@ TEST(ViewpointDatabaseBytes, AreRefusedWithFaults) {
 
 // Points at the largest numbers: their differences are not finite.
 TEST(ViewpointDatabaseBytes, MayHoldPointsAtTheEndOfNumbers) {
-  constexpr double kMost = std::numeric_limits<double>::max();
+  constexpr double kMax = std::numeric_limits<double>::max();
   Layout layout = twoPoints();
-  layout.grid = {kMost, -kMost, -kMost, -kMost, kMost, kMost, kMost};
+  layout.grid = {kMax, -kMax, -kMax, -kMax, kMax, kMax, kMax};
   const auto loaded = ViewpointDatabase::load(layout.bytes(), 10);
   ASSERT_TRUE(loaded) << loaded.error().message;
   Random random(1);

@@ -1,4 +1,4 @@
-#include "occluders/minimum_sets.h"
+#include "src/comparison/occluders/minimum_sets.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/occluders/flat_mesh.h"
 
-namespace sightline::viewpoint_detail {
+namespace sightline::occluders {
 namespace {
 
 using flat_mesh::Random;
@@ -245,4 +245,4 @@ TEST(MinimumSets, CopeWithATableOfThousandsOfSlots) {
 }
 
 }  // namespace
-}  // namespace sightline::viewpoint_detail
+}  // namespace sightline::occluders

@@ -1,4 +1,4 @@
-#include "occluders/occluder_stack.h"
+#include "src/comparison/occluders/occluder_stack.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/occluders/picture_scenes.h"
 
-namespace sightline::viewpoint_detail {
+namespace sightline::occluders {
 namespace {
 
 using namespace picture_scenes;
@@ -22,10 +22,10 @@ struct Pictured {
   std::vector<Occludee> occludees;
   OccluderStack stack;
 
-  Pictured(const Model& model, const Vec3d& eye, const Vec3d& forward, double least_area = 0.0) {
+  Pictured(const Model& model, const Vec3d& eye, const Vec3d& forward, double min_area = 0.0) {
     std::vector<NearOccluder> candidates;
     OccluderFilter(model.set).find(eye, 0.0, candidates);
-    picture.draw(model.set, candidates, eye, forward, kShape, least_area);
+    picture.draw(model.set, candidates, eye, forward, kShape, min_area);
     nearest.clear(picture);
     for (std::uint32_t o = 0; o < picture.occluders().size(); ++o) {
       nearest.draw(picture, o);
@@ -103,8 +103,8 @@ TEST(OccluderPicture, CoversThePixelsWhoseRaysMeetThePolygonAtItsDepth) {
     std::vector<std::vector<double>> depth(model.set.occluders.size(),
                                            std::vector<double>(pictured.picture.pixelCount(), 0.0));
     for (std::uint32_t o = 0; o < pictured.picture.occluders().size(); ++o) {
-      pictured.picture.forEachPixel(o, [&](std::uint32_t pixel, float nearness) {
-        depth[pictured.picture.occluders()[o].id.value][pixel] = 1.0 / nearness;
+      pictured.picture.forEachPixel(o, [&](std::uint32_t pixel, float reciprocal_depth) {
+        depth[pictured.picture.occluders()[o].id.value][pixel] = 1.0 / reciprocal_depth;
       });
     }
     for (std::uint32_t o = 0; o < model.set.occluders.size(); ++o) {
@@ -278,4 +278,4 @@ TEST(Occludees, AreTheFirstSmallEnoughNodesOnTheWayDown) {
 }
 
 }  // namespace
-}  // namespace sightline::viewpoint_detail
+}  // namespace sightline::occluders

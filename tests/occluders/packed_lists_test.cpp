@@ -1,10 +1,10 @@
-#include "occluders/packed_lists.h"
+#include "src/occluders/packed_lists.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-namespace sightline::occluder_detail {
+namespace sightline::occluders {
 namespace {
 
 using Ids = std::vector<OccluderId>;
@@ -45,4 +45,4 @@ TEST(PackedLists, EqualOnesAreStoredOnce) {
 }
 
 }  // namespace
-}  // namespace sightline::occluder_detail
+}  // namespace sightline::occluders

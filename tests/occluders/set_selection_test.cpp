@@ -1,4 +1,4 @@
-#include "occluders/set_selection.h"
+#include "src/comparison/occluders/set_selection.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/occluders/picture_scenes.h"
 
-namespace sightline::viewpoint_detail {
+namespace sightline::occluders {
 namespace {
 
 using namespace picture_scenes;
@@ -293,4 +293,4 @@ TEST(SetSelection, HidesAllThatItsSetsHideWithFewOccluders) {
 }
 
 }  // namespace
-}  // namespace sightline::viewpoint_detail
+}  // namespace sightline::occluders

@@ -1,4 +1,4 @@
-#include "sightline/occluders/viewpoint_database.h"
+#include "sightline/comparison/viewpoint_database.h"
 
 #include <gtest/gtest.h>
 

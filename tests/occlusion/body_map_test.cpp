@@ -53,9 +53,9 @@ class Judge {
       }
     }
   }
-  // The greatest nearness among the fronts that hide what is behind this point of the map; nothing: none
-  // does.
-  std::optional<Real> nearnessAt(Real x, Real y) const {
+  // The greatest reciprocal depth among the fronts that hide what is behind this point of the map; nothing:
+  // none does.
+  std::optional<Real> reciprocalDepthAt(Real x, Real y) const {
     const Vector across{(x - middle_x_) * step_x_, (y - middle_y_) * step_y_, 0};
     const Vector from = view_.orthographic ? across : Vector{};
     const Vector along = view_.orthographic ? Vector{0, 0, 1} : Vector{across.x, across.y, 1};
@@ -68,16 +68,16 @@ class Judge {
       }
       const Real depth = dot(normal, t.a - from) / facing;
       if (depth >= view_.near * (1 - Real{1e-14})) {
-        const Real nearness = view_.orthographic ? -depth : 1 / depth;
-        best = std::max(best.value_or(nearness), nearness);
+        const Real reciprocal_depth = view_.orthographic ? -depth : 1 / depth;
+        best = std::max(best.value_or(reciprocal_depth), reciprocal_depth);
       }
     }
     return best;
   }
   // Whether all of a square is in the image: the image is convex.
   bool contains(Real x, Real y, Real grown) const {
-    return nearnessAt(x - grown, y - grown) && nearnessAt(x + 1 + grown, y - grown) &&
-           nearnessAt(x - grown, y + 1 + grown) && nearnessAt(x + 1 + grown, y + 1 + grown);
+    return reciprocalDepthAt(x - grown, y - grown) && reciprocalDepthAt(x + 1 + grown, y - grown) &&
+           reciprocalDepthAt(x - grown, y + 1 + grown) && reciprocalDepthAt(x + 1 + grown, y + 1 + grown);
   }
 
  private:
@@ -262,13 +262,13 @@ struct Counts {
   std::size_t covered = 0, should = 0, of_those_covered = 0, as_one = 0;
 };
 
-// What is wrong with a covered pixel, by its corners, where nearness, which is concave over the image, is
-// least, and by some points between them. Empty: nothing.
+// What is wrong with a covered pixel, by its corners, where reciprocal depth, which is concave over the
+// image, is least, and by some points between them. Empty: nothing.
 std::string whatIsWrong(const Judge& judge, std::uint32_t x, std::uint32_t y, float stored, Random& random) {
   for (int i = 0; i < 6; ++i) {
     const Real at_x = x + (i < 4 ? Real(i & 1) : Real{random.in(0.0, 1.0)});
     const Real at_y = y + (i < 4 ? Real(i >> 1) : Real{random.in(0.0, 1.0)});
-    const std::optional<Real> exact = judge.nearnessAt(at_x, at_y);
+    const std::optional<Real> exact = judge.reciprocalDepthAt(at_x, at_y);
     if (!exact || Real{stored} > *exact + 1e-15L * std::abs(*exact)) {
       return "pixel " + std::to_string(x) + " " + std::to_string(y) + " has " + std::to_string(stored) +
              " but at " + std::to_string(at_x) + " " + std::to_string(at_y) + " there is " +
@@ -434,8 +434,8 @@ std::vector<std::uint32_t> bitsOf(const BodyScene& scene, const OccluderSet& set
   rasteriser.draw(set, chosen, parallel_for);
   std::vector<std::uint32_t> bits;
   for (std::uint32_t y = 0; y < scene.settings.height; ++y) {
-    for (const float nearness : rasteriser.map().row(y)) {
-      bits.push_back(std::bit_cast<std::uint32_t>(nearness));
+    for (const float reciprocal_depth : rasteriser.map().row(y)) {
+      bits.push_back(std::bit_cast<std::uint32_t>(reciprocal_depth));
     }
   }
   return bits;

@@ -1,4 +1,4 @@
-#include "occlusion/depth_levels.h"
+#include "src/occlusion/depth_levels.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "occlusion/box_depth_test.h"
+#include "src/occlusion/box_depth_test.h"
 #include "tests/occlusion/random_views.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 using test::randomBox, test::randomView, test::ViewRandom;
@@ -20,19 +20,19 @@ using test::randomBox, test::randomView, test::ViewRandom;
 // A map of the test's own, with rubbish beyond its width.
 struct TestMap {
   std::uint32_t width, height, stride;
-  std::vector<float> nearness;
+  std::vector<float> reciprocal_depth;
 
   TestMap(std::uint32_t w, std::uint32_t h, std::uint32_t s)
       : width(w),
         height(h),
         stride(s),
-        nearness(std::size_t{s} * h, std::numeric_limits<float>::quiet_NaN()) {
+        reciprocal_depth(std::size_t{s} * h, std::numeric_limits<float>::quiet_NaN()) {
     for (std::uint32_t y = 0; y < h; ++y) {
-      std::fill_n(nearness.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * s), w, kUncovered);
+      std::fill_n(reciprocal_depth.begin() + static_cast<std::ptrdiff_t>(std::size_t{y} * s), w, kUncovered);
     }
   }
-  float& at(std::uint32_t x, std::uint32_t y) { return nearness[std::size_t{y} * stride + x]; }
-  DepthMapView view() const { return {nearness, width, height, stride}; }
+  float& at(std::uint32_t x, std::uint32_t y) { return reciprocal_depth[std::size_t{y} * stride + x]; }
+  DepthMapView view() const { return {reciprocal_depth, width, height, stride}; }
 };
 
 void forCutRanges(std::uint32_t count, const RangeBody& body) {
@@ -115,14 +115,14 @@ class PlainBox {
       if (length == 0.0) {
         return;
       }
-      double hull_least = INFINITY, square_most = -INFINITY;
+      double hull_min = INFINITY, square_max = -INFINITY;
       for (const Place& p : hull_) {
-        hull_least = std::min(hull_least, (nx * p.x + ny * p.y) / length);
+        hull_min = std::min(hull_min, (nx * p.x + ny * p.y) / length);
       }
       for (unsigned i = 0; i < 4; ++i) {
-        square_most = std::max(square_most, (nx * (x + (i & 1u)) + ny * (y + (i >> 1))) / length);
+        square_max = std::max(square_max, (nx * (x + (i & 1u)) + ny * (y + (i >> 1))) / length);
       }
-      distance = std::max(distance, hull_least - square_most);
+      distance = std::max(distance, hull_min - square_max);
     };
     for (const auto& [nx, ny] :
          {std::pair(1.0, 0.0), std::pair(-1.0, 0.0), std::pair(0.0, 1.0), std::pair(0.0, -1.0)}) {
@@ -136,8 +136,9 @@ class PlainBox {
     return distance;
   }
 
-  // The least over the faces that are seen of the greatest nearness of its plane over the pixel's square.
-  double nearnessIn(std::uint32_t x, std::uint32_t y) const {
+  // The least over the faces that are seen of the greatest reciprocal depth of its plane over the pixel's
+  // square.
+  double reciprocalDepthIn(std::uint32_t x, std::uint32_t y) const {
     double own = INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
       const std::optional<double> face = seenFace(axis);
@@ -246,7 +247,7 @@ void drawAround(Bed& bed, const PlainBox& plain, int opened) {
   for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
     for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
       if (plain.distanceTo(x, y) < bed.pixelTolerance()) {
-        const double own = std::min<double>(plain.nearnessIn(x, y), bed.image.nearest);
+        const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
         bed.map.at(x, y) = static_cast<float>(own + ahead);
       }
     }
@@ -256,7 +257,7 @@ void drawAround(Bed& bed, const PlainBox& plain, int opened) {
         bed.image.x0 + static_cast<std::uint32_t>(bed.random.below(bed.image.x1 - bed.image.x0 + 1u));
     const auto y =
         bed.image.y0 + static_cast<std::uint32_t>(bed.random.below(bed.image.y1 - bed.image.y0 + 1u));
-    const double own = std::min<double>(plain.nearnessIn(x, y), bed.image.nearest);
+    const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
     bed.map.at(x, y) = bed.random.below(2) == 0 ? kUncovered : static_cast<float>(own - ahead);
   }
 }
@@ -277,7 +278,7 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
     for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
       for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
         const double at = bed.map.at(x, y), distance = plain.distanceTo(x, y);
-        const double own = std::min<double>(plain.nearnessIn(x, y), bed.image.nearest);
+        const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
         const double slack = 2e-5 * std::abs(own);
         surely_open |= distance < -tolerance && at <= own - slack;
         maybe_open |= distance < tolerance && at <= own + slack;
@@ -332,7 +333,7 @@ TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
       }
       ++points;
       EXPECT_GT(bed.map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
-                bed.view.nearness(camera.z) - 1e-12)
+                bed.view.reciprocal_depth(camera.z) - 1e-12)
           << "seed " << seed;
     }
   }
@@ -396,4 +397,4 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
 }
 
 }  // namespace
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "occlusion/pixel_boxes.h"
-#include "scene/pixel_view.h"
+#include "src/occlusion/pixel_boxes.h"
+#include "src/scene/pixel_view.h"
 #include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
@@ -61,10 +61,10 @@ TEST(DepthPyramid, ABoxIsComparedByItsOwnDepthInEachPixelNotByItsNearestPoint) {
       {{{0.9f, -3, -30}, {0.9f, -3, -0.5f}, {0.9f, 2, -0.5f}, {0.9f, 2, -30}}, true}};
   const DepthPyramid pyramid = pyramidOf(walls, view);
   const DepthMapView map = pyramid.map();
-  occlusion_detail::PixelBox image;
-  occlusion_detail::projectBoxes(PixelView(view, map.width, map.height), map.width, map.height, {&box, 1},
-                                 {&image, 1});
-  ASSERT_EQ(image.place, occlusion_detail::BoxPlace::kOnMap);
+  occlusion::PixelBox image;
+  occlusion::projectBoxes(PixelView(view, map.width, map.height), map.width, map.height, {&box, 1},
+                          {&image, 1});
+  ASSERT_EQ(image.place, occlusion::BoxPlace::kOnMap);
   int before_nearest = 0, pixels = 0;
   for (std::uint32_t y = image.y0; y <= image.y1; ++y) {
     for (std::uint32_t x = image.x0; x <= image.x1; ++x, ++pixels) {
@@ -185,7 +185,8 @@ TEST_P(DepthPyramidFamilies, NothingIsBeforeABoxThatIsVisible) {
       const Vec3d camera = view.toCamera(center(box) - view.eye);
       const double x = std::clamp(view.mapX(camera), 0.0, map.width - 1.0);
       const double y = std::clamp(view.mapY(camera), 0.0, map.height - 1.0);
-      EXPECT_LE(map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), view.nearness(camera.z))
+      EXPECT_LE(map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
+                view.reciprocal_depth(camera.z))
           << GetParam().name << ", seed " << seed;
     }
   }

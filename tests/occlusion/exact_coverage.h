@@ -192,18 +192,19 @@ inline Part pixel(std::int64_t x, std::int64_t y, std::int64_t grow = 0) {
 // What a camera sees of a polygon's front, beyond the near plane.
 struct Image {
   Part part;
-  Triple nearness;  // over the map, times denominator
+  Triple reciprocal_depth;  // over the map, times denominator
   Wide denominator = 1;
   std::size_t polygon = 0;
 
-  double nearnessAt(const Triple& point) const {
-    return static_cast<double>(dot(nearness, point)) / static_cast<double>(times(denominator, point.w));
+  double reciprocalDepthAt(const Triple& point) const {
+    return static_cast<double>(dot(reciprocal_depth, point)) /
+           static_cast<double>(times(denominator, point.w));
   }
   // Of the farthest point within a part of the map.
-  double leastNearness(const Part& where) const {
+  double minReciprocalDepth(const Part& where) const {
     double least = INFINITY;
     for (std::size_t i = 0; i < where.size(); ++i) {
-      least = std::min(least, nearnessAt(corner(where, i)));
+      least = std::min(least, reciprocalDepthAt(corner(where, i)));
     }
     return least;
   }
@@ -218,23 +219,24 @@ inline Triple project(const Camera& c, const Point& p, std::int64_t q) {
   return {Wide{c.width} * (p.z + c.gx * p.x), Wide{c.height} * (p.z + c.gy * p.y), Wide{2} * p.z};
 }
 
-// Nearness over the map, from the plane n . p = d.
-inline void setNearness(const Camera& c, const Polygon& polygon, Image& image) {
+// ReciprocalDepth over the map, from the plane n . p = d.
+inline void setReciprocalDepth(const Camera& c, const Polygon& polygon, Image& image) {
   const Point &a = polygon.vertices[0], &b = polygon.vertices[1], &e = polygon.vertices[2];
   const Triple n = cross({b.x - a.x, b.y - a.y, b.z - a.z}, {e.x - a.x, e.y - a.y, e.z - a.z});
   const Wide d = dot(n, {a.x, a.y, a.z});
   const Wide w = c.width, h = c.height, gx = c.gx, gy = c.gy;
   if (c.orthographic) {
     // -z = (nx x + ny y - d) / nz, with x = (2 X / w - 1) gx.
-    image.nearness = {2 * n.x * gx * h, 2 * n.y * gy * w, -(n.x * gx + n.y * gy + d) * w * h};
+    image.reciprocal_depth = {2 * n.x * gx * h, 2 * n.y * gy * w, -(n.x * gx + n.y * gy + d) * w * h};
     image.denominator = n.w * w * h;
   } else {
     // 1 / z = n . (x / z, y / z, 1) / d, with x / z = (2 X / w - 1) / gx.
-    image.nearness = {2 * n.x * h * gy, 2 * n.y * w * gx, (n.w * gx * gy - n.x * gy - n.y * gx) * w * h};
+    image.reciprocal_depth = {2 * n.x * h * gy, 2 * n.y * w * gx,
+                              (n.w * gx * gy - n.x * gy - n.y * gx) * w * h};
     image.denominator = d * w * h * gx * gy;
   }
   if (image.denominator < 0) {
-    image.nearness = negated(image.nearness);
+    image.reciprocal_depth = negated(image.reciprocal_depth);
     image.denominator = -image.denominator;
   }
 }
@@ -268,7 +270,7 @@ inline std::optional<Image> imageOf(const Camera& camera, const Polygon& polygon
   if (turn < 0) {
     image.part = Part(image.part.rbegin(), image.part.rend());
   }
-  setNearness(camera, polygon, image);
+  setReciprocalDepth(camera, polygon, image);
   return image;
 }
 
@@ -367,33 +369,33 @@ inline bool covers(const Surface& surface, const Part& where) {
 }
 
 // Of the farthest point that any of the surface's polygons has in this part of the map.
-inline double leastNearness(const Surface& surface, const Part& where) {
+inline double minReciprocalDepth(const Surface& surface, const Part& where) {
   double least = INFINITY;
   for (const Image& image : surface.images) {
-    least = std::min(least, image.leastNearness(intersection(where, image.part)));
+    least = std::min(least, image.minReciprocalDepth(intersection(where, image.part)));
   }
   return least;
 }
 
 // The same of the whole planes of the polygons that the pixel touches, or nearly: over all of the pixel.
-inline double leastNearnessOfPlanes(const Surface& surface, std::int64_t x, std::int64_t y) {
+inline double minReciprocalDepthOfPlanes(const Surface& surface, std::int64_t x, std::int64_t y) {
   double least = INFINITY;
   for (const Image& image : surface.images) {
     if (!intersection(pixel(x, y, 50), image.part).empty()) {
-      least = std::min(least, image.leastNearness(pixel(x, y)));
+      least = std::min(least, image.minReciprocalDepth(pixel(x, y)));
     }
   }
   return least;
 }
 
-// Does the surface hide all that is farther than this throughout the part? The nearness of overlapping
-// polygons is compared with `stored` rounded to 12 bits, away from the eye; that of others is compared in
-// double precision.
+// Does the surface hide all that is farther than this throughout the part? The reciprocal depth of
+// overlapping polygons is compared with `stored` rounded to 12 bits, away from the eye; that of others is
+// compared in double precision.
 inline bool hides(const Surface& surface, const Part& where, double stored) {
   if (!covers(surface, where)) {
     return false;
   }
-  const double least = leastNearness(surface, where);
+  const double least = minReciprocalDepth(surface, where);
   const double rounding = surface.images.size() == 1 ? 0.0 : 1e-14 * std::abs(least);
   if (stored <= least + rounding || surface.sheet) {
     return stored <= least + rounding;
@@ -405,7 +407,7 @@ inline bool hides(const Surface& surface, const Part& where, double stored) {
   const Wide down = exponent < 0 ? Wide{1} << -exponent : Wide{1};
   std::vector<Part> near_parts;
   for (const Image& image : surface.images) {
-    const Triple& n = image.nearness;
+    const Triple& n = image.reciprocal_depth;
     const Triple nearer{times(n.x, down), times(n.y, down),
                         times(n.w, down) - times(times(image.denominator, mantissa), up)};
     const bool everywhere = nearer.x == 0 && nearer.y == 0 && nearer.w >= 0;

@@ -1,4 +1,4 @@
-#include "occlusion/eye_planes.h"
+#include "src/occlusion/eye_planes.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 struct Scene {
@@ -60,7 +60,7 @@ EyeBox randomBox(std::mt19937_64& random) {
 
 std::vector<EyeLook> lookPast(const Scene& scene, const EyeBox& box) {
   std::vector<EyeLook> looks(scene.list.size());
-  looks.resize(occlusion_detail::lookPast(scene.shapes, scene.quads, scene.list, box, looks));
+  looks.resize(occlusion::lookPast(scene.shapes, scene.quads, scene.list, box, looks));
   return looks;
 }
 
@@ -167,4 +167,4 @@ TEST(EyePlanes, LookingEndsAtTheFirstThatHidesTheBox) {
 }
 
 }  // namespace
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -12,7 +12,7 @@ namespace sightline {
 namespace {
 
 using namespace test;
-using occlusion_detail::BoxPlace;
+using occlusion::BoxPlace;
 
 OpacityMapSettings sized(std::uint32_t width, std::uint32_t height) {
   OpacityMapSettings settings;
@@ -247,8 +247,8 @@ TEST(OpacityMap, TheSparseDepthMapComparesFewerPixels) {
 Visibility byScanning(const OpacityMap& map, const View& view, const Box& box) {
   const DepthMapView pixels = map.map();
   PixelBox image;
-  occlusion_detail::projectBoxes(PixelView(view, pixels.width, pixels.height), pixels.width, pixels.height,
-                                 {&box, 1}, {&image, 1});
+  occlusion::projectBoxes(PixelView(view, pixels.width, pixels.height), pixels.width, pixels.height,
+                          {&box, 1}, {&image, 1});
   if (image.place != BoxPlace::kOnMap) {
     return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
   }

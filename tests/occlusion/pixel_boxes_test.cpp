@@ -1,4 +1,4 @@
-#include "occlusion/pixel_boxes.h"
+#include "src/occlusion/pixel_boxes.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -10,7 +10,7 @@
 
 #include "tests/occlusion/random_views.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 using test::randomBox, test::randomView, test::ViewRandom;
@@ -126,13 +126,13 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
 
     const Wide nearest = view.orthographic ? -exact.z0 : 1 / exact.z0;
     const Wide farthest = view.orthographic ? -exact.z1 : 1 / exact.z1;
-    const auto nearness_slack = [&](Wide depth) {
+    const auto reciprocal_depth_slack = [&](Wide depth) {
       return view.orthographic ? rounding : (1.1L * rounding / depth + 0x1p-20L) / depth;
     };
     EXPECT_GE(image.nearest, nearest) << "seed " << seed;
-    EXPECT_LE(image.nearest, nearest + nearness_slack(exact.z0)) << "seed " << seed;
+    EXPECT_LE(image.nearest, nearest + reciprocal_depth_slack(exact.z0)) << "seed " << seed;
     EXPECT_LE(image.farthest, farthest) << "seed " << seed;
-    EXPECT_GE(image.farthest, farthest - nearness_slack(exact.z1)) << "seed " << seed;
+    EXPECT_GE(image.farthest, farthest - reciprocal_depth_slack(exact.z1)) << "seed " << seed;
 
     const bool inside =
         exact.x0 >= 0 && exact.x1 <= kWidth && exact.y0 >= 0 && exact.y1 <= kHeight && exact.z1 <= view.far;
@@ -241,4 +241,4 @@ TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -1,4 +1,4 @@
-#include "occlusion/polygon_split.h"
+#include "src/occlusion/polygon_split.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 class Random {
@@ -253,4 +253,4 @@ TEST(PolygonSplit, ManySplitsKeepTheWholeArea) {
 }
 
 }  // namespace
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

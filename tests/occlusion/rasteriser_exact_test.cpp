@@ -277,7 +277,7 @@ struct Placed {
   Rasteriser rasteriser;
 };
 
-// Calls look(x, y, stored) for all pixels; stored is kUncovered or the nearness.
+// Calls look(x, y, stored) for all pixels; stored is kUncovered or the reciprocal depth.
 template <typename Look>
 void forEachPixel(const DepthMapView& map, Look&& look) {
   for (std::uint32_t y = 0; y < map.height; ++y) {
@@ -293,10 +293,10 @@ TEST(ExactCoverage, TellsSurfacesGapsAndDepthsApart) {
   const auto quad = [](std::int64_t x0, std::int64_t x1, std::int64_t z0, std::int64_t z1) {
     return Polygon{{{x0, -500, z0}, {x1, -500, z1}, {x1, 500, z1}, {x0, 500, z0}}, false};
   };
-  const auto hides = [&](const std::vector<Polygon>& polygons, double nearness) {
+  const auto hides = [&](const std::vector<Polygon>& polygons, double reciprocal_depth) {
     bool any = false;
     for (const exact::Surface& surface : exact::surfacesOf(camera, polygons)) {
-      any |= exact::hides(surface, exact::pixel(2, 1), nearness);
+      any |= exact::hides(surface, exact::pixel(2, 1), reciprocal_depth);
     }
     return any;
   };
@@ -395,10 +395,10 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
                          continue;
                        }
                        ++within;
-                       const double nearness = image.leastNearness(exact::pixel(x, y));
-                       if (!isNear(stored, nearness) && failures++ < 5) {
+                       const double reciprocal_depth = image.minReciprocalDepth(exact::pixel(x, y));
+                       if (!isNear(stored, reciprocal_depth) && failures++ < 5) {
                          ADD_FAILURE() << "pixel " << x << " " << y << " within polygon " << image.polygon
-                                       << " stored " << stored << " exact " << nearness << "\n"
+                                       << " stored " << stored << " exact " << reciprocal_depth << "\n"
                                        << describe(scene, seed);
                        }
                      }
@@ -428,9 +428,10 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
           return;
         }
         ++within;
-        const double nearness = exact::leastNearnessOfPlanes(surface, x, y);
-        if (!isNear(stored, nearness) && failures++ < 5) {
-          ADD_FAILURE() << "pixel " << x << " " << y << " stored " << stored << " exact " << nearness << "\n"
+        const double reciprocal_depth = exact::minReciprocalDepthOfPlanes(surface, x, y);
+        if (!isNear(stored, reciprocal_depth) && failures++ < 5) {
+          ADD_FAILURE() << "pixel " << x << " " << y << " stored " << stored << " exact " << reciprocal_depth
+                        << "\n"
                         << describe(scene, seed);
         }
       });
@@ -461,7 +462,7 @@ TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthTher
             }
             inside &= value > 0;
           }
-          nearest = inside ? std::max(nearest, image.nearnessAt(centre)) : nearest;
+          nearest = inside ? std::max(nearest, image.reciprocalDepthAt(centre)) : nearest;
         }
       }
       const bool is_covered = stored > kUncovered, should = nearest > -INFINITY;

@@ -20,8 +20,8 @@ std::vector<std::uint32_t> bitsOf(const DepthMapView& map) {
   std::vector<std::uint32_t> bits;
   bits.reserve(std::size_t{map.width} * map.height);
   for (std::uint32_t y = 0; y < map.height; ++y) {
-    for (const float nearness : map.row(y)) {
-      bits.push_back(std::bit_cast<std::uint32_t>(nearness));
+    for (const float reciprocal_depth : map.row(y)) {
+      bits.push_back(std::bit_cast<std::uint32_t>(reciprocal_depth));
     }
   }
   return bits;

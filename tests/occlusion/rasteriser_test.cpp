@@ -29,8 +29,8 @@ struct Drawn {
   std::size_t covered() const {
     std::size_t count = 0;
     for (std::uint32_t y = 0; y < map.height; ++y) {
-      for (const float nearness : map.row(y)) {
-        count += nearness > kUncovered ? 1 : 0;
+      for (const float reciprocal_depth : map.row(y)) {
+        count += reciprocal_depth > kUncovered ? 1 : 0;
       }
     }
     return count;
@@ -405,8 +405,8 @@ void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, 
         continue;
       }
       ++covered;
-      const auto nearness = static_cast<double>(map.at(x, y));
-      const double depth = scene.view.orthographic ? -nearness : 1.0 / nearness;
+      const auto reciprocal_depth = static_cast<double>(map.at(x, y));
+      const double depth = scene.view.orthographic ? -reciprocal_depth : 1.0 / reciprocal_depth;
       for (int i = 0; i < 6; ++i) {
         const auto within = [&] {
           // Often on a border.

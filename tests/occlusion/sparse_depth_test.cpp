@@ -1,14 +1,14 @@
-#include "occlusion/sparse_depth.h"
+#include "src/occlusion/sparse_depth.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "occlusion/summed_area.h"
+#include "src/occlusion/summed_area.h"
 #include "tests/occlusion/synthetic_maps.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 using namespace test;
@@ -183,4 +183,4 @@ TEST(SparseDepth, AFewQuestionsMakeNothing) {
 }
 
 }  // namespace
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

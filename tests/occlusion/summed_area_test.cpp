@@ -1,10 +1,10 @@
-#include "occlusion/summed_area.h"
+#include "src/occlusion/summed_area.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/occlusion/synthetic_maps.h"
 
-namespace sightline::occlusion_detail {
+namespace sightline::occlusion {
 namespace {
 
 using namespace test;
@@ -62,4 +62,4 @@ TEST(SummedArea, BeforeTheFirstMapNothingIsCovered) {
 }
 
 }  // namespace
-}  // namespace sightline::occlusion_detail
+}  // namespace sightline::occlusion

@@ -6,21 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "occlusion/pixel_boxes.h"
 #include "sightline/occlusion/rasteriser.h"
+#include "src/occlusion/pixel_boxes.h"
 
 namespace sightline::test {
 
-using occlusion_detail::PixelBox;
+using occlusion::PixelBox;
 
 // What lies beyond the width is covered and very far, or not covered, in turn: it must not matter.
 struct SyntheticMap {
   std::string name;
   std::uint32_t width = 0, height = 0, stride = 0;
-  std::vector<float> nearness;
+  std::vector<float> reciprocal_depth;
 
   SyntheticMap() = default;
-  // rule(x, y): nearness
+  // rule(x, y): reciprocal depth
   template <typename Rule>
   SyntheticMap(std::string map_name, std::uint32_t w, std::uint32_t h, Rule&& rule)
       : name(std::move(map_name) + " " + std::to_string(w) + " x " + std::to_string(h)),
@@ -29,11 +29,11 @@ struct SyntheticMap {
         stride(w + 5) {
     for (std::uint32_t y = 0; y < height; ++y) {
       for (std::uint32_t x = 0; x < stride; ++x) {
-        nearness.push_back(x < width ? rule(x, y) : (x % 2 == 0 ? -1e30f : kUncovered));
+        reciprocal_depth.push_back(x < width ? rule(x, y) : (x % 2 == 0 ? -1e30f : kUncovered));
       }
     }
   }
-  DepthMapView view() const { return {nearness, width, height, stride}; }
+  DepthMapView view() const { return {reciprocal_depth, width, height, stride}; }
 };
 
 inline std::vector<SyntheticMap> syntheticMaps(std::uint32_t w, std::uint32_t h, std::uint64_t seed) {
@@ -79,7 +79,7 @@ inline constexpr std::uint32_t kMapSizes[][2] = {{1, 1}, {1, 9},  {9, 1},  {2, 2
 inline PixelBox rectangle(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1,
                           float nearest = 0.0f) {
   PixelBox rect;
-  rect.place = occlusion_detail::BoxPlace::kOnMap;
+  rect.place = occlusion::BoxPlace::kOnMap;
   rect.x0 = static_cast<std::uint16_t>(x0);
   rect.y0 = static_cast<std::uint16_t>(y0);
   rect.x1 = static_cast<std::uint16_t>(x1);

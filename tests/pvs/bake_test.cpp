@@ -300,7 +300,7 @@ TEST(Bake, OfASmallRegionLooksAsFarAsOfALargeOne) {
   for (const float size : {8.0f, 0.5f, 0.0f}) {
     const BakedVisibility result = baked(
         scene,
-        {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {size, size, size}}, .least_gain = 0.0});
+        {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {size, size, size}}, .min_gain = 0.0});
     EXPECT_FALSE(membersOf(result, result.octree.leaves[0].set)[1]) << size;
   }
 }
@@ -433,7 +433,7 @@ TEST(Bake, RefusesSettingsThatMakeNoSense) {
       {.search_distance = -1.0},
       {.occluder_size = kNan},
       {.similarity = 2.0},
-      {.least_gain = -0.1},
+      {.min_gain = -0.1},
       {.merge_tolerance = -1.0},
       {.region = {{0, 0, 0}, {std::numeric_limits<float>::infinity(), 1, 1}}}};
   for (std::size_t i = 0; i < bad.size(); ++i) {

@@ -1,10 +1,10 @@
-#include "pvs/bake/cell_region.h"
+#include "src/pvs/bake/cell_region.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 Vec3d randomPoint(std::mt19937& random, const Vec3d& low, const Vec3d& high) {
@@ -136,4 +136,4 @@ TEST(DividingPlane, OfADoubleSidedFaceHasItTwice) {
 }
 
 }  // namespace
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -9,7 +9,7 @@ namespace sightline {
 namespace {
 
 using namespace test;
-using bake_detail::separated;
+using pvs::separated;
 
 // Faces +z.
 Shape wallAt(float x0, float x1, float z) {

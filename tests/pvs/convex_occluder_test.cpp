@@ -8,7 +8,7 @@ namespace sightline {
 namespace {
 
 using namespace test;
-using bake_detail::separated;
+using pvs::separated;
 
 Shape wallShape(bool double_sided = false) {  // faces +z
   Shape shape;
@@ -60,7 +60,7 @@ TEST(ConvexOccluders, AreLargestFirst) {
 long double depthOfDrawn(const ConvexOccluders& all, const ConvexOccluder& occluder, const Shape& shape,
                          const OccluderSet& set) {
   long double least = INFINITY;
-  for (const bake_detail::DrawnEdge& edge : all.edgesOf(occluder)) {
+  for (const pvs::DrawnEdge& edge : all.edgesOf(occluder)) {
     using Vec3l = Vec3<long double>;
     const Vec3l p(edge.from);
     if (occluder.body) {

@@ -12,21 +12,21 @@
 #include <vector>
 
 #include "oracle/wide_ray.h"
-#include "pvs/bake/convex_occluder.h"
-#include "pvs/bake/shadow.h"
-#include "pvs/bake/shadow_tree.h"
 #include "sightline/hierarchy/box_tree.h"
+#include "src/pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/shadow.h"
+#include "src/pvs/bake/shadow_tree.h"
 #include "tests/occluders/flat_mesh.h"
 #include "tests/support/solids.h"
 
 namespace sightline::test {
 
-using bake_detail::ConvexOccluder;
-using bake_detail::ConvexOccluders;
-using bake_detail::ObjectRun;
-using bake_detail::Shadow;
-using bake_detail::ShadowTree;
 using flat_mesh::Random;
+using pvs::ConvexOccluder;
+using pvs::ConvexOccluders;
+using pvs::ObjectRun;
+using pvs::Shadow;
+using pvs::ShadowTree;
 
 // A polygon, or the faces of a closed body.
 struct Shape {

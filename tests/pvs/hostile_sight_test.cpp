@@ -5,22 +5,22 @@
 
 #include <functional>
 
-#include "pvs/format/set_code.h"
+#include "src/pvs/format/set_code.h"
 #include "tests/pvs/sight_checks.h"
 
 namespace sightline::sight_test {
 namespace {
 
-using namespace sight_format;
+using namespace pvs;
 
 // A file in parts that may be altered before they are put together.
 struct Parts {
   BakedVisibility baked = made::visibility(
       {.objects = 400, .leaves = 30, .sets = 90, .set_nodes = 150, .database_bytes = {2'200'000, 10}});
-  sight_bake::EncodedChunks encoded = sight_bake::encodeChunks(baked);
+  pvs::EncodedChunks encoded = pvs::encodeChunks(baked);
 
   Bytes bytes() const {
-    const Result<Bytes> bytes = sightBytes(sight_bake::viewOf(baked, encoded));
+    const Result<Bytes> bytes = sightBytes(pvs::viewOf(baked, encoded));
     EXPECT_TRUE(bytes);
     return bytes ? *bytes : Bytes{};
   }

@@ -1,13 +1,13 @@
-#include "pvs/bake/runs.h"
+#include "src/pvs/bake/runs.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "pvs/bake/cell_sets.h"
+#include "src/pvs/bake/cell_sets.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 using Bits = std::vector<bool>;
@@ -114,4 +114,4 @@ TEST(Runs, CountTriangles) {
 }
 
 }  // namespace
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -1,11 +1,11 @@
-#include "pvs/bake/samples.h"
+#include "src/pvs/bake/samples.h"
 
 #include <gtest/gtest.h>
 
-#include "pvs/bake/bake_scene.h"
+#include "src/pvs/bake/bake_scene.h"
 #include "tests/pvs/bake_scenes.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 using test::allOccluders;
@@ -57,8 +57,8 @@ TEST_F(Samples, AreForgottenOldestFirstAndComputedAgain) {
   EXPECT_TRUE(std::ranges::equal(samples.hidden(again, 0), before));
   EXPECT_EQ(samples.stats().samples, 2u);
   EXPECT_EQ(samples.stats().shadows, 2u);
-  EXPECT_GT(samples.stats().most_sample_bytes, 0u);
+  EXPECT_GT(samples.stats().max_sample_bytes, 0u);
 }
 
 }  // namespace
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -1,10 +1,10 @@
-#include "pvs/format/set_code.h"
+#include "src/pvs/format/set_code.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/made_visibility.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -52,7 +52,7 @@ TEST(SetCode, GivesBackEverySet) {
       const auto expected = baked.sets[set];
       Bytes code;
       appendSet(code, expected, baked.boxes.nodes);
-      EXPECT_LE(code.size(), mostSetBytes(expected.size()));
+      EXPECT_LE(code.size(), maxSetBytes(expected.size()));
       Nodes nodes;
       ASSERT_TRUE(decodeSet(code, ends, nodes)) << "seed " << seed;
       EXPECT_EQ(nodes, Nodes(expected.begin(), expected.end())) << "seed " << seed;
@@ -106,4 +106,4 @@ TEST(SetCode, SurvivesAnyBytes) {
 }
 
 }  // namespace
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

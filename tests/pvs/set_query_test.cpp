@@ -314,14 +314,14 @@ TEST(SetQuery, CountsWhatStaysInTheCell) {
 
 TEST(SetQuery, AnswersEverythingForABrokenChunkAndGoesOn) {
   const Made made({.objects = 3000, .leaves = 200, .sets = 200, .set_nodes = 80, .plane_every = 0});
-  const sight_bake::EncodedChunks encoded = sight_bake::encodeChunks(made.baked);
+  const pvs::EncodedChunks encoded = pvs::encodeChunks(made.baked);
   ASSERT_GT(encoded.set_chunks, 2u);
   // A byte in the middle of the second chunk, wherever the payload lies in the file.
   Bytes bytes = made.bytes;
   const auto payload =
       std::search(bytes.begin(), bytes.end(), encoded.payload.begin(), encoded.payload.end());
   ASSERT_NE(payload, bytes.end());
-  const sight_format::Chunk& chunk = encoded.chunks[1];
+  const pvs::Chunk& chunk = encoded.chunks[1];
   *(payload + static_cast<std::ptrdiff_t>(chunk.offset + chunk.bytes / 2)) ^= std::byte{4};
 
   const Result<SightFile> file = opened(bytes);

@@ -8,7 +8,7 @@ namespace sightline {
 namespace {
 
 using namespace test;
-using bake_detail::separated;
+using pvs::separated;
 
 struct Family {
   const char* name;

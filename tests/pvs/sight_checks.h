@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pvs/bake/encode_sight.h"
 #include "sightline/pvs/query/sight_file.h"
+#include "src/pvs/bake/encode_sight.h"
 #include "tests/support/made_visibility.h"
 
 namespace sightline::sight_test {
@@ -17,7 +17,7 @@ namespace sightline::sight_test {
 using Bytes = std::vector<std::byte>;
 
 inline Bytes bytesOf(const BakedVisibility& baked) {
-  Result<Bytes> bytes = sight_bake::encodeSight(baked);
+  Result<Bytes> bytes = pvs::encodeSight(baked);
   EXPECT_TRUE(bytes) << bytes.error().message;
   return bytes ? *bytes : Bytes{};
 }

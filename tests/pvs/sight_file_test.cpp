@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "pvs/format/sight_view.h"
+#include "src/pvs/format/sight_view.h"
 #include "tests/pvs/sight_checks.h"
 
 namespace sightline::sight_test {
@@ -162,7 +162,7 @@ TEST(SightFile, IsSafeToReadWhateverItsSealedBytesAre) {
       altered[random() % altered.size()] =
           static_cast<std::byte>(random() % 4 == 0 ? random() % 256 : random() % 4);
     }
-    sight_format::seal(altered);
+    pvs::seal(altered);
     const Result<SightFile> file = opened(altered);
     if (!file) {
       EXPECT_TRUE(oneLine(file.error().message));
@@ -193,13 +193,12 @@ std::byte* versionIn(Bytes& bytes) {
 }
 
 TEST(SightFile, SaysWhichOtherVersionItHas) {
-  for (const std::uint32_t version :
-       {sight_format::kVersion - 1, sight_format::kVersion + 1, 4'000'000'000u}) {
+  for (const std::uint32_t version : {pvs::kVersion - 1, pvs::kVersion + 1, 4'000'000'000u}) {
     Bytes bytes = bytesOf(smallBaked());
     std::memcpy(versionIn(bytes), &version, sizeof version);
     const std::string error = errorOf(opened(bytes));
     EXPECT_NE(error.find("version " + std::to_string(version)), std::string::npos) << error;
-    EXPECT_NE(error.find(version < sight_format::kVersion ? "older" : "newer"), std::string::npos) << error;
+    EXPECT_NE(error.find(version < pvs::kVersion ? "older" : "newer"), std::string::npos) << error;
     EXPECT_NE(error.find("bake it again"), std::string::npos) << error;
   }
 }

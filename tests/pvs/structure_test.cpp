@@ -1,4 +1,4 @@
-#include "pvs/format/structure.h"
+#include "src/pvs/format/structure.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/support/made_visibility.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -184,4 +184,4 @@ TEST(OctreeCheck, RefusesCellsThatAreTooDeep) {
 }
 
 }  // namespace
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

@@ -1,4 +1,4 @@
-#include "render/convex_mesh.h"
+#include "src/render/layers/convex_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sightline/layers/hull.h"
-#include "test_scene.h"
+#include "tests/render/test_scene.h"
 
 namespace sightline {
 namespace {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "layer_test.h"
+#include "tests/render/layer_test.h"
 
 namespace sightline {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "scenes/glass.h"
 #include "scenes/moving_scene.h"
-#include "test_scene.h"
+#include "tests/render/test_scene.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/layer_renderer_rect.h"
+#include "src/render/layers/layer_renderer_rect.h"
 
 #include <gtest/gtest.h>
 

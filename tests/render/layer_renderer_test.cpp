@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "layer_test.h"
 #include "sightline/render/compare.h"
 #include "sightline/render/renderer.h"
+#include "tests/render/layer_test.h"
 
 namespace sightline {
 namespace {

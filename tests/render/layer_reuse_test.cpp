@@ -207,7 +207,7 @@ TEST_F(LayerReuseTest, LargerTolerancesDrawLessAndAreWrongByMore) {
   maker.box({-1.5f, -1.0f, -3.0f}, {1.5f, 1.0f, 1.0f}, kRed);
   double drawn_before = 1e9, difference_before = -1.0, error_before = -1.0;
   for (const double tolerance : {0.2, 1.0, 4.0}) {
-    Reused reused(maker.scene, {.tolerance_px = tolerance, .most_stretch = 10.0});
+    Reused reused(maker.scene, {.tolerance_px = tolerance, .max_stretch = 10.0});
     double difference = 0.0;
     for (int frame = 0; frame < 40; ++frame) {
       reused.drawFrame(testView({0.08 * frame - 1.6, 0.5, 10.0}), {}, ids({0}));
@@ -291,7 +291,7 @@ TEST_F(LayerReuseTest, LayerIsDrawnWhenAnObjectOfItComesIntoView) {
 
 TEST_F(LayerReuseTest, OtherKindsOfViewsAreDrawnAnew) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
-  Reused reused(maker.scene, {.tolerance_px = 1000.0, .most_stretch = 1000.0});
+  Reused reused(maker.scene, {.tolerance_px = 1000.0, .max_stretch = 1000.0});
   View view = testView();
   EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
   view.tan_half_fovy = 0.6;  // the same kind
@@ -337,7 +337,7 @@ TEST_F(LayerReuseTest, LayersOutsideTheViewCostNothing) {
 
 TEST_F(LayerReuseTest, ImagesAreDrawnAnewAfterSoManyFrames) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
-  Reused reused(maker.scene, {.most_frames = 3});
+  Reused reused(maker.scene, {.max_frames = 3});
   for (int frame = 0; frame < 9; ++frame) {
     EXPECT_EQ(reused.drawFrame(testView(), {}, ids({0})), frame % 3 == 0) << frame;
   }
@@ -345,7 +345,7 @@ TEST_F(LayerReuseTest, ImagesAreDrawnAnewAfterSoManyFrames) {
 
 TEST_F(LayerReuseTest, ObjectsThatHaveTurnedAreDrawnAnew) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
-  Reused reused(maker.scene, {.tolerance_px = 100.0, .most_stretch = 100.0, .most_turn = 0.1});
+  Reused reused(maker.scene, {.tolerance_px = 100.0, .max_stretch = 100.0, .max_turn = 0.1});
   for (int frame = 0; frame < 8; ++frame) {
     // The frames' turns are 0.03: more than 0.1 are four of them.
     EXPECT_EQ(reused.drawFrame(testView(), {turned(0.03 * frame)}, ids({0})), frame % 4 == 0) << frame;
@@ -354,7 +354,7 @@ TEST_F(LayerReuseTest, ObjectsThatHaveTurnedAreDrawnAnew) {
 
 TEST_F(LayerReuseTest, ImagesAreNotStretchedFurtherThanAllowed) {
   maker.wall(0.0, 1.0, kRed);
-  Reused reused(maker.scene, {.tolerance_px = 0.5, .most_stretch = 1.25});
+  Reused reused(maker.scene, {.tolerance_px = 0.5, .max_stretch = 1.25});
   EXPECT_TRUE(reused.drawFrame(testView({0, 0, 10.0}), {}, ids({0})));
   EXPECT_FALSE(reused.drawFrame(testView({0, 0, 8.1}), {}, ids({0})));  // 1.235
   EXPECT_TRUE(reused.drawFrame(testView({0, 0, 7.9}), {}, ids({0})));   // 1.266
@@ -369,7 +369,7 @@ TEST_F(LayerReuseTest, FlatThingsSeenAtASlantNeedProjectiveWarps) {
   maker.scene.indices = {2, 6, 7, 2, 7, 3};
   maker.scene.objects[0].index_count = 6;
   const View before = testView(), after = testView({0.9, 0.2, 9.8});
-  ReuseSettings settings{.tolerance_px = 0.1, .guard_px = 20, .most_stretch = 2.0};
+  ReuseSettings settings{.tolerance_px = 0.1, .guard_px = 20, .max_stretch = 2.0};
   Reused projective(maker.scene, settings);
   settings.warp = ReuseWarp::kAffine;
   Reused affine(maker.scene, settings);
@@ -461,8 +461,8 @@ TEST_F(LayerReuseTest, HostileViewsAndSettingsDoNoHarm) {
   maker.box({-1, -1, -1}, {1, 1, 1}, kRed);
   for (const double bad : {kNan, 0.0, -1.0, 1e308, std::numeric_limits<double>::infinity()}) {
     for (const ReuseSettings& settings :
-         {ReuseSettings{.tolerance_px = bad}, ReuseSettings{.most_stretch = bad},
-          ReuseSettings{.most_turn = bad}}) {
+         {ReuseSettings{.tolerance_px = bad}, ReuseSettings{.max_stretch = bad},
+          ReuseSettings{.max_turn = bad}}) {
       Reused reused(maker.scene, settings);
       for (int frame = 0; frame < 3; ++frame) {
         reused.drawFrame(testView({0.01 * frame, 0, 10}), {}, ids({0}));
@@ -488,7 +488,7 @@ TEST_F(LayerReuseTest, HostileViewsAndSettingsDoNoHarm) {
   }
   Result<LayerRenderer> small = LayerRenderer::create(maker.scene.view(), {.width = 9, .height = 8});
   ASSERT_TRUE(small);
-  LayerReuse reuse(maker.scene.view(), *small, {.most_frames = 0, .guard_px = 4000000000u});
+  LayerReuse reuse(maker.scene.view(), *small, {.max_frames = 0, .guard_px = 4000000000u});
   EXPECT_EQ(reuse.width(), 3u);
   EXPECT_EQ(reuse.height(), 2u);
   LayerImage image;

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "sightline/render/layer_renderer.h"
-#include "test_scene.h"
 #include "tests/render/largest_difference.h"
+#include "tests/render/test_scene.h"
 
 namespace sightline {
 

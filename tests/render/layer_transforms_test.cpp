@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "layer_test.h"
+#include "tests/render/layer_test.h"
 
 namespace sightline {
 namespace {

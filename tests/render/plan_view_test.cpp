@@ -1,6 +1,6 @@
 #include "sightline/render/plan_view.h"
 
-#include "test_scene.h"
+#include "tests/render/test_scene.h"
 
 namespace sightline {
 namespace {

@@ -1,7 +1,7 @@
 #include "sightline/render/renderer.h"
 
 #include "sightline/render/compare.h"
-#include "test_scene.h"
+#include "tests/render/test_scene.h"
 
 namespace sightline {
 namespace {

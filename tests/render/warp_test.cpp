@@ -1,4 +1,4 @@
-#include "render/warp.h"
+#include "src/render/reuse/warp.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "render/warp_image.h"
+#include "src/render/reuse/warp_image.h"
 
 namespace sightline {
 namespace {

@@ -7,7 +7,7 @@
 #include "scenes/random.h"
 #include "tests/scenes/scene_checks.h"
 
-namespace sightline::procedural {
+namespace sightline::scenes {
 namespace {
 
 const std::vector<Point2> kL = {{0, 0}, {5, 0}, {5, 2}, {2, 2}, {2, 6}, {0, 6}};  // area 18
@@ -109,4 +109,4 @@ TEST(Random, NumbersAreThoseOfSplitMix64) {
 }
 
 }  // namespace
-}  // namespace sightline::procedural
+}  // namespace sightline::scenes

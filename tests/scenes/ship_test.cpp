@@ -281,7 +281,7 @@ TEST(Ship, InsideLittleOfItIsSeen) {
   const CameraPath& path = scene.paths.front();
   for (std::size_t f = 0; f < path.frames.size(); f += 80) {
     const Vec3d eye = path.frames[f].eye - scene.origin;
-    procedural::Random random(17, f);
+    scenes::Random random(17, f);
     std::set<std::size_t> seen;
     for (std::size_t ray = 0; ray < kRays; ++ray) {
       const double x = random.range(-1, 1), y = random.range(-1, 1), z = random.range(-1, 1);

@@ -4,13 +4,13 @@
 
 #include <array>
 
+#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/io/import.h"
 #include "sightline/occluders/occluder_database.h"
-#include "sightline/occluders/viewpoint_database.h"
 #include "sightline/pvs/query/sight_file.h"
 #include "tests/tool/start_tool.h"
-#include "tools/sightline/checkpoint.h"
+#include "tools/sightline/bake/checkpoint.h"
 
 namespace sightline::tool_test {
 namespace {

@@ -1,6 +1,6 @@
 // What an unfinished bake leaves: whatever happened to the file, whole parts are found again, and no others.
 
-#include "tools/sightline/checkpoint.h"
+#include "tools/sightline/bake/checkpoint.h"
 
 #include "tests/tool/run_tool.h"
 

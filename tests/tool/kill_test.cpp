@@ -42,7 +42,7 @@ class KilledBake : public ::testing::Test {
     const std::string file = folder_.file("reference.sight");
     Started bake(toolWords(0, arguments(file, "1")));
     while (bake.running()) {
-      most_ = std::max(most_, sizeOf(file + ".parts"));
+      max_ = std::max(max_, sizeOf(file + ".parts"));
       nap();
     }
     const Outcome outcome = bake.wait();
@@ -53,7 +53,7 @@ class KilledBake : public ::testing::Test {
 
   // When the checkpoint has a random part of its final size, or a random time after.
   void waitForSomeMoment(Started& bake, const std::string& file) {
-    const std::uintmax_t size = std::uniform_int_distribution<std::uintmax_t>(0, most_)(random_);
+    const std::uintmax_t size = std::uniform_int_distribution<std::uintmax_t>(0, max_)(random_);
     const auto after = std::chrono::microseconds(std::uniform_int_distribution<int>(0, 20000)(random_));
     while (bake.running() && sizeOf(file + ".parts") < size && sizeOf(file) == 0) {
       nap();
@@ -77,7 +77,7 @@ class KilledBake : public ::testing::Test {
   TemporaryFolder folder_;
   std::mt19937 random_{kSeed};
   std::string reference_;
-  std::uintmax_t most_ = 0;  // bytes of a checkpoint, about
+  std::uintmax_t max_ = 0;  // bytes of a checkpoint, about
 };
 
 TEST_F(KilledBake, GoesOnToTheSameBytesAfterEachKillOfItsOnlyProcess) {
@@ -125,7 +125,7 @@ TEST_F(KilledBake, SaysHowToGoOnWhenToldToEnd) {
   for (const int signal : {SIGTERM, SIGINT}) {
     const std::string file = folder_.file("told" + std::to_string(signal));
     Started bake(toolWords(0, arguments(file, "2")));
-    while (bake.running() && sizeOf(file + ".parts") <= most_ / 4 && sizeOf(file) == 0) {
+    while (bake.running() && sizeOf(file + ".parts") <= max_ / 4 && sizeOf(file) == 0) {
       nap();
     }
     bake.kill(signal);

@@ -1,4 +1,4 @@
-#include "tools/sightline/layer_figures.h"
+#include "tools/sightline/reproduce/layer_figures.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/support/pictures.h"
 #include "tests/tool/run_tool.h"
-#include "tools/sightline/layer_figure_scene.h"
+#include "tools/sightline/reproduce/layer_figure_scene.h"
 
 namespace sightline::tool {
 namespace {

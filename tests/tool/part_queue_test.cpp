@@ -1,6 +1,6 @@
 // Who bakes which part next: neighbours stay together, and nobody waits while there is something to do.
 
-#include "tools/sightline/part_queue.h"
+#include "tools/sightline/bake/part_queue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tools/sightline/saved_rendering.h"
+#include "tools/sightline/reproduce/saved_rendering.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ class SavedRendering : public ::testing::Test {
 const SavedRenderingOptions kSmall{.height = 40,
                                    .samples = 1,
                                    .guard_px = 6,
-                                   .most_frames = 4,
+                                   .max_frames = 4,
                                    .grids = {5},
                                    .tolerances_px = {0.0, 0.5, 3.0}};
 
@@ -86,8 +86,8 @@ TEST_F(SavedRendering, UpdateRatesStandBesideThePapers) {
 }
 
 TEST_F(SavedRendering, ShortFormTakesFewFrames) {
-  EXPECT_LT(savedRenderingOptions({.fewer_frames = true}).most_frames, 10u);
-  EXPECT_GE(savedRenderingOptions({}).most_frames, 250u);
+  EXPECT_LT(savedRenderingOptions({.fewer_frames = true}).max_frames, 10u);
+  EXPECT_GE(savedRenderingOptions({}).max_frames, 250u);
   EXPECT_EQ(savedRenderingOptions({}).grids, (std::vector<std::uint32_t>{20, 14, 10, 7, 5}));
 }
 

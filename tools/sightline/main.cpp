@@ -7,11 +7,11 @@
 #include <exception>
 #include <string_view>
 
+#include "tools/sightline/bake/mpi_world.h"
+#include "tools/sightline/command_line/declarations.h"
+#include "tools/sightline/command_line/signals.h"
+#include "tools/sightline/command_line/suggest.h"
 #include "tools/sightline/commands.h"
-#include "tools/sightline/declarations.h"
-#include "tools/sightline/mpi_world.h"
-#include "tools/sightline/signals.h"
-#include "tools/sightline/suggest.h"
 
 namespace sightline::tool {
 namespace {

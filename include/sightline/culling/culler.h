@@ -7,11 +7,11 @@
 #include <span>
 
 #include "sightline/base/parallel_for.h"
+#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
 #include "sightline/occluders/occluder_database.h"
 #include "sightline/occluders/occluder_set.h"
-#include "sightline/occluders/viewpoint_database.h"
 #include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/occlusion/occlusion_tree.h"
 #include "sightline/occlusion/opacity_map.h"
@@ -49,7 +49,7 @@ struct FocusSettings {
   double magnification = 8.0;  // its pixels along the side of one of the first map's; 1 or less: no such map
   RasterSettings raster{.width = 128, .height = 64};  // coverage: as the first map's
   std::uint32_t occluder_count = 64;  // at most so many, in addition to those of the first map
-  std::uint32_t least_objects = 256;  // that the first map does not hide there, for it to be made
+  std::uint32_t min_objects = 256;    // that the first map does not hide there, for it to be made
 };
 
 struct CullerSettings {

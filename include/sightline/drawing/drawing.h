@@ -58,12 +58,12 @@ struct DrawingSettings {
 // are left out. Lines of an object are joined to strokes at its corners; strokes and outlines leave out
 // points within about a 200,000th of the page's height. A view or a page without a size that is a finite
 // number above zero (pages: 1e-15 to 1e15 units) gives an empty drawing. For one thread at a time.
-class Draughtsman {
+class HiddenLineRenderer {
  public:
-  explicit Draughtsman(const SceneView& scene);  // the scene's triangles; positions may change later
-  ~Draughtsman();
-  Draughtsman(Draughtsman&&) noexcept;
-  Draughtsman& operator=(Draughtsman&&) noexcept;
+  explicit HiddenLineRenderer(const SceneView& scene);  // the scene's triangles; positions may change later
+  ~HiddenLineRenderer();
+  HiddenLineRenderer(HiddenLineRenderer&&) noexcept;
+  HiddenLineRenderer& operator=(HiddenLineRenderer&&) noexcept;
 
   // The painter's form (Snyder, Lengyel, section 11): groups back to front; each object's outline is filled
   // and hides what is behind; lines are tested against their own object and those of its group that may

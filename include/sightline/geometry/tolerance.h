@@ -29,7 +29,7 @@ inline constexpr double kGrazingSine = 0x1p-10;
 inline constexpr double kShortestEdgeSine = 0x1p-20;
 
 // A size for scaling the tolerances: at least the Euclidean length, at most 1.8 times it.
-constexpr double magnitude(const Vec3d& p) {
+constexpr double l1Norm(const Vec3d& p) {
   const Vec3d a = abs(p);
   return a.x + a.y + a.z;
 }

@@ -25,7 +25,7 @@ struct ExtentAxis {
   Vec3d zero{0, 0, 1};  // angular: the direction of angle 0
 };
 
-inline constexpr std::size_t kMostExtentAxes = 16;
+inline constexpr std::size_t kMaxExtentAxes = 16;
 
 // Horizontal and vertical angle and depth, fixed to the camera: for scenes in which most parts move.
 std::vector<ExtentAxis> cameraExtents();

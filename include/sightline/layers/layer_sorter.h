@@ -42,7 +42,7 @@ enum class OccluderSearch : std::uint8_t {
 };
 
 struct ExtentTreeSettings {
-  std::uint32_t least_gain = 10;    // a node is divided where its longer child is shorter by so many parts
+  std::uint32_t min_gain = 10;      // a node is divided where its longer child is shorter by so many parts
   std::uint32_t rebuild_after = 0;  // frames after which a new tree is begun beside the old one; 0: never
   double rebuild_imbalance =
       1.5;  // or when a query visits so many times as many nodes' parts as after the build
@@ -52,7 +52,7 @@ struct ExtentTreeSettings {
 
 struct LayerSettings {
   LayerSort sort = LayerSort::kDepthFirst;
-  std::vector<ExtentAxis> extents = cameraExtents();  // at most kMostExtentAxes
+  std::vector<ExtentAxis> extents = cameraExtents();  // at most kMaxExtentAxes
   OccluderSearch search = OccluderSearch::kAutomatic;
   ExtentTreeSettings tree{};
   // After the sort, groups move to the front of others that do not occlude them and lie farther along this
@@ -78,7 +78,7 @@ struct LayerStats {
   std::uint64_t occluder_queries = 0;  // parts or groups whose occluders were asked for
   std::uint64_t candidates = 0;        // parts whose extents did not rule them out
   std::uint64_t pair_queries = 0;      // pairs of parts that were tested exactly
-  std::uint64_t chung_steps = 0, gilbert_steps = 0;
+  std::uint64_t chung_steps = 0, gjk_steps = 0;
   std::uint64_t reinsertions = 0;  // incremental sort
   std::uint64_t conditioned = 0;   // groups that moved
   std::uint64_t known_pairs = 0;   // pairs of which something is kept

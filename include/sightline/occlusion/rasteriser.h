@@ -37,14 +37,14 @@ inline constexpr float kUncovered = -std::numeric_limits<float>::max();
 // The lowest row comes first. Valid until the map is drawn again.
 struct DepthMapView {
   std::span<const float>
-      nearness{};  // greater is nearer; 1 / depth (1 / metres), orthographic -depth (metres)
+      reciprocal_depth{};  // greater is nearer; 1 / depth (1 / metres), orthographic -depth (metres)
   std::uint32_t width = 0, height = 0;
   std::uint32_t stride = 0;  // from one row to the next; what lies beyond the width has no meaning
 
-  float at(std::uint32_t x, std::uint32_t y) const { return nearness[std::size_t{y} * stride + x]; }
+  float at(std::uint32_t x, std::uint32_t y) const { return reciprocal_depth[std::size_t{y} * stride + x]; }
   bool covered(std::uint32_t x, std::uint32_t y) const { return at(x, y) > kUncovered; }
   std::span<const float> row(std::uint32_t y) const {
-    return nearness.subspan(std::size_t{y} * stride, width);
+    return reciprocal_depth.subspan(std::size_t{y} * stride, width);
   }
 };
 

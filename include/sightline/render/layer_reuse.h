@@ -30,17 +30,17 @@ enum class ReuseWarp : std::uint8_t {
 };
 
 struct ReuseSettings {
-  double tolerance_px = 1.0;         // a warp that moves a characteristic point wrongly by more is not used
-  std::uint32_t most_frames = 1000;  // an image is drawn anew after so many
+  double tolerance_px = 1.0;        // a warp that moves a characteristic point wrongly by more is not used
+  std::uint32_t max_frames = 1000;  // an image is drawn anew after so many
   // The renderer's pictures are larger than the frames by so many pixels on each side (their images: as many
   // smaller than LayerRenderer::width() and height()): what is there when an image is drawn may come into
   // view later. At most what leaves one pixel.
   std::uint32_t guard_px = 0;
   ReuseWarp warp = ReuseWarp::kProjective;
-  double most_stretch = 1.3;  // an image is not stretched or shrunk by more than this factor
+  double max_stretch = 1.3;  // an image is not stretched or shrunk by more than this factor
   // Radians by which an object may have turned in the scene since it was drawn: its light and shade are those
   // of then.
-  double most_turn = 0.1;
+  double max_turn = 0.1;
 };
 
 struct ReuseStats {

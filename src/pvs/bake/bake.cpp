@@ -7,15 +7,15 @@
 #include <string>
 #include <utility>
 
-#include "base/byte_stream.h"
-#include "pvs/bake/bake_scene.h"
-#include "pvs/bake/cell_tree.h"
-#include "pvs/bake/flatten.h"
-#include "pvs/format/checksum.h"
+#include "src/base/byte_stream.h"
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_tree.h"
+#include "src/pvs/bake/flatten.h"
+#include "src/pvs/format/checksum.h"
 
 namespace sightline {
 
-using namespace bake_detail;
+using namespace pvs;
 
 struct Bake::Data {
   Data(const SceneView& view, const OccluderSet& occluders, const BakeSettings& settings,
@@ -58,7 +58,7 @@ std::string problemWith(const BakeSettings& s) {
   if (!usable(s.occluder_size, 0.0, 1e6)) {
     return "occluder_size is a factor from 0 to 1,000,000";
   }
-  if (!usable(s.similarity, 0.0, 1.0) || !usable(s.least_gain, 0.0, 1.0) ||
+  if (!usable(s.similarity, 0.0, 1.0) || !usable(s.min_gain, 0.0, 1.0) ||
       !usable(s.merge_tolerance, 0.0, 1e6)) {
     return "similarity and least_gain are from 0 to 1, merge_tolerance is 0 or greater";
   }
@@ -98,11 +98,11 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
     bytes.add(number);
   }
   for (const double number :
-       {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.least_gain, s.merge_tolerance,
+       {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.min_gain, s.merge_tolerance,
         region.min.x, region.min.y, region.min.z, region.max.x, region.max.y, region.max.z}) {
     bytes.add(number);
   }
-  return sight_format::checksumOf(bytes.take());
+  return pvs::checksumOf(bytes.take());
 }
 
 // The share of the region that lies in the cell. An axis along which the region has no extent does not count.
@@ -163,7 +163,7 @@ void add(BakeStats& sum, const BakeStats& stats) {
   sum.samples += stats.samples;
   sum.shadows += stats.shadows;
   sum.forgotten += stats.forgotten;
-  sum.most_sample_bytes += stats.most_sample_bytes;
+  sum.max_sample_bytes += stats.max_sample_bytes;
 }
 
 struct Bake::Worker::Impl {

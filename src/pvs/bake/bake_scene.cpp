@@ -1,9 +1,9 @@
-#include "pvs/bake/bake_scene.h"
+#include "src/pvs/bake/bake_scene.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 std::vector<Box> boundsOf(const SceneView& scene) {
@@ -75,11 +75,11 @@ bool isOfUse(const ConvexOccluder& occluder, const CellBox& cell, double occlude
 }
 
 // A chosen depth has so many cells at most, where it is not the least.
-constexpr std::uint32_t kLeastChosenDepth = 6;
-constexpr std::uint64_t kMostChosenCells = 1u << 15;
-constexpr std::uint32_t kLargeInLevels = 3;  // at most kLeastChosenDepth
+constexpr std::uint32_t kMinChosenDepth = 6;
+constexpr std::uint64_t kMaxChosenCells = 1u << 15;
+constexpr std::uint32_t kLargeInLevels = 3;  // at most kMinChosenDepth
 // Cells are no smaller than so many near distances: from them, what is closest would not occlude any more.
-constexpr double kLeastEdgeInNears = 4.0;
+constexpr double kMinEdgeInNears = 4.0;
 // The region's floor, ceiling or outer wall: hides nothing that lies in the region. In parts of the region's
 // extent.
 constexpr double kSpans = 0.9, kTouches = 1e-3, kThin = 0.125;
@@ -170,18 +170,18 @@ void BakeScene::chooseDepth() {
     return;
   }
   const auto small = [&](std::uint32_t level) {
-    return boxOf({level, {}}).extent().x < kLeastEdgeInNears * settings.near_distance;
+    return boxOf({level, {}}).extent().x < kMinEdgeInNears * settings.near_distance;
   };
-  base_depth_ = kLeastChosenDepth;
+  base_depth_ = kMinChosenDepth;
   while (base_depth_ < kMaxOctreeDepth && !small(base_depth_ + 1) &&
-         cellsOfRegion(root, region, base_depth_ + 1) <= kMostChosenCells) {
+         cellsOfRegion(root, region, base_depth_ + 1) <= kMaxChosenCells) {
     ++base_depth_;
   }
   settings.max_depth = base_depth_;
   for (std::uint32_t level = base_depth_ + 1; level <= kMaxOctreeDepth && !small(level); ++level) {
     BoxTree near = reachOfOccluders(level);
-    const std::uint64_t count = cellsNear(near, root, region, {}, level, kMostChosenCells + 1);
-    if (count > kMostChosenCells) {
+    const std::uint64_t count = cellsNear(near, root, region, {}, level, kMaxChosenCells + 1);
+    if (count > kMaxChosenCells) {
       break;
     }
     if (count > 0) {
@@ -273,4 +273,4 @@ bool BakeScene::holdsAllOccluders(const CellBox& box) const {
          box.max.x >= all.max.x && box.max.y >= all.max.y && box.max.z >= all.max.z;
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

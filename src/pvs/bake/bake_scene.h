@@ -6,14 +6,14 @@
 #include <span>
 #include <vector>
 
-#include "pvs/bake/cell_region.h"
-#include "pvs/bake/convex_occluder.h"
-#include "pvs/bake/runs.h"
-#include "pvs/bake/shadow_tree.h"
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/pvs/bake/bake.h"
+#include "src/pvs/bake/cell_region.h"
+#include "src/pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/runs.h"
+#include "src/pvs/bake/shadow_tree.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 struct BakeScene {
   // settings: usable ones. region: where viewers are.
@@ -72,4 +72,4 @@ struct BakeScene {
   std::vector<LevelOccluders> levels_;
 };
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -1,13 +1,13 @@
-#include "pvs/bake/cell_region.h"
+#include "src/pvs/bake/cell_region.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "geometry/clip_convex.h"
+#include "src/geometry/clip_convex.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 // Corners that differ in one coordinate.
@@ -29,8 +29,8 @@ constexpr std::array<BoxEdge, 12> kBoxEdges{{{0, 1, 0},
                                              {3, 7, 2}}};
 
 // A plane that faces cover less of divides no cell.
-constexpr double kLeastCoverage = 0.5;
-constexpr std::size_t kMostTried = 16;  // faces whose planes are looked at
+constexpr double kMinCoverage = 0.5;
+constexpr std::size_t kMaxTried = 16;  // faces whose planes are looked at
 
 // Where the plane dot(normal, x) = level crosses the edge, kept on it. Its ends lie on different sides.
 Vec3d crossing(const CellBox& cell, const BoxEdge& edge, const Vec3d& normal, double level) {
@@ -210,14 +210,14 @@ std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const Divi
   std::pair<double, double> best_rank;
   std::vector<const DividingFace*> covering;
   // What covers half of a section has tiles among the largest.
-  const std::size_t tried = std::min(inside.size(), kMostTried);
+  const std::size_t tried = std::min(inside.size(), kMaxTried);
   std::partial_sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(tried), inside.end(),
                     [](const FaceInCell& a, const FaceInCell& b) {
                       return a.area != b.area ? a.area > b.area : a.face < b.face;
                     });
   for (const FaceInCell& face : std::span(inside).first(tried)) {
     const double covered = coverage(face, inside);
-    if (covered < kLeastCoverage) {
+    if (covered < kMinCoverage) {
       continue;
     }
     covering.push_back(face.face);
@@ -239,4 +239,4 @@ std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const Divi
   return some_before || some_behind ? std::optional(plane) : std::nullopt;
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "pvs/bake/convex_occluder.h"
 #include "sightline/pvs/format/visibility_octree.h"
+#include "src/pvs/bake/convex_occluder.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 // Box of a cell, scene space.
 struct CellBox {
@@ -63,4 +63,4 @@ struct DividingFace {
 std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const DividingFace> faces,
                                        double near_distance, double side_margin);
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

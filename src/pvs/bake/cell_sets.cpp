@@ -4,11 +4,11 @@
 // corners of a large cell see says little about what its parts will; occluders are closed to viewers that
 // come nearer than their near planes.
 
-#include "pvs/bake/cell_sets.h"
+#include "src/pvs/bake/cell_sets.h"
 
 #include <algorithm>
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 void ObjectMask::reset(std::uint32_t count) {
   count_ = count;
@@ -213,4 +213,4 @@ bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, co
   });
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "pvs/bake/bake_scene.h"
-#include "pvs/bake/samples.h"
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/samples.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 struct CellSets {
   Runs whole;  // seen from anywhere in the cell
@@ -82,4 +82,4 @@ class CellBaker {
   Runs common_, scratch_;
 };
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -1,12 +1,12 @@
 // Based on: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999, section 3.2.
 // Differs from the paper in: cells at the maximum depth enlarge their search boxes too before they give up.
 
-#include "pvs/bake/cell_tree.h"
+#include "src/pvs/bake/cell_tree.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 BakedCell leafOf(const OctreeCell& cell, CellSets&& sets, StopReason reason) {
@@ -43,7 +43,7 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
       baker.lookFarther(task.cell, distance, 2.0 * distance, sets);
       distance *= 2.0;
       const double less = static_cast<double>(triangles) - static_cast<double>(trianglesOf(scene, sets));
-      gained = less > 0.0 && less >= settings.least_gain * static_cast<double>(triangles);
+      gained = less > 0.0 && less >= settings.min_gain * static_cast<double>(triangles);
     }
     if (!gained) {
       return {
@@ -198,4 +198,4 @@ std::optional<BakedCell> readCell(ByteReader& bytes, std::uint32_t level, std::u
   return good && bytes.ok() ? std::optional(std::move(cell)) : std::nullopt;
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_stream.h"
-#include "pvs/bake/cell_sets.h"
+#include "src/base/byte_stream.h"
+#include "src/pvs/bake/cell_sets.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 struct BakedCell {
   std::vector<BakedCell> children;  // eight, or none: a leaf
@@ -45,4 +45,4 @@ void write(const BakedCell& cell, ByteWriter& bytes);
 // Nothing: the bytes are not of a cell of this level within a tree of so many objects.
 std::optional<BakedCell> readCell(ByteReader& bytes, std::uint32_t level, std::uint32_t object_count);
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

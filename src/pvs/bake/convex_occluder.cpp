@@ -1,4 +1,4 @@
-#include "pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/convex_occluder.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "sightline/geometry/tolerance.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 // Of the coordinates' size: in a margin, above all rounding of corners that are drawn in (2^-49).
@@ -15,7 +15,7 @@ constexpr double kMarginRounding = 0x1p-44;
 // Of the coordinates' size: the rounding of a height above a plane, and of a drawn-in corner.
 constexpr double kHeightRounding = 0x1p-47;
 // What shrinks by more than this part is not used.
-constexpr double kMostShrinking = 0.25;
+constexpr double kMaxShrinking = 0.25;
 constexpr double kRoundUp = 1.0 + 0x1p-30, kRoundDown = 1.0 - 0x1p-30;
 
 // The lesser one; not a number where either is none.
@@ -29,7 +29,7 @@ double sizeOf(std::span<const Vec3f> points) {
   for (const Vec3f& point : points) {
     most = max(most, abs(Vec3d(point)));
   }
-  return magnitude(most) * kRoundUp;
+  return l1Norm(most) * kRoundUp;
 }
 
 Vec3d meanOf(std::span<const Vec3f> points) {
@@ -102,7 +102,7 @@ bool ConvexOccluders::addPolygon(const OccluderSet& set, OccluderId id) {
   ConvexOccluder occluder;
   occluder.margin = 2.0 * static_cast<double>(polygon.slack) + off_plane + kMarginRounding * size;
   const double shrink = shrinking(occluder.margin, depthIn(corners, normal, centre));
-  if (!(shrink > 0.0 && shrink <= kMostShrinking)) {
+  if (!(shrink > 0.0 && shrink <= kMaxShrinking)) {
     return false;
   }
   occluder.first_edge = static_cast<std::uint32_t>(edges_.size());
@@ -136,7 +136,7 @@ bool ConvexOccluders::addBody(const OccluderSet& set, const OccluderBody& body) 
   ConvexOccluder occluder;
   occluder.margin = 2.0 * static_cast<double>(body.slack) + kMarginRounding * size;
   const double shrink = shrinking(occluder.margin + depth.outside, depth.centre);
-  if (!(shrink > 0.0 && shrink <= kMostShrinking)) {
+  if (!(shrink > 0.0 && shrink <= kMaxShrinking)) {
     return false;
   }
   occluder.first_edge = static_cast<std::uint32_t>(edges_.size());
@@ -215,10 +215,10 @@ ConvexOccluders::ConvexOccluders(const OccluderSet& set) {
 namespace {
 
 // Least height of the points above a plane, less its rounding.
-double leastHeight(const Plane& plane, double size, std::span<const Vec3d> points) {
+double minHeight(const Plane& plane, double size, std::span<const Vec3d> points) {
   double least = INFINITY;
   for (const Vec3d& point : points) {
-    least = lesser(least, plane.evaluate(point) - kHeightRounding * (magnitude(point) + size));
+    least = lesser(least, plane.evaluate(point) - kHeightRounding * (l1Norm(point) + size));
   }
   return least;
 }
@@ -243,9 +243,9 @@ bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::
   const Vec3d gaps = gapsBetween(occluder.bounds, corners);
   double gap = -INFINITY;  // of the best separating plane
   for (const DrawnFace& face : all.facesOf(occluder)) {
-    gap = std::max(gap, leastHeight(face.plane, occluder.size, corners));
+    gap = std::max(gap, minHeight(face.plane, occluder.size, corners));
     if (occluder.double_sided) {
-      gap = std::max(gap, leastHeight(face.plane.flipped(), occluder.size, corners));
+      gap = std::max(gap, minHeight(face.plane.flipped(), occluder.size, corners));
     }
   }
   if (occluder.body) {
@@ -256,4 +256,4 @@ bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::
   return gap > occluder.margin && apart - occluder.margin > near_distance;
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

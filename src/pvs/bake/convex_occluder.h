@@ -23,7 +23,7 @@
 
 #include "sightline/occluders/occluder_set.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 // An edge of an outline.
 struct ConvexEdge {
@@ -88,4 +88,4 @@ class ConvexOccluders {
 bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::span<const Vec3d> corners,
                double near_distance);
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -1,4 +1,4 @@
-#include "pvs/bake/encode_sight.h"
+#include "src/pvs/bake/encode_sight.h"
 
 #include <zstd.h>
 
@@ -6,13 +6,13 @@
 #include <memory>
 #include <string>
 
-#include "pvs/format/set_code.h"
-#include "pvs/format/structure.h"
+#include "src/pvs/format/set_code.h"
+#include "src/pvs/format/structure.h"
 
-namespace sightline::sight_bake {
+namespace sightline::pvs {
 namespace {
 
-using namespace sight_format;
+using namespace pvs;
 
 // Both decompress at the same speed. Sets are compressed hard: they are most of a file.
 constexpr int kSetLevel = 19;
@@ -140,4 +140,4 @@ Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked) {
   return sightBytes(view);
 }
 
-}  // namespace sightline::sight_bake
+}  // namespace sightline::pvs

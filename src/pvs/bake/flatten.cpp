@@ -1,13 +1,13 @@
-#include "pvs/bake/flatten.h"
+#include "src/pvs/bake/flatten.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <unordered_map>
 
-#include "pvs/format/checksum.h"
+#include "src/pvs/format/checksum.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 class Flattener {
@@ -47,7 +47,7 @@ class Flattener {
   std::uint32_t setOf(const Runs& runs) {
     nodes_.clear();
     appendNodes(boxes_, runs, nodes_);
-    const std::uint64_t hash = sight_format::checksumOf(std::as_bytes(std::span(nodes_)));
+    const std::uint64_t hash = pvs::checksumOf(std::as_bytes(std::span(nodes_)));
     const auto [first, last] = sets_by_hash_.equal_range(hash);
     for (auto known = first; known != last; ++known) {
       if (std::ranges::equal(sets_[known->second], nodes_)) {
@@ -85,4 +85,4 @@ void flatten(const BakedCell& root, const BoxTreeView& boxes, VisibilityOctree& 
   Flattener(boxes, octree, sets).add(root, 0);
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

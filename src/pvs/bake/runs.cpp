@@ -1,8 +1,8 @@
-#include "pvs/bake/runs.h"
+#include "src/pvs/bake/runs.h"
 
 #include <algorithm>
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out) {
   out.clear();
@@ -63,4 +63,4 @@ TriangleCounts::TriangleCounts(const BoxTreeView& tree) : before_(tree.objects.s
   }
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

@@ -9,7 +9,7 @@
 
 #include "sightline/hierarchy/box_tree.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 // A range of BoxTree::objects, [begin, end).
 struct ObjectRun {
@@ -43,4 +43,4 @@ class TriangleCounts {
   std::vector<std::uint64_t> before_;  // by position: triangles of all objects before it
 };
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

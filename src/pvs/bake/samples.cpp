@@ -1,9 +1,9 @@
-#include "pvs/bake/samples.h"
+#include "src/pvs/bake/samples.h"
 
 #include <algorithm>
 #include <bit>
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 // Finalizer of SplitMix64.
@@ -88,7 +88,7 @@ std::span<const ObjectRun> SampleStore::hidden(Sample& sample, std::uint32_t occ
   const std::size_t before = sample.bytes();
   sample.add(occluder, scratch_);
   bytes_ += sample.bytes() - before;
-  stats_.most_sample_bytes = std::max(stats_.most_sample_bytes, bytes_);
+  stats_.max_sample_bytes = std::max(stats_.max_sample_bytes, bytes_);
   return *sample.find(occluder);
 }
 
@@ -102,4 +102,4 @@ void SampleStore::forgetOldest() {
   }
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

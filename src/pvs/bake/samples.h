@@ -11,10 +11,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "pvs/bake/shadow_tree.h"
 #include "sightline/pvs/bake/bake.h"
+#include "src/pvs/bake/shadow_tree.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 // One viewpoint's answers, by occluder.
 class Sample {
@@ -80,4 +80,4 @@ class SampleStore {
   BakeStats stats_;
 };
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

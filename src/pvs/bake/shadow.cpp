@@ -1,4 +1,4 @@
-#include "pvs/bake/shadow.h"
+#include "src/pvs/bake/shadow.h"
 
 #include "sightline/geometry/tolerance.h"
 
@@ -18,7 +18,7 @@
 //     16 u |A| |D| + 32 u size (|A| + |D|),
 // which counts times |x - eye| <= reach, and the value of the plane at x by 16 u |D x A| reach.
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 constexpr double kRounding = 0x1p-48;  // 32 u
@@ -33,13 +33,13 @@ class ShadowMaker {
 
   Vec3d fromEye(const Vec3d& point) const { return point - eye_; }
   // Of a height of something at this place over a plane with a unit normal.
-  double heightRounding(const Vec3d& from_eye) const { return kRounding * (magnitude(from_eye) + size_); }
+  double heightRounding(const Vec3d& from_eye) const { return kRounding * (l1Norm(from_eye) + size_); }
 
   // Through the eye and an edge; what is hidden lies on its left, seen from the eye.
   void addEdge(const Vec3d& from_eye, const Vec3d& along) {
     const Vec3d normal = cross(along, from_eye);
-    const double from_size = magnitude(from_eye), along_size = magnitude(along);
-    const double rounding = magnitude(normal) + from_size * along_size + size_ * (from_size + along_size);
+    const double from_size = l1Norm(from_eye), along_size = l1Norm(along);
+    const double rounding = l1Norm(normal) + from_size * along_size + size_ * (from_size + along_size);
     add(normal, kRounding * rounding * reach_);
   }
   // x must be deeper than this along a unit normal.
@@ -50,7 +50,7 @@ class ShadowMaker {
 
  private:
   void add(const Vec3d& normal, double offset) {
-    usable_ = usable_ && shadow_.count < kMostShadowPlanes && offset > 0.0;
+    usable_ = usable_ && shadow_.count < kMaxShadowPlanes && offset > 0.0;
     if (usable_) {
       shadow_.nx[shadow_.count] = normal.x;
       shadow_.ny[shadow_.count] = normal.y;
@@ -82,7 +82,7 @@ bool shadowOfPolygon(const ConvexOccluders& all, const ConvexOccluder& occluder,
   for (const DrawnEdge& edge : all.edgesOf(occluder)) {
     const Vec3d from = maker.fromEye(edge.from), along = edge.along * side;
     const double over = -dot(cross(outwards, along), from);  // positive: the eye is over the inner side
-    const double doubt = maker.heightRounding(from) * magnitude(along);
+    const double doubt = maker.heightRounding(from) * l1Norm(along);
     if (!(over < -doubt)) {
       maker.addEdge(from - across, along);
     }
@@ -122,4 +122,4 @@ bool makeShadow(const ConvexOccluders& all, const ConvexOccluder& occluder, cons
   return occluder.body ? shadowOfBody(all, occluder, maker) : shadowOfPolygon(all, occluder, maker);
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

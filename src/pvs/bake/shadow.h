@@ -4,11 +4,11 @@
 
 #include <cstdint>
 
-#include "pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/convex_occluder.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
-inline constexpr std::uint32_t kMostShadowPlanes = 96;
+inline constexpr std::uint32_t kMaxShadowPlanes = 96;
 
 // What an occluder hides from one point: all that lies behind every plane by its tolerance.
 struct Shadow {
@@ -16,7 +16,7 @@ struct Shadow {
   std::uint32_t count = 0;
   // dot(normal, x - eye) >= offset: x is behind this plane, for all x that `reach` admits; tolerances are in
   // the offset. Normals have any length.
-  double nx[kMostShadowPlanes], ny[kMostShadowPlanes], nz[kMostShadowPlanes], offset[kMostShadowPlanes];
+  double nx[kMaxShadowPlanes], ny[kMaxShadowPlanes], nz[kMaxShadowPlanes], offset[kMaxShadowPlanes];
 };
 
 // false: nothing is hidden from there, or it cannot be told. reach: no box that will be asked about, nodes'
@@ -24,4 +24,4 @@ struct Shadow {
 bool makeShadow(const ConvexOccluders& all, const ConvexOccluder& occluder, const Vec3d& eye, double reach,
                 Shadow& shadow);
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

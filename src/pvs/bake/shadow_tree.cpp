@@ -1,4 +1,4 @@
-#include "pvs/bake/shadow_tree.h"
+#include "src/pvs/bake/shadow_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -6,12 +6,12 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pvs/bake/shadow_tree.cpp"
+#define HWY_TARGET_INCLUDE "src/pvs/bake/shadow_tree.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -35,13 +35,13 @@ class Walk {
  private:
   void visitLanes(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
                   std::uint32_t plane_count) {
-    std::array<std::uint8_t, kMostShadowPlanes> behind;  // by plane: the lanes that are behind it
+    std::array<std::uint8_t, kMaxShadowPlanes> behind;  // by plane: the lanes that are behind it
     const std::uint32_t lit = classify(first, count, planes, plane_count, behind.data());
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       if (((lit >> lane) & 1u) != 0) {
         continue;
       }
-      std::array<std::uint8_t, kMostShadowPlanes> left;
+      std::array<std::uint8_t, kMaxShadowPlanes> left;
       std::uint32_t left_count = 0;
       for (std::uint32_t p = 0; p < plane_count; ++p) {
         left[left_count] = planes[p];
@@ -109,7 +109,7 @@ class Walk {
 };
 
 void walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs) {
-  std::array<std::uint8_t, kMostShadowPlanes> planes;
+  std::array<std::uint8_t, kMaxShadowPlanes> planes;
   for (std::uint32_t p = 0; p < shadow.count; ++p) {
     planes[p] = static_cast<std::uint8_t>(p);
   }
@@ -119,18 +119,18 @@ void walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<Obje
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 namespace {
 
 HWY_EXPORT(walk);
 
 constexpr std::size_t kFewestChildren = 8;  // inner nodes are dissolved until there are about so many
-constexpr std::uint32_t kMostDepth = 64;  // below, a node's children are all its leaves: bounds the recursion
-constexpr std::size_t kPadding = 8;       // lanes
+constexpr std::uint32_t kMaxDepth = 64;  // below, a node's children are all its leaves: bounds the recursion
+constexpr std::size_t kPadding = 8;      // lanes
 
 // Not well formed itself, or something below it.
 std::vector<bool> brokenNodes(const BoxTreeView& tree) {
@@ -230,7 +230,7 @@ ShadowTree::ShadowTree(const BoxTreeView& tree) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     const BoxNode& old = tree.nodes[from[i]];
     std::vector<std::uint32_t> children;
-    if (depth[i] + 1 < kMostDepth) {
+    if (depth[i] + 1 < kMaxDepth) {
       children = childrenOf(tree, from[i]);
       widen(tree, children);
     } else {
@@ -264,5 +264,5 @@ void ShadowTree::hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) co
   HWY_DYNAMIC_DISPATCH(walk)(arrays_, shadow, runs);
 }
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs
 #endif

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "pvs/bake/runs.h"
-#include "pvs/bake/shadow.h"
 #include "sightline/hierarchy/box_tree.h"
+#include "src/pvs/bake/runs.h"
+#include "src/pvs/bake/shadow.h"
 
-namespace sightline::bake_detail {
+namespace sightline::pvs {
 
 // The boxes of a tree, the children of a node side by side. Nodes of few children are dissolved in their
 // parent, so that vector lanes are filled; leaves are those of the tree. Does not change once made.
@@ -41,4 +41,4 @@ class ShadowTree {
   Arrays arrays_;
 };
 
-}  // namespace sightline::bake_detail
+}  // namespace sightline::pvs

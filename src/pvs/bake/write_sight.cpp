@@ -9,7 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "pvs/bake/encode_sight.h"
+#include "src/pvs/bake/encode_sight.h"
 
 namespace sightline {
 namespace {
@@ -44,8 +44,8 @@ class Unfinished {
   // All of the following: 0 or an errno. Nothing is done after an error.
   int write(std::span<const std::byte> bytes) {
     while (error_ == 0 && !bytes.empty()) {
-      constexpr std::size_t kMostAtOnce = 1u << 30;
-      const ssize_t written = ::write(number_, bytes.data(), std::min(bytes.size(), kMostAtOnce));
+      constexpr std::size_t kMaxAtOnce = 1u << 30;
+      const ssize_t written = ::write(number_, bytes.data(), std::min(bytes.size(), kMaxAtOnce));
       if (written >= 0) {
         bytes = bytes.subspan(static_cast<std::size_t>(written));
       } else if (errno != EINTR) {
@@ -94,7 +94,7 @@ void flushFolderOf(const std::string& file) {
 }  // namespace
 
 Status writeSight(const std::string& file, const BakedVisibility& baked) {
-  const Result<std::vector<std::byte>> bytes = sight_bake::encodeSight(baked);
+  const Result<std::vector<std::byte>> bytes = pvs::encodeSight(baked);
   if (!bytes) {
     return Error{file + " cannot be written: " + bytes.error().message};
   }

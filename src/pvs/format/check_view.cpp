@@ -1,11 +1,11 @@
 #include <cmath>
 #include <string>
 
-#include "pvs/format/set_code.h"
-#include "pvs/format/sight_view.h"
-#include "pvs/format/structure.h"
+#include "src/pvs/format/set_code.h"
+#include "src/pvs/format/sight_view.h"
+#include "src/pvs/format/structure.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 namespace {
 
 // Chunks follow each other and make up the payload.
@@ -38,9 +38,8 @@ Status checkSets(const SightView& view) {
     chunks_begun += begins ? 1 : 0;
     sets_in_chunk = begins ? 1 : sets_in_chunk + 1;
     const std::uint64_t most =
-        sets_in_chunk > 1
-            ? kMostSetChunkBytes
-            : std::max<std::uint64_t>(kMostSetChunkBytes, mostSetBytes(view.boxes.nodes.size()));
+        sets_in_chunk > 1 ? kMaxSetChunkBytes
+                          : std::max<std::uint64_t>(kMaxSetChunkBytes, maxSetBytes(view.boxes.nodes.size()));
     if (view.chunks[chunk].raw_bytes > most) {
       return Error{"a chunk of sets claims more bytes than sets can have (set " + std::to_string(set) + ")"};
     }
@@ -49,7 +48,7 @@ Status checkSets(const SightView& view) {
 }
 
 Status checkDatabases(const SightView& view) {
-  if (view.databases.size() > kMostDatabases) {
+  if (view.databases.size() > kMaxDatabases) {
     return Error{"it claims more occluder databases than there can be"};
   }
   std::uint64_t next_chunk = view.set_chunks;
@@ -65,7 +64,7 @@ Status checkDatabases(const SightView& view) {
         return Error{"an occluder database's chunk claims more bytes than it can have"};
       }
     }
-    if (raw_bytes != entry.raw_bytes || raw_bytes > kMostDatabaseBytes) {
+    if (raw_bytes != entry.raw_bytes || raw_bytes > kMaxDatabaseBytes) {
       return Error{"an occluder database claims more bytes than it has, or can have"};
     }
     for (std::size_t other = 0; other < i; ++other) {
@@ -102,4 +101,4 @@ Status checkView(const SightView& view) {
   return checkDatabases(view);
 }
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

@@ -10,7 +10,7 @@
 #include <span>
 #include <type_traits>
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 
 inline std::uint64_t checksumOf(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
@@ -38,4 +38,4 @@ class Checksum {
   XXH3_state_t state_;
 };
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

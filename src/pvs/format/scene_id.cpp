@@ -2,12 +2,12 @@
 
 #include <array>
 
-#include "pvs/format/checksum.h"
+#include "src/pvs/format/checksum.h"
 
 namespace sightline {
 
 SceneId sceneId(const SceneView& scene) {
-  sight_format::Checksum hash;
+  pvs::Checksum hash;
   hash.addValue(std::uint64_t{scene.positions.size()});
   hash.add(std::as_bytes(scene.positions));
   hash.addValue(std::uint64_t{scene.indices.size()});
@@ -23,7 +23,7 @@ SceneId sceneId(const SceneView& scene) {
 }
 
 std::uint64_t occluderSetHash(const OccluderSet& set) {
-  sight_format::Checksum hash;
+  pvs::Checksum hash;
   for (const Occluder& occluder : set.occluders) {
     hash.addValue(std::array<std::uint32_t, 3>{occluder.vertex_count, occluder.double_sided ? 1u : 0u,
                                                occluder.object.value});

@@ -1,8 +1,8 @@
-#include "pvs/format/set_code.h"
+#include "src/pvs/format/set_code.h"
 
 #include <algorithm>
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 namespace {
 
 void appendNumber(std::vector<std::byte>& bytes, std::uint32_t value) {
@@ -102,4 +102,4 @@ bool decodeSet(std::span<const std::byte> bytes, std::span<const std::uint32_t> 
   return true;
 }
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

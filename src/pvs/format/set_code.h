@@ -9,14 +9,14 @@
 
 #include "sightline/hierarchy/box_tree.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 
 // nodes: a soundSet of the tree.
 void appendSet(std::vector<std::byte>& bytes, std::span<const std::uint32_t> nodes,
                std::span<const BoxNode> tree);
 
 // At most so many bytes: a set of that many nodes.
-constexpr std::uint64_t mostSetBytes(std::uint64_t node_count) {
+constexpr std::uint64_t maxSetBytes(std::uint64_t node_count) {
   return 5 * (node_count + 1);
 }
 
@@ -31,4 +31,4 @@ bool decodeSet(std::span<const std::byte> bytes, std::span<const std::uint32_t> 
 // Whether a set is ascending, in the tree, and none of it is below another.
 bool soundSet(std::span<const std::uint32_t> nodes, std::span<const BoxNode> tree);
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

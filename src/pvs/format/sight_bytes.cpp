@@ -8,11 +8,11 @@
 #include <string>
 #include <type_traits>
 
-#include "pvs/format/checksum.h"
-#include "pvs/format/set_code.h"
-#include "pvs/format/sight_view.h"
+#include "src/pvs/format/checksum.h"
+#include "src/pvs/format/set_code.h"
+#include "src/pvs/format/sight_view.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, ".sight files are read in place");
@@ -100,8 +100,8 @@ const std::uint8_t* startOf(std::span<const std::byte> bytes) {
 
 template <typename Table>
 const Table* verified(std::span<const std::byte> bytes) {
-  flatbuffers::Verifier verifier(startOf(bytes), bytes.size(), 8, 4 * kMostDatabases);
-  const bool sound = bytes.size() <= kMostFileBytes && verifier.VerifyBuffer<Table>(sight::FileIdentifier());
+  flatbuffers::Verifier verifier(startOf(bytes), bytes.size(), 8, 4 * kMaxDatabases);
+  const bool sound = bytes.size() <= kMaxFileBytes && verifier.VerifyBuffer<Table>(sight::FileIdentifier());
   return sound ? flatbuffers::GetRoot<Table>(bytes.data()) : nullptr;
 }
 
@@ -152,7 +152,7 @@ Status checkVersion(std::span<const std::byte> bytes) {
   if (bytes.empty()) {
     return Error{"is empty: bake it again"};
   }
-  if (bytes.size() > kMostFileBytes) {
+  if (bytes.size() > kMaxFileBytes) {
     return Error{"is not a .sight file: it is larger than 2 GiB"};
   }
   constexpr std::size_t kHead = 8;  // the place of the root, and the identifier
@@ -206,7 +206,7 @@ bool readView(const sight::File& file, SightView& view) {
 
 Result<std::vector<std::byte>> sightBytes(const SightView& view) {
   const std::size_t estimate = estimatedBytes(view);
-  if (estimate > kMostFileBytes) {
+  if (estimate > kMaxFileBytes) {
     return Error{"would be larger than 2 GiB: bake with a larger triangle budget or a smaller depth"};
   }
   flatbuffers::FlatBufferBuilder builder(estimate);
@@ -252,4 +252,4 @@ Result<SightView> viewOf(std::span<const std::byte> bytes) {
   return view;
 }
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

@@ -13,18 +13,18 @@
 #include "sightline/pvs/format/scene_id.h"
 #include "sightline/pvs/format/visibility_octree.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 
 inline constexpr std::uint32_t kVersion = 1;
-inline constexpr std::uint64_t kMostFileBytes = 0x7fffffffu;  // what a FlatBuffer can hold
+inline constexpr std::uint64_t kMaxFileBytes = 0x7fffffffu;  // what a FlatBuffer can hold
 
 // Chunks of sets are about as long as the first of these before compression: one is decompressed in some
 // microseconds. None is longer than the second one, but for sets that are longer themselves.
 inline constexpr std::uint32_t kSetChunkBytes = 2048;
-inline constexpr std::uint32_t kMostSetChunkBytes = 65536;
+inline constexpr std::uint32_t kMaxSetChunkBytes = 65536;
 inline constexpr std::uint32_t kDatabaseChunkBytes = 1u << 20;
-inline constexpr std::uint64_t kMostDatabaseBytes = 1u << 30;
-inline constexpr std::size_t kMostDatabases = 64;
+inline constexpr std::uint64_t kMaxDatabaseBytes = 1u << 30;
+inline constexpr std::size_t kMaxDatabases = 64;
 
 // A zstd frame in the payload.
 struct Chunk {
@@ -86,4 +86,4 @@ Result<SightView> viewOf(std::span<const std::byte> bytes);
 // Whether all parts of a view fit together, so that reading it is safe and its answers mean something.
 Status checkView(const SightView& view);
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

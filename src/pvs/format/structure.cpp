@@ -1,10 +1,10 @@
-#include "pvs/format/structure.h"
+#include "src/pvs/format/structure.h"
 
 #include <cmath>
 #include <string>
 #include <vector>
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 namespace {
 
 Error inNode(const char* what, std::size_t node) {
@@ -175,4 +175,4 @@ Status checkOctree(const OctreeView& octree, std::uint64_t set_count) {
   return checkLinks(octree);
 }
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

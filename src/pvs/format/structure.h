@@ -8,7 +8,7 @@
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/pvs/format/visibility_octree.h"
 
-namespace sightline::sight_format {
+namespace sightline::pvs {
 
 // At least one node; subtrees nest; boxes are not empty and enclose those below; the objects of children make
 // up their parent's; each object once.
@@ -18,4 +18,4 @@ Status checkBoxTree(const BoxTreeView& tree);
 // are in range; the box of the root and all planes are finite.
 Status checkOctree(const OctreeView& octree, std::uint64_t set_count);
 
-}  // namespace sightline::sight_format
+}  // namespace sightline::pvs

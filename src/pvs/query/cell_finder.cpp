@@ -1,10 +1,10 @@
-#include "pvs/query/cell_finder.h"
+#include "src/pvs/query/cell_finder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 namespace {
 
 // The least number that is not in the root any more. The last grid line may lie before the box's border, by
@@ -55,4 +55,4 @@ std::uint32_t CellFinder::search(const Vec3d& eye) {
   return leaf_ = link & ~kOctreeLeaf;
 }
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

@@ -5,7 +5,7 @@
 
 #include "sightline/pvs/format/visibility_octree.h"
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 
 // Finds the leaf of a viewpoint, from the leaf found before. Cells hold their lower borders; the last ones
 // along an axis hold the upper border of the root too.
@@ -48,4 +48,4 @@ class CellFinder {
   std::uint32_t leaf_ = kOutside;
 };
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

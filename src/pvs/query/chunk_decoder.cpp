@@ -1,13 +1,13 @@
-#include "pvs/query/chunk_decoder.h"
+#include "src/pvs/query/chunk_decoder.h"
 
 #include <zstd.h>
 
-#include "pvs/format/checksum.h"
-#include "pvs/format/set_code.h"
+#include "src/pvs/format/checksum.h"
+#include "src/pvs/format/set_code.h"
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 
-using namespace sight_format;
+using namespace pvs;
 
 void ChunkDecoder::Free::operator()(ZSTD_DCtx_s* context) const {
   ZSTD_freeDCtx(context);
@@ -50,4 +50,4 @@ bool ChunkDecoder::readSet(const SightView& view, std::uint32_t set, std::vector
   return decodeSet(raw.subspan(offset, view.endOf(set) - offset), view.ends, nodes);
 }
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

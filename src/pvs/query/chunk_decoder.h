@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "pvs/format/sight_view.h"
+#include "src/pvs/format/sight_view.h"
 
 struct ZSTD_DCtx_s;
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 
 // Decompresses the chunks of a checked view and remembers the last one of sets. For one thread at a time, and
 // always with one view.
@@ -22,11 +22,10 @@ class ChunkDecoder {
 
   // Appends the nodes of a set, set < view.sets.size(). false, with nothing appended: its chunk is broken.
   // Allocates nothing of its own once it has seen the longest chunk.
-  bool readSet(const sight_format::SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
+  bool readSet(const pvs::SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
 
   // Appends what a chunk holds. false, with nothing appended: it is broken.
-  bool decompress(const sight_format::SightView& view, const sight_format::Chunk& chunk,
-                  std::vector<std::byte>& raw);
+  bool decompress(const pvs::SightView& view, const pvs::Chunk& chunk, std::vector<std::byte>& raw);
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -39,4 +38,4 @@ class ChunkDecoder {
   std::uint32_t last_chunk_ = kNone;
 };
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

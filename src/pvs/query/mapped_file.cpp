@@ -1,4 +1,4 @@
-#include "pvs/query/mapped_file.h"
+#include "src/pvs/query/mapped_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 namespace {
 
 // Closes the file.
@@ -75,4 +75,4 @@ Result<MappedFile> MappedFile::open(const std::string& file) {
   return mapped;
 }
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

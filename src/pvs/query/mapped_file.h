@@ -6,7 +6,7 @@
 
 #include "sightline/base/result.h"
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 
 // A whole file as memory, read as it is used.
 class MappedFile {
@@ -26,4 +26,4 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

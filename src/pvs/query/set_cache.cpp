@@ -1,8 +1,8 @@
-#include "pvs/query/set_cache.h"
+#include "src/pvs/query/set_cache.h"
 
 #include <algorithm>
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 namespace {
 
 std::size_t storageOf(const std::vector<std::uint32_t>& nodes) {
@@ -83,4 +83,4 @@ std::uint32_t SetCache::freeSlot(std::size_t bytes) {
   return slot;
 }
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace sightline::sight_query {
+namespace sightline::pvs {
 
 // Decoded sets under a budget of bytes; those used least recently leave first. What it keeps beside them
 // takes four bytes for each set of the file.
@@ -45,4 +45,4 @@ class SetCache {
   std::size_t budget_, bytes_ = 0;
 };
 
-}  // namespace sightline::sight_query
+}  // namespace sightline::pvs

@@ -4,17 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include "pvs/query/cell_finder.h"
-#include "pvs/query/chunk_decoder.h"
-#include "pvs/query/set_cache.h"
-#include "pvs/query/sight_data.h"
+#include "src/pvs/query/cell_finder.h"
+#include "src/pvs/query/chunk_decoder.h"
+#include "src/pvs/query/set_cache.h"
+#include "src/pvs/query/sight_data.h"
 
 namespace sightline {
 namespace {
 
-using sight_query::CellFinder;
-using sight_query::ChunkDecoder;
-using sight_query::SetCache;
+using pvs::CellFinder;
+using pvs::ChunkDecoder;
+using pvs::SetCache;
 
 constexpr std::array<std::uint32_t, 1> kRoot{0};
 
@@ -42,7 +42,7 @@ struct SetQuery::Impl {
         cache(file.setCount(), settings.cache_bytes) {}
 
   // Not the last set.
-  VisibleSet fetch(const sight_format::SightView& view, std::uint32_t set);
+  VisibleSet fetch(const pvs::SightView& view, std::uint32_t set);
   VisibleSet remember(std::uint32_t set, std::span<const std::uint32_t> nodes) { return last = {set, nodes}; }
 
   SightFile file;
@@ -57,7 +57,7 @@ struct SetQuery::Impl {
   SetQueryStats stats;
 };
 
-VisibleSet SetQuery::Impl::fetch(const sight_format::SightView& view, std::uint32_t set) {
+VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) {
   switch (cache.state(set)) {
     case SetCache::State::kCached:
       return remember(set, cache.use(set));

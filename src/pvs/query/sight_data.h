@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "pvs/format/sight_view.h"
-#include "pvs/query/mapped_file.h"
 #include "sightline/pvs/query/sight_file.h"
+#include "src/pvs/format/sight_view.h"
+#include "src/pvs/query/mapped_file.h"
 
 namespace sightline {
 
 struct SightFile::Data {
   std::string name;  // for errors, one line
-  sight_query::MappedFile mapped;
+  pvs::MappedFile mapped;
   std::vector<std::uint64_t> copied;  // of bytes that came from elsewhere and were not aligned
   std::span<const std::byte> bytes;   // in one of these, or the caller's
   BakeRecord record;
-  sight_format::SightView view;  // of bytes
+  pvs::SightView view;  // of bytes
 };
 
 }  // namespace sightline

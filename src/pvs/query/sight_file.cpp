@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cstring>
 
-#include "pvs/query/chunk_decoder.h"
-#include "pvs/query/sight_data.h"
+#include "src/pvs/query/chunk_decoder.h"
+#include "src/pvs/query/sight_data.h"
 
 namespace sightline {
 namespace {
 
-using namespace sight_format;
-using sight_query::ChunkDecoder;
-using sight_query::MappedFile;
+using namespace pvs;
+using pvs::ChunkDecoder;
+using pvs::MappedFile;
 
 // Names may hold control characters; an error has one line.
 std::string oneLine(std::string text) {

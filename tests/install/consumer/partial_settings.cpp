@@ -1,6 +1,7 @@
 // Compiled with -Wall -Wextra -Werror, as a project of somebody else may be: settings are given as the
 // examples give them, by the names of those members that differ from their defaults.
 
+#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/culling/culler.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/layers/layer_sorter.h"
@@ -8,7 +9,6 @@
 #include "sightline/occluders/choose_occluders.h"
 #include "sightline/occluders/occluder_database.h"
 #include "sightline/occluders/occluder_set.h"
-#include "sightline/occluders/viewpoint_database.h"
 #include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/occlusion/occlusion_tree.h"
 #include "sightline/occlusion/opacity_map.h"
@@ -33,7 +33,7 @@ int main() {
   const ViewpointDatabaseSettings viewpoints{.directions = 8};
   const MinimumSetWeights weights{.gain = 2.0};
   const SetQuerySettings query{.cache_bytes = 1024};
-  const ExtentTreeSettings extent_tree{.least_gain = 1};
+  const ExtentTreeSettings extent_tree{.min_gain = 1};
   const LayerSettings layers{.all_arcs = true};
   const PartSettings part{.is_static = true};
   const ExtentAxis axis{.kind = ExtentAxis::Kind::kAngular};
@@ -54,7 +54,7 @@ int main() {
                  tree.variant == OcclusionTreeVariant::kFSE && !planes.joint_occlusion &&
                  hierarchy.kind == HierarchyKind::kKdTree && occluders.max_vertices == 8 &&
                  choice.count == 8 && database.directions == 8 && viewpoints.directions == 8 &&
-                 weights.gain > 1.0 && query.cache_bytes == 1024 && extent_tree.least_gain == 1 &&
+                 weights.gain > 1.0 && query.cache_bytes == 1024 && extent_tree.min_gain == 1 &&
                  layers.all_arcs && part.is_static && axis.kind == ExtentAxis::Kind::kAngular &&
                  plane.plane.offset > 0.0 && joint.sphere_radius > 1.0 && split.count == 2 &&
                  cylinder.sectors == 6 && hexagons.width > 1.0 && view.near > 0.5 && frame.forward.z < 0.0 &&

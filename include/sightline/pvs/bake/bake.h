@@ -39,7 +39,7 @@ struct BakeSettings {
   // Dividing helps where some point, of the cell's corners and centre and its children's centres, sees less
   // than the cell by this part of the cell's triangles.
   double similarity = 0.1;
-  double least_gain = 0.02;  // doubling the search box helped when it hid this part of the triangles
+  double min_gain = 0.02;  // doubling the search box helped when it hid this part of the triangles
   // Siblings are merged when all together see at most this part more than each.
   double merge_tolerance = 0.05;
   // Of a worker, between cells; what is forgotten is computed again.
@@ -65,10 +65,10 @@ struct PartSummary {
 };
 
 struct BakeStats {
-  std::uint64_t samples = 0;          // viewpoints from which something was computed
-  std::uint64_t shadows = 0;          // occluders seen from a viewpoint
-  std::uint64_t forgotten = 0;        // samples, for want of memory
-  std::size_t most_sample_bytes = 0;  // that samples took at any time
+  std::uint64_t samples = 0;         // viewpoints from which something was computed
+  std::uint64_t shadows = 0;         // occluders seen from a viewpoint
+  std::uint64_t forgotten = 0;       // samples, for want of memory
+  std::size_t max_sample_bytes = 0;  // that samples took at any time
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };
 

@@ -1,0 +1,97 @@
+#pragma once
+
+// Minimum occluder sets: the combination table of an occludee, and the search for the cheapest sets that hit
+// all of it. Occluders are numbers here, from 0, whatever they stand for.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sightline::occluders {
+
+// For each pixel of an occludee's image, which occluders are in front of it there. Pixels with the same
+// occluders are one slot.
+class CombinationTable {
+ public:
+  void clear();
+  // The occluders of a pixel, or of several, each named once, in any order. None: nothing hides the occludee.
+  void add(std::span<const std::uint32_t> members);
+  // Call when all are added. Sorts the slots, those with the fewest occluders first, then by their members,
+  // and drops what is twice there. A slot that contains all members of one of the first 256 that are left is
+  // dropped too: whatever hits the smaller one hits both.
+  void finish();
+
+  std::uint32_t slotCount() const { return static_cast<std::uint32_t>(slots_.size()); }
+  // Ascending.
+  std::span<const std::uint32_t> slot(std::uint32_t index) const {
+    return std::span(members_).subspan(slots_[index].first, slots_[index].count);
+  }
+
+ private:
+  struct Slot {
+    std::uint32_t first = 0, count = 0;  // of members_
+    std::uint64_t signature = 0;         // a bit for each member; members may share bits
+  };
+  std::span<const std::uint32_t> membersOf(const Slot& slot) const {
+    return std::span(members_).subspan(slot.first, slot.count);
+  }
+  bool containsAll(const Slot& slot, const Slot& smaller) const;
+
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> members_;
+};
+
+struct MinimumSet {
+  double cost = 0.0;
+  std::vector<std::uint32_t> members;  // ascending
+};
+
+struct SearchLimits {
+  std::uint32_t sets = 4;     // that many of the cheapest are kept
+  std::uint32_t steps = 256;  // occluders picked, in all branches together
+};
+
+// Keeps its storage from search to search.
+class MinimumSetSearch {
+ public:
+  // Sets of which every slot has a member and no member can be left out, cheapest first; of equal cost, the
+  // one that is found first. A set's cost is the sum of its members'. With enough steps they are the cheapest
+  // there are; with fewer, the best of what was found. A table without slots, or with an empty one: none.
+  // Sets of more than 4096 occluders are not looked for. cost_of: of each occluder by its number, >= 0.
+  std::span<const MinimumSet> find(const CombinationTable& table, std::span<const double> cost_of,
+                                   const SearchLimits& limits);
+
+ private:
+  void prepare(const CombinationTable& table, std::span<const double> cost_of);
+  void orderMembers(const CombinationTable& table);
+  void extend(std::uint32_t slot);
+  bool pick(std::uint32_t member);
+  void unpick(std::uint32_t member);
+  bool tooExpensive(double cost) const;
+  void keep();
+
+  SearchLimits limits_;
+  std::uint32_t steps_left_ = 0;
+
+  // Members are numbered anew, by their place in number_of_.
+  std::vector<std::uint32_t> number_of_;  // by member, ascending
+  std::vector<double> cost_of_;           // by member
+  // Slot s has the members ordered_[first_of_slot_[s]] to ordered_[first_of_slot_[s + 1]], the most promising
+  // first; member m is in the slots slots_of_[first_of_member_[m]] to slots_of_[first_of_member_[m + 1]].
+  std::vector<std::uint32_t> ordered_, first_of_slot_;
+  std::vector<std::uint32_t> slots_of_, first_of_member_;
+
+  // Where the search stands.
+  std::vector<std::uint32_t> picked_;     // members
+  std::vector<std::uint32_t> hits_;       // by slot: how many of its members are picked
+  std::vector<std::uint32_t> hitters_;    // by slot: those, combined by exclusive or
+  std::vector<std::uint32_t> only_hits_;  // by member: slots in which it alone is picked
+  std::vector<std::uint32_t>
+      tried_;  // by member: 1 + the slot in which all sets with it were looked at, or 0
+  double cost_ = 0.0;
+
+  std::vector<MinimumSet> kept_;  // [0, kept_count_), cheapest first; the others are storage
+  std::uint32_t kept_count_ = 0;
+};
+
+}  // namespace sightline::occluders

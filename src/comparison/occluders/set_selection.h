@@ -1,0 +1,114 @@
+#pragma once
+
+// Which minimum occluder sets are used for a view: their gain, cost and score, and the picture with ids in
+// which they are put on top of each other.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/comparison/viewpoint_database.h"
+#include "src/comparison/occluders/id_buffer.h"
+#include "src/comparison/occluders/occluder_picture.h"
+#include "src/comparison/occluders/occluder_stack.h"
+
+namespace sightline::occluders {
+
+// Of one occluder, with weights >= 0. A set's cost is the sum.
+double costOf(const ShownOccluder& occluder, std::uint32_t picture_pixels, const MinimumSetWeights& weights);
+
+// Of all occluders of a picture, by number.
+void costsOf(const OccluderPicture& picture, const MinimumSetWeights& weights, std::vector<double>& costs);
+
+// The minimum sets of all occludees of a picture. Equal ones are one set; its gain is the number of occludees
+// that it hides, and what a subset of it hides it hides too. Keeps its storage.
+class SetPool {
+ public:
+  void clear();
+  // members: occluders by number in the picture, ascending; not empty.
+  void add(std::span<const std::uint32_t> members, std::uint32_t occludee);
+  // Call when all are added. Sorts the sets by their members.
+  void finish(std::uint32_t occluder_count, std::uint32_t occludee_count);
+
+  std::uint32_t setCount() const { return static_cast<std::uint32_t>(sets_.size()); }
+  std::span<const std::uint32_t> members(std::uint32_t set) const {
+    return std::span(members_).subspan(sets_[set].first, sets_[set].count);
+  }
+  // The occludees that it hides, each once.
+  std::span<const std::uint32_t> occludees(std::uint32_t set) const {
+    return std::span(hidden_).subspan(first_hidden_[set], first_hidden_[set + 1] - first_hidden_[set]);
+  }
+  std::uint32_t gain(std::uint32_t set) const { return first_hidden_[set + 1] - first_hidden_[set]; }
+
+ private:
+  struct Set {
+    std::uint32_t first = 0, count = 0;  // of members_
+    std::uint32_t occludee = 0;
+  };
+  std::span<const std::uint32_t> membersOf(const Set& set) const {
+    return std::span(members_).subspan(set.first, set.count);
+  }
+  void mergeEqual();
+  void indexByRarest(std::uint32_t occluder_count);
+  void inherit(std::uint32_t occluder_count, std::uint32_t occludee_count);
+
+  std::vector<Set> sets_;  // each different one once, after finish()
+  std::vector<std::uint32_t> members_;
+  std::vector<std::uint32_t> own_, first_own_;        // occludees by set, before they are inherited
+  std::vector<std::uint32_t> hidden_, first_hidden_;  // occludees by set
+  // Each set once, under its member that is in the fewest sets.
+  std::vector<std::uint32_t> by_rarest_, first_by_rarest_;
+  std::vector<std::uint32_t> uses_, mark_of_occluder_, mark_of_occludee_;
+};
+
+// Keeps its storage from picture to picture.
+class SetSelection {
+ public:
+  // The occluders of the best sets, by number in the picture, best first, at most `limit`. occludees: those
+  // that the pool speaks of.
+  //
+  // Sets are taken one after the other, that with the best score first; ties by their members. The score
+  // counts only occludees that the sets taken so far do not hide, and only the cost of occluders that are not
+  // taken yet. What is taken is drawn with ids, and what is not seen when no set gains anything any more
+  // goes; those that hide it take its place, so that the beginning of the list hides what the sets taken
+  // first hide.
+  //
+  // The other sets follow by the score they had at first, with those of their occluders that are then seen.
+  // From the grid point they hide nothing more; beside it they may.
+  std::span<const std::uint32_t> select(const OccluderPicture& picture, const SetPool& pool,
+                                        std::span<const Occludee> occludees, const MinimumSetWeights& weights,
+                                        std::uint32_t limit);
+
+ private:
+  void prepare(const OccluderPicture& picture, const SetPool& pool, std::span<const Occludee> occludees,
+               const MinimumSetWeights& weights);
+  double score(std::uint32_t set) const;
+  void take(const OccluderPicture& picture, const SetPool& pool, std::uint32_t set);
+  void updateHidden(const OccluderPicture& picture, std::span<const Occludee> occludees);
+  void takeBest(const OccluderPicture& picture, const SetPool& pool, std::span<const Occludee> occludees,
+                std::uint32_t limit);
+  void takeOthers(const OccluderPicture& picture, const SetPool& pool, std::uint32_t limit);
+  void appendTaken(const OccluderPicture& picture, std::size_t first, std::uint32_t limit);
+  void append(std::uint32_t occluder, std::uint32_t limit);
+
+  std::vector<double> cost_of_;    // by occluder
+  std::vector<double> worth_of_;   // by gain: gain^weight
+  std::vector<double> set_cost_;   // by set: of what is not taken yet
+  std::vector<double> set_score_;  // by set: at first
+  std::vector<std::uint32_t> set_gain_;
+  std::vector<std::uint8_t> set_taken_, occluder_taken_, in_list_;
+  std::vector<std::uint32_t> sets_of_occluder_, first_of_occluder_;
+  std::vector<std::uint32_t> sets_of_occludee_, first_of_occludee_;
+
+  struct Open {
+    std::uint32_t occludee = 0;
+    std::uint32_t pixel = 0;  // in which nothing is in front of it
+  };
+  std::vector<Open> open_;  // occludees that have sets and are not hidden yet
+  IdBuffer buffer_;
+  std::vector<std::uint32_t> taken_;  // occluders, in order
+  std::vector<std::uint32_t> order_;  // scratch: sets
+  std::vector<std::uint32_t> list_;
+};
+
+}  // namespace sightline::occluders

@@ -1,0 +1,244 @@
+// From an order of objects to a drawing of outlines and strokes.
+//
+// Based on: Snyder, Lengyel. MSR-TR-97-11, 1997, section 11: "Hidden-line drawings" from layers.
+// Differs from the paper in: outlines by the union of triangles; in the plot, which it does not have, the
+// arcs of the sort say which objects can hide a line at all.
+
+#include <algorithm>
+
+#include "sightline/drawing/drawing.h"
+#include "src/drawing/line_view.h"
+#include "src/drawing/outline.h"
+#include "src/drawing/polylines.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kToleranceShare = 1.0 / 200000.0;  // of the page's height
+
+// Which objects may occlude each, from the arcs of an order.
+class OccludersOf {
+ public:
+  OccludersOf(std::span<const LayerArc> arcs, std::size_t objects) : first_(objects + 1, 0) {
+    const auto isInScene = [&](const LayerArc& arc) {
+      return arc.front.value < objects && arc.back.value < objects;
+    };
+    for (const LayerArc& arc : arcs) {
+      if (isInScene(arc)) {
+        ++first_[arc.back.value + 1];
+      }
+    }
+    for (std::size_t i = 1; i < first_.size(); ++i) {
+      first_[i] += first_[i - 1];
+    }
+    fronts_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (const LayerArc& arc : arcs) {
+      if (isInScene(arc)) {
+        fronts_[next[arc.back.value]++] = ObjectId(arc.front.value);
+      }
+    }
+  }
+
+  std::span<const ObjectId> find(ObjectId object) const {
+    return std::span(fronts_).subspan(first_[object.value], first_[object.value + 1] - first_[object.value]);
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // objects + 1, into fronts_
+  std::vector<ObjectId> fronts_;
+};
+
+}  // namespace
+
+std::uint64_t countStrokes(const Drawing& drawing) {
+  std::uint64_t strokes = 0;
+  for (const DrawingGroup& group : drawing.groups) {
+    for (const DrawingObject& object : group.objects) {
+      strokes += object.strokes.size();
+    }
+  }
+  return strokes;
+}
+
+struct HiddenLineRenderer::Impl {
+  explicit Impl(const SceneView& of) : edges(of) {}
+
+  // false: nothing can be drawn.
+  bool begin(const SceneView& scene, std::span<const std::string> names, const View& view,
+             const DrawingSettings& settings, Drawing& drawing);
+  // The object with its name; strokes are what it itself and the occluders leave of its lines, but for what
+  // is drawn before.
+  DrawingObject drawLines(ObjectId object, drawing::DrawnPieces* before, Drawing& drawing);
+  void drawOutline(DrawingObject& object);
+  void tellProgress();  // after each object
+  // Those that may show something.
+  std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
+  bool mayShow(ObjectId object) const { return object.value < shows.size() && shows[object.value]; }
+
+  FeatureEdges edges;
+  HiddenLines hidden;
+  drawing::Outliner outliner;
+  std::vector<FeatureLine> lines;
+  std::vector<LinePiece> pieces;
+  std::vector<ObjectId> occluders;
+
+  // Of the drawing that is being made.
+  SceneView scene;
+  std::span<const std::string> names;
+  View view;
+  const DrawingSettings* settings = nullptr;
+  double tolerance = 0.0;
+  std::vector<bool> shows;                       // by object: it may
+  std::uint64_t objects = 0, objects_drawn = 0;  // in the order, that may
+};
+
+bool HiddenLineRenderer::Impl::begin(const SceneView& scene_in, std::span<const std::string> names_in,
+                                     const View& view_in, const DrawingSettings& settings_in,
+                                     Drawing& drawing) {
+  if (!isDrawable(view_in, settings_in.page_height)) {
+    return false;
+  }
+  scene = scene_in;
+  names = names_in;
+  view = view_in;
+  settings = &settings_in;
+  objects_drawn = 0;
+  tolerance = settings_in.page_height * kToleranceShare;
+  drawing.height = settings_in.page_height;
+  drawing.width = settings_in.page_height * view.aspect;
+  hidden.setView(scene, view, settings_in.page_height);
+  outliner.setView(view, settings_in.page_height);
+  shows.resize(scene.objects.size());
+  for (std::size_t i = 0; i < shows.size(); ++i) {
+    shows[i] = outliner.mayShow(scene, ObjectId(i));
+  }
+  return true;
+}
+
+DrawingObject HiddenLineRenderer::Impl::drawLines(ObjectId object, drawing::DrawnPieces* before,
+                                                  Drawing& drawing) {
+  DrawingObject drawn{.object = object,
+                      .name = object.value < names.size() ? names[object.value] : std::string()};
+  occluders.push_back(object);
+  std::erase_if(occluders, [&](ObjectId id) { return !mayShow(id); });
+  std::sort(occluders.begin(), occluders.end());
+  occluders.erase(std::unique(occluders.begin(), occluders.end()), occluders.end());
+  edges.select(scene, object, view, settings->features, lines);
+  pieces.clear();
+  hidden.visiblePieces(lines, occluders, pieces);
+  if (before != nullptr) {
+    before->leaveNew(pieces);
+  }
+  drawing::joinPieces(pieces, tolerance, drawn.strokes);
+  drawing.pairs += lines.size() * occluders.size();
+  drawing.all_pairs += lines.size() * objects;
+  return drawn;
+}
+
+void HiddenLineRenderer::Impl::tellProgress() {
+  ++objects_drawn;
+  if (settings->progress) {
+    settings->progress(static_cast<double>(objects_drawn) / static_cast<double>(objects));
+  }
+}
+
+void HiddenLineRenderer::Impl::drawOutline(DrawingObject& object) {
+  if (!scene.materialOf(scene.objects[object.object.value]).opaque()) {
+    return;
+  }
+  outliner.outline(scene, object.object, object.outline);
+  for (PagePath& ring : object.outline) {
+    // As a closed line, so that the last edge is simplified too.
+    ring.push_back(ring.front());
+    drawing::simplify(ring, tolerance);
+    ring.pop_back();
+  }
+  std::erase_if(object.outline, [](const PagePath& ring) { return ring.size() < 3; });
+}
+
+std::vector<ObjectId> HiddenLineRenderer::Impl::objectsOf(std::span<const PartId> parts) const {
+  std::vector<ObjectId> ids;
+  for (const PartId part : parts) {
+    if (const ObjectId object(part.value); mayShow(object)) {
+      ids.push_back(object);
+    }
+  }
+  return ids;
+}
+
+HiddenLineRenderer::HiddenLineRenderer(const SceneView& scene) : impl_(std::make_unique<Impl>(scene)) {}
+HiddenLineRenderer::~HiddenLineRenderer() = default;
+HiddenLineRenderer::HiddenLineRenderer(HiddenLineRenderer&&) noexcept = default;
+HiddenLineRenderer& HiddenLineRenderer::operator=(HiddenLineRenderer&&) noexcept = default;
+
+Drawing HiddenLineRenderer::paint(const SceneView& scene, std::span<const std::string> names,
+                                  const View& view, const LayerOrder& order,
+                                  const DrawingSettings& settings) {
+  Drawing drawing;
+  Impl& own = *impl_;
+  if (!own.begin(scene, names, view, settings, drawing)) {
+    return drawing;
+  }
+  own.objects = own.objectsOf(order.parts).size();
+  const OccludersOf occluders_of(order.arcs, scene.objects.size());
+  std::vector<std::size_t> group_of(scene.objects.size(), order.groups());
+  for (std::size_t i = order.groups(); i-- > 0;) {
+    const std::vector<ObjectId> members = own.objectsOf(order.group(i));
+    for (const ObjectId member : members) {
+      group_of[member.value] = i;
+    }
+    DrawingGroup group;
+    for (const ObjectId member : members) {
+      own.occluders.clear();
+      for (const ObjectId front : occluders_of.find(member)) {
+        if (group_of[front.value] == i) {
+          own.occluders.push_back(front);
+        }
+      }
+      DrawingObject object = own.drawLines(member, nullptr, drawing);
+      own.drawOutline(object);
+      own.tellProgress();
+      if (!object.outline.empty() || !object.strokes.empty()) {
+        group.objects.push_back(std::move(object));
+      }
+    }
+    if (!group.objects.empty()) {
+      drawing.groups.push_back(std::move(group));
+    }
+  }
+  drawing.stats = own.hidden.stats();
+  return drawing;
+}
+
+Drawing HiddenLineRenderer::plot(const SceneView& scene, std::span<const std::string> names, const View& view,
+                                 const LayerOrder& order, const DrawingSettings& settings) {
+  Drawing drawing;
+  Impl& own = *impl_;
+  if (!own.begin(scene, names, view, settings, drawing)) {
+    return drawing;
+  }
+  const std::vector<ObjectId> members = own.objectsOf(order.parts);
+  own.objects = members.size();
+  const OccludersOf occluders_of(order.arcs, scene.objects.size());
+  drawing::DrawnPieces drawn(own.tolerance);
+  for (auto member = members.rbegin(); member != members.rend(); ++member) {
+    const auto& backdrops = settings.backdrops;
+    if (std::find(backdrops.begin(), backdrops.end(), *member) != backdrops.end()) {
+      own.occluders = members;
+    } else {
+      const std::span<const ObjectId> fronts = occluders_of.find(*member);
+      own.occluders.assign(fronts.begin(), fronts.end());
+      own.occluders.insert(own.occluders.end(), settings.overlays.begin(), settings.overlays.end());
+    }
+    DrawingObject object = own.drawLines(*member, &drawn, drawing);
+    own.tellProgress();
+    if (!object.strokes.empty()) {
+      drawing.groups.emplace_back().objects.push_back(std::move(object));
+    }
+  }
+  drawing.stats = own.hidden.stats();
+  return drawing;
+}
+
+}  // namespace sightline

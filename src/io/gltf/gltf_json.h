@@ -1,0 +1,37 @@
+#pragma once
+
+// The first line of defence of the glTF reader: container, JSON nesting, and the type and range of every
+// value. What is not used by Sightline (images, textures, skins, extras, ...) does not get past it.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sightline/base/result.h"
+#include "src/io/scene_builder.h"
+
+namespace sightline::io {
+
+// The JSON text and the binary chunk of a .glb, or the text alone of a .gltf. Views of the bytes given.
+struct Container {
+  std::string_view json;
+  std::optional<std::string_view> binary_chunk;
+};
+Result<Container> splitContainer(std::string_view bytes, const std::string& name);
+
+struct BufferSource {
+  std::uint64_t byte_length = 0;
+  std::optional<std::string> uri;
+};
+
+// What remains of the JSON after checking.
+struct CheckedJson {
+  std::string text;  // for tinygltf: only known keys, each of its right type and in range
+  std::vector<BufferSource> buffers;
+  std::vector<std::string> extensions_required;
+};
+Result<CheckedJson> checkJson(std::string_view json, const ImportLimits& limits, const std::string& name);
+
+}  // namespace sightline::io

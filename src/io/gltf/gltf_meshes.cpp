@@ -1,0 +1,204 @@
+#include <optional>
+
+#include "src/io/gltf/gltf_primitives.h"
+
+namespace sightline::io {
+namespace {
+
+std::optional<OccluderMark> markOf(const tinygltf::Value& extras) {
+  if (!extras.Has("occluder")) {
+    return std::nullopt;
+  }
+  return extras.Get("occluder").Get<bool>() ? OccluderMark::kOccluder : OccluderMark::kNever;
+}
+
+class ObjectAdder {
+ public:
+  ObjectAdder(const Document& document, const NodeTree& tree, Accessors& accessors, SceneBuilder& builder)
+      : document_(document), tree_(tree), builder_(builder), meshes_(document, accessors) {}
+
+  // Instances multiply: their sum is known before the first is made.
+  Status checkLimits() {
+    const ImportLimits& limits = document_.limits;
+    std::uint64_t objects = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t name_bytes = 0;
+    for (const int node : tree_.visited) {
+      const auto number = static_cast<std::size_t>(node);
+      const Result<const MeshSource*> mesh = meshOf(number);
+      if (!mesh) {
+        return mesh.error();
+      }
+      if (*mesh == nullptr) {
+        continue;
+      }
+      const std::uint64_t count = (*mesh)->primitives.size();
+      objects += count;
+      triangles += (*mesh)->triangles;
+      name_bytes += count * (document_.model.nodes[number].name.size() + 24);
+      if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
+        return failure(
+            "{}: node {}: up to here the scene has {} objects, {} triangles and {} bytes of names; at most "
+            "{}, "
+            "{} and {} are read",
+            document_.name, node, objects, triangles, name_bytes, limits.objects, limits.triangles,
+            limits.name_bytes);
+      }
+    }
+    return Success{};
+  }
+
+  // One object for each primitive with triangles of the node's mesh.
+  Status addNode(std::size_t node_number) {
+    const Result<const MeshSource*> mesh = meshOf(node_number);
+    if (!mesh) {
+      return mesh.error();
+    }
+    if (*mesh == nullptr) {
+      return Success{};
+    }
+    for (const PrimitiveSource& primitive : (*mesh)->primitives) {
+      addObject(primitive, node_number);
+      const Status status = addTriangles(primitive, node_number);
+      if (!status) {
+        return status;
+      }
+    }
+    return Success{};
+  }
+
+ private:
+  // nullptr: the node has none.
+  Result<const MeshSource*> meshOf(std::size_t node_number) {
+    const int mesh = document_.model.nodes[node_number].mesh;
+    if (mesh < 0) {
+      return static_cast<const MeshSource*>(nullptr);
+    }
+    if (!isIndexInto(mesh, document_.model.meshes.size())) {
+      return failure("{}: node {}: mesh {} does not exist (the file has {})", document_.name, node_number,
+                     mesh, document_.model.meshes.size());
+    }
+    return meshes_.open(static_cast<std::size_t>(mesh));
+  }
+
+  void addObject(const PrimitiveSource& primitive, std::size_t node_number) {
+    const tinygltf::Node& node = document_.model.nodes[node_number];
+    const tinygltf::Mesh& mesh = document_.model.meshes[static_cast<std::size_t>(node.mesh)];
+    std::string name = node.name.empty() ? fmt::format("node{}", node_number) : node.name;
+    if (mesh.primitives.size() > 1) {
+      name += fmt::format("/primitive{}", primitive.number);
+    }
+    builder_.beginObject(std::move(name), materialOf(primitive), markFor(node, mesh, primitive));
+  }
+
+  MaterialId materialOf(const PrimitiveSource& primitive) {
+    if (primitive.material >= 0) {
+      return MaterialId(static_cast<std::uint32_t>(primitive.material));
+    }
+    if (!default_material_.valid()) {
+      Material material;
+      material.name = "default";
+      default_material_ = builder_.addMaterial(material);
+    }
+    return default_material_;
+  }
+
+  // Node, then mesh, then material.
+  OccluderMark markFor(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
+                       const PrimitiveSource& primitive) const {
+    std::optional<OccluderMark> mark = markOf(node.extras);
+    if (!mark) {
+      mark = markOf(mesh.extras);
+    }
+    if (!mark && primitive.material >= 0) {
+      mark = markOf(document_.model.materials[static_cast<std::size_t>(primitive.material)].extras);
+    }
+    return mark.value_or(OccluderMark::kAutomatic);
+  }
+
+  Status addTriangles(const PrimitiveSource& source, std::size_t node_number) {
+    const bool mirrored = determinant3(tree_.world_from_node[node_number]) < 0.0;
+    ++object_;
+    if (slots_.size() < source.positions->count()) {
+      slots_.resize(source.positions->count());
+    }
+    for (std::uint64_t triangle = 0; triangle < source.triangles; ++triangle) {
+      std::array<std::uint32_t, 3> vertices;
+      const std::array<std::uint64_t, 3> corners = source.cornersOf(triangle);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Result<std::uint32_t> vertex = vertexAt(source, corners[i], node_number);
+        if (!vertex) {
+          return vertex.error();
+        }
+        vertices[i] = *vertex;
+      }
+      if (mirrored) {
+        std::swap(vertices[1], vertices[2]);
+      }
+      builder_.addTriangle(vertices[0], vertices[1], vertices[2]);
+    }
+    return Success{};
+  }
+
+  // The builder's vertex for a corner; each vertex of an accessor is transformed once an object, and only if
+  // used.
+  Result<std::uint32_t> vertexAt(const PrimitiveSource& source, std::uint64_t corner,
+                                 std::size_t node_number) {
+    const std::uint64_t index = source.indices == nullptr ? corner : source.indices->index(corner);
+    if (index >= source.positions->count()) {
+      return failure("{}: {}: index {} at position {} is out of range (accessor {} has {} vertices)",
+                     document_.name, source.where, index, corner, source.position_accessor,
+                     source.positions->count());
+    }
+    Slot& slot = slots_[index];
+    if (slot.object == object_) {
+      return slot.vertex;
+    }
+    const Vec3d point(source.positions->number(index, 0), source.positions->number(index, 1),
+                      source.positions->number(index, 2));
+    if (!isFinite(point)) {
+      return failure("{}: {}: vertex {} of accessor {} is not finite", document_.name, source.where, index,
+                     source.position_accessor);
+    }
+    const Vec3d point_world = transformPoint(tree_.world_from_node[node_number], point);
+    if (!SceneBuilder::inRange(point_world)) {
+      return failure("{}: node {}: {}: the world position of vertex {} exceeds single precision",
+                     document_.name, node_number, source.where, index);
+    }
+    slot = {object_, builder_.addVertex(point_world)};
+    return slot.vertex;
+  }
+
+  struct Slot {
+    std::uint32_t object = 0;  // the object for which vertex is valid, counted from 1
+    std::uint32_t vertex = 0;
+  };
+
+  const Document& document_;
+  const NodeTree& tree_;
+  SceneBuilder& builder_;
+  MeshSources meshes_;
+  MaterialId default_material_;
+  std::vector<Slot> slots_;
+  std::uint32_t object_ = 0;
+};
+
+}  // namespace
+
+Status addObjects(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder) {
+  ObjectAdder adder(document, tree, accessors, builder);
+  const Status within_limits = adder.checkLimits();
+  if (!within_limits) {
+    return within_limits;
+  }
+  for (const int node : tree.visited) {
+    const Status status = adder.addNode(static_cast<std::size_t>(node));
+    if (!status) {
+      return status;
+    }
+  }
+  return Success{};
+}
+
+}  // namespace sightline::io

@@ -1,0 +1,99 @@
+#pragma once
+
+// What the steps of the glTF reader share: the parsed file with its bytes, and checked access to its parts.
+
+#include <tiny_gltf.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sightline/math/mat4.h"
+#include "src/io/failure.h"
+#include "src/io/gltf/gltf_buffers.h"
+#include "src/io/scene_builder.h"
+
+namespace sightline::io {
+
+struct Document {
+  std::string name;  // of the file, in errors
+  ImportLimits limits;
+  tinygltf::Model model;  // without buffers; indices between its parts are not yet checked
+  Buffers buffers;
+};
+
+// Elements of an accessor, all checked to lie in their buffer.
+class AccessorView {
+ public:
+  std::uint64_t count() const { return count_; }
+  int componentType() const { return component_type_; }
+  int type() const { return type_; }
+
+  // Component of an element, normalised where the accessor says so. Precondition: element < count().
+  double number(std::uint64_t element, int component) const;
+  // Of integer accessors.
+  std::uint32_t index(std::uint64_t element) const;
+
+ private:
+  friend Result<AccessorView> openAccessor(const Document&, int, const std::string&);
+  friend Status addSparse(const Document&, int, AccessorView&);
+
+  const char* addressOf(std::uint64_t element) const;
+
+  const char* data_ = nullptr;  // nullptr: all zero
+  std::uint64_t stride_ = 0;
+  std::uint64_t count_ = 0;
+  std::uint64_t element_size_ = 0;
+  int component_type_ = 0;
+  int type_ = 0;
+  bool normalized_ = false;
+  std::vector<std::uint32_t> replaced_;  // sparse: ascending
+  const char* replacements_ = nullptr;
+};
+
+// Checks each accessor once, when it is first asked for: instances must not multiply the work.
+class Accessors {
+ public:
+  explicit Accessors(const Document& document)
+      : document_(document), views_(document.model.accessors.size()) {}
+
+  // Valid as long as this object. user: who refers to the accessor, in errors ("mesh 3 primitive 0").
+  Result<const AccessorView*> view(int accessor, const std::string& user);
+
+ private:
+  const Document& document_;
+  std::vector<std::optional<AccessorView>> views_;
+};
+
+// The nodes of the file as a forest.
+struct NodeTree {
+  std::vector<int> parent;  // -1: none
+  std::vector<Mat4> parent_from_node;
+  std::vector<Mat4> world_from_node;
+  std::vector<int> visited;  // nodes of the default scene, depth first
+};
+Result<NodeTree> buildNodeTree(const Document& document);
+
+// Translation, rotation (x, y, z, w), scale.
+struct NodePose {
+  Vec3d translation;
+  std::array<double, 4> rotation{0, 0, 0, 1};
+  Vec3d scale{1, 1, 1};
+};
+// Of a node without a matrix whose numbers buildNodeTree has checked.
+NodePose poseOf(const tinygltf::Node& node);
+Mat4 matrixOf(const NodePose& pose);
+
+Status addMaterials(const Document& document, SceneBuilder& builder);
+Status addObjects(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder);
+Status addCameras(const Document& document, const NodeTree& tree, Accessors& accessors,
+                  SceneBuilder& builder);
+
+inline bool isIndexInto(int index, std::size_t size) {
+  return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+}  // namespace sightline::io

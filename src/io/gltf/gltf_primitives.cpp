@@ -1,0 +1,111 @@
+#include "src/io/gltf/gltf_primitives.h"
+
+namespace sightline::io {
+namespace {
+
+bool isIndexType(const AccessorView& view) {
+  const int type = view.componentType();
+  return view.type() == TINYGLTF_TYPE_SCALAR &&
+         (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+}
+
+bool isPositionType(const AccessorView& view) {
+  return view.type() == TINYGLTF_TYPE_VEC3 && view.componentType() != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+}  // namespace
+
+std::array<std::uint64_t, 3> PrimitiveSource::cornersOf(std::uint64_t triangle) const {
+  switch (mode) {
+    case TINYGLTF_MODE_TRIANGLE_STRIP:
+      return {triangle, triangle + 1 + triangle % 2, triangle + 2 - triangle % 2};
+    case TINYGLTF_MODE_TRIANGLE_FAN:
+      return {triangle + 1, triangle + 2, 0};
+    default:
+      return {3 * triangle, 3 * triangle + 1, 3 * triangle + 2};
+  }
+}
+
+Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
+  std::optional<MeshSource>& cached = meshes_[mesh];
+  if (cached) {
+    return &*cached;
+  }
+  MeshSource source;
+  for (std::size_t number = 0; number < document_.model.meshes[mesh].primitives.size(); ++number) {
+    Result<PrimitiveSource> primitive = openPrimitive(mesh, number);
+    if (!primitive) {
+      return primitive.error();
+    }
+    if (primitive->triangles > 0) {
+      source.triangles += primitive->triangles;
+      source.primitives.push_back(std::move(*primitive));
+    }
+  }
+  cached = std::move(source);
+  return &*cached;
+}
+
+Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t number) {
+  const tinygltf::Primitive& primitive = document_.model.meshes[mesh].primitives[number];
+  PrimitiveSource source;
+  source.where = fmt::format("mesh {} primitive {}", mesh, number);
+  source.number = number;
+  source.mode = primitive.mode;
+  source.material = primitive.material;
+  if (source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    return failure("{}: {}: mode {} does not exist", document_.name, source.where, source.mode);
+  }
+  if (source.mode < TINYGLTF_MODE_TRIANGLES) {
+    return source;  // points and lines
+  }
+  const std::size_t materials = document_.model.materials.size();
+  if (source.material >= 0 && !isIndexInto(source.material, materials)) {
+    return failure("{}: {}: material {} does not exist (the file has {})", document_.name, source.where,
+                   source.material, materials);
+  }
+  const Status status = openAccessors(primitive, source);
+  if (!status) {
+    return status.error();
+  }
+  const std::uint64_t corners = (source.indices == nullptr ? source.positions : source.indices)->count();
+  if (source.mode == TINYGLTF_MODE_TRIANGLES && corners % 3 != 0) {
+    return failure("{}: {}: {} corners do not make whole triangles", document_.name, source.where, corners);
+  }
+  const std::uint64_t strung = corners < 3 ? 0 : corners - 2;  // of a strip or fan
+  source.triangles = source.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : strung;
+  return source;
+}
+
+Status MeshSources::openAccessors(const tinygltf::Primitive& primitive, PrimitiveSource& source) {
+  const auto attribute = primitive.attributes.find("POSITION");
+  if (attribute == primitive.attributes.end()) {
+    return failure("{}: {}: has no POSITION attribute", document_.name, source.where);
+  }
+  source.position_accessor = attribute->second;
+  const Result<const AccessorView*> positions = accessors_.view(source.position_accessor, source.where);
+  if (!positions) {
+    return positions.error();
+  }
+  if (!isPositionType(**positions)) {
+    return failure("{}: {}: positions must be VEC3 of floats, bytes or shorts, but accessor {} is not",
+                   document_.name, source.where, source.position_accessor);
+  }
+  source.positions = *positions;
+  if (primitive.indices < 0) {
+    return Success{};
+  }
+  const Result<const AccessorView*> indices = accessors_.view(primitive.indices, source.where);
+  if (!indices) {
+    return indices.error();
+  }
+  if (!isIndexType(**indices)) {
+    return failure("{}: {}: indices must be SCALAR of unsigned integers, but accessor {} is not",
+                   document_.name, source.where, primitive.indices);
+  }
+  source.indices = *indices;
+  return Success{};
+}
+
+}  // namespace sightline::io

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "src/io/gltf/gltf_model.h"
+
+namespace sightline::io {
+
+// A primitive with triangles, its accessors checked; index values are not.
+struct PrimitiveSource {
+  std::string where;  // "mesh 3 primitive 0", for errors
+  std::size_t number = 0;
+  int material = -1;
+  int mode = 0;
+  int position_accessor = -1;
+  const AccessorView* positions = nullptr;
+  const AccessorView* indices = nullptr;  // nullptr: vertices in order
+  std::uint64_t triangles = 0;
+
+  // Which places of the vertex sequence are the corners of a triangle.
+  std::array<std::uint64_t, 3> cornersOf(std::uint64_t triangle) const;
+};
+
+struct MeshSource {
+  std::vector<PrimitiveSource> primitives;  // those with triangles
+  std::uint64_t triangles = 0;
+};
+
+// Opens each mesh once, however many nodes show it.
+class MeshSources {
+ public:
+  MeshSources(const Document& document, Accessors& accessors)
+      : document_(document), accessors_(accessors), meshes_(document.model.meshes.size()) {}
+
+  // Precondition: the mesh exists.
+  Result<const MeshSource*> open(std::size_t mesh);
+
+ private:
+  Result<PrimitiveSource> openPrimitive(std::size_t mesh, std::size_t number);
+  Status openAccessors(const tinygltf::Primitive& primitive, PrimitiveSource& source);
+
+  const Document& document_;
+  Accessors& accessors_;
+  std::vector<std::optional<MeshSource>> meshes_;
+};
+
+}  // namespace sightline::io

@@ -1,0 +1,118 @@
+#include "src/io/gltf/gltf_schema.h"
+
+namespace sightline::io {
+namespace {
+
+using enum Kind;
+
+constexpr bool kRequired = true;
+constexpr bool kOptional = false;
+
+constexpr Field numbers(const char* key, std::size_t count) {
+  return {.key = key, .kind = kNumbers, .count = count};
+}
+constexpr Field fewObjects(const char* key, std::span<const Field> fields, const char* element) {
+  return {.key = key, .kind = kObjects, .fields = fields, .element = element, .few = true};
+}
+
+constexpr Field kAsset[] = {{"version", kText, kRequired}, {"minVersion", kText}};
+
+constexpr Field kScene[] = {{"nodes", kIndices}, {"name", kText}};
+
+constexpr Field kNode[] = {
+    {"name", kText},        {"camera", kIndex},     {"mesh", kIndex},
+    {"children", kIndices}, numbers("matrix", 16),  numbers("scale", 3),
+    {"extras", kMark},      numbers("rotation", 4), numbers("translation", 3),
+};
+
+constexpr Field kAttributes[] = {{"POSITION", kIndex}};
+constexpr Field kPrimitive[] = {
+    {"attributes", kObject, kRequired, kAttributes},
+    {"indices", kIndex},
+    {"material", kIndex},
+    {"mode", kIndex},
+};
+constexpr Field kMesh[] = {
+    {"name", kText}, {"primitives", kObjects, kRequired, kPrimitive, "primitive"}, {"extras", kMark}};
+
+constexpr Field kBuffer[] = {{"byteLength", kSize, kRequired}, {"uri", kText}};
+constexpr Field kBufferView[] = {{"buffer", kIndex, kRequired},
+                                 {"byteLength", kSize, kRequired},
+                                 {"byteOffset", kSize},
+                                 {"byteStride", kStride}};
+
+constexpr Field kSparseIndices[] = {
+    {"bufferView", kIndex, kRequired}, {"componentType", kIndex, kRequired}, {"byteOffset", kIndex}};
+constexpr Field kSparseValues[] = {{"bufferView", kIndex, kRequired}, {"byteOffset", kIndex}};
+constexpr Field kSparse[] = {
+    {"count", kIndex, kRequired},
+    {"indices", kObject, kRequired, kSparseIndices},
+    {"values", kObject, kRequired, kSparseValues},
+};
+constexpr Field kAccessor[] = {
+    {"bufferView", kIndex},
+    {"byteOffset", kSize},
+    {"componentType", kIndex, kRequired},
+    {"count", kSize, kRequired},
+    {"type", kElementType, kRequired},
+    {"normalized", kFlag},
+    {"sparse", kObject, kOptional, kSparse},
+};
+
+constexpr Field kMetallicRoughness[] = {numbers("baseColorFactor", 4)};
+constexpr Field kTransmission[] = {{"transmissionFactor", kNumber}};
+constexpr Field kMaterialExtensions[] = {{"KHR_materials_transmission", kObject, kOptional, kTransmission}};
+constexpr Field kMaterial[] = {
+    {"name", kText},
+    {"alphaMode", kText},
+    {"doubleSided", kFlag},
+    {"pbrMetallicRoughness", kObject, kOptional, kMetallicRoughness},
+    {"extensions", kObject, kOptional, kMaterialExtensions},
+    {"extras", kMark},
+};
+
+constexpr Field kPerspective[] = {
+    {"yfov", kNumber, kRequired}, {"znear", kNumber, kRequired}, {"zfar", kNumber}, {"aspectRatio", kNumber}};
+constexpr Field kOrthographic[] = {{"xmag", kNumber, kRequired},
+                                   {"ymag", kNumber, kRequired},
+                                   {"znear", kNumber, kRequired},
+                                   {"zfar", kNumber, kRequired}};
+constexpr Field kCamera[] = {
+    {"name", kText},
+    {"type", kText, kRequired},
+    {"perspective", kObject, kOptional, kPerspective},
+    {"orthographic", kObject, kOptional, kOrthographic},
+};
+
+constexpr Field kTarget[] = {{"node", kIndex}, {"path", kText, kRequired}};
+constexpr Field kChannel[] = {{"sampler", kIndex, kRequired}, {"target", kObject, kRequired, kTarget}};
+constexpr Field kSampler[] = {
+    {"input", kIndex, kRequired}, {"output", kIndex, kRequired}, {"interpolation", kText}};
+constexpr Field kAnimation[] = {
+    {"name", kText},
+    {"channels", kObjects, kRequired, kChannel, "channel"},
+    {"samplers", kObjects, kRequired, kSampler, "sampler"},
+};
+
+constexpr Field kDocument[] = {
+    {"asset", kObject, kRequired, kAsset},
+    {"extensionsRequired", kTexts},
+    {"scene", kIndex},
+    {"scenes", kObjects, kOptional, kScene, "scene"},
+    {"nodes", kObjects, kOptional, kNode, "node"},
+    {"meshes", kObjects, kOptional, kMesh, "mesh"},
+    {"accessors", kObjects, kOptional, kAccessor, "accessor"},
+    {"bufferViews", kObjects, kOptional, kBufferView, "buffer view"},
+    {"buffers", kObjects, kOptional, kBuffer, "buffer"},
+    fewObjects("materials", kMaterial, "material"),
+    fewObjects("cameras", kCamera, "camera"),
+    fewObjects("animations", kAnimation, "animation"),
+};
+
+}  // namespace
+
+std::span<const Field> documentSchema() {
+  return kDocument;
+}
+
+}  // namespace sightline::io

@@ -1,0 +1,248 @@
+// Based on: Snyder, Lengyel. MSR-TR-97-11, section 8, expressions 3 and 4. Tarjan. Depth-first search and
+// linear graph algorithms. SIAM J. Comput. 1972.
+// Differs from the paper in: expression 4 uses 3 for the occluders of the layer that is taken out, so that it
+// does not grow without bound; and what is left is divided into circles again, most often single layers.
+
+#include "src/layers/compositing/compositing_expression.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace sightline::layers {
+namespace {
+
+constexpr std::uint32_t kNone = ExpressionNode::kNone;
+constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+
+// Operations of a circle by sum of outs, with the "over" at the end.
+std::uint64_t sumOperations(const ExpressionNode& node) {
+  return node.inner + (node.size() - 1) + 1;
+}
+std::uint64_t sumSteps(const ExpressionNode& node) {
+  return node.size() + node.inner + node.size() + 1;
+}
+// By over-atop, those for the layer that is taken out.
+std::uint64_t atopOperations(const ExpressionNode& node) {
+  return node.around + node.among + node.around + node.around + 1;
+}
+std::uint64_t atopSteps(const ExpressionNode& node) {
+  const std::uint64_t terms = node.around + 1;
+  return terms + node.around + node.among + node.around + terms + 1;
+}
+
+}  // namespace
+
+void LayerOccluders::build(const FrameLayers& layers) {
+  first.assign(layers.layers() + 1, 0);
+  for (const LayerOcclusion& o : layers.occlusions) {
+    ++first[o.back.value];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  occluders.resize(layers.occlusions.size());
+  // From the last to the first: each list ends up ascending, and first[i] where it begins.
+  for (std::size_t i = layers.occlusions.size(); i-- > 0;) {
+    const LayerOcclusion& o = layers.occlusions[i];
+    occluders[--first[o.back.value]] = o.front.value;
+  }
+}
+
+bool LayerOccluders::occludes(std::uint32_t front, std::uint32_t back) const {
+  const auto all = of(back);
+  return std::binary_search(all.begin(), all.end(), front);
+}
+
+void ExpressionPlanner::beginFrame(const LayerOccluders& occluders) {
+  occluders_ = &occluders;
+  const std::size_t layers = occluders.layers();
+  place_of_.assign(layers, kNone);
+  number_.resize(layers);
+  low_.resize(layers);
+  occluded_.resize(layers);
+}
+
+void ExpressionPlanner::plan(std::span<const std::uint32_t> group, CompositingForm form) {
+  for (const std::uint32_t layer : order_) {
+    if (layer < place_of_.size()) {
+      place_of_[layer] = kNone;
+    }
+  }
+  nodes_.clear();
+  order_.resize(group.size());
+  setOrder(group, 0);
+  const auto size = static_cast<std::uint32_t>(group.size());
+  pushCircles({.end = size, .limit = kNoLimit}, kNone);
+  while (!pending_.empty()) {
+    ExpressionNode node = pending_.back();
+    pending_.pop_back();
+    if (node.size() > 1) {
+      count(node);
+      if (form != CompositingForm::kSumOfOuts) {
+        divide(node, static_cast<std::uint32_t>(nodes_.size()), form);
+      }
+    }
+    nodes_.push_back(node);
+  }
+  choose(form);
+}
+
+// Takes one layer out; what is left becomes pending, unless that surely takes more operations than allowed.
+void ExpressionPlanner::divide(ExpressionNode& node, std::uint32_t index, CompositingForm form) {
+  takeOneOut(node);
+  ExpressionNode rest{.begin = node.begin + 1, .end = node.end, .limit = kNoLimit};
+  if (form == CompositingForm::kCheapest) {
+    const std::uint64_t limit = std::min(node.limit, sumOperations(node));
+    const std::uint64_t own = atopOperations(node);
+    if (own + rest.size() > limit) {
+      node.by_sum = true;
+      return;
+    }
+    rest.limit = limit - own;
+  }
+  pushCircles(rest, index);
+}
+
+void ExpressionPlanner::setOrder(std::span<const std::uint32_t> layers, std::uint32_t begin) {
+  for (std::uint32_t i = 0; i < layers.size(); ++i) {
+    order_[begin + i] = layers[i];
+    place_of_[layers[i]] = begin + i;
+  }
+}
+
+// Divides a range of the order into circles and single layers, front to back, which become pending.
+// Each may take the range's limit less one operation for each layer of the others.
+void ExpressionPlanner::pushCircles(const ExpressionNode& range, std::uint32_t parent) {
+  const std::uint32_t begin = range.begin, end = range.end;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    number_[order_[i]] = 0;
+  }
+  seen_ = 0;
+  found_.clear();
+  ends_.clear();
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (number_[order_[i]] == 0) {
+      findCirclesFrom(order_[i], range);
+    }
+  }
+  setOrder(found_, begin);
+  for (std::size_t i = ends_.size(); i-- > 0;) {
+    const std::uint32_t from = i == 0 ? 0 : ends_[i - 1];
+    ExpressionNode node{.begin = begin + from, .end = begin + ends_[i], .parent = parent};
+    const std::uint64_t others = range.size() - node.size();
+    node.limit = range.limit == kNoLimit ? kNoLimit : range.limit - others;
+    pending_.push_back(node);
+  }
+}
+
+// The search goes from a layer to its occluders: a circle is found after all circles that occlude it.
+void ExpressionPlanner::findCirclesFrom(std::uint32_t root, const ExpressionNode& range) {
+  enter(root);
+  while (!visits_.empty()) {
+    Visit& visit = visits_.back();
+    const std::uint32_t layer = visit.layer;
+    if (visit.next == occluders_->first[layer + 1]) {
+      visits_.pop_back();
+      leave(layer);
+      continue;
+    }
+    const std::uint32_t occluder = occluders_->occluders[visit.next++];
+    if (!contains(range, occluder)) {
+      continue;
+    }
+    if (number_[occluder] == 0) {
+      enter(occluder);
+    } else if (number_[occluder] != kNone) {
+      low_[layer] = std::min(low_[layer], number_[occluder]);
+    }
+  }
+}
+
+void ExpressionPlanner::enter(std::uint32_t layer) {
+  number_[layer] = low_[layer] = ++seen_;
+  open_.push_back(layer);
+  visits_.push_back({layer, occluders_->first[layer]});
+}
+
+void ExpressionPlanner::leave(std::uint32_t layer) {
+  if (!visits_.empty()) {
+    std::uint32_t& low = low_[visits_.back().layer];
+    low = std::min(low, low_[layer]);
+  }
+  if (low_[layer] != number_[layer]) {
+    return;
+  }
+  auto first = open_.end();
+  do {
+    --first;
+    number_[*first] = kNone;
+  } while (*first != layer);
+  std::sort(first, open_.end());
+  found_.insert(found_.end(), first, open_.end());
+  open_.erase(first, open_.end());
+  ends_.push_back(static_cast<std::uint32_t>(found_.size()));
+}
+
+void ExpressionPlanner::count(ExpressionNode& node) {
+  for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    occluded_[order_[i]] = 0;
+  }
+  for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    for (const std::uint32_t occluder : occluders_->of(order_[i])) {
+      if (contains(node, occluder)) {
+        ++occluded_[occluder];
+        ++node.inner;
+      }
+    }
+  }
+}
+
+// Brings the layer with the fewest occluders, which are what taking it out costs, to the node's begin. Of
+// those, the one that occludes most: without it the fewest occlusions are left.
+void ExpressionPlanner::takeOneOut(ExpressionNode& node) {
+  std::uint32_t best = node.begin;
+  std::uint64_t fewest = node.size();
+  for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    const auto all = occluders_->of(order_[i]);
+    const auto around = static_cast<std::uint64_t>(std::count_if(
+        all.begin(), all.end(), [&](std::uint32_t occluder) { return contains(node, occluder); }));
+    if (around < fewest || (around == fewest && occluded_[order_[i]] > occluded_[order_[best]])) {
+      best = i;
+      fewest = around;
+    }
+  }
+  std::rotate(order_.begin() + node.begin, order_.begin() + best, order_.begin() + best + 1);
+  for (std::uint32_t i = node.begin; i <= best; ++i) {
+    place_of_[order_[i]] = i;
+  }
+  const std::uint32_t out = order_[node.begin];
+  node.around = fewest;
+  for (const std::uint32_t back : occluders_->of(out)) {
+    for (const std::uint32_t front : occluders_->of(back)) {
+      node.among += contains(node, back) && contains(node, front) && occluders_->occludes(front, out);
+    }
+  }
+}
+
+// Which circles are composited by sum of outs. From the last node to the first: children before parents.
+void ExpressionPlanner::choose(CompositingForm form) {
+  below_.assign(nodes_.size(), {});
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    ExpressionNode& node = nodes_[i];
+    Cost cost{1, 1};  // one "over"
+    if (node.size() > 1) {
+      const Cost sum{sumOperations(node), sumSteps(node)};
+      const Cost atop{atopOperations(node) + below_[i].operations, atopSteps(node) + below_[i].steps};
+      node.by_sum = node.by_sum || form == CompositingForm::kSumOfOuts ||
+                    (form == CompositingForm::kCheapest && !(atop < sum));
+      cost = node.by_sum ? sum : atop;
+      if (node.by_sum) {
+        std::sort(order_.begin() + node.begin, order_.begin() + node.end);
+      }
+    }
+    if (node.parent != kNone) {
+      below_[node.parent].operations += cost.operations;
+      below_[node.parent].steps += cost.steps;
+    }
+  }
+}
+
+}  // namespace sightline::layers

@@ -1,0 +1,287 @@
+#include "src/layers/extents/extent_scan.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/layers/extents/extent_scan.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::layers::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Lanes = hn::CappedTag<std::uint8_t, ScanRows::kFanOut>;
+using Mask = hn::Mask<Lanes>;
+
+// What the intervals of an axis are compared with: the query, and the query a turn on and back where one of
+// them can overlap anything. In cells.
+struct AxisQuery {
+  std::uint32_t shifts = 0;
+  std::uint8_t low[3], high[3];
+
+  void add(const CellScale& scale, const Interval& interval) {
+    low[shifts] = scale.cell(interval.low);
+    high[shifts++] = scale.cell(interval.high);
+  }
+};
+
+AxisQuery axisQuery(const ScanRows& rows, std::size_t axis, const Interval& query) {
+  AxisQuery result;
+  result.add(rows.scales[axis], query);
+  if (rows.kinds[axis] == ExtentAxis::Kind::kAngular) {
+    for (const float turn : {4.0f, -4.0f}) {
+      const Interval shifted{query.low + turn, query.high + turn};
+      if (overlapsSpatial(shifted, rows.all[axis])) {
+        result.add(rows.scales[axis], shifted);
+      }
+    }
+  }
+  return result;
+}
+
+// Whether low <= query's high and high >= its low.
+HWY_INLINE Mask overlap(const AxisQuery& query, const std::uint8_t* low, const std::uint8_t* high) {
+  const Lanes d;
+  const auto lows = hn::LoadU(d, low), highs = hn::LoadU(d, high);
+  const auto within = [&](std::uint32_t i) HWY_ATTR {
+    return hn::And(hn::Eq(hn::Max(highs, hn::Set(d, query.low[i])), highs),
+                   hn::Eq(hn::Min(lows, hn::Set(d, query.high[i])), lows));
+  };
+  Mask any = within(0);
+  for (std::uint32_t i = 1; HWY_UNLIKELY(i < query.shifts); ++i) {
+    any = hn::Or(any, within(i));
+  }
+  return any;
+}
+
+struct Scan {
+  const ScanRows& rows;
+  AxisQuery axes[kMaxExtentAxes];
+  std::vector<std::uint32_t>& found;
+  std::uint64_t blocks = 0;  // of kFanOut rows that were compared
+
+  // Of kFanOut rows of a level, those whose cells overlap along all axes.
+  HWY_INLINE std::uint64_t overlapBits(std::size_t level, std::size_t first) const {
+    const Lanes d;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < ScanRows::kFanOut; i += hn::Lanes(d)) {
+      const std::size_t at = rows.first[level] + first + i;
+      Mask mask = hn::FirstN(d, ScanRows::kFanOut);
+      for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
+        const std::size_t place = axis * rows.stride + at;
+        mask = hn::And(mask, overlap(axes[axis], rows.lows.data() + place, rows.highs.data() + place));
+        if (axis != 0 && hn::AllFalse(d, mask)) {
+          break;
+        }
+      }
+      std::uint8_t bytes[ScanRows::kFanOut / 8] = {};
+      hn::StoreMaskBits(d, mask, bytes);
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes, sizeof(word));
+      bits |= word << i;
+    }
+    return bits;
+  }
+
+  // Appends rows of level 0.
+  void visit(std::size_t level, std::size_t first) {
+    std::uint64_t there = level == 0 ? rows.active[first / ScanRows::kFanOut] : ~std::uint64_t{0};
+    if (level != 0 && rows.count[level] - first < ScanRows::kFanOut) {
+      there = (std::uint64_t{1} << (rows.count[level] - first)) - 1;
+    }
+    if (there == 0) {
+      return;
+    }
+    ++blocks;
+    for (std::uint64_t bits = there & overlapBits(level, first); bits != 0; bits &= bits - 1) {
+      const std::size_t row = first + static_cast<std::size_t>(std::countr_zero(bits));
+      if (level == 0) {
+        found.push_back(static_cast<std::uint32_t>(row));
+      } else {
+        visit(level - 1, row * ScanRows::kFanOut);
+      }
+    }
+  }
+};
+
+std::uint64_t scan(const ScanRows& rows, const Extent& query, std::vector<std::uint32_t>& found) {
+  Scan scan{rows, {}, found};
+  for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
+    scan.axes[axis] = axisQuery(rows, axis, query[axis]);
+  }
+  scan.visit(rows.levels - 1, 0);
+  return scan.blocks;
+}
+
+}  // namespace sightline::layers::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::layers {
+
+HWY_EXPORT(scan);
+
+namespace {
+
+constexpr std::size_t kFanOut = ScanRows::kFanOut;
+constexpr Interval kNothing{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+constexpr std::size_t kMaxClusterAxes = 3;
+
+// The axes along which parts that lie together are laid together: directions as seen, if there are any, since
+// a query reaches to the eye along the others.
+struct ClusterAxes {
+  std::array<std::size_t, kMaxClusterAxes> axis{};
+  std::size_t count = 0;
+};
+
+ClusterAxes clusterAxes(const ExtentTable& table) {
+  ClusterAxes chosen;
+  const bool any_angular = std::any_of(table.kinds.begin(), table.kinds.end(), [](ExtentAxis::Kind kind) {
+    return kind == ExtentAxis::Kind::kAngular;
+  });
+  for (std::size_t axis = 0; axis < table.axes() && chosen.count < kMaxClusterAxes; ++axis) {
+    if (table.angular(axis) || !any_angular) {
+      chosen.axis[chosen.count++] = axis;
+    }
+  }
+  return chosen;
+}
+
+// Bits of a cell's number, two places between each and the next.
+std::uint32_t spread(std::uint32_t cell) {
+  std::uint32_t x = cell;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
+}
+
+}  // namespace
+
+void ExtentScan::begin(const ExtentTable& table, std::span<const std::uint32_t> order) {
+  table_ = &table;
+  measure(order);
+  cluster(order);
+  layOut();
+  fillRows();
+  uniteRows();
+  found_.reserve(order.size());
+  rows_.active.assign((order.size() + kFanOut - 1) / kFanOut, ~std::uint64_t{0});
+  if (order.size() % kFanOut != 0) {
+    rows_.active.back() = (std::uint64_t{1} << (order.size() % kFanOut)) - 1;
+  }
+}
+
+// Cells from the least finite bound to the greatest.
+void ExtentScan::measure(std::span<const std::uint32_t> order) {
+  rows_.kinds = table_->kinds;
+  for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
+    Interval all = kNothing, finite = kNothing;
+    for (const std::uint32_t part : order) {
+      const Interval own = table_->at(axis, part);
+      all = unite(all, own);
+      finite.low = std::isfinite(own.low) ? std::min(finite.low, own.low) : finite.low;
+      finite.high = std::isfinite(own.high) ? std::max(finite.high, own.high) : finite.high;
+    }
+    const float width = finite.high - finite.low;
+    rows_.all[axis] = all;
+    rows_.scales[axis] = {finite.low, width > 0.0f && std::isfinite(width) ? 256.0f / width : 0.0f};
+  }
+}
+
+// In the order of a Morton curve through the intervals' middles.
+void ExtentScan::cluster(std::span<const std::uint32_t> order) {
+  const ClusterAxes axes = clusterAxes(*table_);
+  keys_.clear();
+  for (const std::uint32_t part : order) {
+    std::uint32_t key = 0;
+    for (std::size_t i = 0; i < axes.count; ++i) {
+      const Interval own = table_->at(axes.axis[i], part);
+      key |= spread(rows_.scales[axes.axis[i]].cell(0.5f * (own.low + own.high))) << i;
+    }
+    keys_.push_back(std::uint64_t{key} << 32 | part);
+  }
+  std::sort(keys_.begin(), keys_.end());
+  place_.assign(table_->parts, kNowhere);
+  part_.clear();
+  for (const std::uint64_t key : keys_) {
+    const auto part = static_cast<std::uint32_t>(key);
+    place_[part] = static_cast<std::uint32_t>(part_.size());
+    part_.push_back(part);
+  }
+}
+
+void ExtentScan::layOut() {
+  rows_.levels = 0;
+  rows_.stride = 0;
+  for (std::size_t count = part_.size();; count = (count + kFanOut - 1) / kFanOut) {
+    rows_.count[rows_.levels] = count;
+    rows_.first[rows_.levels++] = rows_.stride;
+    rows_.stride += (count + kFanOut - 1) / kFanOut * kFanOut;
+    if (count <= kFanOut) {
+      break;
+    }
+  }
+  rows_.lows.resize(rows_.axes() * rows_.stride);
+  rows_.highs.resize(rows_.axes() * rows_.stride);
+}
+
+void ExtentScan::fillRows() {
+  for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
+    const CellScale scale = rows_.scales[axis];
+    for (std::size_t i = 0; i < part_.size(); ++i) {
+      const Interval own = table_->at(axis, part_[i]);
+      rows_.lows[axis * rows_.stride + i] = scale.cell(own.low);
+      rows_.highs[axis * rows_.stride + i] = scale.cell(own.high);
+    }
+  }
+}
+
+// Of angles as numbers on a line: whatever overlaps a member a turn on or back overlaps the union there, too.
+void ExtentScan::uniteRows() {
+  for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
+    std::uint8_t *const lows = rows_.lows.data() + axis * rows_.stride, *const highs = rows_.highs.data() +
+                                                                                       axis * rows_.stride;
+    for (std::size_t level = 1; level < rows_.levels; ++level) {
+      const std::size_t below = rows_.first[level - 1], here = rows_.first[level];
+      for (std::size_t i = 0; i < rows_.count[level]; ++i) {
+        const std::size_t begin = below + i * kFanOut,
+                          end = below + std::min((i + 1) * kFanOut, rows_.count[level - 1]);
+        lows[here + i] = *std::min_element(lows + begin, lows + end);
+        highs[here + i] = *std::max_element(highs + begin, highs + end);
+      }
+    }
+  }
+}
+
+void ExtentScan::setActive(std::uint32_t part, bool active) {
+  const std::uint32_t place = place_[part];
+  if (place == kNowhere) {
+    return;
+  }
+  const std::uint64_t bit = std::uint64_t{1} << (place % kFanOut);
+  std::uint64_t& word = rows_.active[place / kFanOut];
+  word = active ? word | bit : word & ~bit;
+}
+
+void ExtentScan::query(const Extent& query, std::vector<std::uint32_t>& parts) {
+  if (part_.empty()) {
+    return;
+  }
+  found_.clear();
+  blocks_compared_ += HWY_DYNAMIC_DISPATCH(scan)(rows_, query, found_);
+  const auto before = static_cast<std::ptrdiff_t>(parts.size());
+  for (const std::uint32_t row : found_) {
+    if (overlaps(*table_, query, part_[row])) {
+      parts.push_back(part_[row]);
+    }
+  }
+  std::sort(parts.begin() + before, parts.end());
+}
+
+}  // namespace sightline::layers
+#endif

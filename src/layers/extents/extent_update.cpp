@@ -1,0 +1,155 @@
+#include "src/layers/extents/extent_update.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/layers/extents/extent_update.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sightline/geometry/tolerance.h"
+#include "src/layers/extents/angular_extent-inl.h"
+#include "src/layers/extents/round_outwards.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sightline::layers::HWY_NAMESPACE {
+
+using Measure = AxisLook::Measure;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr Interval kEndless{-kInfinity, kInfinity};
+
+// Computing a point's height or its place in a plane, from an exact placement and direction: 12 operations in
+// a row at most, each rounding by 2^-53 of a number that is no greater than `reach`. Frames are perpendicular
+// up to their own rounding, and a ray across a direction is so up to 2^-50: as much again.
+constexpr double kRounding = 0x1p-48;
+
+// A part with a hull of its own.
+struct PlacedHull {
+  const ConvexHull& hull;
+  const HullBounds& bounds;
+  double stretch = 1.0;
+  const PlacedRow* rows;
+};
+
+HWY_INLINE void addHeights(const PlacedHull& placed, const MeasuredAxis& axis, bool first,
+                           std::uint32_t* vertices, PartBounds& all) {
+  const PlacedRow& row = placed.rows[axis.along];
+  const Support low = farthestHere(placed.hull, -row.direction, vertices[0]);
+  const Support high = farthestHere(placed.hull, row.direction, vertices[1]);
+  vertices[0] = low.vertex;
+  vertices[1] = high.vertex;
+  const double error =
+      placed.stretch * placed.bounds.error + kRounding * (placed.stretch * placed.bounds.reach + row.offset);
+  double lower = row.base - low.height - error, upper = row.base + high.height + error;
+  if (!(lower <= upper)) {
+    lower = -kInfinity, upper = kInfinity;
+  }
+  all.low = first ? lower : std::min(all.low, lower);
+  all.high = first ? upper : std::max(all.high, upper);
+}
+
+HWY_INLINE AngleRange anglesOf(const PlacedHull& placed, const MeasuredAxis& axis, std::uint32_t* vertices) {
+  const PlacedRow &x = placed.rows[axis.along], &z = placed.rows[axis.zero];
+  PlaneMap map;
+  map.x = x.direction;
+  map.z = z.direction;
+  map.origin = {x.base, z.base};
+  map.stretch = placed.stretch;
+  map.rounding = kRounding * (placed.stretch * placed.bounds.reach + x.offset);
+  map.slack = 1.0001 * placed.stretch * placed.hull.slack;
+  AngularVertices start{vertices[0], vertices[1], vertices[2]};
+  const AngleRange range = angularExtentHere(placed.hull, map, start);
+  vertices[0] = start.low;
+  vertices[1] = start.high;
+  vertices[2] = start.nearest;
+  return range;
+}
+
+HWY_INLINE void addHull(const PlacedHull& placed, const ExtentUpdate& update, std::uint32_t axes, bool first,
+                        std::uint32_t* vertices, PartBounds* all) {
+  for (std::size_t i = 0; i < update.axes.size(); ++i) {
+    const MeasuredAxis& axis = update.axes[i];
+    if (((axes >> i) & 1u) == 0 || axis.look.measure == Measure::kNothing) {
+      continue;
+    }
+    std::uint32_t* const own = vertices + axis.first_vertex;
+    if (axis.look.measure == Measure::kAngles) {
+      const AngleRange angles = anglesOf(placed, axis, own);
+      all[i].angles = first ? angles : unite(all[i].angles, angles);
+    } else {
+      addHeights(placed, axis, first, own, all[i]);
+    }
+  }
+}
+
+HWY_INLINE Interval intervalOf(const MeasuredAxis& axis, const PartBounds& bounds, bool finite) {
+  const bool angular = axis.look.measure == Measure::kAngles;
+  if (!finite || axis.look.measure == Measure::kNothing) {
+    return angular ? kFullCircle : kEndless;
+  }
+  if (angular) {
+    return roundedAngles({bounds.angles.low - kAngleMargin, bounds.angles.high + kAngleMargin});
+  }
+  return {roundedDown(bounds.low), roundedUp(bounds.high)};
+}
+
+HWY_INLINE void updatePart(ExtentUpdate& update, const PartStore& parts, std::uint32_t part,
+                           std::uint32_t axes, ExtentTable& table) {
+  PartBounds* const bounds = update.part_bounds.data();
+  const bool finite = parts.finite[part] != 0;
+  if (finite) {
+    const Placement& placement = parts.placements[part];
+    PlacedRow* const rows = update.placed_rows.data();
+    for (std::size_t i = 0; i < update.rows.size(); ++i) {
+      const Vec3d offset = placement.origin - update.rows[i].from;
+      const Vec3d& direction = update.rows[i].direction;
+      rows[i] = {placement.toHull(direction), dot(direction, offset), l1Norm(offset)};
+    }
+    const double stretch = stretchOf(placement);
+    const std::uint32_t begin = parts.first_hull[part], end = parts.first_hull[part + 1];
+    for (std::uint32_t instance = begin; instance < end; ++instance) {
+      const std::uint32_t hull = parts.part_hulls[instance];
+      addHull({parts.hulls[hull], update.hulls[hull], stretch, rows}, update, axes, instance == begin,
+              update.vertices.data() + std::size_t{instance} * update.vertices_of_instance, bounds);
+    }
+  }
+  for (std::size_t i = 0; i < update.axes.size(); ++i) {
+    if (((axes >> i) & 1u) != 0) {
+      const Interval interval = intervalOf(update.axes[i], bounds[i], finite);
+      table.lows[i][part] = interval.low;
+      table.highs[i][part] = interval.high;
+    }
+  }
+}
+
+void updateAll(ExtentUpdate& update, const PartStore& parts, std::span<const std::uint32_t> axes_of,
+               ExtentTable& table) {
+  for (std::uint32_t part = 0; part < axes_of.size(); ++part) {
+    if (axes_of[part] != 0) {
+      updatePart(update, parts, part, axes_of[part], table);
+    }
+  }
+}
+
+}  // namespace sightline::layers::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::layers {
+
+HWY_EXPORT(updateAll);
+
+void updateExtents(ExtentUpdate& update, const PartStore& parts, std::span<const std::uint32_t> axes_of,
+                   ExtentTable& table) {
+  HWY_DYNAMIC_DISPATCH(updateAll)(update, parts, axes_of, table);
+}
+
+HullBounds boundsOf(const ConvexHull& hull) {
+  return {1.0001 * (length(hull.centre) + hull.radius), 1.0001 * supportError(hull, 1.0)};
+}
+
+}  // namespace sightline::layers
+#endif

@@ -1,0 +1,139 @@
+#include "src/layers/extents/part_extents.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace sightline::layers {
+PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) {
+  axes_.resize(std::min(axes_.size(), kMaxExtentAxes));
+  for (ExtentAxis& axis : axes_) {
+    axis = normalizedAxis(axis);
+    own_.axes.push_back({.first_vertex = own_.vertices_of_instance});
+    own_.vertices_of_instance += axis.kind == ExtentAxis::Kind::kAngular ? kAngleVertices : kHeightVertices;
+  }
+  to_eye_.resize(axes_.size());
+  eye_.resize(axes_.size());
+  away_.resize(axes_.size());
+  table_.kinds.resize(axes_.size());
+  table_.lows.resize(axes_.size());
+  table_.highs.resize(axes_.size());
+}
+
+std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
+                                  std::span<const std::uint8_t> moved) {
+  const std::size_t known = table_.parts;
+  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << axes_.size()) - 1);
+  const std::uint32_t turned = lookFrom(view);
+  addParts(parts);
+  axes_of_.resize(parts.parts());
+  std::uint64_t computed = 0;
+  for (std::uint32_t part = 0; part < parts.parts(); ++part) {
+    axes_of_[part] = part >= known || moved[part] != 0 ? all : turned;
+    computed += static_cast<std::uint64_t>(std::popcount(axes_of_[part]));
+  }
+  updateExtents(own_, parts, axes_of_, table_);
+  return computed;
+}
+
+// Returns the axes whose extents must be taken anew for all parts.
+std::uint32_t PartExtents::lookFrom(const View& view) {
+  if (!has_reference_ && isFinite(view.eye)) {
+    has_reference_ = true;
+    reference_ = view.eye;
+  }
+  std::uint32_t turned = 0;
+  own_.rows.clear();
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    MeasuredAxis& own = own_.axes[axis];
+    const AxisLook look = lookAlong(axes_[axis], view, reference_);
+    turned |= (look == own.look ? 0u : 1u) << axis;
+    own.look = look;
+    own.along = rowOf({look.direction, look.from});
+    own.zero = look.measure == AxisLook::Measure::kAngles ? rowOf({look.zero, look.from}) : 0;
+    to_eye_[axis] = eyeHeights(look, view);
+    eye_[axis] = dot(look.direction, view.eye - look.from);
+    away_[axis] = !view.orthographic ? 0.0 : std::copysign(1.0, dot(look.direction, view.forward));
+    table_.kinds[axis] = look.kind();
+  }
+  return turned;
+}
+
+std::uint32_t PartExtents::rowOf(const ExtentRow& row) {
+  const auto found = std::find(own_.rows.begin(), own_.rows.end(), row);
+  if (found == own_.rows.end()) {
+    own_.rows.push_back(row);
+    return static_cast<std::uint32_t>(own_.rows.size() - 1);
+  }
+  return static_cast<std::uint32_t>(found - own_.rows.begin());
+}
+
+void PartExtents::addParts(const PartStore& parts) {
+  for (std::size_t i = own_.hulls.size(); i < parts.hulls.size(); ++i) {
+    own_.hulls.push_back(boundsOf(parts.hulls[i]));
+  }
+  own_.vertices.resize(parts.instances() * own_.vertices_of_instance);
+  if (table_.parts == parts.parts()) {
+    return;
+  }
+  table_.parts = parts.parts();
+  const std::size_t padded =
+      (table_.parts + ExtentTable::kPadding - 1) / ExtentTable::kPadding * ExtentTable::kPadding;
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    // Not a number overlaps nothing, not even what is infinite.
+    table_.lows[axis].resize(padded);
+    table_.highs[axis].resize(padded);
+    for (std::size_t i = table_.parts; i < padded; ++i) {
+      table_.lows[axis][i] = table_.highs[axis][i] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+}
+
+Extent PartExtents::query(std::uint32_t part) const {
+  return query(std::span(&part, 1));
+}
+
+Extent PartExtents::query(std::span<const std::uint32_t> members) const {
+  Extent extent{};
+  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+    Interval& all = extent[axis];
+    all = table_.at(axis, members[0]);
+    if (!table_.angular(axis)) {
+      for (const std::uint32_t member : members.subspan(1)) {
+        all = unite(all, table_.at(axis, member));
+      }
+      all = unite(all, to_eye_[axis]);
+    } else if (members.size() > 1) {
+      AngleRange range{all.low, all.high};
+      for (const std::uint32_t member : members.subspan(1)) {
+        const Interval own = table_.at(axis, member);
+        range = unite(range, AngleRange{own.low, own.high});
+      }
+      all = roundedAngles(range);
+    }
+  }
+  return extent;
+}
+
+bool PartExtents::mayOcclude(std::uint32_t front, std::uint32_t back) const {
+  for (std::size_t axis = 0; axis < table_.axes(); ++axis) {
+    const Interval ahead = table_.at(axis, front), behind = table_.at(axis, back);
+    if (table_.angular(axis) ? !overlapsAngular(behind, ahead)
+                             : !overlapsSpatial(unite(behind, to_eye_[axis]), ahead)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+double PartExtents::distanceAlong(std::size_t axis, std::uint32_t part) const {
+  const Interval own = table_.at(axis, part);
+  const double above_eye = 0.5 * (double{own.low} + double{own.high}) - eye_[axis];
+  if (!std::isfinite(above_eye)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return away_[axis] == 0.0 ? std::abs(above_eye) : above_eye * away_[axis];
+}
+
+}  // namespace sightline::layers

@@ -1,0 +1,89 @@
+// The covariance matrix C of the vertices around their mean is L L^T, L lower triangular (Cholesky). With the
+// columns of L as axes, a vertex v lies at w = L^-1 (v - mean), and the ellipsoid is made larger by the
+// length of the longest w. To that comes a ball of the hull's slack and of what rounding can do: an axis
+// longer by r makes the ellipsoid higher by less than r, so each axis is lengthened along itself by as much
+// as the ball's radius in units of the shortest one.
+
+#include "src/layers/hull/hull_envelope.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "sightline/geometry/tolerance.h"
+
+namespace sightline::layers {
+namespace {
+
+// Thinner than this part of the hull's radius, it is made so thick: then it can be divided by.
+constexpr double kThinnest = 1e-6;
+// Relative to the radius; far above the rounding of the sums below, of which the division by the thinnest
+// axis makes 1e6 times as much.
+constexpr double kRounding = 1e-8;
+// Metres. Smaller hulls' squares would underflow.
+constexpr double kMinRadius = 1e-100;
+
+struct Covariance {
+  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
+};
+
+Covariance covarianceOf(const ConvexHull& hull) {
+  Covariance c;
+  for (const Vec3d& vertex : hull.vertices) {
+    const Vec3d v = (vertex - hull.centre) / hull.radius;
+    c.xx += v.x * v.x, c.xy += v.x * v.y, c.xz += v.x * v.z;
+    c.yy += v.y * v.y, c.yz += v.y * v.z, c.zz += v.z * v.z;
+  }
+  return c;
+}
+
+double positiveRoot(double square) {
+  return std::sqrt(std::max(square, kThinnest * kThinnest));
+}
+
+}  // namespace
+
+HullEnvelope envelopeOf(const ConvexHull& hull) {
+  if (hull.vertices.empty() || !(hull.radius > kMinRadius) || !std::isfinite(hull.radius)) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    constexpr Vec3d kNowhere(kNone, kNone, kNone);
+    return {kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNone};
+  }
+  HullEnvelope around;
+  around.centre = hull.centre;
+  // Scaled to a trace of at most 1 or so; only the shape counts.
+  const Covariance sum = covarianceOf(hull);
+  const double n = static_cast<double>(hull.vertices.size());
+  const double lxx = positiveRoot(sum.xx / n);
+  const double lyx = sum.xy / n / lxx, lzx = sum.xz / n / lxx;
+  const double lyy = positiveRoot(sum.yy / n - lyx * lyx);
+  const double lzy = (sum.yz / n - lyx * lzx) / lyy;
+  const double lzz = positiveRoot(sum.zz / n - lzx * lzx - lzy * lzy);
+  double longest = 0.0;
+  for (const Vec3d& vertex : hull.vertices) {
+    const Vec3d v = (vertex - hull.centre) / hull.radius;
+    const double x = v.x / lxx, y = (v.y - lyx * x) / lyy, z = (v.z - lzx * x - lzy * y) / lzz;
+    longest = std::max(longest, x * x + y * y + z * z);
+  }
+  // A sphere of radius s lies within the axes times s / (shortest stretch of L); that is at least
+  // lxx lyy lzz / |L|^2, |L| the norm of all entries.
+  const double square = lxx * lxx + lyx * lyx + lzx * lzx + lyy * lyy + lzy * lzy + lzz * lzz;
+  const double shortest = lxx * lyy * lzz / square;
+  const double ball = hull.slack / hull.radius + kRounding;
+  const double size = hull.radius * (std::sqrt(longest) * (1.0 + kRounding) + ball / shortest);
+  around.a = Vec3d{lxx, lyx, lzx} * size;
+  around.b = Vec3d{0.0, lyy, lzy} * size;
+  around.c = Vec3d{0.0, 0.0, lzz} * size;
+  Vec3d low = hull.vertices.front(), high = low;
+  for (const Vec3d& vertex : hull.vertices) {
+    low = min(low, vertex);
+    high = max(high, vertex);
+  }
+  const double more = hull.slack + kRounding * hull.radius;
+  around.box_centre = (low + high) * 0.5;
+  around.box_half = (high - low) * 0.5 + Vec3d(more, more, more);
+  around.reach = l1Norm(hull.centre) + l1Norm(around.a) + l1Norm(around.b) + l1Norm(around.c) +
+                 l1Norm(around.box_centre) + l1Norm(around.box_half);
+  return around;
+}
+
+}  // namespace sightline::layers

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/layers/hull.h"
+#include "src/layers/hull/hull_frame.h"
+
+namespace sightline::layers {
+
+// The hull of points that lie in one place, on a line or in a plane, up to rounding: all but centre and
+// radius. points: coordinates of at most 1. numbers: becomes which point each vertex is.
+ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
+                    std::vector<std::uint32_t>& numbers);
+
+}  // namespace sightline::layers

@@ -1,0 +1,192 @@
+// Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
+// Microsoft Research MSR-TR-97-11, 1997, appendix B; Kelvin Chung, Wenping Wang. Quick collision detection of
+// polytopes in virtual environments. VRST 1996.
+// Differs from the papers in: "apart" is said only of a plane with more room than all rounding, "meet" only
+// of a tetrahedron that holds the origin by more than that; what is left in between is undecided.
+
+#include "src/layers/pairs/convex_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/geometry/tolerance.h"
+#include "src/layers/pairs/gjk.h"
+
+namespace sightline::layers {
+namespace {
+
+constexpr int kChungSteps = 4;
+
+// From somewhere within the first set to somewhere within the second.
+Vec3d directionBetween(const PairQuestion& question) {
+  const Vec3d inner = innerPoint(question.second, innerPoint(question.first, Vec3d()));
+  const Vec3d unit = unitOrZero(inner - innerPoint(question.first, inner));
+  return unit == Vec3d() ? Vec3d{1, 0, 0} : unit;
+}
+
+bool isUnit(const Vec3d& direction) {
+  return std::abs(dot(direction, direction) - 1.0) <= 1e-9;
+}
+
+// Where to begin: the kept direction, and the kept vertices of hulls.
+void recall(const PairWitness& witness, PairQuestion& question) {
+  for (std::size_t i = std::min<std::size_t>(witness.pairs, witness.first.size()); i-- > 0;) {
+    const std::uint32_t first = knownVertex(question.first, witness.first[i]);
+    const std::uint32_t second = knownVertex(question.second, witness.second[i]);
+    question.first_hull = first == PairWitness::kEye ? question.first_hull : first;
+    question.second_hull = second == PairWitness::kEye ? question.second_hull : second;
+  }
+  if (witness.pairs > 0 && isUnit(witness.direction)) {
+    question.direction = witness.direction;
+    return;
+  }
+  question.direction = witness.pairs > 0 ? unitOrZero(witness.direction) : Vec3d();
+  if (question.direction == Vec3d()) {
+    question.direction = directionBetween(question);
+  }
+}
+
+// The kept vertex pairs as a simplex.
+Simplex recallSimplex(const PairWitness& witness, const PairQuestion& question) {
+  Simplex simplex;
+  for (std::size_t i = 0; i < std::min<std::size_t>(witness.pairs, witness.first.size()); ++i) {
+    const std::uint32_t first = knownVertex(question.first, witness.first[i]);
+    const std::uint32_t second = knownVertex(question.second, witness.second[i]);
+    if (!simplex.has(first, second)) {
+      simplex.add(differenceOf(question, first, second));
+    }
+  }
+  return simplex;
+}
+
+// The hulls' farthest vertices are kept beside the sets', because a search cannot begin at an eye.
+void keepApart(const PairQuestion& question, PairWitness& witness) {
+  witness.apart = true;
+  witness.pairs = 2;
+  witness.direction = question.direction;
+  witness.first[0] = question.first_vertex;
+  witness.second[0] = question.second_vertex;
+  witness.first[1] = question.first_hull;
+  witness.second[1] = question.second_hull;
+}
+
+void keepSimplex(const PairQuestion& question, const Simplex& simplex, PairWitness& witness) {
+  witness.apart = false;
+  witness.pairs = static_cast<std::uint8_t>(simplex.size);
+  witness.direction = question.direction;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.size); ++i) {
+    witness.first[i] = simplex.corners[i].first;
+    witness.second[i] = simplex.corners[i].second;
+  }
+}
+
+// D' = D - 2 (R . D) R, R from the first set's farthest vertex to the second's: where these two lie the wrong
+// way round along D, they lie the right way round along D'. Chung shows that this ends at a separating
+// direction where there is one. simplex: takes the pairs.
+Meeting chung(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
+  for (int step = 0; step < kChungSteps; ++step) {
+    if (separates(question, question.direction, steps)) {
+      return Meeting::kApart;
+    }
+    if (simplex.has(question.first_vertex, question.second_vertex)) {
+      return Meeting::kUndecided;
+    }
+    const Difference pair = differenceOf(question, question.first_vertex, question.second_vertex);
+    simplex.add(pair);
+    const double square = dot(pair.point, pair.point);
+    const double along = dot(pair.point, question.direction);
+    const Vec3d next = unitOrZero(question.direction - pair.point * (2.0 * along / square));
+    if (next == Vec3d()) {
+      return Meeting::kUndecided;
+    }
+    question.direction = next;
+  }
+  return Meeting::kUndecided;
+}
+
+// An upper bound of the set's heights along a direction, whose components do not exceed 1 by more than
+// rounding, above the local origin: by its ellipsoid. Of sums of numbers whose magnitudes add up to m, 2^-45
+// m is far above the rounding, and kTiny above all that underflows. Not a number, or infinite, where anything
+// is not finite.
+double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& local_origin) {
+  constexpr double kRounding = 0x1p-45, kTiny = 1e-150;
+  const Placement& p = set.placement;
+  const Vec3d offset = p.origin - local_origin;
+  const double stretch = l1Norm(p.x) + l1Norm(p.y) + l1Norm(p.z);
+  double height = set.around->height(p.toHull(direction)) + dot(direction, offset) +
+                  kRounding * (stretch * set.around->reach + l1Norm(offset)) + kTiny;
+  if (set.kind == ConvexSet::Kind::kWithEye) {
+    const Vec3d eye = set.eye_or_sweep - local_origin;
+    const double of_eye = dot(direction, eye) + kRounding * l1Norm(eye);
+    height = std::isnan(height) || of_eye <= height ? height : of_eye;
+  } else if (set.kind == ConvexSet::Kind::kSwept) {
+    const double along = dot(direction, set.eye_or_sweep) + kRounding * l1Norm(set.eye_or_sweep);
+    height = along <= 0.0 ? height : height + along;
+  }
+  return height;
+}
+
+// Whether the kept direction still separates, seen without looking at vertices. false: not known.
+bool stillApart(const ConvexSet& first, const ConvexSet& second, const PairWitness& witness) {
+  if (!witness.apart || first.around == nullptr || second.around == nullptr || !isUnit(witness.direction)) {
+    return false;
+  }
+  const Vec3d& origin = first.placement.origin;
+  return outerHeight(first, witness.direction, origin) + outerHeight(second, -witness.direction, origin) <
+         0.0;
+}
+
+bool hasPoints(const ConvexSet& set) {
+  return set.hull != nullptr && !set.hull->vertices.empty();
+}
+
+PairQuestion questionOf(const ConvexSet& first, const ConvexSet& second) {
+  PairQuestion question{localSet(first, first.placement.origin), localSet(second, first.placement.origin)};
+  question.unit = 1.0 / std::max({question.first.size, question.second.size, 1e-200});
+  return question;
+}
+
+bool isFinite(const LocalSet& set) {
+  return std::isfinite(set.size + set.hull_error + set.far_error);
+}
+
+}  // namespace
+
+Meeting meeting(const ConvexSet& first, const ConvexSet& second, PairWitness& witness, PairCounts& counts) {
+  ++counts.questions;
+  if (!hasPoints(first) || !hasPoints(second)) {
+    witness = PairWitness();
+    return Meeting::kUndecided;
+  }
+  if (stillApart(first, second, witness)) {
+    ++counts.chung_steps;
+    return Meeting::kApart;
+  }
+  PairQuestion question = questionOf(first, second);
+  if (!isFinite(question.first) || !isFinite(question.second)) {
+    witness = PairWitness();
+    return Meeting::kUndecided;
+  }
+  recall(witness, question);
+  Simplex simplex;
+  Meeting result = Meeting::kUndecided;
+  if (witness.apart || witness.pairs == 0) {
+    result = chung(question, simplex, counts.chung_steps);
+  } else {
+    simplex = recallSimplex(witness, question);
+  }
+  if (result == Meeting::kUndecided) {
+    result = gjk(question, simplex, counts.gjk_steps);
+  }
+  if (result == Meeting::kUndecided) {
+    result = gjkAgain(question, simplex, counts.gjk_steps);
+  }
+  if (result == Meeting::kApart) {
+    keepApart(question, witness);
+  } else {
+    keepSimplex(question, simplex, witness);
+  }
+  return result;
+}
+
+}  // namespace sightline::layers

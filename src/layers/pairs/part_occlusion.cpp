@@ -1,0 +1,279 @@
+#include "src/layers/pairs/part_occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/geometry/tolerance.h"
+#include "src/layers/hull/support.h"
+#include "src/layers/pairs/pair_eye.h"
+
+namespace sightline::layers {
+namespace {
+
+// Relative to the coordinates involved; some hundred times the rounding of what it is compared with.
+constexpr double kMargin = 1e-12;
+
+// A ball that holds a placed hull, as heights along a direction of the world.
+struct Heights {
+  double middle = 0.0, half = 0.0;
+  double magnitude = 0.0;  // of what the middle was computed from
+};
+
+double reachOf(const ConvexSet& set) {
+  const Placement& p = set.placement;
+  return l1Norm(p.origin) +
+         (l1Norm(p.x) + l1Norm(p.y) + l1Norm(p.z)) * (l1Norm(set.hull->centre) + set.hull->radius);
+}
+
+Heights heightsAlong(const ConvexSet& set, const Vec3d& direction) {
+  const double radius = (set.hull->radius + set.hull->slack) * stretchOf(set.placement);
+  const double steep = l1Norm(direction);
+  return {dot(set.placement.point(set.hull->centre), direction), radius * length(direction) * (1.0 + kMargin),
+          reachOf(set) * steep};
+}
+
+}  // namespace
+
+void PartOcclusion::beginFrame(const View& view, const PartStore& parts, const ExtentTable& extents,
+                               const PairRules& rules, std::uint32_t expiry) {
+  view_ = view;
+  view_is_finite_ =
+      view.orthographic ? isFinite(view.forward) && l1Norm(view.forward) > 0.0 : isFinite(view.eye);
+  parts_ = &parts;
+  extents_ = &extents;
+  rules_ = &rules;
+  table_.beginFrame(expiry);
+  ++frame_;
+  rule_orders_.resize(rules.numbers());
+  collisions_.clear();
+  collisions_are_sorted_ = true;
+  pair_queries_ = 0;
+  counts_ = {};
+}
+
+void PartOcclusion::clear() {
+  table_.clear();
+}
+
+bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
+  if (!view_is_finite_ || parts_->finite[front] == 0 || parts_->finite[back] == 0) {
+    return true;
+  }
+  const std::uint32_t number = rules_->find(front, back);
+  const PairRule* rule = number == PairRules::kNone ? nullptr : &rules_->rule(number);
+  if (rule != nullptr && std::holds_alternative<ContainerRule>(rule->what)) {
+    if (isContainer(rule->first, rule->second)) {
+      return rule->first == front;
+    }
+    rule = nullptr;
+  }
+  if (rule != nullptr) {
+    const PairOrder order = ruleOrder(number);
+    if (!(rule->first == front ? order.first_may_occlude : order.second_may_occlude)) {
+      return false;
+    }
+    if (std::holds_alternative<SphereCylinderJoint>(rule->what)) {
+      return true;  // they touch
+    }
+  }
+
+  ++pair_queries_;
+  if (rule == nullptr && stillCollide(front, back)) {
+    return containment(front, back) != Verdict::kDoesNot;
+  }
+  const bool occludes = anyHullPair(
+      front, back, [&](std::uint32_t i, std::uint32_t j) { return hullOccludes(front, i, back, j); });
+  return occludes &&
+         (rule != nullptr || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
+}
+
+std::span<const Arc> PartOcclusion::collisions() {
+  if (!collisions_are_sorted_) {
+    std::sort(collisions_.begin(), collisions_.end());
+    collisions_.erase(std::unique(collisions_.begin(), collisions_.end()), collisions_.end());
+    collisions_are_sorted_ = true;
+  }
+  return collisions_;
+}
+
+PairOrder PartOcclusion::ruleOrder(std::uint32_t number) {
+  RuleOrder& known = rule_orders_[number];
+  if (known.frame == frame_) {
+    return known.order;
+  }
+  const PairRule& rule = rules_->rule(number);
+  PairOrder order;
+  if (const auto* callback = std::get_if<PairCallback>(&rule.what)) {
+    if (callback->order != nullptr) {
+      order = callback->order(callback->user, view_);
+    }
+  } else {
+    const PairEye eye = pairEye(view_, parts_->placements[rule.first]);
+    if (const auto* plane = std::get_if<PairPlane>(&rule.what)) {
+      order = orderOf(*plane, eye);
+    } else if (const auto* joint = std::get_if<SphereCylinderJoint>(&rule.what)) {
+      order = orderOf(*joint, eye);
+    }
+  }
+  known = {frame_, order};
+  return order;
+}
+
+bool PartOcclusion::spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) const {
+  for (std::size_t axis = 0; axis < extents_->axes(); ++axis) {
+    if (!extents_->angular(axis) && !overlapsSpatial(extents_->at(axis, a), extents_->at(axis, b))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// test(i, j) of the instances of two parts, until it is true.
+template <typename Test>
+bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const {
+  for (std::uint32_t i = parts_->first_hull[front]; i < parts_->first_hull[front + 1]; ++i) {
+    for (std::uint32_t j = parts_->first_hull[back]; j < parts_->first_hull[back + 1]; ++j) {
+      if (test(i, j)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// a < b.
+bool PartOcclusion::hullsMeet(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
+  PairWitness& witness = table_.use(i, j, PairTable::Question::kMeeting);
+  return meeting(placed(a, i), placed(b, j), witness, counts_) != Meeting::kApart;
+}
+
+void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
+  collisions_.push_back({a, b});
+  collisions_are_sorted_ = false;
+}
+
+// Whether the parts met at the last question and do so now: then each occludes the other, and one question
+// serves both orders.
+bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
+  const std::uint32_t low = std::min(front, back), high = std::max(front, back);
+  const bool meet = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
+    const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kMeeting);
+    return kept.witness != nullptr && !kept.witness->apart && (kept.used_now || hullsMeet(low, i, high, j));
+  });
+  if (meet) {
+    addCollision(low, high);
+  }
+  return meet;
+}
+
+// Whether the parts meet; then they are kept as a collision. Parts that meet occlude each other, so none goes
+// unseen of those that are asked about.
+bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
+  const std::uint32_t low = std::min(front, back), high = std::max(front, back);
+  const bool meet =
+      spatialExtentsOverlap(low, high) &&
+      anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) { return hullsMeet(low, i, high, j); });
+  if (meet) {
+    addCollision(low, high);
+  }
+  return meet;
+}
+
+// The hull in front must meet what lies between the one behind and the eye.
+bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j) {
+  const ConvexSet in_front = placed(front, i);
+  ConvexSet swept = placed(back, j);
+  if (view_.orthographic) {
+    if (!sweepPast(in_front, swept)) {
+      return false;
+    }
+  } else {
+    swept.kind = ConvexSet::Kind::kWithEye;
+    swept.eye_or_sweep = view_.eye;
+  }
+  PairWitness& witness = table_.use(i, j, PairTable::Question::kOcclusion);
+  return meeting(in_front, swept, witness, counts_) != Meeting::kApart;
+}
+
+// Makes the segments just long enough to pass all of the hull in front; false: that lies wholly farther from
+// the eye than the one behind. The length is a power of two, so that the direction stays exact.
+bool PartOcclusion::sweepPast(const ConvexSet& front, ConvexSet& back) const {
+  const Vec3d towards_eye = -view_.forward;
+  const Heights f = heightsAlong(front, towards_eye), b = heightsAlong(back, towards_eye);
+  const double way = (f.middle + f.half) - (b.middle - b.half) + kMargin * (f.magnitude + b.magnitude);
+  if (way < 0.0) {
+    return false;
+  }
+  back.kind = ConvexSet::Kind::kSwept;
+  const double steps = way / dot(towards_eye, towards_eye);
+  int exponent = 0;
+  (void)std::frexp(steps, &exponent);
+  // Not finite: meeting() leaves it undecided.
+  back.eye_or_sweep = towards_eye * (std::isfinite(steps) ? std::ldexp(1.0, exponent) : steps);
+  return true;
+}
+
+bool PartOcclusion::isContainer(std::uint32_t front, std::uint32_t back) const {
+  const auto of_front = parts_->hullsOf(front), of_back = parts_->hullsOf(back);
+  return of_front.size() == 1 && of_back.size() == 1 && of_front[0] == of_back[0] &&
+         parts_->hulls[of_front[0]].dimension == 3 && parts_->placements[front] == parts_->placements[back];
+}
+
+// What lies in a container is behind its front and before its back. Asked where hulls meet.
+PartOcclusion::Verdict PartOcclusion::containment(std::uint32_t front, std::uint32_t back) const {
+  const PairRules::Container around_front = rules_->containerOf(back);
+  if (around_front.other != PairRules::kNone && isContainer(back, around_front.other) &&
+      contains(back, front)) {
+    return around_front.is_front ? Verdict::kDoesNot : Verdict::kOccludes;
+  }
+  const PairRules::Container around_back = rules_->containerOf(front);
+  if (around_back.other != PairRules::kNone && isContainer(front, around_back.other) &&
+      contains(front, back)) {
+    return around_back.is_front ? Verdict::kOccludes : Verdict::kDoesNot;
+  }
+  return Verdict::kOpen;
+}
+
+// Whether all of a part lies inside the shell's hull, clear of its faces by more than rounding. A face with
+// the normal n and the offset d of the hull's space, placed by M, has the normal N = cof(M) n sign(det M),
+// and a point w of the world is behind it if N . (w - origin) <= -d |det M|.
+bool PartOcclusion::contains(std::uint32_t shell, std::uint32_t part) const {
+  const ConvexSet around = placed(shell, parts_->first_hull[shell]);
+  const Placement& m = around.placement;
+  const Vec3d cof_x = cross(m.y, m.z), cof_y = cross(m.z, m.x), cof_z = cross(m.x, m.y);
+  const double determinant = dot(m.x, cof_x);
+  const double side = determinant < 0.0 ? -1.0 : 1.0;
+  const double x = l1Norm(m.x), y = l1Norm(m.y), z = l1Norm(m.z);
+  for (std::uint32_t i = parts_->first_hull[part]; i < parts_->first_hull[part + 1]; ++i) {
+    const ConvexSet inside = placed(part, i);
+    const double reach = reachOf(inside) + reachOf(around);
+    std::uint32_t start = 0;
+    for (const Plane& face : around.hull->faces) {
+      const Vec3d& n = face.normal;
+      const Vec3d normal = (cof_x * n.x + cof_y * n.y + cof_z * n.z) * side;
+      const Vec3d direction = inside.placement.toHull(normal);
+      const Support top = farthest(*inside.hull, direction, start);
+      start = top.vertex;
+      const double height = top.height + supportError(*inside.hull, l1Norm(direction)) +
+                            dot(normal, inside.placement.origin - m.origin);
+      const double steep = x * y + y * z + z * x;
+      const double margin = kMargin * (steep * reach + x * y * z * std::abs(face.offset)) +
+                            around.hull->slack * std::abs(determinant);
+      if (!(height + margin < -face.offset * std::abs(determinant))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance) const {
+  ConvexSet set;
+  const std::uint32_t hull = parts_->part_hulls[instance];
+  set.hull = &parts_->hulls[hull];
+  set.around = hull < parts_->envelopes.size() ? &parts_->envelopes[hull] : nullptr;
+  set.placement = parts_->placements[part];
+  return set;
+}
+
+}  // namespace sightline::layers

@@ -1,0 +1,85 @@
+#pragma once
+
+// Whether one part occludes another, exactly: the last resort after extents.
+//
+// Based on: Snyder, Lengyel. MSR-TR-97-11, section 6.
+// Differs from the paper in: hulls are first tested for occlusion, and for collision only where they occlude,
+// which most pairs do not, or met in the last frame; parts are unions of hulls; the eye may be far away
+// (orthographic); rules allow or forbid directions before hulls are looked at; containers.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/layers/pair_rule.h"
+#include "sightline/scene/camera.h"
+#include "src/layers/extents/extent_table.h"
+#include "src/layers/pairs/convex_pair.h"
+#include "src/layers/pairs/pair_rules.h"
+#include "src/layers/pairs/pair_table.h"
+#include "src/layers/pairs/part_store.h"
+#include "src/layers/sort/occluder_source.h"
+
+namespace sightline::layers {
+
+class PartOcclusion {
+ public:
+  // Parts, extents and rules must stay as they are until the frame's last question. Of the extents those of
+  // spatial axes are used, as they are. expiry: frames that what is known of a pair outlives its last use.
+  void beginFrame(const View& view, const PartStore& parts, const ExtentTable& extents,
+                  const PairRules& rules, std::uint32_t expiry);
+  // Whether some ray from the eye meets `front` and then `back`, two parts; true where it is not certain. A
+  // part that is not finite occludes all and is occluded by all.
+  bool occludes(std::uint32_t front, std::uint32_t back);
+  // The pairs of parts without a rule that were asked about this frame and meet, touch, or nearly do: front <
+  // back, each once, ascending. Valid until the next question.
+  std::span<const Arc> collisions();
+
+  std::uint64_t pairQueries() const { return pair_queries_; }  // this frame's questions that came to hulls
+  const PairCounts& counts() const { return counts_; }         // this frame's
+  std::size_t knownPairs() const { return table_.size(); }
+  // Forgets all pairs.
+  void clear();
+
+ private:
+  enum class Verdict : std::uint8_t { kOpen, kOccludes, kDoesNot };
+
+  PairOrder ruleOrder(std::uint32_t number);
+  bool spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) const;
+  template <typename Test>
+  bool anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const;
+  bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j);
+  bool hullsMeet(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
+  bool stillCollide(std::uint32_t front, std::uint32_t back);
+  bool collide(std::uint32_t front, std::uint32_t back);
+  void addCollision(std::uint32_t a, std::uint32_t b);
+  bool sweepPast(const ConvexSet& front, ConvexSet& back) const;
+
+  bool isContainer(std::uint32_t front, std::uint32_t back) const;
+  Verdict containment(std::uint32_t front, std::uint32_t back) const;
+  bool contains(std::uint32_t shell, std::uint32_t part) const;
+
+  ConvexSet placed(std::uint32_t part, std::uint32_t instance) const;
+
+  View view_;
+  bool view_is_finite_ = false;
+  const PartStore* parts_ = nullptr;
+  const ExtentTable* extents_ = nullptr;
+  const PairRules* rules_ = nullptr;
+
+  PairTable table_;
+  struct RuleOrder {
+    std::uint64_t frame = 0;
+    PairOrder order;
+  };
+  std::vector<RuleOrder> rule_orders_;  // one a rule, of the frame in which it was asked for
+  std::uint64_t frame_ = 0;
+  std::vector<Arc> collisions_;
+  bool collisions_are_sorted_ = true;
+
+  std::uint64_t pair_queries_ = 0;
+  PairCounts counts_;
+};
+
+}  // namespace sightline::layers

@@ -1,0 +1,357 @@
+// Based on: Snyder, Lengyel. Visibility Sorting and Compositing for Image-Based Rendering. MSR-TR-97-11,
+// 1997. Differs from the paper in: depth-first search is the default sorter; extents overlap periodically;
+// parts may be unions of hulls, backdrops, overlays and containers; see docs/algorithms/layers.md.
+
+#include "sightline/layers/layer_sorter.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "src/comparison/layers/incremental_sort.h"
+#include "src/layers/extents/part_extents.h"
+#include "src/layers/pairs/pair_rules.h"
+#include "src/layers/pairs/part_occlusion.h"
+#include "src/layers/pairs/part_store.h"
+#include "src/layers/sort/conditioning_sort.h"
+#include "src/layers/sort/depth_first_sort.h"
+#include "src/layers/sort/layer_source.h"
+
+namespace sightline {
+
+using namespace layers;
+
+namespace {
+
+using Place = PartSettings::Place;
+
+LayerSettings checked(LayerSettings settings) {
+  if (settings.extents.size() > kMaxExtentAxes) {
+    settings.extents.resize(kMaxExtentAxes);
+  }
+  const auto axis = static_cast<std::size_t>(settings.conditioning_axis);
+  if (settings.conditioning_axis < 0 || axis >= settings.extents.size() ||
+      settings.extents[axis].kind != ExtentAxis::Kind::kSpatial) {
+    settings.conditioning_axis = -1;
+  }
+  return settings;
+}
+
+// A power of two times the direction, so that no product of two of its coordinates vanishes. What an
+// orthographic view looks along needs no length.
+View scaled(const View& view) {
+  const double largest = maxComponent(abs(view.forward));
+  View result = view;
+  if (view.orthographic && std::isfinite(largest) && largest > 0.0) {
+    const int exponent = std::ilogb(largest);
+    result.forward = {std::ldexp(view.forward.x, -exponent), std::ldexp(view.forward.y, -exponent),
+                      std::ldexp(view.forward.z, -exponent)};
+  }
+  return result;
+}
+
+}  // namespace
+
+struct LayerSorter::Impl {
+  explicit Impl(LayerSettings given)
+      : settings(checked(std::move(given))),
+        extents(settings.extents),
+        source(settings, extents, occlusion) {}
+
+  bool isFinite(std::uint32_t part) const;
+  bool areParts(PartId first, PartId second) const;
+  void place(const View& view);
+  void sort();
+  void condition();
+  void addArcsBetweenGroups();
+  void collect();
+  void sortByDistance(const View& view, std::span<std::uint32_t> parts);
+  double distance(const View& view, std::uint32_t part) const;
+  LayerStats stats() const;
+
+  LayerSettings settings;
+  PartStore store;
+  std::vector<PartSettings> part_settings;
+  std::vector<std::uint8_t> enabled, moved, sorted;  // one a part; sorted: has been in an update
+  PairRules rules;
+  PartExtents extents;
+  PartOcclusion occlusion;
+  LayerSource source;
+  DepthFirstSort depth_first;
+  IncrementalSort incremental;
+  ConditioningSort conditioning;
+
+  std::vector<std::uint32_t> previous;  // parts to be sorted, in the last frame's order
+  std::vector<std::uint8_t> listed;     // one a part: in previous
+  std::vector<std::uint32_t> occluders;
+  std::vector<double> distances;  // one a part
+  std::vector<double> group_distances;
+  GroupedOrder order;
+  std::uint64_t extent_updates = 0, conditioned = 0;
+
+  std::vector<PartId> parts_out;
+  std::vector<std::uint32_t> first_out;
+  std::vector<LayerArc> arcs_out, collisions_out;
+  LayerOrder out;
+};
+
+LayerSorter::LayerSorter(LayerSettings settings) : impl_(std::make_unique<Impl>(std::move(settings))) {}
+LayerSorter::~LayerSorter() = default;
+LayerSorter::LayerSorter(LayerSorter&&) noexcept = default;
+LayerSorter& LayerSorter::operator=(LayerSorter&&) noexcept = default;
+
+HullId LayerSorter::addHull(ConvexHull hull) {
+  impl_->store.envelopes.push_back(envelopeOf(hull));
+  impl_->store.hulls.push_back(std::move(hull));
+  return HullId(impl_->store.hulls.size() - 1);
+}
+
+PartId LayerSorter::addPart(std::span<const HullId> hulls, const PartSettings& settings) {
+  assert(!hulls.empty());
+  Impl& own = *impl_;
+  for (const HullId hull : hulls) {
+    assert(hull.value < own.store.hulls.size());
+    own.store.part_hulls.push_back(hull.value);
+  }
+  own.store.first_hull.push_back(static_cast<std::uint32_t>(own.store.part_hulls.size()));
+  own.store.placements.emplace_back();
+  own.store.finite.push_back(own.isFinite(static_cast<std::uint32_t>(own.store.parts() - 1)) ? 1 : 0);
+  own.part_settings.push_back(settings);
+  own.enabled.push_back(1);
+  own.moved.push_back(1);
+  own.sorted.push_back(0);
+  own.listed.push_back(0);
+  return PartId(own.store.parts() - 1);
+}
+
+std::size_t LayerSorter::parts() const {
+  return impl_->store.parts();
+}
+
+bool LayerSorter::setTransform(PartId part, const Mat4& world_from_part) {
+  Impl& own = *impl_;
+  if (own.part_settings[part.value].is_static && own.sorted[part.value] != 0) {
+    return false;
+  }
+  const Placement placement = placementOf(world_from_part);
+  if (placement == own.store.placements[part.value]) {
+    return true;
+  }
+  own.store.placements[part.value] = placement;
+  own.store.finite[part.value] = own.isFinite(part.value) ? 1 : 0;
+  own.moved[part.value] = 1;
+  return true;
+}
+
+// A hull without vertices, which buildHull never makes, leaves open where the part is.
+bool LayerSorter::Impl::isFinite(std::uint32_t part) const {
+  const std::span<const std::uint32_t> hulls = store.hullsOf(part);
+  return layers::isFinite(store.placements[part]) && !hulls.empty() &&
+         std::none_of(hulls.begin(), hulls.end(),
+                      [&](std::uint32_t hull) { return store.hulls[hull].vertices.empty(); });
+}
+
+bool LayerSorter::Impl::areParts(PartId first, PartId second) const {
+  return first.value < store.parts() && second.value < store.parts();
+}
+
+void LayerSorter::setEnabled(PartId part, bool enabled) {
+  impl_->enabled[part.value] = enabled ? 1 : 0;
+}
+
+void LayerSorter::setRule(PartId first, PartId second, const PairPlane& rule) {
+  if (impl_->areParts(first, second)) {
+    impl_->rules.set(first.value, second.value, rule);
+  }
+}
+
+void LayerSorter::setRule(PartId first, PartId second, const SphereCylinderJoint& rule) {
+  if (impl_->areParts(first, second)) {
+    impl_->rules.set(first.value, second.value, rule);
+  }
+}
+
+void LayerSorter::setRule(PartId first, PartId second, const PairCallback& rule) {
+  if (impl_->areParts(first, second)) {
+    impl_->rules.set(first.value, second.value, rule);
+  }
+}
+
+void LayerSorter::clearRule(PartId first, PartId second) {
+  if (impl_->areParts(first, second)) {
+    impl_->rules.clear(first.value, second.value);
+  }
+}
+
+void LayerSorter::setContainer(PartId front, PartId back) {
+  if (impl_->areParts(front, back)) {
+    impl_->rules.setContainer(front.value, back.value);
+  }
+}
+
+void LayerSorter::rebuildTree() {
+  impl_->source.rebuildTree();
+}
+
+void LayerSorter::reset() {
+  impl_->previous.clear();
+  std::fill(impl_->listed.begin(), impl_->listed.end(), 0);
+}
+
+// To the middle of the part's hulls; of an orthographic view along its forward direction.
+double LayerSorter::Impl::distance(const View& view, std::uint32_t part) const {
+  const std::span<const std::uint32_t> hulls = store.hullsOf(part);
+  Vec3d centre;
+  for (const std::uint32_t hull : hulls) {
+    centre += store.placements[part].point(store.hulls[hull].centre);
+  }
+  const Vec3d offset = centre / static_cast<double>(hulls.size()) - view.eye;
+  const double value = view.orthographic ? dot(offset, view.forward) : length(offset);
+  return std::isfinite(value) ? value : 0.0;
+}
+
+void LayerSorter::Impl::sortByDistance(const View& view, std::span<std::uint32_t> parts) {
+  distances.resize(store.parts());
+  for (const std::uint32_t part : parts) {
+    distances[part] = distance(view, part);
+  }
+  std::sort(parts.begin(), parts.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(distances[a], a) < std::pair(distances[b], b);
+  });
+}
+
+// The last order without what is gone, then what is new.
+void LayerSorter::Impl::place(const View& view) {
+  const auto sorts = [&](std::uint32_t part) {
+    return enabled[part] != 0 && part_settings[part].place == Place::kSorted;
+  };
+  const auto gone = std::remove_if(previous.begin(), previous.end(), [&](std::uint32_t part) {
+    listed[part] = sorts(part) ? 1 : 0;
+    return listed[part] == 0;
+  });
+  previous.erase(gone, previous.end());
+  const std::size_t known = previous.size();
+  for (std::uint32_t part = 0; part < store.parts(); ++part) {
+    if (listed[part] == 0 && sorts(part)) {
+      listed[part] = 1;
+      previous.push_back(part);
+    }
+  }
+  sortByDistance(view, std::span(previous).subspan(known));
+}
+
+void LayerSorter::Impl::sort() {
+  source.beginFrame(previous);
+  if (settings.sort == LayerSort::kDepthFirst) {
+    depth_first.sort(previous, source, order);
+  } else {
+    incremental.sort(previous, source, order);
+  }
+}
+
+// By the mean of its parts' distances from the eye along the axis.
+void LayerSorter::Impl::condition() {
+  conditioned = 0;
+  if (settings.conditioning_axis < 0) {
+    return;
+  }
+  const auto axis = static_cast<std::size_t>(settings.conditioning_axis);
+  distances.resize(store.parts());
+  group_distances.clear();
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    double sum = 0.0;
+    for (const std::uint32_t part : order.group(i)) {
+      distances[part] = extents.distanceAlong(axis, part);
+      sum += distances[part];
+    }
+    group_distances.push_back(sum / static_cast<double>(order.group(i).size()));
+  }
+  const ConditioningSort::MayOcclude may_occlude{[](void* user, std::uint32_t front, std::uint32_t back) {
+                                                   return static_cast<const LayerSource*>(user)->mayOcclude(
+                                                       front, back);
+                                                 },
+                                                 &source};
+  conditioned = conditioning.sort(group_distances, distances, may_occlude, {}, order);
+}
+
+// Every part is asked about while all others are active.
+void LayerSorter::Impl::addArcsBetweenGroups() {
+  for (const std::uint32_t part : order.parts) {
+    source.setActive(part, true);
+  }
+  order.arcs.clear();
+  for (const std::uint32_t part : order.parts) {
+    occluders.clear();
+    source.occludersOf(std::span(&part, 1), occluders);
+    for (const std::uint32_t front : occluders) {
+      order.arcs.push_back({front, part});
+    }
+  }
+  std::sort(order.arcs.begin(), order.arcs.end());
+}
+
+void LayerSorter::Impl::collect() {
+  parts_out.clear();
+  first_out.clear();
+  const auto addAlone = [&](Place place) {
+    for (std::uint32_t part = 0; part < store.parts(); ++part) {
+      if (enabled[part] != 0 && part_settings[part].place == place) {
+        first_out.push_back(static_cast<std::uint32_t>(parts_out.size()));
+        parts_out.emplace_back(part);
+      }
+    }
+  };
+  addAlone(Place::kOverlay);
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    first_out.push_back(static_cast<std::uint32_t>(parts_out.size()));
+    for (const std::uint32_t part : order.group(i)) {
+      parts_out.emplace_back(part);
+    }
+  }
+  addAlone(Place::kBackdrop);
+  first_out.push_back(static_cast<std::uint32_t>(parts_out.size()));
+  const auto copyArcs = [](std::span<const Arc> arcs, std::vector<LayerArc>& target) {
+    target.clear();
+    for (const Arc& arc : arcs) {
+      target.push_back({PartId(arc.front), PartId(arc.back)});
+    }
+  };
+  copyArcs(order.arcs, arcs_out);
+  copyArcs(occlusion.collisions(), collisions_out);
+  out = {parts_out, first_out, arcs_out, collisions_out, stats()};
+}
+
+LayerStats LayerSorter::Impl::stats() const {
+  const PairCounts& counts = occlusion.counts();
+  return {.extent_updates = extent_updates,
+          .occluder_queries = source.queries(),
+          .candidates = source.candidates(),
+          .pair_queries = occlusion.pairQueries(),
+          .chung_steps = counts.chung_steps,
+          .gjk_steps = counts.gjk_steps,
+          .reinsertions = settings.sort == LayerSort::kIncremental ? incremental.reinsertions() : 0,
+          .conditioned = conditioned,
+          .known_pairs = occlusion.knownPairs(),
+          .by_tree = source.byTree()};
+}
+
+const LayerOrder& LayerSorter::update(const View& given) {
+  Impl& own = *impl_;
+  const View view = scaled(given);
+  own.extent_updates = own.extents.update(view, own.store, own.moved);
+  std::fill(own.moved.begin(), own.moved.end(), 0);
+  std::fill(own.sorted.begin(), own.sorted.end(), 1);
+  own.occlusion.beginFrame(view, own.store, own.extents.table(), own.rules, own.settings.pair_expiry);
+  own.place(view);
+  own.sort();
+  own.condition();
+  own.previous.assign(own.order.parts.begin(), own.order.parts.end());
+  if (own.settings.all_arcs) {
+    own.addArcsBetweenGroups();
+  }
+  own.collect();
+  return own.out;
+}
+
+}  // namespace sightline

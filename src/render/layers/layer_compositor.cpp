@@ -1,0 +1,266 @@
+// Group after group, front to back: the images of the group's layers, its program, and the picture so far
+// over that.
+
+#include "sightline/render/layer_compositor.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "src/render/layers/convex_mesh.h"
+
+namespace sightline {
+namespace {
+
+// How a layer comes into the picture.
+struct LayerUse {
+  bool left_out = false;
+  const LayerImage* replacement = nullptr;
+};
+
+Error replacementError(LayerId layer, const std::string& what) {
+  return Error{"the image that replaces layer " + std::to_string(layer.value) + " " + what};
+}
+
+}  // namespace
+
+struct LayerCompositor::Impl {
+  LayerRenderer* renderer = nullptr;
+  std::vector<std::uint8_t> is_blended, covers_once;  // by object
+
+  CompositingCompiler compiler;
+  CompositingProgram group_program;  // of one group, whose layers it numbers from 0
+  std::vector<LayerUse> uses;        // by layer of the frame
+  std::vector<LayerImage> images;    // of one group's layers; more than it has
+  std::vector<ShapedImage> operands;
+  std::vector<ObjectId> objects;
+  std::array<ShapedPixel, kCompositingScratch> scratch;
+  LayerImage composited, sky;
+  std::vector<std::uint32_t> unordered_groups;
+  bool all_sizes_fit = true;  // of the images that were drawn
+
+  Status readUses(const FrameLayers& layers, const CompositeSettings& settings);
+  bool isOfRenderersSize(const LayerImage& image) const;
+  bool hasBlended(const FrameLayers& layers, LayerId layer) const;
+  bool needsPeel() const;
+  bool isUnordered(const FrameLayers& layers, std::uint32_t first, std::uint32_t end) const;
+
+  void collect(const FrameLayers& layers, std::uint32_t first, std::uint32_t end);
+  void drawObjects(const View& view, const CompositeSettings& settings, LayerImage& image,
+                   CompositeStats& stats);
+  void addLayer(const View& view, const FrameLayers& layers, std::uint32_t layer,
+                const CompositeSettings& settings, LayerImage& picture, CompositeStats& stats);
+  void addGroup(const View& view, const FrameLayers& layers, std::uint32_t group,
+                const CompositingProgram& program, const CompositeSettings& settings, LayerImage& picture,
+                CompositeStats& stats);
+  void evaluateGroup(std::span<const CompositingStep> steps, std::uint32_t first, std::uint32_t count,
+                     LayerImage& picture);
+};
+
+Status LayerCompositor::Impl::readUses(const FrameLayers& layers, const CompositeSettings& settings) {
+  uses.assign(layers.layers(), {});
+  for (const LayerReplacement& replaced : settings.replaced) {
+    if (replaced.layer.value >= uses.size()) {
+      return replacementError(replaced.layer, "replaces none: there are " + std::to_string(uses.size()));
+    }
+    const LayerImage* image = replaced.image;
+    if (image == nullptr || !isOfRenderersSize(*image)) {
+      return replacementError(replaced.layer, "must have " + std::to_string(renderer->width()) + " x " +
+                                                  std::to_string(renderer->height()) + " pixels");
+    }
+    uses[replaced.layer.value].replacement = image;
+  }
+  for (const LayerId layer : settings.left_out) {
+    if (layer.value < uses.size()) {
+      uses[layer.value].left_out = true;
+    }
+  }
+  return Success{};
+}
+
+bool LayerCompositor::Impl::isOfRenderersSize(const LayerImage& image) const {
+  return image.width == renderer->width() && image.height == renderer->height() &&
+         image.pixels.size() == std::size_t{image.width} * image.height;
+}
+
+bool LayerCompositor::Impl::hasBlended(const FrameLayers& layers, LayerId layer) const {
+  const std::span<const PartId> parts = layers.partsOf(layer);
+  return std::any_of(parts.begin(), parts.end(), [&](PartId part) { return is_blended[part.value] != 0; });
+}
+
+// Of what is in `objects`, which is drawn at once.
+bool LayerCompositor::Impl::needsPeel() const {
+  const bool any_blended =
+      std::any_of(objects.begin(), objects.end(), [&](ObjectId o) { return is_blended[o.value] != 0; });
+  return any_blended && (objects.size() > 1 || covers_once[objects.front().value] == 0);
+}
+
+// Whether the layers of a group, as far as they are drawn, are in a circle that see-through ones are part of.
+bool LayerCompositor::Impl::isUnordered(const FrameLayers& layers, std::uint32_t first,
+                                        std::uint32_t end) const {
+  std::size_t parts = 0;
+  bool any_blended = false;
+  for (std::uint32_t i = first; i < end; ++i) {
+    if (!uses[i].left_out && uses[i].replacement == nullptr) {
+      parts += layers.partsOf(LayerId(i)).size();
+      any_blended = any_blended || hasBlended(layers, LayerId(i));
+    }
+  }
+  return parts > 1 && any_blended;
+}
+
+// The objects of these layers, as far as they are drawn.
+void LayerCompositor::Impl::collect(const FrameLayers& layers, std::uint32_t first, std::uint32_t end) {
+  objects.clear();
+  for (std::uint32_t i = first; i < end; ++i) {
+    if (!uses[i].left_out && uses[i].replacement == nullptr) {
+      for (const PartId part : layers.partsOf(LayerId(i))) {
+        objects.push_back(ObjectId(part.value));
+      }
+    }
+  }
+}
+
+void LayerCompositor::Impl::drawObjects(const View& view, const CompositeSettings& settings,
+                                        LayerImage& image, CompositeStats& stats) {
+  LayerDraw how;
+  how.peel = settings.peel == CompositeSettings::Peel::kWhereNeeded && needsPeel();
+  ++stats.layers;
+  stats.peeled += how.peel ? 1 : 0;
+  if (settings.draw_layer) {
+    settings.draw_layer(objects, how, image);
+    if (!isOfRenderersSize(image)) {
+      all_sizes_fit = false;
+      image.clear(renderer->width(), renderer->height());
+    }
+  } else {
+    stats.triangles += renderer->draw(view, objects, how, image).triangles;
+  }
+}
+
+void LayerCompositor::Impl::addLayer(const View& view, const FrameLayers& layers, std::uint32_t layer,
+                                     const CompositeSettings& settings, LayerImage& picture,
+                                     CompositeStats& stats) {
+  if (uses[layer].left_out) {
+    return;
+  }
+  if (uses[layer].replacement != nullptr) {
+    compositeOver(picture, *uses[layer].replacement);
+    return;
+  }
+  collect(layers, layer, layer + 1);
+  drawObjects(view, settings, images.front(), stats);
+  compositeOver(picture, images.front());
+}
+
+void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers, std::uint32_t group,
+                                     const CompositingProgram& program, const CompositeSettings& settings,
+                                     LayerImage& picture, CompositeStats& stats) {
+  const std::uint32_t first = layers.first_layer[group], end = layers.first_layer[group + 1];
+  const bool unordered = isUnordered(layers, first, end);
+  if (unordered) {
+    unordered_groups.push_back(group);
+  }
+  if (end - first == 1) {
+    addLayer(view, layers, first, settings, picture, stats);
+    return;
+  }
+  const bool any_replaced = std::any_of(uses.begin() + first, uses.begin() + end, [](const LayerUse& use) {
+    return use.replacement != nullptr && !use.left_out;
+  });
+  // A foreign image has no depths by which it could be peeled with the others.
+  if (unordered && !any_replaced && settings.peel == CompositeSettings::Peel::kWhereNeeded) {
+    collect(layers, first, end);
+    drawObjects(view, settings, images.front(), stats);
+    compositeOver(picture, images.front());
+    return;
+  }
+  const std::uint32_t count = end - first;
+  images.resize(std::max<std::size_t>(images.size(), count));
+  operands.assign(count, {});
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const LayerUse& use = uses[first + i];
+    if (use.left_out) {
+      continue;
+    }
+    if (use.replacement == nullptr) {
+      collect(layers, first + i, first + i + 1);
+      drawObjects(view, settings, images[i], stats);
+    }
+    operands[i] = (use.replacement != nullptr ? *use.replacement : images[i]).view();
+  }
+  evaluateGroup(program.group(group), first, count, picture);
+}
+
+void LayerCompositor::Impl::evaluateGroup(std::span<const CompositingStep> steps, std::uint32_t first,
+                                          std::uint32_t count, LayerImage& picture) {
+  group_program.steps.assign(steps.begin(), steps.end());
+  for (CompositingStep& step : group_program.steps) {
+    if (step.layer.valid()) {
+      step.layer.value -= first;
+    }
+  }
+  group_program.first_of.assign({0, static_cast<std::uint32_t>(steps.size())});
+  group_program.layers = count;
+  composited.clear(picture.width, picture.height);
+  if (evaluate(group_program, operands, composited.target(), scratch)) {
+    compositeOver(picture, composited);
+  }
+}
+
+LayerCompositor::LayerCompositor(const SceneView& scene, LayerRenderer& renderer)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->renderer = &renderer;
+  impl_->images.resize(1);
+  for (const Object& object : scene.objects) {
+    const Material& material = scene.materialOf(object);
+    const bool blended = material.opacity == Opacity::kBlended;
+    impl_->is_blended.push_back(blended ? 1 : 0);
+    impl_->covers_once.push_back(
+        blended && coversOnce(scene.positions, scene.indicesOf(object), material.double_sided) ? 1 : 0);
+  }
+}
+
+LayerCompositor::~LayerCompositor() = default;
+LayerCompositor::LayerCompositor(LayerCompositor&&) noexcept = default;
+LayerCompositor& LayerCompositor::operator=(LayerCompositor&&) noexcept = default;
+
+Result<CompositeStats> LayerCompositor::composite(const View& view, const FrameLayers& layers,
+                                                  const CompositeSettings& settings, LayerImage& picture) {
+  Impl& c = *impl_;
+  for (const PartId part : layers.parts) {
+    if (part.value >= c.is_blended.size()) {
+      return Error{"part " + std::to_string(part.value) + " is no object of the scene, which has " +
+                   std::to_string(c.is_blended.size())};
+    }
+  }
+  if (const Status ok = c.readUses(layers, settings); !ok) {
+    return ok.error();
+  }
+  const CompositingProgram& program = c.compiler.compile(layers, settings.form, settings.left_out);
+  CompositeStats stats;
+  stats.operations = countSteps(program.steps);
+  c.all_sizes_fit = true;
+  c.unordered_groups.clear();
+  picture.clear(c.renderer->width(), c.renderer->height());
+  for (std::uint32_t group = 0; group < layers.groups(); ++group) {
+    c.addGroup(view, layers, group, program, settings, picture, stats);
+  }
+  stats.unordered_groups = static_cast<std::uint32_t>(c.unordered_groups.size());
+  if (!c.all_sizes_fit) {
+    return Error{"layers drawn by draw_layer must have " + std::to_string(c.renderer->width()) + " x " +
+                 std::to_string(c.renderer->height()) + " pixels"};
+  }
+  if (settings.sky) {
+    c.renderer->drawSky(view, c.sky);
+    compositeOver(picture, c.sky);
+  }
+  return stats;
+}
+
+std::span<const std::uint32_t> LayerCompositor::unorderedGroups() const {
+  return impl_->unordered_groups;
+}
+
+}  // namespace sightline

@@ -1,0 +1,267 @@
+#include "sightline/render/layer_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "src/render/context/gl_context.h"
+#include "src/render/layers/depth_peeling.h"
+#include "src/render/layers/layer_renderer_places.h"
+#include "src/render/layers/layer_renderer_rect.h"
+#include "src/render/layers/layer_renderer_target.h"
+#include "src/render/scene/scene_buffers.h"
+#include "src/render/scene/scene_programs.h"
+#include "src/render/scene/shaders.h"
+
+namespace sightline {
+namespace {
+
+constexpr std::array<float, 4> kTransparent{0.0f, 0.0f, 0.0f, 0.0f};
+
+// One way to colour each, for one of the scene's vertex shaders.
+struct LayerPrograms {
+  SceneProgram opaque, alpha_tested, blended, peel_depth, peel_color, depth;
+};
+
+Result<LayerPrograms> makeLayerPrograms(const char* vertex, std::uint32_t samples) {
+  LayerPrograms p;
+  const std::array<std::pair<SceneProgram*, const char*>, 6> all{
+      {{&p.opaque, shaders::kLayerOpaqueFragment},
+       {&p.alpha_tested, shaders::kLayerAlphaTestedFragment},
+       {&p.blended, shaders::kLayerBlendedFragment},
+       {&p.peel_depth, shaders::kPeelDepthFragment},
+       {&p.peel_color, shaders::kPeelColorFragment},
+       {&p.depth, shaders::kNoColorFragment}}};
+  for (const auto& [program, fragment] : all) {
+    const Result<SceneProgram> made = makeSceneProgram("layer", fragment, nullptr, vertex);
+    if (!made) {
+      return made.error();
+    }
+    *program = *made;
+  }
+  const GLint location = glGetUniformLocation(p.alpha_tested.id, "samples");
+  glProgramUniform1i(p.alpha_tested.id, location, static_cast<GLint>(samples));
+  return p;
+}
+
+// Of each object's vertices, whatever the scene says that they are.
+std::vector<Box> boundsOf(const SceneView& scene) {
+  std::vector<Box> bounds(scene.objects.size());
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    for (const std::uint32_t index : scene.indicesOf(scene.objects[i])) {
+      bounds[i].extend(scene.positions[index]);
+    }
+  }
+  return bounds;
+}
+
+}  // namespace
+
+struct LayerRenderer::Impl {
+  explicit Impl(GlContext c) : context(std::move(c)) {}
+  Status prepare(const SceneView& scene, const LayerRendererOptions& options);
+  void choose(std::span<const ObjectId> objects, bool as_given);
+  PixelRect covered(const View& view, const LensPoint& lens) const;
+  void begin(const PixelRect& rect);
+  void use(const SceneProgram LayerPrograms::*program, const View& view, const LensPoint& lens) const;
+  void drawOpaque(const View& view, const LensPoint& lens) const;
+  void blendInOrder(const View& view, const LensPoint& lens) const;
+  std::uint32_t peel(const View& view, const LensPoint& lens);
+  void addBlendedDepths(const View& view, const LensPoint& lens) const;
+
+  GlContext context;
+  SceneBuffers buffers;
+  ObjectPlaces places;
+  LayerPrograms stored, moved;
+  SkyProgram sky;
+  LayerTarget target;
+  std::optional<DepthPeeler> peeler;  // where the scene has blended surfaces
+  std::vector<Box> bounds;            // of each object as stored
+  std::vector<ObjectId> chosen;       // in the order of drawing
+  std::vector<std::uint8_t> seen;     // of each object: whether it is among them
+  float haze = 0.0f;
+  LayerRendererOptions options;
+};
+
+Status LayerRenderer::Impl::prepare(const SceneView& scene, const LayerRendererOptions& new_options) {
+  const GlContext::Current current(context);
+  Result<LayerTarget> new_target =
+      LayerTarget::create(new_options.width, new_options.height, new_options.samples);
+  if (!new_target) {
+    return new_target.error();
+  }
+  Result<LayerPrograms> stored_programs = makeLayerPrograms(shaders::kSceneVertex, new_options.samples);
+  Result<LayerPrograms> moved_programs = makeLayerPrograms(shaders::kMovedSceneVertex, new_options.samples);
+  Result<SkyProgram> new_sky = makeSkyProgram(shaders::kLinearSkyFragment);
+  Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene, new_options.tints);
+  Result<ObjectPlaces> new_places = ObjectPlaces::create(static_cast<std::uint32_t>(scene.objects.size()));
+  for (const Error* error :
+       {stored_programs ? nullptr : &stored_programs.error(),
+        moved_programs ? nullptr : &moved_programs.error(), new_sky ? nullptr : &new_sky.error(),
+        scene_buffers ? nullptr : &scene_buffers.error(), new_places ? nullptr : &new_places.error()}) {
+    if (error) {
+      return *error;
+    }
+  }
+  const auto blended = [&scene](const Object& o) { return scene.materialOf(o).opacity == Opacity::kBlended; };
+  if (std::any_of(scene.objects.begin(), scene.objects.end(), blended)) {
+    Result<DepthPeeler> new_peeler = DepthPeeler::create(*new_target);
+    if (!new_peeler) {
+      return new_peeler.error();
+    }
+    peeler = *new_peeler;
+  }
+  target = *new_target;
+  stored = *stored_programs;
+  moved = *moved_programs;
+  sky = *new_sky;
+  buffers = std::move(*scene_buffers);
+  places = std::move(*new_places);
+  bounds = boundsOf(scene);
+  haze = hazeFor(sceneBounds(scene));
+  options = new_options;
+  return Success{};
+}
+
+// In the order in which they are drawn, each once.
+void LayerRenderer::Impl::choose(std::span<const ObjectId> objects, bool as_given) {
+  chosen.clear();
+  seen.assign(bounds.size(), 0);
+  for (const ObjectId id : objects) {
+    if (places.drawable(id.value) && seen[id.value] == 0) {
+      seen[id.value] = 1;
+      chosen.push_back(id);
+    }
+  }
+  if (!as_given && !std::is_sorted(chosen.begin(), chosen.end())) {
+    std::sort(chosen.begin(), chosen.end());
+  }
+}
+
+// By the chosen objects.
+PixelRect LayerRenderer::Impl::covered(const View& view, const LensPoint& lens) const {
+  RectCollector collector(view, lens, options.width, options.height);
+  for (std::size_t i = 0; i < chosen.size() && !collector.full(); ++i) {
+    collector.add(bounds[chosen[i].value], places.of(chosen[i].value));
+  }
+  return collector.rect();
+}
+
+void LayerRenderer::Impl::begin(const PixelRect& rect) {
+  target.restrictTo(rect);
+  beginPicture(target.framebuffer(), target.sampleWidth(), target.sampleHeight(), kTransparent);
+}
+
+void LayerRenderer::Impl::use(const SceneProgram LayerPrograms::*program, const View& view,
+                              const LensPoint& lens) const {
+  const LayerPrograms& programs = places.asStored() ? stored : moved;
+  useProgram(programs.*program, view, view.orthographic ? 0.0f : haze, 1.0f, lens);
+}
+
+void LayerRenderer::Impl::drawOpaque(const View& view, const LensPoint& lens) const {
+  use(&LayerPrograms::opaque, view, lens);
+  buffers.drawPass(Pass::kOpaque);
+  buffers.drawPass(Pass::kOpaqueDoubleSided);
+  use(&LayerPrograms::alpha_tested, view, lens);
+  buffers.drawPass(Pass::kAlphaTested);
+  buffers.drawPass(Pass::kAlphaTestedDoubleSided);
+}
+
+void LayerRenderer::Impl::blendInOrder(const View& view, const LensPoint& lens) const {
+  use(&LayerPrograms::blended, view, lens);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  buffers.drawPass(Pass::kBlended);
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+}
+
+std::uint32_t LayerRenderer::Impl::peel(const View& view, const LensPoint& lens) {
+  // A triangle has one depth in a sample, so there are no more peels than triangles.
+  return peeler->peel(target, buffers.blendedTriangles(), [&](DepthPeeler::Stage stage) {
+    use(stage == DepthPeeler::Stage::kDepth ? &LayerPrograms::peel_depth : &LayerPrograms::peel_color, view,
+        lens);
+    buffers.drawPass(Pass::kBlended);
+  });
+}
+
+void LayerRenderer::Impl::addBlendedDepths(const View& view, const LensPoint& lens) const {
+  use(&LayerPrograms::depth, view, lens);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  buffers.drawPass(Pass::kBlended);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+LayerRenderer::LayerRenderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+LayerRenderer::~LayerRenderer() = default;
+LayerRenderer::LayerRenderer(LayerRenderer&&) noexcept = default;
+LayerRenderer& LayerRenderer::operator=(LayerRenderer&&) noexcept = default;
+
+Result<LayerRenderer> LayerRenderer::create(const SceneView& scene, const LayerRendererOptions& options) {
+  Result<GlContext> context = GlContext::create();
+  if (!context) {
+    return context.error();
+  }
+  auto impl = std::make_unique<Impl>(std::move(*context));
+  if (Status prepared = impl->prepare(scene, options); !prepared) {
+    return prepared.error();
+  }
+  return LayerRenderer(std::move(impl));
+}
+
+void LayerRenderer::setTransforms(std::span<const Mat4> scene_from_stored) {
+  impl_->places.set(scene_from_stored);
+}
+
+LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> objects, const LayerDraw& how,
+                                   LayerImage& image) {
+  Impl& r = *impl_;
+  const GlContext::Current current(r.context);
+  r.choose(objects, how.as_given);
+  const SceneBuffers::Drawn drawn = r.buffers.select(r.chosen, r.places.mirrored());
+  const std::uint64_t blended = r.buffers.blendedTriangles();
+  LayerDrawStats stats{.triangles = drawn.triangles, .passes = 1};
+  r.begin(r.covered(view, how.lens));
+  r.buffers.bind();
+  r.places.bind(view.eye);
+  r.drawOpaque(view, how.lens);
+  if (blended > 0 && how.peel) {
+    const std::uint32_t peels = r.peel(view, how.lens);
+    stats.passes = std::max(peels, 1u);
+    // Each peel is sent twice; after the last one it is seen that there are no more.
+    stats.triangles += blended * (peels + std::min<std::uint64_t>(peels + 1, blended) - 1);
+  } else if (blended > 0) {
+    r.blendInOrder(view, how.lens);
+  }
+  if (blended > 0 && how.depths) {
+    r.addBlendedDepths(view, how.lens);
+    stats.triangles += blended;
+  }
+  r.target.read(view, how.depths, image);
+  return stats;
+}
+
+void LayerRenderer::drawSky(const View& view, LayerImage& image) {
+  Impl& r = *impl_;
+  const GlContext::Current current(r.context);
+  r.begin({0, 0, r.options.width, r.options.height});
+  drawSkyBehind(r.sky, view);
+  r.target.read(view, false, image);
+}
+
+std::uint32_t LayerRenderer::width() const {
+  return impl_->options.width;
+}
+
+std::uint32_t LayerRenderer::height() const {
+  return impl_->options.height;
+}
+
+std::string LayerRenderer::device() const {
+  return impl_->context.device();
+}
+
+}  // namespace sightline

@@ -1,0 +1,49 @@
+#include "sightline/render/depth_of_field.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "src/render/lens/depth_of_field_circle.h"
+
+namespace sightline {
+
+// Seen from a point o of the lens, what lies at depth z moves on the plane at distance 1 by
+// o (1 / focus - 1 / z), sheared as the picture is to hold the plane of focus.
+double signedCircle(const View& view, const Lens& lens, double depth, std::uint32_t height) {
+  if (!(lens.aperture > 0.0) || !(lens.focus > 0.0) || std::isnan(depth)) {
+    return 0.0;
+  }
+  double circle = 0.0;
+  if (view.orthographic) {
+    circle = lens.aperture * (depth / lens.focus - 1.0) / view.ortho_height;
+  } else if (depth > 0.0) {
+    circle = lens.aperture * (1.0 / lens.focus - 1.0 / depth) / (2.0 * view.tan_half_fovy);
+  }
+  circle *= height;
+  return std::isnan(circle) ? 0.0 : circle;
+}
+
+double circleOfConfusion(const View& view, const Lens& lens, double depth, std::uint32_t height) {
+  return std::abs(signedCircle(view, lens, depth, height));
+}
+
+std::vector<DiscPoint> discPoints(std::uint32_t count) {
+  // Half the golden angle, since there are two arms.
+  constexpr double kTurn = std::numbers::pi * (2.0 - std::numbers::phi);
+  std::vector<DiscPoint> points;
+  points.reserve(count);
+  const std::uint32_t odd = count % 2;
+  if (odd) {
+    points.emplace_back();
+  }
+  for (std::uint32_t i = 0; i < count / 2; ++i) {
+    // In the middle, by area, of the ring that is for these two.
+    const double radius = 0.5 * std::sqrt((odd + 2.0 * i + 1.0) / count);
+    const DiscPoint point{radius * std::cos(kTurn * i), radius * std::sin(kTurn * i)};
+    points.push_back(point);
+    points.push_back({-point.x, -point.y});
+  }
+  return points;
+}
+
+}  // namespace sightline

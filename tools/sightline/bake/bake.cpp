@@ -1,0 +1,223 @@
+// sightline bake: the visibility octree of a scene, and its occluder databases, as a file.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "sightline/pvs/bake/write_sight.h"
+#include "tools/sightline/bake/bake_databases.h"
+#include "tools/sightline/bake/bake_options.h"
+#include "tools/sightline/bake/bake_report.h"
+#include "tools/sightline/bake/bake_run.h"
+#include "tools/sightline/bake/bake_warning.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/command_line/signals.h"
+#include "tools/sightline/command_line/stopwatch.h"
+#include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/cull/info_sight.h"
+#include "tools/sightline/input/load.h"
+
+namespace sightline::tool {
+namespace {
+
+// What a process bakes with.
+struct Planned {
+  Scene scene;
+  Bake bake;
+  double load_us = 0.0, plan_us = 0.0;
+};
+
+CheckpointUse useOf(const BakeOptions& options) {
+  return options.resume    ? CheckpointUse::kResume
+         : options.restart ? CheckpointUse::kRestart
+                           : CheckpointUse::kNew;
+}
+
+// Baked files, and empty ones, hold nothing that another bake would not make again.
+bool mayBeReplaced(const std::string& file) {
+  std::error_code error;
+  return beginsAsSightFile(file) || (std::filesystem::file_size(file, error) == 0 && !error);
+}
+
+// Before the work, by the process that writes.
+Result<Checkpoint> openOutputs(const BakeOptions& options) {
+  if (options.output.empty() || options.output == "-") {
+    return Error{"--output: give the name of a file, F.sight"};
+  }
+  if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .outputs = {{"--output", options.output},
+                                                {"--output, for its parts,", options.partsFile()},
+                                                {"--json", options.common.json}}});
+      !ok) {
+    return ok.error();
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(options.output, ignored)) {
+    if (!std::filesystem::is_regular_file(options.output, ignored)) {
+      return Error{fmt::format("--output {}: is not a file; name another output", options.output)};
+    }
+    if (!options.force && !mayBeReplaced(options.output)) {
+      return Error{
+          fmt::format("--output {}: is there and is not a baked file; name another output, or give --force "
+                      "to write over it",
+                      options.output)};
+    }
+  }
+  return Checkpoint::open(options.partsFile(), useOf(options));
+}
+
+Result<Planned> planBake(const BakeOptions& options) {
+  Stopwatch watch;
+  Result<Scene> scene = loadScene(options.common.scene);
+  if (!scene) {
+    return scene.error();
+  }
+  const double load_us = watch.lap();
+  const Threads threads(options.common.threads);
+  const BakeSettings settings = bakeSettings(options, *scene);
+  const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
+  Result<Bake> bake = Bake::plan(scene->view(), occluders, settings);
+  if (!bake) {
+    return bake.error();
+  }
+  return Planned{std::move(*scene), std::move(*bake), load_us, watch.lap()};
+}
+
+// From all parts to the file, and what is in it.
+Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, BakeReport& report,
+                        BakedParts parts, Checkpoint& checkpoint) {
+  Result<BakedVisibility> baked = planned.bake.assemble(parts);
+  if (!baked) {
+    return baked.error();
+  }
+  parts = {};
+  baked->record.settings = dump(settingsJson(planned.bake, planned.scene.origin));
+  Stopwatch watch;
+  const Threads threads(options.common.threads);
+  baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());
+  report.times.databases = watch.lap();
+  const SignalGuard guard;  // from here on it is quicker to finish
+  if (const Status ok = writeSight(options.output, *baked); !ok) {
+    return ok.error();
+  }
+  report.times.write = watch.lap();
+  const Result<SightFile> file = SightFile::open(options.output);
+  if (!file) {
+    return file.error();
+  }
+  const Result<SightFacts> facts = factsOf(*file);
+  if (!facts) {
+    return facts.error();
+  }
+  if (const Status ok = checkpoint.remove(); !ok) {
+    return ok.error();
+  }
+  report.effort.peak_bytes = std::max(report.effort.peak_bytes, peakBytes());
+  report.effort.all_peak_bytes += peakBytes();
+  if (!options.common.json.empty()) {
+    const Status ok = writeOutput(options.common.json, dump(bakeJson(report, *file, *facts)));
+    if (!ok) {
+      return ok.error();
+    }
+  }
+  if (const std::string warning = bakeWarning(*file, *facts); !warning.empty()) {
+    fmt::print(stderr, "sightline: warning: {}: {}\n", options.output, warning);
+  }
+  if (options.common.textOnStdout()) {
+    fmt::print("{}", bakeText(report, options.output, *file, *facts));
+  }
+  return kOk;
+}
+
+// Every process; errors end all of them, and the first one says which.
+Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
+  std::optional<Checkpoint> checkpoint;
+  Status own = checkOptions(options);
+  if (own && world.first()) {
+    Result<Checkpoint> opened = openOutputs(options);
+    opened ? void(checkpoint.emplace(std::move(*opened))) : void(own = opened.error());
+  }
+  if (own = agree(world, own, 0); !own) {
+    return own.error();
+  }
+  Result<Planned> planned = planBake(options);
+  BakedParts parts;
+  if (!planned) {
+    own = planned.error();
+  } else if (checkpoint) {
+    auto known = checkpoint->begin(planned->bake.hash());
+    known ? void(parts = std::move(*known)) : void(own = known.error());
+    keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
+                             options.partsFile()));
+  }
+  if (own = agree(world, own, planned ? planned->bake.hash() : 0); !own) {
+    return own.error();
+  }
+  if (!checkpoint) {
+    bakeAsOther(planned->bake, world, options.common.threads);
+    return kOk;
+  }
+  BakeReport report{.plan = planned->bake.hash(),
+                    .occluders = planned->bake.occluders().all,
+                    .budget_chosen = options.settings.triangle_budget == 0,
+                    .depth_chosen = options.settings.max_depth == BakeSettings::kChooseDepth};
+  report.times.load = planned->load_us;
+  report.times.plan = planned->plan_us;
+  Stopwatch watch;
+  Result<BakedParts> all =
+      bakeAsFirst(planned->bake, world, options.common.threads, *checkpoint, std::move(parts), report.effort);
+  if (!all) {
+    return all.error();
+  }
+  report.times.bake = watch.lap();
+  report.parts = all->size();
+  return finish(options, *planned, report, std::move(*all), *checkpoint);
+}
+
+Result<ExitCode> runBake(const BakeOptions& options) {
+  MpiWorld world;
+  try {
+    Result<ExitCode> result = bakeTogether(options, world);
+    if (!result && !world.first()) {
+      return kOk;  // the first process says why and fails; mpirun ends the rest as soon as one has failed
+    }
+    return result;
+  } catch (const std::exception& error) {
+    if (world.size() == 1) {
+      throw;
+    }
+    fmt::print(stderr, "sightline: process {}: {}\n", world.rank(), error.what());
+    world.abort(kBadUsage);
+  }
+}
+
+}  // namespace
+
+void addBake(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "bake", "for every cell of space what may be seen from it, as a file; mpirun spreads it");
+  const auto options = std::make_shared<BakeOptions>();
+  addBakeOptions(*command, *options);
+  command->footer(
+      "Finished parts are kept in F.sight.parts until F.sight is written. What an interrupted bake left "
+      "there is only used with --resume and only removed with --restart; without either it is an error. "
+      "--resume may always be given.\n"
+      "The file is the same bit for bit, whatever the threads and processes. --threads and --sample-memory "
+      "are of each process.\n"
+      "Examples:\n"
+      "  sightline bake city.glb -o city.sight --threads 8\n"
+      "  sightline bake city.glb -o city.sight --threads 8 --resume\n"
+      "  sightline bake demo:building -o building.sight --triangle-budget 5000 --depth 5 --databases "
+      "area-angle,minimum-sets\n"
+      "  mpirun -n 4 --bind-to none sightline bake city.glb -o city.sight --threads 2");
+  command->callback([options, &chosen] { chosen = [options] { return runBake(*options); }; });
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,58 @@
+#include "tools/sightline/bake/bake_databases.h"
+
+#include <algorithm>
+
+#include "sightline/comparison/viewpoint_database.h"
+#include "sightline/occluders/occluder_database.h"
+#include "sightline/pvs/format/scene_id.h"
+#include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/input/load.h"
+
+namespace sightline::tool {
+namespace {
+
+std::vector<std::byte> buildDatabase(const std::string& name, CullingData& data,
+                                     const ParallelFor& parallel_for) {
+  ProgressBar bar("occluder database: " + name);
+  const Progress progress = [&](double done) { bar.update(done); };
+  if (name == "area-angle" || name == "detail") {
+    OccluderDatabaseSettings settings;
+    settings.turned_away = name == "detail";
+    return OccluderDatabase::build(data.hierarchy(HierarchyKind::kKdTree), data.occluders(), settings,
+                                   parallel_for, progress)
+        .save();
+  }
+  ViewpointDatabaseSettings settings;
+  const auto choice = std::ranges::find(kOccluderChoices, name, &Name<OccluderChoice>::text);
+  settings.criterion = criterionOf(choice->value);
+  return ViewpointDatabase::build(data.hierarchy(HierarchyKind::kBvh), data.occluders(), {}, settings,
+                                  parallel_for, progress)
+      .save();
+}
+
+}  // namespace
+
+std::string listBakedDatabases() {
+  std::string list;
+  for (const std::string_view name : kBakedDatabases) {
+    list.append(list.empty() ? "" : ", ").append(name);
+  }
+  return list;
+}
+
+std::vector<DatabaseBlob> buildDatabases(const Scene& scene, const std::vector<std::string>& names,
+                                         const ParallelFor& parallel_for) {
+  std::vector<DatabaseBlob> databases;
+  if (names.empty()) {
+    return databases;
+  }
+  CullingData data(scene, parallel_for);
+  const std::uint64_t occluders = occluderSetHash(data.occluders());
+  for (const std::string& name : names) {
+    databases.push_back({name, occluders, buildDatabase(name, data, parallel_for)});
+  }
+  return databases;
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,366 @@
+// One main thread a process, which alone speaks to other processes and to the checkpoint, and its baking
+// threads, which know the queue only. The main thread sleeps between its looks, so that it costs no core.
+
+#include "tools/sightline/bake/bake_run.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstdlib>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "tools/sightline/bake/part_queue.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/command_line/signals.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{1};        // between looks for messages
+constexpr std::chrono::milliseconds kPatience{100};  // without other processes
+constexpr std::chrono::seconds kSayHowToGoOn{2};
+
+// Messages between processes; from the first to the others: kGo, kParts.
+enum Tag : int {
+  kReady,   // number, error: how the process fares
+  kGo,      // number: 1, or 0 to give up
+  kWant,    // number: so many threads have nothing to do
+  kParts,   // their ids and search distances; none: there will be no more
+  kDone,    // id of the part, its bytes
+  kTotals,  // stats and peak memory, when all is done
+  kFailed,  // text: why
+};
+
+// The baking threads of this process. divide: parts that a part was divided into go to the queue at once.
+class BakeThreads {
+ public:
+  BakeThreads(const Bake& bake, PartQueue& queue, std::uint32_t count, bool divide)
+      : queue_(queue), divide_(divide), stats_(count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      threads_.emplace_back([this, &bake, i] { work(bake, i); });
+    }
+  }
+  // Parts that are being baked are finished.
+  ~BakeThreads() {
+    queue_.clear();
+    join();
+  }
+  BakeThreads(const BakeThreads&) = delete;
+  BakeThreads& operator=(const BakeThreads&) = delete;
+
+  // Once the queue is closed.
+  BakeStats join() {
+    BakeStats sum;
+    for (std::thread& thread : threads_) {
+      thread.join();
+    }
+    threads_.clear();
+    for (const BakeStats& stats : stats_) {
+      add(sum, stats);
+    }
+    return sum;
+  }
+
+ private:
+  void work(const Bake& bake, std::uint32_t taker) {
+    try {
+      Bake::Worker worker(bake);
+      while (const std::optional<PartTask> part = queue_.take(taker)) {
+        BakedPart bytes = worker.bake(*part);
+        const std::vector<PartTask> below = divide_ ? bake.partsBelow(bytes) : std::vector<PartTask>{};
+        queue_.finish({part->id, std::move(bytes)});  // before its parts can be finished
+        queue_.add(taker, below);
+        stats_[taker] = worker.stats();
+      }
+    } catch (const std::exception& error) {
+      queue_.fail(
+          fmt::format("a thread of the bake failed: {}; try a smaller --sample-memory, or fewer "
+                      "--threads, with --resume",
+                      error.what()));
+    }
+  }
+
+  PartQueue& queue_;
+  bool divide_;
+  std::vector<BakeStats> stats_;
+  std::vector<std::thread> threads_;
+};
+
+// The first process's.
+class FirstBaker {
+ public:
+  FirstBaker(const Bake& bake, MpiWorld& world, std::uint32_t threads, Checkpoint& checkpoint,
+             BakeEffort& effort)
+      : bake_(bake),
+        world_(world),
+        threads_(threads),
+        checkpoint_(checkpoint),
+        effort_(effort),
+        queue_(threads + static_cast<std::uint32_t>(world.size()) - 1),
+        wanted_(static_cast<std::size_t>(world.size()), 0) {}
+
+  Result<BakedParts> run(BakedParts known) {
+    begin(std::move(known));
+    const SignalGuard guard;
+    ProgressBar bar("baking", share_);
+    BakeThreads threads(bake_, queue_, threads_, true);
+    const auto start = std::chrono::steady_clock::now();
+    while (open_ > 0 || totals_ + 1 < world_.size()) {
+      if (const Status ok = look(); !ok) {
+        fail(ok.error());
+        return ok.error();
+      }
+      if (toldToEnd() != 0) {
+        endEarly(bar);
+      }
+      if (!said_ && open_ > 0 && std::chrono::steady_clock::now() - start > kSayHowToGoOn) {
+        bar.say("should this be interrupted, the same command with --resume goes on");
+        said_ = true;
+      }
+      bar.update(std::min(share_, 1.0), note());
+    }
+    queue_.close();
+    add(effort_.stats, threads.join());
+    return std::move(parts_);
+  }
+
+ private:
+  // Goes through what is known; what is missing goes to the queue.
+  void begin(BakedParts known) {
+    std::vector<PartTask> missing, next{bake_.firstPart()};
+    open_ = 1;
+    while (!next.empty()) {
+      const PartTask task = next.back();
+      next.pop_back();
+      const auto part = known.find(task.id);
+      if (part == known.end() || !bake_.isPart(task.id, part->second)) {
+        missing.push_back(task);
+        continue;
+      }
+      const std::vector<PartTask> below = bake_.partsBelow(part->second);
+      next.insert(next.end(), below.rbegin(), below.rend());
+      count(part->second);
+      parts_.emplace(task.id, std::move(part->second));
+    }
+    effort_.processes = static_cast<std::uint32_t>(world_.size());
+    effort_.threads = threads_;
+    effort_.parts_before = static_cast<std::uint32_t>(parts_.size());
+    queue_.add(0, missing);
+  }
+
+  // At what threads and other processes have done meanwhile.
+  Status look() {
+    for (FinishedPart& finished : queue_.finished(world_.size() > 1 ? kLook : kPatience)) {
+      if (const Status ok = keep(std::move(finished)); !ok) {
+        return ok;
+      }
+    }
+    if (const std::optional<std::string> failure = queue_.failure()) {
+      return Error{*failure};
+    }
+    while (const std::optional<MpiWorld::Message> message = world_.receive()) {
+      if (const Status ok = answer(*message); !ok) {
+        return ok;
+      }
+    }
+    handOut();
+    return Success{};
+  }
+
+  // To the other processes that have asked: what there is, or that there will be no more.
+  void handOut() {
+    for (int other = 1; other < world_.size(); ++other) {
+      std::uint64_t& wanted = wanted_[static_cast<std::size_t>(other)];
+      const std::vector<PartTask> tasks =
+          wanted > 0 ? queue_.takeNow(takerOf(other), wanted) : std::vector<PartTask>{};
+      if (wanted == 0 || (tasks.empty() && open_ > 0)) {
+        continue;
+      }
+      MessageWriter message;
+      for (const PartTask& task : tasks) {
+        message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
+      }
+      // So short that MPI does not wait for the receiver, who may be sending as well.
+      world_.send(other, kParts, message.bytes());
+      wanted = 0;
+    }
+  }
+
+  std::uint32_t takerOf(int other) const { return threads_ + static_cast<std::uint32_t>(other) - 1; }
+
+  Status answer(const MpiWorld::Message& message) {
+    MessageReader reader(message.bytes);
+    if (message.tag == kFailed) {
+      return Error{reader.text()};
+    }
+    if (message.tag == kDone) {
+      const std::uint64_t id = reader.number();
+      FinishedPart part{id, BakedPart(reader.rest().begin(), reader.rest().end())};
+      queue_.add(takerOf(message.from), bake_.partsBelow(part.bytes));
+      return keep(std::move(part));
+    }
+    if (message.tag == kWant) {
+      wanted_[static_cast<std::size_t>(message.from)] = reader.number();
+    }
+    if (message.tag == kTotals) {
+      BakeStats stats;
+      stats.samples = reader.number();
+      stats.shadows = reader.number();
+      stats.forgotten = reader.number();
+      stats.max_sample_bytes = reader.number();
+      const std::uint64_t peak = reader.number();
+      add(effort_.stats, stats);
+      effort_.peak_bytes = std::max(effort_.peak_bytes, peak);
+      effort_.all_peak_bytes += peak;
+      totals_ += 1;
+    }
+    return Success{};
+  }
+
+  Status keep(FinishedPart finished) {
+    if (const Status ok = checkpoint_.append(finished.id, finished.bytes); !ok) {
+      return ok;
+    }
+    count(finished.bytes);
+    parts_.emplace(finished.id, std::move(finished.bytes));
+    return Success{};
+  }
+
+  void count(const BakedPart& part) {
+    const PartSummary summary = bake_.summaryOf(part);
+    open_ += bake_.partsBelow(part).size();
+    open_ -= 1;
+    leaves_ += summary.leaves;
+    triangles_ += summary.mean_triangles * summary.leaves;
+    share_ += summary.share;
+  }
+
+  std::string note() const {
+    return leaves_ == 0 ? std::string()
+                        : fmt::format("{} cells, {:.0f} triangles a set", leaves_,
+                                      triangles_ / static_cast<double>(leaves_));
+  }
+
+  // Other processes may be in the middle of a message: there is no other way to end them.
+  void fail(const Error& error) {
+    if (world_.size() > 1) {
+      fmt::print(stderr, "sightline: {}\n", error.message);
+      world_.abort(2);
+    }
+  }
+
+  [[noreturn]] void endEarly(ProgressBar& bar) {
+    const bool kept = checkpoint_.flush().has_value();
+    bar.say(
+        fmt::format("interrupted; {} of the {} parts known so far are {}, {:.1f} % of the viewers' space; "
+                    "the same command "
+                    "with --resume goes on",
+                    parts_.size(), parts_.size() + open_,
+                    kept ? "kept" : "kept, as far as they could be written", 100.0 * std::min(share_, 1.0)));
+    std::fflush(stderr);
+    std::_Exit(interruptedExitCode());  // threads are in the middle of parts
+  }
+
+  const Bake& bake_;
+  MpiWorld& world_;
+  std::uint32_t threads_;
+  Checkpoint& checkpoint_;
+  BakedParts parts_;
+  BakeEffort& effort_;
+  PartQueue queue_;
+  std::vector<std::uint64_t> wanted_;  // by process: so many threads of it have nothing to do
+  std::uint64_t open_ = 0;             // parts that are known and not baked
+  std::uint64_t leaves_ = 0;
+  double triangles_ = 0.0;  // of all sets
+  double share_ = 0.0;      // of the viewers' space that is baked
+  int totals_ = 0;          // processes that are through
+  bool said_ = false;
+};
+
+}  // namespace
+
+Status agree(MpiWorld& world, const Status& own, std::uint64_t number) {
+  if (!world.first()) {
+    MessageWriter ready;
+    world.send(0, kReady, ready.number(number).text(own ? "" : own.error().message).bytes());
+    const MpiWorld::Message go = world.wait();
+    return MessageReader(go.bytes).number() == 1 ? Status(Success{}) : Error{"another process failed"};
+  }
+  Status all = own;
+  for (int others = 1; others < world.size(); ++others) {
+    const MpiWorld::Message ready = world.wait();
+    MessageReader reader(ready.bytes);
+    const std::uint64_t its = reader.number();
+    const std::string error = reader.text();
+    if (all && !error.empty()) {
+      all = Error{fmt::format("{} (process {})", error, ready.from)};
+    } else if (all && its != number) {
+      all = Error{fmt::format("processes 0 and {} have another scene or another program; give all the same",
+                              ready.from)};
+    }
+  }
+  for (int other = 1; other < world.size(); ++other) {
+    world.send(other, kGo, MessageWriter().number(all ? 1 : 0).bytes());
+  }
+  return all;
+}
+
+Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
+                               Checkpoint& checkpoint, BakedParts known, BakeEffort& effort) {
+  return FirstBaker(bake, world, threads, checkpoint, effort).run(std::move(known));
+}
+
+void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
+  PartQueue queue(threads);
+  BakeThreads bakers(bake, queue, threads, false);
+  std::uint32_t out = 0;    // parts that this process has and has not sent back
+  std::uint32_t asked = 0;  // for so many, not yet answered
+  bool more = true;
+  while (more || out > 0) {
+    for (const FinishedPart& finished : queue.finished(kLook)) {
+      MessageWriter done;
+      if (!world.send(0, kDone, done.number(finished.id).rest(finished.bytes).bytes())) {
+        queue.fail("a part takes more than 2 GiB; bake with a larger --depth or in one process");
+      }
+      out -= 1;
+    }
+    if (const std::optional<std::string> failure = queue.failure()) {
+      world.send(0, kFailed, MessageWriter().text(*failure).bytes());
+      world.wait();  // for the first to end all
+    }
+    if (more && asked == 0 && out < threads) {
+      asked = threads - out;
+      world.send(0, kWant, MessageWriter().number(asked).bytes());
+    }
+    while (const std::optional<MpiWorld::Message> message = world.receive()) {
+      const std::size_t given = message->bytes.size() / (2 * sizeof(std::uint64_t));
+      MessageReader reader(message->bytes);
+      more = given > 0;
+      for (std::size_t i = 0; i < given; ++i) {
+        const std::uint64_t id = reader.number();
+        const PartTask part{id, std::bit_cast<double>(reader.number())};
+        queue.add(static_cast<std::uint32_t>(i % threads), std::span(&part, 1));
+      }
+      out += static_cast<std::uint32_t>(given);
+      asked = 0;
+    }
+  }
+  queue.close();
+  const BakeStats stats = bakers.join();
+  MessageWriter totals;
+  totals.number(stats.samples).number(stats.shadows).number(stats.forgotten).number(stats.max_sample_bytes);
+  world.send(0, kTotals, totals.number(peakBytes()).bytes());
+}
+
+std::uint64_t peakBytes() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,135 @@
+#include "tools/sightline/bake/mpi_world.h"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::chrono::milliseconds kNap{1};  // between looks for a message
+
+constexpr int kFarewell = 1000;  // a tag that no other message has
+
+// What Open MPI, MPICH and its kin, and PMIx tell the processes that they start.
+constexpr const char* kRankVariables[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
+
+const char* rankOfLauncher() {
+  for (const char* variable : kRankVariables) {
+    if (const char* rank = std::getenv(variable)) {
+      return rank;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool isOtherMpiProcess() {
+  const char* rank = rankOfLauncher();
+  return rank != nullptr && std::strcmp(rank, "0") != 0;
+}
+
+MpiWorld::MpiWorld() {
+  if (rankOfLauncher() == nullptr) {
+    return;
+  }
+  int threads = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  started_ = true;
+}
+
+MpiWorld::~MpiWorld() {
+  if (!started_) {
+    return;
+  }
+  // MPI_Finalize waits for all, and costs a core while it does.
+  for (int other = 1; first() && other < size_; ++other) {
+    send(other, kFarewell, {});
+  }
+  while (!first() && wait().tag != kFarewell) {
+  }
+  MPI_Finalize();
+}
+
+bool MpiWorld::send(int to, int tag, std::span<const std::byte> bytes) {
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    return false;
+  }
+  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+  return true;
+}
+
+std::optional<MpiWorld::Message> MpiWorld::receive() {
+  if (size_ == 1) {
+    return std::nullopt;
+  }
+  int here = 0, count = 0;
+  MPI_Status status;
+  MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &here, &status);
+  if (here == 0) {
+    return std::nullopt;
+  }
+  MPI_Get_count(&status, MPI_BYTE, &count);
+  Message message{status.MPI_SOURCE, status.MPI_TAG, std::vector<std::byte>(static_cast<std::size_t>(count))};
+  MPI_Recv(message.bytes.data(), count, MPI_BYTE, message.from, message.tag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return message;
+}
+
+MpiWorld::Message MpiWorld::wait() {
+  for (;;) {
+    if (std::optional<Message> message = receive()) {
+      return std::move(*message);
+    }
+    std::this_thread::sleep_for(kNap);
+  }
+}
+
+void MpiWorld::abort(int exit_code) {
+  if (started_) {
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+  }
+  std::_Exit(exit_code);
+}
+
+MessageWriter& MessageWriter::number(std::uint64_t value) {
+  return rest(std::as_bytes(std::span(&value, 1)));
+}
+
+MessageWriter& MessageWriter::text(const std::string& value) {
+  number(value.size());
+  return rest(std::as_bytes(std::span(value)));
+}
+
+MessageWriter& MessageWriter::rest(std::span<const std::byte> value) {
+  bytes_.insert(bytes_.end(), value.begin(), value.end());
+  return *this;
+}
+
+std::uint64_t MessageReader::number() {
+  std::uint64_t value = 0;
+  if (left_.size() < sizeof(value)) {
+    left_ = {};
+    return 0;
+  }
+  std::memcpy(&value, left_.data(), sizeof(value));
+  left_ = left_.subspan(sizeof(value));
+  return value;
+}
+
+std::string MessageReader::text() {
+  const std::size_t length = std::min<std::size_t>(number(), left_.size());
+  std::string value(reinterpret_cast<const char*>(left_.data()), length);
+  left_ = left_.subspan(length);
+  return value;
+}
+
+}  // namespace sightline::tool

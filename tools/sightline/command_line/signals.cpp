@@ -1,0 +1,108 @@
+// The handler uses only what it may: memory that was filled before, write, rmdir and _exit.
+
+#include "tools/sightline/command_line/signals.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <vector>
+
+namespace sightline::tool {
+namespace {
+
+constexpr const char* kClearLine = "\r\033[K";  // of a progress bar
+
+// What the handler needs. It is changed only while signals wait (SignalGuard).
+struct Ending {
+  std::string command, text;
+  std::vector<std::string> folders;  // the innermost last
+};
+
+Ending& ending() {
+  static Ending ending;
+  return ending;
+}
+
+volatile std::sig_atomic_t told = 0;
+std::atomic<int> guards = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+[[noreturn]] void endNow() {
+  const std::string& text = ending().text;
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) {
+    // There is nobody to tell.
+  }
+  for (auto folder = ending().folders.rbegin(); folder != ending().folders.rend(); ++folder) {
+    ::rmdir(folder->c_str());
+  }
+  ::_exit(interruptedExitCode());
+}
+
+extern "C" void noteSignal(int signal) {
+  if (told != 0) {
+    ::_exit(128 + signal);  // told twice: whatever is being finished takes too long
+  }
+  told = signal;
+  if (guards == 0) {
+    endNow();
+  }
+}
+
+}  // namespace
+
+void endWhenTold(const std::string& command) {
+  ending().command = command;
+  keepWhenTold("nothing was written");
+  struct sigaction action {};
+  action.sa_handler = noteSignal;
+  for (const int signal : std::array{SIGINT, SIGTERM}) {
+    struct sigaction old {};
+    sigaction(signal, nullptr, &old);
+    if (old.sa_handler != SIG_IGN) {
+      sigaction(signal, &action, nullptr);
+    }
+  }
+}
+
+void keepWhenTold(const std::string& kept) {
+  {
+    const SignalGuard guard;
+    ending().text = std::string(isatty(STDERR_FILENO) == 1 ? kClearLine : "") +
+                    "sightline: " + ending().command + " was interrupted; " + kept + "\n";
+  }
+  endIfTold();
+}
+
+void removeWhenTold(const std::string& folder) {
+  {
+    const SignalGuard guard;
+    ending().folders.push_back(folder);
+  }
+  endIfTold();
+}
+
+SignalGuard::SignalGuard() {
+  ++guards;
+}
+
+SignalGuard::~SignalGuard() {
+  --guards;
+}
+
+int toldToEnd() {
+  return told;
+}
+
+int interruptedExitCode() {
+  return 128 + told;
+}
+
+void endIfTold() {
+  if (told != 0 && guards == 0) {
+    endNow();
+  }
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,157 @@
+// sightline cull: the objects that may be seen in every frame of a walk.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <map>
+#include <memory>
+
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/cull/cull_run.h"
+#include "tools/sightline/input/load.h"
+#include "tools/sightline/methods/statistics.h"
+
+namespace sightline::tool {
+namespace {
+
+struct CullOptions {
+  CommonOptions common;
+  PathOptions path;
+  MethodOptions method;
+  bool no_times = false;
+};
+
+// Over all frames.
+struct Totals {
+  double objects = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0, tested_share = 0.0,
+         occluders = 0.0;
+  std::map<std::string, double> statistics{};  // by their texts
+};
+
+std::uint64_t valueOf(const Statistic& statistic, const CullStats& stats, bool times) {
+  return statistic.time && !times ? 0 : statistic.of(stats);
+}
+
+std::string frameJson(std::uint32_t frame, const CullRun& run, const Setting& setting, double tested_share,
+                      bool times) {
+  std::vector<std::uint32_t> ids;
+  for (const ObjectId object : run.culler.visible()) {
+    ids.push_back(object.value);
+  }
+  const CullStats& stats = run.culler.stats();
+  Json json = {{"frame", frame},
+               {"visible", ids},
+               {"cull_us", times ? run.cull_us : 0.0},
+               {"nodes_tested", stats.nodes_tested},
+               {"nodes_tested_share", tested_share},
+               {"occluders", stats.occluders}};
+  addStatistics(json, setting, [&](const Statistic& statistic) { return valueOf(statistic, stats, times); });
+  return dump(json);
+}
+
+void print(const Setting& setting, const CullingData& data, std::size_t frames, const Totals& sum) {
+  const double n = static_cast<double>(frames);
+  fmt::print("{} ({}), {} frames, means of a frame:\n", methodName(setting), optionsText(setting), frames);
+  fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n, data.bounds().size());
+  fmt::print("  their triangles   {:12.1f}\n", sum.triangles / n);
+  fmt::print("  cull time         {:12.1f} us\n", sum.cull_us / n);
+  fmt::print("  nodes tested      {:12.1f} ({:.1f} % of the hierarchy)\n", sum.nodes_tested / n,
+             100.0 * sum.tested_share / n);
+  fmt::print("  occluders         {:12.1f}\n", sum.occluders / n);
+  for (const Statistic& statistic : statisticsOf(setting)) {
+    fmt::print("  {:<18}{:12.1f}\n", statistic.text, sum.statistics.at(statistic.text) / n);
+  }
+}
+
+Result<Setting> singleSetting(const MethodOptions& options) {
+  Result<std::vector<Setting>> settings = settingsOf(options);
+  if (!settings) {
+    return settings.error();
+  }
+  if (settings->size() != 1) {
+    return Error{"cull takes one value an option; walk and verify take lists"};
+  }
+  return settings->front();
+}
+
+Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, const SceneAndWalk& input) {
+  const auto& [scene, walk, baked] = input;
+  const Threads threads(options.common.threads);
+  CullingData data(scene, threads.parallelFor(), walk, baked);
+  CullRun run{data.makeCuller(setting)};
+  std::vector<std::string> frames;
+  Totals sum;
+  ProgressBar progress("culling");
+  for (const std::uint32_t frame : walk.frames) {
+    run.cull(walk.view(frame, scene));
+    const CullStats& stats = run.culler.stats();
+    const double tested_share = testedShare(stats, data.hierarchy(setting.hierarchy).nodes.size());
+    if (!options.common.json.empty()) {
+      frames.push_back(frameJson(frame, run, setting, tested_share, !options.no_times));
+    }
+    sum.objects += static_cast<double>(run.culler.visible().size());
+    sum.triangles += static_cast<double>(data.trianglesOf(run.culler.visible()));
+    sum.cull_us += options.no_times ? 0.0 : run.cull_us;
+    sum.nodes_tested += stats.nodes_tested;
+    sum.tested_share += tested_share;
+    sum.occluders += stats.occluders;
+    for (const Statistic& statistic : statisticsOf(setting)) {
+      sum.statistics[statistic.text] += static_cast<double>(valueOf(statistic, stats, !options.no_times));
+    }
+    progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
+  }
+  data.noteUnknownSets();
+  Json head = {
+      {"scene", sceneJson(scene)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
+  addDatabases(head, data, !options.no_times);
+  if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", frames)); !ok) {
+    return ok.error();
+  }
+  if (options.common.textOnStdout()) {
+    print(setting, data, walk.frames.size(), sum);
+  }
+  return kOk;
+}
+
+Result<ExitCode> runCull(const CullOptions& options) {
+  const Result<Setting> setting = singleSetting(options.method);
+  if (!setting) {
+    return setting.error();
+  }
+  const std::string& baked = options.method.baked;
+  if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .inputs = walkInputs(options.common.scene, options.path, baked),
+                                    .outputs = {{"--json", options.common.json}}});
+      !ok) {
+    return ok.error();
+  }
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, baked);
+  if (!input) {
+    return input.error();
+  }
+  return cullWalk(options, *setting, *input);
+}
+
+}  // namespace
+
+void addCull(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand("cull", "the visible objects of every frame of a walk");
+  const auto options = std::make_shared<CullOptions>();
+  addCommonOptions(*command, options->common);
+  addPathOptions(*command, options->path);
+  addMethodOptions(*command, options->method, false);
+  command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
+  command->footer(
+      "Examples:\n"
+      "  sightline cull city.glb --path walk.json --json visible.json\n"
+      "  sightline cull demo:city --path worst --variant FSE --occluder-count 32 --json -\n"
+      "  sightline cull demo:building --method supporting-planes --hierarchy kd --occluders database\n"
+      "  sightline cull demo:building --method frustum --frames 0:400:10\n"
+      "  sightline cull demo:ship --method visibility-octree --baked ship.sight");
+  command->callback([options, &chosen] { chosen = [options] { return runCull(*options); }; });
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,260 @@
+// sightline info: what is in a scene, and what culling can make of it; what is in a baked file.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <memory>
+
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/cull/info_sight.h"
+#include "tools/sightline/input/load.h"
+
+namespace sightline::tool {
+namespace {
+
+struct InfoOptions {
+  CommonOptions common;
+};
+
+Json pointJson(const Vec3d& p) {
+  return {p.x, p.y, p.z};
+}
+Vec3d toWorld(const Vec3f& p, const Scene& scene) {
+  return Vec3d(p) + scene.origin;
+}
+
+const char* opacityName(Opacity opacity) {
+  switch (opacity) {
+    case Opacity::kOpaque:
+      return "opaque";
+    case Opacity::kBlended:
+      return "blended";
+    case Opacity::kAlphaTested:
+      return "alpha-tested";
+  }
+  return "?";
+}
+
+// Triangles by what their material does.
+struct MaterialUse {
+  std::vector<std::uint64_t> triangles, objects;  // one a material
+};
+
+MaterialUse useOf(const Scene& scene) {
+  MaterialUse use{std::vector<std::uint64_t>(scene.materials.size()),
+                  std::vector<std::uint64_t>(scene.materials.size())};
+  for (const Object& object : scene.objects) {
+    use.triangles[object.material.value] += object.triangleCount();
+    use.objects[object.material.value] += 1;
+  }
+  return use;
+}
+
+// Why triangles are or are not in an occluder: one table for text and JSON.
+struct Reason {
+  const char* key;
+  const char* text;
+  std::uint64_t triangles;
+};
+
+std::vector<Reason> reasonsOf(const OccluderReport& report) {
+  return {{"used", "are in occluders", report.used},
+          {"see_through", "cannot: blended or alpha-tested", report.see_through},
+          {"marked_never", "cannot: marked so by the scene's author", report.marked_never},
+          {"degenerate", "cannot: no area, doubled, or thinner than rounding", report.degenerate},
+          {"too_small", "are left out: small, even merged with their neighbours", report.too_small}};
+}
+
+Json occludersJson(const OccluderSet& set) {
+  Json why;
+  for (const Reason& reason : reasonsOf(set.report)) {
+    why[reason.key] = reason.triangles;
+  }
+  return {{"count", set.occluders.size()}, {"area", set.area}, {"triangles", why}};
+}
+
+struct HierarchyFacts {
+  std::size_t nodes = 0, leaves = 0;
+  std::uint32_t depth = 0, duplicates = 0;
+  double bytes_per_node = 0.0, bytes_per_object = 0.0;
+};
+
+HierarchyFacts factsOf(const Hierarchy& hierarchy) {
+  HierarchyFacts facts;
+  facts.nodes = hierarchy.nodes.size();
+  for (const HierarchyNode& node : hierarchy.nodes) {
+    facts.leaves += node.leaf() ? 1 : 0;
+  }
+  facts.depth = hierarchy.depth;
+  facts.duplicates = hierarchy.duplicates();
+  facts.bytes_per_node = sizeof(HierarchyNode);
+  // An object's box and its places in leaves; the nodes are counted apart.
+  const double entries = static_cast<double>(hierarchy.objects.size() * sizeof(ObjectId));
+  facts.bytes_per_object = hierarchy.object_count > 0 ? sizeof(Box) + entries / hierarchy.object_count : 0.0;
+  return facts;
+}
+
+Json hierarchyJson(const HierarchyFacts& facts) {
+  return {{"nodes", facts.nodes},
+          {"leaves", facts.leaves},
+          {"depth", facts.depth},
+          {"duplicates", facts.duplicates},
+          {"bytes_per_node", facts.bytes_per_node},
+          {"bytes_per_object", facts.bytes_per_object}};
+}
+
+Json headJson(const Scene& scene, CullingData& data) {
+  const Box bounds = sceneBounds(scene.view());
+  const MaterialUse use = useOf(scene);
+  Json materials = Json::array(), paths = Json::array(), hierarchies;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const Material& material = scene.materials[m];
+    materials.push_back({{"name", material.name},
+                         {"opacity", opacityName(material.opacity)},
+                         {"double_sided", material.double_sided},
+                         {"objects", use.objects[m]},
+                         {"triangles", use.triangles[m]}});
+  }
+  for (const CameraPath& path : scene.paths) {
+    paths.push_back({{"name", path.name}, {"frames", path.frames.size()}});
+  }
+  for (const auto& name : kHierarchies) {
+    hierarchies[std::string(name.text)] = hierarchyJson(factsOf(data.hierarchy(name.value)));
+  }
+  return {{"scene", sceneJson(scene)},
+          {"triangles", scene.triangleCount()},
+          {"vertices", scene.positions.size()},
+          {"origin", pointJson(scene.origin)},
+          {"min", pointJson(toWorld(bounds.min, scene))},
+          {"max", pointJson(toWorld(bounds.max, scene))},
+          {"materials", materials},
+          {"paths", paths},
+          {"occluders", occludersJson(data.occluders())},
+          {"hierarchies", hierarchies}};
+}
+
+std::string toJson(const Scene& scene, CullingData& data) {
+  std::vector<std::string> objects;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    objects.push_back(dump({{"id", o},
+                            {"name", scene.object_names[o]},
+                            {"triangles", object.triangleCount()},
+                            {"material", object.material.value},
+                            {"min", pointJson(toWorld(object.bounds.min, scene))},
+                            {"max", pointJson(toWorld(object.bounds.max, scene))}}));
+  }
+  return dumpWithList(headJson(scene, data), "objects", objects);
+}
+
+void printMaterials(const Scene& scene) {
+  const MaterialUse use = useOf(scene);
+  std::uint64_t triangles[3][2] = {}, materials[3][2] = {};
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const Material& material = scene.materials[m];
+    triangles[static_cast<int>(material.opacity)][material.double_sided] += use.triangles[m];
+    materials[static_cast<int>(material.opacity)][material.double_sided] += 1;
+  }
+  fmt::print("materials     {}\n", scene.materials.size());
+  for (int opacity = 0; opacity < 3; ++opacity) {
+    for (int sides = 0; sides < 2; ++sides) {
+      if (materials[opacity][sides] > 0) {
+        fmt::print("              {:4} {}, {}: {} triangles\n", materials[opacity][sides],
+                   opacityName(static_cast<Opacity>(opacity)), sides == 1 ? "double-sided" : "single-sided",
+                   triangles[opacity][sides]);
+      }
+    }
+  }
+}
+
+void printOccluders(const Scene& scene, const OccluderSet& set) {
+  fmt::print("occluders     {} polygons, {:.1f} m2; of the scene's triangles\n", set.occluders.size(),
+             set.area);
+  const double all = static_cast<double>(std::max<std::uint64_t>(scene.triangleCount(), 1));
+  for (const Reason& reason : reasonsOf(set.report)) {
+    if (reason.triangles > 0) {
+      fmt::print("              {:10} ({:4.1f} %) {}\n", reason.triangles,
+                 100.0 * static_cast<double>(reason.triangles) / all, reason.text);
+    }
+  }
+}
+
+void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
+  const Box bounds = sceneBounds(scene.view());
+  const Vec3d low = toWorld(bounds.min, scene), high = toWorld(bounds.max, scene), extent = high - low;
+  fmt::print("scene         {}\n", options.common.scene);
+  fmt::print("objects       {}\n", scene.objects.size());
+  fmt::print("triangles     {}\n", scene.triangleCount());
+  fmt::print("vertices      {}\n", scene.positions.size());
+  fmt::print("from          {:.3f} {:.3f} {:.3f}\n", low.x, low.y, low.z);
+  fmt::print("to            {:.3f} {:.3f} {:.3f}   ({:.1f} x {:.1f} x {:.1f} m)\n", high.x, high.y, high.z,
+             extent.x, extent.y, extent.z);
+  printMaterials(scene);
+  printOccluders(scene, data.occluders());
+  for (const auto& name : kHierarchies) {
+    const HierarchyFacts facts = factsOf(data.hierarchy(name.value));
+    fmt::print(
+        "hierarchy     {:4} {} nodes, {} leaves, {} levels, {} duplicates, {} bytes a node, {:.1f} an "
+        "object\n",
+        name.text, facts.nodes, facts.leaves, facts.depth, facts.duplicates, facts.bytes_per_node,
+        facts.bytes_per_object);
+  }
+  fmt::print("walks         {}\n", scene.paths.empty() ? "none" : "");
+  for (const CameraPath& path : scene.paths) {
+    fmt::print("              {}: {} frames\n", path.name, path.frames.size());
+  }
+}
+
+Result<ExitCode> runInfo(const InfoOptions& options) {
+  if (const Status ok =
+          checkFiles({.scenes = {options.common.scene}, .outputs = {{"--json", options.common.json}}});
+      !ok) {
+    return ok.error();
+  }
+  if (isSightFile(options.common.scene)) {
+    if (options.common.threads > 1) {
+      return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
+                               options.common.threads)};
+    }
+    const Status ok = informOnSight(options.common.scene, options.common.json);
+    return ok ? Result<ExitCode>(kOk) : ok.error();
+  }
+  const Result<Scene> scene = loadScene(options.common.scene);
+  if (!scene) {
+    return scene.error();
+  }
+  const Threads threads(options.common.threads);
+  CullingData data(*scene, threads.parallelFor());
+  if (!options.common.json.empty()) {
+    if (const Status written = writeOutput(options.common.json, toJson(*scene, data)); !written) {
+      return written.error();
+    }
+  }
+  if (options.common.textOnStdout()) {
+    print(options, *scene, data);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "info",
+      "counts, bounds, materials, what can occlude and why the rest cannot, hierarchies; of a baked file "
+      "(F.sight in place of SCENE) its cells and sets");
+  const auto options = std::make_shared<InfoOptions>();
+  addCommonOptions(*command, options->common);
+  command->footer(
+      "Examples:\n"
+      "  sightline info city.glb\n"
+      "  sightline info \"demo:city?copies=30&seed=1\" --json city.json\n"
+      "  sightline info city.sight");
+  command->callback([options, &chosen] { chosen = [options] { return runInfo(*options); }; });
+}
+
+}  // namespace sightline::tool

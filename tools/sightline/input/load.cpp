@@ -1,0 +1,322 @@
+#include "tools/sightline/input/load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "scenes/procedural.h"
+#include "sightline/io/import.h"
+#include "sightline/pvs/format/scene_id.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/input/cell_path.h"
+#include "tools/sightline/input/path_file.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr const char* kPathBesideScene = "walk.path.json";
+
+std::string pathNames(const Scene& scene) {
+  std::string names;
+  for (const CameraPath& path : scene.paths) {
+    names += (names.empty() ? "" : ", ") + path.name;
+  }
+  return names;
+}
+
+Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
+  for (const CameraPath& path : scene.paths) {
+    if (path.name == name) {
+      return path;
+    }
+  }
+  std::error_code ignored;
+  if (std::filesystem::exists(name, ignored)) {
+    return readPathFile(name);
+  }
+  const std::string walks = pathNames(scene);
+  return Error{fmt::format(
+      "--path {}: there is no such file, and {}{}", name,
+      walks.empty() ? "the scene has no walks" : "the scene's walks are: " + walks,
+      name == kCellsPath ? "; the cells of a baked file are walked when it is given with --baked" : "")};
+}
+
+// The path's file beside the scene's file; empty where there is none.
+std::string pathBeside(const std::string& scene_name) {
+  const std::filesystem::path beside = std::filesystem::path(scene_name).parent_path() / kPathBesideScene;
+  std::error_code ignored;
+  return !isDemoUrl(scene_name) && std::filesystem::is_regular_file(beside, ignored) ? beside.string() : "";
+}
+
+Result<CameraPath> defaultPath(const std::string& scene_name, const Scene& scene) {
+  if (const std::string beside = pathBeside(scene_name); !beside.empty()) {
+    Result<CameraPath> path = readPathFile(beside);
+    if (path) {
+      fmt::print(stderr, "sightline: using the camera path {}\n", beside);
+    }
+    return path;
+  }
+  if (!scene.paths.empty()) {
+    return scene.paths.front();
+  }
+  return Error{fmt::format(
+      "{}: has no camera; give a path with --path FILE.json, put a {} beside it, or add a camera to it",
+      scene_name, kPathBesideScene)};
+}
+
+}  // namespace
+
+Result<Scene> loadScene(const std::string& name) {
+  Result<Scene> scene = isDemoUrl(name) ? makeDemoScene(name) : importScene(name);
+  if (scene && scene->objects.empty()) {
+    return Error{fmt::format("{}: there is nothing in it to draw; it has no triangles", name)};
+  }
+  return scene;
+}
+
+Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene) {
+  if (file.empty()) {
+    return std::optional<SightFile>();
+  }
+  Result<SightFile> baked = SightFile::open(file);
+  if (!baked) {
+    return baked.error();
+  }
+  if (const Status same = baked->matches(sceneId(scene.view())); !same) {
+    return same.error();
+  }
+  if (const Status whole = baked->verifyAll(); !whole) {
+    return whole.error();
+  }
+  return std::optional<SightFile>(std::move(*baked));
+}
+
+Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene,
+                      const std::optional<SightFile>& baked) {
+  const bool cells = baked && options.path == kCellsPath;
+  CellPath at_cells = cells ? cellPath(*baked, scene) : CellPath{};
+  Result<CameraPath> path = cells                  ? Result<CameraPath>(std::move(at_cells.path))
+                            : options.path.empty() ? defaultPath(scene_name, scene)
+                                                   : namedPath(options.path, scene);
+  if (!path) {
+    return path.error();
+  }
+  if (path->frames.empty()) {
+    return Error{fmt::format("the camera path '{}' has no frames", path->name)};
+  }
+  Result<std::vector<std::uint32_t>> frames = chooseFrames(options.frames, path->frames.size());
+  if (!frames) {
+    return frames.error();
+  }
+  return Walk{std::move(*path), std::move(*frames), std::move(at_cells.eyes)};
+}
+
+std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptions& path,
+                                  const std::string& baked) {
+  return {{"--path", path.path.empty() ? pathBeside(scene_name) : path.path}, {"--baked", baked}};
+}
+
+Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
+                                      const std::string& baked) {
+  Result<Scene> scene = loadScene(scene_name);
+  if (!scene) {
+    return scene.error();
+  }
+  Result<std::optional<SightFile>> file = loadBaked(baked, *scene);
+  if (!file) {
+    return file.error();
+  }
+  Result<Walk> walk = loadWalk(path, scene_name, *scene, *file);
+  if (!walk) {
+    return walk.error();
+  }
+  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file)};
+}
+
+CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk,
+                         std::optional<SightFile> baked)
+    : parallel_for_(parallel_for),
+      occluders_(findOccluders(scene.view(), {}, parallel_for)),
+      baked_(std::move(baked)) {
+  for (const std::uint32_t frame : walk.frames) {
+    walk_.push_back(walk.view(frame, scene).eye);
+  }
+  for (const Object& object : scene.objects) {
+    bounds_.push_back(object.bounds);
+    triangles_.push_back(object.triangleCount());
+  }
+}
+
+const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
+  std::unique_ptr<Hierarchy>& hierarchy = hierarchies_[static_cast<std::size_t>(kind)];
+  if (!hierarchy) {
+    HierarchySettings settings;
+    settings.kind = kind;
+    hierarchy = std::make_unique<Hierarchy>(buildHierarchy(bounds_, triangles_, settings));
+  }
+  return *hierarchy;
+}
+
+namespace {
+
+// build(progress): the database.
+template <typename Database, typename Build>
+std::unique_ptr<CullingData::Timed<Database>> buildTimed(const std::string& what, Build&& build) {
+  ProgressBar progress(what);
+  const auto start = std::chrono::steady_clock::now();
+  Database database = build([&](double done) { progress.update(done); });
+  const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
+  return std::make_unique<CullingData::Timed<Database>>(
+      CullingData::Timed<Database>{std::move(database), time.count()});
+}
+
+}  // namespace
+
+template <typename Database>
+std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const std::string& name) const {
+  if (!baked_) {
+    return nullptr;
+  }
+  const std::vector<std::string> names = baked_->databaseNames();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    return nullptr;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  const Result<DatabaseBlob> blob = baked_->readDatabase(name);
+  std::string unusable;
+  if (!blob) {
+    unusable = blob.error().message;
+  } else if (blob->occluders != occluderSetHash(occluders_)) {
+    unusable = "it was made for other occluders";
+  } else {
+    const auto count = static_cast<std::uint32_t>(occluders_.occluders.size());
+    Result<Database> database = Database::load(blob->bytes, count);
+    if (database) {
+      const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
+      return std::make_unique<Timed<Database>>(Timed<Database>{std::move(*database), time.count()});
+    }
+    unusable = database.error().message;
+  }
+  fmt::print(stderr,
+             "sightline: the occluder database '{}' of the baked file is not used ({}); building one\n", name,
+             unusable);
+  return nullptr;
+}
+
+// All settings of one run have the same databases.
+const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool turned_away,
+                                                 std::unique_ptr<TimedDatabase>& timed) {
+  if (!timed) {
+    timed = bakedDatabase<OccluderDatabase>(turned_away ? "detail" : "area-angle");
+  }
+  if (!timed) {
+    const Hierarchy& cells = hierarchy(HierarchyKind::kKdTree);
+    OccluderDatabaseSettings settings = setting.database;
+    settings.turned_away = turned_away;
+    timed = buildTimed<OccluderDatabase>(
+        turned_away ? "occluder database for detail objects" : "occluder database",
+        [&](const Progress& progress) {
+          return OccluderDatabase::build(cells, occluders_, settings, parallel_for_, progress);
+        });
+  }
+  return &timed->database;
+}
+
+const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
+  std::unique_ptr<TimedViewpoints>& timed =
+      from_viewpoints_[static_cast<std::size_t>(setting.viewpoints.criterion)];
+  if (!timed) {
+    timed = bakedDatabase<ViewpointDatabase>(nameOf(kOccluderChoices, setting.culler.occluders));
+  }
+  if (!timed) {
+    const Hierarchy& occludees = hierarchy(HierarchyKind::kBvh);
+    timed = buildTimed<ViewpointDatabase>(
+        "occluders by " + nameOf(kOccluderChoices, setting.culler.occluders), [&](const Progress& progress) {
+          return ViewpointDatabase::build(occludees, occluders_, walk_, setting.viewpoints, parallel_for_,
+                                          progress);
+        });
+  }
+  return &timed->database;
+}
+
+Culler CullingData::makeCuller(const Setting& setting) {
+  OccluderDatabases databases;
+  if (setting.usesDatabase()) {
+    databases.from_eye = databaseFor(setting, false, from_eye_);
+  }
+  if (setting.testsDetailObjects()) {
+    databases.from_objects = databaseFor(setting, true, from_objects_);
+  }
+  if (setting.usesViewpoints()) {
+    databases.from_viewpoints = viewpointsFor(setting);
+  }
+  VisibleSets* sets = nullptr;
+  if (baked_ && setting.usesVisibleSets()) {
+    queries_.push_back(std::make_unique<SetQuery>(*baked_));
+    sets = queries_.back().get();
+  }
+  Culler culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases, sets);
+  culler.setParallelFor(parallel_for_);
+  return culler;
+}
+
+void CullingData::noteUnknownSets() const {
+  SetQueryStats sum;
+  for (const std::unique_ptr<SetQuery>& query : queries_) {
+    const SetQueryStats& stats = query->stats();
+    sum.finds += stats.finds;
+    sum.outside += stats.outside;
+    sum.beyond_near += stats.beyond_near;
+    sum.broken += stats.broken;
+  }
+  if (sum.outside + sum.beyond_near + sum.broken > 0) {
+    fmt::print(
+        stderr,
+        "sightline: {} of {} look-ups in the baked file gave everything: {} outside its cells, {} with a "
+        "near plane that clips beyond its {} m, {} broken\n",
+        sum.outside + sum.beyond_near + sum.broken, sum.finds, sum.outside, sum.beyond_near,
+        baked_->record().near_distance, sum.broken);
+  }
+}
+
+std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const {
+  std::uint64_t sum = 0;
+  for (const ObjectId object : objects) {
+    sum += triangles_[object.value];
+  }
+  return sum;
+}
+
+Json sceneJson(const Scene& scene) {
+  return {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
+}
+
+void addDatabases(Json& json, const CullingData& data, bool times) {
+  const auto add = [&](const char* key, const CullingData::TimedDatabase* timed) {
+    if (timed != nullptr) {
+      json[key] = {{"cells", timed->database.cellCount()},
+                   {"directions", timed->database.directionCount()},
+                   {"bytes", timed->database.bytes()},
+                   {"build_us", times ? timed->build_us : 0.0}};
+    }
+  };
+  add("database", data.database());
+  add("detail_database", data.detailDatabase());
+  for (const OccluderChoice choice :
+       {OccluderChoice::kMinimumSets, OccluderChoice::kProjectedSize, OccluderChoice::kFirstHit}) {
+    if (const CullingData::TimedViewpoints* timed = data.viewpoints(criterionOf(choice))) {
+      json["viewpoints"][nameOf(kOccluderChoices, choice)] = {
+          {"points", timed->database.pointCount()},
+          {"directions", timed->database.directionCount()},
+          {"spacing", timed->database.spacing()},
+          {"bytes", timed->database.bytes()},
+          {"build_us", times ? timed->build_us : 0.0}};
+    }
+  }
+}
+
+}  // namespace sightline::tool

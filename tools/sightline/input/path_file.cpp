@@ -1,0 +1,53 @@
+#include "tools/sightline/input/path_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "sightline/io/camera_path_json.h"
+#include "sightline/io/file.h"
+#include "tools/sightline/command_line/suggest.h"
+
+namespace sightline::tool {
+namespace {
+
+std::string describe(const UnknownKey& unknown) {
+  const std::vector<std::string> known(unknown.known.begin(), unknown.known.end());
+  std::string where;
+  if (unknown.frame) {
+    where = fmt::format("frame {}{}: ", *unknown.frame,
+                        unknown.frames > 1 ? fmt::format(" (and {} more)", unknown.frames - 1) : "");
+  }
+  // A terminal obeys control characters.
+  std::string key = unknown.key;
+  std::replace_if(
+      key.begin(), key.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return fmt::format("{}the key \"{}\" is not known and ignored{}", where, key,
+                     didYouMean(unknown.key, known));
+}
+
+}  // namespace
+
+Result<CameraPath> readPathFile(const std::string& file) {
+  const Result<std::string> text = readFile(file);
+  return text ? parsePathFile(*text, file) : Result<CameraPath>(text.error());
+}
+
+Result<CameraPath> parsePathFile(std::string_view text, const std::string& file) {
+  std::vector<UnknownKey> unknown_keys;
+  Result<CameraPath> path = parseCameraPath(text, file, &unknown_keys);
+  if (!path) {
+    Error error = path.error();
+    for (const UnknownKey& unknown : unknown_keys) {
+      error.message += "; " + describe(unknown);
+    }
+    return error;
+  }
+  for (const UnknownKey& unknown : unknown_keys) {
+    fmt::print(stderr, "sightline: {}: {}\n", file, describe(unknown));
+  }
+  return path;
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,31 @@
+#pragma once
+
+// layers --depth-of-field, --motion-blur: blurred pictures of sorted frames, beside the accumulation of whole
+// pictures.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/sightline/layers/layer_frames.h"
+
+namespace sightline::tool {
+
+struct LayerLensOptions {
+  std::string depth_of_field;  // empty: none
+  double focus = 0.0, aperture = 0.0;
+  double motion_blur = 0.0;             // the shutter's share of a frame; 0: none
+  std::uint32_t passes = 21;            // of accumulation
+  std::uint32_t reference_passes = 64;  // of what --compare compares with
+  std::vector<std::string> blur_layer;  // PART=even|depth|accumulate
+  std::string blurred, compare;         // files; empty: none
+
+  bool operator==(const LayerLensOptions&) const = default;
+};
+void addLayerLensOptions(CLI::App& command, LayerLensOptions& options);
+
+Result<std::unique_ptr<FrameMaker>> makeLayerLens(const LayerLensOptions& options,
+                                                  const FrameMakerInput& input);
+
+}  // namespace sightline::tool

@@ -1,0 +1,381 @@
+#include "tools/sightline/layers/layer_pictures.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "sightline/io/image.h"
+#include "sightline/render/layer_compositor.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/command_line/parse_text.h"
+#include "tools/sightline/layers/layer_by_distance.h"
+#include "tools/sightline/layers/picture_difference.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::array<Name<CompositeSettings::Peel>, 2> kPeels{{
+    {"where-needed", CompositeSettings::Peel::kWhereNeeded},
+    {"never", CompositeSettings::Peel::kNever},
+}};
+
+struct ReplacedPart {
+  std::uint32_t part = 0;
+  Image file;
+  LayerImage image;  // of the pictures' size, in this frame
+};
+
+// What toImage() made of linear light.
+ShapedPixel pixelOf(const Image& image, std::uint32_t x, std::uint32_t y) {
+  const std::uint8_t* p = &image.rgba[4 * (std::size_t{y} * image.width + x)];
+  const float alpha = static_cast<float>(p[3]) / 255.0f;
+  const auto linear = [&](std::uint8_t value) {
+    const float root = static_cast<float>(value) / 255.0f;
+    return root * root * alpha;
+  };
+  return {linear(p[0]), linear(p[1]), linear(p[2]), alpha};
+}
+
+struct Rectangle {
+  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // right and bottom are beyond it
+};
+
+// The smallest that holds all that is not transparent.
+Rectangle rectangleOf(const LayerImage& image) {
+  Rectangle found{image.width, image.height, 0, 0};
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      if (image.pixels[std::size_t{y} * image.width + x].alpha > 0.0f) {
+        found = {std::min(found.left, x), std::min(found.top, y), std::max(found.right, x + 1), y + 1};
+      }
+    }
+  }
+  return found;
+}
+
+// Each pixel of the rectangle shows the nearest of the file.
+void fit(const Image& file, const Rectangle& to, LayerImage& image) {
+  for (std::uint32_t y = to.top; y < to.bottom; ++y) {
+    const std::uint64_t row = std::uint64_t{y - to.top} * file.height / (to.bottom - to.top);
+    for (std::uint32_t x = to.left; x < to.right; ++x) {
+      const std::uint64_t column = std::uint64_t{x - to.left} * file.width / (to.right - to.left);
+      image.pixels[std::size_t{y} * image.width + x] =
+          pixelOf(file, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
+    }
+  }
+}
+
+class LayerPictures : public FrameMaker {
+ public:
+  LayerPictures(const LayerPictureOptions& options, const FrameMakerInput& input, LayerRenderer renderer,
+                std::vector<ReplacedPart> replaced)
+      : options_(options),
+        input_(input),
+        scene_(input.input.moving.scene.view()),
+        renderer_(std::move(renderer)),
+        compositor_(scene_, renderer_),
+        replaced_(std::move(replaced)) {}
+
+  Result<Json> make(const SortedFrame& frame) override {
+    renderer_.setTransforms(frame.scene_from_stored);
+    setUses(frame);
+    const Result<CompositeStats> stats = compositor_.composite(frame.view, frame.layers, settings_, picture_);
+    if (!stats) {
+      return stats.error();
+    }
+    Json json = {{"layers", stats->layers},
+                 {"peeled", stats->peeled},
+                 {"triangles", stats->triangles},
+                 {"without_order", unorderedGroups(frame)},
+                 {"left_out", leftOutParts(frame)}};
+    line_ = fmt::format("frame {}: {} layers drawn, {} of them peeled", frame.number, stats->layers,
+                        stats->peeled);
+    compareWithAllAtOnce(frame, json);
+    if (!options_.by_distance.empty()) {
+      if (const Status ok = compareWithDistances(frame, json); !ok) {
+        return ok.error();
+      }
+    }
+    line_ += unorderedText(json["without_order"]);
+    lines_.push_back(line_);
+    if (!options_.image.empty()) {
+      const std::string file = frameFile(options_.image, frame.number, input_.several_frames);
+      if (const Status ok = savePicture(toImage(picture_), file); !ok) {
+        return ok.error();
+      }
+      json["file"] = file;
+    }
+    return Json{{"picture", json}};
+  }
+
+  void print() const override {
+    for (const std::string& line : lines_) {
+      fmt::print("{}\n", line);
+    }
+  }
+
+ private:
+  bool isWithout(PartId part) const {
+    return std::find(options_.without.begin(), options_.without.end(), part.value) != options_.without.end();
+  }
+
+  // Which layers the parts are in that the options name.
+  void setUses(const SortedFrame& frame) {
+    settings_ = {};
+    settings_.peel = valueOf(kPeels, options_.peel);
+    settings_.form = input_.form;
+    objects_.clear();
+    for (std::uint32_t i = 0; i < frame.layers.layers(); ++i) {
+      const LayerId layer(i);
+      const std::span<const PartId> parts = frame.layers.partsOf(layer);
+      if (std::any_of(parts.begin(), parts.end(), [&](PartId part) { return isWithout(part); })) {
+        settings_.left_out.push_back(layer);
+        continue;
+      }
+      for (const PartId part : parts) {
+        objects_.push_back(ObjectId(part.value));
+      }
+      for (ReplacedPart& replaced : replaced_) {
+        if (std::find(parts.begin(), parts.end(), PartId(replaced.part)) != parts.end()) {
+          prepare(replaced, frame.view);
+          settings_.replaced.push_back({layer, &replaced.image});
+        }
+      }
+    }
+    std::sort(objects_.begin(), objects_.end());
+  }
+
+  // The file as it is where it has the pictures' size, else stretched over what the part covers.
+  void prepare(ReplacedPart& replaced, const View& view) {
+    LayerImage& image = replaced.image;
+    Rectangle to{0, 0, input_.width, input_.height};
+    if (replaced.file.width != input_.width || replaced.file.height != input_.height) {
+      const ObjectId object(replaced.part);
+      renderer_.draw(view, {&object, 1}, {}, image);
+      to = rectangleOf(image);
+    }
+    image.clear(input_.width, input_.height);
+    fit(replaced.file, to, image);
+  }
+
+  void compareWithAllAtOnce(const SortedFrame& frame, Json& json) {
+    if (!settings_.replaced.empty()) {
+      return;
+    }
+    renderer_.draw(frame.view, objects_, {.peel = true}, other_);
+    addSky(frame.view, other_);
+    const PictureDifference difference = measureDifference(picture_, other_, kDifferenceTolerance);
+    json["difference"] = differenceJson(difference);
+    line_ += "; mean difference from all objects drawn at once " + differenceText(difference);
+  }
+
+  Status compareWithDistances(const SortedFrame& frame, Json& json) {
+    const DistanceOrder order = orderByDistance(scene_, frame.view, objects_, frame.scene_from_stored);
+    drawByDistance(renderer_, frame.view, order, other_);
+    addSky(frame.view, other_);
+    const DistancePairs pairs = countWrongPairs(renderer_, frame.view, order);
+    const PictureDifference difference = measureDifference(picture_, other_, kDifferenceTolerance);
+    const std::string file = frameFile(options_.by_distance, frame.number, input_.several_frames);
+    json["by_distance"] = {{"file", file},
+                           {"overlapping_pairs", pairs.overlapping},
+                           {"wrong_pairs", pairs.wrong},
+                           {"pairs_without_order", pairs.without_order},
+                           {"difference", differenceJson(difference)}};
+    line_ += fmt::format(
+        "; by distances of centres {} of {} overlapping pairs of see-through parts are in the wrong order "
+        "({} have no order), mean difference {}",
+        pairs.wrong, pairs.overlapping, pairs.without_order, differenceText(difference));
+    return writeComparison(picture_, other_, file);
+  }
+
+  void addSky(const View& view, LayerImage& image) {
+    renderer_.drawSky(view, sky_);
+    compositeOver(image, sky_);
+  }
+
+  bool isBlended(PartId part) const {
+    return scene_.materialOf(scene_.objects[part.value]).opacity == Opacity::kBlended;
+  }
+  const std::string& nameOf(PartId part) const { return input_.input.moving.parts[part.value].name; }
+
+  // The parts of groups that no order gets right, as far as they are drawn.
+  Json unorderedGroups(const SortedFrame& frame) const {
+    Json groups = Json::array();
+    for (const std::uint32_t g : compositor_.unorderedGroups()) {
+      Json& parts = groups.emplace_back(Json::array());
+      for (std::uint32_t i = frame.layers.first_layer[g]; i < frame.layers.first_layer[g + 1]; ++i) {
+        if (isDrawn(LayerId(i))) {
+          for (const PartId part : frame.layers.partsOf(LayerId(i))) {
+            parts.push_back({{"part", part.value}, {"name", nameOf(part)}, {"see_through", isBlended(part)}});
+          }
+        }
+      }
+    }
+    return groups;
+  }
+
+  bool isDrawn(LayerId layer) const {
+    const auto is_layer = [&](const LayerReplacement& replaced) { return replaced.layer == layer; };
+    return std::find(settings_.left_out.begin(), settings_.left_out.end(), layer) ==
+               settings_.left_out.end() &&
+           std::none_of(settings_.replaced.begin(), settings_.replaced.end(), is_layer);
+  }
+
+  // More than were asked for, where these share layers with others.
+  Json leftOutParts(const SortedFrame& frame) const {
+    Json parts = Json::array();
+    for (const LayerId layer : settings_.left_out) {
+      for (const PartId part : frame.layers.partsOf(layer)) {
+        parts.push_back(part.value);
+      }
+    }
+    return parts;
+  }
+
+  // The first see-through parts of each group, as "12 pane"; JSON has all parts.
+  static std::string unorderedText(const Json& groups) {
+    constexpr std::size_t kMaxNames = 8;
+    std::string text;
+    for (const Json& group : groups) {
+      std::vector<std::string> names;
+      std::size_t see_through = 0;
+      for (const Json& part : group) {
+        if (part["see_through"].get<bool>() && ++see_through <= kMaxNames) {
+          names.push_back(
+              fmt::format("{} {}", part["part"].get<std::uint32_t>(), part["name"].get<std::string>()));
+        }
+      }
+      text += fmt::format("{} {} parts, see-through of them: {}", text.empty() ? "; no order among" : " |",
+                          group.size(), fmt::join(names, ", "));
+      if (see_through > kMaxNames) {
+        text += fmt::format(" and {} more", see_through - kMaxNames);
+      }
+    }
+    return text;
+  }
+
+  const LayerPictureOptions& options_;
+  const FrameMakerInput& input_;
+  SceneView scene_;
+  LayerRenderer renderer_;
+  LayerCompositor compositor_;
+  CompositeSettings settings_;
+  std::vector<ReplacedPart> replaced_;
+  std::vector<ObjectId> objects_;  // of this frame, less those left out; ascending
+  LayerImage picture_, other_, sky_;
+  std::string line_;
+  std::vector<std::string> lines_;
+};
+
+Status checkPart(const std::string& option, std::uint32_t part, std::size_t parts) {
+  return part < parts ? Status(Success{})
+                      : Error{fmt::format("{} {}: there is no such part; the scene has {}, numbered from 0",
+                                          option, part, parts)};
+}
+
+Result<ReplacedPart> readReplacement(const std::string& text, std::size_t parts) {
+  const std::size_t equals = text.find('=');
+  const std::optional<std::uint32_t> part = parseWhole(text.substr(0, equals));
+  if (!part || equals == std::string::npos || equals + 1 == text.size()) {
+    return Error{fmt::format("--replace {}: is not of the form PART=FILE.png", text)};
+  }
+  if (const Status ok = checkPart("--replace", *part, parts); !ok) {
+    return ok.error();
+  }
+  Result<Image> file = readPng(text.substr(equals + 1));
+  if (!file) {
+    return file.error();
+  }
+  return ReplacedPart{*part, std::move(*file), {}};
+}
+
+Status checkOnce(const ReplacedPart& part, const std::vector<std::uint32_t>& without,
+                 const std::vector<ReplacedPart>& before) {
+  if (std::find(without.begin(), without.end(), part.part) != without.end()) {
+    return Error{fmt::format("--replace {}: the part is left out by --without", part.part)};
+  }
+  const auto is_same = [&](const ReplacedPart& other) { return other.part == part.part; };
+  return std::none_of(before.begin(), before.end(), is_same)
+             ? Status(Success{})
+             : Error{fmt::format("--replace {}: the part has two pictures", part.part)};
+}
+
+Status checkOptions(const LayerPictureOptions& options, const FrameMakerInput& input) {
+  for (const std::uint32_t part : options.without) {
+    if (const Status ok = checkPart("--without", part, input.input.moving.parts.size()); !ok) {
+      return ok;
+    }
+  }
+  return Success{};
+}
+
+}  // namespace
+
+void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
+  command
+      .add_option(
+          "--image", options.image,
+          "write a picture of each frame, composited from layers, to this .png file; of several frames, the "
+          "frame's number goes before .png")
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
+  CLI::Option* by_distance = command.add_option(
+      "--by-distance", options.by_distance,
+      "write the picture, beside it the one with see-through parts ordered by distances of their centres, "
+      "and where they differ, to this .png file");
+  by_distance->type_name(kFileType)->check(isNotEmpty());
+  command
+      .add_option("--peel", options.peel,
+                  "depth peeling of see-through parts whose order is not known (else they are drawn by "
+                  "number)")
+      ->check(isOneOf(textsOf(kPeels)))
+      ->capture_default_str();
+  command.add_option("--without", options.without, "leave out the layers of these parts, by number")
+      ->check(isNotEmpty())
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      .add_option("--replace", options.replace,
+                  "PART=FILE.png: the file's picture in place of the part's layer; stretched over what the "
+                  "part covers, unless it has the whole picture's size")
+      ->allow_extra_args(false)
+      ->excludes(by_distance);
+}
+
+Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions& options,
+                                                      const FrameMakerInput& input) {
+  if (options.image.empty() && options.by_distance.empty()) {
+    if (options != LayerPictureOptions{}) {
+      return Error{"--without, --replace and --peel change pictures; give --image too"};
+    }
+    return std::unique_ptr<FrameMaker>();
+  }
+  if (const Status ok = checkOptions(options, input); !ok) {
+    return ok.error();
+  }
+  std::vector<ReplacedPart> replaced;
+  for (const std::string& text : options.replace) {
+    Result<ReplacedPart> part = readReplacement(text, input.input.moving.parts.size());
+    if (!part) {
+      return part.error();
+    }
+    if (const Status ok = checkOnce(*part, options.without, replaced); !ok) {
+      return ok.error();
+    }
+    replaced.push_back(std::move(*part));
+  }
+  Result<LayerRenderer> renderer = makeRenderer(input);
+  if (!renderer) {
+    return renderer.error();
+  }
+  return std::unique_ptr<FrameMaker>(
+      std::make_unique<LayerPictures>(options, input, std::move(*renderer), std::move(replaced)));
+}
+
+}  // namespace sightline::tool

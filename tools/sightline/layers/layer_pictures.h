@@ -1,0 +1,27 @@
+#pragma once
+
+// layers --image, --by-distance: pictures composited from layers, and what other ways of drawing differ from
+// them.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/sightline/layers/layer_frames.h"
+
+namespace sightline::tool {
+
+struct LayerPictureOptions {
+  std::string image, by_distance;  // files; empty: none
+  std::string peel = "where-needed";
+  std::vector<std::uint32_t> without;  // parts
+  std::vector<std::string> replace;    // PART=FILE.png
+
+  bool operator==(const LayerPictureOptions&) const = default;
+};
+void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options);
+
+Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions& options,
+                                                      const FrameMakerInput& input);
+
+}  // namespace sightline::tool

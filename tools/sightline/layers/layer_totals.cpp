@@ -1,0 +1,58 @@
+#include "tools/sightline/layers/layer_totals.h"
+
+#include <algorithm>
+
+namespace sightline::tool {
+
+void LayerTotals::add(const LayerOrder& order, double layers, double operations, double sort_us) {
+  Frame frame{.groups = static_cast<double>(order.groups()),
+              .layers = layers,
+              .operations = operations,
+              .arcs = static_cast<double>(order.arcs.size()),
+              .collisions = static_cast<double>(order.collisions.size()),
+              .pair_queries = static_cast<double>(order.stats.pair_queries),
+              .reinsertions = static_cast<double>(order.stats.reinsertions),
+              .sort_us = sort_us};
+  double parts_in_groups = 0.0;
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    const auto size = static_cast<double>(order.group(i).size());
+    frame.largest = std::max(frame.largest, size);
+    if (size > 1.0) {
+      frame.grouped += 1.0;
+      parts_in_groups += size;
+    }
+  }
+  if (frame.groups > 0.0) {
+    frame.grouped_share = frame.grouped / frame.groups;
+    frame.parts_in_groups_share = parts_in_groups / static_cast<double>(order.parts.size());
+    frame.grouped_size = frame.grouped > 0.0 ? parts_in_groups / frame.grouped : 0.0;
+  }
+  frames_.push_back(frame);
+}
+
+double LayerTotals::mean(double Frame::*value) const {
+  double sum = 0.0;
+  for (const Frame& frame : frames_) {
+    sum += frame.*value;
+  }
+  return frames_.empty() ? 0.0 : sum / static_cast<double>(frames_.size());
+}
+
+double LayerTotals::largest(double Frame::*value) const {
+  double most = 0.0;
+  for (const Frame& frame : frames_) {
+    most = std::max(most, frame.*value);
+  }
+  return most;
+}
+
+double LayerTotals::meanGroupedSize() const {
+  double parts = 0.0, groups = 0.0;
+  for (const Frame& frame : frames_) {
+    parts += frame.grouped * frame.grouped_size;
+    groups += frame.grouped;
+  }
+  return groups > 0.0 ? parts / groups : 0.0;
+}
+
+}  // namespace sightline::tool

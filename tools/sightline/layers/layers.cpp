@@ -1,0 +1,392 @@
+// sightline layers: the order in which the parts of a scene must be drawn, in every frame of a walk.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+
+#include "sightline/layers/compositing.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/command_line/signals.h"
+#include "tools/sightline/command_line/stopwatch.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/layers/layer_drawings.h"
+#include "tools/sightline/layers/layer_frames.h"
+#include "tools/sightline/layers/layer_lens.h"
+#include "tools/sightline/layers/layer_line_picture.h"
+#include "tools/sightline/layers/layer_pictures.h"
+#include "tools/sightline/layers/layer_totals.h"
+
+namespace sightline::tool {
+namespace {
+
+struct LayersOptions {
+  SceneOptions common;
+  PathOptions path;
+  LayerPlaces places;
+  std::string sort = "depth-first", search = "automatic", extents = "camera", arcs = "groups",
+              expression = "cheapest", conditioning = "on", exact = "on", tints = "on";
+  bool no_times = false;
+  PictureOptions size;
+  std::uint32_t samples = 1;
+  LayerPictureOptions pictures;
+  LayerLensOptions lens;
+  LayerDrawingOptions drawings;
+};
+
+using FrameMakers = std::vector<std::unique_ptr<FrameMaker>>;
+
+template <typename Tag>
+std::vector<std::uint32_t> numbersOf(std::span<const Id<Tag>> ids) {
+  std::vector<std::uint32_t> numbers;
+  for (const Id<Tag> id : ids) {
+    numbers.push_back(id.value);
+  }
+  return numbers;
+}
+
+Json pairsJson(std::span<const LayerArc> pairs) {
+  Json json = Json::array();
+  for (const LayerArc& pair : pairs) {
+    json.push_back({pair.front.value, pair.back.value});
+  }
+  return json;
+}
+
+Json orderJson(const LayerOrder& order) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    json.push_back(numbersOf(order.group(i)));
+  }
+  return json;
+}
+
+LayerSettings settingsOf(const LayersOptions& options) {
+  LayerSettings settings;
+  settings.sort = valueOf(kLayerSorts, options.sort);
+  settings.search = valueOf(kOccluderSearches, options.search);
+  settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
+  settings.exact = valueOf(kSwitch, options.exact);
+  settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
+  // The world's axes say nothing about what is near.
+  if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
+    settings.conditioning_axis = -1;
+  }
+  return settings;
+}
+
+Json optionsJson(const LayersOptions& options) {
+  return {{"sort", options.sort},  {"search", options.search},         {"extents", options.extents},
+          {"arcs", options.arcs},  {"expression", options.expression}, {"conditioning", options.conditioning},
+          {"exact", options.exact}};
+}
+
+Json layersJson(const FrameLayers& layers) {
+  Json json = Json::array();
+  for (std::uint32_t layer = 0; layer < layers.layers(); ++layer) {
+    json.push_back(numbersOf(layers.partsOf(LayerId(layer))));
+  }
+  return json;
+}
+
+Json programJson(const CompositingProgram& program) {
+  Json json = Json::array();
+  for (const CompositingStep& step : program.steps) {
+    json.push_back(describe(step));
+  }
+  return json;
+}
+
+Json frameJson(std::uint32_t frame, const LayerOrder& order, const FrameLayers& layers,
+               const CompositingProgram& program, double sort_us) {
+  const LayerStats& stats = order.stats;
+  return {{"frame", frame},
+          {"order", orderJson(order)},
+          {"arcs", pairsJson(order.arcs)},
+          {"collisions", pairsJson(order.collisions)},
+          {"layers", layersJson(layers)},
+          {"program", programJson(program)},
+          {"sort_us", sort_us},
+          {"occluder_queries", stats.occluder_queries},
+          {"candidates", stats.candidates},
+          {"pair_queries", stats.pair_queries},
+          {"reinsertions", stats.reinsertions},
+          {"search", stats.by_tree ? "tree" : "scan"}};
+}
+
+void print(const LayerTotals& totals, std::size_t parts) {
+  const auto line = [](const char* what, double value, int decimals = 1) {
+    fmt::print("  {:<38}{:12.{}f}\n", what, value, decimals);
+  };
+  fmt::print("{} parts, {} frames, means of a frame:\n", parts, totals.frames());
+  line("groups", totals.mean(&LayerTotals::Frame::groups));
+  line("of them with more than one part, %", 100.0 * totals.mean(&LayerTotals::Frame::grouped_share), 2);
+  line("parts in those, %", 100.0 * totals.mean(&LayerTotals::Frame::parts_in_groups_share), 2);
+  line("largest group", totals.mean(&LayerTotals::Frame::largest));
+  line("layers", totals.mean(&LayerTotals::Frame::layers));
+  line("arcs", totals.mean(&LayerTotals::Frame::arcs));
+  line("collisions", totals.mean(&LayerTotals::Frame::collisions));
+  line("compositing operations", totals.mean(&LayerTotals::Frame::operations));
+  line("pairs tested exactly", totals.mean(&LayerTotals::Frame::pair_queries));
+  line("sort time, us", totals.mean(&LayerTotals::Frame::sort_us));
+  line("sort time, largest, us", totals.largest(&LayerTotals::Frame::sort_us));
+}
+
+// Everything that is made of sorted frames besides JSON.
+Result<FrameMakers> makersOf(const LayersOptions& options, const FrameMakerInput& input) {
+  FrameMakers makers;
+  Result<std::unique_ptr<FrameMaker>> made[] = {
+      makeLayerPictures(options.pictures, input), makeLayerLens(options.lens, input),
+      makeLayerDrawings(options.drawings, input), makeLinePicture(options.drawings, input)};
+  for (Result<std::unique_ptr<FrameMaker>>& maker : made) {
+    if (!maker) {
+      return maker.error();
+    }
+    if (*maker != nullptr) {
+      makers.push_back(std::move(*maker));
+    }
+  }
+  return makers;
+}
+
+double aspectOf(const PictureOptions& size) {
+  return static_cast<double>(size.width) / static_cast<double>(size.height);
+}
+
+// Sorts the frames of a walk one after another.
+class WalkSorter {
+ public:
+  WalkSorter(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers)
+      : options_(options),
+        input_(input),
+        makers_(makers),
+        aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
+        sorter_(makeSorter(input.moving, settingsOf(options))) {}
+
+  // progress: takes the share of the frame that is done.
+  Status sort(std::uint32_t frame, const std::function<void(double)>& progress) {
+    View view = input_.walk.view(frame, input_.moving.scene);
+    view.aspect = aspect_;
+    pose(input_.moving, frame, poses_, sorter_);
+    Stopwatch watch;
+    const LayerOrder& order = sorter_.update(view);
+    const double sort_us = options_.no_times ? 0.0 : watch.lap();
+    const FrameLayers& layers = merger_.merge(order);
+    const CompositingProgram& program =
+        compiler_.compile(layers, valueOf(kCompositingForms, options_.expression));
+    totals_.add(order, static_cast<double>(layers.layers()),
+                static_cast<double>(countSteps(program.steps).operations()), sort_us);
+    Json json;
+    if (!options_.common.json.empty()) {
+      json = frameJson(frame, order, layers, program, sort_us);
+    }
+    if (!makers_.empty()) {
+      placements(input_.moving, frame, scene_from_stored_);
+    }
+    for (std::size_t i = 0; i < makers_.size(); ++i) {
+      const auto progressOf = [&](double done) {
+        progress((static_cast<double>(i) + done) / static_cast<double>(makers_.size()));
+      };
+      const Result<Json> made =
+          makers_[i]->make({frame, view, order, layers, scene_from_stored_, progressOf});
+      if (!made) {
+        return made.error();
+      }
+      json.update(*made);
+    }
+    if (!options_.common.json.empty()) {
+      frames_.push_back(dump(json));
+    }
+    return Success{};
+  }
+
+  const LayerTotals& totals() const { return totals_; }
+  const std::vector<std::string>& frames() const { return frames_; }  // as JSON
+
+ private:
+  const LayersOptions& options_;
+  const LayerInput& input_;
+  const FrameMakers& makers_;
+  double aspect_;  // of the pictures
+  LayerSorter sorter_;
+  LayerMerger merger_;
+  CompositingCompiler compiler_;
+  std::vector<Mat4> poses_, scene_from_stored_;
+  LayerTotals totals_;
+  std::vector<std::string> frames_;
+};
+
+Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers) {
+  WalkSorter sorter(options, input, makers);
+  const std::vector<std::uint32_t>& frames = input.walk.frames;
+  ProgressBar progress(makers.empty() ? "sorting" : "sorting and drawing");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto progressOf = [&](double done) {
+      progress.update((static_cast<double>(i) + done) / static_cast<double>(frames.size()));
+    };
+    if (const Status ok = sorter.sort(frames[i], progressOf); !ok) {
+      return ok.error();
+    }
+    progressOf(1.0);
+  }
+  const Json head = {{"scene", sceneJson(input.moving.scene)},
+                     {"parts", input.moving.parts.size()},
+                     {"options", optionsJson(options)}};
+  if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", sorter.frames()));
+      !ok) {
+    return ok.error();
+  }
+  if (options.common.textOnStdout()) {
+    print(sorter.totals(), input.moving.parts.size());
+    for (const std::unique_ptr<FrameMaker>& maker : makers) {
+      maker->print();
+    }
+  }
+  return kOk;
+}
+
+std::vector<NamedFile> outputsOf(const LayersOptions& options) {
+  return {{"--json", options.common.json},
+          {"--image", options.pictures.image, ".png"},
+          {"--by-distance", options.pictures.by_distance, ".png"},
+          {"--blurred", options.lens.blurred, ".png"},
+          {"--compare", options.lens.compare, ".png"},
+          {"--svg", options.drawings.svg, ".svg"},
+          {"--pdf", options.drawings.pdf, ".pdf"},
+          {"--line-picture", options.drawings.line_picture, ".png"}};
+}
+
+Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs) {
+  std::vector<NamedFile> inputs = walkInputs(options.common.scene, options.path);
+  for (const std::string& replace : options.pictures.replace) {
+    const std::size_t equals = std::min(replace.find('='), replace.size() - 1);
+    inputs.push_back({"--replace", replace.substr(equals + 1)});
+  }
+  return checkFiles({.scenes = {options.common.scene}, .inputs = inputs, .outputs = outputs});
+}
+
+// Checks the files of each frame, whose names are known once the camera path has been read.
+Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::uint32_t>& frames) {
+  std::vector<NamedFile> outputs;
+  for (const NamedFile& output : outputsOf(options)) {
+    if (output.file.empty()) {
+      continue;
+    }
+    if (output.option == "--json") {
+      outputs.push_back(output);  // one for all frames
+      continue;
+    }
+    for (const std::uint32_t frame : frames) {
+      outputs.push_back({output.option, frameFile(output.file, frame, frames.size() > 1), output.extension});
+    }
+  }
+  return checkFilesOf(options, outputs);
+}
+
+Status checkPictureOptions(const LayersOptions& options) {
+  const bool any_picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty() ||
+                           !options.lens.blurred.empty() || !options.lens.compare.empty();
+  const bool any_option = options.samples != 1 || options.tints != "on";
+  return any_picture || !any_option
+             ? Status(Success{})
+             : Error{"--samples and --tints: go with --image, --by-distance, --blurred or --compare"};
+}
+
+Result<ExitCode> runLayers(const LayersOptions& options) {
+  for (const Status& ok : {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options)}) {
+    if (!ok) {
+      return ok.error();
+    }
+  }
+  const Result<LayerInput> input = loadLayerInput(options.common.scene, options.path, options.places);
+  if (!input) {
+    return input.error();
+  }
+  if (const Status ok = checkFilesOfFrames(options, input->walk.frames); !ok) {
+    return ok.error();
+  }
+  const PictureOptions size = pictureSize(options.size, input->walk.path);
+  const FrameMakerInput made_from{.input = *input,
+                                  .scene_file = options.common.scene,
+                                  .width = size.width,
+                                  .height = size.height,
+                                  .samples = options.samples,
+                                  .tints = valueOf(kSwitch, options.tints),
+                                  .form = valueOf(kCompositingForms, options.expression),
+                                  .several_frames = input->walk.frames.size() > 1};
+  const Result<FrameMakers> makers = makersOf(options, made_from);
+  if (makers && !makers->empty()) {
+    keepWhenTold("pictures and drawings that were finished are kept, and no JSON is written");
+  }
+  return makers ? sortWalk(options, *input, *makers) : makers.error();
+}
+
+}  // namespace
+
+void addLayers(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "layers", "the order in which parts must be drawn, cycles, and compositing programs, frame by frame");
+  const auto options = std::make_shared<LayersOptions>();
+  addSceneOptions(*command, options->common);
+  addPathOptions(*command, options->path);
+  for (const char* option : {"SCENE", "--json"}) {
+    command->get_option(option)->check(isNotEmpty());
+  }
+  const auto addChoice = [&](const char* name, std::string& value, const std::vector<std::string>& values,
+                             const char* help) {
+    command->add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
+  };
+  addChoice("--sort", options->sort, textsOf(kLayerSorts),
+            "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
+  addChoice("--search", options->search, textsOf(kOccluderSearches), "how candidates are found");
+  addChoice("--extents", options->extents, {"camera", "world"},
+            "two angles and depth of the camera, or x, y, z of the world");
+  addChoice("--arcs", options->arcs, {"groups", "all"}, "who occludes whom: within groups, or of all pairs");
+  addChoice("--expression", options->expression, textsOf(kCompositingForms),
+            "how cycles without mutual occlusion are composited");
+  addChoice("--conditioning", options->conditioning, textsOf(kSwitch),
+            "let near groups move forward in the order (camera extents only)");
+  addChoice("--exact", options->exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
+  command->add_option("--backdrop", options->places.backdrops, "parts behind all others, by number")
+      ->check(isNotEmpty())
+      ->delimiter(',');
+  command->add_option("--overlay", options->places.overlays, "parts before all others, by number")
+      ->check(isNotEmpty())
+      ->delimiter(',');
+  addLayerPictureOptions(*command, options->pictures);
+  addLayerLensOptions(*command, options->lens);
+  addLayerDrawingOptions(*command, options->drawings);
+  addPictureOptions(*command, options->size);
+  command->add_option("--samples", options->samples, "a side of each pixel of the pictures: 1, 2 or 4")
+      ->check(isOneOf({"1", "2", "4"}))
+      ->capture_default_str();
+  addChoice(
+      "--tints", options->tints, textsOf(kSwitch),
+      "pictures: objects of one material differ a little in lightness; off: where objects overlap in one "
+      "surface, it does not matter which of them is drawn");
+  command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
+  command->footer(
+      "A part is an object of the scene, taken as its convex hull. Groups are parts that occlude each other "
+      "in a circle; layers, what must be drawn together within them. Of several frames each "
+      "picture or drawing has the frame's number before its ending.\n"
+      "Examples:\n"
+      "  sightline layers demo:toothpicks --json order.json\n"
+      "  sightline layers \"demo:toothpicks?n=1600&scaling=ud\" --sort incremental\n"
+      "  sightline layers demo:canyon --extents world --expression over-atop --json -\n"
+      "  sightline layers demo:glass --frames 100 --image glass.png --by-distance compared.png\n"
+      "  sightline layers demo:canyon --frames 0:250:50 --width 640 --height 360 --samples 4 --image "
+      "canyon.png\n"
+      "  sightline layers demo:glass --frames 100 --image part.png --without 12,13 --replace 3=poster.png\n"
+      "  sightline layers demo:toothpicks --frames 100 --depth-of-field layers --focus 3 --aperture 0.06 "
+      "--blurred out.png\n"
+      "  sightline layers demo:city --frames 0 --svg city.svg --pdf city.pdf\n"
+      "  sightline layers demo:city --frames 0 --plot --svg plot.svg\n"
+      "  sightline layers model.glb --path walk.json --arcs all --backdrop 0");
+  command->callback([options, &chosen] { chosen = [options] { return runLayers(*options); }; });
+}
+
+}  // namespace sightline::tool

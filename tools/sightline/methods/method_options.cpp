@@ -1,0 +1,513 @@
+// One table of options says everything about each: its name, what it belongs to, its values and its place in
+// the library's settings.
+
+#include "tools/sightline/methods/method_options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/options.h"
+#include "tools/sightline/command_line/parse_text.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::uint32_t kMaxOccluders = 65535;
+constexpr std::uint32_t kMaxDirections = 4096;
+constexpr std::uint32_t kMaxTriangles = 1'000'000'000;
+constexpr double kMaxMebibytes = 65536.0;
+constexpr double kMebibyte = 1024.0 * 1024.0;
+
+// What an option sets, from text and back.
+struct Value {
+  std::string help;                                                    // after the option's own
+  std::string expected;                                                // "a whole number from 1 to 9"
+  std::function<bool(const std::string& text, Setting& setting)> set;  // false: not what was expected
+  std::function<Json(Setting setting)> get;
+  std::vector<std::string> words{};  // that it can be; none: it is a number
+};
+
+template <typename T>
+using Field = T& (*)(Setting&);
+
+template <typename T, std::size_t N>
+Value oneOf(const std::array<Name<T>, N>& names, Field<T> field) {
+  const auto set = [&names, field](const std::string& text, Setting& setting) {
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const auto& name) { return name.text == text; });
+    if (found != names.end()) {
+      field(setting) = found->value;
+    }
+    return found != names.end();
+  };
+  return {"", "one of: " + listNames(names), set,
+          [&names, field](Setting setting) { return Json(nameOf(names, field(setting))); }, textsOf(names)};
+}
+
+Value whole(std::uint32_t least, std::uint32_t most, Field<std::uint32_t> field) {
+  const auto set = [=](const std::string& text, Setting& setting) {
+    const std::optional<std::uint32_t> value = parseWhole(text);
+    if (!value || *value < least || *value > most) {
+      return false;
+    }
+    field(setting) = *value;
+    return true;
+  };
+  return {"", fmt::format("a whole number from {} to {}", least, most), set,
+          [field](Setting setting) { return Json(field(setting)); }};
+}
+
+// 0 or more, at most `most`.
+bool parseUpTo(double most, const std::string& text, double& value) {
+  const std::optional<double> parsed = parseDecimal(text);
+  if (!parsed || std::signbit(*parsed) || *parsed > most) {
+    return false;
+  }
+  value = *parsed;
+  return true;
+}
+
+Value decimal(Field<double> field) {
+  const auto set = [field](const std::string& text, Setting& setting) {
+    return parseUpTo(std::numeric_limits<double>::max(), text, field(setting));
+  };
+  return {"", "a finite number, 0 or greater", set,
+          [field](Setting setting) { return Json(field(setting)); }};
+}
+
+Value resolution(Field<RasterSettings> field) {
+  const auto set = [field](const std::string& text, Setting& setting) {
+    const std::vector<std::string> parts = splitAt(text, 'x');
+    const auto size = [](const std::string& part) {
+      const std::optional<std::uint32_t> pixels = parseWhole(part);
+      return pixels && *pixels >= 1 && *pixels <= kMaxMapSize ? pixels : std::nullopt;
+    };
+    const auto width = size(parts.front()), height = size(parts.back());
+    if (parts.size() != 2 || !width || !height) {
+      return false;
+    }
+    field(setting).width = *width;
+    field(setting).height = *height;
+    return true;
+  };
+  return {": WIDTHxHEIGHT", fmt::format("a size in pixels like 320x180, each from 1 to {}", kMaxMapSize), set,
+          [field](Setting setting) {
+            return Json(fmt::format("{}x{}", field(setting).width, field(setting).height));
+          }};
+}
+
+Value mebibytes(Field<std::size_t> bytes) {
+  const auto set = [bytes](const std::string& text, Setting& setting) {
+    double value = 0.0;
+    if (!parseUpTo(kMaxMebibytes, text, value)) {
+      return false;
+    }
+    bytes(setting) = static_cast<std::size_t>(value * kMebibyte);
+    return true;
+  };
+  return {"", fmt::format("a number of MiB from 0 to {:.0f}", kMaxMebibytes), set,
+          [bytes](Setting setting) { return Json(static_cast<double>(bytes(setting)) / kMebibyte); }};
+}
+
+// What an option belongs to.
+bool always(const Setting&) {
+  return true;
+}
+bool usesOccluders(const Setting& setting) {
+  return setting.culler.method != CullMethod::kFrustum &&
+         setting.culler.method != CullMethod::kVisibilityOctree;
+}
+bool mayUseSets(const Setting& setting) {
+  return setting.baked && usesOccluders(setting);
+}
+bool usesTree(const Setting& setting) {
+  return setting.culler.method == CullMethod::kOcclusionTree;
+}
+bool usesPlanes(const Setting& setting) {
+  return setting.culler.method == CullMethod::kSupportingPlanes;
+}
+bool usesMap(const Setting& setting) {
+  return setting.usesMap();
+}
+bool hasFocus(const Setting& setting) {
+  return setting.culler.method == CullMethod::kDepthPyramid &&
+         setting.culler.raster.coverage == Coverage::kInner;
+}
+bool focuses(const Setting& setting) {
+  return hasFocus(setting) && setting.culler.focus.magnification > 1.0;
+}
+bool usesOpacityMap(const Setting& setting) {
+  return setting.culler.method == CullMethod::kOpacityMap;
+}
+bool usesViewpoints(const Setting& setting) {
+  return setting.usesViewpoints();
+}
+bool usesMinimumSets(const Setting& setting) {
+  return setting.usesViewpoints() && setting.culler.occluders == OccluderChoice::kMinimumSets;
+}
+bool ranksByAreaAngle(const Setting& setting) {
+  return usesOccluders(setting) && !setting.usesViewpoints();
+}
+bool usesAreaAngle(const Setting& setting) {
+  return ranksByAreaAngle(setting) && !setting.usesDatabase();
+}
+bool planesThroughBox(const Setting& setting) {
+  return setting.planesThroughBox();
+}
+bool hasCoherence(const Setting& setting) {
+  return usesTree(setting) || planesThroughBox(setting) || setting.culler.method == CullMethod::kDepthPyramid;
+}
+bool keepsRelations(const Setting& setting) {
+  return planesThroughBox(setting) && setting.culler.temporal_coherence;
+}
+bool testsDetail(const Setting& setting) {
+  return usesOccluders(setting) && setting.culler.detail_objects;
+}
+bool usesDatabase(const Setting& setting) {
+  return setting.usesDatabase() || setting.testsDetailObjects();
+}
+
+struct Option {
+  std::string name;  // "occluder-count": --occluder-count, and occluder_count in JSON
+  // Whether it means anything for a setting; asked when the options above it are set. Where it does not, it
+  // is neither set nor shown, and its list does not multiply the setting.
+  bool (*belongs)(const Setting&);
+  bool list;      // takes several values, where the command does
+  bool headline;  // optionsText always tells it, in words of its own
+  std::string help;
+  Value value;
+};
+
+constexpr bool kList = true, kOne = false, kHeadline = true, kWhenChanged = false;
+
+// An option comes after those that decide whether it means anything.
+const std::vector<Option>& allOptions() {
+  static const std::vector<Option> kOptions{
+      {"method", always, kList, kHeadline, "how to cull",
+       oneOf(
+           kMethods, +[](Setting& s) -> CullMethod& { return s.culler.method; })},
+      {"hierarchy", always, kList, kHeadline, "over the objects",
+       oneOf(
+           kHierarchies, +[](Setting& s) -> HierarchyKind& { return s.hierarchy; })},
+      {"visible-sets", mayUseSets, kList, kWhenChanged,
+       "before the method, all that is not in the baked set of the viewpoint's cell is left out",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.visible_sets; })},
+      {"variant", usesTree, kList, kHeadline, "of the occlusion tree",
+       oneOf(
+           kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.culler.variant; })},
+      {"resolution", usesMap, kList, kHeadline, "of the map of occluders",
+       resolution(+[](Setting& s) -> RasterSettings& { return s.culler.raster; })},
+      {"coverage", usesMap, kList, kWhenChanged,
+       "pixels that occluders cover wholly, or at their centres, which culls what can be seen",
+       oneOf(
+           kCoverages, +[](Setting& s) -> Coverage& { return s.culler.raster.coverage; })},
+      {"focus", hasFocus, kList, kWhenChanged,
+       "depth pyramid: magnification of a second map where the first one hides least; 0: none",
+       decimal(+[](Setting& s) -> double& { return s.culler.focus.magnification; })},
+      {"focus-resolution", focuses, kOne, kWhenChanged, "of that second map",
+       resolution(+[](Setting& s) -> RasterSettings& { return s.culler.focus.raster; })},
+      {"focus-occluder-count", focuses, kOne, kWhenChanged, "most occluders that only the second map has",
+       whole(
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.focus.occluder_count; })},
+      {"focus-objects", focuses, kOne, kWhenChanged,
+       "the second map is made where the first one leaves so many objects",
+       whole(
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.focus.min_objects; })},
+      {"tolerance", usesOpacityMap, kList, kWhenChanged,
+       "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
+       whole(
+           0, kMaxMapSize * kMaxMapSize, +[](Setting& s) -> std::uint32_t& { return s.culler.tolerance; })},
+      {"coverage-ratio", usesOpacityMap, kList, kWhenChanged,
+       "opacity map: what is covered by less than this part counts as visible with all in it",
+       decimal(+[](Setting& s) -> double& { return s.culler.coverage_ratio; })},
+      {"depth-comparison", usesOpacityMap, kList, kWhenChanged, "opacity map: at peaks only or everywhere",
+       oneOf(
+           kDepthComparisons, +[](Setting& s) -> DepthComparison& { return s.culler.depth_comparison; })},
+      {"triangle-us", usesOpacityMap, kOne, kWhenChanged,
+       "opacity map: microseconds to draw a triangle; the coverage ratio follows measured times; 0: off",
+       decimal(+[](Setting& s) -> double& { return s.culler.triangle_us; })},
+      {"occluders", usesOccluders, kList, kWhenChanged, "how occluders are chosen",
+       oneOf(
+           kOccluderChoices, +[](Setting& s) -> OccluderChoice& { return s.culler.occluders; })},
+      {"occluder-count", usesOccluders, kList, kHeadline, "most occluders in a frame",
+       whole(
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluder_count; })},
+      {"planes", usesPlanes, kList, kWhenChanged,
+       "supporting planes: made for each occluder, or for each occluder and box, to be kept",
+       oneOf(
+           kPlaneForms, +[](Setting& s) -> PlaneForm& { return s.culler.supporting_planes.form; })},
+      {"coherence", hasCoherence, kList, kHeadline, "temporal coherence; supporting planes: kept relations",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.temporal_coherence; })},
+      {"lambda-steps", usesAreaAngle, kOne, kWhenChanged,
+       "occluders are looked for within so many steps of the observer; 0: everywhere",
+       decimal(+[](Setting& s) -> double& { return s.culler.lambda_steps; })},
+      {"min-node-cost", usesOccluders, kOne, kWhenChanged, "nodes with fewer triangles are not tested",
+       whole(
+           0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.culler.min_node_cost; })},
+      {"area-angle", ranksByAreaAngle, kOne, kWhenChanged, "direction that ranks occluders",
+       oneOf(
+           kAreaAngleDirections,
+           +[](Setting& s) -> AreaAngleDirection& { return s.culler.area_angle_direction; })},
+      {"test-objects", usesOccluders, kOne, kWhenChanged,
+       "objects of partly visible leaves are tested one by one",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.test_objects; })},
+      {"joint", usesPlanes, kList, kWhenChanged,
+       "supporting planes: occluders that share edges hide together",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.supporting_planes.joint_occlusion; })},
+      {"relation-mib", keepsRelations, kOne, kWhenChanged, "supporting planes: most memory of kept relations",
+       mebibytes(+[](Setting& s) -> std::size_t& { return s.culler.supporting_planes.relation_bytes; })},
+      {"tangents", planesThroughBox, kOne, kWhenChanged, "supporting planes: how their vertices are found",
+       oneOf(
+           kTangentSearches,
+           +[](Setting& s) -> TangentSearch& { return s.culler.supporting_planes.tangent_search; })},
+      {"detail-objects", usesOccluders, kList, kWhenChanged,
+       "what was kept is tested again, with a database's occluders near itself",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.culler.detail_objects; })},
+      {"detail-occluder-count", testsDetail, kOne, kWhenChanged, "most occluders in that second test",
+       whole(
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.detail_occluder_count; })},
+      {"database-directions", usesDatabase, kOne, kWhenChanged, "occluder database: directions of a cell",
+       whole(
+           1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.database.directions; })},
+      {"database-occluder-count", usesDatabase, kOne, kWhenChanged,
+       "occluder database: most occluders of a cell in a direction",
+       whole(
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.database.occluder_count; })},
+      {"database-mib", usesDatabase, kOne, kWhenChanged, "occluder database: most memory of its lists",
+       mebibytes(+[](Setting& s) -> std::size_t& { return s.database.max_bytes; })},
+      {"viewpoint-spacing", usesViewpoints, kOne, kWhenChanged,
+       "viewpoint database: metres between grid points; 0: chosen",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.spacing; })},
+      {"viewpoint-directions", usesViewpoints, kOne, kWhenChanged,
+       "viewpoint database: directions at a grid point",
+       whole(
+           1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.directions; })},
+      {"viewpoint-pixels", usesViewpoints, kOne, kWhenChanged,
+       "viewpoint database: pixels along the edge of a picture",
+       whole(
+           8, 512, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.resolution; })},
+      {"set-gain", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.gain; })},
+      {"set-count", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of the number of occluders",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.count; })},
+      {"set-area", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of the pixels of occluders",
+       decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.area; })},
+  };
+  return kOptions;
+}
+
+// Of JSON: text without its quotes.
+std::string plainText(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+std::string jsonKey(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+// The values of one option, each of them known to be fine.
+Result<std::vector<std::string>> valuesOf(const Option& option, const std::string& text) {
+  std::vector<std::string> values = splitAt(text, ',');
+  if (values.size() > 1 && !option.list) {
+    return Error{fmt::format("--{} takes one value, not '{}'", option.name, text)};
+  }
+  for (const std::string& value : values) {
+    Setting ignored;
+    if (!option.value.set(value, ignored)) {
+      return Error{fmt::format("--{}: '{}' is not {}", option.name, value, option.value.expected)};
+    }
+  }
+  return values;
+}
+
+// Whether what needs a baked file has one.
+Status checkBaked(const MethodOptions& options, const std::vector<Setting>& settings) {
+  constexpr const char* kRemedy =
+      "give the baked file with --baked F.sight; make one with: sightline bake SCENE -o F.sight";
+  if (!options.baked.empty()) {
+    return Success{};
+  }
+  for (const Setting& setting : settings) {
+    if (setting.culler.method == CullMethod::kVisibilityOctree) {
+      return Error{fmt::format("--method {}: {}", methodName(setting), kRemedy)};
+    }
+  }
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    if (allOptions()[i].belongs == mayUseSets && options.texts[i] != MethodOptions().texts[i]) {
+      return Error{fmt::format("--{} {}: {}", allOptions()[i].name, options.texts[i], kRemedy)};
+    }
+  }
+  return Success{};
+}
+
+std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option& option,
+                              const std::vector<std::string>& values) {
+  std::vector<Setting> all;
+  for (const Setting& setting : settings) {
+    if (!option.belongs(setting)) {
+      all.push_back(setting);
+      continue;
+    }
+    for (const std::string& value : values) {
+      all.push_back(setting);
+      option.value.set(value, all.back());
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+bool Setting::usesDatabase() const {
+  return usesOccluders(*this) && culler.occluders == OccluderChoice::kDatabase;
+}
+
+bool Setting::usesViewpoints() const {
+  const OccluderChoice choice = culler.occluders;
+  return usesOccluders(*this) &&
+         (choice == OccluderChoice::kMinimumSets || choice == OccluderChoice::kFirstHit ||
+          choice == OccluderChoice::kProjectedSize);
+}
+
+bool Setting::usesMap() const {
+  return culler.method == CullMethod::kOpacityMap || culler.method == CullMethod::kDepthPyramid;
+}
+
+bool Setting::approximate() const {
+  return (usesMap() && culler.raster.coverage == Coverage::kCentre) ||
+         (usesOpacityMap(*this) && culler.tolerance > 0);
+}
+
+bool Setting::testsDetailObjects() const {
+  return usesOccluders(*this) && culler.detail_objects;
+}
+
+bool Setting::usesVisibleSets() const {
+  return culler.method == CullMethod::kVisibilityOctree || (usesOccluders(*this) && culler.visible_sets);
+}
+
+bool Setting::planesThroughBox() const {
+  return usesPlanes(*this) && culler.supporting_planes.form == PlaneForm::kThroughBox;
+}
+
+MethodOptions::MethodOptions() {
+  for (const Option& option : allOptions()) {
+    texts.push_back(plainText(option.value.get(Setting{})));
+  }
+}
+
+void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const std::string help =
+        option.help + option.value.help + (lists && option.list ? " (several: a,b,c)" : "");
+    CLI::Option* added = command.add_option("--" + option.name, options.texts[i], help);
+    added->capture_default_str();
+    if (!option.value.words.empty()) {
+      added->check(isOneOf(option.value.words, option.list));
+    }
+  }
+  command
+      .add_option("--baked", options.baked,
+                  "a .sight file of the scene: its visible sets, and its occluder databases in place of "
+                  "those that would be built")
+      ->type_name(kFileType);
+  if (CLI::Option* path = command.get_option_no_throw("--path")) {
+    path->description(path->get_description() +
+                      "; cells: a view from each cell of the --baked file, most of them from the cell's "
+                      "borders");
+  }
+}
+
+Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
+  Setting usual;
+  usual.baked = !options.baked.empty();
+  std::vector<Setting> settings{usual};
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const Result<std::vector<std::string>> values = valuesOf(option, options.texts[i]);
+    if (!values) {
+      return values.error();
+    }
+    settings = multiply(settings, option, *values);
+  }
+  if (const Status served = checkBaked(options, settings); !served) {
+    return served.error();
+  }
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const bool given = options.texts[i] != MethodOptions().texts[i];
+    if (given && std::none_of(settings.begin(), settings.end(), option.belongs)) {
+      fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);
+    }
+  }
+  for (Setting& setting : settings) {
+    setting.database.area_angle_direction = setting.culler.area_angle_direction;
+    setting.viewpoints.criterion = criterionOf(setting.culler.occluders);
+  }
+  return settings;
+}
+
+OccluderCriterion criterionOf(OccluderChoice choice) {
+  return choice == OccluderChoice::kFirstHit        ? OccluderCriterion::kFirstHit
+         : choice == OccluderChoice::kProjectedSize ? OccluderCriterion::kProjectedSize
+                                                    : OccluderCriterion::kMinimumSets;
+}
+
+std::string methodName(const Setting& setting) {
+  return nameOf(kMethods, setting.culler.method);
+}
+
+std::string optionsText(const Setting& setting) {
+  std::string text = nameOf(kHierarchies, setting.hierarchy);
+  if (!usesOccluders(setting)) {
+    return text;
+  }
+  text = fmt::format("{} occluders, {}", setting.culler.occluder_count, text);
+  if (hasCoherence(setting)) {
+    text += ", coherence " + nameOf(kSwitch, setting.culler.temporal_coherence);
+  }
+  if (usesTree(setting)) {
+    text = nameOf(kVariants, setting.culler.variant) + ", " + text;
+  }
+  if (usesMap(setting)) {
+    text = fmt::format("{}x{}, {}", setting.culler.raster.width, setting.culler.raster.height, text);
+  }
+  if (setting.approximate()) {
+    text = "APPROXIMATE, " + text;
+  }
+  for (const Option& option : allOptions()) {
+    const Json value = option.value.get(setting);
+    if (!option.headline && option.belongs(setting) && value != option.value.get(Setting{})) {
+      text += fmt::format(", {} {}", option.name, plainText(value));
+    }
+  }
+  return text;
+}
+
+Json optionsJson(const Setting& setting) {
+  Json json;
+  for (const Option& option : allOptions()) {
+    if (option.name != "method" && option.belongs(setting)) {
+      json[jsonKey(option.name)] = option.value.get(setting);
+    }
+  }
+  if (setting.usesMap()) {
+    json["approximate"] = setting.approximate();
+  }
+  return json;
+}
+
+}  // namespace sightline::tool

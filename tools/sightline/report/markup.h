@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace sightline::tool {
+
+// Untrusted text made safe inside elements and quoted attributes of HTML and SVG. Control characters go;
+// bytes that are not UTF-8 become U+FFFD.
+std::string escapeMarkup(std::string_view text);
+
+// A file name made safe as a relative link ("./" is put before it; anything unusual is percent-encoded).
+std::string relativeLink(std::string_view file);
+
+// 1234567.0 -> "1,234,567" with the given number of decimals; "–" when not finite.
+std::string groupedNumber(double value, int decimals);
+
+// Number of characters (code points) of UTF-8 text.
+std::size_t characterCount(std::string_view text);
+
+}  // namespace sightline::tool

@@ -1,0 +1,36 @@
+#pragma once
+
+// The tables of `reproduce snyder-lengyel`.
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "scenes/moving_scene.h"
+#include "sightline/layers/layer_sorter.h"
+#include "tools/sightline/layers/layer_totals.h"
+#include "tools/sightline/report/plot.h"
+#include "tools/sightline/reproduce/reproduction.h"
+
+namespace sightline::tool {
+
+// Sorts a scene's frames one after another, only the first ones where `options` asks for few. visit: after
+// each, if there is one.
+LayerTotals sortFrames(
+    const MovingScene& scene, const LayerSettings& settings, const ReproduceOptions& options,
+    const std::function<void(std::uint32_t frame, const LayerOrder& order, const View& view)>& visit = {});
+
+// Three orthogonal extents of the world, as in the paper.
+inline LayerSettings canyonSorting() {
+  return {.extents = worldExtents(), .conditioning_axis = -1};
+}
+
+struct SortingTables {
+  std::vector<Experiment> experiments{};
+  std::vector<Plot> plots{};
+};
+SortingTables sortingTables(const ReproduceOptions& options);
+
+Experiment canyonTable(const ReproduceOptions& options);
+
+}  // namespace sightline::tool

@@ -1,0 +1,173 @@
+// Snyder and Lengyel 1997, section 12.2: the canyon's tables, as far as sorting decides them.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+#include "sightline/layers/compositing.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/reproduce/saved_rendering.h"
+#include "tools/sightline/reproduce/snyder_lengyel.h"
+
+namespace sightline::tool {
+namespace {
+
+using Frame = LayerTotals::Frame;
+
+// What the paper's tables have of one division of the terrain.
+struct CanyonRow {
+  std::uint32_t grid = 0;
+  double objects = 0, polygons = 0, hull_polygons = 0, cpu = 0, cpu_max = 0, expansion = 0, layers = 0,
+         parts = 0, unit_agg = 0, unit = 0, poly_agg = 0, poly = 0;
+};
+constexpr std::array<CanyonRow, 5> kCanyon{
+    {{20, 390, 31.98, 29.01, 17.33, 29.82, 5.04, 0.1, 0.2, 58.3, 58.1, 41.8, 40.7},
+     {14, 191, 48.91, 37.78, 8.08, 14.59, 3.78, 0.4, 1.0, 51.3, 50.2, 38.0, 36.0},
+     {10, 100, 76.48, 42.42, 5.17, 9.88, 3.09, 1.9, 6.4, 48.7, 40.9, 40.4, 30.7},
+     {7, 49, 130.45, 57.51, 4.51, 9.68, 2.58, 5.2, 22.5, 51.9, 37.8, 42.4, 27.8},
+     {5, 25, 225.32, 72.72, 5.37, 11.01, 2.28, 13.0, 53.1, 71.5, 32.3, 72.0, 26.1}}};
+
+// The share of frames in which a part is rendered anew, the others being interpolated (section 12.2).
+double updateRate(const std::string& part_class) {
+  return part_class == "aircraft" ? 0.2 : part_class == "terrain" ? 0.7 : 0.4;
+}
+
+// Sums over the visible parts of all frames.
+struct UpdateRates {
+  double layers = 0, aggregated_layers = 0, parts = 0, aggregated_parts = 0;
+  double unit = 0, unit_agg = 0, weight = 0, poly = 0, poly_agg = 0;
+
+  // expansion: a split terrain has so many times the polygons; rates count for the polygons that it has,
+  // relative to those that the scene had.
+  void add(double rate, bool aggregated, double polygons, double expansion) {
+    const double with_penalty = aggregated ? 1.0 : rate;
+    parts += 1.0;
+    aggregated_parts += aggregated ? 1.0 : 0.0;
+    unit += rate;
+    unit_agg += with_penalty;
+    weight += polygons / expansion;
+    poly += rate * polygons;
+    poly_agg += with_penalty * polygons;
+  }
+};
+
+struct TerrainCounts {
+  double pieces = 0, hull_polygons = 0;
+};
+
+TerrainCounts countTerrain(const MovingScene& scene) {
+  TerrainCounts counts;
+  for (const MovingPart& part : scene.parts) {
+    if (scene.classes[part.class_of] == "terrain") {
+      counts.pieces += 1.0;
+      counts.hull_polygons += static_cast<double>(scene.hulls[part.hulls.front()].faces.size());
+    }
+  }
+  return counts;
+}
+
+double terrainPolygons(const MovingScene& scene) {
+  return static_cast<double>(trianglesOfClass(scene, "terrain"));
+}
+
+void addFrame(const MovingScene& scene, const FrameLayers& layers, const std::vector<Mat4>& poses,
+              const View& view, double expansion, UpdateRates& rates) {
+  const Frustum frustum = frustumOf(view);
+  std::vector<PartId> visible;
+  for (std::uint32_t layer = 0; layer < layers.layers(); ++layer) {
+    visible.clear();
+    for (const PartId part : layers.partsOf(LayerId(layer))) {
+      if (isPartInView(scene, part.value, poses[part.value], frustum)) {
+        visible.push_back(part);
+      }
+    }
+    const bool aggregated = visible.size() > 1;
+    rates.layers += visible.empty() ? 0.0 : 1.0;
+    rates.aggregated_layers += aggregated ? 1.0 : 0.0;
+    for (const PartId part : visible) {
+      const std::string& part_class = scene.classes[scene.parts[part.value].class_of];
+      rates.add(updateRate(part_class), aggregated, scene.scene.objects[part.value].triangleCount(),
+                part_class == "terrain" ? expansion : 1.0);
+    }
+  }
+}
+
+Experiment emptyTable() {
+  return {"canyon",
+          "The canyon by the terrain's grid (each second line: the paper's; cpu in us, the paper's in ms)",
+          "the least polygon-weighted update rate, 38 %, with 14 x 14; coarser grids aggregate",
+          {{"grid", "grid"},
+           {"objects", "pieces", 0},
+           {"polygons", "polygons each", 2},
+           {"hull_polygons", "hull polygons", 2},
+           {"cpu", "cpu mean", 1},
+           {"cpu_max", "cpu max", 1},
+           {"expansion", "expansion", 2},
+           {"layers", "layers agg %", 1},
+           {"parts", "parts agg %", 1},
+           {"unit_agg", "unit agg", 1},
+           {"unit", "no agg", 1},
+           {"poly_agg", "poly agg", 1},
+           {"poly", "no agg", 1}}};
+}
+
+// unsplit: the terrain's polygons in one piece.
+Json measuredRow(std::uint32_t grid, double unsplit, const ReproduceOptions& options) {
+  const MovingScene scene = makeCanyon({.grid = grid});
+  const TerrainCounts terrain = countTerrain(scene);
+  const double polygons = terrainPolygons(scene), expansion = polygons / unsplit;
+  UpdateRates rates;
+  LayerMerger merger;
+  std::vector<Mat4> poses(scene.parts.size());
+  const LayerTotals totals = sortFrames(scene, canyonSorting(), options,
+                                        [&](std::uint32_t frame, const LayerOrder& order, const View& view) {
+                                          scene.pose(frame, poses);
+                                          addFrame(scene, merger.merge(order), poses, view, expansion, rates);
+                                        });
+  return {{"grid", fmt::format("{0} x {0}", grid)},
+          {"objects", terrain.pieces},
+          {"polygons", polygons / terrain.pieces},
+          {"hull_polygons", terrain.hull_polygons / terrain.pieces},
+          {"cpu", totals.mean(&Frame::sort_us)},
+          {"cpu_max", totals.largest(&Frame::sort_us)},
+          {"expansion", expansion},
+          {"layers", 100.0 * rates.aggregated_layers / rates.layers},
+          {"parts", 100.0 * rates.aggregated_parts / rates.parts},
+          {"unit_agg", 100.0 * rates.unit_agg / rates.parts},
+          {"unit", 100.0 * rates.unit / rates.parts},
+          {"poly_agg", 100.0 * rates.poly_agg / rates.weight},
+          {"poly", 100.0 * rates.poly / rates.weight}};
+}
+
+Json paperRow(const CanyonRow& paper) {
+  return {{"grid", "  paper"},
+          {"objects", paper.objects},
+          {"polygons", paper.polygons},
+          {"hull_polygons", paper.hull_polygons},
+          {"cpu", paper.cpu},
+          {"cpu_max", paper.cpu_max},
+          {"expansion", paper.expansion},
+          {"layers", paper.layers},
+          {"parts", paper.parts},
+          {"unit_agg", paper.unit_agg},
+          {"unit", paper.unit},
+          {"poly_agg", paper.poly_agg},
+          {"poly", paper.poly}};
+}
+
+}  // namespace
+
+Experiment canyonTable(const ReproduceOptions& options) {
+  Experiment table = emptyTable();
+  const double unsplit = terrainPolygons(makeCanyon({.grid = 1, .inflation = 0.0}));
+  ProgressBar progress("canyon");
+  for (std::size_t i = 0; i < kCanyon.size(); ++i) {
+    table.rows.push_back(measuredRow(kCanyon[i].grid, unsplit, options));
+    table.rows.push_back(paperRow(kCanyon[i]));
+    progress.update(static_cast<double>(i + 1) / kCanyon.size());
+  }
+  return table;
+}
+
+}  // namespace sightline::tool

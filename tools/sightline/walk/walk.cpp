@@ -1,0 +1,336 @@
+// sightline walk: culls and draws every frame of a walk with each setting, compares the pictures, writes the
+// report.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "sightline/io/file.h"
+#include "sightline/render/compare.h"
+#include "sightline/render/renderer.h"
+#include "tools/sightline/command_line/command_line.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/command_line/signals.h"
+#include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/report/plot.h"
+#include "tools/sightline/walk/walk_pictures.h"
+#include "tools/sightline/walk/walk_report.h"
+#include "tools/sightline/walk/walk_runs.h"
+
+namespace sightline::tool {
+namespace {
+
+constexpr std::size_t kEverythingEvery =
+    10;  // frames: so often the baseline is compared with all objects drawn
+
+// In the folder of the report, beside pictures of frames.
+constexpr const char* kJsonFile = "walk.json";
+constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
+                                                "nodes_tested.svg"};
+// frames, runs: pictures of these frames are made, as far as they are known; one for each of so many runs
+// where they differ.
+std::vector<std::string> filesOfFolder(std::span<const std::uint32_t> frames = {}, std::size_t runs = 0) {
+  std::vector<std::string> files(kPlotFiles.begin(), kPlotFiles.end());
+  files.insert(files.end(), {"index.html", kJsonFile});
+  for (const std::uint32_t frame : frames) {
+    for (const char* picture : {"frame", "plan", "coverage", "depth"}) {
+      files.push_back(fmt::format("{}_{:04}.png", picture, frame));
+    }
+    for (std::size_t run = 0; run < runs; ++run) {
+      files.push_back(fmt::format("differs_{}_{:04}.png", run, frame));
+    }
+  }
+  return files;
+}
+
+struct WalkOptions {
+  CommonOptions common;
+  PathOptions path;
+  MethodOptions method;
+  std::string folder;
+  PictureOptions picture;
+  std::string command_line;
+};
+
+// View-frustum culling first, whatever was asked for: what the others are compared with.
+std::vector<Setting> withBaseline(std::vector<Setting> settings) {
+  const auto is_frustum = [](const Setting& setting) {
+    return setting.culler.method == CullMethod::kFrustum;
+  };
+  const auto frustum = std::find_if(settings.begin(), settings.end(), is_frustum);
+  Setting baseline = settings.front();
+  baseline.culler.method = CullMethod::kFrustum;
+  if (frustum != settings.end()) {
+    baseline = *frustum;
+    settings.erase(frustum);
+  }
+  settings.insert(settings.begin(), baseline);
+  return settings;
+}
+
+class Walker {
+ public:
+  Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer& renderer,
+         const std::string& folder, std::vector<WalkRun> runs)
+      : scene_(scene), walk_(walk), data_(data), renderer_(renderer), folder_(folder), chooser_(walk.frames) {
+    record_.runs = std::move(runs);
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+      everything_.push_back(ObjectId(o));
+    }
+  }
+
+  // Told to end, it ends after the frame that it is at.
+  Result<WalkRecord> run() {
+    record_.shown = record_.runs.size() > 1 ? 1 : 0;
+    record_.device = renderer_.device();
+    images_.resize(record_.runs.size());
+    ProgressBar progress("walking");
+    for (std::size_t i = 0; i < walk_.frames.size(); ++i) {
+      if (const Status drawn = step(i); !drawn) {
+        return drawn.error();
+      }
+      progress.update(static_cast<double>(i + 1) / static_cast<double>(walk_.frames.size()));
+      if (toldToEnd() != 0) {
+        break;
+      }
+    }
+    record_.pictures = chooser_.chosen();
+    return std::move(record_);
+  }
+
+ private:
+  Status step(std::size_t i) {
+    const std::uint32_t frame = walk_.frames[i];
+    const View view = walk_.view(frame, scene_);
+    cullFrame(record_.runs, data_, frame, view);
+    drawFrame(record_.runs, view, renderer_, &images_);
+    keep(frame, view);
+    if (i % kEverythingEvery == 0) {
+      if (const Status drawn = compare(renderer_.draw(view, everything_), everything_, 0, view); !drawn) {
+        return drawn;
+      }
+    }
+    for (std::size_t r = 1; r < images_.size(); ++r) {
+      if (const Status drawn = compare(images_[0], record_.baseline().run.culler.visible(), r, view);
+          !drawn) {
+        return drawn;
+      }
+    }
+    return Success{};
+  }
+
+  // The picture of run r with what it must be, the picture of these objects.
+  Status compare(const Image& reference, std::span<const ObjectId> reference_objects, std::size_t r,
+                 const View& view) {
+    const ImageDifference difference = compareImages(reference, images_[r]);
+    if (difference.equal()) {
+      return Success{};
+    }
+    WalkRun& run = record_.runs[r];
+    const std::uint32_t frame = run.frames.back().frame;
+    const std::span<const ObjectId> kept = run.run.culler.visible();
+    const std::vector<ObjectId> culled = culledOf(reference_objects, kept);
+    if (!culled.empty() && renderer_.countShowing(view, kept, culled) == 0) {
+      run.frames.back().tie = true;
+      return Success{};
+    }
+    const bool first = run.differingFrames().empty();
+    run.frames.back().differs = true;
+    if (!first) {
+      return Success{};
+    }
+    const std::string file = fmt::format("differs_{}_{:04}.png", r, frame);
+    const std::string caption =
+        fmt::format("DIFFERS: {} ({}), {} pixels, the first at {}, {}", methodName(run.setting),
+                    optionsText(run.setting), difference.pixels, difference.x, difference.y);
+    record_.changed.push_back({frame, file, caption});
+    return writePng(sideBySide(images_[r], differenceImage(reference, images_[r])), folder_ + "/" + file);
+  }
+
+  std::vector<ObjectId> culledOf(std::span<const ObjectId> objects, std::span<const ObjectId> kept) const {
+    std::vector<bool> is_kept(scene_.objects.size(), false);
+    for (const ObjectId object : kept) {
+      is_kept[object.value] = true;
+    }
+    std::vector<ObjectId> culled;
+    for (const ObjectId object : objects) {
+      if (!is_kept[object.value]) {
+        culled.push_back(object);
+      }
+    }
+    return culled;
+  }
+
+  void keep(std::uint32_t frame, const View& view) {
+    const Culler& all = record_.baseline().run.culler;
+    const Culler& shown = record_.runs[record_.shown].run.culler;
+    KeptFrame kept;
+    kept.frame = frame;
+    kept.view = view;
+    kept.in_frustum.assign(all.visible().begin(), all.visible().end());
+    kept.visible.assign(shown.visible().begin(), shown.visible().end());
+    kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
+    const DepthMapView map = shown.depthMap();
+    kept.map.width = map.width;
+    kept.map.height = map.height;
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+      kept.map.reciprocal_depth.insert(kept.map.reciprocal_depth.end(), map.row(y).begin(), map.row(y).end());
+    }
+    kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
+    kept.triangles_visible = data_.trianglesOf(kept.visible);
+    chooser_.offer(kept);
+  }
+
+  const Scene& scene_;
+  const Walk& walk_;
+  CullingData& data_;
+  Renderer& renderer_;
+  const std::string& folder_;
+  std::vector<ObjectId> everything_;
+  PictureChooser chooser_;
+  WalkRecord record_;
+  std::vector<Image> images_;  // of this frame, one a run
+};
+
+Status writePlots(const Report& report, const std::string& folder) {
+  for (std::size_t i = 0; i < report.plots.size(); ++i) {
+    if (const Status ok = writeFile(folder + "/" + kPlotFiles[i], toSvg(report.plots[i])); !ok) {
+      return ok;
+    }
+  }
+  return Success{};
+}
+
+Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRecord& record,
+                Renderer& renderer) {
+  Result<std::vector<ReportPicture>> pictures =
+      drawPictures(record, input.scene, input.data.occluders(), renderer, options.folder);
+  if (!pictures) {
+    return pictures.error();
+  }
+  Report report = walkReport(input, record, std::move(*pictures));
+  report.command = options.command_line;
+  const std::string json = walkJson(input, record);
+  for (const Status& status :
+       {writePlots(report, options.folder), writeOutput(options.folder + "/" + kJsonFile, json),
+        writeReport(report, options.folder), writeOutput(options.common.json, json)}) {
+    if (!status) {
+      return status;
+    }
+  }
+  return Success{};
+}
+
+Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting>& settings,
+                           const SceneAndWalk& input) {
+  const auto& [scene, walk, baked] = input;
+  const auto [width, height] = pictureSize(options.picture, walk.path);
+  Result<Renderer> renderer = Renderer::create(scene.view(), width, height);
+  if (!renderer) {
+    return renderer.error();
+  }
+  if (const Status made = makeFolder(options.folder); !made) {
+    return made.error();
+  }
+  const Threads threads(options.common.threads);
+  CullingData data(scene, threads.parallelFor(), walk, baked);
+  Walker walker(scene, walk, data, *renderer, options.folder, makeRuns(settings, data));
+  const SignalGuard guard;  // told to end, the walker ends early, and what it has done is written
+  Result<WalkRecord> record = walker.run();
+  if (!record) {
+    return record.error();
+  }
+  const std::size_t done = record->baseline().frames.size();
+  const bool interrupted = done < walk.frames.size();
+  data.noteUnknownSets();
+  record->width = width;
+  record->height = height;
+  const WalkInput walked{options.common.scene, scene, walk, data};
+  if (const Status written = writeAll(options, walked, *record, *renderer); !written) {
+    return written.error();
+  }
+  if (options.common.textOnStdout()) {
+    printWalk(*record);
+    fmt::print("report: {}\n", (std::filesystem::path(options.folder) / "index.html").string());
+  }
+  if (interrupted) {
+    fmt::print(stderr,
+               "sightline: walk was interrupted after {} of {} frames; the report in {} is of these\n", done,
+               walk.frames.size(), options.folder);
+    return static_cast<ExitCode>(interruptedExitCode());
+  }
+  return record->differing() == 0 ? kOk : kCheckFailed;
+}
+
+Status checkFilesOf(const WalkOptions& options, const std::vector<std::string>& in_folder) {
+  return checkFiles({.scenes = {options.common.scene},
+                     .inputs = walkInputs(options.common.scene, options.path, options.method.baked),
+                     .outputs = {{"--json", options.common.json}},
+                     .folder = {"--output", options.folder, in_folder}});
+}
+
+Result<ExitCode> runWalk(const WalkOptions& options) {
+  const Result<std::vector<Setting>> settings = settingsOf(options.method);
+  if (!settings) {
+    return settings.error();
+  }
+  if (const Status ok = checkFilesOf(options, filesOfFolder()); !ok) {
+    return ok.error();
+  }
+  const Result<SceneAndWalk> input =
+      loadSceneAndWalk(options.common.scene, options.path, options.method.baked);
+  if (!input) {
+    return input.error();
+  }
+  if (const Status ok =
+          checkFilesOf(options, filesOfFolder(input->walk.frames, withBaseline(*settings).size()));
+      !ok) {
+    return ok.error();
+  }
+  return walkScene(options, withBaseline(*settings), *input);
+}
+
+}  // namespace
+
+void addWalk(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "walk",
+      "walks a path with each method, measures, compares all pictures, writes the report DIR/index.html");
+  const auto options = std::make_shared<WalkOptions>();
+  addCommonOptions(*command, options->common);
+  addPathOptions(*command, options->path);
+  addMethodOptions(*command, options->method, true);
+  command->add_option("-o,--output", options->folder, "folder of the report; made if needed")
+      ->required()
+      ->type_name(kFolderType)
+      ->check(isNotEmpty());
+  addPictureOptions(*command, options->picture);
+  command->footer(
+      "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
+      "picture, "
+      "ties of the depth buffer apart.\n"
+      "Interrupted (Ctrl-C), it writes the report of the frames walked so far and ends with exit code 130.\n"
+      "Examples:\n"
+      "  sightline walk demo:city -o report\n"
+      "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"
+      "  sightline walk demo:city --method occlusion-tree,supporting-planes --hierarchy kd "
+      "--occluders area-angle,database -o report\n"
+      "  sightline walk demo:city --method opacity-map,depth-pyramid --occluders area-angle,minimum-sets -o "
+      "report\n"
+      "  sightline walk demo:ship --baked ship.sight --method visibility-octree,depth-pyramid --visible-sets "
+      "on,off -o report\n"
+      "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
+  command->callback([options, command, &chosen] {
+    options->command_line = commandLine(*command);
+    chosen = [options] { return runWalk(*options); };
+  });
+}
+
+}  // namespace sightline::tool

@@ -1,0 +1,104 @@
+#pragma once
+
+// What `walk` measures: numbers of every frame for every setting, and what its pictures need.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/sightline/cull/cull_run.h"
+#include "tools/sightline/input/load.h"
+
+namespace sightline::tool {
+
+struct FrameRecord {
+  std::uint32_t frame = 0;
+  std::size_t objects = 0;      // drawn
+  std::uint64_t triangles = 0;  // drawn
+  double cull_us = 0.0, draw_us = 0.0;
+  CullStats stats;
+  bool differs = false;  // the picture, from the one of view-frustum culling: something culled would show
+  bool tie = false;      // the picture differs, but by ties of the depth buffer only
+
+  double frameUs() const { return cull_us + draw_us; }
+};
+
+struct WalkRun {
+  Setting setting;
+  CullRun run;
+  std::size_t hierarchy_nodes = 0;
+  std::uint32_t hierarchy_depth = 0;
+  std::vector<FrameRecord> frames;
+
+  template <typename Of>
+  double mean(Of of) const {
+    double sum = 0.0;
+    for (const FrameRecord& frame : frames) {
+      sum += static_cast<double>(of(frame));
+    }
+    return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
+  }
+  std::vector<std::uint32_t> differingFrames() const { return framesWhere(&FrameRecord::differs); }
+  std::vector<std::uint32_t> tieFrames() const { return framesWhere(&FrameRecord::tie); }
+
+ private:
+  std::vector<std::uint32_t> framesWhere(bool FrameRecord::*is) const {
+    std::vector<std::uint32_t> numbers;
+    for (const FrameRecord& frame : frames) {
+      if (frame.*is) {
+        numbers.push_back(frame.frame);
+      }
+    }
+    return numbers;
+  }
+};
+
+// A map of occluders, see DepthMapView, without what lies beyond its width.
+struct KeptMap {
+  std::uint32_t width = 0, height = 0;
+  std::vector<float> reciprocal_depth;
+};
+
+// One frame as it was culled, kept for its pictures.
+struct KeptFrame {
+  std::uint32_t frame = 0;
+  View view;
+  std::vector<ObjectId> in_frustum, visible;
+  std::vector<OccluderId> occluders;
+  std::uint64_t triangles_in_frustum = 0, triangles_visible = 0;
+  KeptMap map;  // empty where the method has none
+};
+
+// A picture that culling changed.
+struct ChangedPicture {
+  std::uint32_t frame = 0;
+  std::string file, caption;
+};
+
+struct WalkRecord {
+  std::vector<WalkRun> runs;        // [0] is the baseline: view-frustum culling
+  std::size_t shown = 0;            // the run of the pictures
+  std::vector<KeptFrame> pictures;  // ascending by frame
+  std::vector<ChangedPicture> changed;
+  std::uint32_t width = 0, height = 0;
+  std::string device;  // OpenGL's; empty: nothing was drawn
+
+  const WalkRun& baseline() const { return runs.front(); }
+  std::size_t differing() const {
+    std::size_t sum = 0;
+    for (const WalkRun& run : runs) {
+      sum += run.differingFrames().size();
+    }
+    return sum;
+  }
+  std::size_t ties() const {
+    std::size_t sum = 0;
+    for (const WalkRun& run : runs) {
+      sum += run.tieFrames().size();
+    }
+    return sum;
+  }
+};
+
+}  // namespace sightline::tool
