@@ -27,7 +27,7 @@
 #include "bench/map_methods.h"
 #include "bench/measuring.h"
 #include "bench/ray_depth.h"
-#include "sightline/culling/culler.h"
+#include "tests/support/any_culler.h"
 
 namespace {
 
@@ -57,7 +57,7 @@ struct Prepared {
   Hierarchy hierarchy;
   OccluderSet occluders;
   RayDepth rays;
-  Culler frustum;
+  AnyCuller frustum;
   std::vector<ObjectId> kept_by_rays{};
 
   explicit Prepared(const std::string& name)
@@ -65,11 +65,11 @@ struct Prepared {
         hierarchy(buildHierarchy(scene.bounds, scene.cost)),
         occluders(findOccluders(scene.scene.view())),
         rays(scene.scene.view()),
-        frustum(hierarchy, scene.bounds, occluders, {.method = CullMethod::kFrustum}) {}
+        frustum(hierarchy, scene.bounds, occluders, {.method = AnyMethod::kFrustum}) {}
 };
 
 std::vector<Method> methodsOf(bool brief) {
-  std::vector<Method> methods{cullerMethod("tree", CullMethod::kOcclusionTree, 64)};
+  std::vector<Method> methods{cullerMethod("tree", AnyMethod::kOcclusionTree, 64)};
   const std::size_t sizes = std::size(kMapSizes) - (brief ? 1 : 0);
   addMapMethods(methods, std::span(kMapSizes).first(sizes), kCounts);
   return methods;
@@ -82,7 +82,7 @@ void castRays(Prepared& scene, const Method& method, const Step& step, Measured&
 }
 
 std::vector<Measured> measure(Prepared& scene, std::span<const Method> methods, std::span<const Step> steps) {
-  std::vector<Culler> cullers;
+  std::vector<AnyCuller> cullers;
   for (const Method& method : methods) {
     cullers.emplace_back(scene.hierarchy, scene.scene.bounds, scene.occluders, method.settings);
   }
@@ -97,7 +97,7 @@ std::vector<Measured> measure(Prepared& scene, std::span<const Method> methods, 
     cullers[m].cull(step.view);
     if (step.counted) {
       const CullStats& stats = cullers[m].stats();
-      measured[m].add(stats.choose_us, stats.build_us, stats.walk_us, cullers[m].visible().size());
+      measured[m].add(stats.choose_us, stats.build_us, stats.traverse_us, cullers[m].visible().size());
     }
   };
   for (std::size_t first = 0, group = 0; first < steps.size(); first += kStepsInTurn, ++group) {

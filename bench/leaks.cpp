@@ -29,7 +29,7 @@
 #include "bench/measuring.h"
 #include "bench/ray_depth.h"
 #include "oracle/exact_visibility.h"
-#include "sightline/culling/culler.h"
+#include "tests/support/any_culler.h"
 
 namespace {
 
@@ -94,7 +94,7 @@ class Comparison {
         small_too_(findOccluders(scene_.scene.view(), {.area_fraction = kSmallToo})),
         exact_(scene_.scene.view()),
         rays_(scene_.scene.view()),
-        frustum_(hierarchy_, scene_.bounds, occluders_, {.method = CullMethod::kFrustum}) {}
+        frustum_(hierarchy_, scene_.bounds, occluders_, {.method = AnyMethod::kFrustum}) {}
 
   void run(bool brief) {
     listMethods(brief);
@@ -134,12 +134,12 @@ class Comparison {
  private:
   void listMethods(bool brief) {
     const auto counts = std::span(kCounts).first(brief ? 2 : std::size(kCounts));
-    methods_.push_back(cullerMethod("frustum", CullMethod::kFrustum, 0));
+    methods_.push_back(cullerMethod("frustum", AnyMethod::kFrustum, 0));
     for (const std::uint32_t count : counts) {
-      methods_.push_back(cullerMethod("tree", CullMethod::kOcclusionTree, count));
+      methods_.push_back(cullerMethod("tree", AnyMethod::kOcclusionTree, count));
     }
     for (const std::uint32_t count : counts) {
-      methods_.push_back(cullerMethod("planes", CullMethod::kSupportingPlanes, count));
+      methods_.push_back(cullerMethod("planes", AnyMethod::kSupportingPlanes, count));
     }
     const auto sizes = std::span(kMapSizes).first(std::size(kMapSizes) - (brief ? 1 : 0));
     addMapMethods(methods_, sizes, counts);
@@ -240,9 +240,9 @@ class Comparison {
   OccluderSet occluders_, small_too_;
   ExactVisibility exact_;
   RayDepth rays_;
-  Culler frustum_;
+  AnyCuller frustum_;
   std::vector<Method> methods_;
-  std::vector<Culler> cullers_;
+  std::vector<AnyCuller> cullers_;
 
   std::size_t groups_ = 0;  // of steps
   std::vector<Row> rows_;

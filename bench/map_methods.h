@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sightline/culling/culler.h"
+#include "tests/support/any_culler.h"
 
 namespace sightline::bench {
 
@@ -27,14 +27,14 @@ struct Method {
   std::string name;
   MethodKind kind = MethodKind::kCuller;
   MapSize size{0, 0};  // of those that have a map
-  CullerSettings settings;
+  AnySettings settings;
   bool small_occluders = false;  // of a set in which the small boxes are, too
 
   bool hasMap() const { return size.width > 0; }
   std::string sizeText() const { return hasMap() ? fmt::format("{}x{}", size.width, size.height) : ""; }
 };
 
-inline Method cullerMethod(std::string name, CullMethod method, std::uint32_t occluder_count,
+inline Method cullerMethod(std::string name, AnyMethod method, std::uint32_t occluder_count,
                            MapSize size = {0, 0}) {
   Method made{.name = std::move(name), .size = size, .settings = {.method = method}};
   made.settings.occluder_count = occluder_count;
@@ -49,7 +49,7 @@ inline Method cullerMethod(std::string name, CullMethod method, std::uint32_t oc
 // A depth pyramid with its finer map, whatever the number of objects it pays for.
 inline Method focusedMethod(std::string name, std::uint32_t occluder_count, MapSize size,
                             const FocusSettings& focus) {
-  Method made = cullerMethod(std::move(name), CullMethod::kDepthPyramid, occluder_count, size);
+  Method made = cullerMethod(std::move(name), AnyMethod::kDepthPyramid, occluder_count, size);
   made.settings.focus = focus;
   made.settings.focus.min_objects = 0;
   return made;
@@ -60,13 +60,13 @@ inline void addMapMethods(std::vector<Method>& methods, std::span<const MapSize>
                           std::span<const std::uint32_t> counts) {
   for (const MapSize size : sizes) {
     for (const std::uint32_t count : counts) {
-      methods.push_back(cullerMethod("pyramid", CullMethod::kDepthPyramid, count, size));
+      methods.push_back(cullerMethod("pyramid", AnyMethod::kDepthPyramid, count, size));
     }
     for (const std::uint32_t count : counts) {
       methods.push_back(focusedMethod("focused", count, size, {}));
     }
     for (const std::uint32_t count : counts) {
-      methods.push_back(cullerMethod("opacity", CullMethod::kOpacityMap, count, size));
+      methods.push_back(cullerMethod("opacity", AnyMethod::kOpacityMap, count, size));
     }
     methods.push_back({.name = "rays", .kind = MethodKind::kRays, .size = size});
   }

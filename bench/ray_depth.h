@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bench/measuring.h"
-#include "sightline/culling/culler.h"
 #include "sightline/scene/scene.h"
+#include "tests/support/any_culler.h"
 
 namespace sightline::bench {
 
@@ -164,7 +164,7 @@ struct RayTimes {
 // A frame by rays: casts them and keeps what the frustum holds and may show. rays: a RayDepth, or what casts
 // and answers as it does. frustum: a culler that does nothing else.
 template <typename Rays>
-RayTimes cullByRays(Rays& rays, Culler& frustum, std::span<const Box> bounds, const View& view,
+RayTimes cullByRays(Rays& rays, AnyCuller& frustum, std::span<const Box> bounds, const View& view,
                     std::uint32_t width, std::uint32_t height, std::vector<ObjectId>& kept) {
   RayTimes times;
   times.rays_us = microseconds([&] { rays.cast(view, width, height); });

@@ -1,7 +1,7 @@
 // What does a frame's culling cost as the scene grows? The built-in city with 3 to 3,100 copies, about 1,000
 // to 1,000,000 objects, the same kind of walk through each. In the same run, on the same frames:
 //
-//   walk       the hierarchical walk with the occlusion tree, as Culler does it (choice, tree and walk)
+//   walk       the hierarchical walk with the occlusion tree, as AnyCuller does it (choice, tree and walk)
 //   all boxes  the same tree of the same occluders, asked about the box of every object
 //   rays       one ray for each pixel of a 320 x 180 buffer (Embree), a pyramid of its farthest depths, and a
 //              test of the boxes that the frustum holds: the way Godot culls; not conservative, beside only
@@ -21,7 +21,7 @@
 #include "bench/measuring.h"
 #include "bench/ray_depth.h"
 #include "scenes/procedural.h"
-#include "sightline/culling/culler.h"
+#include "tests/support/any_culler.h"
 
 namespace {
 
@@ -99,9 +99,9 @@ void measure(std::uint32_t copies) {
   const double find_us = microseconds([&] { occluders = findOccluders(scene.view()); });
   RayPyramid rays(scene.view());
 
-  const CullerSettings settings;
-  Culler culler(hierarchy, bounds, occluders, settings);
-  Culler frustum(hierarchy, bounds, occluders, {.method = CullMethod::kFrustum});
+  const AnySettings settings;
+  AnyCuller culler(hierarchy, bounds, occluders, settings);
+  AnyCuller frustum(hierarchy, bounds, occluders, {.method = AnyMethod::kFrustum});
   OcclusionTree tree({.variant = settings.variant});
   std::vector<double> walk_us, boxes_us, rays_us;
   std::vector<ObjectId> shown;

@@ -26,7 +26,8 @@
 
 #include "bench/benchmark_scene.h"
 #include "bench/measuring.h"
-#include "sightline/culling/culler.h"
+#include "sightline/occluders/occluder_database.h"
+#include "tests/support/any_culler.h"
 
 namespace {
 
@@ -38,21 +39,17 @@ constexpr std::uint32_t kCounts[] = {8, 16, 32, 64, 128, 256};
 
 struct Structure {
   const char* name;
-  CullerSettings settings;
+  AnySettings settings;
 };
 
 constexpr Structure kStructures[] = {
     {"FME", {.variant = OcclusionTreeVariant::kFME}},
     {"FSE", {.variant = OcclusionTreeVariant::kFSE}},
-    {"eye", {.method = CullMethod::kSupportingPlanes}},
+    {"eye", {.method = AnyMethod::kSupportingPlanes}},
     {"eye, single",
-     {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.joint_occlusion = false}}},
-    {"box, kept",
-     {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.form = PlaneForm::kThroughBox}}},
-    {"box, new",
-     {.method = CullMethod::kSupportingPlanes,
-      .supporting_planes = {.form = PlaneForm::kThroughBox},
-      .temporal_coherence = false}},
+     {.method = AnyMethod::kSupportingPlanes, .supporting_planes = {.joint_occlusion = false}}},
+    {"box, kept", {.method = AnyMethod::kKeptPlanes}},
+    {"box, new", {.method = AnyMethod::kKeptPlanes, .temporal_coherence = false}},
 };
 constexpr std::size_t kStructureCount = std::size(kStructures);
 
@@ -60,11 +57,11 @@ constexpr std::size_t kStructureCount = std::size(kStructures);
 struct Measured {
   std::vector<double> build_us, walk_us, total_us, kept, tests;
 
-  void add(const Culler& culler) {
+  void add(const AnyCuller& culler) {
     const CullStats& stats = culler.stats();
     build_us.push_back(stats.build_us);
-    walk_us.push_back(stats.walk_us);
-    total_us.push_back(stats.build_us + stats.walk_us);
+    walk_us.push_back(stats.traverse_us);
+    total_us.push_back(stats.build_us + stats.traverse_us);
     kept.push_back(static_cast<double>(culler.visible().size()));
     tests.push_back(stats.nodes_tested + stats.objects_tested);
   }
@@ -81,12 +78,12 @@ OccluderDatabase oneListOfAll(const OccluderSet& occluders) {
 std::vector<Measured> measure(const BenchmarkScene& scene, const Hierarchy& hierarchy,
                               const OccluderSet& occluders, const OccluderDatabase& all, std::uint32_t count,
                               std::size_t frames) {
-  std::vector<Culler> cullers;
+  std::vector<AnyCuller> cullers;
   for (const Structure& structure : kStructures) {
-    CullerSettings settings = structure.settings;
-    settings.occluders = OccluderChoice::kDatabase;
+    AnySettings settings = structure.settings;
+    settings.use_lists = true;
     settings.occluder_count = count;
-    cullers.emplace_back(hierarchy, scene.bounds, occluders, settings, OccluderDatabases{.from_eye = &all});
+    cullers.emplace_back(hierarchy, scene.bounds, occluders, settings, AnyLists{.from_eye = &all});
   }
   std::vector<Measured> measured(kStructureCount);
   for (std::size_t frame = 0; frame < std::min(frames, scene.path.frames.size()); ++frame) {
@@ -133,15 +130,12 @@ void printMemory(std::uint32_t copies, std::size_t frames) {
   const OccluderDatabase database = OccluderDatabase::build(kd_tree, occluders);
   const std::chrono::duration<double> build_s = std::chrono::steady_clock::now() - start;
 
-  CullerSettings settings{.method = CullMethod::kSupportingPlanes};
-  settings.supporting_planes.form = PlaneForm::kThroughBox;
-  Culler culler(bvh, city.bounds, occluders, settings);
-  std::size_t relation_bytes = 0;
-  std::uint32_t relations = 0;
+  AnyCuller culler(bvh, city.bounds, occluders, {.method = AnyMethod::kKeptPlanes});
+  std::uint64_t relation_bytes = 0, relations = 0;
   for (std::size_t frame = 0; frame < std::min(frames, city.path.frames.size()); ++frame) {
     culler.cull(city.path.view(frame, city.scene.origin));
-    relation_bytes = std::max(relation_bytes, culler.stats().relations.bytes);
-    relations = std::max(relations, culler.stats().relations.kept);
+    relation_bytes = std::max(relation_bytes, culler.statistic("relations", "bytes"));
+    relations = std::max(relations, culler.statistic("relations", "kept"));
   }
   constexpr double kMiB = 1 << 20;
   fmt::print("{:>7}{:>9}{:>10}{:>10} |{:>11}{:>9.2f} |{:>9}{:>9.2f}{:>9.1f}\n", copies, city.bounds.size(),

@@ -18,7 +18,7 @@
 #include "bench/benchmark_scene.h"
 #include "oracle/exact_visibility.h"
 #include "oracle/ray_scene.h"
-#include "sightline/culling/culler.h"
+#include "tests/support/any_culler.h"
 
 namespace {
 
@@ -27,18 +27,18 @@ using namespace sightline::bench;
 
 struct Configuration {
   std::string name;
-  CullerSettings settings;
+  AnySettings settings;
 };
 
 std::vector<Configuration> configurations() {
   std::vector<Configuration> all;
-  all.push_back({"frustum", {.method = CullMethod::kFrustum}});
-  const std::pair<const char*, CullerSettings> structures[] = {
+  all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
+  const std::pair<const char*, AnySettings> structures[] = {
       {"FSE", {.variant = OcclusionTreeVariant::kFSE}},
       {"FSC", {.variant = OcclusionTreeVariant::kFSC}},
       {"FME", {.variant = OcclusionTreeVariant::kFME}},
       {"FMC", {.variant = OcclusionTreeVariant::kFMC}},
-      {"planes", {.method = CullMethod::kSupportingPlanes}}};
+      {"planes", {.method = AnyMethod::kSupportingPlanes}}};
   for (const auto& [name, settings] : structures) {
     for (const std::uint32_t count : {8u, 16u, 32u, 64u, 128u, 256u}) {
       all.push_back({fmt::format("{} {:3}", name, count), settings});
@@ -105,7 +105,7 @@ void table(const std::string& name, std::size_t step) {
   std::mt19937 random(1);
 
   std::vector<Configuration> all = configurations();
-  std::vector<Culler> cullers;
+  std::vector<AnyCuller> cullers;
   for (const Configuration& configuration : all) {
     cullers.emplace_back(hierarchy, loaded.bounds, occluders, configuration.settings);
   }

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "sightline/culling/culler.h"
+#include "sightline/culling/occlusion_tree_method.h"
 
 using namespace sightline;
 
@@ -39,7 +40,7 @@ int main() {
   // A hierarchy over the objects, and what can hide them; then from views to the objects that may be seen.
   const Hierarchy hierarchy = buildHierarchy(bounds, {});  // once a scene
   const OccluderSet occluders = findOccluders(scene.view());
-  Culler culler(hierarchy, bounds, occluders);
+  Culler culler({.hierarchy = &hierarchy, .object_bounds = bounds, .occluders = &occluders}, occlusionTree());
   culler.cull(view);  // every frame
   for (ObjectId id : culler.visible()) {
     std::printf("visible: %u\n", id.value);

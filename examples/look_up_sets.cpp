@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "sightline/culling/culler.h"
+#include "sightline/culling/visibility_octree_method.h"
 #include "sightline/pvs/query/set_query.h"
 
 using namespace sightline;
@@ -34,17 +35,14 @@ int main(int argc, char** argv) {
   }
   std::printf("%zu of %zu objects may be seen from there\n", objects, boxes.objects.size());
 
-  // Or let a Culler ask. Its hierarchy and occluders are for other methods, and need the boxes of the
-  // objects.
+  // Or let a Culler ask, which needs the boxes of the objects: here those that were baked.
   std::vector<Box> bounds(boxes.objects.size());
   for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
     if (boxes.leaf(node)) {
       bounds[boxes.objectsBelow(node)[0].value] = boxes.nodes[node].bounds;
     }
   }
-  const Hierarchy hierarchy = buildHierarchy(bounds, {});
-  const OccluderSet none;
-  Culler culler(hierarchy, bounds, none, {.method = CullMethod::kVisibilityOctree}, {}, &query);
+  Culler culler({.object_bounds = bounds, .sets = &query}, visibilityOctree());
   culler.cull(view);
   std::printf("%zu of them in this view\n", culler.visible().size());
 }

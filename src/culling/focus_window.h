@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sightline/culling/culler.h"
+#include "sightline/culling/depth_pyramid_method.h"
 #include "src/scene/pixel_view.h"
 
 namespace sightline::culling {

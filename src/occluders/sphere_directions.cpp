@@ -16,7 +16,7 @@ namespace {
 constexpr double kCosGoldenAngle = -0.7373688780783197;
 constexpr double kSinGoldenAngle = 0.6754902942615238;
 constexpr double kTexelsPerDirection = 16.0;
-constexpr double kRounding = 1e-9;  // far above that of a scalar product, far below the texels' size
+constexpr double kTableRounding = 1e-9;  // far above that of a scalar product, far below the texels' size
 
 double angleBetween(const Vec3d& unit_a, const Vec3d& unit_b) {
   return std::acos(std::clamp(dot(unit_a, unit_b), -1.0, 1.0));
@@ -94,7 +94,7 @@ void SphereDirections::appendCandidates(const Quad& texel) {
     best = std::max(best, dot(center, direction));
   }
   const double reach = std::acos(std::min(best, 1.0)) + 2.0 * texel.radius();
-  const double least = reach < std::numbers::pi ? std::cos(reach) - kRounding : -2.0;
+  const double least = reach < std::numbers::pi ? std::cos(reach) - kTableRounding : -2.0;
   std::vector<std::uint16_t> near;
   for (std::uint32_t i = 0; i < count(); ++i) {
     if (dot(center, directions_[i]) >= least) {
@@ -106,7 +106,7 @@ void SphereDirections::appendCandidates(const Quad& texel) {
     const bool beaten = std::any_of(near.begin(), near.end(), [&](std::uint16_t j) {
       const Vec3d difference = directions_[j] - directions_[i];
       return std::all_of(corners.begin(), corners.end(),
-                         [&](const Vec3d& corner) { return dot(difference, corner) > kRounding; });
+                         [&](const Vec3d& corner) { return dot(difference, corner) > kTableRounding; });
     });
     if (!beaten) {
       candidates_.push_back(i);

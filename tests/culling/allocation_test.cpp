@@ -13,7 +13,8 @@ namespace {
 
 using namespace demo_frames;
 
-std::size_t allocationsIn(Culler& culler, std::span<const View> views, std::span<const Box> dynamic_boxes) {
+std::size_t allocationsIn(AnyCuller& culler, std::span<const View> views,
+                          std::span<const Box> dynamic_boxes) {
   const std::size_t before = allocations;
   for (const View& view : views) {
     culler.cull(view, dynamic_boxes);
@@ -24,13 +25,12 @@ std::size_t allocationsIn(Culler& culler, std::span<const View> views, std::span
 // Every structure, little room for relations, and all that uses the database.
 std::vector<NamedSettings> allSettings() {
   std::vector<NamedSettings> all(std::begin(kStructures), std::end(kStructures));
-  all.push_back({"frustum", {.method = CullMethod::kFrustum}});
+  all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
   all.push_back({"little room",
-                 {.method = CullMethod::kSupportingPlanes,
-                  .supporting_planes = {.form = PlaneForm::kThroughBox, .relation_bytes = 100'000}}});
+                 {.method = AnyMethod::kSupportingPlanes, .supporting_planes = {.relation_bytes = 100'000}}});
   for (const NamedSettings& method : kMethods) {
     NamedSettings with_database = method;
-    with_database.settings.occluders = OccluderChoice::kDatabase;
+    with_database.settings.use_lists = true;
     with_database.settings.detail_objects = true;
     all.push_back(with_database);
   }
@@ -38,7 +38,7 @@ std::vector<NamedSettings> allSettings() {
 }
 
 TEST(Allocations, AreCountedByThisTest) {
-  Culler culler = smallCity().culler(HierarchyKind::kBvh, {});
+  AnyCuller culler = smallCity().culler(HierarchyKind::kBvh, {});
   EXPECT_GT(allocationsIn(culler, smallCity().frames(smallCity().scene.paths[0], 0, 1), {}), 0u);
 }
 
@@ -51,7 +51,7 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
     const std::vector<Box> dynamic_boxes(demo->bounds.begin(), demo->bounds.begin() + 20);
     for (const HierarchyKind kind : kKinds) {
       for (const auto& [name, settings] : allSettings()) {
-        Culler culler = demo->culler(kind, settings);
+        AnyCuller culler = demo->culler(kind, settings);
         allocationsIn(culler, views, dynamic_boxes);
         allocationsIn(culler, views, dynamic_boxes);
         EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u) << name << " " << nameOf(kind);
@@ -75,7 +75,7 @@ TEST(Allocations, DoNotHappenWithOccludersThatMove) {
     ASSERT_EQ(moving.back().occluders.size(), 1u);
   }
   for (const auto& [name, settings] : allSettings()) {
-    Culler culler = demo.culler(HierarchyKind::kBvh, settings);
+    AnyCuller culler = demo.culler(HierarchyKind::kBvh, settings);
     std::size_t counted = 0;
     for (int round = 0; round < 3; ++round) {
       const std::size_t before = allocations;
@@ -92,7 +92,7 @@ TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
   const DemoScene& demo = smallCity();
   const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 24);
   std::vector<NamedSettings> all = allSettings();
-  all.push_back({"visibility octree", {.method = CullMethod::kVisibilityOctree}});
+  all.push_back({"visibility octree", {.method = AnyMethod::kVisibilityOctree}});
   for (auto& [name, settings] : all) {
     settings.visible_sets = true;
     fake_sets::FakeSets sets(demo.bounds);
@@ -101,8 +101,8 @@ TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
     for (std::size_t v = 0; v < views.size(); ++v) {
       members.push_back(fake_sets::randomMembers(sets.boxes(), random));
     }
-    Culler culler(demo.bvh, demo.bounds, demo.occluders, settings, {&demo.database, &demo.detail_database},
-                  &sets);
+    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings, {&demo.database, &demo.detail_database},
+                     &sets);
     std::size_t counted = 0;
     for (int round = 0; round < 3; ++round) {
       counted = 0;

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "sightline/culling/culler.h"
 #include "tests/culling/demo_frames.h"
+#include "tests/support/any_culler.h"
 
 namespace sightline {
 namespace {
@@ -23,7 +23,7 @@ TEST(Culler, OneBadBoxDoesNotStopTheCullingOfTheOthers) {
   for (const HierarchyKind kind : demo_frames::kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
     for (const auto& [name, settings] : demo_frames::kStructures) {
-      Culler culler(hierarchy, bounds, occluders, settings);
+      AnyCuller culler(hierarchy, bounds, occluders, settings);
       for (int frame = 0; frame < 3; ++frame) {
         culler.cull(view);
         EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected)

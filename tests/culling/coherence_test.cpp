@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "sightline/scene/camera.h"
-#include "src/culling/hierarchical_walk.h"
+#include "src/culling/hierarchical_traversal.h"
 
 namespace sightline {
 namespace {
 
 using culling::AskAll;
-using culling::HierarchicalWalk;
-using culling::WalkBox;
+using culling::HierarchicalTraversal;
+using culling::TraversalBox;
 
 using Nodes = std::vector<std::uint32_t>;
 
@@ -46,7 +46,7 @@ class RowOfBoxes : public ::testing::Test {
     Nodes asked;
     CullStats stats;
     std::vector<ObjectId> visible;
-    walk_->run(frustumOf(view_), {}, AskAll{[&](const WalkBox& box) {
+    walk_->run(frustumOf(view_), {}, AskAll{[&](const TraversalBox& box) {
                  asked.push_back(box.item);
                  const auto found = states_.find(box.item);
                  return found == states_.end() ? Visibility::kPartial : found->second;
@@ -63,7 +63,7 @@ class RowOfBoxes : public ::testing::Test {
   const std::vector<Box> bounds_{Box{{0, 0, 0}, {1, 1, 1}}, Box{{2, 0, 0}, {3, 1, 1}},
                                  Box{{8, 0, 0}, {9, 1, 1}}, Box{{10, 0, 0}, {11, 1, 1}}};
   Hierarchy hierarchy_;
-  std::optional<HierarchicalWalk> walk_;
+  std::optional<HierarchicalTraversal> walk_;
   View view_;
   std::map<std::uint32_t, Visibility> states_;
 };

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "scenes/procedural.h"
-#include "sightline/culling/culler.h"
+#include "sightline/occluders/occluder_database.h"
+#include "tests/support/any_culler.h"
 
 namespace sightline::demo_frames {
 
@@ -16,7 +17,7 @@ constexpr HierarchyKind kKinds[] = {HierarchyKind::kKdTree, HierarchyKind::kBvh}
 
 struct NamedSettings {
   const char* name;
-  CullerSettings settings;
+  AnySettings settings;
 };
 
 // Every structure: the variants of the occlusion tree, the forms of the supporting planes, and maps.
@@ -25,17 +26,15 @@ constexpr NamedSettings kStructures[] = {
     {"FSC", {.variant = OcclusionTreeVariant::kFSC}},
     {"FME", {.variant = OcclusionTreeVariant::kFME}},
     {"FMC", {.variant = OcclusionTreeVariant::kFMC}},
-    {"planes through the eye", {.method = CullMethod::kSupportingPlanes}},
-    {"planes through the box",
-     {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.form = PlaneForm::kThroughBox}}},
+    {"planes through the eye", {.method = AnyMethod::kSupportingPlanes}},
+    {"planes through the box", {.method = AnyMethod::kKeptPlanes}},
     {"planes through the eye, no joint occlusion",
-     {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.joint_occlusion = false}}},
+     {.method = AnyMethod::kSupportingPlanes, .supporting_planes = {.joint_occlusion = false}}},
     {"planes through the box, no joint occlusion",
-     {.method = CullMethod::kSupportingPlanes,
-      .supporting_planes = {.joint_occlusion = false, .form = PlaneForm::kThroughBox}}},
-    {"opacity map", {.method = CullMethod::kOpacityMap, .raster = {.width = 64, .height = 36}}},
-    {"depth pyramid", {.method = CullMethod::kDepthPyramid}},
-    {"depth pyramid, focused", {.method = CullMethod::kDepthPyramid, .focus = {.min_objects = 0}}},
+     {.method = AnyMethod::kKeptPlanes, .supporting_planes = {.joint_occlusion = false}}},
+    {"opacity map", {.method = AnyMethod::kOpacityMap, .raster = {.width = 64, .height = 36}}},
+    {"depth pyramid", {.method = AnyMethod::kDepthPyramid}},
+    {"depth pyramid, focused", {.method = AnyMethod::kDepthPyramid, .focus = {.min_objects = 0}}},
 };
 // One of each method.
 constexpr NamedSettings kMethods[] = {kStructures[2], kStructures[4], kStructures[5],
@@ -65,8 +64,8 @@ struct DemoScene {
   const Hierarchy& hierarchy(HierarchyKind kind) const {
     return kind == HierarchyKind::kKdTree ? kd_tree : bvh;
   }
-  Culler culler(HierarchyKind kind, const CullerSettings& settings) const {
-    return Culler(hierarchy(kind), bounds, occluders, settings, {&database, &detail_database});
+  AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
+    return AnyCuller(hierarchy(kind), bounds, occluders, settings, {&database, &detail_database});
   }
   // Frames first, first + 1, ... of a walk, fewer at its end.
   std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {

@@ -273,12 +273,12 @@ struct Street {
   }
 };
 
-bool kept(const Culler& culler, std::size_t object) {
+bool kept(const AnyCuller& culler, std::size_t object) {
   return std::binary_search(culler.visible().begin(), culler.visible().end(), ObjectId(object));
 }
 
-CullerSettings focused(bool coherent) {
-  CullerSettings settings{.method = CullMethod::kDepthPyramid, .focus = {.min_objects = 0}};
+AnySettings focused(bool coherent) {
+  AnySettings settings{.method = AnyMethod::kDepthPyramid, .focus = {.min_objects = 0}};
   settings.raster = {.width = 96, .height = 96};  // coarse, so that it leaks
   settings.temporal_coherence = coherent;
   return settings;
@@ -288,16 +288,16 @@ TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
   std::size_t focused_frames = 0, judged = 0, more = 0;
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     const Street street(seed);
-    CullerSettings settings = focused(seed % 2 == 0);
-    Culler culler(street.hierarchy, street.bounds, street.occluders, settings);
+    AnySettings settings = focused(seed % 2 == 0);
+    AnyCuller culler(street.hierarchy, street.bounds, street.occluders, settings);
     settings.focus.magnification = 1.0;
-    Culler without(street.hierarchy, street.bounds, street.occluders, settings);
+    AnyCuller without(street.hierarchy, street.bounds, street.occluders, settings);
     for (std::size_t frame = 0; frame < street.views.size(); ++frame) {
       const View& view = street.views[frame];
       culler.cull(view);
       without.cull(view);
-      focused_frames += culler.stats().focused ? 1 : 0;
-      EXPECT_FALSE(without.stats().focused);
+      focused_frames += culler.statistic("map", "focused");
+      EXPECT_EQ(without.statistic("map", "focused"), 0u);
       for (std::size_t i = 0; i < street.bounds.size(); ++i) {
         if (kept(culler, i)) {
           continue;
@@ -323,33 +323,33 @@ TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
 TEST(FocusedCuller, HasNoWindowInTheFirstFrameAfterAJumpInOrthographicViewsOrWithoutMagnification) {
   const Street street(3);
   const View view = street.views[0];
-  Culler culler(street.hierarchy, street.bounds, street.occluders, focused(false));
+  AnyCuller culler(street.hierarchy, street.bounds, street.occluders, focused(false));
   culler.cull(view);
-  EXPECT_FALSE(culler.stats().focused);
+  EXPECT_EQ(culler.statistic("map", "focused"), 0u);
   culler.cull(view);
-  EXPECT_TRUE(culler.stats().focused);
+  EXPECT_EQ(culler.statistic("map", "focused"), 1u);
   culler.cull(turned(view, 70.0));
-  EXPECT_FALSE(culler.stats().focused) << "a jump";
+  EXPECT_EQ(culler.statistic("map", "focused"), 0u) << "a jump";
   culler.cull(view);
   culler.cull(view);
-  EXPECT_TRUE(culler.stats().focused);
+  EXPECT_EQ(culler.statistic("map", "focused"), 1u);
   culler.reset();
   culler.cull(view);
-  EXPECT_FALSE(culler.stats().focused) << "after reset()";
+  EXPECT_EQ(culler.statistic("map", "focused"), 0u) << "after reset()";
   View orthographic = view;
   orthographic.orthographic = true;
   for (int frame = 0; frame < 3; ++frame) {
     culler.cull(orthographic);
-    EXPECT_FALSE(culler.stats().focused);
+    EXPECT_EQ(culler.statistic("map", "focused"), 0u);
   }
   for (const double magnification : {1.0, 0.5, 0.0, -3.0, 1e9, 1e300, std::numeric_limits<double>::infinity(),
                                      std::numeric_limits<double>::quiet_NaN()}) {
-    CullerSettings settings = focused(false);
+    AnySettings settings = focused(false);
     settings.focus.magnification = magnification;
-    Culler other(street.hierarchy, street.bounds, street.occluders, settings);
+    AnyCuller other(street.hierarchy, street.bounds, street.occluders, settings);
     for (int frame = 0; frame < 3; ++frame) {
       other.cull(view);
-      EXPECT_FALSE(other.stats().focused) << magnification;
+      EXPECT_EQ(other.statistic("map", "focused"), 0u) << magnification;
     }
   }
 }
@@ -368,8 +368,8 @@ std::vector<View> smoothFrames(std::size_t first, std::size_t count) {
   return {};
 }
 
-CullerSettings focusedCity(double magnification) {
-  CullerSettings settings{.method = CullMethod::kDepthPyramid, .focus = {.min_objects = 0}};
+AnySettings focusedCity(double magnification) {
+  AnySettings settings{.method = AnyMethod::kDepthPyramid, .focus = {.min_objects = 0}};
   settings.focus.magnification = magnification;
   settings.temporal_coherence = false;
   return settings;
@@ -378,8 +378,8 @@ CullerSettings focusedCity(double magnification) {
 TEST(FocusedCuller, KeepsASubsetOfWhatIsKeptWithoutAWindow) {
   std::size_t fewer = 0;
   for (const std::size_t place : {0u, 100u, 200u, 300u}) {
-    Culler with = boxCity().culler(HierarchyKind::kBvh, focusedCity(8.0));
-    Culler without = boxCity().culler(HierarchyKind::kBvh, focusedCity(1.0));
+    AnyCuller with = boxCity().culler(HierarchyKind::kBvh, focusedCity(8.0));
+    AnyCuller without = boxCity().culler(HierarchyKind::kBvh, focusedCity(1.0));
     std::size_t frame = place;
     for (const View& view : smoothFrames(place, 20)) {
       with.cull(view);
@@ -396,14 +396,14 @@ TEST(FocusedCuller, KeepsASubsetOfWhatIsKeptWithoutAWindow) {
 
 TEST(FocusedCuller, CullsNothingThatIsSeenInTheBoxCity) {
   const ExactVisibility exact(boxCity().scene.view());
-  Culler culler = boxCity().culler(HierarchyKind::kBvh, focusedCity(8.0));
-  Culler frustum = boxCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+  AnyCuller culler = boxCity().culler(HierarchyKind::kBvh, focusedCity(8.0));
+  AnyCuller frustum = boxCity().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
   std::size_t seen = 0, culled = 0, focused_frames = 0;
   std::size_t frame = 0;
   for (const View& view : smoothFrames(0, 20)) {
     culler.cull(view);
     frustum.cull(view);
-    focused_frames += culler.stats().focused ? 1 : 0;
+    focused_frames += culler.statistic("map", "focused");
     std::vector<ObjectId> hidden;
     for (const ObjectId object : frustum.visible()) {
       if (!kept(culler, object.value)) {

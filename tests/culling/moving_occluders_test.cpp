@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "sightline/occluders/occluder_database.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/occlusion/small_scenes.h"
 
@@ -50,14 +51,14 @@ struct Crossing {
   }
 };
 
-bool kept(const Culler& culler, std::size_t object) {
+bool kept(const AnyCuller& culler, std::size_t object) {
   return std::binary_search(culler.visible().begin(), culler.visible().end(), ObjectId(object));
 }
 
 class MovingOccluders : public ::testing::TestWithParam<std::tuple<std::size_t, HierarchyKind, bool>> {
  protected:
-  CullerSettings settings() const {
-    CullerSettings settings = kStructures[std::get<0>(GetParam())].settings;
+  AnySettings settings() const {
+    AnySettings settings = kStructures[std::get<0>(GetParam())].settings;
     settings.raster = {.width = 512, .height = 512};
     settings.detail_objects = std::get<2>(GetParam());
     return settings;
@@ -70,14 +71,14 @@ TEST_P(MovingOccluders, HideNothingThatARayReachesAndNothingWhenTheyAreGone) {
   Crossing scene;
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {}, {.kind = kind(), .max_leaf_objects = 1});
   const OccluderDatabase near = OccluderDatabase::build(hierarchy, scene.occluders, {.turned_away = true});
-  const OccluderDatabases databases{.from_objects = &near};
-  Culler culler(hierarchy, scene.bounds, scene.occluders, settings(), databases);
+  const AnyLists databases{.from_objects = &near};
+  AnyCuller culler(hierarchy, scene.bounds, scene.occluders, settings(), databases);
   std::size_t hidden_by_it = 0, shown_again = 0;
   std::vector<bool> hidden_before(scene.bounds.size(), false);
   for (int frame = 0; frame < Crossing::kFrames; ++frame) {
     const View view = scene.step(frame);
     const bool there = frame % 6 != 5;  // now and then it is gone
-    Culler still(hierarchy, scene.bounds, scene.occluders, settings(), databases);
+    AnyCuller still(hierarchy, scene.bounds, scene.occluders, settings(), databases);
     still.cull(view);
     // A box that moves, behind the wall that moves.
     const float x = scene.mover.vertices[0].x;
@@ -122,18 +123,17 @@ INSTANTIATE_TEST_SUITE_P(All, MovingOccluders,
 TEST(MovingOccluders, LeaveNoRelationsBehind) {
   Crossing scene;
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {}, {.max_leaf_objects = 1});
-  const CullerSettings settings{
-      .method = CullMethod::kSupportingPlanes,
-      .supporting_planes = {.joint_occlusion = false, .form = PlaneForm::kThroughBox}};
+  const AnySettings settings{.method = AnyMethod::kKeptPlanes,
+                             .supporting_planes = {.joint_occlusion = false}};
   const OccluderSet none;
-  Culler culler(hierarchy, scene.bounds, none, settings);
+  AnyCuller culler(hierarchy, scene.bounds, none, settings);
   for (int frame = 0; frame < Crossing::kFrames; ++frame) {
     const View view = scene.step(frame);
     culler.cull(view, {}, &scene.moving);
-    EXPECT_EQ(culler.stats().relations.kept, 0u);
-    EXPECT_EQ(culler.stats().relations.reused, 0u);
+    EXPECT_EQ(culler.statistic("relations", "kept"), 0u);
+    EXPECT_EQ(culler.statistic("relations", "reused"), 0u);
     if (frame > 8 && frame < 14) {
-      EXPECT_GT(culler.stats().relations.rebuilt, 0u);
+      EXPECT_GT(culler.statistic("relations", "rebuilt"), 0u);
     }
   }
 }

@@ -6,7 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "sightline/culling/culler.h"
+#include "sightline/occluders/occluder_database.h"
+#include "tests/support/any_culler.h"
 
 namespace sightline {
 namespace {
@@ -33,7 +34,7 @@ class Polygons {
     bvh = buildHierarchy(bounds, {});
   }
 
-  Objects usedBy(Culler& culler, const View& view) const {
+  Objects usedBy(AnyCuller& culler, const View& view) const {
     culler.cull(view);
     Objects used;
     for (const OccluderId id : culler.occludersUsed()) {
@@ -80,8 +81,8 @@ Objects objects(std::initializer_list<std::size_t> ids) {
 // Bittner et al. 1998, section 3: the occluders of a frame are among those of what the frame before it saw.
 TEST(OccluderCandidates, AreThoseOfObjectsThatTheLastFrameKept) {
   const Polygons walls({wallAt(-5, -4, 4, -3, 3), wallAt(-10, -3, 3, -2, 2)});  // the second is hidden
-  Culler culler(walls.bvh, walls.bounds, walls.occluders,
-                {.method = CullMethod::kSupportingPlanes, .occluder_count = 2});
+  AnyCuller culler(walls.bvh, walls.bounds, walls.occluders,
+                   {.method = AnyMethod::kSupportingPlanes, .occluder_count = 2});
   EXPECT_EQ(walls.usedBy(culler, walkingAlongZ(0)), objects({0, 1})) << "there is no last frame";
   for (int frame = 1; frame < 10; ++frame) {
     EXPECT_EQ(walls.usedBy(culler, walkingAlongZ(frame)), objects({0}));
@@ -90,8 +91,8 @@ TEST(OccluderCandidates, AreThoseOfObjectsThatTheLastFrameKept) {
 
 TEST(OccluderCandidates, AreLookedForInTheWholeFrustumNowAndThenWhereThereAreFew) {
   const Polygons walls({wallAt(-5, -4, 4, -3, 3), wallAt(-10, -3, 3, -2, 2)});
-  Culler culler(walls.bvh, walls.bounds, walls.occluders,
-                {.method = CullMethod::kSupportingPlanes, .occluder_count = 8});
+  AnyCuller culler(walls.bvh, walls.bounds, walls.occluders,
+                   {.method = AnyMethod::kSupportingPlanes, .occluder_count = 8});
   int searches = 0;
   constexpr int kFrames = 40;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -107,9 +108,9 @@ TEST(OccluderCandidates, AreLookedForInTheWholeFrustumNowAndThenWhereThereAreFew
 TEST(OccluderCandidates, LieWithinLambdaStepsOfTheObserver) {
   const Polygons walls({wallAt(-5, -4, -1, -3, 3), wallAt(-30, 2, 9, -3, 3)});
   const auto usedWith = [&](double lambda_steps) {
-    Culler culler(
+    AnyCuller culler(
         walls.bvh, walls.bounds, walls.occluders,
-        {.method = CullMethod::kSupportingPlanes, .occluder_count = 2, .lambda_steps = lambda_steps});
+        {.method = AnyMethod::kSupportingPlanes, .occluder_count = 2, .lambda_steps = lambda_steps});
     EXPECT_EQ(walls.usedBy(culler, walkingAlongZ(0)), objects({0, 1})) << "no step is known yet";
     return walls.usedBy(culler, walkingAlongZ(1));
   };
@@ -123,9 +124,9 @@ TEST(OccluderCandidates, AreRankedByTheDirectionOfTheSettings) {
   const Polygons::Quad beside{{{-2, -3, -1}, {-2, -3, -30}, {-2, 3, -30}, {-2, 3, -1}}};  // faces +x
   const Polygons walls({beside, wallAt(-30, 0, 6, -3, 3)});
   const auto usedWith = [&](AreaAngleDirection direction) {
-    Culler culler(
+    AnyCuller culler(
         walls.bvh, walls.bounds, walls.occluders,
-        {.method = CullMethod::kSupportingPlanes, .occluder_count = 1, .area_angle_direction = direction});
+        {.method = AnyMethod::kSupportingPlanes, .occluder_count = 1, .area_angle_direction = direction});
     return walls.usedBy(culler, walkingAlongZ(0));
   };
   EXPECT_EQ(usedWith(AreaAngleDirection::kOccluder), objects({0}));
@@ -143,12 +144,12 @@ TEST(DetailObjectsOfASmallScene, AreHiddenByOccludersTowardsTheViewer) {
     // Narrow cones and small walls, so that no list holds what lies the other way.
     const OccluderDatabase near = OccluderDatabase::build(
         kd_tree, walls.occluders, {.directions = 256, .view_angle_deg = 30.0, .turned_away = true});
-    Culler culler(walls.bvh, walls.bounds, walls.occluders,
-                  {.method = CullMethod::kSupportingPlanes,
-                   .occluder_count = 0,
-                   .detail_objects = true,
-                   .detail_occluder_count = 8},
-                  {.from_objects = &near});
+    AnyCuller culler(walls.bvh, walls.bounds, walls.occluders,
+                     {.method = AnyMethod::kSupportingPlanes,
+                      .occluder_count = 0,
+                      .detail_objects = true,
+                      .detail_occluder_count = 8},
+                     {.from_objects = &near});
     View view;
     view.eye = {0, 0, eye_z};
     setOrientation(view, {0, 0, eye_z > -50 ? -1.0 : 1.0}, {0, 1, 0});

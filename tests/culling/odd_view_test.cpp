@@ -50,7 +50,7 @@ class OddViews : public ::testing::TestWithParam<bool> {  // orthographic?
   // In a second frame as well, with what the first one left behind.
   void expectVisible(const View& view, const Objects& expected, const char* what) {
     for (const auto& [name, settings] : kStructures) {
-      Culler culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
+      AnyCuller culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
       for (int frame = 0; frame < 2; ++frame) {
         culler.cull(view);
         EXPECT_EQ(Objects(culler.visible().begin(), culler.visible().end()), expected)
@@ -115,7 +115,7 @@ TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
 
   const std::vector<Box> dynamic{Box{{-1, -1, -12}, {1, 1, -11}}, Box{{-1, -1, 3}, {1, 1, 4}}};
   for (const auto& [name, settings] : kStructures) {
-    Culler culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
+    AnyCuller culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
     for (std::size_t v = 0; v < views.size(); ++v) {
       culler.cull(scene_.view, dynamic);
       EXPECT_EQ(Objects(culler.visible().begin(), culler.visible().end()), kSeen);
@@ -128,7 +128,7 @@ TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
       ASSERT_NE(culler.stats().view_fault, nullptr);
       EXPECT_EQ(culler.stats().view_fault, validate(views[v]).error().message);
       EXPECT_TRUE(culler.occludersUsed().empty());
-      EXPECT_EQ(culler.depthMap().width, 0u);
+      EXPECT_EQ(culler.depthBuffer().width, 0u);
     }
   }
 }

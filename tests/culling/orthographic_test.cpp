@@ -25,7 +25,7 @@ TEST(OrthographicCulling, HidesABoxBehindAWall) {
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
     for (const auto& [name, settings] : kStructures) {
-      Culler culler(hierarchy, bounds, occluders, settings);
+      AnyCuller culler(hierarchy, bounds, occluders, settings);
       culler.cull(view);
       EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected) << name;
     }

@@ -14,14 +14,14 @@ namespace sightline::demo_frames {
 
 struct NamedCuller {
   std::string name;
-  Culler culler;
+  AnyCuller culler;
 };
 
 // All structures and hierarchies, both settings of temporal coherence, few and many occluders; and those of
 // the database, with the second test.
 inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   std::vector<NamedCuller> cullers;
-  const auto add = [&](std::string name, HierarchyKind kind, const CullerSettings& settings) {
+  const auto add = [&](std::string name, HierarchyKind kind, const AnySettings& settings) {
     name += " " + nameOf(kind) + (settings.temporal_coherence ? " coherent " : " incoherent ") +
             std::to_string(settings.occluder_count) + " occluders";
     cullers.push_back({std::move(name), demo.culler(kind, settings)});
@@ -30,7 +30,7 @@ inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
     for (const NamedSettings& structure : kStructures) {
       for (const bool coherence : {true, false}) {
         for (const std::uint32_t count : {8u, 64u}) {
-          CullerSettings settings = structure.settings;
+          AnySettings settings = structure.settings;
           settings.occluder_count = count;
           settings.temporal_coherence = coherence;
           add(structure.name, kind, settings);
@@ -38,8 +38,8 @@ inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
       }
     }
     for (const NamedSettings& method : kMethods) {
-      CullerSettings settings = method.settings;
-      settings.occluders = OccluderChoice::kDatabase;
+      AnySettings settings = method.settings;
+      settings.use_lists = true;
       settings.detail_objects = true;
       add(std::string("database, detail objects, ") + method.name, kind, settings);
     }
@@ -47,7 +47,7 @@ inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   return cullers;
 }
 
-inline bool kept(const Culler& culler, ObjectId object) {
+inline bool kept(const AnyCuller& culler, ObjectId object) {
   return std::binary_search(culler.visible().begin(), culler.visible().end(), object);
 }
 
@@ -78,7 +78,7 @@ class Judge {
       : demo_(demo),
         exact_(demo.scene.view()),
         cullers_(allCullers(demo)),
-        frustum_(demo.culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum})) {}
+        frustum_(demo.culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum})) {}
 
   void judge(const View& view, const std::string& where) {
     for (NamedCuller& c : cullers_) {
@@ -115,7 +115,7 @@ class Judge {
   const DemoScene& demo_;
   ExactVisibility exact_;
   std::vector<NamedCuller> cullers_;
-  Culler frustum_;
+  AnyCuller frustum_;
 };
 
 }  // namespace sightline::demo_frames

@@ -19,7 +19,7 @@ using fake_sets::FakeSets;
 
 using Objects = std::vector<ObjectId>;
 
-Objects visibleOf(Culler& culler, const View& view) {
+Objects visibleOf(AnyCuller& culler, const View& view) {
   culler.cull(view);
   return {culler.visible().begin(), culler.visible().end()};
 }
@@ -35,13 +35,13 @@ Objects firstObjects(std::size_t count) {
 // Every method.
 std::vector<NamedSettings> allMethods() {
   std::vector<NamedSettings> all(std::begin(kMethods), std::end(kMethods));
-  all.push_back({"frustum", {.method = CullMethod::kFrustum}});
-  all.push_back({"visibility octree", {.method = CullMethod::kVisibilityOctree}});
-  all.push_back({"depth pyramid within sets", {.method = CullMethod::kDepthPyramid, .visible_sets = true}});
+  all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
+  all.push_back({"visibility octree", {.method = AnyMethod::kVisibilityOctree}});
+  all.push_back({"depth pyramid within sets", {.method = AnyMethod::kDepthPyramid, .visible_sets = true}});
   NamedSettings detail = kMethods[2];
   detail.name = "planes through the box, detail objects";
   detail.settings.detail_objects = true;
-  detail.settings.occluders = OccluderChoice::kDatabase;
+  detail.settings.use_lists = true;
   all.push_back(detail);
   return all;
 }
@@ -75,10 +75,10 @@ struct LiveScene {
     demo = other;
     makeSets();
   }
-  Culler culler(HierarchyKind kind, const CullerSettings& settings) const {
-    return Culler(demo.hierarchy(kind), demo.bounds, demo.occluders, settings, databases(), sets.get());
+  AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
+    return AnyCuller(demo.hierarchy(kind), demo.bounds, demo.occluders, settings, databases(), sets.get());
   }
-  OccluderDatabases databases() const { return {&demo.database, &demo.detail_database}; }
+  AnyLists databases() const { return {&demo.database, &demo.detail_database}; }
 
  private:
   void makeSets() {
@@ -88,9 +88,9 @@ struct LiveScene {
 };
 
 // The culler's next frames are those of a new one, and leave out nothing that a ray reaches.
-void expectAsNew(Culler& culler, const LiveScene& live, HierarchyKind kind, const CullerSettings& settings,
+void expectAsNew(AnyCuller& culler, const LiveScene& live, HierarchyKind kind, const AnySettings& settings,
                  const std::string& where) {
-  Culler fresh = live.culler(kind, settings);
+  AnyCuller fresh = live.culler(kind, settings);
   const ExactVisibility exact(live.demo.scene.view());
   for (const View& view : live.demo.frames(live.demo.scene.paths[0], 60, 4)) {
     const Objects visible = visibleOf(culler, view);
@@ -109,7 +109,7 @@ TEST(ResetCuller, IsRightInASceneThatGrewShrankOrMoved) {
   for (const HierarchyKind kind : kKinds) {
     for (const auto& [name, settings] : allMethods()) {
       LiveScene live(oneCopy());
-      Culler culler = live.culler(kind, settings);
+      AnyCuller culler = live.culler(kind, settings);
       expectAsNew(culler, live, kind, settings, std::string(name) + ", at first");
       for (const auto& [change, scene] :
            {std::pair{", grown", &smallCity()}, {", shrunk", &oneCopy()}, {", moved", &oneCopyMoved()}}) {
@@ -128,7 +128,7 @@ TEST(ResetCuller, IsRightInASceneThatMovedInTheSameMemory) {
     for (const auto& [name, settings] : allMethods()) {
       LiveScene live(oneCopy());
       const Box* memory = live.demo.bounds.data();
-      Culler culler = live.culler(kind, settings);
+      AnyCuller culler = live.culler(kind, settings);
       expectAsNew(culler, live, kind, settings, std::string(name) + ", at first");
       live.demo = oneCopyMoved();
       ASSERT_EQ(live.demo.bounds.data(), memory);
@@ -139,7 +139,7 @@ TEST(ResetCuller, IsRightInASceneThatMovedInTheSameMemory) {
 }
 
 TEST(ResetCuller, HasNoAnswersUntilTheNextFrame) {
-  Culler culler = oneCopy().culler(HierarchyKind::kBvh, {});
+  AnyCuller culler = oneCopy().culler(HierarchyKind::kBvh, {});
   const std::vector<View> views = oneCopy().frames(oneCopy().scene.paths[0], 60, 1);
   EXPECT_FALSE(visibleOf(culler, views[0]).empty());
   culler.reset();
@@ -151,7 +151,7 @@ TEST(Culler, KeepsEverythingOfASceneThatGrewOrShrankWithoutReset) {
   for (const HierarchyKind kind : kKinds) {
     for (const auto& [name, settings] : allMethods()) {
       LiveScene live(oneCopy());
-      Culler culler = live.culler(kind, settings);
+      AnyCuller culler = live.culler(kind, settings);
       const std::size_t count = live.demo.bounds.size();
       const std::vector<View> views = live.demo.frames(live.demo.scene.paths[0], 60, 4);
       EXPECT_LT(visibleOf(culler, views[0]).size(), count);
@@ -161,7 +161,7 @@ TEST(Culler, KeepsEverythingOfASceneThatGrewOrShrankWithoutReset) {
         EXPECT_EQ(visibleOf(culler, view), firstObjects(live.demo.bounds.size())) << name;
         EXPECT_TRUE(culler.stats().unfit);
         EXPECT_TRUE(culler.occludersUsed().empty());
-        EXPECT_TRUE(culler.depthMap().reciprocal_depth.empty());
+        EXPECT_TRUE(culler.depthBuffer().reciprocal_depth.empty());
       }
       live.become(DemoScene{Scene{}});
       EXPECT_EQ(visibleOf(culler, views[0]), firstObjects(count)) << name;
@@ -176,7 +176,7 @@ TEST(Culler, KeepsEverythingOfASceneThatGrewOrShrankWithoutReset) {
 TEST(Culler, KeepsEverythingWhereTheOccludersAreOthersWithoutReset) {
   for (const auto& [name, settings] : allMethods()) {
     LiveScene live(oneCopy());
-    Culler culler = live.culler(HierarchyKind::kBvh, settings);
+    AnyCuller culler = live.culler(HierarchyKind::kBvh, settings);
     const std::vector<View> views = live.demo.frames(live.demo.scene.paths[0], 60, 2);
     culler.cull(views[0]);
     live.demo.occluders = smallCity().occluders;
@@ -197,15 +197,15 @@ TEST(Culler, KeepsEverythingWhereTheOccludersAreOthersWithoutReset) {
 TEST(Culler, KeepsEverythingInViewWhereTheSetsAreOthersWithoutReset) {
   const DemoScene& demo = oneCopy();
   const View view = demo.frames(demo.scene.paths[0], 60, 1)[0];
-  Culler frustum = demo.culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+  AnyCuller frustum = demo.culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
   for (const DemoScene* other : {&smallCity(), &smallBuilding()}) {
-    for (CullerSettings settings :
-         {CullerSettings{.method = CullMethod::kVisibilityOctree},
-          CullerSettings{.occluder_count = 0, .visible_sets = true},
-          CullerSettings{.method = CullMethod::kDepthPyramid, .occluder_count = 0, .visible_sets = true}}) {
+    for (AnySettings settings :
+         {AnySettings{.method = AnyMethod::kVisibilityOctree},
+          AnySettings{.occluder_count = 0, .visible_sets = true},
+          AnySettings{.method = AnyMethod::kDepthPyramid, .occluder_count = 0, .visible_sets = true}}) {
       FakeSets sets(demo.bounds);
       sets.use(1, std::vector<bool>(demo.bounds.size(), false));
-      Culler culler(demo.bvh, demo.bounds, demo.occluders, settings, {}, &sets);
+      AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings, {}, &sets);
       EXPECT_TRUE(visibleOf(culler, view).empty());
       sets = FakeSets(other->bounds);
       sets.use(2, std::vector<bool>(other->bounds.size(), true));
@@ -241,13 +241,13 @@ TEST(Culler, KeepsEverythingWhereTheHierarchyIsOfOtherBoxes) {
     twice.objects.front() = twice.objects.back();
     for (const auto& [name, settings] : allMethods()) {
       const auto keptBy = [&](const Hierarchy& hierarchy, std::span<const Box> bounds) {
-        Culler culler(hierarchy, bounds, occluders, settings);
+        AnyCuller culler(hierarchy, bounds, occluders, settings);
         visibleOf(culler, street.view);
         const Objects kept = visibleOf(culler, street.view);
         EXPECT_TRUE(culler.stats().unfit) << name;
         return kept;
       };
-      Culler culler(fitting, street.bounds, occluders, settings);
+      AnyCuller culler(fitting, street.bounds, occluders, settings);
       EXPECT_LT(visibleOf(culler, street.view).size(), 3u) << name;
       EXPECT_FALSE(culler.stats().unfit) << name;
       EXPECT_EQ(keptBy(fitting, more), firstObjects(4)) << name;
@@ -269,7 +269,7 @@ TEST(Culler, OccludersOfObjectsBeyondTheBoxesAreNotLookedFor) {
   for (const ObjectId object : {ObjectId(3u), ObjectId(4'000'000'000u), ObjectId()}) {
     const OccluderSet occluders = street.wallOf(object);
     for (const auto& [name, settings] : allMethods()) {
-      Culler culler(hierarchy, street.bounds, occluders, settings);
+      AnyCuller culler(hierarchy, street.bounds, occluders, settings);
       EXPECT_EQ(visibleOf(culler, street.view), firstObjects(2)) << name;
     }
   }
@@ -280,11 +280,11 @@ TEST(Culler, ADatabaseOfOtherOccludersHidesNothingWrongly) {
   const ExactVisibility exact(demo.scene.view());
   ASSERT_GT(smallCity().occluders.occluders.size(), demo.occluders.occluders.size());
   for (const NamedSettings& method : kMethods) {
-    CullerSettings settings = method.settings;
-    settings.occluders = OccluderChoice::kDatabase;
+    AnySettings settings = method.settings;
+    settings.use_lists = true;
     settings.detail_objects = true;
-    Culler culler(demo.bvh, demo.bounds, demo.occluders, settings,
-                  {&smallCity().database, &smallCity().detail_database});
+    AnyCuller culler(demo.bvh, demo.bounds, demo.occluders, settings,
+                     {&smallCity().database, &smallCity().detail_database});
     for (const View& view : demo.frames(demo.scene.paths[0], 60, 4)) {
       const Objects visible = visibleOf(culler, view);
       EXPECT_FALSE(culler.stats().unfit);
@@ -326,11 +326,11 @@ struct RestlessScene {
 TEST(ResetCuller, HidesNothingThatARayReachesWhenAllMovedInPlace) {
   for (const HierarchyKind kind : kKinds) {
     for (const NamedSettings& structure : kStructures) {
-      CullerSettings settings = structure.settings;
+      AnySettings settings = structure.settings;
       settings.raster = {.width = 256, .height = 256};
       RestlessScene scene;
       scene.move(kind);
-      Culler culler(scene.hierarchy, scene.bounds, scene.occluders, settings);
+      AnyCuller culler(scene.hierarchy, scene.bounds, scene.occluders, settings);
       std::size_t hidden = 0;
       for (int step = 0; step < 12; ++step) {
         for (int frame = 0; frame < 2; ++frame) {

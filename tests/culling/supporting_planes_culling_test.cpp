@@ -18,27 +18,38 @@ namespace {
 
 using namespace demo_frames;
 
-CullerSettings planesThrough(PlaneForm form) {
-  return {.method = CullMethod::kSupportingPlanes, .supporting_planes = {.form = form}};
-}
+constexpr AnySettings kThroughEye{.method = AnyMethod::kSupportingPlanes};
 
-CullerSettings throughBox(bool kept = true, std::size_t relation_bytes = 64u << 20) {
-  CullerSettings settings = planesThrough(PlaneForm::kThroughBox);
+AnySettings throughBox(bool kept = true, std::size_t relation_bytes = 64u << 20) {
+  AnySettings settings{.method = AnyMethod::kKeptPlanes};
   settings.supporting_planes.relation_bytes = relation_bytes;
   settings.temporal_coherence = kept;
   return settings;
 }
 
-bool sameVisible(const Culler& a, const Culler& b) {
+RelationStats relationsOf(const AnyCuller& culler) {
+  const auto count = [&](const char* name) {
+    return static_cast<std::uint32_t>(culler.statistic("relations", name));
+  };
+  return {.reused = count("reused"),
+          .unchanged = count("unchanged"),
+          .rebuilt = count("rebuilt"),
+          .evicted = count("evicted"),
+          .dropped = count("dropped"),
+          .kept = count("kept"),
+          .bytes = count("bytes")};
+}
+
+bool sameVisible(const AnyCuller& a, const AnyCuller& b) {
   return std::equal(a.visible().begin(), a.visible().end(), b.visible().begin(), b.visible().end());
 }
 
 // Whether a keeps nothing that b leaves out.
-bool keepsNoMore(const Culler& a, const Culler& b) {
+bool keepsNoMore(const AnyCuller& a, const AnyCuller& b) {
   return std::includes(b.visible().begin(), b.visible().end(), a.visible().begin(), a.visible().end());
 }
 
-std::size_t notKeptBy(const Culler& a, const Culler& b) {
+std::size_t notKeptBy(const AnyCuller& a, const AnyCuller& b) {
   return static_cast<std::size_t>(std::count_if(b.visible().begin(), b.visible().end(),
                                                 [&](ObjectId object) { return !kept(a, object); }));
 }
@@ -100,7 +111,7 @@ std::vector<View> restlessViews(const DemoScene& demo, std::uint64_t seed) {
   return all;
 }
 
-void expectSameAnswers(Culler& a, Culler& b, std::span<const View> views, const std::string& where) {
+void expectSameAnswers(AnyCuller& a, AnyCuller& b, std::span<const View> views, const std::string& where) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     a.cull(views[i]);
     b.cull(views[i]);
@@ -132,10 +143,10 @@ INSTANTIATE_TEST_SUITE_P(, DetailObjects, kScenes, kSceneName);
 
 TEST_P(KeptRelations, ChangeNoAnswerAlongTheWalk) {
   for (const HierarchyKind kind : kKinds) {
-    Culler with = demo().culler(kind, throughBox()), without = demo().culler(kind, throughBox(false));
+    AnyCuller with = demo().culler(kind, throughBox()), without = demo().culler(kind, throughBox(false));
     expectSameAnswers(with, without, walk(50, 160), nameOf(kind));
-    EXPECT_GT(with.stats().relations.kept, 100u);
-    EXPECT_EQ(without.stats().relations.kept + without.stats().relations.reused, 0u);
+    EXPECT_GT(with.statistic("relations", "kept"), 100u);
+    EXPECT_EQ(without.statistic("relations", "kept") + without.statistic("relations", "reused"), 0u);
   }
 }
 
@@ -143,8 +154,8 @@ TEST_P(KeptRelations, ChangeNoAnswerWhateverTheViewsAndTheRoom) {
   const std::vector<View> views = restlessViews(demo(), 31);
   for (const HierarchyKind kind : kKinds) {
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{1000}, std::size_t{100'000}}) {
-      Culler with = demo().culler(kind, throughBox(true, bytes));
-      Culler without = demo().culler(kind, throughBox(false));
+      AnyCuller with = demo().culler(kind, throughBox(true, bytes));
+      AnyCuller without = demo().culler(kind, throughBox(false));
       expectSameAnswers(with, without, views, nameOf(kind) + " bytes " + std::to_string(bytes));
     }
   }
@@ -153,12 +164,12 @@ TEST_P(KeptRelations, ChangeNoAnswerWhateverTheViewsAndTheRoom) {
 TEST_P(KeptRelations, ChangeNoAnswerWithTheDatabaseAndTheSecondTest) {
   const std::vector<View> views = restlessViews(demo(), 32);
   for (const HierarchyKind kind : kKinds) {
-    CullerSettings kept_settings = throughBox(), new_settings = throughBox(false);
-    for (CullerSettings* settings : {&kept_settings, &new_settings}) {
-      settings->occluders = OccluderChoice::kDatabase;
+    AnySettings kept_settings = throughBox(), new_settings = throughBox(false);
+    for (AnySettings* settings : {&kept_settings, &new_settings}) {
+      settings->use_lists = true;
       settings->detail_objects = true;
     }
-    Culler with = demo().culler(kind, kept_settings), without = demo().culler(kind, new_settings);
+    AnyCuller with = demo().culler(kind, kept_settings), without = demo().culler(kind, new_settings);
     expectSameAnswers(with, without, views, nameOf(kind));
   }
 }
@@ -173,19 +184,19 @@ TEST_P(KeptRelations, StayWithinTheirBudgetInEveryFrame) {
   const std::vector<View> views = restlessViews(demo(), 33);
   for (const HierarchyKind kind : kKinds) {
     for (const std::size_t bytes : {0u, 1000u, 20'000u, 100'000u, 1'000'000u}) {
-      CullerSettings settings = throughBox(true, bytes);
+      AnySettings settings = throughBox(true, bytes);
       settings.detail_objects = true;
-      Culler culler = demo().culler(kind, settings);
+      AnyCuller culler = demo().culler(kind, settings);
       std::size_t evicted = 0;
       for (const View& view : views) {
         culler.cull(view);
-        evicted += culler.stats().relations.evicted;
-        EXPECT_LE(culler.stats().relations.bytes, bytes + itemTableBytes(demo(), kind));
+        evicted += culler.statistic("relations", "evicted");
+        EXPECT_LE(culler.statistic("relations", "bytes"), bytes + itemTableBytes(demo(), kind));
       }
       if (bytes <= 20'000u) {
         EXPECT_GT(evicted, 100u) << bytes;
       }
-      EXPECT_EQ(culler.stats().relations.kept > 0, bytes > 0) << bytes;
+      EXPECT_EQ(culler.statistic("relations", "kept") > 0, bytes > 0) << bytes;
     }
   }
 }
@@ -193,12 +204,12 @@ TEST_P(KeptRelations, StayWithinTheirBudgetInEveryFrame) {
 TEST_P(KeptRelations, AreThoseThatWereMadeLessThoseThatWent) {
   for (const HierarchyKind kind : kKinds) {
     for (const std::size_t bytes : {100'000u, 64u << 20}) {
-      Culler culler = demo().culler(kind, throughBox(true, bytes));
+      AnyCuller culler = demo().culler(kind, throughBox(true, bytes));
       std::uint32_t before = 0;
       std::size_t dropped = 0, evicted = 0;
       for (const View& view : walk(40, 80)) {
         culler.cull(view);
-        const RelationStats& relations = culler.stats().relations;
+        const RelationStats relations = relationsOf(culler);
         dropped += relations.dropped;
         evicted += relations.evicted;
         EXPECT_LE(relations.unchanged, relations.reused);
@@ -210,20 +221,20 @@ TEST_P(KeptRelations, AreThoseThatWereMadeLessThoseThatWent) {
       EXPECT_EQ(evicted > 0, bytes == 100'000u);
       culler.reset();
       culler.cull(walk(40, 1)[0]);
-      EXPECT_EQ(culler.stats().relations.reused, 0u);
+      EXPECT_EQ(culler.statistic("relations", "reused"), 0u);
     }
   }
 }
 
 TEST_P(KeptRelations, StayWhenTheViewerTurnsAwayAndBack) {
   for (const HierarchyKind kind : kKinds) {
-    Culler culler = demo().culler(kind, throughBox());
+    AnyCuller culler = demo().culler(kind, throughBox());
     const View ahead = walk(100, 1)[0];
     std::size_t first_time = 0, reused = 0, rebuilt = 0;
     const std::vector<View> views = turnsOnTheSpot(ahead, 10.0);
     for (std::size_t i = 0; i < views.size(); ++i) {
       culler.cull(views[i]);
-      const RelationStats& relations = culler.stats().relations;
+      const RelationStats relations = relationsOf(culler);
       const bool back = i > views.size() / 2;
       first_time += back ? 0 : relations.rebuilt;
       reused += back ? relations.reused : 0;
@@ -237,12 +248,12 @@ TEST_P(KeptRelations, StayWhenTheViewerTurnsAwayAndBack) {
 struct Work {
   double unchanged = 0.0, rebuilt = 0.0;  // parts of all relations that were looked at
 
-  static Work of(Culler& culler, std::span<const View> walk, std::size_t step) {
+  static Work of(AnyCuller& culler, std::span<const View> walk, std::size_t step) {
     double looks = 0.0;
     Work work;
     for (std::size_t i = 0; i < walk.size(); i += step) {
       culler.cull(walk[i]);
-      const RelationStats& relations = culler.stats().relations;
+      const RelationStats relations = relationsOf(culler);
       looks += relations.reused + relations.rebuilt;
       work.unchanged += relations.unchanged;
       work.rebuilt += relations.rebuilt;
@@ -256,7 +267,7 @@ TEST_P(KeptRelations, SaveLessTheFasterTheWalk) {
   for (const HierarchyKind kind : kKinds) {
     std::array<Work, 3> work;
     for (std::size_t i = 0; i < work.size(); ++i) {
-      Culler culler = demo().culler(kind, throughBox());
+      AnyCuller culler = demo().culler(kind, throughBox());
       work[i] = Work::of(culler, views, std::array{1, 4, 16}[i]);
     }
     for (std::size_t i = 1; i < work.size(); ++i) {
@@ -302,13 +313,13 @@ struct ThereAndBack {
   RelationStats first, there, back;
 
   ThereAndBack(const RowScene& scene, const View& elsewhere) {
-    Culler culler(scene.hierarchy, scene.bounds, scene.occluders, throughBox());
+    AnyCuller culler(scene.hierarchy, scene.bounds, scene.occluders, throughBox());
     culler.cull(scene.view);
-    first = culler.stats().relations;
+    first = relationsOf(culler);
     culler.cull(elsewhere);
-    there = culler.stats().relations;
+    there = relationsOf(culler);
     culler.cull(scene.view);
-    back = culler.stats().relations;
+    back = relationsOf(culler);
   }
 };
 
@@ -343,10 +354,10 @@ TEST(KeptRelationsOfARow, StayWhileTheyAreOutsideTheFrustum) {
 
 TEST(KeptRelationsOfARow, AreNeitherMadeNorKeptForPlanesThroughTheEye) {
   const RowScene scene;
-  Culler culler(scene.hierarchy, scene.bounds, scene.occluders, planesThrough(PlaneForm::kThroughEye));
+  AnyCuller culler(scene.hierarchy, scene.bounds, scene.occluders, kThroughEye);
   for (int frame = 0; frame < 3; ++frame) {
     culler.cull(scene.view);
-    const RelationStats& relations = culler.stats().relations;
+    const RelationStats relations = relationsOf(culler);
     EXPECT_EQ(relations.rebuilt + relations.reused + relations.kept, 0u);
     EXPECT_EQ(relations.bytes, 0u);
   }
@@ -364,8 +375,8 @@ std::vector<View> places(const DemoScene& demo, std::size_t step) {
 
 TEST_P(TwoForms, HideTheSameButForTheirMargins) {
   for (const HierarchyKind kind : kKinds) {
-    Culler eye = demo().culler(kind, planesThrough(PlaneForm::kThroughEye));
-    Culler box = demo().culler(kind, planesThrough(PlaneForm::kThroughBox));
+    AnyCuller eye = demo().culler(kind, kThroughEye);
+    AnyCuller box = demo().culler(kind, {.method = AnyMethod::kKeptPlanes});
     std::size_t objects = 0, different = 0;
     for (const View& view : places(demo(), 10)) {
       for (Culler* culler : {&eye, &box}) {
@@ -381,11 +392,11 @@ TEST_P(TwoForms, HideTheSameButForTheirMargins) {
 
 TEST_P(TwoForms, HideAllThatSingleOccludersHideWhenTheyJoin) {
   for (const HierarchyKind kind : kKinds) {
-    for (const PlaneForm form : {PlaneForm::kThroughEye, PlaneForm::kThroughBox}) {
-      CullerSettings settings = planesThrough(form);
-      Culler joint = demo().culler(kind, settings);
+    for (const AnyMethod method : {AnyMethod::kSupportingPlanes, AnyMethod::kKeptPlanes}) {
+      AnySettings settings{.method = method};
+      AnyCuller joint = demo().culler(kind, settings);
       settings.supporting_planes.joint_occlusion = false;
-      Culler single = demo().culler(kind, settings);
+      AnyCuller single = demo().culler(kind, settings);
       std::size_t more = 0;
       for (const View& view : places(demo(), 10)) {
         for (Culler* culler : {&joint, &single}) {
@@ -395,17 +406,17 @@ TEST_P(TwoForms, HideAllThatSingleOccludersHideWhenTheyJoin) {
         EXPECT_TRUE(keepsNoMore(joint, single)) << nameOf(kind);
         more += notKeptBy(joint, single);
       }
-      EXPECT_GT(more, 0u) << nameOf(kind) << " form " << static_cast<int>(form);
+      EXPECT_GT(more, 0u) << nameOf(kind) << " method " << static_cast<int>(method);
     }
   }
 }
 
 TEST_P(DatabaseChoice, UsesTheListOfTheCellAndTheDirection) {
   for (const NamedSettings& method : kMethods) {
-    CullerSettings settings = method.settings;
-    settings.occluders = OccluderChoice::kDatabase;
+    AnySettings settings = method.settings;
+    settings.use_lists = true;
     settings.occluder_count = 32;
-    Culler culler = demo().culler(HierarchyKind::kBvh, settings);
+    AnyCuller culler = demo().culler(HierarchyKind::kBvh, settings);
     std::size_t used = 0;
     for (const View& view : places(demo(), 20)) {
       culler.cull(view);
@@ -422,10 +433,10 @@ TEST_P(DatabaseChoice, UsesTheListOfTheCellAndTheDirection) {
 
 TEST_P(DatabaseChoice, HidesMuchOfWhatTheFrustumHolds) {
   for (const NamedSettings& method : kMethods) {
-    CullerSettings settings = method.settings;
-    settings.occluders = OccluderChoice::kDatabase;
-    Culler culler = demo().culler(HierarchyKind::kBvh, settings);
-    Culler frustum = demo().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+    AnySettings settings = method.settings;
+    settings.use_lists = true;
+    AnyCuller culler = demo().culler(HierarchyKind::kBvh, settings);
+    AnyCuller frustum = demo().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
     std::size_t kept_objects = 0, in_frustum = 0;
     for (const View& view : walk(80, 40)) {
       culler.cull(view);
@@ -439,11 +450,11 @@ TEST_P(DatabaseChoice, HidesMuchOfWhatTheFrustumHolds) {
 
 TEST_P(DatabaseChoice, IsByAreaAngleWithoutADatabase) {
   for (const NamedSettings& method : kMethods) {
-    CullerSettings settings = method.settings;
-    Culler by_area_angle = demo().culler(HierarchyKind::kBvh, settings);
-    settings.occluders = OccluderChoice::kDatabase;
+    AnySettings settings = method.settings;
+    AnyCuller by_area_angle = demo().culler(HierarchyKind::kBvh, settings);
+    settings.use_lists = true;
     settings.detail_objects = true;
-    Culler without(demo().bvh, demo().bounds, demo().occluders, settings);
+    AnyCuller without(demo().bvh, demo().bounds, demo().occluders, settings);
     for (const View& view : restlessViews(demo(), 35)) {
       by_area_angle.cull(view);
       without.cull(view);
@@ -457,12 +468,12 @@ TEST_P(DatabaseChoice, IsByAreaAngleWithoutADatabase) {
 TEST_P(DetailObjects, ShrinkTheAnswerByThoseThatTheSecondTestHides) {
   for (const HierarchyKind kind : kKinds) {
     for (const NamedSettings& method : kMethods) {
-      CullerSettings settings = method.settings;
-      settings.occluders = OccluderChoice::kDatabase;
+      AnySettings settings = method.settings;
+      settings.use_lists = true;
       settings.detail_occluder_count = 32;
-      Culler without = demo().culler(kind, settings);
+      AnyCuller without = demo().culler(kind, settings);
       settings.detail_objects = true;
-      Culler with = demo().culler(kind, settings);
+      AnyCuller with = demo().culler(kind, settings);
       std::size_t culled = 0;
       for (const View& view : walk(100, 60)) {
         without.cull(view);
@@ -482,10 +493,10 @@ TEST_P(DetailObjects, ShrinkTheAnswerByThoseThatTheSecondTestHides) {
 
 TEST_P(DetailObjects, WithoutOccludersNearThemAreNotHidden) {
   for (const NamedSettings& method : kMethods) {
-    CullerSettings settings = method.settings;
+    AnySettings settings = method.settings;
     settings.detail_objects = true;
     settings.detail_occluder_count = 0;
-    Culler culler = demo().culler(HierarchyKind::kBvh, settings);
+    AnyCuller culler = demo().culler(HierarchyKind::kBvh, settings);
     for (const View& view : walk(100, 5)) {
       culler.cull(view);
       EXPECT_GT(culler.stats().detail_tested, 0u);
@@ -495,11 +506,11 @@ TEST_P(DetailObjects, WithoutOccludersNearThemAreNotHidden) {
 }
 
 TEST_P(DetailObjects, LeaveTheOccludersOfTheWalkAsTheyAre) {
-  CullerSettings settings = planesThrough(PlaneForm::kThroughEye);
-  settings.occluders = OccluderChoice::kDatabase;
-  Culler without = demo().culler(HierarchyKind::kBvh, settings);
+  AnySettings settings = kThroughEye;
+  settings.use_lists = true;
+  AnyCuller without = demo().culler(HierarchyKind::kBvh, settings);
   settings.detail_objects = true;
-  Culler with = demo().culler(HierarchyKind::kBvh, settings);
+  AnyCuller with = demo().culler(HierarchyKind::kBvh, settings);
   for (const View& view : walk(100, 20)) {
     without.cull(view);
     with.cull(view);

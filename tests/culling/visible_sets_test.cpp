@@ -20,12 +20,12 @@ using fake_sets::randomMembers;
 
 using Objects = std::vector<ObjectId>;
 
-Culler cullerWith(const DemoScene& demo, HierarchyKind kind, CullerSettings settings, VisibleSets* sets) {
-  return Culler(demo.hierarchy(kind), demo.bounds, demo.occluders, settings,
-                {&demo.database, &demo.detail_database}, sets);
+AnyCuller cullerWith(const DemoScene& demo, HierarchyKind kind, AnySettings settings, VisibleSets* sets) {
+  return AnyCuller(demo.hierarchy(kind), demo.bounds, demo.occluders, settings,
+                   {&demo.database, &demo.detail_database}, sets);
 }
 
-Objects visibleOf(Culler& culler, const View& view) {
+Objects visibleOf(AnyCuller& culler, const View& view) {
   culler.cull(view);
   return {culler.visible().begin(), culler.visible().end()};
 }
@@ -49,8 +49,9 @@ std::vector<View> perspective(std::vector<View> views) {
 TEST(VisibilityOctreeCulling, KeepsTheObjectsOfTheSetWhoseBoxesAreNotOutside) {
   for (const DemoScene* demo : {&smallCity(), &smallBuilding()}) {
     FakeSets sets(demo->bounds);
-    Culler culler = cullerWith(*demo, HierarchyKind::kBvh, {.method = CullMethod::kVisibilityOctree}, &sets);
-    Culler frustum = demo->culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+    AnyCuller culler =
+        cullerWith(*demo, HierarchyKind::kBvh, {.method = AnyMethod::kVisibilityOctree}, &sets);
+    AnyCuller frustum = demo->culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
     std::mt19937_64 random(5);
     std::size_t kept = 0;
     std::uint32_t id = 0;
@@ -83,8 +84,8 @@ TEST(VisibilityOctreeCulling, TestsFewerNodesThanTheSetHas) {
     members[sets.boxes().objects[i].value] = i % 2 == 0;
   }
   sets.use(1, members);
-  Culler culler =
-      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = CullMethod::kVisibilityOctree}, &sets);
+  AnyCuller culler =
+      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = AnyMethod::kVisibilityOctree}, &sets);
   std::size_t tested = 0, in_sets = 0;
   for (View view : perspective(jumps(smallCity(), 2, 40))) {
     view.tan_half_fovy = 0.1;
@@ -106,7 +107,7 @@ TEST(VisibilityOctreeCulling, KeepsObjectsWithBrokenBoxesThatAreInTheSet) {
   const OccluderSet none;
   FakeSets sets(boxes);
   sets.use(3, {true, true, true, true, false});
-  Culler culler(hierarchy, boxes, none, {.method = CullMethod::kVisibilityOctree}, {}, &sets);
+  AnyCuller culler(hierarchy, boxes, none, {.method = AnyMethod::kVisibilityOctree}, {}, &sets);
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   EXPECT_EQ(visibleOf(culler, view), (Objects{ObjectId(0u), ObjectId(1u), ObjectId(2u)}));
@@ -114,8 +115,8 @@ TEST(VisibilityOctreeCulling, KeepsObjectsWithBrokenBoxesThatAreInTheSet) {
 
 TEST(VisibilityOctreeCulling, AsksForTheViewsEyeAndTheCornerOfItsNearPlane) {
   FakeSets sets(smallCity().bounds);
-  Culler culler =
-      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = CullMethod::kVisibilityOctree}, &sets);
+  AnyCuller culler =
+      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = AnyMethod::kVisibilityOctree}, &sets);
   for (const View& view : perspective(jumps(smallCity(), 6, 20))) {
     culler.cull(view);
     const Vec3d corner =
@@ -129,12 +130,12 @@ TEST(VisibilityOctreeCulling, AsksForTheViewsEyeAndTheCornerOfItsNearPlane) {
 TEST(VisibilityOctreeCulling, WithoutASetIsFrustumCulling) {
   FakeSets sets(smallCity().bounds), of_others(std::span(smallCity().bounds).first(50));
   of_others.use(1, std::vector<bool>(50, false));
-  const CullerSettings settings{.method = CullMethod::kVisibilityOctree};
+  const AnySettings settings{.method = AnyMethod::kVisibilityOctree};
   for (const HierarchyKind kind : kKinds) {
-    Culler none = cullerWith(smallCity(), kind, settings, nullptr);
-    Culler everything = cullerWith(smallCity(), kind, settings, &sets);
-    Culler others = cullerWith(smallCity(), kind, settings, &of_others);
-    Culler frustum = smallCity().culler(kind, {.method = CullMethod::kFrustum});
+    AnyCuller none = cullerWith(smallCity(), kind, settings, nullptr);
+    AnyCuller everything = cullerWith(smallCity(), kind, settings, &sets);
+    AnyCuller others = cullerWith(smallCity(), kind, settings, &of_others);
+    AnyCuller frustum = smallCity().culler(kind, {.method = AnyMethod::kFrustum});
     for (const View& view : jumps(smallCity(), 8, 60)) {
       const Objects expected = visibleOf(frustum, view);
       EXPECT_EQ(visibleOf(none, view), expected);
@@ -159,15 +160,15 @@ TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
   std::swap(exchanged[10], exchanged[11]);
   ASSERT_NE(exchanged, own);
   std::vector<NamedSettings> all(std::begin(kMethods), std::end(kMethods));
-  all.push_back({"visibility octree", {.method = CullMethod::kVisibilityOctree}});
+  all.push_back({"visibility octree", {.method = AnyMethod::kVisibilityOctree}});
   for (auto& [name, settings] : all) {
     settings.visible_sets = true;
     settings.occluder_count = 0;  // nothing is hidden but by the set
     for (const std::vector<Box>& others : {moved, one_off, exchanged}) {
       FakeSets sets(others);
       sets.use(1, std::vector<bool>(own.size(), false));
-      Culler culler = cullerWith(smallCity(), HierarchyKind::kBvh, settings, &sets);
-      Culler frustum = smallCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+      AnyCuller culler = cullerWith(smallCity(), HierarchyKind::kBvh, settings, &sets);
+      AnyCuller frustum = smallCity().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
       const View view = smallCity().frames(smallCity().scene.paths[0], 10, 1)[0];
       EXPECT_EQ(visibleOf(culler, view), visibleOf(frustum, view)) << name;
       EXPECT_EQ(culler.stats().set_nodes, 0u) << name;
@@ -178,9 +179,9 @@ TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
 TEST(VisibilityOctreeCulling, OrthographicViewsAskForNoSet) {
   FakeSets sets(smallCity().bounds);
   sets.use(1, std::vector<bool>(smallCity().bounds.size(), false));
-  Culler culler =
-      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = CullMethod::kVisibilityOctree}, &sets);
-  Culler frustum = smallCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+  AnyCuller culler =
+      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = AnyMethod::kVisibilityOctree}, &sets);
+  AnyCuller frustum = smallCity().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
   // From a perspective view to an orthographic one and back.
   for (const View& view : jumps(smallCity(), 9, 40)) {
     const Objects expected = view.orthographic ? visibleOf(frustum, view) : Objects{};
@@ -191,8 +192,8 @@ TEST(VisibilityOctreeCulling, OrthographicViewsAskForNoSet) {
 TEST(VisibilityOctreeCulling, SaysNothingAboutBoxesThatMove) {
   FakeSets sets(smallCity().bounds);
   sets.use(1, std::vector<bool>(smallCity().bounds.size(), false));
-  Culler culler =
-      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = CullMethod::kVisibilityOctree}, &sets);
+  AnyCuller culler =
+      cullerWith(smallCity(), HierarchyKind::kBvh, {.method = AnyMethod::kVisibilityOctree}, &sets);
   const View view = smallCity().frames(smallCity().scene.paths[0], 0, 1)[0];
   const Vec3d ahead = view.eye + view.forward * 20.0, behind = view.eye - view.forward * 20.0;
   const Box boxes[] = {{Vec3f(ahead), Vec3f(ahead)}, {Vec3f(behind), Vec3f(behind)}};
@@ -204,9 +205,9 @@ TEST(VisibilityOctreeCulling, SaysNothingAboutBoxesThatMove) {
 TEST(VisibleSets, FrustumCullingHasNone) {
   FakeSets sets(smallCity().bounds);
   sets.use(1, std::vector<bool>(smallCity().bounds.size(), false));
-  Culler with = cullerWith(smallCity(), HierarchyKind::kBvh,
-                           {.method = CullMethod::kFrustum, .visible_sets = true}, &sets);
-  Culler without = smallCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+  AnyCuller with = cullerWith(smallCity(), HierarchyKind::kBvh,
+                              {.method = AnyMethod::kFrustum, .visible_sets = true}, &sets);
+  AnyCuller without = smallCity().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
   for (const View& view : jumps(smallCity(), 1, 10)) {
     EXPECT_EQ(visibleOf(with, view), visibleOf(without, view));
   }
@@ -221,17 +222,17 @@ TEST(VisibleSets, AMethodsAnswerWithinTheSetIsTheSameAsWithoutIt) {
     for (const auto& [name, plain] : kMethods) {
       for (const bool detail : {false, true}) {
         for (const bool test_objects : {false, true}) {
-          CullerSettings settings = plain;
-          settings.occluders = OccluderChoice::kDatabase;
+          AnySettings settings = plain;
+          settings.use_lists = true;
           settings.temporal_coherence = false;
           settings.focus.magnification = 0.0;
           settings.detail_objects = detail;
           settings.test_objects = test_objects;
           settings.min_node_cost = detail ? 60 : 0;
           FakeSets sets(smallCity().bounds);
-          Culler without = cullerWith(smallCity(), kind, settings, nullptr);
+          AnyCuller without = cullerWith(smallCity(), kind, settings, nullptr);
           settings.visible_sets = true;
-          Culler with = cullerWith(smallCity(), kind, settings, &sets);
+          AnyCuller with = cullerWith(smallCity(), kind, settings, &sets);
           for (const View& view : perspective(jumps(smallCity(), 100 + id, 16))) {
             const std::vector<bool> members = randomMembers(sets.boxes(), random);
             sets.use(id++, members);
@@ -247,12 +248,12 @@ TEST(VisibleSets, AMethodsAnswerWithinTheSetIsTheSameAsWithoutIt) {
 TEST(VisibleSets, WithoutASetAMethodDoesWhatItDoesAlone) {
   for (const HierarchyKind kind : kKinds) {
     for (const auto& [name, plain] : kMethods) {
-      CullerSettings settings = plain;
-      Culler alone = cullerWith(smallCity(), kind, settings, nullptr);
+      AnySettings settings = plain;
+      AnyCuller alone = cullerWith(smallCity(), kind, settings, nullptr);
       settings.visible_sets = true;
       FakeSets everything(smallCity().bounds);
-      Culler with_all = cullerWith(smallCity(), kind, settings, &everything);
-      Culler with_none = cullerWith(smallCity(), kind, settings, nullptr);
+      AnyCuller with_all = cullerWith(smallCity(), kind, settings, &everything);
+      AnyCuller with_none = cullerWith(smallCity(), kind, settings, nullptr);
       std::vector<View> views = smallCity().frames(smallCity().scene.paths[0], 50, 12);
       const std::vector<View> more = jumps(smallCity(), 12, 6);
       views.insert(views.end(), more.begin(), more.end());
@@ -268,7 +269,7 @@ TEST(VisibleSets, WithoutASetAMethodDoesWhatItDoesAlone) {
 
 TEST(VisibleSets, EqualIdsAreEqualSetsUntilReset) {
   for (const auto& [name, plain] : kMethods) {
-    CullerSettings settings = plain;
+    AnySettings settings = plain;
     settings.visible_sets = true;
     settings.occluder_count = 0;  // nothing is hidden but by the set
     FakeSets sets(smallCity().bounds);
@@ -278,8 +279,8 @@ TEST(VisibleSets, EqualIdsAreEqualSetsUntilReset) {
     }
     odd = even;
     odd.flip();
-    Culler culler = cullerWith(smallCity(), HierarchyKind::kBvh, settings, &sets);
-    Culler frustum = smallCity().culler(HierarchyKind::kBvh, {.method = CullMethod::kFrustum});
+    AnyCuller culler = cullerWith(smallCity(), HierarchyKind::kBvh, settings, &sets);
+    AnyCuller frustum = smallCity().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
     const View view = smallCity().frames(smallCity().scene.paths[0], 10, 1)[0];
     const Objects all = visibleOf(frustum, view);
     sets.use(4, even);
@@ -330,36 +331,36 @@ class TrueSets {
 
  private:
   const DemoScene& demo_;
-  Culler tree_;
+  AnyCuller tree_;
 };
 
 struct SetCuller {
   std::string name;
-  Culler culler, alone;
+  AnyCuller culler, alone;
 };
 
 std::vector<SetCuller> allSetCullers(const DemoScene& demo, VisibleSets* sets) {
   std::vector<SetCuller> cullers;
-  const auto add = [&](const std::string& name, HierarchyKind kind, CullerSettings settings) {
-    Culler alone = cullerWith(demo, kind, settings, nullptr);
+  const auto add = [&](const std::string& name, HierarchyKind kind, AnySettings settings) {
+    AnyCuller alone = cullerWith(demo, kind, settings, nullptr);
     settings.visible_sets = true;
     cullers.push_back({name + " " + nameOf(kind), cullerWith(demo, kind, settings, sets), std::move(alone)});
   };
   for (const HierarchyKind kind : kKinds) {
     for (const NamedSettings& structure : kStructures) {
       for (const bool coherence : {true, false}) {
-        CullerSettings settings = structure.settings;
+        AnySettings settings = structure.settings;
         settings.temporal_coherence = coherence;
         add(structure.name + std::string(coherence ? ", coherent" : ""), kind, settings);
       }
     }
     for (const NamedSettings& method : kMethods) {
-      CullerSettings settings = method.settings;
-      settings.occluders = OccluderChoice::kDatabase;
+      AnySettings settings = method.settings;
+      settings.use_lists = true;
       settings.detail_objects = true;
       add(std::string("database, detail objects, ") + method.name, kind, settings);
     }
-    add("visibility octree", kind, {.method = CullMethod::kVisibilityOctree});
+    add("visibility octree", kind, {.method = AnyMethod::kVisibilityOctree});
   }
   return cullers;
 }
@@ -437,12 +438,12 @@ TEST(VisibleSets, NothingThatRaysSeeIsCulledAfterJumps) {
 
 TEST(VisibleSets, TheLookUpIsPartOfTheTotal) {
   FakeSets sets(smallCity().bounds);
-  Culler culler = cullerWith(smallCity(), HierarchyKind::kBvh, {.visible_sets = true}, &sets);
+  AnyCuller culler = cullerWith(smallCity(), HierarchyKind::kBvh, {.visible_sets = true}, &sets);
   culler.cull(smallCity().frames(smallCity().scene.paths[0], 0, 1)[0]);
   const CullStats& stats = culler.stats();
   EXPECT_GT(stats.look_up_us, 0.0);
   EXPECT_EQ(stats.totalUs(),
-            stats.look_up_us + stats.choose_us + stats.build_us + stats.walk_us + stats.detail_us);
+            stats.look_up_us + stats.choose_us + stats.build_us + stats.traverse_us + stats.detail_us);
 }
 
 }  // namespace

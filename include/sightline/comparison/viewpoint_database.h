@@ -13,6 +13,7 @@
 #include "sightline/base/progress.h"
 #include "sightline/base/result.h"
 #include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occluders/occluder_lists.h"
 #include "sightline/occluders/occluder_set.h"
 
 namespace sightline {
@@ -52,7 +53,7 @@ struct ViewpointDatabaseSettings {
 };
 
 // Does not change once it is built: any number of threads may ask it. Copies share one memory.
-class ViewpointDatabase {
+class ViewpointDatabase final : public OccluderLists {
  public:
   // One point, one direction, an empty list.
   ViewpointDatabase() = default;
@@ -85,9 +86,10 @@ class ViewpointDatabase {
   // to `direction` (any length > 0). Best first: its first k are a good choice of k. Time: logarithmic in the
   // number of points, as a rule, and a table for the direction; allocates nothing. Any viewpoint has a list,
   // also one that is not finite. The list lives as long as a copy of the database.
-  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const {
+  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const override {
     return list(nearestPoint(viewpoint), nearestDirection(direction));
   }
+  bool inOrder() const override { return true; }
 
   // What find looks up. point < pointCount(), direction < directionCount().
   std::span<const OccluderId> list(std::uint32_t point, std::uint32_t direction) const;

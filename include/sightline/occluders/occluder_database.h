@@ -14,6 +14,7 @@
 #include "sightline/base/result.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
+#include "sightline/occluders/occluder_lists.h"
 #include "sightline/occluders/occluder_set.h"
 
 namespace sightline {
@@ -30,7 +31,7 @@ struct OccluderDatabaseSettings {
 };
 
 // Does not change once it is built: any number of threads may ask it. Copies share one memory.
-class OccluderDatabase {
+class OccluderDatabase final : public OccluderLists {
  public:
   // One cell, one direction, an empty list.
   OccluderDatabase() = default;
@@ -61,9 +62,10 @@ class OccluderDatabase {
   // first. Time: a comparison for each level of the kd-tree, then a table for the direction; allocates
   // nothing. Any viewpoint has a list, also one that is not finite. The list lives as long as a copy of the
   // database.
-  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const {
+  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const override {
     return list(cellOf(viewpoint), nearestDirection(direction));
   }
+  bool inOrder() const override { return false; }
 
   // What find looks up. cell < cellCount(), direction < directionCount().
   std::span<const OccluderId> list(std::uint32_t cell, std::uint32_t direction) const;

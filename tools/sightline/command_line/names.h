@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "sightline/culling/culler.h"
 #include "sightline/layers/compositing.h"
 #include "sightline/layers/layer_sorter.h"
 
@@ -21,51 +20,6 @@ struct Name {
   T value;
 };
 
-inline constexpr std::array<Name<CullMethod>, 6> kMethods{{
-    {"frustum", CullMethod::kFrustum},
-    {"supporting-planes", CullMethod::kSupportingPlanes},
-    {"occlusion-tree", CullMethod::kOcclusionTree},
-    {"opacity-map", CullMethod::kOpacityMap},
-    {"depth-pyramid", CullMethod::kDepthPyramid},
-    {"visibility-octree", CullMethod::kVisibilityOctree},
-}};
-inline constexpr std::array<Name<OcclusionTreeVariant>, 4> kVariants{{
-    {"FSE", OcclusionTreeVariant::kFSE},
-    {"FSC", OcclusionTreeVariant::kFSC},
-    {"FME", OcclusionTreeVariant::kFME},
-    {"FMC", OcclusionTreeVariant::kFMC},
-}};
-inline constexpr std::array<Name<HierarchyKind>, 2> kHierarchies{{
-    {"kd", HierarchyKind::kKdTree},
-    {"bvh", HierarchyKind::kBvh},
-}};
-inline constexpr std::array<Name<OccluderChoice>, 5> kOccluderChoices{{
-    {"area-angle", OccluderChoice::kAreaAngle},
-    {"database", OccluderChoice::kDatabase},
-    {"minimum-sets", OccluderChoice::kMinimumSets},
-    {"projected-size", OccluderChoice::kProjectedSize},
-    {"first-hit", OccluderChoice::kFirstHit},
-}};
-inline constexpr std::array<Name<AreaAngleDirection>, 2> kAreaAngleDirections{{
-    {"occluder", AreaAngleDirection::kOccluder},
-    {"view", AreaAngleDirection::kView},
-}};
-inline constexpr std::array<Name<PlaneForm>, 2> kPlaneForms{{
-    {"through-eye", PlaneForm::kThroughEye},
-    {"through-box", PlaneForm::kThroughBox},
-}};
-inline constexpr std::array<Name<TangentSearch>, 2> kTangentSearches{{
-    {"tables", TangentSearch::kTables},
-    {"all-vertices", TangentSearch::kAllVertices},
-}};
-inline constexpr std::array<Name<Coverage>, 2> kCoverages{{
-    {"inner", Coverage::kInner},
-    {"centre", Coverage::kCentre},
-}};
-inline constexpr std::array<Name<DepthComparison>, 2> kDepthComparisons{{
-    {"sparse", DepthComparison::kSparse},
-    {"pixelwise", DepthComparison::kPixelwise},
-}};
 inline constexpr std::array<Name<LayerSort>, 2> kLayerSorts{{
     {"depth-first", LayerSort::kDepthFirst},
     {"incremental", LayerSort::kIncremental},

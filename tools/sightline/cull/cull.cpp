@@ -28,15 +28,20 @@ struct CullOptions {
 struct Totals {
   double objects = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0, tested_share = 0.0,
          occluders = 0.0;
-  std::map<std::string, double> statistics{};  // by their texts
+  std::vector<double> statistics{};  // in the order of statisticsOf
 };
 
-std::uint64_t valueOf(const Statistic& statistic, const CullStats& stats, bool times) {
-  return statistic.time && !times ? 0 : statistic.of(stats);
+std::vector<std::uint64_t> valuesOf(const std::vector<Statistic>& statistics, const Culler& culler,
+                                    bool times) {
+  std::vector<std::uint64_t> values = statisticValues(statistics, culler);
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    values[i] = statistics[i].time && !times ? 0 : values[i];
+  }
+  return values;
 }
 
-std::string frameJson(std::uint32_t frame, const CullRun& run, const Setting& setting, double tested_share,
-                      bool times) {
+std::string frameJson(std::uint32_t frame, const CullRun& run, const std::vector<Statistic>& statistics,
+                      const std::vector<std::uint64_t>& values, double tested_share, bool times) {
   std::vector<std::uint32_t> ids;
   for (const ObjectId object : run.culler.visible()) {
     ids.push_back(object.value);
@@ -48,7 +53,7 @@ std::string frameJson(std::uint32_t frame, const CullRun& run, const Setting& se
                {"nodes_tested", stats.nodes_tested},
                {"nodes_tested_share", tested_share},
                {"occluders", stats.occluders}};
-  addStatistics(json, setting, [&](const Statistic& statistic) { return valueOf(statistic, stats, times); });
+  addStatistics(json, statistics, [&](std::size_t i) { return values[i]; });
   return dump(json);
 }
 
@@ -61,8 +66,9 @@ void print(const Setting& setting, const CullingData& data, std::size_t frames, 
   fmt::print("  nodes tested      {:12.1f} ({:.1f} % of the hierarchy)\n", sum.nodes_tested / n,
              100.0 * sum.tested_share / n);
   fmt::print("  occluders         {:12.1f}\n", sum.occluders / n);
-  for (const Statistic& statistic : statisticsOf(setting)) {
-    fmt::print("  {:<18}{:12.1f}\n", statistic.text, sum.statistics.at(statistic.text) / n);
+  const std::vector<Statistic> statistics = statisticsOf(setting);
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    fmt::print("  {:<18}{:12.1f}\n", statistics[i].caption, sum.statistics[i] / n);
   }
 }
 
@@ -83,14 +89,17 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
   CullingData data(scene, threads.parallelFor(), walk, baked);
   CullRun run{data.makeCuller(setting)};
   std::vector<std::string> frames;
+  const std::vector<Statistic> statistics = statisticsOf(setting);
   Totals sum;
+  sum.statistics.assign(statistics.size(), 0.0);
   ProgressBar progress("culling");
   for (const std::uint32_t frame : walk.frames) {
     run.cull(walk.view(frame, scene));
     const CullStats& stats = run.culler.stats();
     const double tested_share = testedShare(stats, data.hierarchy(setting.hierarchy).nodes.size());
+    const std::vector<std::uint64_t> values = valuesOf(statistics, run.culler, !options.no_times);
     if (!options.common.json.empty()) {
-      frames.push_back(frameJson(frame, run, setting, tested_share, !options.no_times));
+      frames.push_back(frameJson(frame, run, statistics, values, tested_share, !options.no_times));
     }
     sum.objects += static_cast<double>(run.culler.visible().size());
     sum.triangles += static_cast<double>(data.trianglesOf(run.culler.visible()));
@@ -98,8 +107,8 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
     sum.nodes_tested += stats.nodes_tested;
     sum.tested_share += tested_share;
     sum.occluders += stats.occluders;
-    for (const Statistic& statistic : statisticsOf(setting)) {
-      sum.statistics[statistic.text] += static_cast<double>(valueOf(statistic, stats, !options.no_times));
+    for (std::size_t i = 0; i < statistics.size(); ++i) {
+      sum.statistics[i] += static_cast<double>(values[i]);
     }
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
   }

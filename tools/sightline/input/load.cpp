@@ -230,12 +230,12 @@ const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
   std::unique_ptr<TimedViewpoints>& timed =
       from_viewpoints_[static_cast<std::size_t>(setting.viewpoints.criterion)];
   if (!timed) {
-    timed = bakedDatabase<ViewpointDatabase>(nameOf(kOccluderChoices, setting.culler.occluders));
+    timed = bakedDatabase<ViewpointDatabase>(nameOf(kOccluderChoices, setting.occluders));
   }
   if (!timed) {
     const Hierarchy& occludees = hierarchy(HierarchyKind::kBvh);
     timed = buildTimed<ViewpointDatabase>(
-        "occluders by " + nameOf(kOccluderChoices, setting.culler.occluders), [&](const Progress& progress) {
+        "occluders by " + nameOf(kOccluderChoices, setting.occluders), [&](const Progress& progress) {
           return ViewpointDatabase::build(occludees, occluders_, walk_, setting.viewpoints, parallel_for_,
                                           progress);
         });
@@ -244,22 +244,22 @@ const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
 }
 
 Culler CullingData::makeCuller(const Setting& setting) {
-  OccluderDatabases databases;
+  CullingScene scene{
+      .hierarchy = &hierarchy(setting.hierarchy), .object_bounds = bounds_, .occluders = &occluders_};
   if (setting.usesDatabase()) {
-    databases.from_eye = databaseFor(setting, false, from_eye_);
+    scene.occluder_lists = databaseFor(setting, false, from_eye_);
   }
   if (setting.testsDetailObjects()) {
-    databases.from_objects = databaseFor(setting, true, from_objects_);
+    scene.near_objects = databaseFor(setting, true, from_objects_);
   }
   if (setting.usesViewpoints()) {
-    databases.from_viewpoints = viewpointsFor(setting);
+    scene.occluder_lists = viewpointsFor(setting);
   }
-  VisibleSets* sets = nullptr;
   if (baked_ && setting.usesVisibleSets()) {
     queries_.push_back(std::make_unique<SetQuery>(*baked_));
-    sets = queries_.back().get();
+    scene.sets = queries_.back().get();
   }
-  Culler culler(hierarchy(setting.hierarchy), bounds_, occluders_, setting.culler, databases, sets);
+  Culler culler(scene, makeMethod(setting), setting.culler);
   culler.setParallelFor(parallel_for_);
   return culler;
 }

@@ -11,9 +11,9 @@
 #include <functional>
 #include <limits>
 
-#include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/parse_text.h"
+#include "tools/sightline/methods/method_names.h"
 
 namespace sightline::tool {
 namespace {
@@ -48,6 +48,21 @@ Value oneOf(const std::array<Name<T>, N>& names, Field<T> field) {
   };
   return {"", "one of: " + listNames(names), set,
           [&names, field](Setting setting) { return Json(nameOf(names, field(setting))); }, textsOf(names)};
+}
+
+Value methodName() {
+  std::vector<std::string> names;
+  std::string list;
+  for (const Method& method : allMethods()) {
+    names.emplace_back(method.name);
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  const auto set = [names](const std::string& text, Setting& setting) {
+    const bool known = std::find(names.begin(), names.end(), text) != names.end();
+    setting.method = known ? &methodNamed(text) : setting.method;
+    return known;
+  };
+  return {"", "one of: " + list, set, [](Setting setting) { return Json(setting.method->name); }, names};
 }
 
 Value whole(std::uint32_t least, std::uint32_t most, Field<std::uint32_t> field) {
@@ -115,41 +130,36 @@ Value mebibytes(Field<std::size_t> bytes) {
           [bytes](Setting setting) { return Json(static_cast<double>(bytes(setting)) / kMebibyte); }};
 }
 
-// What an option belongs to.
+// When an option means anything, beyond that its method has it.
 bool always(const Setting&) {
   return true;
 }
 bool usesOccluders(const Setting& setting) {
-  return setting.culler.method != CullMethod::kFrustum &&
-         setting.culler.method != CullMethod::kVisibilityOctree;
+  return setting.method->traits.occluders;
 }
 bool mayUseSets(const Setting& setting) {
-  return setting.baked && usesOccluders(setting);
+  return setting.baked && setting.method->traits.sets == SetUse::kIfAsked;
 }
-bool usesTree(const Setting& setting) {
-  return setting.culler.method == CullMethod::kOcclusionTree;
+bool keepsPlanes(const Setting& setting) {
+  return setting.plane_form == PlaneForm::kThroughBox;
 }
-bool usesPlanes(const Setting& setting) {
-  return setting.culler.method == CullMethod::kSupportingPlanes;
+bool keepsRelations(const Setting& setting) {
+  return keepsPlanes(setting) && setting.temporal_coherence;
 }
-bool usesMap(const Setting& setting) {
-  return setting.usesMap();
+bool hasCoherence(const Setting& setting) {
+  return setting.method->name != "supporting-planes" || keepsPlanes(setting);
 }
-bool hasFocus(const Setting& setting) {
-  return setting.culler.method == CullMethod::kDepthPyramid &&
-         setting.culler.raster.coverage == Coverage::kInner;
+bool mayFocus(const Setting& setting) {
+  return setting.raster.coverage == Coverage::kInner;
 }
 bool focuses(const Setting& setting) {
-  return hasFocus(setting) && setting.culler.focus.magnification > 1.0;
-}
-bool usesOpacityMap(const Setting& setting) {
-  return setting.culler.method == CullMethod::kOpacityMap;
+  return mayFocus(setting) && setting.focus.magnification > 1.0;
 }
 bool usesViewpoints(const Setting& setting) {
   return setting.usesViewpoints();
 }
 bool usesMinimumSets(const Setting& setting) {
-  return setting.usesViewpoints() && setting.culler.occluders == OccluderChoice::kMinimumSets;
+  return setting.usesViewpoints() && setting.occluders == OccluderChoice::kMinimumSets;
 }
 bool ranksByAreaAngle(const Setting& setting) {
   return usesOccluders(setting) && !setting.usesViewpoints();
@@ -157,17 +167,8 @@ bool ranksByAreaAngle(const Setting& setting) {
 bool usesAreaAngle(const Setting& setting) {
   return ranksByAreaAngle(setting) && !setting.usesDatabase();
 }
-bool planesThroughBox(const Setting& setting) {
-  return setting.planesThroughBox();
-}
-bool hasCoherence(const Setting& setting) {
-  return usesTree(setting) || planesThroughBox(setting) || setting.culler.method == CullMethod::kDepthPyramid;
-}
-bool keepsRelations(const Setting& setting) {
-  return planesThroughBox(setting) && setting.culler.temporal_coherence;
-}
 bool testsDetail(const Setting& setting) {
-  return usesOccluders(setting) && setting.culler.detail_objects;
+  return setting.testsDetailObjects();
 }
 bool usesDatabase(const Setting& setting) {
   return setting.usesDatabase() || setting.testsDetailObjects();
@@ -175,136 +176,152 @@ bool usesDatabase(const Setting& setting) {
 
 struct Option {
   std::string name;  // "occluder-count": --occluder-count, and occluder_count in JSON
-  // Whether it means anything for a setting; asked when the options above it are set. Where it does not, it
-  // is neither set nor shown, and its list does not multiply the setting.
-  bool (*belongs)(const Setting&);
+  bool of_methods;   // only the methods have it that name it in their rows
+  bool (*when)(const Setting&);
   bool list;      // takes several values, where the command does
   bool headline;  // optionsText always tells it, in words of its own
   std::string help;
   Value value;
+
+  // Whether it means anything for a setting; asked when the options above it are set. Where it does not, it
+  // is neither set nor shown, and its list does not multiply the setting.
+  bool belongs(const Setting& setting) const {
+    const std::vector<std::string_view>& own = setting.method->options;
+    return (!of_methods || std::find(own.begin(), own.end(), name) != own.end()) && when(setting);
+  }
 };
 
+constexpr bool kAny = false, kOwn = true;
 constexpr bool kList = true, kOne = false, kHeadline = true, kWhenChanged = false;
 
 // An option comes after those that decide whether it means anything.
 const std::vector<Option>& allOptions() {
   static const std::vector<Option> kOptions{
-      {"method", always, kList, kHeadline, "how to cull",
-       oneOf(
-           kMethods, +[](Setting& s) -> CullMethod& { return s.culler.method; })},
-      {"hierarchy", always, kList, kHeadline, "over the objects",
+      {"method", kAny, always, kList, kHeadline, "how to cull", methodName()},
+      {"hierarchy", kAny, always, kList, kHeadline, "over the objects",
        oneOf(
            kHierarchies, +[](Setting& s) -> HierarchyKind& { return s.hierarchy; })},
-      {"visible-sets", mayUseSets, kList, kWhenChanged,
+      {"visible-sets", kAny, mayUseSets, kList, kWhenChanged,
        "before the method, all that is not in the baked set of the viewpoint's cell is left out",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.visible_sets; })},
-      {"variant", usesTree, kList, kHeadline, "of the occlusion tree",
+      {"variant", kOwn, always, kList, kHeadline, "of the occlusion tree",
        oneOf(
-           kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.culler.variant; })},
-      {"resolution", usesMap, kList, kHeadline, "of the map of occluders",
-       resolution(+[](Setting& s) -> RasterSettings& { return s.culler.raster; })},
-      {"coverage", usesMap, kList, kWhenChanged,
+           kVariants, +[](Setting& s) -> OcclusionTreeVariant& { return s.variant; })},
+      {"resolution", kOwn, always, kList, kHeadline, "of the map of occluders",
+       resolution(+[](Setting& s) -> RasterSettings& { return s.raster; })},
+      {"coverage", kOwn, always, kList, kWhenChanged,
        "pixels that occluders cover wholly, or at their centres, which culls what can be seen",
        oneOf(
-           kCoverages, +[](Setting& s) -> Coverage& { return s.culler.raster.coverage; })},
-      {"focus", hasFocus, kList, kWhenChanged,
+           kCoverages, +[](Setting& s) -> Coverage& { return s.raster.coverage; })},
+      {"focus", kOwn, mayFocus, kList, kWhenChanged,
        "depth pyramid: magnification of a second map where the first one hides least; 0: none",
-       decimal(+[](Setting& s) -> double& { return s.culler.focus.magnification; })},
-      {"focus-resolution", focuses, kOne, kWhenChanged, "of that second map",
-       resolution(+[](Setting& s) -> RasterSettings& { return s.culler.focus.raster; })},
-      {"focus-occluder-count", focuses, kOne, kWhenChanged, "most occluders that only the second map has",
+       decimal(+[](Setting& s) -> double& { return s.focus.magnification; })},
+      {"focus-resolution", kOwn, focuses, kOne, kWhenChanged, "of that second map",
+       resolution(+[](Setting& s) -> RasterSettings& { return s.focus.raster; })},
+      {"focus-occluder-count", kOwn, focuses, kOne, kWhenChanged,
+       "most occluders that only the second map has",
        whole(
-           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.focus.occluder_count; })},
-      {"focus-objects", focuses, kOne, kWhenChanged,
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.occluder_count; })},
+      {"focus-objects", kOwn, focuses, kOne, kWhenChanged,
        "the second map is made where the first one leaves so many objects",
        whole(
-           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.focus.min_objects; })},
-      {"tolerance", usesOpacityMap, kList, kWhenChanged,
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.min_objects; })},
+      {"tolerance", kOwn, always, kList, kWhenChanged,
        "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
        whole(
-           0, kMaxMapSize * kMaxMapSize, +[](Setting& s) -> std::uint32_t& { return s.culler.tolerance; })},
-      {"coverage-ratio", usesOpacityMap, kList, kWhenChanged,
+           0, kMaxMapSize * kMaxMapSize,
+           +[](Setting& s) -> std::uint32_t& { return s.opacity_map.map.tolerance; })},
+      {"coverage-ratio", kOwn, always, kList, kWhenChanged,
        "opacity map: what is covered by less than this part counts as visible with all in it",
-       decimal(+[](Setting& s) -> double& { return s.culler.coverage_ratio; })},
-      {"depth-comparison", usesOpacityMap, kList, kWhenChanged, "opacity map: at peaks only or everywhere",
+       decimal(+[](Setting& s) -> double& { return s.opacity_map.map.coverage_ratio; })},
+      {"depth-comparison", kOwn, always, kList, kWhenChanged, "opacity map: at peaks only or everywhere",
        oneOf(
-           kDepthComparisons, +[](Setting& s) -> DepthComparison& { return s.culler.depth_comparison; })},
-      {"triangle-us", usesOpacityMap, kOne, kWhenChanged,
+           kDepthComparisons, +[](Setting& s) -> DepthComparison& { return s.opacity_map.map.depth; })},
+      {"triangle-us", kOwn, always, kOne, kWhenChanged,
        "opacity map: microseconds to draw a triangle; the coverage ratio follows measured times; 0: off",
-       decimal(+[](Setting& s) -> double& { return s.culler.triangle_us; })},
-      {"occluders", usesOccluders, kList, kWhenChanged, "how occluders are chosen",
+       decimal(+[](Setting& s) -> double& { return s.opacity_map.triangle_us; })},
+      {"occluders", kAny, usesOccluders, kList, kWhenChanged, "how occluders are chosen",
        oneOf(
-           kOccluderChoices, +[](Setting& s) -> OccluderChoice& { return s.culler.occluders; })},
-      {"occluder-count", usesOccluders, kList, kHeadline, "most occluders in a frame",
+           kOccluderChoices, +[](Setting& s) -> OccluderChoice& { return s.occluders; })},
+      {"occluder-count", kAny, usesOccluders, kList, kHeadline, "most occluders in a frame",
        whole(
-           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluder_count; })},
-      {"planes", usesPlanes, kList, kWhenChanged,
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluders.count; })},
+      {"planes", kOwn, always, kList, kWhenChanged,
        "supporting planes: made for each occluder, or for each occluder and box, to be kept",
        oneOf(
-           kPlaneForms, +[](Setting& s) -> PlaneForm& { return s.culler.supporting_planes.form; })},
-      {"coherence", hasCoherence, kList, kHeadline, "temporal coherence; supporting planes: kept relations",
+           kPlaneForms, +[](Setting& s) -> PlaneForm& { return s.plane_form; })},
+      {"coherence", kOwn, hasCoherence, kList, kHeadline,
+       "temporal coherence; supporting planes: kept relations",
        oneOf(
-           kSwitch, +[](Setting& s) -> bool& { return s.culler.temporal_coherence; })},
-      {"lambda-steps", usesAreaAngle, kOne, kWhenChanged,
+           kSwitch, +[](Setting& s) -> bool& { return s.temporal_coherence; })},
+      {"lambda-steps", kAny, usesAreaAngle, kOne, kWhenChanged,
        "occluders are looked for within so many steps of the observer; 0: everywhere",
-       decimal(+[](Setting& s) -> double& { return s.culler.lambda_steps; })},
-      {"min-node-cost", usesOccluders, kOne, kWhenChanged, "nodes with fewer triangles are not tested",
+       decimal(+[](Setting& s) -> double& { return s.culler.occluders.lambda_steps; })},
+      {"min-node-cost", kAny, usesOccluders, kOne, kWhenChanged, "nodes with fewer triangles are not tested",
        whole(
            0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.culler.min_node_cost; })},
-      {"area-angle", ranksByAreaAngle, kOne, kWhenChanged, "direction that ranks occluders",
+      {"area-angle", kAny, ranksByAreaAngle, kOne, kWhenChanged, "direction that ranks occluders",
        oneOf(
            kAreaAngleDirections,
-           +[](Setting& s) -> AreaAngleDirection& { return s.culler.area_angle_direction; })},
-      {"test-objects", usesOccluders, kOne, kWhenChanged,
+           +[](Setting& s) -> AreaAngleDirection& { return s.culler.occluders.area_angle_direction; })},
+      {"test-objects", kAny, usesOccluders, kOne, kWhenChanged,
        "objects of partly visible leaves are tested one by one",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.test_objects; })},
-      {"joint", usesPlanes, kList, kWhenChanged,
+      {"joint", kOwn, always, kList, kWhenChanged,
        "supporting planes: occluders that share edges hide together",
        oneOf(
-           kSwitch, +[](Setting& s) -> bool& { return s.culler.supporting_planes.joint_occlusion; })},
-      {"relation-mib", keepsRelations, kOne, kWhenChanged, "supporting planes: most memory of kept relations",
-       mebibytes(+[](Setting& s) -> std::size_t& { return s.culler.supporting_planes.relation_bytes; })},
-      {"tangents", planesThroughBox, kOne, kWhenChanged, "supporting planes: how their vertices are found",
+           kSwitch, +[](Setting& s) -> bool& { return s.kept_planes.joint_occlusion; })},
+      {"relation-mib", kOwn, keepsRelations, kOne, kWhenChanged,
+       "supporting planes: most memory of kept relations",
+       mebibytes(+[](Setting& s) -> std::size_t& { return s.kept_planes.relation_bytes; })},
+      {"tangents", kOwn, keepsPlanes, kOne, kWhenChanged, "supporting planes: how their vertices are found",
        oneOf(
-           kTangentSearches,
-           +[](Setting& s) -> TangentSearch& { return s.culler.supporting_planes.tangent_search; })},
-      {"detail-objects", usesOccluders, kList, kWhenChanged,
+           kTangentSearches, +[](Setting& s) -> TangentSearch& { return s.kept_planes.tangent_search; })},
+      {"detail-objects", kAny, usesOccluders, kList, kWhenChanged,
        "what was kept is tested again, with a database's occluders near itself",
        oneOf(
-           kSwitch, +[](Setting& s) -> bool& { return s.culler.detail_objects; })},
-      {"detail-occluder-count", testsDetail, kOne, kWhenChanged, "most occluders in that second test",
+           kSwitch, +[](Setting& s) -> bool& { return s.detail_objects; })},
+      {"detail-occluder-count", kAny, testsDetail, kOne, kWhenChanged, "most occluders in that second test",
        whole(
-           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.detail_occluder_count; })},
-      {"database-directions", usesDatabase, kOne, kWhenChanged, "occluder database: directions of a cell",
+           1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.detail.occluder_count; })},
+      {"database-directions", kAny, usesDatabase, kOne, kWhenChanged,
+       "occluder database: directions of a cell",
        whole(
            1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.database.directions; })},
-      {"database-occluder-count", usesDatabase, kOne, kWhenChanged,
+      {"database-occluder-count", kAny, usesDatabase, kOne, kWhenChanged,
        "occluder database: most occluders of a cell in a direction",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.database.occluder_count; })},
-      {"database-mib", usesDatabase, kOne, kWhenChanged, "occluder database: most memory of its lists",
+      {"database-mib", kAny, usesDatabase, kOne, kWhenChanged, "occluder database: most memory of its lists",
        mebibytes(+[](Setting& s) -> std::size_t& { return s.database.max_bytes; })},
-      {"viewpoint-spacing", usesViewpoints, kOne, kWhenChanged,
+      {"viewpoint-spacing", kAny, usesViewpoints, kOne, kWhenChanged,
        "viewpoint database: metres between grid points; 0: chosen",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.spacing; })},
-      {"viewpoint-directions", usesViewpoints, kOne, kWhenChanged,
+      {"viewpoint-directions", kAny, usesViewpoints, kOne, kWhenChanged,
        "viewpoint database: directions at a grid point",
        whole(
            1, kMaxDirections, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.directions; })},
-      {"viewpoint-pixels", usesViewpoints, kOne, kWhenChanged,
+      {"viewpoint-pixels", kAny, usesViewpoints, kOne, kWhenChanged,
        "viewpoint database: pixels along the edge of a picture",
        whole(
            8, 512, +[](Setting& s) -> std::uint32_t& { return s.viewpoints.resolution; })},
-      {"set-gain", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
+      {"set-gain", kAny, usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of what a set hides",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.gain; })},
-      {"set-count", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of the number of occluders",
+      {"set-count", kAny, usesMinimumSets, kOne, kWhenChanged,
+       "minimum sets: weight of the number of occluders",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.count; })},
-      {"set-area", usesMinimumSets, kOne, kWhenChanged, "minimum sets: weight of the pixels of occluders",
+      {"set-area", kAny, usesMinimumSets, kOne, kWhenChanged,
+       "minimum sets: weight of the pixels of occluders",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.area; })},
   };
   return kOptions;
+}
+
+const Option& optionNamed(std::string_view name) {
+  return *std::find_if(allOptions().begin(), allOptions().end(),
+                       [&](const Option& option) { return option.name == name; });
 }
 
 // Of JSON: text without its quotes.
@@ -340,12 +357,12 @@ Status checkBaked(const MethodOptions& options, const std::vector<Setting>& sett
     return Success{};
   }
   for (const Setting& setting : settings) {
-    if (setting.culler.method == CullMethod::kVisibilityOctree) {
+    if (setting.method->traits.sets == SetUse::kAlways) {
       return Error{fmt::format("--method {}: {}", methodName(setting), kRemedy)};
     }
   }
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
-    if (allOptions()[i].belongs == mayUseSets && options.texts[i] != MethodOptions().texts[i]) {
+    if (allOptions()[i].when == mayUseSets && options.texts[i] != MethodOptions().texts[i]) {
       return Error{fmt::format("--{} {}: {}", allOptions()[i].name, options.texts[i], kRemedy)};
     }
   }
@@ -371,35 +388,43 @@ std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option
 }  // namespace
 
 bool Setting::usesDatabase() const {
-  return usesOccluders(*this) && culler.occluders == OccluderChoice::kDatabase;
+  return usesOccluders(*this) && occluders == OccluderChoice::kDatabase;
 }
 
 bool Setting::usesViewpoints() const {
-  const OccluderChoice choice = culler.occluders;
   return usesOccluders(*this) &&
-         (choice == OccluderChoice::kMinimumSets || choice == OccluderChoice::kFirstHit ||
-          choice == OccluderChoice::kProjectedSize);
+         (occluders == OccluderChoice::kMinimumSets || occluders == OccluderChoice::kFirstHit ||
+          occluders == OccluderChoice::kProjectedSize);
 }
 
-bool Setting::usesMap() const {
-  return culler.method == CullMethod::kOpacityMap || culler.method == CullMethod::kDepthPyramid;
+bool Setting::usesDepthBuffer() const {
+  const std::vector<std::string_view>& own = method->options;
+  return std::find(own.begin(), own.end(), "resolution") != own.end();
 }
 
 bool Setting::approximate() const {
-  return (usesMap() && culler.raster.coverage == Coverage::kCentre) ||
-         (usesOpacityMap(*this) && culler.tolerance > 0);
+  const bool tolerates = method->name == "opacity-map" && opacity_map.map.tolerance > 0;
+  return (usesDepthBuffer() && raster.coverage == Coverage::kCentre) || tolerates;
 }
 
 bool Setting::testsDetailObjects() const {
-  return usesOccluders(*this) && culler.detail_objects;
+  return usesOccluders(*this) && detail_objects;
 }
 
 bool Setting::usesVisibleSets() const {
-  return culler.method == CullMethod::kVisibilityOctree || (usesOccluders(*this) && culler.visible_sets);
+  const SetUse use = method->traits.sets;
+  return use == SetUse::kAlways || (use == SetUse::kIfAsked && culler.visible_sets);
 }
 
-bool Setting::planesThroughBox() const {
-  return usesPlanes(*this) && culler.supporting_planes.form == PlaneForm::kThroughBox;
+std::unique_ptr<CullingMethod> makeMethod(const Setting& setting) {
+  std::unique_ptr<CullingMethod> method = setting.method->make(setting);
+  if (!setting.testsDetailObjects()) {
+    return method;
+  }
+  DetailObjectsSettings detail = setting.detail;
+  detail.planes.joint_occlusion =
+      !optionNamed("joint").belongs(setting) || setting.kept_planes.joint_occlusion;
+  return detailObjects(std::move(method), detail);
 }
 
 MethodOptions::MethodOptions() {
@@ -449,13 +474,14 @@ Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
     const Option& option = allOptions()[i];
     const bool given = options.texts[i] != MethodOptions().texts[i];
-    if (given && std::none_of(settings.begin(), settings.end(), option.belongs)) {
+    if (given && std::none_of(settings.begin(), settings.end(),
+                              [&](const Setting& setting) { return option.belongs(setting); })) {
       fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);
     }
   }
   for (Setting& setting : settings) {
-    setting.database.area_angle_direction = setting.culler.area_angle_direction;
-    setting.viewpoints.criterion = criterionOf(setting.culler.occluders);
+    setting.database.area_angle_direction = setting.culler.occluders.area_angle_direction;
+    setting.viewpoints.criterion = criterionOf(setting.occluders);
   }
   return settings;
 }
@@ -467,7 +493,7 @@ OccluderCriterion criterionOf(OccluderChoice choice) {
 }
 
 std::string methodName(const Setting& setting) {
-  return nameOf(kMethods, setting.culler.method);
+  return std::string(setting.method->name);
 }
 
 std::string optionsText(const Setting& setting) {
@@ -475,15 +501,16 @@ std::string optionsText(const Setting& setting) {
   if (!usesOccluders(setting)) {
     return text;
   }
-  text = fmt::format("{} occluders, {}", setting.culler.occluder_count, text);
-  if (hasCoherence(setting)) {
-    text += ", coherence " + nameOf(kSwitch, setting.culler.temporal_coherence);
+  text = fmt::format("{} occluders, {}", setting.culler.occluders.count, text);
+  const auto shows = [&](std::string_view name) { return optionNamed(name).belongs(setting); };
+  if (shows("coherence")) {
+    text += ", coherence " + nameOf(kSwitch, setting.temporal_coherence);
   }
-  if (usesTree(setting)) {
-    text = nameOf(kVariants, setting.culler.variant) + ", " + text;
+  if (shows("variant")) {
+    text = nameOf(kVariants, setting.variant) + ", " + text;
   }
-  if (usesMap(setting)) {
-    text = fmt::format("{}x{}, {}", setting.culler.raster.width, setting.culler.raster.height, text);
+  if (shows("resolution")) {
+    text = fmt::format("{}x{}, {}", setting.raster.width, setting.raster.height, text);
   }
   if (setting.approximate()) {
     text = "APPROXIMATE, " + text;
@@ -504,7 +531,7 @@ Json optionsJson(const Setting& setting) {
       json[jsonKey(option.name)] = option.value.get(setting);
     }
   }
-  if (setting.usesMap()) {
+  if (setting.usesDepthBuffer()) {
     json["approximate"] = setting.approximate();
   }
   return json;

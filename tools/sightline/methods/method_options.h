@@ -2,12 +2,23 @@
 
 // How to cull: the options of the command line, and what they mean for the library.
 
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "sightline/base/result.h"
+#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/culling/culler.h"
+#include "sightline/culling/depth_pyramid_method.h"
+#include "sightline/culling/detail_objects.h"
+#include "sightline/culling/occlusion_tree_method.h"
+#include "sightline/culling/opacity_map_method.h"
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/occluders/occluder_database.h"
+#include "tools/sightline/methods/method.h"
+#include "tools/sightline/methods/method_names.h"
 
 namespace CLI {
 class App;
@@ -17,22 +28,35 @@ namespace sightline::tool {
 
 using Json = nlohmann::ordered_json;
 
-// One method with one value of each option.
+// One method with one value of each option: the settings of every method, of which its own counts.
 struct Setting {
   HierarchyKind hierarchy = HierarchySettings{}.kind;
+  const Method* method = &methodNamed("occlusion-tree");
   CullerSettings culler{};
+  OccluderChoice occluders = OccluderChoice::kAreaAngle;
   OccluderDatabaseSettings database{};
   ViewpointDatabaseSettings viewpoints{};
+  bool detail_objects = false;
+  DetailObjectsSettings detail{};
+  bool temporal_coherence = true;  // of each method that has it
+  OcclusionTreeVariant variant = OcclusionTreeMethodSettings{}.variant;
+  PlaneForm plane_form = PlaneForm::kThroughEye;
+  SupportingPlanesSettings kept_planes{};
+  RasterSettings raster{};  // of the opacity map and the depth pyramid
+  OpacityMapMethodSettings opacity_map{};
+  FocusSettings focus{};
   bool baked = false;  // there is a baked file
 
   bool usesDatabase() const;
   bool usesViewpoints() const;
-  bool usesMap() const;      // of occluders, in pixels
+  bool usesDepthBuffer() const;
   bool approximate() const;  // may cull what can be seen
   bool testsDetailObjects() const;
   bool usesVisibleSets() const;
-  bool planesThroughBox() const;  // which are kept where temporal coherence is on
 };
+
+// The method of the setting, with the second test of detail objects where it is asked for.
+std::unique_ptr<CullingMethod> makeMethod(const Setting& setting);
 
 // The options as text, one for each option that there is; several values are separated by commas.
 struct MethodOptions {

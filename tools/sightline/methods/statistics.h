@@ -1,6 +1,6 @@
 #pragma once
 
-// What cullers count beyond nodes and occluders: one table for JSON, the terminal and the report.
+// What cullers count beyond nodes and occluders: for JSON, the terminal and the report.
 
 #include <cstdint>
 #include <vector>
@@ -10,26 +10,28 @@
 namespace sightline::tool {
 
 struct Statistic {
-  const char* group;  // "relations": an object in JSON
-  const char* name;   // "reused": its key in there
-  const char* text;   // "relations reused"
-  std::uint64_t (*of)(const CullStats& stats);
-  bool (*belongs)(const Setting& setting);
-  bool time = false;  // differs from run to run
+  const char* group;    // "relations": an object in JSON
+  const char* name;     // "reused": its key in there
+  const char* caption;  // "relations reused"
+  bool time = false;    // differs from run to run
 };
 
-// Those that mean something for the setting.
+// Those that mean something for the setting: of its sets, and those of its method that the method's row
+// names.
 std::vector<Statistic> statisticsOf(const Setting& setting);
 
-// Adds {"relations":{"reused":n,...}} and so on for the setting's statistics; number: of each.
+// Their values in the culler's last frame, in the same order.
+std::vector<std::uint64_t> statisticValues(const std::vector<Statistic>& statistics, const Culler& culler);
+
+// Adds {"relations":{"reused":n,...}} and so on; number: from a statistic's index to its value.
 template <typename Number>
-void addStatistics(Json& json, const Setting& setting, Number&& number) {
-  for (const Statistic& statistic : statisticsOf(setting)) {
-    json[statistic.group][statistic.name] = number(statistic);
+void addStatistics(Json& json, const std::vector<Statistic>& statistics, Number&& number) {
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    json[statistics[i].group][statistics[i].name] = number(i);
   }
 }
 
-// The part of a hierarchy's nodes that was asked of the occlusion structure.
+// The part of a hierarchy's nodes that the occlusion structure was asked about.
 double testedShare(const CullStats& stats, std::size_t hierarchy_nodes);
 
 }  // namespace sightline::tool

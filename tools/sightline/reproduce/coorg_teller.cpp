@@ -27,13 +27,13 @@ constexpr double kMebibyte = 1024.0 * 1024.0;
 // baseline.
 struct Culling {
   const char* name;
-  CullMethod method = CullMethod::kSupportingPlanes;
+  const char* method = "supporting-planes";
   OccluderChoice occluders = OccluderChoice::kDatabase;
   PlaneForm form = PlaneForm::kThroughEye;
   bool detail_objects = false;
 };
 constexpr Culling kCullings[] = {
-    {.name = "frustum", .method = CullMethod::kFrustum},
+    {.name = "frustum", .method = "frustum"},
     {.name = "database, kept planes", .form = PlaneForm::kThroughBox},
     {.name = "database, planes through the eye"},
     {.name = "... and detail objects", .detail_objects = true},
@@ -45,10 +45,10 @@ std::vector<Setting> allSettings() {
   for (const Culling& culling : kCullings) {
     Setting setting;
     setting.hierarchy = HierarchyKind::kKdTree;  // the paper's
-    setting.culler.method = culling.method;
-    setting.culler.supporting_planes.form = culling.form;
-    setting.culler.occluders = culling.occluders;
-    setting.culler.detail_objects = culling.detail_objects;
+    setting.method = &methodNamed(culling.method);
+    setting.plane_form = culling.form;
+    setting.occluders = culling.occluders;
+    setting.detail_objects = culling.detail_objects;
     settings.push_back(setting);
   }
   return settings;
@@ -228,22 +228,19 @@ Experiment memory(const std::vector<Measured>& scenes) {
                          {"database_mib", "database MiB", 2},
                          {"database_build_ms", "built in ms", 0}}};
   for (const Measured& measured : scenes) {
-    RelationStats peak;
-    for (const FrameRecord& frame : measured.record.runs[kKeptPlanes].frames) {
-      peak.kept = std::max(peak.kept, frame.stats.relations.kept);
-      peak.bytes = std::max(peak.bytes, frame.stats.relations.bytes);
-    }
+    const WalkRun& kept = measured.record.runs[kKeptPlanes];
     const OccluderDatabase& database = measured.data.database()->database;
-    experiment.rows.push_back({{"scene", measured.name},
-                               {"objects", measured.input.scene.objects.size()},
-                               {"triangles", measured.input.scene.triangleCount()},
-                               {"potential_occluders", measured.data.occluders().occluders.size()},
-                               {"relations", peak.kept},
-                               {"relation_mib", static_cast<double>(peak.bytes) / kMebibyte},
-                               {"database_cells", database.cellCount()},
-                               {"database_directions", database.directionCount()},
-                               {"database_mib", static_cast<double>(database.bytes()) / kMebibyte},
-                               {"database_build_ms", measured.data.database()->build_us * 1e-3}});
+    experiment.rows.push_back(
+        {{"scene", measured.name},
+         {"objects", measured.input.scene.objects.size()},
+         {"triangles", measured.input.scene.triangleCount()},
+         {"potential_occluders", measured.data.occluders().occluders.size()},
+         {"relations", kept.peak("relations", "kept")},
+         {"relation_mib", static_cast<double>(kept.peak("relations", "bytes")) / kMebibyte},
+         {"database_cells", database.cellCount()},
+         {"database_directions", database.directionCount()},
+         {"database_mib", static_cast<double>(database.bytes()) / kMebibyte},
+         {"database_build_ms", measured.data.database()->build_us * 1e-3}});
   }
   return experiment;
 }

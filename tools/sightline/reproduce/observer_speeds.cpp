@@ -34,9 +34,9 @@ struct Walkers {
 
 Walkers makeWalkers(CullingData& data, const Setting& setting) {
   Setting frustum = setting, incoherent = setting, through_eye = setting;
-  frustum.culler.method = CullMethod::kFrustum;
-  incoherent.culler.temporal_coherence = false;
-  through_eye.culler.supporting_planes.form = PlaneForm::kThroughEye;
+  frustum.method = &methodNamed("frustum");
+  incoherent.temporal_coherence = false;
+  through_eye.plane_form = PlaneForm::kThroughEye;
   return {data.makeCuller(frustum), data.makeCuller(setting), data.makeCuller(incoherent),
           data.makeCuller(through_eye)};
 }
@@ -47,10 +47,12 @@ void add(const Walkers& walkers, SpeedResult& sum) {
   sum.coherent_us += walkers.coherent.stats().totalUs();
   sum.incoherent_us += walkers.incoherent.stats().totalUs();
   sum.through_eye_us += walkers.through_eye.stats().totalUs();
-  const RelationStats& relations = walkers.coherent.stats().relations;
-  sum.reused += relations.reused;
-  sum.unchanged += relations.unchanged;
-  sum.rebuilt += relations.rebuilt;
+  const auto relations = [&](const char* name) {
+    return static_cast<double>(walkers.coherent.statistic("relations", name));
+  };
+  sum.reused += relations("reused");
+  sum.unchanged += relations("unchanged");
+  sum.rebuilt += relations("rebuilt");
 }
 
 struct Stretch {

@@ -33,16 +33,16 @@ constexpr std::size_t kRepeats = 15;             // of its frame
 
 Setting frustumSetting() {
   Setting setting;
-  setting.culler.method = CullMethod::kFrustum;
+  setting.method = &methodNamed("frustum");
   return setting;
 }
 
 Setting opacitySetting(OccluderChoice criterion, std::uint32_t occluders) {
   Setting setting;
-  setting.culler.method = CullMethod::kOpacityMap;
-  setting.culler.raster = {.width = kMap, .height = kMap};
-  setting.culler.occluders = criterion;
-  setting.culler.occluder_count = occluders;
+  setting.method = &methodNamed("opacity-map");
+  setting.raster = {.width = kMap, .height = kMap};
+  setting.occluders = criterion;
+  setting.culler.occluders.count = occluders;
   setting.viewpoints.criterion = criterionOf(criterion);
   return setting;
 }
@@ -316,12 +316,12 @@ class Experiments {
     for (const Walk& route : routes_) {
       const Setting om = opacitySetting(OccluderChoice::kMinimumSets, kOccluders);
       Setting pixelwise = om, adaptive = om, centre = om;
-      pixelwise.culler.depth_comparison = DepthComparison::kPixelwise;
-      centre.culler.raster.coverage = Coverage::kCentre;
+      pixelwise.opacity_map.map.depth = DepthComparison::kPixelwise;
+      centre.raster.coverage = Coverage::kCentre;
       std::vector<std::string> names{"VF", "OM", "PC", "OM, centres (not conservative)"};
       std::vector<Setting> settings{frustumSetting(), om, pixelwise, centre};
       if (drawn()) {
-        adaptive.culler.triangle_us = triangleUs(route);
+        adaptive.opacity_map.triangle_us = triangleUs(route);
         names.push_back("OM, adaptive");
         settings.push_back(adaptive);
       }

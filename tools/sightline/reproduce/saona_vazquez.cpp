@@ -131,8 +131,8 @@ void timeFinds(const SightFile& file, const Scene& scene, Navigation& navigation
 
 std::vector<Setting> settingsToCompare() {
   std::vector<Setting> settings(2);
-  settings[0].culler.method = CullMethod::kFrustum;
-  settings[1].culler.method = CullMethod::kVisibilityOctree;
+  settings[0].method = &methodNamed("frustum");
+  settings[1].method = &methodNamed("visibility-octree");
   for (Setting& setting : settings) {
     setting.baked = true;
   }

@@ -61,12 +61,10 @@ struct WalkOptions {
 
 // View-frustum culling first, whatever was asked for: what the others are compared with.
 std::vector<Setting> withBaseline(std::vector<Setting> settings) {
-  const auto is_frustum = [](const Setting& setting) {
-    return setting.culler.method == CullMethod::kFrustum;
-  };
+  const auto is_frustum = [](const Setting& setting) { return setting.method->name == "frustum"; };
   const auto frustum = std::find_if(settings.begin(), settings.end(), is_frustum);
   Setting baseline = settings.front();
-  baseline.culler.method = CullMethod::kFrustum;
+  baseline.method = &methodNamed("frustum");
   if (frustum != settings.end()) {
     baseline = *frustum;
     settings.erase(frustum);
@@ -177,7 +175,7 @@ class Walker {
     kept.in_frustum.assign(all.visible().begin(), all.visible().end());
     kept.visible.assign(shown.visible().begin(), shown.visible().end());
     kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
-    const DepthMapView map = shown.depthMap();
+    const DepthMapView map = shown.depthBuffer();
     kept.map.width = map.width;
     kept.map.height = map.height;
     for (std::uint32_t y = 0; y < map.height; ++y) {

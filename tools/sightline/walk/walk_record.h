@@ -2,13 +2,16 @@
 
 // What `walk` measures: numbers of every frame for every setting, and what its pictures need.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/sightline/cull/cull_run.h"
 #include "tools/sightline/input/load.h"
+#include "tools/sightline/methods/statistics.h"
 
 namespace sightline::tool {
 
@@ -18,6 +21,7 @@ struct FrameRecord {
   std::uint64_t triangles = 0;  // drawn
   double cull_us = 0.0, draw_us = 0.0;
   CullStats stats;
+  std::vector<std::uint64_t> statistics{};  // in the order of WalkRun::statistics
   bool differs = false;  // the picture, from the one of view-frustum culling: something culled would show
   bool tie = false;      // the picture differs, but by ties of the depth buffer only
 
@@ -29,7 +33,8 @@ struct WalkRun {
   CullRun run;
   std::size_t hierarchy_nodes = 0;
   std::uint32_t hierarchy_depth = 0;
-  std::vector<FrameRecord> frames;
+  std::vector<Statistic> statistics{};  // of the setting
+  std::vector<FrameRecord> frames{};
 
   template <typename Of>
   double mean(Of of) const {
@@ -38,6 +43,18 @@ struct WalkRun {
       sum += static_cast<double>(of(frame));
     }
     return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
+  }
+  // The largest value of a statistic in any frame.
+  std::uint64_t peak(std::string_view group, std::string_view name) const {
+    std::uint64_t most = 0;
+    for (std::size_t i = 0; i < statistics.size(); ++i) {
+      if (statistics[i].group == group && statistics[i].name == name) {
+        for (const FrameRecord& frame : frames) {
+          most = std::max(most, frame.statistics[i]);
+        }
+      }
+    }
+    return most;
   }
   std::vector<std::uint32_t> differingFrames() const { return framesWhere(&FrameRecord::differs); }
   std::vector<std::uint32_t> tieFrames() const { return framesWhere(&FrameRecord::tie); }

@@ -41,6 +41,10 @@ auto testedShareOf(const WalkRun& run) {
   return [&run](const FrameRecord& frame) { return testedShare(frame.stats, run.hierarchy_nodes); };
 }
 
+auto statisticAt(std::size_t i) {
+  return [i](const FrameRecord& frame) { return frame.statistics[i]; };
+}
+
 double ratio(double a, double b) {
   return b > 0.0 ? a / b : 1.0;
 }
@@ -87,7 +91,7 @@ std::string frameJson(const FrameRecord& frame, const WalkRun& run) {
                {"occluders", frame.stats.occluders},
                {"differs", frame.differs},
                {"tie", frame.tie}};
-  addStatistics(json, run.setting, [&](const Statistic& statistic) { return statistic.of(frame.stats); });
+  addStatistics(json, run.statistics, [&](std::size_t i) { return frame.statistics[i]; });
   return dump(json);
 }
 
@@ -102,9 +106,7 @@ Json meanJson(const WalkRun& run, const ReportRow& row) {
                {"nodes_tested", row.nodes_tested},
                {"nodes_tested_share", run.mean(testedShareOf(run))},
                {"occluders", row.occluders}};
-  addStatistics(json, run.setting, [&](const Statistic& statistic) {
-    return run.mean([&](const FrameRecord& frame) { return statistic.of(frame.stats); });
-  });
+  addStatistics(json, run.statistics, [&](std::size_t i) { return run.mean(statisticAt(i)); });
   return json;
 }
 
@@ -185,9 +187,9 @@ std::string statisticsText(const WalkRun& run) {
       fmt::format("{} ({}): {:.1f} % of the hierarchy's nodes tested in a mean frame",
                   methodName(run.setting), optionsText(run.setting), 100.0 * run.mean(testedShareOf(run)));
   const char* separator = "; ";
-  for (const Statistic& statistic : statisticsOf(run.setting)) {
-    const double mean = run.mean([&](const FrameRecord& frame) { return statistic.of(frame.stats); });
-    text += fmt::format("{}{} {:.1f}", separator, statistic.text, mean);
+  for (std::size_t i = 0; i < run.statistics.size(); ++i) {
+    const char* caption = run.statistics[i].caption;
+    text += fmt::format("{}{} {:.1f}", separator, caption, run.mean(statisticAt(i)));
     separator = ", ";
   }
   return text;
@@ -276,7 +278,7 @@ void printWalk(const WalkRecord& record) {
   }
   fmt::print("{}", toText(table));
   for (const WalkRun& run : record.runs) {
-    if (!statisticsOf(run.setting).empty()) {
+    if (!run.statistics.empty()) {
       fmt::print("{}\n", statisticsText(run));
     }
   }

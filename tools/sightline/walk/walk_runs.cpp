@@ -7,7 +7,7 @@ std::vector<WalkRun> makeRuns(const std::vector<Setting>& settings, CullingData&
   for (const Setting& setting : settings) {
     CullRun run{data.makeCuller(setting)};
     const Hierarchy& hierarchy = data.hierarchy(setting.hierarchy);
-    runs.push_back({setting, std::move(run), hierarchy.nodes.size(), hierarchy.depth, {}});
+    runs.push_back({setting, std::move(run), hierarchy.nodes.size(), hierarchy.depth, statisticsOf(setting)});
   }
   return runs;
 }
@@ -25,6 +25,7 @@ void cullFrame(std::vector<WalkRun>& runs, const CullingData& data, std::uint32_
     record.triangles = data.trianglesOf(visible);
     record.cull_us = run.run.cull_us;
     record.stats = run.run.culler.stats();
+    record.statistics = statisticValues(run.statistics, run.run.culler);
     run.frames.push_back(record);
   }
 }

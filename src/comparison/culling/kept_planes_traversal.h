@@ -5,19 +5,20 @@
 
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/supporting_planes.h"
-#include "src/culling/hierarchical_walk.h"
+#include "src/culling/hierarchical_traversal.h"
 
-namespace sightline::culling {
+namespace sightline::comparison {
 
-// The supporting planes as the walk asks them: relations of what lies below a node go when the walk ends at
-// it. They stay while it is merely outside the frustum.
-struct KeptPlanes {
+// Kept planes as the traversal asks them: the relations of what lies below a node are dropped when the
+// traversal ends at it. They stay while the node is merely outside the frustum.
+struct KeptPlanesTraversal {
   SupportingPlanes& planes;
   const Hierarchy& hierarchy;
-  std::vector<bool>& entered;  // by node: the walk went on below it, and what is there may have relations
+  std::vector<bool>&
+      entered;  // by node: the traversal went on below it, and what is there may have relations
 
   OccluderList start() const { return planes.all(); }
-  Visibility classify(const WalkBox& asked, OccluderList among, OccluderList& touching) {
+  Visibility classify(const culling::TraversalBox& asked, OccluderList among, OccluderList& touching) {
     const Visibility state = planes.classify(asked.box, asked.item, among, touching);
     if (asked.item < entered.size() && state == Visibility::kPartial) {
       entered[asked.item] = true;
@@ -44,4 +45,4 @@ struct KeptPlanes {
   }
 };
 
-}  // namespace sightline::culling
+}  // namespace sightline::comparison

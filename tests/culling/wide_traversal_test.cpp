@@ -1,4 +1,4 @@
-#include "src/culling/wide_walk.h"
+#include "src/culling/wide_traversal.h"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ struct Answer {
   CullStats stats;
 };
 
-Answer walked(WideWalk& walk, const DepthPyramid& pyramid,
-              const WalkOptions& options = {.temporal_coherence = false}) {
+Answer walked(WideTraversal& walk, const DepthPyramid& pyramid,
+              const TraversalOptions& options = {.temporal_coherence = false}) {
   Answer answer;
   walk.run({pyramid}, options, answer.stats, answer.kept);
   return answer;
@@ -64,14 +64,14 @@ struct Bed {
   DepthPyramid pyramid{{.raster = {.width = 160, .height = 120}}};
 };
 
-TEST(WideWalk, KeepsWhatAskingBoxByBoxKeeps) {
+TEST(WideTraversal, KeepsWhatAskingBoxByBoxKeeps) {
   std::size_t kept = 0, hidden = 0;
   for (const test::Family& family : test::kFamilies) {
     for (std::uint64_t seed = 1; seed <= 25; ++seed) {
       const Bed bed(family, seed, 20 + 15 * seed);
       const std::vector<ObjectId> expected = notHidden(bed.pyramid, bed.boxes);
       const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
-      WideWalk walk(bvh, bed.boxes);
+      WideTraversal walk(bvh, bed.boxes);
       EXPECT_EQ(walked(walk, bed.pyramid).kept, expected) << family.name << ", seed " << seed;
       EXPECT_EQ(walked(walk, bed.pyramid).kept, expected) << "again: " << family.name << ", seed " << seed;
       kept += expected.size();
@@ -82,7 +82,7 @@ TEST(WideWalk, KeepsWhatAskingBoxByBoxKeeps) {
   EXPECT_GT(hidden, 100u) << "by the map";
 }
 
-TEST(WideWalk, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
+TEST(WideTraversal, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
   int judged = 0;
   for (const test::Family& family : test::kFamilies) {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -91,7 +91,7 @@ TEST(WideWalk, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
       const std::vector<ObjectId> alone = notHidden(bed.pyramid, bed.boxes);
       for (const HierarchyKind kind : demo_frames::kKinds) {
         const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = kind});
-        WideWalk walk(hierarchy, bed.boxes);
+        WideTraversal walk(hierarchy, bed.boxes);
         const std::vector<ObjectId> kept = walked(walk, bed.pyramid).kept;
         EXPECT_TRUE(std::ranges::is_sorted(kept));
         EXPECT_TRUE(std::ranges::includes(alone, kept)) << family.name << ", seed " << seed;
@@ -112,12 +112,12 @@ TEST(WideWalk, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
 }
 
 // What was kept is not asked about for some views: it is kept on, for a few views and within the view.
-TEST(WideWalk, CoherenceKeepsALittleMoreForAWhile) {
+TEST(WideTraversal, CoherenceKeepsALittleMoreForAWhile) {
   std::size_t lingering = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Bed bed(test::kFamilies[0], seed, 300);
     const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
-    WideWalk walk(hierarchy, bed.boxes);
+    WideTraversal walk(hierarchy, bed.boxes);
     const OccluderSet set = test::setOf(bed.scene.polygons);
     bed.pyramid.build(bed.scene.view, set, {});
     EXPECT_EQ(walked(walk, bed.pyramid, {}).kept, inView(bed.pyramid, bed.boxes)) << "seed " << seed;
@@ -139,11 +139,11 @@ TEST(WideWalk, CoherenceKeepsALittleMoreForAWhile) {
   EXPECT_GT(lingering, 0u);
 }
 
-TEST(WideWalk, OptionsKeepMoreAndNeverMoreThanTheView) {
+TEST(WideTraversal, OptionsKeepMoreAndNeverMoreThanTheView) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Bed bed(test::kFamilies[0], seed, 600);
     const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
-    WideWalk walk(hierarchy, bed.boxes);
+    WideTraversal walk(hierarchy, bed.boxes);
     const Answer plain = walked(walk, bed.pyramid);
     const std::vector<ObjectId> in_view = inView(bed.pyramid, bed.boxes);
     for (const std::uint32_t cost : {0u, 20u, 100u, 100000u}) {
@@ -167,7 +167,7 @@ TEST(WideWalk, OptionsKeepMoreAndNeverMoreThanTheView) {
   }
 }
 
-TEST(WideWalk, KeepsObjectsWhoseBoxesAreNotWellFormed) {
+TEST(WideTraversal, KeepsObjectsWhoseBoxesAreNotWellFormed) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   // A wall before everything.
   const OccluderSet set = test::setOf(std::vector<test::OraclePolygon>{test::wall(-90, 90, -90, 90, -2)});
@@ -179,23 +179,23 @@ TEST(WideWalk, KeepsObjectsWhoseBoxesAreNotWellFormed) {
   boxes[150] = {{0, 0, -9}, {1, inf, -8}};
   for (const HierarchyKind kind : demo_frames::kKinds) {
     const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = kind});
-    WideWalk walk(hierarchy, boxes);
+    WideTraversal walk(hierarchy, boxes);
     EXPECT_EQ(walked(walk, pyramid).kept, (std::vector{ObjectId(3u), ObjectId(77u), ObjectId(150u)}))
         << nameOf(kind);
   }
 }
 
-TEST(WideWalk, OfNothingKeepsNothing) {
+TEST(WideTraversal, OfNothingKeepsNothing) {
   const Hierarchy hierarchy = buildHierarchy({}, {});
-  WideWalk walk(hierarchy, {});
+  WideTraversal walk(hierarchy, {});
   EXPECT_TRUE(walked(walk, DepthPyramid()).kept.empty());
 }
 
 // Occluders of the scene itself, as the culler chooses them.
-TEST(WideWalk, OfDemoScenesKeepsWhatAskingBoxByBoxKeeps) {
+TEST(WideTraversal, OfDemoScenesKeepsWhatAskingBoxByBoxKeeps) {
   std::size_t hidden = 0, asked = 0, objects = 0;
   for (const demo_frames::DemoScene* demo : {&demo_frames::smallCity(), &demo_frames::smallBuilding()}) {
-    WideWalk walk(demo->bvh, demo->bounds);
+    WideTraversal walk(demo->bvh, demo->bounds);
     DepthPyramid pyramid;
     std::vector<OccluderId> occluders(demo->occluders.occluders.size());
     for (std::size_t i = 0; i < occluders.size(); ++i) {

@@ -11,17 +11,17 @@
 #include <span>
 #include <vector>
 
-#include "sightline/culling/culler.h"
+#include "sightline/culling/culling_method.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/math/frustum.h"
 #include "sightline/occlusion/supporting_planes.h"
 #include "src/culling/object_bits.h"
-#include "src/culling/set_members.h"
+#include "src/culling/set_filter.h"
 
 namespace sightline::culling {
 
 // A box that the walk asks about.
-struct WalkBox {
+struct TraversalBox {
   const Box& box;
   std::uint32_t item;  // a node's number, or the number of nodes plus an entry's in Hierarchy::objects
   std::uint8_t frustum_planes;  // bit i is clear where it is inside of the frustum's plane i
@@ -29,7 +29,7 @@ struct WalkBox {
 
 // What the walk needs of an occlusion structure:
 //
-//   Visibility classify(const WalkBox&, OccluderList among, OccluderList& touching)
+//   Visibility classify(const TraversalBox&, OccluderList among, OccluderList& touching)
 //     The box's state. among: what was touching the node above, or start() at the root.
 //   OccluderList start()
 //   void settled(NodeIndex)
@@ -38,25 +38,25 @@ struct WalkBox {
 // This one asks all occluders, whatever lies above.
 template <typename Classify>
 struct AskAll {
-  Classify classify_box;  // WalkBox -> Visibility
+  Classify classify_box;  // TraversalBox -> Visibility
 
-  Visibility classify(const WalkBox& box, OccluderList, OccluderList&) { return classify_box(box); }
+  Visibility classify(const TraversalBox& box, OccluderList, OccluderList&) { return classify_box(box); }
   OccluderList start() const { return {}; }
   void settled(NodeIndex) {}
 };
 template <typename Classify>
 AskAll(Classify) -> AskAll<Classify>;
 
-struct WalkOptions {
+struct TraversalOptions {
   std::uint32_t min_node_cost = 0;
   bool temporal_coherence = true;
   bool test_objects = true;
-  const SetMembers* members = nullptr;  // with marks; what is not in it is left out. Null: all are in it
+  const SetFilter* filter = nullptr;  // with marks; what is not in it is left out. Null: no filter
 };
 
-class HierarchicalWalk {
+class HierarchicalTraversal {
  public:
-  HierarchicalWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
+  HierarchicalTraversal(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
       : hierarchy_(hierarchy),
         object_bounds_(object_bounds),
         visible_(object_bounds.size()),
@@ -65,7 +65,7 @@ class HierarchicalWalk {
 
   // Appends the objects that may be seen to out, ascending.
   template <typename Structure>
-  void run(const Frustum& frustum, const WalkOptions& options, Structure&& structure, CullStats& stats,
+  void run(const Frustum& frustum, const TraversalOptions& options, Structure&& structure, CullStats& stats,
            std::vector<ObjectId>& out) {
     stack_.clear();
     if (!hierarchy_.nodes.empty()) {
@@ -91,9 +91,9 @@ class HierarchicalWalk {
   };
 
   template <typename Structure>
-  void visit(const Entry& entry, const Frustum& frustum, const WalkOptions& options, Structure&& structure,
-             CullStats& stats) {
-    if (options.members != nullptr && !options.members->hasNode(entry.node)) {
+  void visit(const Entry& entry, const Frustum& frustum, const TraversalOptions& options,
+             Structure&& structure, CullStats& stats) {
+    if (options.filter != nullptr && !options.filter->hasNode(entry.node)) {
       // That says nothing of what can be seen, now or then: neither of the node nor of its parent.
       partial_[entry.node] = false;
       return;
@@ -133,7 +133,7 @@ class HierarchicalWalk {
     const bool surely_visible = state == Visibility::kVisible;
     if (surely_visible && planes == 0) {
       for (const ObjectId object : hierarchy_.objectsBelow(NodeIndex(entry.node))) {
-        if (isMember(object, options)) {
+        if (passes(object, options)) {
           visible_.insert(object);
         }
       }
@@ -158,19 +158,20 @@ class HierarchicalWalk {
     }
   }
 
-  static bool isMember(ObjectId object, const WalkOptions& options) {
-    return options.members == nullptr || options.members->hasObject(object);
+  static bool passes(ObjectId object, const TraversalOptions& options) {
+    return options.filter == nullptr || options.filter->hasObject(object);
   }
 
   template <typename Structure>
   void keepLeaf(NodeIndex index, const Frustum& frustum, std::uint8_t planes, bool surely_visible,
-                const WalkOptions& options, OccluderList occluders, Structure&& structure, CullStats& stats) {
+                const TraversalOptions& options, OccluderList occluders, Structure&& structure,
+                CullStats& stats) {
     const bool test_objects = !surely_visible && options.test_objects;
     const HierarchyNode& leaf = hierarchy_.nodes[index.value];
     const std::span<const ObjectId> objects = hierarchy_.objectsBelow(index);
     for (std::uint32_t i = 0; i < objects.size(); ++i) {
       const ObjectId object = objects[i];
-      if (!isMember(object, options)) {
+      if (!passes(object, options)) {
         continue;
       }
       const Box& box = object_bounds_[object.value];

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
-#include "sightline/culling/culler.h"
+#include "sightline/culling/culling_method.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/depth_pyramid.h"
 #include "src/culling/focus_window.h"
-#include "src/culling/hierarchical_walk.h"
+#include "src/culling/hierarchical_traversal.h"
 #include "src/culling/object_bits.h"
 #include "src/culling/tree_marks.h"
 #include "src/hierarchy/wide_hierarchy.h"
@@ -21,16 +21,16 @@
 namespace sightline::culling {
 
 // What the walk asks: the map of the view, and the finer one of a window of it where there is one.
-struct WalkMaps {
+struct TraversalMaps {
   const DepthPyramid& map;
   FocusWindow* window = nullptr;       // is told what the map does not hide
   const DepthPyramid* fine = nullptr;  // of the window, when it is found
 };
 
-class WideWalk {
+class WideTraversal {
  public:
   // The hierarchy must outlive this; the boxes are copied.
-  WideWalk(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
+  WideTraversal(const Hierarchy& hierarchy, std::span<const Box> object_bounds)
       : hierarchy_(hierarchy),
         wide_(hierarchy::collapse(hierarchy, object_bounds)),
         object_count_(object_bounds.size()),
@@ -41,8 +41,8 @@ class WideWalk {
   // Appends the objects that may be seen to out, ascending, and adds to the counts of stats. With
   // options.temporal_coherence what was not hidden is not asked about again for a few views (it is kept
   // unless it leaves the view). Nothing depends on parallel_for.
-  void run(const WalkMaps& maps, const WalkOptions& options, CullStats& stats, std::vector<ObjectId>& out,
-           const ParallelFor& parallel_for = serialFor);
+  void run(const TraversalMaps& maps, const TraversalOptions& options, CullStats& stats,
+           std::vector<ObjectId>& out, const ParallelFor& parallel_for = serialFor);
 
   // From now on only objects of the set are kept, and only they are asked about. To be called again whenever
   // what it views changes.
@@ -80,7 +80,7 @@ class WideWalk {
     std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
   };
 
-  void take(Found& found, const WalkMaps& maps, CullStats& stats);
+  void take(Found& found, const TraversalMaps& maps, CullStats& stats);
   TreeMarks marksOfChildren() const;
 
   const Hierarchy& hierarchy_;

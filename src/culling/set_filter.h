@@ -15,13 +15,13 @@
 
 namespace sightline::culling {
 
-class SetMembers {
+class SetFilter {
  public:
   // What is asked for: the set's nodes alone, or marks at objects and nodes of the hierarchy too.
   enum class Marks : std::uint8_t { kNone, kAll };
 
   // The hierarchy is of these boxes. sets: null for none; not used either where it is of other boxes.
-  SetMembers(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets, Marks marks);
+  SetFilter(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets, Marks marks);
 
   // Finds the set of the view. True when it is not the one of the call before.
   bool find(const View& view);

@@ -9,16 +9,16 @@
 #include <span>
 #include <vector>
 
-#include "sightline/culling/culler.h"
+#include "sightline/culling/culling_method.h"
 #include "sightline/hierarchy/box_tree.h"
 #include "sightline/math/frustum.h"
 #include "src/culling/object_bits.h"
 
 namespace sightline::culling {
 
-class SetWalk {
+class SetTraversal {
  public:
-  explicit SetWalk(std::size_t object_count) : visible_(object_count) {}
+  explicit SetTraversal(std::size_t object_count) : visible_(object_count) {}
 
   // set: nodes of the tree, see VisibleSet::nodes. Appends the objects below them whose boxes are not outside
   // the frustum to out, ascending; adds to the counts of stats.

@@ -1,4 +1,4 @@
-#include "src/culling/wide_walk.h"
+#include "src/culling/wide_traversal.h"
 
 #include <algorithm>
 
@@ -12,9 +12,9 @@ namespace {
 constexpr std::uint8_t kMinRest = 6;
 }  // namespace
 
-class WideWalk::Walker {
+class WideTraversal::Walker {
  public:
-  Walker(WideWalk& walk, const WalkMaps& maps, const WalkOptions& options, Found& found)
+  Walker(WideTraversal& walk, const TraversalMaps& maps, const TraversalOptions& options, Found& found)
       : hierarchy_(walk.hierarchy_),
         wide_(walk.wide_),
         rest_(walk.rest_),
@@ -43,13 +43,13 @@ class WideWalk::Walker {
   std::span<std::uint8_t> rest_;
   ObjectSet in_set_;
   std::span<const std::uint8_t> child_marks_;  // unless everything is in the set
-  const WalkMaps& maps_;
-  const WalkOptions& options_;
+  const TraversalMaps& maps_;
+  const TraversalOptions& options_;
   Found& found_;
 };
 
-void WideWalk::run(const WalkMaps& maps, const WalkOptions& options, CullStats& stats,
-                   std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
+void WideTraversal::run(const TraversalMaps& maps, const TraversalOptions& options, CullStats& stats,
+                        std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
   entries_.clear();
   if (!wide_.nodes.empty()) {
     // Of the root only the children are asked about; so it must be cheap by its own count.
@@ -86,7 +86,7 @@ void WideWalk::run(const WalkMaps& maps, const WalkOptions& options, CullStats& 
   visible_.drainInto(out);
 }
 
-TreeMarks WideWalk::marksOfChildren() const {
+TreeMarks WideTraversal::marksOfChildren() const {
   std::vector<std::uint32_t> parents(wide_.boxes.size(), TreeMarks::kTop);
   std::vector<TreeMarks::Place> places;
   for (const WideNode& node : wide_.nodes) {
@@ -103,7 +103,7 @@ TreeMarks WideWalk::marksOfChildren() const {
   return {std::move(parents), places, object_count_};
 }
 
-void WideWalk::restrictTo(const ObjectSet& objects) {
+void WideTraversal::restrictTo(const ObjectSet& objects) {
   in_set_ = objects;
   if (objects.everything()) {
     return;
@@ -118,7 +118,7 @@ void WideWalk::restrictTo(const ObjectSet& objects) {
   }
 }
 
-void WideWalk::take(Found& found, const WalkMaps& maps, CullStats& stats) {
+void WideTraversal::take(Found& found, const TraversalMaps& maps, CullStats& stats) {
   for (const ObjectId object : found.kept) {
     visible_.insert(object);
   }
@@ -133,7 +133,7 @@ void WideWalk::take(Found& found, const WalkMaps& maps, CullStats& stats) {
   found.nodes_visited = found.nodes_tested = found.objects_tested = 0;
 }
 
-void WideWalk::Walker::visit(const Entry& entry) {
+void WideTraversal::Walker::visit(const Entry& entry) {
   const WideNode& node = wide_.nodes[entry.node];
   const std::uint32_t children = node.child_end - node.first_child;
   // Children that are nodes lie in the order of their cost: first those to be asked about.
@@ -164,7 +164,8 @@ void WideWalk::Walker::visit(const Entry& entry) {
   }
 }
 
-void WideWalk::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only) {
+void WideTraversal::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint32_t end,
+                                bool view_only) {
   if (begin == end) {
     return;
   }
@@ -189,8 +190,8 @@ void WideWalk::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint3
   }
 }
 
-void WideWalk::Walker::askMap(std::span<const Box> boxes, std::span<const std::uint8_t> rest,
-                              std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
+void WideTraversal::Walker::askMap(std::span<const Box> boxes, std::span<const std::uint8_t> rest,
+                                   std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
   if (view_only) {
     maps_.map.classifyInView(boxes, answers);
     return;
@@ -206,7 +207,8 @@ void WideWalk::Walker::askMap(std::span<const Box> boxes, std::span<const std::u
   maps_.map.classify(boxes, answers, hints);
 }
 
-std::uint32_t WideWalk::Walker::members(const WideNode& node, std::uint32_t begin, std::uint32_t end) const {
+std::uint32_t WideTraversal::Walker::members(const WideNode& node, std::uint32_t begin,
+                                             std::uint32_t end) const {
   if (in_set_.everything()) {
     return end - begin;
   }
@@ -217,8 +219,8 @@ std::uint32_t WideWalk::Walker::members(const WideNode& node, std::uint32_t begi
   return count;
 }
 
-void WideWalk::Walker::askMembers(const WideNode& node, std::uint32_t begin, std::uint32_t end,
-                                  bool view_only) {
+void WideTraversal::Walker::askMembers(const WideNode& node, std::uint32_t begin, std::uint32_t end,
+                                       bool view_only) {
   found_.members.clear();
   found_.member_rest.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -243,7 +245,7 @@ void WideWalk::Walker::askMembers(const WideNode& node, std::uint32_t begin, std
 }
 
 // Of children that the map does not hide, those that the window's may.
-void WideWalk::Walker::askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end) {
+void WideTraversal::Walker::askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end) {
   found_.asked_again.clear();
   found_.asked_child.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -280,7 +282,7 @@ void WideWalk::Walker::askFineMap(const WideNode& node, std::uint32_t begin, std
   }
 }
 
-void WideWalk::Walker::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {
+void WideTraversal::Walker::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {
   if (answer.visibility == Visibility::kHidden) {
     return;
   }

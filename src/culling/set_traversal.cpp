@@ -1,11 +1,11 @@
-#include "src/culling/set_walk.h"
+#include "src/culling/set_traversal.h"
 
 #include <algorithm>
 
 namespace sightline::culling {
 
-void SetWalk::run(const Frustum& frustum, const BoxTreeView& tree, std::span<const std::uint32_t> set,
-                  CullStats& stats, std::vector<ObjectId>& out) {
+void SetTraversal::run(const Frustum& frustum, const BoxTreeView& tree, std::span<const std::uint32_t> set,
+                       CullStats& stats, std::vector<ObjectId>& out) {
   stack_.clear();
   if (!set.empty()) {
     stack_.push_back({0, 0, static_cast<std::uint32_t>(set.size()), kAllFrustumPlanes});
@@ -18,8 +18,8 @@ void SetWalk::run(const Frustum& frustum, const BoxTreeView& tree, std::span<con
   visible_.drainInto(out);
 }
 
-void SetWalk::visit(const Entry& entry, const Frustum& frustum, const BoxTreeView& tree,
-                    std::span<const std::uint32_t> set, CullStats& stats) {
+void SetTraversal::visit(const Entry& entry, const Frustum& frustum, const BoxTreeView& tree,
+                         std::span<const std::uint32_t> set, CullStats& stats) {
   std::uint8_t planes = entry.planes;
   ++stats.nodes_visited;
   if (classify(frustum, tree.nodes[entry.node].bounds, planes) == FrustumSide::kOutside) {
@@ -41,14 +41,14 @@ void SetWalk::visit(const Entry& entry, const Frustum& frustum, const BoxTreeVie
   }
 }
 
-void SetWalk::keep(std::span<const ObjectId> objects) {
+void SetTraversal::keep(std::span<const ObjectId> objects) {
   for (const ObjectId object : objects) {
     visible_.insert(object);
   }
 }
 
-void SetWalk::pushChildren(const Entry& parent, std::uint8_t planes, const BoxTreeView& tree,
-                           std::span<const std::uint32_t> set) {
+void SetTraversal::pushChildren(const Entry& parent, std::uint8_t planes, const BoxTreeView& tree,
+                                std::span<const std::uint32_t> set) {
   const std::uint32_t last = tree.nodes[parent.node].end;
   if (parent.begin == parent.end) {
     for (std::uint32_t child = parent.node + 1; child < last; child = tree.nodes[child].end) {

@@ -1,4 +1,4 @@
-#include "src/culling/set_members.h"
+#include "src/culling/set_filter.h"
 
 #include "src/culling/scene_fit.h"
 
@@ -24,8 +24,8 @@ TreeMarks marksOf(const Hierarchy& hierarchy, std::size_t object_count) {
 
 }  // namespace
 
-SetMembers::SetMembers(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets,
-                       Marks marks)
+SetFilter::SetFilter(const Hierarchy& hierarchy, std::span<const Box> object_bounds, VisibleSets* sets,
+                     Marks marks)
     : sets_(sets != nullptr && isOf(sets->boxes(), object_bounds) ? sets : nullptr) {
   if (sets_ == nullptr) {
     return;
@@ -38,7 +38,7 @@ SetMembers::SetMembers(const Hierarchy& hierarchy, std::span<const Box> object_b
   }
 }
 
-bool SetMembers::find(const View& view) {
+bool SetFilter::find(const View& view) {
   VisibleSet set;
   // From an orthographic view's eye nothing is looked at.
   if (sets_ != nullptr && !view.orthographic && treeIsTheSame()) {
@@ -61,13 +61,13 @@ bool SetMembers::find(const View& view) {
 }
 
 // Sets that were replaced by others in the same place have their boxes elsewhere.
-bool SetMembers::treeIsTheSame() const {
+bool SetFilter::treeIsTheSame() const {
   const BoxTreeView now = sets_->boxes();
   return now.nodes.data() == tree_.nodes.data() && now.nodes.size() == tree_.nodes.size() &&
          now.objects.data() == tree_.objects.data() && now.objects.size() == tree_.objects.size();
 }
 
-void SetMembers::mark() {
+void SetFilter::mark() {
   for (const ObjectId object : list_) {
     object_marks_[object.value] = 0;
   }

@@ -1,0 +1,156 @@
+#pragma once
+
+// A method of culling as an object: what a Culler asks of it, a few times a frame and never for a single
+// node of the hierarchy.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/hierarchy/hierarchy.h"
+#include "sightline/math/box.h"
+#include "sightline/math/frustum.h"
+#include "sightline/occluders/occluder_lists.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/occlusion/rasteriser.h"
+#include "sightline/occlusion/visibility.h"
+#include "sightline/occlusion/visible_sets.h"
+#include "sightline/scene/camera.h"
+
+namespace sightline {
+
+namespace culling {
+class SetFilter;
+}
+
+// The scene that is culled: views of the caller's memory, which outlives the culler and changes only together
+// with a call of Culler::reset(). Whatever a method does not use may be null.
+struct CullingScene {
+  const Hierarchy* hierarchy = nullptr;  // of these boxes
+  std::span<const Box> object_bounds{};  // by ObjectId, scene space
+  const OccluderSet* occluders = nullptr;
+  // Candidates for the occluders of a frame, by the eye's place and direction; null: they are found anew in
+  // each frame among the objects that the last one kept.
+  const OccluderLists* occluder_lists = nullptr;
+  // Occluders near an object, for detailObjects(): OccluderDatabaseSettings::turned_away. Null: no such test.
+  const OccluderLists* near_objects = nullptr;
+  // Potentially visible sets, used by one culler alone; null, or sets of other boxes: everything is in them.
+  VisibleSets* sets = nullptr;
+};
+
+// Whether a method looks at the potentially visible set of the eye's cell.
+enum class SetUse : std::uint8_t {
+  kNever,
+  kIfAsked,  // with CullerSettings::visible_sets
+  kAlways,
+};
+
+// What a method needs, the same for all of its settings.
+struct MethodTraits {
+  bool occluders = false;  // it hides boxes behind occluders, which are chosen for each frame
+  SetUse sets = SetUse::kIfAsked;
+  bool hierarchy = true;  // without one nothing is culled
+};
+
+// What a frame counted and how long it took, whatever the method.
+struct CullStats {
+  // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything was
+  // kept.
+  const char* view_fault = nullptr;
+  // The scene does not fit together, or has changed without reset(): every object was kept, also outside the
+  // frustum, and no other count is made.
+  bool unfit = false;
+  std::uint32_t nodes_visited = 0;     // nodes that were compared with the frustum
+  std::uint32_t nodes_tested = 0;      // nodes that the occlusion structure was asked about
+  std::uint32_t objects_tested = 0;    // objects that it was asked about
+  std::uint32_t nodes_skipped = 0;     // nodes that temporal coherence left untested
+  std::uint32_t occluders = 0;         // occluders in the occlusion structure, those that move included
+  std::uint64_t hidden_triangles = 0;  // about how many triangles are below what was found hidden; not with
+                                       // the depth pyramid
+  std::uint32_t set_nodes = 0;    // nodes of the potentially visible set, 1 where that is everything; else 0
+  std::uint32_t set_objects = 0;  // objects below them
+  std::uint32_t detail_tested = 0;  // objects that detailObjects() tested
+  std::uint32_t detail_culled = 0;  // objects that it found hidden
+  // Microseconds: finding the set, choosing occluders, building the structure, traversing the hierarchy with
+  // the boxes that move, and detailObjects().
+  double look_up_us = 0.0, choose_us = 0.0, build_us = 0.0, traverse_us = 0.0, detail_us = 0.0;
+
+  double totalUs() const { return look_up_us + choose_us + build_us + traverse_us + detail_us; }
+};
+
+// A count that one method alone makes, of the last frame.
+struct MethodStatistic {
+  const char* group;    // "relations": statistics that belong together
+  const char* name;     // "reused": its name within the group, in snake_case
+  const char* caption;  // "relations reused": for people
+  std::uint64_t value = 0;
+};
+
+// What a method is told about a frame. All of it is valid until the frame ends.
+struct CullingFrame {
+  const View& view;        // validate() accepts it; never left-handed
+  const Frustum& frustum;  // of the view
+  bool jumped;             // the view has little to do with that of the last frame
+  // The chosen occluders of the scene's set and then, where there are any, all that move. Empty where the
+  // method wants none.
+  std::span<const ChosenOccluders> occluders{};
+  std::uint32_t max_occluders = 0;           // so many were asked for
+  std::span<const ObjectId> last_visible{};  // what the last frame kept; until traverse()
+  const culling::SetFilter* filter =
+      nullptr;                      // what is not in it is neither tested nor kept; null: no filter
+  bool filter_changed = false;      // since the last frame
+  std::uint32_t min_node_cost = 0;  // see CullerSettings
+  bool test_objects = true;
+  const ParallelFor& parallel_for;
+};
+
+// A box that moves, and the planes of the frustum that it may cross: bit i is clear where the box is inside
+// of plane i.
+struct MovingBox {
+  Box box;
+  std::uint8_t frustum_planes;
+};
+
+// Made with its settings by a function of its own (occlusionTree(), depthPyramid(), ...), then owned by one
+// Culler, which calls, in this order: prepare() once a scene; in each frame wantsOccluders(), build(),
+// traverse(), finish() and classify(). A method never hides what can be seen, allocates nothing once its
+// storage has grown to what a few frames need, and is used by one thread at a time.
+//
+// To add a method, see "Adding a method" in docs/architecture.md.
+class CullingMethod {
+ public:
+  CullingMethod() = default;
+  CullingMethod(const CullingMethod&) = delete;
+  CullingMethod& operator=(const CullingMethod&) = delete;
+  virtual ~CullingMethod() = default;
+
+  virtual MethodTraits traits() const = 0;
+  // Whether the next frame needs occluders.
+  virtual bool wantsOccluders() const { return traits().occluders; }
+  // Whether a convex body counts as one occluder, so that one of its faces is enough.
+  virtual bool drawsBodies() const { return false; }
+
+  // Takes the scene and forgets every frame. scene.hierarchy and scene.occluders are never null here, but
+  // may be empty.
+  virtual void prepare(const CullingScene& scene) = 0;
+
+  // Makes the occlusion structure of the frame ready.
+  virtual void build(const CullingFrame&) {}
+  // Appends the objects that may be seen to visible, ascending, and adds to the counts of stats.
+  virtual void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) = 0;
+  // The frame's times are known: completes stats and the method's own statistics.
+  virtual void finish(CullStats&) {}
+  // States of boxes in the frustum that are no part of the scene, one for each box.
+  virtual void classify(std::span<const MovingBox> boxes, std::span<Visibility> states);
+
+  // Occluders of the scene's set that the structure of the last frame was built from.
+  virtual std::span<const OccluderId> occludersUsed() const { return {}; }
+  // The depth buffer of the last frame; empty with methods that have none.
+  virtual DepthMapView depthBuffer() const { return {}; }
+  // The same ones, in the same order, after every frame and before the first.
+  virtual std::span<const MethodStatistic> statistics() const { return {}; }
+};
+
+}  // namespace sightline

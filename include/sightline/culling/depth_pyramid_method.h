@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sightline/culling/culling_method.h"
+#include "sightline/occlusion/depth_pyramid.h"
+
+namespace sightline {
+
+// A second, finer depth buffer around the direction in which the first one hides least, for perspective
+// views. Its occluders are those of the first one, and the best of what the last frame kept there.
+struct FocusSettings {
+  // Pixels along the side of one pixel of the first depth buffer; 1 or less: there is no second one.
+  double magnification = 8.0;
+  RasterSettings raster{.width = 128, .height = 64};  // coverage: that of the first one counts
+  std::uint32_t occluder_count = 64;                  // at most so many more occluders than in the first one
+  std::uint32_t min_objects = 256;  // made only where the first one leaves at least so many objects
+};
+
+struct DepthPyramidMethodSettings {
+  RasterSettings raster{};
+  FocusSettings focus{};           // with the conservative coverage only
+  bool temporal_coherence = true;  // what was kept is not tested again for six to nine frames
+};
+
+inline constexpr MethodTraits kDepthPyramidTraits{.occluders = true};
+
+// Culling by a DepthPyramid of the chosen occluders: all children of a node are compared with it at once.
+// Statistics: "map" with occluders_hidden, the occluders behind others, and focused, 1 in frames with a
+// second depth buffer.
+std::unique_ptr<CullingMethod> depthPyramid(const DepthPyramidMethodSettings& settings = {});
+
+}  // namespace sightline

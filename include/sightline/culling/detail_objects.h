@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sightline/culling/culling_method.h"
+#include "sightline/occlusion/supporting_planes.h"
+
+namespace sightline {
+
+struct DetailObjectsSettings {
+  std::uint32_t occluder_count = 8;  // at most so many for each object
+  SupportingPlanesSettings planes{};
+};
+
+// The method, and then a second test of each object that it kept: whether the eye is hidden from the object
+// by occluders near the object (CullingScene::near_objects). Boxes that move, and occluders that move, have
+// no part in it. It takes the time CullStats::detail_us.
+// Statistics: those of the method, and "detail" with tested and culled.
+std::unique_ptr<CullingMethod> detailObjects(std::unique_ptr<CullingMethod> method,
+                                             const DetailObjectsSettings& settings = {});
+
+}  // namespace sightline

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "sightline/culling/culling_method.h"
+
+namespace sightline {
+
+inline constexpr MethodTraits kFrustumTraits{.occluders = false, .sets = SetUse::kNever};
+
+// View-frustum culling alone: what meets the frustum is kept.
+std::unique_ptr<CullingMethod> frustumCulling();
+
+}  // namespace sightline

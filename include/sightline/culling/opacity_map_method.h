@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "sightline/culling/culling_method.h"
+#include "sightline/occlusion/opacity_map.h"
+
+namespace sightline {
+
+struct OpacityMapMethodSettings {
+  OpacityMapSettings map{};
+  // Microseconds that the renderer takes for a triangle. More than 0: map.coverage_ratio is where an adaptive
+  // one begins that follows the measured times, and culling by occlusion is suspended while it does not pay;
+  // then what is kept, always conservative, depends on times.
+  double triangle_us = 0.0;
+};
+
+inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};
+
+// Culling by an OpacityMap of the chosen occluders (Poon, Wang 1999).
+// Statistics: "map" with occluders_hidden, overlap_tests, overlap_failed, given_up, depth_tests,
+// depths_compared, and, where triangle_us is set, suspended.
+std::unique_ptr<CullingMethod> opacityMap(const OpacityMapMethodSettings& settings = {});
+
+}  // namespace sightline

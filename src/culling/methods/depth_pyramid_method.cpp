@@ -1,0 +1,136 @@
+#include "sightline/culling/depth_pyramid_method.h"
+
+#include <array>
+#include <optional>
+
+#include "sightline/occluders/choose_occluders.h"
+#include "src/culling/focus_window.h"
+#include "src/culling/methods/draw_occluders.h"
+#include "src/culling/methods/traversal_options.h"
+#include "src/culling/set_filter.h"
+#include "src/culling/wide_traversal.h"
+
+namespace sightline {
+namespace {
+
+class DepthPyramidMethod final : public CullingMethod {
+ public:
+  explicit DepthPyramidMethod(const DepthPyramidMethodSettings& settings) : settings_(settings) {}
+
+  MethodTraits traits() const override { return kDepthPyramidTraits; }
+  bool drawsBodies() const override { return settings_.raster.coverage == Coverage::kInner; }
+
+  void prepare(const CullingScene& scene) override {
+    scene_ = scene;
+    traversal_.emplace(*scene.hierarchy, scene.object_bounds);
+    pyramid_.emplace(DepthPyramidSettings{settings_.raster});
+    own_occluders_ = 0;
+    focused_ = false;
+    if (settings_.focus.magnification > 1.0 && drawsBodies()) {
+      const DepthMapView buffer = pyramid_->map();
+      window_.emplace(settings_.focus, buffer.width, buffer.height);
+      RasterSettings fine = settings_.focus.raster;
+      fine.coverage = settings_.raster.coverage;
+      fine_pyramid_.emplace(DepthPyramidSettings{fine});
+    }
+  }
+
+  void build(const CullingFrame& frame) override {
+    if (frame.filter_changed) {
+      traversal_->restrictTo(frame.filter != nullptr ? frame.filter->objects() : culling::ObjectSet{});
+    }
+    if (frame.jumped) {
+      traversal_->forget();
+    }
+    own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, frame.parallel_for);
+    pyramid_->finish(frame.parallel_for);
+    focused_ = false;
+    if (window_) {
+      window_->begin(frame.view, !frame.jumped && frame.max_occluders > 0);
+      focused_ = window_->found();
+      if (focused_) {
+        drawFocus(frame);
+      }
+    }
+  }
+
+  void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
+    const culling::TraversalMaps maps{*pyramid_, window_ ? &*window_ : nullptr,
+                                      focused_ ? &*fine_pyramid_ : nullptr};
+    traversal_->run(maps, culling::optionsOf(frame, settings_.temporal_coherence), stats, visible,
+                    frame.parallel_for);
+  }
+
+  void finish(CullStats& stats) override {
+    const RasterStats& raster = pyramid_->stats().raster;
+    stats.occluders = raster.occluders;
+    statistics_[0].value = raster.hidden;
+    statistics_[1].value = focused_ ? 1 : 0;
+  }
+
+  void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      states[i] = pyramid_->classify(boxes[i].box);
+    }
+  }
+
+  std::span<const OccluderId> occludersUsed() const override {
+    return pyramid_->occluders().first(own_occluders_);
+  }
+  DepthMapView depthBuffer() const override { return pyramid_->map(); }
+  std::span<const MethodStatistic> statistics() const override { return statistics_; }
+
+ private:
+  // The finer depth buffer: the occluders of the first one, and the best of those that the last frame kept in
+  // the window.
+  void drawFocus(const CullingFrame& frame) {
+    in_window_.clear();
+    for (const ObjectId object : frame.last_visible) {
+      if (window_->mayShow(scene_.object_bounds[object.value])) {
+        in_window_.push_back(object);
+      }
+    }
+    fine_chosen_.clear();
+    for (const OccluderId id : frame.occluders[0].chosen) {
+      const OccluderBody* body = scene_.occluders->bodyOf(id);
+      if (body == nullptr || window_->mayShow(body->bounds)) {
+        fine_chosen_.push_back(id);
+      }
+    }
+    const ChoiceSettings choice{.count = settings_.focus.occluder_count, .bodies = true};
+    const auto more =
+        chooser_.choose(window_->view(), *scene_.occluders, in_window_, scene_.object_bounds, choice);
+    fine_chosen_.insert(fine_chosen_.end(), more.begin(), more.end());
+    std::array<ChosenOccluders, 2> sets{{{scene_.occluders, fine_chosen_}, {}}};
+    const bool moving = frame.occluders.size() > 1;
+    if (moving) {
+      sets[1] = frame.occluders[1];
+    }
+    culling::drawOccluders(*fine_pyramid_, window_->view(), std::span(sets).first(moving ? 2 : 1),
+                           frame.parallel_for);
+    fine_pyramid_->finish(frame.parallel_for);
+  }
+
+  DepthPyramidMethodSettings settings_;
+  CullingScene scene_;
+  std::optional<culling::WideTraversal> traversal_;
+  std::optional<DepthPyramid> pyramid_;
+  std::size_t own_occluders_ = 0;  // occluders in the pyramid that are of the scene's set
+  // The finer depth buffer of a window, with the settings.
+  std::optional<culling::FocusWindow> window_;
+  std::optional<DepthPyramid> fine_pyramid_;
+  bool focused_ = false;  // in this frame
+  OccluderChooser chooser_;
+  std::vector<ObjectId> in_window_;
+  std::vector<OccluderId> fine_chosen_;
+  std::array<MethodStatistic, 2> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
+                                              {"map", "focused", "frames with a finer map"}}};
+};
+
+}  // namespace
+
+std::unique_ptr<CullingMethod> depthPyramid(const DepthPyramidMethodSettings& settings) {
+  return std::make_unique<DepthPyramidMethod>(settings);
+}
+
+}  // namespace sightline

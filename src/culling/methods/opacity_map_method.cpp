@@ -1,0 +1,104 @@
+#include "sightline/culling/opacity_map_method.h"
+
+#include <optional>
+#include <vector>
+
+#include "src/culling/adaptive_coverage.h"
+#include "src/culling/methods/draw_occluders.h"
+#include "src/culling/methods/traversal_options.h"
+
+namespace sightline {
+namespace {
+
+using culling::TraversalBox;
+
+class OpacityMapMethod final : public CullingMethod {
+ public:
+  explicit OpacityMapMethod(const OpacityMapMethodSettings& settings) : settings_(settings) {
+    if (adapts()) {
+      statistics_.push_back({"map", "suspended", "frames without occlusion culling"});
+    }
+  }
+
+  MethodTraits traits() const override { return kOpacityMapTraits; }
+  bool wantsOccluders() const override { return !coverage_->suspended(); }
+  bool drawsBodies() const override { return settings_.map.raster.coverage == Coverage::kInner; }
+
+  void prepare(const CullingScene& scene) override {
+    traversal_.emplace(*scene.hierarchy, scene.object_bounds);
+    map_.emplace(settings_.map);
+    coverage_.emplace(settings_.map.coverage_ratio);
+    own_occluders_ = 0;
+  }
+
+  void build(const CullingFrame& frame) override {
+    map_->setCoverageRatio(coverage_->ratio());
+    suspended_ = coverage_->suspended();
+    if (!suspended_) {
+      own_occluders_ = culling::drawOccluders(*map_, frame.view, frame.occluders, frame.parallel_for);
+      map_->finish();
+    }
+  }
+
+  void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
+    const culling::TraversalOptions options = culling::optionsOf(frame, false);
+    if (suspended_) {
+      traversal_->run(frame.frustum, options, culling::seeEverything(), stats, visible);
+    } else {
+      const auto ask = [this](const TraversalBox& asked) { return map_->classify(asked.box); };
+      traversal_->run(frame.frustum, options, culling::AskAll{ask}, stats, visible);
+    }
+  }
+
+  void finish(CullStats& stats) override {
+    const OpacityMapStats counts = suspended_ ? OpacityMapStats{} : map_->stats();
+    stats.occluders = counts.raster.occluders;
+    statistics_[0].value = counts.raster.hidden;
+    statistics_[1].value = counts.overlap_tests;
+    statistics_[2].value = counts.overlap_failed;
+    statistics_[3].value = counts.given_up;
+    statistics_[4].value = counts.depth_tests;
+    statistics_[5].value = counts.depths_compared;
+    if (adapts()) {
+      statistics_[6].value = suspended_ ? 1 : 0;
+      coverage_->frame(stats.choose_us + stats.build_us + stats.traverse_us,
+                       static_cast<double>(stats.hidden_triangles) * settings_.triangle_us);
+    }
+  }
+
+  void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      states[i] = suspended_ ? Visibility::kVisible : map_->classify(boxes[i].box);
+    }
+  }
+
+  std::span<const OccluderId> occludersUsed() const override {
+    return suspended_ ? std::span<const OccluderId>() : map_->occluders().first(own_occluders_);
+  }
+  DepthMapView depthBuffer() const override { return map_->map(); }
+  std::span<const MethodStatistic> statistics() const override { return statistics_; }
+
+ private:
+  bool adapts() const { return settings_.triangle_us > 0.0; }
+
+  OpacityMapMethodSettings settings_;
+  std::optional<culling::HierarchicalTraversal> traversal_;
+  std::optional<OpacityMap> map_;
+  std::optional<culling::AdaptiveCoverage> coverage_;
+  bool suspended_ = false;         // in this frame
+  std::size_t own_occluders_ = 0;  // occluders in the map that are of the scene's set
+  std::vector<MethodStatistic> statistics_{{"map", "occluders_hidden", "occluders behind others"},
+                                           {"map", "overlap_tests", "overlap tests"},
+                                           {"map", "overlap_failed", "of them failed"},
+                                           {"map", "given_up", "given up for little coverage"},
+                                           {"map", "depth_tests", "depth tests"},
+                                           {"map", "depths_compared", "depths compared"}};
+};
+
+}  // namespace
+
+std::unique_ptr<CullingMethod> opacityMap(const OpacityMapMethodSettings& settings) {
+  return std::make_unique<OpacityMapMethod>(settings);
+}
+
+}  // namespace sightline
