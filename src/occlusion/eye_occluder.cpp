@@ -109,8 +109,8 @@ std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, O
   return seen;
 }
 
-std::optional<Seam> seamOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& seen,
-                           const Outline& outline) {
+std::optional<SharedEdge> sharedEdgeOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& seen,
+                                       const Outline& outline) {
   const OccluderEdge& edge = set.edges[outline.edge];
   if (edge.cover_count == 0 || edge.chain == 0 || !set[seen.id].seals) {
     return std::nullopt;
@@ -118,7 +118,7 @@ std::optional<Seam> seamOf(const Eye& eye, const OccluderSet& set, const EyeOccl
   const auto& line = set.lines[edge.line];
   const Vec3d p = Vec3d(line[0]) - eye.position, q = Vec3d(line[1]) - eye.position;
   double sine = 0.0;
-  Seam seam;
+  SharedEdge seam;
   seam.plane = eye.shadowPlane(p, q, sine);
   seam.flipped = dot(q - p, outline.to - outline.from) < 0.0;
   seam.tolerance = seamTolerance(eye, seen, outline, sine);

@@ -76,7 +76,7 @@ struct Outline {
 Outline outlineOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& occluder, std::uint32_t side);
 
 // A seam that may be sealed: the shadow plane through its line.
-struct Seam {
+struct SharedEdge {
   Plane plane;             // relative to the eye, as the line is directed
   bool flipped = false;    // the line runs against the outline
   double tolerance = 0.0;  // how far the mesh's seam may appear from the plane (VolumeBuilder::tolerances)
@@ -85,8 +85,8 @@ struct Seam {
   Plane oriented() const { return flipped ? plane.flipped() : plane; }
 };
 // Nothing where nothing adjoins the edge or it is badly conditioned from here.
-std::optional<Seam> seamOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& occluder,
-                           const Outline& outline);
+std::optional<SharedEdge> sharedEdgeOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& occluder,
+                                       const Outline& outline);
 
 // The mesh edges of an edge, a bit each, from 0.
 inline std::uint64_t allElements(const OccluderEdge& edge) {

@@ -14,16 +14,17 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // No fused operations: they would round differently from one instruction set to another.
-std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
-                        std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks) {
+std::size_t testAllAgainstEyePlanes(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
+                                    std::span<const std::uint32_t> list, const EyeBox& box,
+                                    std::span<EyePlaneTest> tests) {
   const hn::CappedTag<double, 4> d;
   const auto low_x = hn::Set(d, box.min.x), low_y = hn::Set(d, box.min.y), low_z = hn::Set(d, box.min.z);
   const auto high_x = hn::Set(d, box.max.x), high_y = hn::Set(d, box.max.y), high_z = hn::Set(d, box.max.z);
   const double farthest_corner = box.farthest();
   for (std::size_t i = 0; i < list.size(); ++i) {
     const EyeShape& shape = shapes[list[i]];
-    EyeLook& look = looks[i];
-    look = {};
+    EyePlaneTest& test = tests[i];
+    test = {};
     const Vec3d at_low(shape.normal.x * box.min.x, shape.normal.y * box.min.y, shape.normal.z * box.min.z);
     const Vec3d at_high(shape.normal.x * box.max.x, shape.normal.y * box.max.y, shape.normal.z * box.max.z);
     const Vec3d nearest = max(at_low, at_high), farthest = min(at_low, at_high);
@@ -32,7 +33,7 @@ std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQua
       continue;
     }
     const auto tolerance = hn::Set(d, -kEyePlane * (farthest_corner + shape.reach));
-    look.touches = true;
+    test.touches = true;
     for (std::uint32_t first = 0; first < shape.plane_count; first += 4) {
       const EyeQuad& quad = quads[shape.first_quad + first / 4];
       for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
@@ -47,12 +48,12 @@ std::size_t lookPastAll(std::span<const EyeShape> shapes, std::span<const EyeQua
             hn::Add(hn::Add(hn::Add(hn::Max(x0, x1), hn::Max(y0, y1)), hn::Max(z0, z1)), offset);
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(d, hn::Not(hn::Lt(most, tolerance)), bits);
-        look.failing |= std::uint64_t{bits[0]} << (first + lane);
-        look.touches = look.touches && hn::AllTrue(d, hn::Lt(least, tolerance));
+        test.failing |= std::uint64_t{bits[0]} << (first + lane);
+        test.touches = test.touches && hn::AllTrue(d, hn::Lt(least, tolerance));
       }
     }
-    look.behind = nearest.x + nearest.y + nearest.z + shape.offset < -margin;
-    if (look.hidden()) {
+    test.behind = nearest.x + nearest.y + nearest.z + shape.offset < -margin;
+    if (test.hidden()) {
       return i + 1;
     }
   }
@@ -66,11 +67,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sightline::occlusion {
 
-HWY_EXPORT(lookPastAll);
+HWY_EXPORT(testAllAgainstEyePlanes);
 
-std::size_t lookPast(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
-                     std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks) {
-  return HWY_DYNAMIC_DISPATCH(lookPastAll)(shapes, quads, list, box, looks);
+std::size_t testAgainstEyePlanes(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
+                                 std::span<const std::uint32_t> list, const EyeBox& box,
+                                 std::span<EyePlaneTest> tests) {
+  return HWY_DYNAMIC_DISPATCH(testAllAgainstEyePlanes)(shapes, quads, list, box, tests);
 }
 
 }  // namespace sightline::occlusion

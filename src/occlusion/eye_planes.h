@@ -33,7 +33,7 @@ struct EyeShape {
   std::uint16_t plane_count = 0;  // one for each edge, then one for the near plane's cut if there is one
 };
 
-struct EyeLook {
+struct EyePlaneTest {
   bool touches = false;  // some of the box is behind the occluder's plane, and not all of it beyond an edge
   bool behind = false;   // all of it is behind the plane
   std::uint64_t failing = 0;  // planes beyond which some of it may be seen
@@ -41,9 +41,10 @@ struct EyeLook {
   bool hidden() const { return behind && failing == 0; }
 };
 
-// Looks at the box past the occluders of a list, shapes[list[i]] in looks[i], up to the first that hides it.
+// Looks at the box past the occluders of a list, shapes[list[i]] in tests[i], up to the first that hides it.
 // Returns how many were looked at.
-std::size_t lookPast(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
-                     std::span<const std::uint32_t> list, const EyeBox& box, std::span<EyeLook> looks);
+std::size_t testAgainstEyePlanes(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
+                                 std::span<const std::uint32_t> list, const EyeBox& box,
+                                 std::span<EyePlaneTest> tests);
 
 }  // namespace sightline::occlusion

@@ -74,7 +74,7 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
 // The corner at the start of an edge, with the edge's shadow plane: on the seam's line where other volumes
 // adjoin, drawn in where nothing does.
 void VolumeBuilder::addEdge(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline) {
-  if (const std::optional<Seam> seam = seamOf(eye, set, candidate, outline)) {
+  if (const std::optional<SharedEdge> seam = sharedEdgeOf(eye, set, candidate, outline)) {
     const OccluderEdge& edge = set.edges[outline.edge];
     const auto centroidOf = [&](OccluderId id) -> const Vec3d* {
       const std::uint32_t other = candidate_of_[id.value];

@@ -26,9 +26,9 @@ HWY_INLINE std::uint32_t laneCount() {
   return static_cast<std::uint32_t>(hn::Lanes(Lanes()));
 }
 
-// Of the squares in the rows from y on that come within `margin` of an edge, the first and last; where there
-// are none the first is beyond the last. No fused operations: they would round differently from one
-// instruction set to another.
+// The first and last pixels, in each of some rows, that come within a margin of an edge; where there are none
+// the first is beyond the last. No fused operations: they would round differently from one instruction set to
+// another.
 struct Crossing {
   Vector first, last;
 
@@ -42,32 +42,32 @@ struct Crossing {
     hn::StoreU(hn::ConvertTo(di, to), di, runs.last + row);
   }
 };
-HWY_INLINE Crossing cross(const MapEdge& edge, float margin, Vector y) {
+HWY_INLINE Crossing cross(const BufferEdge& edge, float margin, Vector y) {
   const Lanes d;
   const auto m = hn::Set(d, margin);
   const auto low = hn::Set(d, edge.low), high = hn::Set(d, edge.high);
   const auto bottom = hn::Sub(y, m), top = hn::Add(y, hn::Set(d, 1.0f + margin));
   const auto left = hn::Set(d, edge.left), right = hn::Set(d, edge.right);
-  auto least = left, most = right;
+  auto min = left, max = right;
   if (!edge.flat()) {
     const auto slope = hn::Set(d, edge.slope), at_low = hn::Set(d, edge.x_at_low);
     const auto a = hn::Sub(hn::Max(bottom, low), low);
     const auto b = hn::Sub(hn::Min(top, high), low);
     const auto xa = hn::Add(at_low, hn::Mul(slope, a)), xb = hn::Add(at_low, hn::Mul(slope, b));
-    least = hn::Max(hn::Min(xa, xb), left);
-    most = hn::Min(hn::Max(xa, xb), right);
+    min = hn::Max(hn::Min(xa, xb), left);
+    max = hn::Min(hn::Max(xa, xb), right);
   }
-  const auto meets = hn::And(hn::Ge(top, low), hn::Le(bottom, high));
-  return {hn::IfThenElse(meets, hn::Floor(hn::Sub(least, m)), hn::Set(d, kFar)),
-          hn::IfThenElse(meets, hn::Floor(hn::Add(most, m)), hn::Set(d, -kFar))};
+  const auto intersects = hn::And(hn::Ge(top, low), hn::Le(bottom, high));
+  return {hn::IfThenElse(intersects, hn::Floor(hn::Sub(min, m)), hn::Set(d, kFar)),
+          hn::IfThenElse(intersects, hn::Floor(hn::Add(max, m)), hn::Set(d, -kFar))};
 }
 
 HWY_INLINE Vector rowsFrom(std::uint32_t y) {
   return hn::Iota(Lanes(), static_cast<float>(y));
 }
 
-// The polygon's reciprocal depth in the first pixel of each run. A row's bits must not depend on where the
-// part begins.
+// Fills the polygon's reciprocal depth in the first pixel of each run. A row's bits must not depend on where
+// the part begins.
 void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
   for (std::uint32_t p = 0; p < part.polygon->plane_count; ++p) {
     const ReciprocalDepthPlane& plane = part.polygon->planes[p];
@@ -80,7 +80,7 @@ void findAtFirst(std::uint32_t y, RasterScratch::Part& part) {
 
 // A polygon's reciprocal depth along one row of a part.
 struct RowReciprocalDepth {
-  float at_first[MapPolygon::kMaxPlanes], step[MapPolygon::kMaxPlanes];
+  float at_first[BufferPolygon::kMaxPlanes], step[BufferPolygon::kMaxPlanes];
   float farthest = 0.0f;
   std::uint32_t planes = 0, first = 0;
 
@@ -93,15 +93,15 @@ struct RowReciprocalDepth {
       step[p] = static_cast<float>(part.polygon->planes[p].along_x);
     }
   }
-  // Of pixels x, x + 1, ...
+  // Returns that of the pixels x, x + 1, ...
   HWY_INLINE Vector from(std::uint32_t x) const {
     const Lanes d;
     const auto offset = hn::Iota(d, static_cast<float>(x - first));
-    auto least = along(0, offset);
+    auto min = along(0, offset);
     for (std::uint32_t p = 1; p < planes; ++p) {
-      least = hn::Min(least, along(p, offset));
+      min = hn::Min(min, along(p, offset));
     }
-    return hn::Max(least, hn::Set(d, farthest));
+    return hn::Max(min, hn::Set(d, farthest));
   }
 
  private:
@@ -131,13 +131,13 @@ HWY_INLINE void forRun(Run run, Body&& body) {
   }
 }
 
-// The pixels that lie inside all edges, in RowRuns::kRows rows from y on.
-void insideRows(std::span<const MapEdge> edges, std::uint32_t y, const RasterBand& band, RowRuns& runs) {
+// Finds the pixels that lie inside all edges, in RowRuns::kRows rows from y on.
+void insideRows(std::span<const BufferEdge> edges, std::uint32_t y, const RasterBand& band, RowRuns& runs) {
   const Lanes d;
   for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
     const auto rows = rowsFrom(y + i);
     auto begin = hn::Set(d, -kFar), end = hn::Set(d, kFar);
-    for (const MapEdge& edge : edges) {
+    for (const BufferEdge& edge : edges) {
       if (edge.side == 0) {
         continue;
       }
@@ -153,6 +153,7 @@ void insideRows(std::span<const MapEdge> edges, std::uint32_t y, const RasterBan
   }
 }
 
+// Whether all pixels of the run are nearer than `nearest`.
 bool hiddenRow(const float* row, Run run, float nearest) {
   const Lanes d;
   const auto limit = hn::Set(d, nearest);
@@ -168,15 +169,15 @@ bool hiddenRow(const float* row, Run run, float nearest) {
 struct Rows {
   std::uint32_t first = 0, end = 0;
 };
-// Rows from `low` to `high` (pixels), whole ones only or all that are touched, within the band.
+// Returns the rows of the band that the heights from `low` to `high` (pixels) touch.
 Rows rowsOf(float low, float high, const RasterBand& band) {
   const float first = std::max(std::floor(low), static_cast<float>(band.first_row));
   const float end = std::min(std::floor(high) + 1.0f, static_cast<float>(band.end_row));
   return first < end ? Rows{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end)} : Rows{};
 }
 
-// Returns whether what it would have drawn is behind what is there.
-bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const RasterBand& band,
+// Returns whether all that the polygon would have drawn is behind what is there.
+bool drawInside(const BufferPolygons& polygons, const BufferPolygon& polygon, const RasterBand& band,
                 RasterScratch& scratch) {
   const Rows rows =
       rowsOf(std::ceil(polygon.low + polygon.margin), std::floor(polygon.high - polygon.margin) - 1.0f, band);
@@ -219,8 +220,8 @@ bool drawInside(const MapPolygons& polygons, const MapPolygon& polygon, const Ra
   return false;
 }
 
-void drawInsidesOf(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band,
-                   RasterScratch& scratch, std::span<std::uint8_t> drawn) {
+void drawInsidesOf(const BufferPolygons& polygons, std::span<const std::uint32_t> order,
+                   const RasterBand& band, RasterScratch& scratch, std::span<std::uint8_t> drawn) {
   for (const std::uint32_t p : order) {
     if (!drawInside(polygons, polygons.polygons[p], band, scratch)) {
       drawn[p] = 1;
@@ -228,14 +229,15 @@ void drawInsidesOf(const MapPolygons& polygons, std::span<const std::uint32_t> o
   }
 }
 
-// Seams. A pixel is covered by the group where some of its polygons touch it, and nothing that comes near it
-// is an end of one of them: then one goes on beyond each edge that crosses the pixel, and together they cover
-// all of it (docs/conservative.md). What is farthest counts, of all whose seams come near: the mesh's seam
-// may lie on either side of the polygons' edge, by less than the margin.
-class SeamDrawer {
+// Draws the pixels near the shared edges of a group of polygons. A pixel is covered by the group where some
+// of its polygons touch it and no open edge comes near it: then a polygon goes on beyond each edge that
+// crosses the pixel, and together they cover all of it (docs/conservative.md). Its depth is the farthest of
+// all polygons whose shared edges come near: the mesh's own edge may lie on either side of the polygons'
+// edge, by less than the margin.
+class SharedEdgeDrawer {
  public:
-  SeamDrawer(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,
-             double rounding, RasterScratch& scratch)
+  SharedEdgeDrawer(const BufferPolygons& polygons, std::span<const std::uint32_t> group,
+                   const RasterBand& band, double rounding, RasterScratch& scratch)
       : polygons_(polygons),
         group_(group),
         band_(band),
@@ -245,78 +247,78 @@ class SeamDrawer {
   void draw() {
     float low = kFar, high = -kFar;
     for (const std::uint32_t p : group_) {
-      for (const MapEdge& edge : polygons_.outline(polygons_.polygons[p])) {
-        if (edge.kind == EdgeKind::kSealed) {
+      for (const BufferEdge& edge : polygons_.outline(polygons_.polygons[p])) {
+        if (edge.kind == EdgeKind::kShared) {
           low = std::min(low, edge.low - edge.margin);
           high = std::max(high, edge.high + edge.margin);
         }
       }
     }
     const Rows rows = rowsOf(low, high, band_);
-    scratch_.seam_rows.resize(std::size_t{band_.stride} * RowRuns::kRows, kUntouched);
+    scratch_.edge_rows.resize(std::size_t{band_.stride} * RowRuns::kRows, kUntouched);
     for (first_ = rows.first; first_ < rows.end; first_ += RowRuns::kRows) {
-      findSeams();
+      findSharedEdges();
       row_count_ = std::min(rows.end - first_, RowRuns::kRows);
       if (allHidden()) {
         continue;
       }
-      findEnds();
+      findOpenEdges();
       gather();
-      takeEndsAway();
+      clearOpenEdges();
       commit();
     }
   }
 
  private:
-  bool inRows(const MapEdge& edge) const {
+  bool inRows(const BufferEdge& edge) const {
     return edge.high + edge.margin >= static_cast<float>(first_) &&
            edge.low - edge.margin <= static_cast<float>(first_ + RowRuns::kRows);
   }
 
-  // What each polygon touches of the pixels that its sealed edges come near.
-  void findSeams() {
-    scratch_.seams.clear();
+  // Finds, for each shared edge, the pixels that it comes near, and those of them that its polygon touches.
+  void findSharedEdges() {
+    scratch_.shared_edges.clear();
     std::fill_n(all_.first, RowRuns::kRows, static_cast<std::int32_t>(band_.width));
     std::fill_n(all_.last, RowRuns::kRows, -1);
     for (const std::uint32_t p : group_) {
-      const MapPolygon& polygon = polygons_.polygons[p];
+      const BufferPolygon& polygon = polygons_.polygons[p];
       bool touched_known = false;
       RowRuns touched;
-      for (const MapEdge& edge : polygons_.outline(polygon)) {
-        if (edge.kind != EdgeKind::kSealed || !inRows(edge)) {
+      for (const BufferEdge& edge : polygons_.outline(polygon)) {
+        if (edge.kind != EdgeKind::kShared || !inRows(edge)) {
           continue;
         }
         if (!touched_known) {
           findTouched(polygon, touched);
           touched_known = true;
         }
-        RasterScratch::Part& seam = scratch_.seams.emplace_back();
-        seam.polygon = &polygon;
-        findCrossed(edge, seam.runs);
+        RasterScratch::Part& part = scratch_.shared_edges.emplace_back();
+        part.polygon = &polygon;
+        findCrossed(edge, part.runs);
         bool some = false;
         for (std::uint32_t i = 0; i < RowRuns::kRows; ++i) {
-          seam.own.first[i] = std::max(seam.runs.first[i], touched.first[i]);
-          seam.own.last[i] = std::min(seam.runs.last[i], touched.last[i]);
-          const bool none = seam.runs.first[i] > seam.runs.last[i];
+          part.own.first[i] = std::max(part.runs.first[i], touched.first[i]);
+          part.own.last[i] = std::min(part.runs.last[i], touched.last[i]);
+          const bool none = part.runs.first[i] > part.runs.last[i];
           some |= !none;
-          all_.first[i] = none ? all_.first[i] : std::min(all_.first[i], seam.runs.first[i]);
-          all_.last[i] = none ? all_.last[i] : std::max(all_.last[i], seam.runs.last[i]);
+          all_.first[i] = none ? all_.first[i] : std::min(all_.first[i], part.runs.first[i]);
+          all_.last[i] = none ? all_.last[i] : std::max(all_.last[i], part.runs.last[i]);
         }
         if (some) {
-          findAtFirst(first_, seam);
+          findAtFirst(first_, part);
         } else {
-          scratch_.seams.pop_back();
+          scratch_.shared_edges.pop_back();
         }
       }
     }
   }
 
-  // Whether all that the seams would draw is behind what the map has.
+  // Whether all that the shared edges would draw is behind what the buffer has.
   bool allHidden() const {
-    for (const RasterScratch::Part& seam : scratch_.seams) {
+    for (const RasterScratch::Part& part : scratch_.shared_edges) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
-        const float* map_row = band_.reciprocal_depth + std::size_t{first_ + row} * band_.stride;
-        if (!hiddenRow(map_row, Run::of(seam.own, row), seam.polygon->nearest)) {
+        const float* buffer_row = band_.reciprocal_depth + std::size_t{first_ + row} * band_.stride;
+        if (!hiddenRow(buffer_row, Run::of(part.own, row), part.polygon->nearest)) {
           return false;
         }
       }
@@ -324,12 +326,12 @@ class SeamDrawer {
     return true;
   }
 
-  void findTouched(const MapPolygon& polygon, RowRuns& runs) const {
+  void findTouched(const BufferPolygon& polygon, RowRuns& runs) const {
     const Lanes d;
     for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
       const auto rows = rowsFrom(first_ + i);
       Crossing touched{hn::Set(d, kFar), hn::Set(d, -kFar)};
-      for (const MapEdge& edge : polygons_.outline(polygon)) {
+      for (const BufferEdge& edge : polygons_.outline(polygon)) {
         const Crossing crossing = cross(edge, rounding_, rows);
         touched.first = hn::Min(touched.first, crossing.first);
         touched.last = hn::Max(touched.last, crossing.last);
@@ -338,19 +340,19 @@ class SeamDrawer {
     }
   }
 
-  void findCrossed(const MapEdge& edge, RowRuns& runs) const {
+  void findCrossed(const BufferEdge& edge, RowRuns& runs) const {
     for (std::uint32_t i = 0; i < RowRuns::kRows; i += laneCount()) {
       cross(edge, edge.margin, rowsFrom(first_ + i)).store(band_, i, runs);
     }
   }
 
-  // The pixels that come near ends of polygons, as far as they may be pixels of seams.
-  void findEnds() {
-    scratch_.ends.clear();
+  // Finds the pixels near open edges, as far as shared edges may come near them too.
+  void findOpenEdges() {
+    scratch_.open_edges.clear();
     for (const std::uint32_t p : group_) {
-      const MapPolygon& polygon = polygons_.polygons[p];
+      const BufferPolygon& polygon = polygons_.polygons[p];
       const std::uint32_t count = polygon.edge_count + polygon.gap_count;
-      for (const MapEdge& edge : std::span(polygons_.edges).subspan(polygon.first_edge, count)) {
+      for (const BufferEdge& edge : std::span(polygons_.edges).subspan(polygon.first_edge, count)) {
         if (edge.kind != EdgeKind::kOpen || !inRows(edge)) {
           continue;
         }
@@ -363,75 +365,77 @@ class SeamDrawer {
           some |= crossed.first[i] <= crossed.last[i];
         }
         if (some) {
-          scratch_.ends.push_back(crossed);
+          scratch_.open_edges.push_back(crossed);
         }
       }
     }
   }
 
-  float* seamRow(std::uint32_t row) { return scratch_.seam_rows.data() + std::size_t{row} * band_.stride; }
+  float* edgeRow(std::uint32_t row) { return scratch_.edge_rows.data() + std::size_t{row} * band_.stride; }
 
-  // The farthest of what comes near each pixel.
+  // Gathers, for each pixel, the farthest of the polygons whose shared edges come near it.
   void gather() {
     const Lanes d;
-    for (const RasterScratch::Part& seam : scratch_.seams) {
+    for (const RasterScratch::Part& part : scratch_.shared_edges) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
-        float* seam_row = seamRow(row);
-        const RowReciprocalDepth reciprocal_depth(seam, row);
-        forRun(Run::of(seam.runs, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
-          const auto old = hn::LoadU(d, seam_row + x);
-          hn::StoreU(hn::IfThenElse(mask, hn::Min(old, reciprocal_depth.from(x)), old), d, seam_row + x);
+        float* edge_row = edgeRow(row);
+        const RowReciprocalDepth reciprocal_depth(part, row);
+        forRun(Run::of(part.runs, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
+          const auto old = hn::LoadU(d, edge_row + x);
+          hn::StoreU(hn::IfThenElse(mask, hn::Min(old, reciprocal_depth.from(x)), old), d, edge_row + x);
         });
       }
     }
   }
 
-  void takeEndsAway() {
+  // Takes away the pixels near open edges.
+  void clearOpenEdges() {
     const Lanes d;
-    for (const RowRuns& ends : scratch_.ends) {
+    for (const RowRuns& crossed : scratch_.open_edges) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
-        float* seam_row = seamRow(row);
-        forRun(Run::of(ends, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
-          const auto old = hn::LoadU(d, seam_row + x);
+        float* edge_row = edgeRow(row);
+        forRun(Run::of(crossed, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
+          const auto old = hn::LoadU(d, edge_row + x);
           const auto touched = hn::And(mask, hn::Ne(old, hn::Set(d, kUntouched)));
-          hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kUncovered), old), d, seam_row + x);
+          hn::StoreU(hn::IfThenElse(touched, hn::Set(d, kUncovered), old), d, edge_row + x);
         });
       }
     }
   }
 
+  // Draws what is left into the buffer, and empties the rows for the next use.
   void commit() {
     const Lanes d;
-    for (const RasterScratch::Part& seam : scratch_.seams) {
+    for (const RasterScratch::Part& part : scratch_.shared_edges) {
       for (std::uint32_t row = 0; row < row_count_; ++row) {
-        const float* seam_row = seamRow(row);
-        float* map_row = band_.reciprocal_depth + std::size_t{first_ + row} * band_.stride;
-        forRun(Run::of(seam.own, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
-          const auto old = hn::LoadU(d, map_row + x);
-          hn::StoreU(hn::IfThenElse(mask, hn::Max(old, hn::LoadU(d, seam_row + x)), old), d, map_row + x);
+        const float* edge_row = edgeRow(row);
+        float* buffer_row = band_.reciprocal_depth + std::size_t{first_ + row} * band_.stride;
+        forRun(Run::of(part.own, row), [&](std::uint32_t x, auto mask) HWY_ATTR {
+          const auto old = hn::LoadU(d, buffer_row + x);
+          hn::StoreU(hn::IfThenElse(mask, hn::Max(old, hn::LoadU(d, edge_row + x)), old), d, buffer_row + x);
         });
       }
     }
     for (std::uint32_t row = 0; row < row_count_; ++row) {
-      float* seam_row = seamRow(row);
+      float* edge_row = edgeRow(row);
       forRun(Run::of(all_, row),
-             [&](std::uint32_t x, auto) HWY_ATTR { hn::StoreU(hn::Set(d, kUntouched), d, seam_row + x); });
+             [&](std::uint32_t x, auto) HWY_ATTR { hn::StoreU(hn::Set(d, kUntouched), d, edge_row + x); });
     }
   }
 
-  const MapPolygons& polygons_;
+  const BufferPolygons& polygons_;
   std::span<const std::uint32_t> group_;
   const RasterBand& band_;
   float rounding_;
   RasterScratch& scratch_;
-  std::uint32_t first_ = 0;      // row of those that are drawn together
-  std::uint32_t row_count_ = 0;  // of them
-  RowRuns all_;                  // from the first seam to the last
+  std::uint32_t first_ = 0;      // the lowest of the rows that are drawn together
+  std::uint32_t row_count_ = 0;  // how many of them the band has
+  RowRuns all_;                  // in each row, from the first to the last pixel near a shared edge
 };
 
-void drawSeamsOf(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,
-                 double rounding, RasterScratch& scratch) {
-  SeamDrawer(polygons, group, band, rounding, scratch).draw();
+void drawSharedEdgesOf(const BufferPolygons& polygons, std::span<const std::uint32_t> group,
+                       const RasterBand& band, double rounding, RasterScratch& scratch) {
+  SharedEdgeDrawer(polygons, group, band, rounding, scratch).draw();
 }
 
 void fillAll(std::span<float> reciprocal_depth, float value) {
@@ -454,41 +458,21 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 
 HWY_EXPORT(drawInsidesOf);
-HWY_EXPORT(drawSeamsOf);
+HWY_EXPORT(drawSharedEdgesOf);
 HWY_EXPORT(fillAll);
 
-void drawInsides(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band,
+void drawInsides(const BufferPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band,
                  RasterScratch& scratch, std::span<std::uint8_t> drawn) {
   HWY_DYNAMIC_DISPATCH(drawInsidesOf)(polygons, order, band, scratch, drawn);
 }
 
-void drawSeams(const MapPolygons& polygons, std::span<const std::uint32_t> group, const RasterBand& band,
-               double rounding, RasterScratch& scratch) {
-  HWY_DYNAMIC_DISPATCH(drawSeamsOf)(polygons, group, band, rounding, scratch);
+void drawSharedEdges(const BufferPolygons& polygons, std::span<const std::uint32_t> group,
+                     const RasterBand& band, double rounding, RasterScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(drawSharedEdgesOf)(polygons, group, band, rounding, scratch);
 }
 
-void fillMap(std::span<float> reciprocal_depth, float value) {
+void fillBuffer(std::span<float> reciprocal_depth, float value) {
   HWY_DYNAMIC_DISPATCH(fillAll)(reciprocal_depth, value);
-}
-
-void drawCentres(const MapPolygons& polygons, std::span<const std::uint32_t> order, const RasterBand& band) {
-  const auto end_row = band.end_row;
-  for (const std::uint32_t p : order) {
-    const MapPolygon& polygon = polygons.polygons[p];
-    forEachCentreSpan(polygons.corners(polygon), band.width, end_row,
-                      [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
-                        if (y < band.first_row) {
-                          return;
-                        }
-                        float* row = band.reciprocal_depth + std::size_t{y} * band.stride;
-                        const ReciprocalDepthPlane& plane = polygon.planes[0];
-                        const double at_row = plane.at_origin + plane.along_y * y;
-                        for (std::uint32_t x = first; x <= last; ++x) {
-                          const auto value = static_cast<float>(at_row + plane.along_x * x);
-                          row[x] = std::max(row[x], value);
-                        }
-                      });
-  }
 }
 
 }  // namespace sightline::occlusion

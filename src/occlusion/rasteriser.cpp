@@ -1,15 +1,15 @@
 // A conservative rasteriser.
 //
 // Each convex polygon covers, row by row, the pixels between the last one that its left edges come near and
-// the first one that its right edges do. Pixels that shared edges cross are looked at group by group
-// afterwards (raster_rows.cpp). Edges are computed in single precision with a margin above its rounding,
+// the first one that its right edges come near. Pixels that shared edges cross are drawn afterwards, group by
+// group (raster_rows.cpp). Edges are computed in single precision with a margin above its rounding, and
 // depths are rounded away from the eye; docs/conservative.md has the argument.
 
 #include "sightline/occlusion/rasteriser.h"
 
 #include <algorithm>
 
-#include "src/occlusion/map_polygon.h"
+#include "src/occlusion/polygon_builder.h"
 #include "src/occlusion/raster_rows.h"
 
 namespace sightline {
@@ -17,33 +17,33 @@ namespace sightline {
 using namespace occlusion;
 
 struct Rasteriser::Impl {
-  // Rows that a thread draws together at least.
+  // A thread draws at least so many rows together.
   static constexpr std::uint32_t kBandRows = 16;
 
   explicit Impl(const RasterSettings& s) : settings(s) {
-    settings.width = std::clamp(settings.width, 1u, kMaxMapSize);
-    settings.height = std::clamp(settings.height, 1u, kMaxMapSize);
+    settings.width = std::clamp(settings.width, 1u, kMaxBufferSize);
+    settings.height = std::clamp(settings.height, 1u, kMaxBufferSize);
     stride = (settings.width + kRowSlack - 1) / kRowSlack * kRowSlack + kRowSlack;
     reciprocal_depth.resize(std::size_t{stride} * settings.height, kUncovered);
     bands = (settings.height + kBandRows - 1) / kBandRows;
     scratch.resize(bands);
   }
 
-  // The nearest first, which hide most of what comes after.
+  // The nearest polygons come first: they hide most of what comes after.
   void sortPolygons() {
     order.resize(polygons.polygons.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) {
       order[i] = i;
     }
     std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
-      const MapPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
+      const BufferPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
       return p.nearest != q.nearest ? p.nearest > q.nearest : p.occluder < q.occluder;
     });
     by_group = order;
     std::erase_if(by_group,
-                  [this](std::uint32_t p) { return polygons.polygons[p].group == MapPolygon::kNoGroup; });
+                  [this](std::uint32_t p) { return polygons.polygons[p].group == BufferPolygon::kNoGroup; });
     std::sort(by_group.begin(), by_group.end(), [this](std::uint32_t a, std::uint32_t b) {
-      const MapPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
+      const BufferPolygon &p = polygons.polygons[a], &q = polygons.polygons[b];
       return p.group != q.group ? p.group < q.group : a < b;
     });
   }
@@ -55,30 +55,33 @@ struct Rasteriser::Impl {
 
   void drawBands(std::uint32_t begin, std::uint32_t end) {
     const RasterBand band = bandOf(begin, end);
-    if (settings.coverage == Coverage::kCentre) {
-      drawCentres(polygons, order, band);
+    if (settings.coverage != nullptr) {
+      settings.coverage->draw(polygons, order, band);
       return;
     }
     drawInsides(polygons, order, band, scratch[begin],
                 std::span(drawn).subspan(begin * order.size(), order.size()));
-    const double rounding = mapRounding(settings.width, settings.height);
+    const double rounding = bufferRounding(settings.width, settings.height);
     for (std::size_t first = 0, last = 0; first < by_group.size(); first = last) {
       const std::uint32_t group = polygons.polygons[by_group[first]].group;
       while (last < by_group.size() && polygons.polygons[by_group[last]].group == group) {
         ++last;
       }
-      drawSeams(polygons, std::span(by_group).subspan(first, last - first), band, rounding, scratch[begin]);
+      drawSharedEdges(polygons, std::span(by_group).subspan(first, last - first), band, rounding,
+                      scratch[begin]);
     }
   }
 
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen, const ParallelFor& parallel_for) {
-    polygons.build(view, settings, set, chosen);
+    const PolygonForm form = settings.coverage == nullptr ? PolygonForm::kConservative : PolygonForm::kExact;
+    builder.build(PolygonProjection(view, form, settings.width, settings.height), set, chosen, polygons);
     sortPolygons();
-    drawn.assign(order.size() * bands, settings.coverage == Coverage::kCentre ? 1 : 0);
+    drawn.assign(order.size() * bands, settings.coverage != nullptr ? 1 : 0);
     parallel_for(bands, [this](std::uint32_t begin, std::uint32_t end) { drawBands(begin, end); });
     count();
   }
 
+  // Counts what the last draw() drew.
   void count() {
     const std::size_t before = used.size(), size = polygons.polygons.size();
     for (std::size_t p = 0; p < size;) {
@@ -101,10 +104,11 @@ struct Rasteriser::Impl {
   std::uint32_t stride = 0, bands = 0;
   std::vector<float> reciprocal_depth;
   PixelView view;
-  MapPolygons polygons;
+  PolygonBuilder builder;
+  BufferPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
-  std::vector<std::uint8_t> drawn;     // by band and polygon
-  std::vector<RasterScratch> scratch;  // by the first band of a range
+  std::vector<std::uint8_t> drawn;     // by band and polygon: some of the polygon was nearer than the buffer
+  std::vector<RasterScratch> scratch;  // by the first band of the range that a thread draws
   std::vector<OccluderId> used;
   RasterStats stats;
 };
@@ -116,7 +120,7 @@ Rasteriser& Rasteriser::operator=(Rasteriser&&) noexcept = default;
 
 void Rasteriser::begin(const View& view) {
   impl_->view = PixelView(view, impl_->settings.width, impl_->settings.height);
-  fillMap(impl_->reciprocal_depth, kUncovered);
+  fillBuffer(impl_->reciprocal_depth, kUncovered);
   impl_->used.clear();
   impl_->stats = {};
 }

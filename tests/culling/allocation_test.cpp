@@ -27,7 +27,7 @@ std::vector<NamedSettings> allSettings() {
   std::vector<NamedSettings> all(std::begin(kStructures), std::end(kStructures));
   all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
   all.push_back({"little room",
-                 {.method = AnyMethod::kSupportingPlanes, .supporting_planes = {.relation_bytes = 100'000}}});
+                 {.method = AnyMethod::kKeptPlanes, .kept_planes = {.relation_bytes = 100'000}}});
   for (const NamedSettings& method : kMethods) {
     NamedSettings with_database = method;
     with_database.settings.use_lists = true;

@@ -498,11 +498,13 @@ class Structure {
             std::span<const OccluderId> used)
       : method_(settings.method),
         tree_({.variant = settings.variant}),
-        planes_(planesOf(settings)),
+        planes_(settings.supporting_planes),
+        kept_planes_(settings.kept_planes),
         opacity_map_({.raster = settings.raster}),
         pyramid_({.raster = settings.raster}) {
     tree_.build(view, set, used);
     planes_.build(view, set, used);
+    kept_planes_.build(view, set, used);
     opacity_map_.build(view, set, used);
     pyramid_.build(view, set, used);
   }
@@ -510,6 +512,8 @@ class Structure {
     switch (method_) {
       case AnyMethod::kOcclusionTree:
         return tree_.classify(box);
+      case AnyMethod::kKeptPlanes:
+        return kept_planes_.classify(box);
       case AnyMethod::kOpacityMap:
         return opacity_map_.classify(box);
       case AnyMethod::kDepthPyramid:
@@ -520,17 +524,10 @@ class Structure {
   }
 
  private:
-  static SupportingPlanesSettings planesOf(const AnySettings& settings) {
-    SupportingPlanesSettings planes = settings.supporting_planes;
-    if (settings.method == AnyMethod::kKeptPlanes) {
-      planes.form = PlaneForm::kThroughBox;
-    }
-    return planes;
-  }
-
   AnyMethod method_;
   OcclusionTree tree_;
   SupportingPlanes planes_;
+  KeptPlanes kept_planes_;
   OpacityMap opacity_map_;
   DepthPyramid pyramid_;
 };

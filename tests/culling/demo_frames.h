@@ -31,7 +31,7 @@ constexpr NamedSettings kStructures[] = {
     {"planes through the eye, no joint occlusion",
      {.method = AnyMethod::kSupportingPlanes, .supporting_planes = {.joint_occlusion = false}}},
     {"planes through the box, no joint occlusion",
-     {.method = AnyMethod::kKeptPlanes, .supporting_planes = {.joint_occlusion = false}}},
+     {.method = AnyMethod::kKeptPlanes, .kept_planes = {.joint_occlusion = false}}},
     {"opacity map", {.method = AnyMethod::kOpacityMap, .raster = {.width = 64, .height = 36}}},
     {"depth pyramid", {.method = AnyMethod::kDepthPyramid}},
     {"depth pyramid, focused", {.method = AnyMethod::kDepthPyramid, .focus = {.min_objects = 0}}},

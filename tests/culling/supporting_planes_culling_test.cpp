@@ -22,7 +22,7 @@ constexpr AnySettings kThroughEye{.method = AnyMethod::kSupportingPlanes};
 
 AnySettings throughBox(bool kept = true, std::size_t relation_bytes = 64u << 20) {
   AnySettings settings{.method = AnyMethod::kKeptPlanes};
-  settings.supporting_planes.relation_bytes = relation_bytes;
+  settings.kept_planes.relation_bytes = relation_bytes;
   settings.temporal_coherence = kept;
   return settings;
 }
@@ -395,7 +395,7 @@ TEST_P(TwoForms, HideAllThatSingleOccludersHideWhenTheyJoin) {
     for (const AnyMethod method : {AnyMethod::kSupportingPlanes, AnyMethod::kKeptPlanes}) {
       AnySettings settings{.method = method};
       AnyCuller joint = demo().culler(kind, settings);
-      settings.supporting_planes.joint_occlusion = false;
+      settings.supporting_planes.joint_occlusion = settings.kept_planes.joint_occlusion = false;
       AnyCuller single = demo().culler(kind, settings);
       std::size_t more = 0;
       for (const View& view : places(demo(), 10)) {

@@ -171,7 +171,7 @@ struct BodyScene {
     Random random(seed * 16 + static_cast<std::uint64_t>(place));
     what = "place " + std::to_string(static_cast<int>(place)) + ", seed " + std::to_string(seed);
     const auto& [width, height] = kSizes[seed % 4];
-    settings = {width, height, Coverage::kInner};
+    settings = {width, height};
     const double far_away = seed % 5 == 4 ? 1e4 : 0.0;
     view = viewFrom(Vec3d(far_away, -far_away, 0.5 * far_away), random.point(1.0));
     // From within, parallel rays may still meet a front.
@@ -395,7 +395,7 @@ TEST(BodyMap, WhatShowsThroughAGapBetweenBodiesIsNotCovered) {
     for (int turn = 0; turn < 60; ++turn) {
       const GapScene scene(pixels, turn, 0.0137 * turn);
       const std::string what = std::to_string(pixels) + " pixels, turn " + std::to_string(turn);
-      const RasterSettings settings{GapScene::kSize, GapScene::kSize, Coverage::kInner};
+      const RasterSettings settings{GapScene::kSize, GapScene::kSize};
       const OccluderSet set = setOfSolids(scene.blocks);
       ASSERT_EQ(set.bodies.size(), 2u);
       DepthPyramid pyramid({settings});

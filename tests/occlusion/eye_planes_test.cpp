@@ -58,10 +58,10 @@ EyeBox randomBox(std::mt19937_64& random) {
   return EyeBox::of({Vec3f(c - h), Vec3f(c + h)}, {0.1, 0.2, 0.3});
 }
 
-std::vector<EyeLook> lookPast(const Scene& scene, const EyeBox& box) {
-  std::vector<EyeLook> looks(scene.list.size());
-  looks.resize(occlusion::lookPast(scene.shapes, scene.quads, scene.list, box, looks));
-  return looks;
+std::vector<EyePlaneTest> testAgainstEyePlanes(const Scene& scene, const EyeBox& box) {
+  std::vector<EyePlaneTest> tests(scene.list.size());
+  tests.resize(occlusion::testAgainstEyePlanes(scene.shapes, scene.quads, scene.list, box, tests));
+  return tests;
 }
 
 TEST(EyePlanes, EveryInstructionSetGivesTheSameAnswers) {
@@ -71,16 +71,16 @@ TEST(EyePlanes, EveryInstructionSetGivesTheSameAnswers) {
   for (int round = 0; round < 200; ++round) {
     const Scene scene = randomScene(random);
     const EyeBox box = randomBox(random);
-    const std::vector<EyeLook> first = lookPast(scene, box);
+    const std::vector<EyePlaneTest> first = testAgainstEyePlanes(scene, box);
     for (const std::int64_t target : targets) {
       hwy::SetSupportedTargetsForTest(target);
-      const std::vector<EyeLook> looks = lookPast(scene, box);
+      const std::vector<EyePlaneTest> tests = testAgainstEyePlanes(scene, box);
       hwy::SetSupportedTargetsForTest(0);
-      ASSERT_EQ(looks.size(), first.size()) << hwy::TargetName(target);
-      for (std::size_t i = 0; i < looks.size(); ++i) {
-        EXPECT_EQ(looks[i].touches, first[i].touches) << hwy::TargetName(target);
-        EXPECT_EQ(looks[i].behind, first[i].behind) << hwy::TargetName(target);
-        EXPECT_EQ(looks[i].failing, first[i].failing) << hwy::TargetName(target);
+      ASSERT_EQ(tests.size(), first.size()) << hwy::TargetName(target);
+      for (std::size_t i = 0; i < tests.size(); ++i) {
+        EXPECT_EQ(tests[i].touches, first[i].touches) << hwy::TargetName(target);
+        EXPECT_EQ(tests[i].behind, first[i].behind) << hwy::TargetName(target);
+        EXPECT_EQ(tests[i].failing, first[i].failing) << hwy::TargetName(target);
       }
     }
   }
@@ -93,8 +93,8 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
   for (int round = 0; round < 500; ++round) {
     const Scene scene = randomScene(random);
     const EyeBox box = randomBox(random);
-    const std::vector<EyeLook> looks = lookPast(scene, box);
-    for (std::size_t i = 0; i < looks.size(); ++i) {
+    const std::vector<EyePlaneTest> tests = testAgainstEyePlanes(scene, box);
+    for (std::size_t i = 0; i < tests.size(); ++i) {
       const EyeShape& shape = scene.shapes[i];
       const auto range = [&](const Vec3d& n, double offset) {
         double least = INFINITY, most = -INFINITY;
@@ -110,9 +110,9 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
       if (std::abs(deepest) < 1e-5 || std::abs(nearest) < 1e-5) {
         continue;
       }
-      EXPECT_EQ(looks[i].behind, nearest < 0.0);
+      EXPECT_EQ(tests[i].behind, nearest < 0.0);
       if (deepest > 0.0) {
-        EXPECT_FALSE(looks[i].touches);
+        EXPECT_FALSE(tests[i].touches);
         continue;
       }
       bool touches = true, near_tie = false;
@@ -127,10 +127,10 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
       if (near_tie) {
         continue;
       }
-      EXPECT_EQ(looks[i].touches, touches);
-      EXPECT_EQ(looks[i].failing, failing);
+      EXPECT_EQ(tests[i].touches, touches);
+      EXPECT_EQ(tests[i].failing, failing);
       touched += touches ? 1 : 0;
-      behind += looks[i].behind ? 1 : 0;
+      behind += tests[i].behind ? 1 : 0;
       failing_edges += std::popcount(failing);
       satisfied_edges += shape.plane_count - std::popcount(failing);
     }
@@ -160,10 +160,10 @@ TEST(EyePlanes, LookingEndsAtTheFirstThatHidesTheBox) {
     scene.list.push_back(i);
   }
   const EyeBox box = EyeBox::of({{-1, -1, -5}, {1, 1, -4}}, {0, 0, 0});
-  const std::vector<EyeLook> looks = lookPast(scene, box);
-  ASSERT_EQ(looks.size(), 3u);
-  EXPECT_FALSE(looks[0].touches);
-  EXPECT_TRUE(looks[2].hidden());
+  const std::vector<EyePlaneTest> tests = testAgainstEyePlanes(scene, box);
+  ASSERT_EQ(tests.size(), 3u);
+  EXPECT_FALSE(tests[0].touches);
+  EXPECT_TRUE(tests[2].hidden());
 }
 
 }  // namespace

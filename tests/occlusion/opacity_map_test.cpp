@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/comparison/centre_coverage.h"
 #include "tests/occlusion/small_scenes.h"
 #include "tests/occlusion/synthetic_maps.h"
 
@@ -101,7 +102,7 @@ TEST(OpacityMap, NeverHidesABoxSeenThroughAGap) {
 
 TEST(OpacityMap, ThePapersCoverageHidesWhatIsSeenThroughAGap) {
   OpacityMapSettings settings = sized(128, 128);
-  settings.raster.coverage = Coverage::kCentre;
+  settings.raster.coverage = centreCoverage();
   int hidden = 0;
   forEachGap([&](std::span<const OraclePolygon> walls, const Box& box, const std::string&) {
     hidden += ask(kLookingBack, walls, box, settings) == Visibility::kHidden ? 1 : 0;

@@ -6,6 +6,7 @@
 #include <random>
 #include <sstream>
 
+#include "sightline/comparison/centre_coverage.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/exact_coverage.h"
 
@@ -263,7 +264,7 @@ struct Placed {
       chosen.push_back(OccluderId(i));
     }
   }
-  DepthMapView draw(const exact::Camera& camera, Coverage coverage) {
+  DepthMapView draw(const exact::Camera& camera, const CoverageRule* coverage) {
     rasteriser = Rasteriser(
         {static_cast<std::uint32_t>(camera.width), static_cast<std::uint32_t>(camera.height), coverage});
     rasteriser.begin(view);
@@ -322,8 +323,7 @@ TEST(RasteriserExact, CoversOnlyPixelsThatOneSurfaceHidesWhollyAndNoNearerThanIt
     const Scene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
-    forEachPixel(placed.draw(scene.camera, Coverage::kInner), [&](std::int64_t x, std::int64_t y,
-                                                                  float stored) {
+    forEachPixel(placed.draw(scene.camera, nullptr), [&](std::int64_t x, std::int64_t y, float stored) {
       if (!(stored > kUncovered)) {
         return;
       }
@@ -386,24 +386,23 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
     const Scene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
-    forEachPixel(placed.draw(scene.camera, Coverage::kInner),
-                 [&](std::int64_t x, std::int64_t y, float stored) {
-                   for (const exact::Surface& surface : surfaces) {
-                     for (const exact::Image& image : surface.images) {
-                       if (!isWellShaped(scene.camera, scene.polygons[image.polygon]) ||
-                           !exact::contains(image.part, exact::pixel(x, y, 10))) {
-                         continue;
-                       }
-                       ++within;
-                       const double reciprocal_depth = image.minReciprocalDepth(exact::pixel(x, y));
-                       if (!isNear(stored, reciprocal_depth) && failures++ < 5) {
-                         ADD_FAILURE() << "pixel " << x << " " << y << " within polygon " << image.polygon
-                                       << " stored " << stored << " exact " << reciprocal_depth << "\n"
-                                       << describe(scene, seed);
-                       }
-                     }
-                   }
-                 });
+    forEachPixel(placed.draw(scene.camera, nullptr), [&](std::int64_t x, std::int64_t y, float stored) {
+      for (const exact::Surface& surface : surfaces) {
+        for (const exact::Image& image : surface.images) {
+          if (!isWellShaped(scene.camera, scene.polygons[image.polygon]) ||
+              !exact::contains(image.part, exact::pixel(x, y, 10))) {
+            continue;
+          }
+          ++within;
+          const double reciprocal_depth = image.minReciprocalDepth(exact::pixel(x, y));
+          if (!isNear(stored, reciprocal_depth) && failures++ < 5) {
+            ADD_FAILURE() << "pixel " << x << " " << y << " within polygon " << image.polygon << " stored "
+                          << stored << " exact " << reciprocal_depth << "\n"
+                          << describe(scene, seed);
+          }
+        }
+      }
+    });
   }
   EXPECT_GT(within, 20000);
 }
@@ -415,7 +414,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
     const Scene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
-    const DepthMapView map = placed.draw(scene.camera, Coverage::kInner);
+    const DepthMapView map = placed.draw(scene.camera, nullptr);
     for (const exact::Surface& surface : surfaces) {
       const bool well_shaped = std::ranges::all_of(surface.images, [&](const exact::Image& image) {
         return isWellShaped(scene.camera, scene.polygons[image.polygon]);
@@ -448,8 +447,8 @@ TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthTher
     const bool well_shaped = std::ranges::all_of(
         scene.polygons, [&](const Polygon& polygon) { return isWellShaped(scene.camera, polygon); });
     Placed placed(scene, seed);
-    forEachPixel(placed.draw(scene.camera, Coverage::kCentre), [&](std::int64_t x, std::int64_t y,
-                                                                   float stored) {
+    forEachPixel(placed.draw(scene.camera, centreCoverage()), [&](std::int64_t x, std::int64_t y,
+                                                                  float stored) {
       const exact::Triple centre{2 * x + 1, 2 * y + 1, 2};
       double nearest = -INFINITY;
       for (const exact::Surface& surface : surfaces) {

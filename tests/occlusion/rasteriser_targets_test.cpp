@@ -7,11 +7,14 @@
 #include <bit>
 #include <thread>
 
+#include "sightline/comparison/centre_coverage.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
 namespace {
+
+const CoverageRule* const kCoverageRules[] = {nullptr, centreCoverage()};
 
 using namespace test;
 
@@ -123,10 +126,10 @@ void forEachScene(std::uint64_t seeds, Call&& call) {
         setOrientation(scene.view, scene.origin - scene.view.eye, {0, 1, 0});
       }
       const auto& [width, height] = kSizes[seed % std::size(kSizes)];
-      for (const Coverage coverage : {Coverage::kInner, Coverage::kCentre}) {
+      for (const CoverageRule* coverage : kCoverageRules) {
         call(scene.view, scene.polygons, RasterSettings{width, height, coverage},
              std::string(family.name) + ", seed " + std::to_string(seed) +
-                 (coverage == Coverage::kCentre ? ", centres" : ""));
+                 (coverage != nullptr ? ", centres" : ""));
       }
     }
   }
@@ -239,7 +242,7 @@ TEST(RasteriserBits, AreTheSameWhenWhatIsNotConnectedIsDrawnInSeveralCalls) {
       ++scenes;
       const OccluderSet together = setOf(polygons);
       const OccluderSet single = setOf(polygons.first(singles)), connected = setOf(polygons.subspan(singles));
-      for (const Coverage coverage : {Coverage::kInner, Coverage::kCentre}) {
+      for (const CoverageRule* coverage : kCoverageRules) {
         const RasterSettings settings{65, 43, coverage};
         const Look first = drawn(scene.view, together, all(together), settings);
         Rasteriser rasteriser(settings);
@@ -262,7 +265,7 @@ TEST(RasteriserBits, AreTheSameWhenWhatIsNotConnectedIsDrawnInSeveralCalls) {
 
 TEST(RasteriserBits, AreTheSameInAMovedRasteriser) {
   const OccluderSet set = setOf(std::vector{wall(-2, 3, -1, 2, -5), wall(-9, 9, -9, 0, -8)});
-  const RasterSettings settings{33, 17, Coverage::kInner};
+  const RasterSettings settings{33, 17};
   const Look first = drawn(kLookingBack, set, all(set), settings);
   Rasteriser rasteriser(settings);
   rasteriser.begin(kLookingBack);

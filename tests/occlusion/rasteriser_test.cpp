@@ -5,11 +5,14 @@
 #include <array>
 #include <limits>
 
+#include "sightline/comparison/centre_coverage.h"
 #include "tests/occlusion/exact_coverage.h"
 #include "tests/occlusion/small_scenes.h"
 
 namespace sightline {
 namespace {
+
+const CoverageRule* const kCoverageRules[] = {nullptr, centreCoverage()};
 
 using namespace test;
 
@@ -104,7 +107,7 @@ TEST(Rasteriser, NeverCoversAPixelThatAGapCrosses) {
         forEachGap([&](std::span<const OraclePolygon> walls, const Box&, const std::string& what) {
           View view = turned(kLookingBack, yaw, orthographic);
           view.aspect = static_cast<double>(width) / height;
-          const Drawn drawn(view, walls, {width, height, Coverage::kInner});
+          const Drawn drawn(view, walls, {width, height});
           checkGap(drawn, walls, yaw == 0.0 && !orthographic,
                    what + (orthographic ? " orthographic" : "") + ", yaw " + std::to_string(yaw));
         });
@@ -117,7 +120,7 @@ TEST(Rasteriser, NeverCoversAPixelThatAGapCrossesInALargeMap) {
   int look = 0;
   forEachGap([&](std::span<const OraclePolygon> walls, const Box&, const std::string& what) {
     if (look++ % 61 == 17) {
-      const Drawn drawn(kLookingBack, walls, {4096, 4096, Coverage::kInner});
+      const Drawn drawn(kLookingBack, walls, {4096, 4096});
       checkGap(drawn, walls, true, what);
     }
   });
@@ -127,8 +130,8 @@ TEST(Rasteriser, CentresHideWhatIsSeenThroughANarrowGap) {
   // This is why that coverage is not conservative.
   std::size_t crossed_and_covered = 0;
   forEachGap([&](std::span<const OraclePolygon> walls, const Box&, const std::string&) {
-    const Drawn centre(kLookingBack, walls, {64, 64, Coverage::kCentre});
-    const Drawn inner(kLookingBack, walls, {64, 64, Coverage::kInner});
+    const Drawn centre(kLookingBack, walls, {64, 64, centreCoverage()});
+    const Drawn inner(kLookingBack, walls, {64, 64});
     EXPECT_GE(centre.covered(), inner.covered());
     crossed_and_covered += centre.covered() - inner.covered();
   });
@@ -136,7 +139,7 @@ TEST(Rasteriser, CentresHideWhatIsSeenThroughANarrowGap) {
 }
 
 TEST(Rasteriser, StoresTheDepthOfAWallThatFacesTheEye) {
-  for (const Coverage coverage : {Coverage::kInner, Coverage::kCentre}) {
+  for (const CoverageRule* coverage : kCoverageRules) {
     for (const bool orthographic : {false, true}) {
       const Drawn drawn(turned(kLookingBack, 0.0, orthographic),
                         std::vector{wall(-20, 20, -20, 20, -5), wall(-40, 40, -40, 40, -9)},
@@ -145,7 +148,7 @@ TEST(Rasteriser, StoresTheDepthOfAWallThatFacesTheEye) {
       for (std::uint32_t x = 0; x < 33; ++x) {
         const double expected = orthographic ? -5.0 : 0.2;
         EXPECT_NEAR(static_cast<double>(drawn.map.at(x, 8)), expected, 1e-6 * std::abs(expected));
-        if (coverage == Coverage::kInner) {
+        if (coverage == nullptr) {
           EXPECT_LE(static_cast<double>(drawn.map.at(x, 8)), expected);
         }
       }
@@ -158,7 +161,7 @@ TEST(Rasteriser, AWallThatEndsOnAPixelsBorderDoesNotCoverThePixelBeyond) {
   for (const bool orthographic : {false, true}) {
     View view = turned(kLookingBack, 0.0, orthographic);
     view.ortho_height = 8.0;
-    const Drawn drawn(view, std::vector{wall(-2, 2, -1, 1, -4)}, {8, 8, Coverage::kInner});
+    const Drawn drawn(view, std::vector{wall(-2, 2, -1, 1, -4)}, {8, 8});
     for (std::uint32_t y = 0; y < 8; ++y) {
       for (std::uint32_t x = 0; x < 8; ++x) {
         if (x < 2 || x > 5 || y < 3 || y > 4) {
@@ -168,11 +171,11 @@ TEST(Rasteriser, AWallThatEndsOnAPixelsBorderDoesNotCoverThePixelBeyond) {
     }
     // A hair less, and the pixels within are not covered either; a hair more, and they are.
     const float less = std::nextafter(2.0f, 0.0f);
-    const Drawn smaller(view, std::vector{wall(-less, less, -1.5f, 1.5f, -4)}, {8, 8, Coverage::kInner});
+    const Drawn smaller(view, std::vector{wall(-less, less, -1.5f, 1.5f, -4)}, {8, 8});
     EXPECT_FALSE(smaller.map.covered(2, 3));
     EXPECT_TRUE(smaller.map.covered(3, 3));
     EXPECT_FALSE(smaller.map.covered(5, 4));
-    const Drawn larger(view, std::vector{wall(-2.01f, 2.01f, -1.01f, 1.01f, -4)}, {8, 8, Coverage::kInner});
+    const Drawn larger(view, std::vector{wall(-2.01f, 2.01f, -1.01f, 1.01f, -4)}, {8, 8});
     EXPECT_EQ(larger.covered(), 8u);
   }
 }
@@ -186,7 +189,7 @@ TEST(Rasteriser, CountsWhatItCannotUse) {
   const OraclePolygon back{{{-3, -3, -5}, {-3, 3, -5}, {3, 3, -5}, {3, -3, -5}}, false};
   for (const OraclePolygon& polygon : {before_near, through_eye, edge_on, behind_eye, beside, back}) {
     for (const bool orthographic : {false, true}) {
-      for (const Coverage coverage : {Coverage::kInner, Coverage::kCentre}) {
+      for (const CoverageRule* coverage : kCoverageRules) {
         const Drawn drawn(turned(kLookingBack, 0.0, orthographic), std::vector{polygon}, {64, 36, coverage});
         ASSERT_EQ(drawn.set.occluders.size(), 1u);
         EXPECT_EQ(drawn.covered(), 0u);
@@ -201,7 +204,7 @@ TEST(Rasteriser, CountsWhatItCannotUse) {
 TEST(Rasteriser, CountsWhatItHasDrawnAndWhatIsBehindIt) {
   const Drawn drawn(kLookingBack,
                     std::vector{wall(-40, 40, -40, 40, -5), wall(-9, 9, -9, 9, -20), wall(-4, 4, -4, 4, -4)},
-                    {64, 36, Coverage::kInner});
+                    {64, 36});
   EXPECT_EQ(drawn.rasteriser.stats().occluders, 3u);
   EXPECT_EQ(drawn.rasteriser.occluders().size(), 3u);
   EXPECT_EQ(drawn.rasteriser.stats().unusable, 0u);
@@ -214,7 +217,7 @@ TEST(Rasteriser, SliversCoverNothingOfTheirOwn) {
       const Drawn drawn(kLookingBack,
                         std::vector{wall(0.1f, 0.1f + width, -5, 5, -5),
                                     OraclePolygon{{{-5, -5, -5}, {5, 5 - width, -6}, {5, 5, -6}}, true}},
-                        {size, size, Coverage::kInner});
+                        {size, size});
       EXPECT_EQ(drawn.covered(), 0u) << width;
     }
   }
@@ -222,7 +225,7 @@ TEST(Rasteriser, SliversCoverNothingOfTheirOwn) {
 
 TEST(Rasteriser, IsEmptyAfterBeginAndWithoutOccluders) {
   for (const std::uint32_t width : {1u, 7u, 17u, 33u, 321u}) {
-    Drawn drawn(kLookingBack, std::vector{wall(-40, 40, -40, 40, -5)}, {width, 5, Coverage::kInner});
+    Drawn drawn(kLookingBack, std::vector{wall(-40, 40, -40, 40, -5)}, {width, 5});
     EXPECT_EQ(drawn.map.width, width);
     EXPECT_EQ(drawn.map.height, 5u);
     EXPECT_GE(drawn.map.stride, width);
@@ -245,8 +248,7 @@ TEST(Rasteriser, CornersThatAreNotFiniteCoverNothing) {
     for (int axis = 0; axis < 3; ++axis) {
       OraclePolygon broken = wall(-9, 9, -9, 9, -5);
       broken.vertices[2][axis] = bad;
-      const Drawn drawn(kLookingBack, std::vector{broken, wall(0.1f, 9, -9, 9, -5)},
-                        {64, 64, Coverage::kInner});
+      const Drawn drawn(kLookingBack, std::vector{broken, wall(0.1f, 9, -9, 9, -5)}, {64, 64});
       EXPECT_EQ(drawn.set.occluders.size(), 1u);
       EXPECT_FALSE(drawn.map.covered(20, 32));
       EXPECT_TRUE(drawn.map.covered(40, 32));
@@ -358,7 +360,7 @@ void checkBody(Body (*make)(const Vec3d&, double), double scale, double far_offs
     view.orthographic = seed % 3 == 0;
     view.ortho_height = 5.0 * scale;
     for (const auto& [width, height] : {std::pair(320u, 180u), {61u, 43u}, {16u, 12u}}) {
-      const Drawn drawn(view, body.faces, {width, height, Coverage::kInner});
+      const Drawn drawn(view, body.faces, {width, height});
       int leaks = 0, outside = 0, within = 0;
       for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
@@ -429,7 +431,7 @@ TEST(Rasteriser, WhatIsFartherThanTheStoredDepthCannotBeSeen) {
       RandomScene scene(family, seed);
       for (const auto& [width, height] : {std::pair(9u, 5u), {64u, 36u}, {160u, 171u}}) {
         scene.view.aspect = static_cast<double>(width) / height;
-        const Drawn drawn(scene.view, scene.polygons, {width, height, Coverage::kInner});
+        const Drawn drawn(scene.view, scene.polygons, {width, height});
         checkRays(scene, drawn, std::string(family.name) + ", seed " + std::to_string(seed), covered);
       }
     }
@@ -475,7 +477,7 @@ TEST(Rasteriser, WhatIsSeenThroughGapsThatEndOnAnEdgeIsNotHidden) {
       for (const OraclePolygon& polygon : scene.polygons) {
         triangles.push_back(polygon.vertices);
       }
-      const Drawn drawn(scene.view, exact::setOfMesh(triangles), {96, 96, Coverage::kInner});
+      const Drawn drawn(scene.view, exact::setOfMesh(triangles), {96, 96});
       checkRays(scene, drawn, std::string(family.name) + ", seed " + std::to_string(seed), covered);
     }
     // Far from the origin these corners are rounded to millimetres and more, and little is sure.

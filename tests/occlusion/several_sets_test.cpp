@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sightline/comparison/kept_planes.h"
 #include "sightline/occlusion/occlusion_tree.h"
 #include "sightline/occlusion/supporting_planes.h"
 #include "tests/occlusion/small_scenes.h"
@@ -18,10 +19,6 @@ struct Tree {
   OcclusionTree structure;
   explicit Tree(OcclusionTreeVariant variant) : structure({.variant = variant}) {}
 };
-struct Planes {
-  SupportingPlanes structure;
-  explicit Planes(PlaneForm form) : structure({.form = form}) {}
-};
 
 // try_with(structure, name)
 template <typename Try>
@@ -31,10 +28,10 @@ void withEach(Try&& try_with) {
     Tree tree(variant);
     try_with(tree.structure, "tree variant " + std::to_string(static_cast<int>(variant)));
   }
-  for (const PlaneForm form : {PlaneForm::kThroughEye, PlaneForm::kThroughBox}) {
-    Planes planes(form);
-    try_with(planes.structure, "planes of form " + std::to_string(static_cast<int>(form)));
-  }
+  SupportingPlanes planes;
+  try_with(planes, "supporting planes");
+  KeptPlanes kept_planes;
+  try_with(kept_planes, "kept planes");
 }
 
 TEST(SeveralSets, EachHidesAsIfItWereAlone) {
@@ -141,7 +138,7 @@ TEST(SeveralSets, RelationsAreKeptOfTheFirstOneOnly) {
   OccluderSet moving = setOf(std::vector{wall(3, 5, -1, 1, -5)});
   const std::vector<OccluderId> of_own = all(own), of_moving = all(moving);
   const ChosenOccluders sets[] = {{&own, of_own}, {&moving, of_moving}};
-  SupportingPlanes planes({.form = PlaneForm::kThroughBox});
+  KeptPlanes planes;
   const Box behind_own{{-1, -1, -12}, {1, 1, -10}}, behind_moving{{7.5f, -1, -12}, {9, 1, -11}};
   for (int frame = 0; frame < 4; ++frame) {
     // In the same memory, with the same id and shape: before the box, then elsewhere.

@@ -33,6 +33,7 @@ struct AnySettings {
   AnyMethod method = AnyMethod::kOcclusionTree;
   OcclusionTreeVariant variant = OcclusionTreeVariant::kFME;
   SupportingPlanesSettings supporting_planes{};
+  KeptPlanesSettings kept_planes{};
   RasterSettings raster{};
   FocusSettings focus{};
   bool temporal_coherence = true;
@@ -52,7 +53,7 @@ struct AnySettings {
 };
 
 inline std::unique_ptr<CullingMethod> makeMethod(const AnySettings& settings) {
-  SupportingPlanesSettings kept = settings.supporting_planes;
+  KeptPlanesSettings kept = settings.kept_planes;
   kept.keep_relations = settings.temporal_coherence;
   switch (settings.method) {
     case AnyMethod::kFrustum:

@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "sightline/comparison/kept_planes.h"
 #include "sightline/culling/culling_method.h"
-#include "sightline/occlusion/supporting_planes.h"
 
 namespace sightline {
 
@@ -13,6 +13,6 @@ inline constexpr MethodTraits kKeptPlanesTraits{.occluders = true};
 // Teller 1997): the paper's form of supportingPlanes(), which is faster.
 // Statistics: "relations" with reused, unchanged, rebuilt, evicted, dropped, kept and bytes, see
 // RelationStats.
-std::unique_ptr<CullingMethod> keptPlanes(const SupportingPlanesSettings& settings = {});
+std::unique_ptr<CullingMethod> keptPlanes(const KeptPlanesSettings& settings = {});
 
 }  // namespace sightline

@@ -13,25 +13,37 @@
 
 namespace sightline {
 
-enum class Coverage : std::uint8_t {
-  // A pixel is covered only where all of it is: by one occluder, or by several that share edges of the mesh.
-  // Its
-  // depth is their farthest over the whole pixel.
-  kInner,
-  // A pixel is covered where its centre is, with the depth there (Poon and Wang 1999). NOT conservative:
-  // what is seen through a gap between centres is hidden. For comparison only.
-  kCentre,
+namespace occlusion {
+struct BufferPolygons;
+struct RasterBand;
+}  // namespace occlusion
+
+// A way to decide which pixels polygons cover, in place of the conservative one; such as centreCoverage() of
+// sightline/comparison/centre_coverage.h. Private headers of the library define its arguments.
+class CoverageRule {
+ public:
+  // Draws polygons into a band of rows. Polygons are given as they are, each alone: bodies are not drawn as
+  // one and no edges are shared. order: indices into polygons.polygons, the nearest first. Called once for
+  // each band, by several threads at a time.
+  virtual void draw(const occlusion::BufferPolygons& polygons, std::span<const std::uint32_t> order,
+                    const occlusion::RasterBand& band) const = 0;
+
+ protected:
+  ~CoverageRule() = default;
 };
 
 // Values out of range are clamped.
 struct RasterSettings {
-  std::uint32_t width = 320,
-                height = 180;  // pixels, 1 to kMaxMapSize each; any aspect: pixels need not be square
-  Coverage coverage = Coverage::kInner;
+  // Pixels, 1 to kMaxBufferSize each; of any aspect, for pixels need not be square.
+  std::uint32_t width = 320, height = 180;
+  // Null: the conservative rule. A pixel is covered only where all of it is: by one occluder, or by several
+  // that share edges of the mesh. Its depth is their farthest over the whole pixel. Other rules must outlive
+  // the settings, and may hide what can be seen.
+  const CoverageRule* coverage = nullptr;
 };
-inline constexpr std::uint32_t kMaxMapSize = 8192;
+inline constexpr std::uint32_t kMaxBufferSize = 8192;
 
-// Of a pixel that nothing covers.
+// The reciprocal depth of a pixel that nothing covers.
 inline constexpr float kUncovered = -std::numeric_limits<float>::max();
 
 // The lowest row comes first. Valid until the map is drawn again.

@@ -12,9 +12,7 @@ namespace {
 
 class KeptPlanesMethod final : public CullingMethod {
  public:
-  explicit KeptPlanesMethod(const SupportingPlanesSettings& settings) : settings_(settings) {
-    settings_.form = PlaneForm::kThroughBox;
-  }
+  explicit KeptPlanesMethod(const KeptPlanesSettings& settings) : settings_(settings) {}
 
   MethodTraits traits() const override { return kKeptPlanesTraits; }
 
@@ -34,7 +32,7 @@ class KeptPlanesMethod final : public CullingMethod {
   }
 
   void finish(CullStats& stats) override {
-    const SupportingPlanesStats counts = planes_->stats();
+    const KeptPlanesStats counts = planes_->stats();
     stats.occluders = counts.occluders;
     const RelationStats& relations = counts.relations;
     const std::uint64_t values[] = {relations.reused,  relations.unchanged, relations.rebuilt,
@@ -55,10 +53,10 @@ class KeptPlanesMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  SupportingPlanesSettings settings_;
+  KeptPlanesSettings settings_;
   const Hierarchy* hierarchy_ = nullptr;
   std::optional<culling::HierarchicalTraversal> traversal_;
-  std::optional<SupportingPlanes> planes_;
+  std::optional<KeptPlanes> planes_;
   std::vector<bool> entered_;  // by node, see KeptPlanesTraversal
   std::array<MethodStatistic, 7> statistics_{{{"relations", "reused", "relations reused"},
                                               {"relations", "unchanged", "of them unchanged"},
@@ -71,7 +69,7 @@ class KeptPlanesMethod final : public CullingMethod {
 
 }  // namespace
 
-std::unique_ptr<CullingMethod> keptPlanes(const SupportingPlanesSettings& settings) {
+std::unique_ptr<CullingMethod> keptPlanes(const KeptPlanesSettings& settings) {
   return std::make_unique<KeptPlanesMethod>(settings);
 }
 

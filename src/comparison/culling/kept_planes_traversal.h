@@ -3,8 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "sightline/comparison/kept_planes.h"
 #include "sightline/hierarchy/hierarchy.h"
-#include "sightline/occlusion/supporting_planes.h"
+
 #include "src/culling/hierarchical_traversal.h"
 
 namespace sightline::comparison {
@@ -12,7 +13,7 @@ namespace sightline::comparison {
 // Kept planes as the traversal asks them: the relations of what lies below a node are dropped when the
 // traversal ends at it. They stay while the node is merely outside the frustum.
 struct KeptPlanesTraversal {
-  SupportingPlanes& planes;
+  KeptPlanes& planes;
   const Hierarchy& hierarchy;
   std::vector<bool>&
       entered;  // by node: the traversal went on below it, and what is there may have relations

@@ -18,11 +18,11 @@ namespace {
 constexpr double kFarthest = 1e12;  // metres; beyond it everything has the same reciprocal depth
 
 // Of the whole polygon in the picture, by the shoelace formula.
-double areaOf(std::span<const MapPoint> corners) {
+double areaOf(std::span<const PixelPoint> corners) {
   double twice = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const MapPoint& a = corners[i];
-    const MapPoint& b = corners[i + 1 < corners.size() ? i + 1 : 0];
+    const PixelPoint& a = corners[i];
+    const PixelPoint& b = corners[i + 1 < corners.size() ? i + 1 : 0];
     twice += a.x * b.y - b.x * a.y;
   }
   return 0.5 * std::abs(twice);

@@ -87,7 +87,7 @@ class OccluderPicture {
   std::vector<ShownOccluder> shown_;
   std::vector<PixelSpan> spans_;
   std::vector<Corner> polygon_, scratch_;
-  std::vector<MapPoint> corners_px_;
+  std::vector<PixelPoint> corners_px_;
 };
 
 }  // namespace sightline::occluders

@@ -18,7 +18,7 @@ class DepthPyramidMethod final : public CullingMethod {
   explicit DepthPyramidMethod(const DepthPyramidMethodSettings& settings) : settings_(settings) {}
 
   MethodTraits traits() const override { return kDepthPyramidTraits; }
-  bool drawsBodies() const override { return settings_.raster.coverage == Coverage::kInner; }
+  bool drawsBodies() const override { return settings_.raster.coverage == nullptr; }
 
   void prepare(const CullingScene& scene) override {
     scene_ = scene;

@@ -22,7 +22,7 @@ class OpacityMapMethod final : public CullingMethod {
 
   MethodTraits traits() const override { return kOpacityMapTraits; }
   bool wantsOccluders() const override { return !coverage_->suspended(); }
-  bool drawsBodies() const override { return settings_.map.raster.coverage == Coverage::kInner; }
+  bool drawsBodies() const override { return settings_.map.raster.coverage == nullptr; }
 
   void prepare(const CullingScene& scene) override {
     traversal_.emplace(*scene.hierarchy, scene.object_bounds);

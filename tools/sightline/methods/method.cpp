@@ -18,7 +18,7 @@ std::unique_ptr<CullingMethod> makePlanes(const Setting& s) {
   if (s.plane_form == PlaneForm::kThroughEye) {
     return supportingPlanes({.joint_occlusion = s.kept_planes.joint_occlusion});
   }
-  SupportingPlanesSettings settings = s.kept_planes;
+  KeptPlanesSettings settings = s.kept_planes;
   settings.keep_relations = s.temporal_coherence;
   return keptPlanes(settings);
 }

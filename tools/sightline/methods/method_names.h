@@ -5,12 +5,13 @@
 #include <array>
 #include <cstdint>
 
+#include "sightline/comparison/centre_coverage.h"
+#include "sightline/comparison/kept_planes.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/choose_occluders.h"
 #include "sightline/occlusion/occlusion_tree.h"
 #include "sightline/occlusion/opacity_map.h"
 #include "sightline/occlusion/rasteriser.h"
-#include "sightline/occlusion/supporting_planes.h"
 #include "tools/sightline/command_line/names.h"
 
 namespace sightline::tool {
@@ -46,9 +47,9 @@ inline constexpr std::array<Name<TangentSearch>, 2> kTangentSearches{{
     {"tables", TangentSearch::kTables},
     {"all-vertices", TangentSearch::kAllVertices},
 }};
-inline constexpr std::array<Name<Coverage>, 2> kCoverages{{
-    {"inner", Coverage::kInner},
-    {"centre", Coverage::kCentre},
+inline const std::array<Name<const CoverageRule*>, 2> kCoverages{{
+    {"inner", nullptr},
+    {"centre", centreCoverage()},
 }};
 inline constexpr std::array<Name<DepthComparison>, 2> kDepthComparisons{{
     {"sparse", DepthComparison::kSparse},

@@ -101,7 +101,7 @@ Value resolution(Field<RasterSettings> field) {
     const std::vector<std::string> parts = splitAt(text, 'x');
     const auto size = [](const std::string& part) {
       const std::optional<std::uint32_t> pixels = parseWhole(part);
-      return pixels && *pixels >= 1 && *pixels <= kMaxMapSize ? pixels : std::nullopt;
+      return pixels && *pixels >= 1 && *pixels <= kMaxBufferSize ? pixels : std::nullopt;
     };
     const auto width = size(parts.front()), height = size(parts.back());
     if (parts.size() != 2 || !width || !height) {
@@ -111,7 +111,7 @@ Value resolution(Field<RasterSettings> field) {
     field(setting).height = *height;
     return true;
   };
-  return {": WIDTHxHEIGHT", fmt::format("a size in pixels like 320x180, each from 1 to {}", kMaxMapSize), set,
+  return {": WIDTHxHEIGHT", fmt::format("a size in pixels like 320x180, each from 1 to {}", kMaxBufferSize), set,
           [field](Setting setting) {
             return Json(fmt::format("{}x{}", field(setting).width, field(setting).height));
           }};
@@ -150,7 +150,7 @@ bool hasCoherence(const Setting& setting) {
   return setting.method->name != "supporting-planes" || keepsPlanes(setting);
 }
 bool mayFocus(const Setting& setting) {
-  return setting.raster.coverage == Coverage::kInner;
+  return setting.raster.coverage == nullptr;
 }
 bool focuses(const Setting& setting) {
   return mayFocus(setting) && setting.focus.magnification > 1.0;
@@ -213,7 +213,7 @@ const std::vector<Option>& allOptions() {
       {"coverage", kOwn, always, kList, kWhenChanged,
        "pixels that occluders cover wholly, or at their centres, which culls what can be seen",
        oneOf(
-           kCoverages, +[](Setting& s) -> Coverage& { return s.raster.coverage; })},
+           kCoverages, +[](Setting& s) -> const CoverageRule*& { return s.raster.coverage; })},
       {"focus", kOwn, mayFocus, kList, kWhenChanged,
        "depth pyramid: magnification of a second map where the first one hides least; 0: none",
        decimal(+[](Setting& s) -> double& { return s.focus.magnification; })},
@@ -230,7 +230,7 @@ const std::vector<Option>& allOptions() {
       {"tolerance", kOwn, always, kList, kWhenChanged,
        "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
        whole(
-           0, kMaxMapSize * kMaxMapSize,
+           0, kMaxBufferSize * kMaxBufferSize,
            +[](Setting& s) -> std::uint32_t& { return s.opacity_map.map.tolerance; })},
       {"coverage-ratio", kOwn, always, kList, kWhenChanged,
        "opacity map: what is covered by less than this part counts as visible with all in it",
@@ -404,7 +404,7 @@ bool Setting::usesDepthBuffer() const {
 
 bool Setting::approximate() const {
   const bool tolerates = method->name == "opacity-map" && opacity_map.map.tolerance > 0;
-  return (usesDepthBuffer() && raster.coverage == Coverage::kCentre) || tolerates;
+  return (usesDepthBuffer() && raster.coverage != nullptr) || tolerates;
 }
 
 bool Setting::testsDetailObjects() const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/base/result.h"
+#include "sightline/comparison/kept_planes.h"
 #include "sightline/comparison/viewpoint_database.h"
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
@@ -41,7 +42,7 @@ struct Setting {
   bool temporal_coherence = true;  // of each method that has it
   OcclusionTreeVariant variant = OcclusionTreeMethodSettings{}.variant;
   PlaneForm plane_form = PlaneForm::kThroughEye;
-  SupportingPlanesSettings kept_planes{};
+  KeptPlanesSettings kept_planes{};
   RasterSettings raster{};  // of the opacity map and the depth pyramid
   OpacityMapMethodSettings opacity_map{};
   FocusSettings focus{};

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "oracle/exact_visibility.h"
+#include "sightline/comparison/centre_coverage.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/threads.h"
@@ -317,7 +318,7 @@ class Experiments {
       const Setting om = opacitySetting(OccluderChoice::kMinimumSets, kOccluders);
       Setting pixelwise = om, adaptive = om, centre = om;
       pixelwise.opacity_map.map.depth = DepthComparison::kPixelwise;
-      centre.raster.coverage = Coverage::kCentre;
+      centre.raster.coverage = centreCoverage();
       std::vector<std::string> names{"VF", "OM", "PC", "OM, centres (not conservative)"};
       std::vector<Setting> settings{frustumSetting(), om, pixelwise, centre};
       if (drawn()) {

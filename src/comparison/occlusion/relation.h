@@ -16,9 +16,8 @@
 #include <span>
 #include <vector>
 
-#include "sightline/occlusion/supporting_planes.h"
-#include "src/occlusion/eye_occluder.h"
-#include "src/occlusion/eye_planes.h"
+#include "sightline/comparison/kept_planes.h"
+#include "src/occlusion/active_occluders.h"
 
 namespace sightline::occlusion {
 
@@ -50,52 +49,16 @@ struct Relation {
   std::uint32_t quads() const { return (edge_count + 3u) / 4u; }
 };
 
-// An edge of the outline, drawn in; relative to the occluder's first vertex.
-struct InsetEdge {
-  Vec3d point, direction;  // unit
-};
-
-// An occluder in use for one view.
-struct Member {
-  EyeOccluder seen;
-  std::uint32_t set = 0;   // its set, by the number in SupportingPlanes::build()
-  Vec3d origin;            // its first vertex, scene space
-  Vec3d eye;               // relative to the origin; orthographic: the direction to the eye
-  double eye_w = 1.0;      // 0: orthographic
-  double threshold = 0.0;  // a value above it is surely positive
-  double inset = 0.0;      // metres, 2^inset_exponent: at least seen.inset
-  std::int16_t inset_exponent = 0;
-  std::uint16_t edge_count = 0;
-  bool near_clipped = false;
-  Plane near_cut;  // through the eye, where the near plane cuts it; what is left lies behind; relative to the
-                   // eye
-  std::uint32_t first_edge = 0;        // into the inset edges of all members
-  std::uint32_t first_seam = kNotYet;  // into the seams of all members, once they were asked for
-  std::uint64_t sealable = 0;          // edges that have a seam, a bit each; likewise
-
-  static constexpr std::uint32_t kNotYet = 0xffffffffu;
-};
-
-// Nothing where the occluder can't be used.
-std::optional<Member> makeMember(const Eye& eye, const OccluderSet& set, OccluderId id);
-
-// The occluder's edges, counter-clockwise from its front. Appends Occluder::vertex_count of them.
-void appendInsetEdges(const OccluderSet& set, const Member& member, std::vector<InsetEdge>& edges);
-
 // On which side of the occluder's plane a box lies, as the eye sees it.
 enum class PlaneSide : std::uint8_t { kFront, kCrossing, kBehind };
-PlaneSide sideOf(const Member& member, const Box& box);
+PlaneSide sideOf(const ActiveOccluder& occluder, const Box& box);
 
 // Fills a relation and its planes; the box does not lie in front.
-void makeRelation(const Member& member, std::span<const InsetEdge> edges, const Box& box, PlaneSide side,
-                  TangentSearch search, Relation& relation, std::span<PlaneQuad> planes);
+void makeRelation(const ActiveOccluder& occluder, std::span<const InsetEdge> edges, const Box& box,
+                  PlaneSide side, TangentSearch search, Relation& relation, std::span<PlaneQuad> planes);
 
-// Looks where the eye is. path: its length so far.
-void evaluate(const Member& member, std::span<const PlaneQuad> planes, double path, Relation& relation);
-
-// The occluder as lookPast() needs it, what the near plane clips left out; appends its planes. edges: its
-// own.
-EyeShape eyeShapeOf(const Eye& eye, const Member& member, std::span<const InsetEdge> edges,
-                    std::vector<EyeQuad>& quads);
+// Finds which planes the eye satisfies now. path: length of the eye's path so far.
+void evaluate(const Eye& eye, const ActiveOccluder& occluder, std::span<const PlaneQuad> planes, double path,
+              Relation& relation);
 
 }  // namespace sightline::occlusion

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "src/occlusion/relation.h"
+#include "src/comparison/occlusion/relation.h"
 
 namespace sightline::occlusion {
 
@@ -15,7 +15,7 @@ namespace sightline::occlusion {
 // the budget at once, by the frame of last use. What finds no room within a frame is not kept.
 class RelationStore {
  public:
-  using Item = SupportingPlanes::Item;
+  using Item = KeptPlanes::Item;
   using Index = std::uint32_t;
   static constexpr Index kNone = 0xffffffffu;
 

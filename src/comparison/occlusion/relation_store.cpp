@@ -1,4 +1,4 @@
-#include "src/occlusion/relation_store.h"
+#include "src/comparison/occlusion/relation_store.h"
 
 #include <algorithm>
 #include <array>
