@@ -231,8 +231,8 @@ std::uint64_t Culler::statistic(std::string_view group, std::string_view name) c
   }
   return 0;
 }
-DepthMapView Culler::depthBuffer() const {
-  return impl_->keepsEverything() ? DepthMapView{} : impl_->method->depthBuffer();
+DepthBufferView Culler::depthBuffer() const {
+  return impl_->keepsEverything() ? DepthBufferView{} : impl_->method->depthBuffer();
 }
 
 void Culler::setParallelFor(ParallelFor parallel_for) {

@@ -250,7 +250,7 @@ void WideTraversal::Walker::askFineMap(const WideNode& node, std::uint32_t begin
   found_.asked_child.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
     const BoxAnswer& answer = found_.answers[i];
-    if (answer.visibility == Visibility::kHidden || !answer.on_map) {
+    if (answer.visibility == Visibility::kHidden || !answer.on_buffer) {
       continue;
     }
     if (i >= node.node_count) {

@@ -13,15 +13,15 @@
 // +- cross(direction, corner i)[a]: two products compared. The length plays no part, and flat boxes are no
 // special case: their edges of no length still have a direction.
 //
-// Rounding is monotone: products that differ after rounding differed so before. Only equal ones need a look
-// at what rounding took away.
+// Rounding is monotone: products that differ after rounding differed so before. For equal products the
+// rounding errors are compared.
 
 namespace sightline::geometry {
 namespace {
 
 constexpr unsigned kSigns = 6, kAllSigns = (1u << kSigns) - 1;
 
-// The sign of left - right, products of two factors each.
+// Returns the sign of left - right, each a product of two factors.
 struct Products {
   double left_a, left_b, right_a, right_b;
 
@@ -37,7 +37,8 @@ struct Products {
   }
 };
 
-// Bit i of each set: edge i has that sign; in neither: a tie. `products(i)` gives those of edge i.
+// Bit i of a set is set where edge i has that sign; a tie is in neither. products(i): the two products of
+// edge i.
 struct Signs {
   unsigned positive = 0, negative = 0;
 
@@ -226,7 +227,8 @@ BoxTangents tangentsOfAllVertices(const Vec3d& box_min, const Vec3d& box_max, co
       const double side = other == corner ? 0.0 : dot(normal, x);
       above = above || side > 0.0;
       below = below || side < 0.0;
-      // Two corners in one plane with the line, on different sides of it or on it: the line meets the box.
+      // Two corners in one plane with the line, on different sides of it or on it: the line intersects the
+      // box.
       if (side == 0.0 && !(dot(normal, cross(direction, x)) > 0.0)) {
         return {};
       }

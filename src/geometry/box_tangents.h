@@ -30,7 +30,7 @@ constexpr Vec3d cornerOf(const Vec3d& box_min, const Vec3d& box_max, BoxCorner c
 
 // With det(a, b, c) = dot(cross(a, b), c), for every corner x of the box:
 //   det(direction, low, x) >= 0 and det(direction, high, x) <= 0.
-// Not existing where the line meets the box; touching it is meeting it. Where several corners lie in a
+// They do not exist where the line intersects or touches the box. Where several corners lie in a
 // tangent plane, any of them is named; the plane is well defined all the same: a tangent vertex is never on
 // the line.
 struct BoxTangents {

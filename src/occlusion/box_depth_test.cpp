@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<float, kBlock>;
 
-// Cells of a level, first and last; at most eight along each axis.
+// The first and last cells of a range of a level, at most eight along each axis.
 struct CellRange {
   std::uint32_t x0, y0, x1, y1;
 };
@@ -30,7 +30,7 @@ HWY_INLINE CellRange cellsOf(const PixelBox& image, std::uint32_t level) {
   return {x0 >> shift, y0 >> shift, x1 >> shift, y1 >> shift};
 }
 
-// Those of a cell of the level above that the image reaches.
+// Returns the cells within cell (x, y) of the level above that the image reaches.
 HWY_INLINE CellRange cellsWithin(const PixelBox& image, std::uint32_t level, std::uint32_t x,
                                  std::uint32_t y) {
   const CellRange all = cellsOf(image, level);
@@ -38,7 +38,7 @@ HWY_INLINE CellRange cellsWithin(const PixelBox& image, std::uint32_t level, std
           std::min(all.x1, x * kBlock + kBlock - 1), std::min(all.y1, y * kBlock + kBlock - 1)};
 }
 
-// Where eight cells are read from, so that the range is among them and all lie in the row.
+// Returns the first of eight cells that contain the range and all lie in the row.
 HWY_INLINE std::uint32_t readFrom(const DepthLevel& level, const CellRange& range) {
   return std::min(range.x0, level.stride - kBlock);
 }
@@ -60,30 +60,30 @@ HWY_INLINE std::uint32_t bitsOf(hn::Mask<Lanes> mask, std::size_t lane) {
   return static_cast<std::uint32_t>(bits[0]) << lane;
 }
 
-// Every cell's reciprocal depth is greater.
+// Whether the reciprocal depth of every cell is greater than `than`.
 HWY_INLINE bool allNearer(const DepthLevel& level, const CellRange& range, float than) {
   const Lanes d;
   const std::uint32_t from = readFrom(level, range);
   bool all = true;
   forLanes(range, from, [&](std::size_t lane, auto in_range, auto) HWY_ATTR {
-    const float* row = level.least + std::size_t{range.y0} * level.stride + from + lane;
-    auto least = hn::LoadU(d, row);
+    const float* row = level.min + std::size_t{range.y0} * level.stride + from + lane;
+    auto min = hn::LoadU(d, row);
     for (std::uint32_t y = range.y0; y < range.y1; ++y) {
       row += level.stride;
-      least = hn::Min(least, hn::LoadU(d, row));
+      min = hn::Min(min, hn::LoadU(d, row));
     }
-    all = all && hn::AllFalse(d, hn::And(in_range, hn::Not(hn::Gt(least, hn::Set(d, than)))));
+    all = all && hn::AllFalse(d, hn::And(in_range, hn::Not(hn::Gt(min, hn::Set(d, than)))));
   });
   return all;
 }
 
-// Some pixel of the image's rectangle is nearer.
+// Whether the reciprocal depth of some pixel of the image's rectangle is greater than `than`.
 bool anyNearer(std::span<const DepthLevel> levels, std::uint32_t level, const PixelBox& image,
                const CellRange& range, float than) {
   const Lanes d;
   const std::uint32_t from = readFrom(levels[level], range), shift = kBlockShift * level;
   for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-    const float* row = levels[level].greatest + std::size_t{y} * levels[level].stride + from;
+    const float* row = levels[level].max + std::size_t{y} * levels[level].stride + from;
     std::uint32_t nearer = 0;
     forLanes(range, from, [&](std::size_t lane, auto in_range, auto) HWY_ATTR {
       nearer |= bitsOf(hn::And(in_range, hn::Gt(hn::LoadU(d, row + lane), hn::Set(d, than))), lane);
@@ -100,16 +100,16 @@ bool anyNearer(std::span<const DepthLevel> levels, std::uint32_t level, const Pi
   return false;
 }
 
-// One box, asked cell by cell with its own outline and depth.
+// Compares one box with cells by its own outline and depth.
 struct Refinement {
   std::span<const DepthLevel> levels;
   const PixelBox& image;
   const BoxOutline& outline;
 
-  // Of eight cells in a row: bit i for the one at `from` + i.
+  // The result for eight cells in a row; bit i is for the cell `from` + i.
   struct Row {
-    std::uint32_t open = 0;    // those where the box is not surely hidden
-    bool surely_open = false;  // in some pixel below one of them it surely is not
+    std::uint32_t open = 0;    // cells where the box is not surely hidden
+    bool surely_open = false;  // in some pixel of these cells the box is surely not hidden
   };
 
   HWY_INLINE Row ask(std::uint32_t level, const CellRange& range, std::uint32_t from, std::uint32_t y) const {
@@ -117,41 +117,41 @@ struct Refinement {
     const float size = static_cast<float>(1u << (kBlockShift * level));
     const float y_px = static_cast<float>(y) * size - static_cast<float>(image.y0);
     const auto x_origin = hn::Set(d, static_cast<float>(image.x0));
-    const float* min_row = levels[level].least + std::size_t{y} * levels[level].stride + from;
+    const float* min_row = levels[level].min + std::size_t{y} * levels[level].stride + from;
     Row row;
     forLanes(range, from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
-      // The greatest value over a cell, whose lower left corner is at x, y.
-      const auto greatest = [&](const MapFunction& f) HWY_ATTR {
+      // Returns the greatest value over the cell whose lower left corner is at x, y.
+      const auto max = [&](const PixelFunction& f) HWY_ATTR {
         const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
         const float in_row = f.along_y * y_px + (f.at_origin + growth);
         return hn::Add(hn::Mul(hn::Set(d, f.along_x), x_px), hn::Set(d, in_row));
       };
       auto own = hn::Set(d, image.nearest);
       for (std::uint32_t i = 0; i < outline.face_count; ++i) {
-        own = hn::Min(own, greatest(outline.faces[i]));
+        own = hn::Min(own, max(outline.faces[i]));
       }
-      const auto least = hn::LoadU(d, min_row + lane);
-      auto met = hn::And(in_range, hn::Le(least, own));
-      if (hn::AllFalse(d, met)) {
+      const auto min = hn::LoadU(d, min_row + lane);
+      auto intersecting = hn::And(in_range, hn::Le(min, own));
+      if (hn::AllFalse(d, intersecting)) {
         return;
       }
       // All of the cell lies in the outline, and a pixel of it is not before the box's farthest point.
-      auto surely = hn::Le(least, hn::Set(d, image.farthest));
+      auto surely = hn::Le(min, hn::Set(d, image.farthest));
       for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-        const MapFunction& f = outline.edges[i];
-        const auto value = greatest(f);
-        met = hn::And(met, hn::Ge(value, hn::Zero(d)));
+        const PixelFunction& f = outline.edges[i];
+        const auto value = max(f);
+        intersecting = hn::And(intersecting, hn::Ge(value, hn::Zero(d)));
         surely =
             hn::And(surely, hn::Ge(value, hn::Set(d, (std::abs(f.along_x) + std::abs(f.along_y)) * size)));
       }
-      row.open |= bitsOf(met, lane);
-      row.surely_open = row.surely_open || !hn::AllFalse(d, hn::And(met, surely));
+      row.open |= bitsOf(intersecting, lane);
+      row.surely_open = row.surely_open || !hn::AllFalse(d, hn::And(intersecting, surely));
     });
     return row;
   }
 
-  // Some pixel below these cells is one where the box is not surely hidden.
+  // Whether in some pixel of these cells the box is not surely hidden.
   bool anyOpen(std::uint32_t level, const CellRange& range) const {
     const std::uint32_t from = readFrom(levels[level], range);
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
@@ -170,9 +170,9 @@ struct Refinement {
   }
 };
 
-// The map in the pixel of the box's centre, which its outline surely meets, is not before its farthest point.
-// Settles most boxes that can be seen.
-HWY_INLINE bool seenAtCentre(const DepthLevel& map, const PixelView& view, const Box& box,
+// Whether the buffer, in the pixel of the box's centre, is not before the box's farthest point. The outline
+// surely intersects that pixel. This settles most boxes that can be seen.
+HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const PixelView& view, const Box& box,
                              const PixelBox& image) {
   const Vec3d centre = view.toCamera(center(box) - view.eye);
   const double inverse = view.inverseDepth(centre);
@@ -180,13 +180,13 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& map, const PixelView& view, const
   if (!(x >= image.x0 && y >= image.y0 && x < image.x1 + 1.0 && y < image.y1 + 1.0)) {
     return false;
   }
-  const std::size_t at = static_cast<std::size_t>(y) * map.stride + static_cast<std::size_t>(x);
-  return !(map.least[at] > image.farthest);
+  const std::size_t at = static_cast<std::size_t>(y) * buffer.stride + static_cast<std::size_t>(x);
+  return !(buffer.min[at] > image.farthest);
 }
 
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
                    const PixelBox& image, bool plain, bool quick) {
-  if (image.place != BoxPlace::kOnMap) {
+  if (image.place != BoxPlace::kOnBuffer) {
     return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
   }
   if (levels.empty()) {
@@ -217,7 +217,7 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   if (refinement.anyOpen(level, range)) {
     return Visibility::kPartial;
   }
-  // What the map does not hide at all is told from what it hides, whether asked plainly or not.
+  // A box of which the buffer hides nothing is kVisible, also for `plain`.
   return plain && !anyNearer(levels, level, image, range, image.farthest) ? Visibility::kVisible
                                                                           : Visibility::kHidden;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Boxes against a depth map and its levels.
+// Compares boxes with a depth buffer and its levels.
 
 #include <span>
 
@@ -12,11 +12,11 @@
 
 namespace sightline::occlusion {
 
-// The image of each box is given; all are of one view and one size of the map. A box is hidden where every
-// pixel of its rectangle is either nearer than the box's nearest point, or not met by the box's outline, or
-// nearer than the box is anywhere in that pixel. Not hidden, it is visible where no pixel of the rectangle is
-// nearer than its farthest point, and partial otherwise. Without levels nothing on the map is hidden. Every
-// instruction set gives the same answers.
+// Classifies boxes; images and answers: one for each box, of one view and one size of the buffer. A box is
+// hidden where every pixel of its rectangle is nearer than the box's nearest point, or disjoint from the
+// box's outline, or nearer than the box is anywhere in that pixel. A box that is not hidden is visible where
+// no pixel of the rectangle is nearer than its farthest point, and partial otherwise. Without levels no box
+// on the buffer is hidden. Every instruction set gives the same answers.
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 

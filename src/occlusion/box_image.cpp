@@ -61,7 +61,7 @@ void BoxImage::keepCuts(std::uint32_t count) {
 
 bool BoxImage::cut(const TreeNode& node, bool front) {
   // Orthographic distances are of all sizes, and an edge is drawn in by a part of its own occluder's reach
-  // alone: there each plane is taken as a seam's, whose two sides overlap.
+  // alone: there each plane is taken as one of a shared edge, whose two sides overlap.
   const bool overlaps = node.tolerance != 0.0 || eye_->orthographic;
   const double width = overlaps ? overlapWidth(node.tolerance, reach_, *eye_, scale_) : 0.0;
   const Plane plane{node.plane.normal, node.plane.offset + (front ? width : -width)};
@@ -73,7 +73,7 @@ bool BoxImage::cut(const TreeNode& node, bool front) {
     piece = {};
   }
   parts_.push_back({piece, stack_.corners.size()});
-  return piece.count != 0 || parts_.front().piece.count == 0;  // of an image that is not known, all is left
+  return piece.count != 0 || parts_.front().piece.count == 0;  // cuts leave all of an image that is not known
 }
 
 }  // namespace sightline::occlusion

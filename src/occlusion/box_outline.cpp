@@ -1,6 +1,6 @@
-// In double precision, relative to the eye.
+// All is computed in double precision, relative to the eye.
 //
-// A ray through the place (X, Y) of the map has the direction r = tx right + ty up + forward, where
+// A ray through the place (X, Y) of the buffer has the direction r = tx right + ty up + forward, where
 // tx = (X - middle_x) / scale_x, ty likewise; right, up and forward are PixelView's unit_x, unit_y, unit_z.
 //
 //   Edge along the axis e through the corner a:  the plane through the eye has the normal n = a x e, which
@@ -26,12 +26,12 @@ constexpr double kWideRounding = 0x1p-48;    // of the terms in double precision
 constexpr double kSingleRounding = 0x1p-21;  // of coefficients, products and sums in single precision: 5 u
 constexpr double kTooLarge = 1e30;           // functions beyond this say nothing
 
-// Where the functions have their origin, and how far from it they are asked.
+// The origin of the functions, and how far from it they are evaluated.
 struct Origin {
-  double tx, ty;        // there
-  double per_x, per_y;  // of tx and ty, for a pixel
+  double tx, ty;        // at the origin
+  double per_x, per_y;  // change of tx and ty for a pixel
   double reach;         // pixels
-  double extent;        // of tx, ty and 1 together, at most, within reach
+  double extent;        // a bound of |tx| + |ty| + 1 within reach
 };
 
 Origin originAt(const PixelView& view, std::uint32_t x, std::uint32_t y, double reach) {
@@ -45,9 +45,9 @@ Origin originAt(const PixelView& view, std::uint32_t x, std::uint32_t y, double 
   return o;
 }
 
-// The function f.x tx + f.y ty + f.z. size: bounds the sum of the terms in each of the three. False where it
-// says nothing.
-bool bounded(const Origin& o, const Vec3d& f, double size, MapFunction& out) {
+// Makes the function f.x tx + f.y ty + f.z. size: a bound of the sum of the terms in each of the three.
+// False: the values are too large for single precision.
+bool bounded(const Origin& o, const Vec3d& f, double size, PixelFunction& out) {
   const double along_x = f.x * o.per_x, along_y = f.y * o.per_y;
   const double at_origin = f.x * o.tx + f.y * o.ty + f.z;
   const double wide = size * o.extent;

@@ -1,7 +1,7 @@
 // Based on: Greene, Kass, Miller. Hierarchical Z-Buffer Visibility. SIGGRAPH 1993; Zhang, Manocha, Hudson,
 // Hoff. Visibility Culling Using Hierarchical Occlusion Maps. SIGGRAPH 1997.
-// Differs from the papers in: the map is conservative; a box is compared by its own outline and depth, down
-// to single pixels, before it is called visible; docs/algorithms/depth-pyramid.md has the rest.
+// Differs from the papers in: the depth buffer is conservative; a box is compared by its own outline and
+// depth, down to single pixels, before it is called visible; docs/algorithms/depth-pyramid.md has the rest.
 
 #include "sightline/occlusion/depth_pyramid.h"
 
@@ -32,7 +32,7 @@ struct DepthPyramid::Impl {
 
 namespace {
 
-// Boxes whose images are made at once.
+// Boxes that are projected in one call.
 constexpr std::size_t kGroup = 16;
 
 template <typename Use>
@@ -57,10 +57,10 @@ void DepthPyramid::build(const View& view, const OccluderSet& set, std::span<con
 }
 
 void DepthPyramid::begin(const View& view) {
-  const DepthMapView map = impl_->raster.map();
+  const DepthBufferView buffer = impl_->raster.depthBuffer();
   impl_->raster.begin(view);
-  impl_->view = PixelView(view, map.width, map.height);
-  impl_->projection = BoxProjection(impl_->view, map.width, map.height);
+  impl_->view = PixelView(view, buffer.width, buffer.height);
+  impl_->projection = BoxProjection(impl_->view, buffer.width, buffer.height);
   impl_->finished = false;
   impl_->stats.raster = impl_->raster.stats();
 }
@@ -73,7 +73,7 @@ void DepthPyramid::draw(const OccluderSet& set, std::span<const OccluderId> chos
 }
 
 void DepthPyramid::finish(const ParallelFor& parallel_for) {
-  impl_->levels.build(impl_->raster.map(), parallel_for);
+  impl_->levels.build(impl_->raster.depthBuffer(), parallel_for);
   impl_->finished = true;
 }
 
@@ -100,9 +100,9 @@ void DepthPyramid::classifyInView(std::span<const Box> boxes, std::span<BoxAnswe
     projectBoxes(impl_->projection, boxes.subspan(first, count), {images, count});
     for (std::size_t i = 0; i < count; ++i) {
       const BoxPlace place = images[i].place;
-      answers[first + i] = images[i].answer(place == BoxPlace::kOutside ? Visibility::kHidden
-                                            : place == BoxPlace::kOnMap ? Visibility::kVisible
-                                                                        : Visibility::kPartial);
+      answers[first + i] = images[i].answer(place == BoxPlace::kOutside    ? Visibility::kHidden
+                                            : place == BoxPlace::kOnBuffer ? Visibility::kVisible
+                                                                           : Visibility::kPartial);
     }
   });
 }
@@ -110,8 +110,8 @@ void DepthPyramid::classifyInView(std::span<const Box> boxes, std::span<BoxAnswe
 std::uint32_t DepthPyramid::levels() const {
   return static_cast<std::uint32_t>(impl_->usableLevels().size());
 }
-DepthMapView DepthPyramid::map() const {
-  return impl_->raster.map();
+DepthBufferView DepthPyramid::depthBuffer() const {
+  return impl_->raster.depthBuffer();
 }
 const DepthPyramidStats& DepthPyramid::stats() const {
   return impl_->stats;

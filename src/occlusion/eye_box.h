@@ -12,7 +12,7 @@ struct EyeBox {
   static EyeBox of(const Box& box, const Vec3d& eye) { return {Vec3d(box.min) - eye, Vec3d(box.max) - eye}; }
   Vec3d center() const { return (min + max) * 0.5; }
   Vec3d half() const { return (max - min) * 0.5; }
-  // Magnitude of its farthest corner.
+  // The l1Norm() of its farthest corner, metres.
   double farthest() const { return l1Norm(sightline::max(abs(min), abs(max))); }
 };
 

@@ -6,12 +6,14 @@
 namespace sightline::occlusion {
 namespace {
 
-// Seams that may appear to lie farther from their line than this (radians; orthographic: metres) are not
-// closed.
-constexpr double kWidestSeam = 0.01;
+// Edges of the mesh that may appear to lie farther from the shared line than this (radians; orthographic:
+// metres) are not shared.
+constexpr double kMaxSharedEdgeWidth = 0.01;
 
-// How far the mesh's seam may appear to lie from its line: both occluders may be off by their slack.
-double seamTolerance(const Eye& eye, const EyeOccluder& occluder, const Outline& outline, double line_sine) {
+// Returns how far the mesh's own edge may appear to lie from the shared line: both occluders may be off by
+// their slack.
+double sharedEdgeTolerance(const Eye& eye, const EyeOccluder& occluder, const Outline& outline,
+                           double line_sine) {
   const double rounding = 0x1p-49 / line_sine;
   if (eye.orthographic) {
     return 4.0 * occluder.deviation + rounding * occluder.reach;
@@ -118,15 +120,15 @@ std::optional<SharedEdge> sharedEdgeOf(const Eye& eye, const OccluderSet& set, c
   const auto& line = set.lines[edge.line];
   const Vec3d p = Vec3d(line[0]) - eye.position, q = Vec3d(line[1]) - eye.position;
   double sine = 0.0;
-  SharedEdge seam;
-  seam.plane = eye.shadowPlane(p, q, sine);
-  seam.flipped = dot(q - p, outline.to - outline.from) < 0.0;
-  seam.tolerance = seamTolerance(eye, seen, outline, sine);
-  if (!(sine > kShortestEdgeSine) || !(seam.tolerance < kWidestSeam) ||
-      !(seam.oriented().evaluate(seen.centroid) < 0.0)) {
+  SharedEdge shared;
+  shared.plane = eye.shadowPlane(p, q, sine);
+  shared.flipped = dot(q - p, outline.to - outline.from) < 0.0;
+  shared.tolerance = sharedEdgeTolerance(eye, seen, outline, sine);
+  if (!(sine > kShortestEdgeSine) || !(shared.tolerance < kMaxSharedEdgeWidth) ||
+      !(shared.oriented().evaluate(seen.centroid) < 0.0)) {
     return std::nullopt;
   }
-  return seam;
+  return shared;
 }
 
 }  // namespace sightline::occlusion

@@ -1,7 +1,7 @@
 #pragma once
 
 // An occluder as one eye sees it: whether it can be used from there, with which margins, and which of its
-// edges may be sealed. What every occlusion structure starts from.
+// edges are shared. Every occlusion structure starts from it.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace sightline::occlusion {
 
-// The eye as occluders need it: a point, or a direction for orthographic views. Everything is relative to it.
+// The eye as occluders need it: a point, or a direction for orthographic views.
 struct Eye {
   Vec3d position;
   Vec3d forward;
@@ -23,48 +23,50 @@ struct Eye {
   explicit Eye(const View& view)
       : position(view.eye), forward(view.forward), near(view.near), orthographic(view.orthographic) {}
 
-  // A plane through the eye and the line from p to q, unit normal, such that a polygon with the edge p -> q,
-  // counter-clockwise as seen from the eye, lies behind it. sine: of the angle the edge spans (1 for
-  // orthographic eyes).
+  // Returns the plane through the eye and the line from p to q, with unit normal, such that a polygon with
+  // the edge p -> q, counter-clockwise as seen from the eye, lies behind it. sine: becomes that of the angle
+  // that the edge spans (1 for orthographic eyes).
   Plane shadowPlane(const Vec3d& p, const Vec3d& q, double& sine) const;
 };
 
+// Planes and positions are relative to the eye.
 struct EyeOccluder {
   OccluderId id;
   bool flipped = false;      // seen from the back of a double-sided polygon
-  Plane support;             // of the polygon, unit normal towards the eye, relative to the eye
+  Plane support;             // the polygon's plane, unit normal towards the eye
   double inset = 0.0;        // metres by which open edges are drawn in
   double deviation = 0.0;    // metres, Occluder::slack
-  double depth_slack = 0.0;  // metres that a point must be behind it, in addition to kDepthMargin
-  double reach = 0.0;        // largest magnitude of a corner, relative to the eye
+  double depth_slack = 0.0;  // metres by which a point must be behind it, in addition to kDepthMargin
+  double reach = 0.0;        // largest l1Norm() of a corner, metres
   double clip_depth = 0.0;   // metres along forward: what is nearer hides nothing
   double nearest = 0.0;      // depth of its nearest corner, metres along forward
-  double grazing = 0.0;      // sine of the angle at which it is seen, at least
-  Vec3d centroid;            // of the unclipped polygon, relative to the eye
+  double grazing = 0.0;      // a lower bound of the sine of the angle at which it is seen
+  Vec3d centroid;            // of the unclipped polygon
 };
 
-// Metres in its plane by which the outline of an occluder is drawn in: what a point that is off by the slack
-// may appear to move there, with room for sharp corners of three degrees. slack, reach: metres, as in
-// EyeOccluder.
+// Returns the metres by which an occluder's outline is drawn in, in its plane: as far as a point that is off
+// by the slack may appear to move there, with room for sharp corners of three degrees. slack, reach: metres,
+// as in EyeOccluder.
 inline double outlineInset(double slack, double reach, double grazing) {
   return (32.0 * slack + kEdgeMargin * reach) / grazing;
 }
-// EyeOccluder::depth_slack: what kEdgeMargin allows sideways becomes depth at a grazing angle.
+// Returns EyeOccluder::depth_slack: at a grazing angle, what kEdgeMargin allows sideways becomes depth.
 inline double depthSlack(double slack, double reach, double grazing) {
   return (4.0 * slack + kDepthMargin * 0x1p-8 * reach) / grazing;
 }
-// EyeOccluder::clip_depth.
+// Returns EyeOccluder::clip_depth.
 inline double clipDepth(double near, double depth_slack, double reach) {
   return near + depth_slack + kDepthMargin * (near + reach);
 }
 
-// Without the inset, which depends on the structure. Nothing where the occluder is of no use from here: seen
-// from behind, edge-on, wholly before the near plane.
+// Returns the occluder without its inset, which depends on the structure. Nothing where the occluder cannot
+// be used from here, because it is seen from behind, edge-on, or lies wholly before the near plane.
 std::optional<EyeOccluder> faceOccluder(const Eye& eye, const OccluderSet& set, OccluderId id);
-// Whether a polygon that is drawn in by so much keeps its shape.
+// Whether a polygon that is drawn in by `inset` metres keeps its shape.
 bool keepsShape(const Occluder& occluder, double inset);
 
-// With the inset that shadow planes through its edges need; nothing also where that is too large.
+// Returns the occluder with the inset that shadow planes through its edges need; nothing also where that
+// inset is too large.
 std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, OccluderId id);
 
 // An edge as the eye sees it, the polygon on its left, relative to the eye.
@@ -75,27 +77,28 @@ struct Outline {
 // side: 0 to vertex_count - 1, counter-clockwise as the eye sees it.
 Outline outlineOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& occluder, std::uint32_t side);
 
-// A seam that may be sealed: the shadow plane through its line.
+// An edge at which other occluders may go on: the shadow plane through the line that they share.
 struct SharedEdge {
-  Plane plane;             // relative to the eye, as the line is directed
-  bool flipped = false;    // the line runs against the outline
-  double tolerance = 0.0;  // how far the mesh's seam may appear from the plane (VolumeBuilder::tolerances)
+  Plane plane;           // relative to the eye; its side follows from the direction of the line
+  bool flipped = false;  // the line runs against the outline
+  // How far from the plane the mesh's own edge may appear to lie, see VolumeBuilder::tolerances.
+  double tolerance = 0.0;
 
-  // The occluder lies behind it.
+  // The plane with the occluder behind it.
   Plane oriented() const { return flipped ? plane.flipped() : plane; }
 };
-// Nothing where nothing adjoins the edge or it is badly conditioned from here.
+// Nothing where no occluder adjoins the edge, or where it is badly conditioned from here.
 std::optional<SharedEdge> sharedEdgeOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& occluder,
                                        const Outline& outline);
 
-// The mesh edges of an edge, a bit each, from 0.
+// Returns the mesh edges of an edge, a bit each from bit 0 on.
 inline std::uint64_t allElements(const OccluderEdge& edge) {
   return edge.chain >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge.chain) - 1;
 }
 
-// Those of them beyond which none of the occluders begins that are in use; beyond the others the seam lets
-// nothing through. oriented: of the edge's seam. centroid_of(id): of an occluder in use, relative to the eye,
-// or null.
+// Returns those mesh edges beyond which no active occluder goes on; at all others the edge is watertight.
+// oriented: SharedEdge::oriented() of the edge. centroid_of(id): the centroid of an active occluder relative
+// to the eye; null for all others.
 template <typename CentroidOf>
 std::uint64_t openElements(const OccluderSet& set, const OccluderEdge& edge, const Plane& oriented,
                            CentroidOf&& centroid_of) {

@@ -42,14 +42,12 @@ std::size_t testAllAgainstEyePlanes(std::span<const EyeShape> shapes, std::span<
         const auto x0 = hn::Mul(x, low_x), x1 = hn::Mul(x, high_x);
         const auto y0 = hn::Mul(y, low_y), y1 = hn::Mul(y, high_y);
         const auto z0 = hn::Mul(z, low_z), z1 = hn::Mul(z, high_z);
-        const auto least =
-            hn::Add(hn::Add(hn::Add(hn::Min(x0, x1), hn::Min(y0, y1)), hn::Min(z0, z1)), offset);
-        const auto most =
-            hn::Add(hn::Add(hn::Add(hn::Max(x0, x1), hn::Max(y0, y1)), hn::Max(z0, z1)), offset);
+        const auto min = hn::Add(hn::Add(hn::Add(hn::Min(x0, x1), hn::Min(y0, y1)), hn::Min(z0, z1)), offset);
+        const auto max = hn::Add(hn::Add(hn::Add(hn::Max(x0, x1), hn::Max(y0, y1)), hn::Max(z0, z1)), offset);
         std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hn::Not(hn::Lt(most, tolerance)), bits);
+        hn::StoreMaskBits(d, hn::Not(hn::Lt(max, tolerance)), bits);
         test.failing |= std::uint64_t{bits[0]} << (first + lane);
-        test.touches = test.touches && hn::AllTrue(d, hn::Lt(least, tolerance));
+        test.touches = test.touches && hn::AllTrue(d, hn::Lt(min, tolerance));
       }
     }
     test.behind = nearest.x + nearest.y + nearest.z + shape.offset < -margin;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Planes through the eye and the edges of occluders, and what they say of a box. One occluder and one box
-// take a few multiplications, so this is done for all occluders of a list at once.
+// Comparing a box with planes through the eye and the edges of occluders. One occluder and one box take a few
+// multiplications, so all occluders of a list are compared in one call.
 //
 // All positions are relative to the eye. Every instruction set gives the same bits.
 
@@ -12,27 +12,28 @@
 
 namespace sightline::occlusion {
 
-// Rounding of a plane through the eye, times the distances involved.
+// A bound of the rounding of a plane through the eye, relative to the distances involved.
 inline constexpr double kEyePlane = 0x1p-36;
 
-// Planes of four edges, drawn in; unit normals, the occluder behind them. Unused lanes are zero, with an
-// offset that leaves everything behind them.
+// The planes of four edges that are drawn in, with unit normals and the occluder behind them. Unused lanes
+// have a zero normal and an offset that leaves everything behind them.
 struct EyeQuad {
   double x[4] = {}, y[4] = {}, z[4] = {}, offset[4] = {kAllBehind, kAllBehind, kAllBehind, kAllBehind};
 
   static constexpr double kAllBehind = -1e300;
 };
 
-// An occluder.
+// An occluder's planes through the eye.
 struct EyeShape {
   Vec3d normal;               // unit, towards the eye
   double offset = 0.0;        // of its plane
-  double depth_margin = 0.0;  // metres that a box must be behind it, in addition to kDepthMargin
-  double reach = 0.0;         // largest magnitude of a corner
+  double depth_margin = 0.0;  // metres by which a box must be behind it, in addition to kDepthMargin
+  double reach = 0.0;         // largest l1Norm() of a corner, metres
   std::uint32_t first_quad = 0;
   std::uint16_t plane_count = 0;  // one for each edge, then one for the near plane's cut if there is one
 };
 
+// How a box compares with one occluder.
 struct EyePlaneTest {
   bool touches = false;  // some of the box is behind the occluder's plane, and not all of it beyond an edge
   bool behind = false;   // all of it is behind the plane
@@ -41,8 +42,8 @@ struct EyePlaneTest {
   bool hidden() const { return behind && failing == 0; }
 };
 
-// Looks at the box past the occluders of a list, shapes[list[i]] in tests[i], up to the first that hides it.
-// Returns how many were looked at.
+// Compares the box with the occluders of a list, shapes[list[i]] into tests[i], up to the first that hides
+// it. Returns how many were compared. tests: at least as many as list.
 std::size_t testAgainstEyePlanes(std::span<const EyeShape> shapes, std::span<const EyeQuad> quads,
                                  std::span<const std::uint32_t> list, const EyeBox& box,
                                  std::span<EyePlaneTest> tests);

@@ -8,7 +8,7 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
                  Fragment& front, Fragment& back) {
   const PlaneRef cut_plane = PlaneRef::make(volumes.planes.size(), false);
   const std::size_t stack_size = stack.corners.size();
-  // A copy is split: where nothing comes of it, the fragment must not keep edges named after a plane that is
+  // A copy is split: if the split is not used, the fragment must not keep edges named after a plane that is
   // not made.
   const Piece copy{static_cast<std::uint32_t>(stack_size), fragment.piece.count};
   for (std::uint32_t i = 0; i < copy.count; ++i) {
@@ -37,7 +37,7 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
       volumes.addPlane(shadow.flipped());
       for (const Piece& piece : {parts.front, parts.back}) {
         for (Corner& corner : stack.of(piece)) {
-          corner.embedded = false;  // no tree yet whose planes they could lie in
+          corner.embedded = false;  // there is no tree yet whose planes edges could lie in
         }
       }
       front = {parts.front, fragment.volume};
@@ -62,7 +62,7 @@ Side FrontToBack::sideOf(std::uint32_t fragment, std::uint32_t splitter) const {
   return front && back ? Side::kBoth : front ? Side::kFront : back ? Side::kBack : Side::kOnPlane;
 }
 
-// Of a few candidates the one whose plane cuts the fewest others.
+// Returns, of a few candidates, the one whose plane cuts the fewest others.
 std::uint32_t FrontToBack::chooseSplitter(std::size_t begin, std::size_t end) const {
   constexpr std::size_t kCandidates = 5;
   const std::size_t count = end - begin;
@@ -100,7 +100,8 @@ void FrontToBack::visit(const Range& range) {
   const std::uint32_t splitter = chooseSplitter(begin, end);
   const std::size_t front_begin = work_.size();
   std::size_t back_count = 0;
-  // Behind ones are collected in place at the start of this range, in front ones on top of the stack.
+  // Fragments behind the splitter are collected at the start of this range, those in front on top of the
+  // stack.
   for (std::size_t i = begin; i < end; ++i) {
     const std::uint32_t fragment = work_[i];
     if (fragment == splitter) {

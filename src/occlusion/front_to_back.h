@@ -7,7 +7,7 @@
 
 namespace sightline::occlusion {
 
-// A part of an occluder; corners on the stack of the tree's builder.
+// A part of an occluder, with its corners on the stack of the tree's builder.
 struct Fragment {
   Piece piece;
   std::uint32_t volume = 0;
@@ -27,20 +27,20 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
 // badly conditioned the occluder stays whole.
 class FrontToBack {
  public:
-  // fragments: one a volume on entry, the ordered ones on return.
+  // fragments: one for each volume on entry, the ordered ones on return.
   void order(VolumeBuilder& volumes, PolygonStack& stack, std::vector<Fragment>& fragments);
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  // Deeper, the order stays as it is: a level costs as much as there are occluders in it.
+  // Ranges at a greater depth keep their order, for each level takes time in proportion to its occluders.
   static constexpr std::uint32_t kMaxDepth = 400;
 
-  // Fragments to be ordered: work_[begin, end).
+  // The fragments work_[begin, end), which are to be ordered.
   struct Range {
     std::size_t begin = 0, end = 0;
     std::uint32_t depth = 0;
-    std::uint32_t splitter = kNone;  // comes before them
-    std::size_t work_needed = 0;     // of work_, from its beginning on
+    std::uint32_t splitter = kNone;  // comes before them in the order
+    std::size_t work_needed = 0;     // the first so many entries of work_ are still in use
   };
 
   void visit(const Range& range);
@@ -50,7 +50,7 @@ class FrontToBack {
   VolumeBuilder* volumes_ = nullptr;
   PolygonStack* stack_ = nullptr;
   std::vector<Fragment> all_;
-  std::vector<std::uint32_t> work_;  // fragments waiting, a stack of ranges
+  std::vector<std::uint32_t> work_;  // fragments of all ranges that are still to be visited
   std::vector<std::uint32_t> ordered_;
   std::vector<Range> ranges_;  // still to be visited, the next one last
 };

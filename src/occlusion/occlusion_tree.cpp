@@ -1,7 +1,7 @@
 // Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998.
 // Differs from the paper in: the frustum's side planes are the tree's first nodes, so that only what is in
-// view counts; outlines are drawn in by a margin where nothing adjoins them and shared exactly where
-// something does (see docs/conservative.md); and in how boxes are asked about (see tree_classify.cpp).
+// view counts; outlines are drawn in by a margin where no occluder adjoins them and are exactly shared
+// where one does (see docs/conservative.md); and how boxes are classified (see tree_classify.cpp).
 
 #include "sightline/occlusion/occlusion_tree.h"
 
@@ -34,11 +34,11 @@ struct OcclusionTree::Impl {
   SplittingQuery splitting;
   PlaneQuery planes;
   OcclusionTreeStats stats;
-  bool usable_view = false;            // there was one, and it was one: see validate()
-  std::vector<ChosenOccluders> parts;  // of the chosen occluders, those that the tree is built from
+  bool usable_view = false;            // build() was called, and validate() accepts its view
+  std::vector<ChosenOccluders> parts;  // the chosen occluders that the tree is built from
   std::vector<OccluderId> used;        // of the first set
 
-  // As many of the chosen occluders as may find room: each needs three nodes at least.
+  // Takes as many of the chosen occluders as may find room, for each needs at least three nodes.
   void takeFirst(std::span<const ChosenOccluders> sets) {
     parts.clear();
     std::size_t room = settings.max_nodes / 3;
@@ -105,7 +105,7 @@ Visibility OcclusionTree::classify(const Box& box, std::uint8_t frustum_planes) 
   const EyeBox relative = EyeBox::of(box, eye.position);
   if (!eye.orthographic && relative.min.x <= 0.0 && relative.min.y <= 0.0 && relative.min.z <= 0.0 &&
       relative.max.x >= 0.0 && relative.max.y >= 0.0 && relative.max.z >= 0.0) {
-    return Visibility::kPartial;  // the eye is inside: never hidden, but what else is in it may be
+    return Visibility::kPartial;  // the eye is inside: the box is not hidden, but parts of it may be
   }
   const BoxQuestion question{relative, impl.exact(), frustum_planes};
   const State state = impl.modified() ? impl.planes.classify(impl.tree, question)

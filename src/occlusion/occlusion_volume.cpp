@@ -4,7 +4,7 @@
 
 namespace sightline::occlusion {
 
-// The shadow plane of an open edge, drawn in by the candidate's inset.
+// Returns the shadow plane of an open edge, drawn in by the candidate's inset.
 Plane VolumeBuilder::insetPlane(const EyeOccluder& candidate, const Outline& outline, double& sine) const {
   const Vec3d inwards = cross(candidate.support.normal, normalized(outline.to - outline.from));
   const Vec3d shift = inwards * candidate.inset;
@@ -29,18 +29,18 @@ PlaneRef VolumeBuilder::addPlane(const Plane& plane, double tolerance) {
   return PlaneRef::make(planes.size() - 1, false);
 }
 
-// An edge of which some parts are sealed and some open: a corner for each part, and a cut through each
-// change. The change is moved into the sealed part by the inset, so that this stays as far from open outlines
-// as everything else. False: the parts are too short or too many, nothing was added.
+// Adds an edge of which some parts are shared and some open: a corner for each part, and a cut through each
+// change. The change is moved into the shared part by the inset, so that it stays as far from open outlines
+// as everything else. False: the parts are too short or too many, and nothing was added.
 bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline,
                             std::uint64_t open, PlaneRef on_line) {
   constexpr std::uint32_t kMaxCorners = 96;
   const OccluderEdge& edge = set.edges[outline.edge];
   const std::uint32_t n = edge.chain;
   const Vec3d along = normalized(outline.to - outline.from);
-  // In the direction of the outline, which is the mesh edges' own or, seen from the back, the other.
+  // k counts in the direction of the outline: the mesh edges' own or, seen from the back, the opposite.
   const auto isOpen = [&](std::uint32_t k) { return (open >> (candidate.flipped ? n - 1 - k : k) & 1) != 0; };
-  const auto joint = [&](std::uint32_t k) {  // before part k, k > 0
+  const auto pointBefore = [&](std::uint32_t k) {  // before part k, k > 0
     return Vec3d(set.joints[edge.first_joint + (candidate.flipped ? n - 1 - k : k - 1)]) - eye.position;
   };
   double at = dot(along, outline.from);
@@ -48,7 +48,7 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
   for (std::uint32_t k = 1; k <= n; ++k) {
     const bool change = k == n || isOpen(k) != isOpen(k - 1);
     if (change) {
-      const double next = k == n ? end : dot(along, joint(k));
+      const double next = k == n ? end : dot(along, pointBefore(k));
       if (!(next - at > 4.0 * candidate.inset)) {
         return false;
       }
@@ -63,7 +63,7 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
   corners.push_back({outline.from, isOpen(0) ? inset : on_line, false, isOpen(0)});
   for (std::uint32_t k = 1; k < n; ++k) {
     if (isOpen(k) != isOpen(k - 1)) {
-      const Vec3d change = joint(k) + along * (isOpen(k) ? -candidate.inset : candidate.inset);
+      const Vec3d change = pointBefore(k) + along * (isOpen(k) ? -candidate.inset : candidate.inset);
       corners.push_back({change, isOpen(k) ? inset : on_line, false, isOpen(k)});
       cuts.push_back({static_cast<std::uint32_t>(volumes.size()), {along, -dot(along, change)}});
     }
@@ -71,24 +71,24 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
   return true;
 }
 
-// The corner at the start of an edge, with the edge's shadow plane: on the seam's line where other volumes
-// adjoin, drawn in where nothing does.
+// Adds the corner at the start of an edge, with the edge's shadow plane: through the shared line where other
+// volumes adjoin, drawn in where none does.
 void VolumeBuilder::addEdge(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline) {
-  if (const std::optional<SharedEdge> seam = sharedEdgeOf(eye, set, candidate, outline)) {
+  if (const std::optional<SharedEdge> shared = sharedEdgeOf(eye, set, candidate, outline)) {
     const OccluderEdge& edge = set.edges[outline.edge];
     const auto centroidOf = [&](OccluderId id) -> const Vec3d* {
       const std::uint32_t other = candidate_of_[id.value];
       return other != kNone ? &candidates_[other].centroid : nullptr;
     };
-    const std::uint64_t open = openElements(set, edge, seam->oriented(), centroidOf);
+    const std::uint64_t open = openElements(set, edge, shared->oriented(), centroidOf);
     if (open != allElements(edge)) {
       std::uint32_t& plane = plane_of_line_[edge.line];
       if (plane == kNone) {
-        plane = addPlane(seam->plane).plane();
+        plane = addPlane(shared->plane).plane();
         used_lines_.push_back(edge.line);
       }
-      tolerances[plane] = std::max(tolerances[plane], seam->tolerance);
-      const PlaneRef ref = PlaneRef::make(plane, seam->flipped);
+      tolerances[plane] = std::max(tolerances[plane], shared->tolerance);
+      const PlaneRef ref = PlaneRef::make(plane, shared->flipped);
       if (open == 0) {
         corners.push_back({outline.from, ref, false});
         return;
@@ -102,8 +102,8 @@ void VolumeBuilder::addEdge(const OccluderSet& set, const EyeOccluder& candidate
   corners.push_back({outline.from, addPlane(insetPlane(candidate, outline, sine)), false, true});
 }
 
-// Cuts away what lies before the depth. The new edge gets a plane of its own. Returns the new number of
-// corners.
+// Clips away what lies before the depth (metres). The new edge gets a plane of its own. Returns the new
+// number of corners.
 std::uint32_t VolumeBuilder::clipNear(std::uint32_t first, std::uint32_t count, double depth) {
   clipped_.clear();
   std::size_t cut = clipped_.size();

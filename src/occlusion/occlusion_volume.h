@@ -1,7 +1,7 @@
 #pragma once
 
 // The chosen occluders as seen from one eye: facing it, beyond the near plane, with shadow planes whose
-// rounding is on the visible side. First stage of building an occlusion structure in object space.
+// rounding is on the visible side. This is the first stage of building an occlusion tree.
 
 #include <cstdint>
 #include <span>
@@ -25,7 +25,7 @@ struct PlaneRef {
   bool samePlane(PlaneRef b) const { return plane() == b.plane(); }
 };
 
-// A corner of a polygon and the edge to the next one. Positions are relative to the eye.
+// A corner of a polygon and the edge to the next corner. Positions are relative to the eye.
 struct Corner {
   Vec3d position;
   PlaneRef edge;          // the polygon lies behind it
@@ -33,26 +33,26 @@ struct Corner {
   bool open = false;      // its plane is drawn in: only that very plane can stand for it
 };
 
-// A place where an edge changes from adjoining another occluder to being open. The polygon is cut there, so
-// that the margin of the open part does not make a gap along the other.
+// A place where an edge changes from being shared to being open. The polygon is cut there, so that the margin
+// of the open part does not make a gap along the shared part.
 struct EdgeCut {
   std::uint32_t volume = 0;
   Plane plane;  // across the edge, relative to the eye
 };
 
 struct OcclusionVolume {
-  OccluderId occluder;       // of its set
-  Plane support;             // of the polygon, unit normal towards the eye, relative to the eye
-  double depth_slack = 0.0;  // metres that a point must be behind it, in addition to kDepthMargin
+  OccluderId occluder;       // in its own set
+  Plane support;             // the polygon's plane, unit normal towards the eye, relative to the eye
+  double depth_slack = 0.0;  // metres by which a point must be behind it, in addition to kDepthMargin
   Vec3d centroid;            // of the unclipped polygon, relative to the eye
   std::uint32_t first_corner = 0, corner_count = 0;
-  double reach = 0.0;  // largest magnitude of a corner
+  double reach = 0.0;  // largest l1Norm() of a corner, metres
 };
 
 class VolumeBuilder {
  public:
-  // Fills volumes, corners and planes, set by set. Occluders that are of no use from here get no volume.
-  // Seams are sealed between occluders of one set only.
+  // Fills volumes, corners and planes, set by set. Occluders that cannot be used from here get no volume.
+  // Shared edges are watertight between occluders of one set only.
   void build(const View& view, std::span<const ChosenOccluders> sets);
 
   // Adds a shadow plane.
@@ -62,13 +62,13 @@ class VolumeBuilder {
   std::vector<OcclusionVolume> volumes;
   std::vector<Corner> corners;
   std::vector<Plane> planes;  // unit normals
-  // Of each plane: how far from it both sides must be looked at. Planes of seams: where the mesh's own
-  // vertices may lie, with a gap between two occluders beyond. Relative to the distance from the eye
-  // (perspective), or in metres (orthographic); 0 for all others, which are drawn in instead.
+  // By plane: how far from it both sides must be visited, relative to the distance from the eye (perspective)
+  // or in metres (orthographic). For planes of shared edges, the mesh's own vertices may lie that far away,
+  // with a gap between two occluders beyond. 0 for all other planes, which are drawn in instead.
   std::vector<double> tolerances;
   std::vector<EdgeCut> cuts;                // volume after volume
-  std::vector<std::size_t> volumes_of_set;  // how many of the volumes are of each set
-  double reach = 0.0;                       // largest of the volumes
+  std::vector<std::size_t> volumes_of_set;  // by set: how many of the volumes are of it
+  double reach = 0.0;                       // the largest reach of the volumes, metres
 
  private:
   void addSet(const OccluderSet& set, std::span<const OccluderId> chosen);

@@ -1,6 +1,6 @@
 // Based on: Poon Chun Ho, W. Wang. Occlusion Culling Using Minimum Occluder Set and Opacity Map. 1999,
-// section 5. Differs from the paper in what a covered pixel promises (Coverage::kInner), in rectangles that
-// are rounded outwards, in strict comparisons, and in the last pixel of each row; see
+// section 5. Differs from the paper in what a covered pixel promises (the conservative coverage rule), in
+// rectangles that are rounded outwards, in strict comparisons, and in the last pixel of each row; see
 // docs/algorithms/opacity-map.md.
 
 #include "sightline/occlusion/opacity_map.h"
@@ -20,16 +20,16 @@ struct OpacityMap::Impl {
       : settings(s), raster(s.raster), coverage_ratio(s.coverage_ratio) {}
 
   void finish() {
-    const DepthMapView map = raster.map();
-    opacity.build(map);
+    const DepthBufferView buffer = raster.depthBuffer();
+    opacity.build(buffer);
     if (settings.depth == DepthComparison::kSparse) {
-      sparse_depth.begin(map);
+      sparse_depth.begin(buffer);
     }
     stats.raster = raster.stats();
     ready = true;
   }
 
-  // Some of the rectangle is covered, but not enough to hide the box.
+  // Whether too little of the rectangle is covered for tests of what lies in the box to be worthwhile.
   bool tooLittle(std::uint32_t covered, std::uint32_t area) const {
     return static_cast<double>(covered) < coverage_ratio * static_cast<double>(area);
   }
@@ -37,7 +37,7 @@ struct OpacityMap::Impl {
   bool allNearer(const PixelBox& image) {
     ++stats.depth_tests;
     if (settings.depth == DepthComparison::kPixelwise) {
-      return allNearerPixelwise(raster.map(), image, stats.depths_compared);
+      return allNearerPixelwise(raster.depthBuffer(), image, stats.depths_compared);
     }
     const std::uint64_t before = sparse_depth.compared();
     const bool nearer = sparse_depth.allNearer(image);
@@ -70,7 +70,7 @@ struct OpacityMap::Impl {
   occlusion::SummedArea opacity;
   occlusion::SparseDepth sparse_depth;
   double coverage_ratio;
-  bool ready = false;  // the map is finished
+  bool ready = false;  // finish() has been called for this view
   OpacityMapStats stats;
 };
 
@@ -90,8 +90,8 @@ void OpacityMap::begin(const View& view) {
   impl_->ready = false;
   impl_->stats = {};
   impl_->raster.begin(view);
-  const DepthMapView map = impl_->raster.map();
-  impl_->projection = {PixelView(view, map.width, map.height), map.width, map.height};
+  const DepthBufferView buffer = impl_->raster.depthBuffer();
+  impl_->projection = {PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height};
 }
 
 void OpacityMap::draw(const OccluderSet& set, std::span<const OccluderId> chosen,
@@ -113,15 +113,15 @@ Visibility OpacityMap::classify(const Box& box) {
   if (image.place == BoxPlace::kOutside) {
     return Visibility::kHidden;
   }
-  return image.place == BoxPlace::kOnMap ? impl_->classify(image) : Visibility::kPartial;
+  return image.place == BoxPlace::kOnBuffer ? impl_->classify(image) : Visibility::kPartial;
 }
 
 void OpacityMap::setCoverageRatio(double ratio) {
   impl_->coverage_ratio = ratio;
 }
 
-DepthMapView OpacityMap::map() const {
-  return impl_->raster.map();
+DepthBufferView OpacityMap::depthBuffer() const {
+  return impl_->raster.depthBuffer();
 }
 const OpacityMapStats& OpacityMap::stats() const {
   return impl_->stats;

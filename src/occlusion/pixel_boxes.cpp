@@ -37,14 +37,14 @@ using Lanes = hn::CappedTag<float, 16>;
 using Vec = hn::Vec<Lanes>;
 using Mask = hn::Mask<Lanes>;
 
-constexpr float kRounding = 0x1.4p-21f;    // of a coordinate in camera space, times S
-constexpr float kMapRounding = 0x1p-21f;   // of a position in the map, relative
-constexpr float kSlackGrowth = 1.0625f;    // for products of two errors
-constexpr float kWellConditioned = 64.0f;  // the least depth, times its error
-constexpr float kLargest = 0x1p60f;        // S of boxes that are looked at
+constexpr float kRounding = 0x1.4p-21f;      // of a coordinate in camera space, times S
+constexpr float kBufferRounding = 0x1p-21f;  // of a position in the buffer, relative
+constexpr float kSlackGrowth = 1.0625f;      // for products of two errors
+constexpr float kWellConditioned = 64.0f;    // the least depth, as a multiple of its error
+constexpr float kLargest = 0x1p60f;          // S of boxes that are projected
 constexpr float kUp = 1.0f + 0x1p-21f, kDown = 1.0f - 0x1p-21f;
 
-// The boxes of as many lanes, relative to the eye: [0] the least, [1] the greatest coordinate.
+// One box a lane, relative to the eye: [0] its minimum, [1] its maximum coordinate.
 struct EyeBoxes {
   Vec x[2], y[2], z[2];
   Vec reach;  // S
@@ -54,7 +54,7 @@ struct EyeBoxes {
 
 // Minima and maxima of one coordinate.
 struct Range {
-  Vec least, greatest;
+  Vec min, max;
 };
 
 HWY_INLINE void loadRanges(Lanes d, const float* floats, Range& x, Range& y, Range& z) {
@@ -76,9 +76,9 @@ HWY_INLINE EyeBoxes load(Lanes d, const BoxProjection& p, const float* floats) {
   Range x, y, z;
   loadRanges(d, floats, x, y, z);
   const auto toEye = [&](const Range& r, float high, float low, Vec out[2]) HWY_ATTR {
-    out[0] = hn::Sub(hn::Sub(r.least, hn::Set(d, high)), hn::Set(d, low));
-    out[1] = hn::Sub(hn::Sub(r.greatest, hn::Set(d, high)), hn::Set(d, low));
-    return hn::Le(r.least, r.greatest);
+    out[0] = hn::Sub(hn::Sub(r.min, hn::Set(d, high)), hn::Set(d, low));
+    out[1] = hn::Sub(hn::Sub(r.max, hn::Set(d, high)), hn::Set(d, low));
+    return hn::Le(r.min, r.max);
   };
   EyeBoxes boxes;
   const Mask x_good = toEye(x, p.eye_high.x, p.eye_low.x, boxes.x);
@@ -107,22 +107,22 @@ struct Corners {
     z[1] = hn::Mul(az, b.z[1]);
   }
   HWY_INLINE Vec at(std::size_t corner) const { return hn::Add(xy[corner & 3], z[corner >> 2]); }
-  HWY_INLINE Vec least() const {
+  HWY_INLINE Vec min() const {
     return hn::Add(hn::Min(hn::Min(xy[0], xy[1]), hn::Min(xy[2], xy[3])), hn::Min(z[0], z[1]));
   }
-  HWY_INLINE Vec greatest() const {
+  HWY_INLINE Vec max() const {
     return hn::Add(hn::Max(hn::Max(xy[0], xy[1]), hn::Max(xy[2], xy[3])), hn::Max(z[0], z[1]));
   }
 };
 
-// Of q, the position over the depth (orthographic: the position), before rounding.
+// Bounds of q, the position divided by the depth (orthographic: the position), before rounding.
 struct Extent {
   Vec x0, x1, y0, y1;
 };
 
 HWY_INLINE Extent extentOf(Lanes d, const Corners& x, const Corners& y, const Corners& z, bool orthographic) {
   if (orthographic) {
-    return {x.least(), x.greatest(), y.least(), y.greatest()};
+    return {x.min(), x.max(), y.min(), y.max()};
   }
   const Vec one = hn::Set(d, 1.0f);
   Vec inverse = hn::Div(one, z.at(0));
@@ -140,21 +140,23 @@ HWY_INLINE Extent extentOf(Lanes d, const Corners& x, const Corners& y, const Co
   return e;
 }
 
-// How far a position in the map may be off. q_error: of q, for |q| = 0; it grows with 1 + |q| in perspective.
-HWY_INLINE Vec mapSlack(Lanes d, Vec q, Vec q_error, float scale, float middle, bool orthographic) {
-  const Vec size = hn::Abs(q), rounding = hn::Set(d, kMapRounding);
+// Returns a bound of the error of a position in the buffer, pixels. q_error: the error of q for |q| = 0; in
+// perspective it grows with 1 + |q|.
+HWY_INLINE Vec bufferSlack(Lanes d, Vec q, Vec q_error, float scale, float middle, bool orthographic) {
+  const Vec size = hn::Abs(q), rounding = hn::Set(d, kBufferRounding);
   const Vec grown = orthographic ? q_error : hn::Mul(q_error, hn::Add(hn::Set(d, 1.0f), size));
   const Vec in_q = hn::Add(grown, hn::Mul(rounding, size));
-  return hn::Add(hn::Mul(hn::Set(d, scale), in_q), hn::Set(d, kMapRounding * middle));
+  return hn::Add(hn::Mul(hn::Set(d, scale), in_q), hn::Set(d, kBufferRounding * middle));
 }
 
-// The box is surely beyond a side of the view's volume: linear functions, so that no depth is divided by.
+// Whether the box is surely beyond a side of the view's volume. The functions are linear: nothing is divided
+// by a depth.
 HWY_INLINE Mask beyondASide(Lanes d, const EyeBoxes& boxes, const BoxProjection& p) {
   const Vec error = hn::Mul(boxes.error, hn::Set(d, p.side_size));
   Mask beyond = hn::Lt(hn::Zero(d), hn::Zero(d));
   for (const BoxProjection::Axis& side : p.sides) {
-    const Vec greatest = Corners(d, boxes, side).greatest();
-    beyond = hn::Or(beyond, hn::Lt(hn::Add(greatest, error), hn::Zero(d)));
+    const Vec max = Corners(d, boxes, side).max();
+    beyond = hn::Or(beyond, hn::Lt(hn::Add(max, error), hn::Zero(d)));
   }
   return beyond;
 }
@@ -171,48 +173,49 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   const hn::RebindToSigned<Lanes> di;
   const EyeBoxes boxes = load(d, p, floats);
   const Corners x(d, boxes, p.right), y(d, boxes, p.up), z(d, boxes, p.forward);
-  const Vec z_min = hn::Sub(z.least(), boxes.error), z_greatest = hn::Add(z.greatest(), boxes.error);
+  const Vec z_min = hn::Sub(z.min(), boxes.error), z_max = hn::Add(z.max(), boxes.error);
 
   Mask bounded = hn::And(boxes.usable, hn::Gt(z_min, hn::Set(d, p.near_max)));
   Vec q_error = boxes.error;
   if (!orthographic) {
     bounded = hn::And(bounded, hn::Gt(z_min, hn::Mul(boxes.error, hn::Set(d, kWellConditioned))));
     q_error =
-        hn::Add(hn::Mul(hn::Div(boxes.error, z_min), hn::Set(d, kSlackGrowth)), hn::Set(d, kMapRounding));
+        hn::Add(hn::Mul(hn::Div(boxes.error, z_min), hn::Set(d, kSlackGrowth)), hn::Set(d, kBufferRounding));
   }
   const Extent q = extentOf(d, x, y, z, orthographic);
-  const auto toMap = [&](Vec at, float scale, float middle, bool upwards) HWY_ATTR {
+  const auto toBuffer = [&](Vec at, float scale, float middle, bool upwards) HWY_ATTR {
     const Vec position = hn::Add(hn::Mul(at, hn::Set(d, scale)), hn::Set(d, middle));
-    const Vec slack = mapSlack(d, at, q_error, scale, middle, orthographic);
+    const Vec slack = bufferSlack(d, at, q_error, scale, middle, orthographic);
     return upwards ? hn::Add(position, slack) : hn::Sub(position, slack);
   };
-  const Vec x0 = toMap(q.x0, p.scale_x, p.middle_x, false), x1 = toMap(q.x1, p.scale_x, p.middle_x, true);
-  const Vec y0 = toMap(q.y0, p.scale_y, p.middle_y, false), y1 = toMap(q.y1, p.scale_y, p.middle_y, true);
+  const Vec x0 = toBuffer(q.x0, p.scale_x, p.middle_x, false),
+            x1 = toBuffer(q.x1, p.scale_x, p.middle_x, true);
+  const Vec y0 = toBuffer(q.y0, p.scale_y, p.middle_y, false),
+            y1 = toBuffer(q.y1, p.scale_y, p.middle_y, true);
 
   const Vec zero = hn::Zero(d), width = hn::Set(d, p.width), height = hn::Set(d, p.height);
-  const Mask off_map =
+  const Mask off_buffer =
       hn::Or(hn::Or(hn::Lt(x1, zero), hn::Gt(x0, width)), hn::Or(hn::Lt(y1, zero), hn::Gt(y0, height)));
-  const Mask off_depth =
-      hn::Or(hn::Lt(z_greatest, hn::Set(d, p.near_min)), hn::Gt(z_min, hn::Set(d, p.far_max)));
+  const Mask off_depth = hn::Or(hn::Lt(z_max, hn::Set(d, p.near_min)), hn::Gt(z_min, hn::Set(d, p.far_max)));
   Mask outside =
-      hn::Or(hn::And(boxes.usable, off_depth), hn::And(orthographic ? boxes.usable : bounded, off_map));
+      hn::Or(hn::And(boxes.usable, off_depth), hn::And(orthographic ? boxes.usable : bounded, off_buffer));
   const Mask unbounded = hn::AndNot(bounded, hn::AndNot(outside, boxes.usable));
   if (!orthographic && !hn::AllFalse(d, unbounded)) {
     outside = hn::Or(outside, hn::And(unbounded, beyondASide(d, boxes, p)));
   }
-  const Mask on_map = hn::AndNot(outside, bounded);
+  const Mask on_buffer = hn::AndNot(outside, bounded);
   const Mask within =
       hn::And(hn::And(hn::Ge(x0, zero), hn::Le(x1, width)), hn::And(hn::Ge(y0, zero), hn::Le(y1, height)));
-  const Mask whole = hn::And(hn::And(on_map, within), hn::Lt(z_greatest, hn::Set(d, p.far_min)));
+  const Mask whole = hn::And(hn::And(on_buffer, within), hn::Lt(z_max, hn::Set(d, p.far_min)));
 
   const auto mask = [&](Mask m) HWY_ATTR { return hn::RebindMask(di, m); };
-  auto place = hn::IfThenElse(mask(on_map), hn::Set(di, static_cast<std::int32_t>(BoxPlace::kOnMap)),
+  auto place = hn::IfThenElse(mask(on_buffer), hn::Set(di, static_cast<std::int32_t>(BoxPlace::kOnBuffer)),
                               hn::Set(di, static_cast<std::int32_t>(BoxPlace::kUnbounded)));
   place = hn::IfThenElse(mask(outside), hn::Set(di, static_cast<std::int32_t>(BoxPlace::kOutside)), place);
   hn::Store(hn::Or(place, hn::IfThenElseZero(mask(whole), hn::Set(di, kWholeBit))), di, out.place);
   const auto storePixel = [&](Vec at, Vec size, std::int32_t* to) HWY_ATTR {
     const Vec pixel = hn::Min(hn::Max(at, zero), hn::Sub(size, hn::Set(d, 1.0f)));
-    hn::Store(hn::ConvertTo(di, hn::IfThenElseZero(on_map, pixel)), di, to);
+    hn::Store(hn::ConvertTo(di, hn::IfThenElseZero(on_buffer, pixel)), di, to);
   };
   storePixel(x0, width, out.x0);
   storePixel(x1, width, out.x1);
@@ -220,10 +223,9 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   storePixel(y1, height, out.y1);
   const Vec one = hn::Set(d, 1.0f);
   const Vec nearest = orthographic ? hn::Neg(z_min) : hn::Mul(hn::Div(one, z_min), hn::Set(d, kUp));
-  const Vec farthest =
-      orthographic ? hn::Neg(z_greatest) : hn::Mul(hn::Div(one, z_greatest), hn::Set(d, kDown));
-  hn::Store(hn::IfThenElseZero(on_map, nearest), d, out.nearest);
-  hn::Store(hn::IfThenElseZero(on_map, farthest), d, out.farthest);
+  const Vec farthest = orthographic ? hn::Neg(z_max) : hn::Mul(hn::Div(one, z_max), hn::Set(d, kDown));
+  hn::Store(hn::IfThenElseZero(on_buffer, nearest), d, out.nearest);
+  hn::Store(hn::IfThenElseZero(on_buffer, farthest), d, out.farthest);
 }
 
 void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<PixelBox> images) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Splitting convex polygons by planes, on a stack of corners that is shared by a whole recursion.
+// Splitting convex polygons by planes, on a stack of corners that a whole traversal shares.
 
 #include <array>
 #include <vector>
@@ -23,7 +23,7 @@ enum class Side : std::uint8_t {
 
 struct SplitResult {
   Side side = Side::kOnPlane;
-  Piece front, back;  // on top of the stack, for kBoth
+  Piece front, back;  // with kBoth: the parts, which lie on top of the stack
 };
 
 class PolygonStack {
@@ -37,9 +37,9 @@ class PolygonStack {
     return std::span(corners).subspan(piece.first, piece.count);
   }
 
-  // plane: unit normal. ref: its name, or an invalid one (bits all set) for planes that edges can't lie in. A
-  // corner counts as on the plane within kOnPlane * (relative * magnitude + scale); a polygon reaches a side
-  // when a corner is four times as far there.
+  // Splits a polygon. plane: unit normal. ref: the plane's name, or PlaneRef() for planes that edges cannot
+  // lie in. A corner counts as on the plane within kOnPlane * (relative * magnitude + scale); a polygon
+  // reaches a side when a corner is four times as far there.
   //
   // New edges, and old ones that lie in the plane and bound the polygon towards the same side, get ref as
   // their plane and are marked as embedded. A polygon with an edge that was made by this very plane is on the
@@ -47,7 +47,7 @@ class PolygonStack {
   // corners are not split but reported as kOnPlane with overflow set.
   SplitResult split(Piece piece, const Plane& plane, PlaneRef ref, double scale, double relative = 1.0);
 
-  // What PlaneRefs of corners stand for; needed when split() is given named planes.
+  // The planes that PlaneRefs of corners name; needed when split() is given named planes.
   const std::vector<Plane>* planes = nullptr;
   bool overflow = false;
 

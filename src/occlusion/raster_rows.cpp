@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<float, RowRuns::kRows>;
 using Vector = hn::Vec<Lanes>;
 
-constexpr float kFar = 1e9f;  // pixels, beyond any map
+constexpr float kFar = 1e9f;  // pixels, beyond any buffer
 constexpr float kUntouched = std::numeric_limits<float>::infinity();
 
 HWY_INLINE std::uint32_t laneCount() {

@@ -133,7 +133,7 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
 const RasterSettings& Rasteriser::settings() const {
   return impl_->settings;
 }
-DepthMapView Rasteriser::map() const {
+DepthBufferView Rasteriser::depthBuffer() const {
   return {impl_->reciprocal_depth, impl_->settings.width, impl_->settings.height, impl_->stride};
 }
 const RasterStats& Rasteriser::stats() const {

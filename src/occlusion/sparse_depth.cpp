@@ -35,40 +35,40 @@ bool allNearerInRow(const float* first, std::size_t count, float nearest) {
 
 }  // namespace
 
-bool allNearerPixelwise(const DepthMapView& map, const PixelBox& rect, std::uint64_t& compared) {
+bool allNearerPixelwise(const DepthBufferView& buffer, const PixelBox& rect, std::uint64_t& compared) {
   const std::size_t width = std::size_t{rect.x1} - rect.x0 + 1;
   for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
     compared += width;
-    if (!allNearerInRow(map.row(y).data() + rect.x0, width, rect.nearest)) {
+    if (!allNearerInRow(buffer.row(y).data() + rect.x0, width, rect.nearest)) {
       return false;
     }
   }
   return true;
 }
 
-void SparseDepth::begin(const DepthMapView& map) {
-  if (rest_ > 0) {
-    --rest_;
+void SparseDepth::begin(const DepthBufferView& buffer) {
+  if (retest_delay_ > 0) {
+    --retest_delay_;
   } else if (peaks_ * kWorthwhileStep > made_) {
-    rest_ = kRest;
+    retest_delay_ = kRetestDelay;
   }
-  map_ = map;
-  steps_.resize(std::size_t{map.width} * map.height);
-  rows_.assign(map.height, {});
+  buffer_ = buffer;
+  steps_.resize(std::size_t{buffer.width} * buffer.height);
+  rows_.assign(buffer.height, {});
   made_ = peaks_ = compared_ = 0;
   used_ = false;
 }
 
-// From right to left. A row of pixels as near as each other counts as one; its leftmost is the peak.
+// Goes from right to left. Neighbouring pixels of equal depth count as one; the leftmost is the peak.
 void SparseDepth::makeRow(std::uint32_t y) {
-  const std::span<const float> row = map_.row(y);
-  std::uint16_t* steps = &steps_[std::size_t{y} * map_.width];
-  std::uint32_t next = map_.width;  // peak on the right of x, or the row's end
+  const std::span<const float> row = buffer_.row(y);
+  std::uint16_t* steps = &steps_[std::size_t{y} * buffer_.width];
+  std::uint32_t next = buffer_.width;  // peak on the right of x, or the row's end
   std::uint32_t peaks = 0;
   bool nearer_beyond = false;  // from x + 1 to the right depth falls, or stays and then falls
-  float right = comparable(row[map_.width - 1]);
-  steps[map_.width - 1] = 1;
-  for (std::uint32_t x = map_.width - 1; x-- > 0;) {
+  float right = comparable(row[buffer_.width - 1]);
+  steps[buffer_.width - 1] = 1;
+  for (std::uint32_t x = buffer_.width - 1; x-- > 0;) {
     const float here = comparable(row[x]);
     if (here > right && nearer_beyond) {
       next = x + 1;
@@ -78,16 +78,16 @@ void SparseDepth::makeRow(std::uint32_t y) {
     steps[x] = static_cast<std::uint16_t>(next - x);
     right = here;
   }
-  made_ += map_.width;
+  made_ += buffer_.width;
   peaks_ += peaks;
-  rows_[y].state = peaks * kWorthwhileStep > map_.width ? RowState::kTooManyPeaks : RowState::kSteps;
+  rows_[y].state = peaks * kWorthwhileStep > buffer_.width ? RowState::kTooManyPeaks : RowState::kSteps;
 }
 
 // The paper leaves out what happens where the next peak lies beyond the rectangle: depth may rise up to the
-// last pixel, which is looked at in the end.
+// last pixel, so that pixel is compared too.
 bool SparseDepth::nearerAtPeaks(const PixelBox& rect, std::uint32_t y) {
-  const float* row = map_.row(y).data();
-  const std::uint16_t* steps = &steps_[std::size_t{y} * map_.width];
+  const float* row = buffer_.row(y).data();
+  const std::uint16_t* steps = &steps_[std::size_t{y} * buffer_.width];
   for (std::uint32_t x = rect.x0; x < rect.x1; x += steps[x]) {
     ++compared_;
     if (fails(row[x], rect.nearest) != 0) {
@@ -101,7 +101,7 @@ bool SparseDepth::nearerAtPeaks(const PixelBox& rect, std::uint32_t y) {
 SparseDepth::RowState SparseDepth::stateOf(std::uint32_t y, std::uint32_t asked) {
   Row& row = rows_[y];
   if (row.state == RowState::kNotMade) {
-    if (row.compared < kWorthwhileQuestions * map_.width) {
+    if (row.compared < kWorthwhileQuestions * buffer_.width) {
       row.compared += asked;
     } else {
       makeRow(y);
@@ -112,8 +112,8 @@ SparseDepth::RowState SparseDepth::stateOf(std::uint32_t y, std::uint32_t asked)
 
 bool SparseDepth::allNearer(const PixelBox& rect) {
   const std::uint32_t width = rect.x1 - rect.x0 + 1u;
-  if (rest_ > 0 || width < kWorthwhileWidth) {
-    return allNearerPixelwise(map_, rect, compared_);
+  if (retest_delay_ > 0 || width < kWorthwhileWidth) {
+    return allNearerPixelwise(buffer_, rect, compared_);
   }
   for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
     bool nearer;
@@ -122,7 +122,7 @@ bool SparseDepth::allNearer(const PixelBox& rect) {
       nearer = nearerAtPeaks(rect, y);
     } else {
       compared_ += width;
-      nearer = allNearerInRow(map_.row(y).data() + rect.x0, width, rect.nearest);
+      nearer = allNearerInRow(buffer_.row(y).data() + rect.x0, width, rect.nearest);
     }
     if (!nearer) {
       return false;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Whether a map is nearer than a box at every pixel of a rectangle, looking at few of its pixels.
+// Finds out whether a depth buffer is nearer than a box at every pixel of a rectangle, comparing few of its
+// pixels.
 
 #include <cstdint>
 #include <vector>
@@ -11,41 +12,44 @@
 namespace sightline::occlusion {
 
 // Both ways of comparing give the same answer: true where every covered pixel of the rectangle, which lies in
-// the map, is nearer than the box's nearest point, and not as near. Uncovered pixels are left out: whether
-// they may be there at all is for the overlap test to say.
+// the buffer, is nearer than the box's nearest point; a pixel that is as near is not nearer. Uncovered pixels
+// are left out, for the overlap test decides whether there may be any.
 
-// Pixel by pixel, row by row up to the first that is not nearer. compared: goes up by the pixels looked at.
-bool allNearerPixelwise(const DepthMapView& map, const PixelBox& rect, std::uint64_t& compared);
+// Compares pixel by pixel, row by row up to the first that is not nearer. compared: increased by the number
+// of pixels compared.
+bool allNearerPixelwise(const DepthBufferView& buffer, const PixelBox& rect, std::uint64_t& compared);
 
 // The sparse depth map of Poon and Wang 1999, section 5.3: for each pixel the distance to the next peak on
-// its right, a pixel that is locally the farthest of its row. Between two peaks depth falls and then rises,
-// so that no pixel between two others is farther than both: the first pixel of a rectangle, the peaks in it
-// and its last pixel will do.
+// its right, a peak being a pixel that is locally the farthest of its row. Between two peaks depth falls and
+// then rises, so that no pixel between two others is farther than both. So it suffices to compare the first
+// pixel of a row of the rectangle, the peaks in it and its last pixel.
 //
-// Making a row costs as much as comparing it pixel by pixel several times in vector code. So rows are made
-// when they have been asked about that much, and those without coverage never are. Rows, and whole maps, of
-// too many peaks are compared pixel by pixel, as are narrow rectangles.
+// Making a row of the sparse map takes as long as comparing it pixel by pixel several times in vector code.
+// So a row is made only after that many comparisons, and rows without coverage never are. Rows, and whole
+// buffers, with too many peaks are compared pixel by pixel, as are narrow rectangles.
 class SparseDepth {
  public:
-  // Maps that follow one with too many peaks and are not made.
-  static constexpr std::uint32_t kRest = 15;
+  // After a buffer with too many peaks, so many buffers are compared pixel by pixel before rows are made
+  // again.
+  static constexpr std::uint32_t kRetestDelay = 15;
 
-  // Another map. It must outlive the questions. Allocates for maps larger than all before only.
-  void begin(const DepthMapView& map);
+  // Starts with another buffer, which must stay valid while it is compared with. Allocates only for buffers
+  // larger than all before.
+  void begin(const DepthBufferView& buffer);
 
   bool allNearer(const PixelBox& rect);
 
-  // False where the map before had too many peaks, and this one is compared pixel by pixel.
-  bool worthwhile() const { return rest_ == 0; }
-  // Of this map: peaks were looked up.
+  // False where this buffer is compared pixel by pixel because an earlier one had too many peaks.
+  bool worthwhile() const { return retest_delay_ == 0; }
+  // True when peaks of this buffer were used.
   bool used() const { return used_; }
-  // Of this map: pixels looked at.
+  // The number of pixels of this buffer that were compared.
   std::uint64_t compared() const { return compared_; }
 
  private:
   enum class RowState : std::uint8_t { kNotMade, kSteps, kTooManyPeaks };
   struct Row {
-    std::uint32_t compared = 0;  // pixels, before it was made
+    std::uint32_t compared = 0;  // pixels that were compared before the row was made
     RowState state = RowState::kNotMade;
   };
 
@@ -53,11 +57,11 @@ class SparseDepth {
   void makeRow(std::uint32_t y);
   bool nearerAtPeaks(const PixelBox& rect, std::uint32_t y);
 
-  DepthMapView map_;
-  std::vector<std::uint16_t> steps_;  // to the next peak or the row's end, pixels; as many as the map has
+  DepthBufferView buffer_;
+  std::vector<std::uint16_t> steps_;  // by pixel: pixels to the next peak or the row's end
   std::vector<Row> rows_;
-  std::uint64_t made_ = 0, peaks_ = 0;  // of this map: pixels of rows that were made, peaks in them
-  std::uint32_t rest_ = 0;              // maps still to be left out, this one included
+  std::uint64_t made_ = 0, peaks_ = 0;  // pixels of this buffer's rows that were made, and peaks in them
+  std::uint32_t retest_delay_ = 0;      // buffers still to be compared pixel by pixel, with this one
   bool used_ = false;
   std::uint64_t compared_ = 0;
 };

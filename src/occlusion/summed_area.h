@@ -1,6 +1,6 @@
 #pragma once
 
-// How many pixels of a rectangle are covered, by three integer operations.
+// Counts the covered pixels of a rectangle by three integer operations.
 
 #include <cstdint>
 #include <vector>
@@ -14,22 +14,23 @@ namespace sightline::occlusion {
 // left of it; a row and a column of zeros go before them. Empty until built.
 class SummedArea {
  public:
-  // Keeps nothing of the map. Allocates for maps larger than all before only.
-  void build(const DepthMapView& map);
+  // Counts the pixels of a depth buffer, of which nothing is kept. Allocates only for buffers larger than all
+  // before.
+  void build(const DepthBufferView& buffer);
 
-  // Covered pixels of a rectangle that lies in the map.
+  // Returns the covered pixels of a rectangle that lies in the buffer.
   std::uint32_t count(const PixelBox& rect) const {
     const std::uint32_t* below = &sums_[std::size_t{rect.y0} * stride_];
     const std::uint32_t* above = &sums_[(std::size_t{rect.y1} + 1) * stride_];
     return above[rect.x1 + 1] - above[rect.x0] - below[rect.x1 + 1] + below[rect.x0];
   }
-  // Of the whole map.
+  // Returns the covered pixels of the whole buffer.
   std::uint32_t count() const { return sums_.empty() ? 0 : sums_.back(); }
 
  private:
   std::vector<std::uint32_t> sums_;     // height + 1 rows of stride_
   std::vector<std::uint32_t> columns_;  // covered pixels of each column so far, while building
-  std::size_t stride_ = 0;              // the map's width + 1
+  std::size_t stride_ = 0;              // the buffer's width + 1
 };
 
 inline std::uint32_t areaOf(const PixelBox& rect) {

@@ -7,10 +7,10 @@
 
 namespace sightline::occlusion {
 
-// The frustum's side planes at the top: what is outside them says nothing, and no shadow is stored there.
+// Adds the frustum's side planes at the top: no shadow is stored outside them, and parts of boxes there do
+// not count.
 void TreeBuilder::addFrustum(const View& view) {
-  constexpr double kTouching =
-      0x1p-60;  // what touches the frustum is in it: a width of no more than rounding
+  constexpr double kTouching = 0x1p-60;  // no more than rounding, so that what touches the frustum is in it
   const Frustum frustum = frustumOf(view);
   for (std::size_t i = 0; i < 4; ++i) {
     Plane outwards = frustum.planes[i].flipped();
@@ -26,7 +26,7 @@ void TreeBuilder::addFrustum(const View& view) {
   tree_->frustum_nodes = 4;
 }
 
-// The subtree for one lit fragment: a node for each edge, in-shadow behind all of them.
+// Makes the subtree for one lit fragment: a node for each edge, with shadow behind all of them.
 Link TreeBuilder::occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth) {
   TreeData& tree = *tree_;
   if (tree.nodes.size() + piece.count > limits_.max_nodes || depth + piece.count > kMaxTreeDepth) {
@@ -64,7 +64,7 @@ Link& TreeBuilder::at(Place place) {
   return place.front ? node.front : node.back;
 }
 
-// Follows a piece to a leaf; of a piece that is split, the part behind waits.
+// Follows a piece to a leaf. Where the piece is split, the part behind is put on the stack.
 void TreeBuilder::followToLeaf(Waiting moving, std::uint32_t volume) {
   while (at(moving.place).isNode()) {
     const auto index = static_cast<std::uint32_t>(at(moving.place).nodeIndex());
@@ -88,8 +88,7 @@ void TreeBuilder::followToLeaf(Waiting moving, std::uint32_t volume) {
     }
   }
   if (at(moving.place).isOut()) {
-    // occlusionVolume appends nodes, which moves the one that the link is in: never keep references across
-    // it.
+    // occlusionVolume() appends nodes, which may move the node of the link: keep no references across it.
     const Link made = occlusionVolume(moving.piece, volume, moving.depth);
     at(moving.place) = made;
   }
@@ -108,7 +107,7 @@ void TreeBuilder::filterDown(Piece piece, std::uint32_t volume) {
   stack_.corners.resize(stack_size);
 }
 
-// One fragment a volume, or several where edges are open in part.
+// Makes one fragment for each volume, or several where parts of its edges are open.
 void TreeBuilder::makeFragments() {
   VolumeBuilder& volumes = tree_->volumes;
   std::size_t next_cut = 0;

@@ -6,31 +6,31 @@
 namespace sightline::occlusion {
 
 struct TreeLimits {
-  bool modified = true;  // MOBSP: edges embedded in planes above add no node
+  bool modified = true;  // edges embedded in planes above add no node (MOBSP in the paper)
   bool clip_to_frustum = true;
   std::uint32_t max_nodes = 1 << 16;
 };
 
-// Builds the tree; storage is reused from one build to the next.
+// Builds occlusion trees; storage is reused from one build to the next.
 class TreeBuilder {
  public:
-  // False when the limits did not suffice: the tree is then not usable.
+  // False: the limits did not suffice, and the tree cannot be used.
   bool build(const View& view, std::span<const ChosenOccluders> sets, const TreeLimits& limits,
              TreeData& tree);
 
  private:
-  // A link of the tree: one of a node's, or the root.
+  // Names a link of the tree: one of a node, or the root.
   struct Place {
     static constexpr std::uint32_t kRoot = 0xffffffffu;
     std::uint32_t node = kRoot;
     bool front = false;
   };
-  // A piece on its way down.
+  // A piece on its way down the tree.
   struct Waiting {
     Place place;
     Piece piece;
-    std::uint32_t depth = 0;         // of the place
-    std::size_t corners_needed = 0;  // of the stack, from its bottom on
+    std::uint32_t depth = 0;         // number of nodes above the place
+    std::size_t corners_needed = 0;  // the lowest so many corners of the stack are still in use
   };
 
   void addFrustum(const View& view);

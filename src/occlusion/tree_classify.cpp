@@ -1,10 +1,10 @@
-// Asking the occlusion tree: Bittner, Havran, Slavik, CGI 1998, sections 5.1, 5.2 and 6.2.
-// Differs from the paper in: faces are not compared with planes of the frustum that the box is inside of; the
-// conservative test of a region (6.2) does not believe a leaf that would change the answer before the box's
-// image, split by the planes that the box crosses on the way there, reaches it; and a box that crosses the
-// plane of a leaf's occluder without meeting the occluder is called hidden there only if it also stays out of
-// the pyramid between the eye and the occluder. The paper's test of the intersection alone takes a box that
-// is in front of the occluder, and crosses its plane beside it, for a hidden one.
+// Classifying boxes by the occlusion tree: Bittner, Havran, Slavik, CGI 1998, sections 5.1, 5.2 and 6.2.
+// Differs from the paper in: faces are not compared with planes of the frustum that the box is inside of. In
+// the conservative test of a region (6.2) a leaf that would change the answer counts only if the box's image,
+// split by the planes that the box crosses on the way there, reaches it. A box that crosses the plane of a
+// leaf's occluder and is disjoint from the occluder is hidden there only if it is also disjoint from the
+// pyramid between the eye and the occluder. The paper's test, of the intersection alone, takes a box that is
+// in front of the occluder and crosses its plane beside it for hidden.
 
 #include "src/occlusion/tree_classify.h"
 
@@ -19,7 +19,7 @@ double supportMargin(const OcclusionVolume& volume, const Vec3d& p) {
   return volume.depth_slack + kDepthMargin * l1Norm(p);
 }
 
-// The four corners of the face of the box on one side of an axis.
+// Returns the four corners of the face of the box on one side of an axis.
 std::array<Vec3d, 4> faceOf(const EyeBox& box, int axis, bool high) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::array<Vec3d, 4> corners;
@@ -32,7 +32,7 @@ std::array<Vec3d, 4> faceOf(const EyeBox& box, int axis, bool high) {
   return corners;
 }
 
-// The sides of an axis on which the box has a face towards the eye: -1, 0 (none), 1.
+// Returns the side of an axis on which the box has a face towards the eye: -1, 1, or 0 for none.
 int facingSide(const EyeBox& box, const Eye& eye, int axis) {
   if (eye.orthographic) {
     return eye.forward[axis] > 0.0 ? -1 : eye.forward[axis] < 0.0 ? 1 : 0;
@@ -73,7 +73,7 @@ State SplittingQuery::leaf(Link link, Piece piece) const {
   return State::kHidden;
 }
 
-// By the node's plane, moved against its normal by the shift.
+// Splits by the node's plane, moved against its normal by the shift (metres).
 SplitResult SplittingQuery::split(const TreeNode& node, Piece piece, double shift) {
   const Plane plane{node.plane.normal, node.plane.offset + shift};
   const SplitResult result = stack_.split(piece, plane, PlaneRef{}, on_plane_scale_, 0.0);
@@ -99,7 +99,7 @@ SplittingQuery::Parts SplittingQuery::partsOf(const TreeNode& node, Piece piece)
   if (node.tolerance == 0.0 && !eye.orthographic) {
     return partsIn(split(node, piece, 0.0));
   }
-  // The parts that the two sides of a seam get overlap; for orthographic eyes see BoxImage::cut.
+  // The parts on the two sides of a shared edge overlap; for orthographic eyes see BoxImage::cut.
   const double width = overlapWidth(node.tolerance, reach_, eye, tree_->on_plane_scale);
   const double front_from = node.repeated ? width : -width;
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -144,7 +144,7 @@ State SplittingQuery::polygon(Link link, Piece piece) {
   return state;
 }
 
-// What of a face is in the frustum, among the occluders.
+// Classifies a face, of which only the part in the frustum counts.
 State SplittingQuery::face(Piece piece) {
   for (std::size_t i = 0; i < tree_->frustum_nodes; ++i) {
     if (question_->mayCross(i)) {
@@ -162,7 +162,8 @@ State SplittingQuery::classify(const TreeData& tree, const BoxQuestion& question
   question_ = &question;
   const EyeBox& box = question.box;
   reach_ = l1Norm(max(abs(box.min), abs(box.max)));
-  // Of the box's nearest point: a corner far away may be the end of an edge that passes close by.
+  // The scale is that of the box's nearest point: a corner far away may be the end of an edge that passes
+  // close by.
   on_plane_scale_ = l1Norm(max(max(box.min, -box.max), Vec3d())) + tree.on_plane_scale;
   stack_.overflow = false;
   State state = State::kNothing;
@@ -188,8 +189,8 @@ State PlaneQuery::leaf(Link link, State so_far) {
   State state =
       lit ? State::kVisible
           : boxBehindSupport(tree_->volumes.volumes[tree_->leaves[link.leafIndex()].volume], question_->box);
-  // The image costs more than the planes. A leaf that changes nothing is believed, and so is shadow as long
-  // as nothing else is known.
+  // Cutting the image takes longer than testing planes. It is left out for a leaf that does not change the
+  // answer, and for shadow as long as no other leaf was reached.
   if (combine(so_far, state) == so_far || (so_far == State::kNothing && state == State::kHidden)) {
     return state;
   }
@@ -203,8 +204,8 @@ State PlaneQuery::leaf(Link link, State so_far) {
   return state;
 }
 
-// Whether the box's image has a point on the right side of all planes of the path. Where it has none, what
-// waits behind the planes that suffice to see that is forgotten.
+// Whether the box's image has a point on the path's side of all its planes. If not, everything that is still
+// to be visited behind the planes that suffice to show this is dropped.
 bool PlaneQuery::imageReaches() {
   if (path_.size() < 2 || path_.size() > BoxImage::kMaxCuts) {
     return true;  // one plane: the box crosses it
@@ -234,7 +235,7 @@ Side PlaneQuery::sideOf(const TreeNode& node) {
   return distance - radius >= width ? Side::kFront : distance + radius <= -width ? Side::kBack : Side::kBoth;
 }
 
-// To a leaf; where the box crosses a plane, its back waits.
+// Descends to a leaf. Where the box crosses a plane, the back side is put on the stack.
 Link PlaneQuery::descend(Link link) {
   while (link.isNode()) {
     const TreeNode& node = tree_->nodes[link.nodeIndex()];
@@ -248,7 +249,7 @@ Link PlaneQuery::descend(Link link) {
   return link;
 }
 
-State PlaneQuery::walk(Link link) {
+State PlaneQuery::traverse(Link link) {
   State state = leaf(descend(link), State::kNothing);
   while (state != State::kPartial && !waiting_.empty()) {
     const Waiting next = waiting_.back();
@@ -278,19 +279,19 @@ State PlaneQuery::classify(const TreeData& tree, const BoxQuestion& question) {
       if (side == Side::kFront) {
         return State::kNothing;
       }
-      // What is in front of it counts for nothing, so it does not wait. Without occluders the tree says what
-      // the frustum's planes say one by one, and no more.
+      // What lies in front of a frustum plane does not count, so that side need not be visited. Without
+      // occluders the tree answers as the frustum's planes do one by one.
       if (side == Side::kBoth && tree.belowFrustum().isNode()) {
         path_.push_back({i, false});
       }
     }
   }
-  return walk(tree.belowFrustum());
+  return traverse(tree.belowFrustum());
 }
 
 namespace {
 
-// Separating-axis test of the box against a set of points. Grows the box by the margin.
+// Separating-axis test of a box, grown by a margin, and a set of points.
 class SeparatingAxis {
  public:
   SeparatingAxis(std::span<const Vec3d> base, bool orthographic, const Vec3d& forward, const EyeBox& box,
@@ -344,7 +345,8 @@ bool disjointFromPyramid(const TreeData& tree, const ShadowLeaf& leaf, const Eye
       return true;
     }
   }
-  // The pyramid's side planes were on the way to the leaf, its base is what the box crosses: edges are left.
+  // The pyramid's side planes were tested on the way to the leaf, and the box crosses its base: the axes that
+  // are left are products of edges.
   for (std::size_t i = 0; i < base.size(); ++i) {
     const Vec3d along = base[(i + 1) % base.size()] - base[i];
     const Vec3d up = eye.orthographic ? eye.forward : base[i];

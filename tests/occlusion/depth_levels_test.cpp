@@ -17,12 +17,12 @@ namespace {
 
 using test::randomBox, test::randomView, test::ViewRandom;
 
-// A map of the test's own, with rubbish beyond its width.
-struct TestMap {
+// A buffer of the test's own, with rubbish beyond its width.
+struct TestBuffer {
   std::uint32_t width, height, stride;
   std::vector<float> reciprocal_depth;
 
-  TestMap(std::uint32_t w, std::uint32_t h, std::uint32_t s)
+  TestBuffer(std::uint32_t w, std::uint32_t h, std::uint32_t s)
       : width(w),
         height(h),
         stride(s),
@@ -32,7 +32,7 @@ struct TestMap {
     }
   }
   float& at(std::uint32_t x, std::uint32_t y) { return reciprocal_depth[std::size_t{y} * stride + x]; }
-  DepthMapView view() const { return {reciprocal_depth, width, height, stride}; }
+  DepthBufferView view() const { return {reciprocal_depth, width, height, stride}; }
 };
 
 void forCutRanges(std::uint32_t count, const RangeBody& body) {
@@ -48,36 +48,36 @@ TEST(DepthLevels, HoldTheLeastAndTheGreatestOfEachBlock) {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   for (const auto& size : sizes) {
     ViewRandom random(size[0]);
-    TestMap map(size[0], size[1], size[2]);
-    for (std::uint32_t y = 0; y < map.height; ++y) {
-      for (std::uint32_t x = 0; x < map.width; ++x) {
-        map.at(x, y) = random.below(5) == 0 ? kUncovered : static_cast<float>(random.in(-3.0, 3.0));
+    TestBuffer buffer(size[0], size[1], size[2]);
+    for (std::uint32_t y = 0; y < buffer.height; ++y) {
+      for (std::uint32_t x = 0; x < buffer.width; ++x) {
+        buffer.at(x, y) = random.below(5) == 0 ? kUncovered : static_cast<float>(random.in(-3.0, 3.0));
       }
     }
     for (const std::int64_t target : targets) {
       hwy::SetSupportedTargetsForTest(target);
       DepthLevels levels;
-      levels.build(map.view(), target == targets.front() ? ParallelFor(forCutRanges) : serialFor);
+      levels.build(buffer.view(), target == targets.front() ? ParallelFor(forCutRanges) : serialFor);
       hwy::SetSupportedTargetsForTest(0);
       const std::span<const DepthLevel> all = levels.levels();
       ASSERT_FALSE(all.empty());
       EXPECT_LE(std::max(all.back().width, all.back().height), kBlock);
       for (std::size_t k = 0; k < all.size(); ++k) {
         const std::uint32_t side = 1u << (kBlockShift * k);
-        ASSERT_EQ(all[k].width, (map.width + side - 1) / side);
-        ASSERT_EQ(all[k].height, (map.height + side - 1) / side);
+        ASSERT_EQ(all[k].width, (buffer.width + side - 1) / side);
+        ASSERT_EQ(all[k].height, (buffer.height + side - 1) / side);
         for (std::uint32_t y = 0; y < all[k].height; ++y) {
           for (std::uint32_t x = 0; x < all[k].width; ++x) {
-            float least = INFINITY, greatest = -INFINITY;
-            for (std::uint32_t j = y * side; j < std::min(map.height, (y + 1) * side); ++j) {
-              for (std::uint32_t i = x * side; i < std::min(map.width, (x + 1) * side); ++i) {
-                least = std::min(least, map.at(i, j));
-                greatest = std::max(greatest, map.at(i, j));
+            float min = INFINITY, max = -INFINITY;
+            for (std::uint32_t j = y * side; j < std::min(buffer.height, (y + 1) * side); ++j) {
+              for (std::uint32_t i = x * side; i < std::min(buffer.width, (x + 1) * side); ++i) {
+                min = std::min(min, buffer.at(i, j));
+                max = std::max(max, buffer.at(i, j));
               }
             }
             const std::size_t cell = std::size_t{y} * all[k].stride + x;
-            ASSERT_EQ(all[k].least[cell], least) << hwy::TargetName(target) << " level " << k;
-            ASSERT_EQ(all[k].greatest[cell], greatest) << hwy::TargetName(target) << " level " << k;
+            ASSERT_EQ(all[k].min[cell], min) << hwy::TargetName(target) << " level " << k;
+            ASSERT_EQ(all[k].max[cell], max) << hwy::TargetName(target) << " level " << k;
           }
         }
       }
@@ -145,16 +145,16 @@ class PlainBox {
       if (!face) {
         continue;
       }
-      double most = -INFINITY;
+      double max = -INFINITY;
       for (unsigned i = 0; i < 4; ++i) {
         const double tx = (x + (i & 1u) - view_.middle_x) / view_.scale_x;
         const double ty = (y + (i >> 1) - view_.middle_y) / view_.scale_y;
         const Vec3d across = view_.right * tx + view_.up * ty;
         const double depth_or_inverse = view_.orthographic ? -(*face - across[axis]) / view_.forward[axis]
                                                            : (across + view_.forward)[axis] / *face;
-        most = std::max(most, depth_or_inverse);
+        max = std::max(max, depth_or_inverse);
       }
-      own = std::min(own, most);
+      own = std::min(own, max);
     }
     return own;
   }
@@ -200,15 +200,15 @@ class PlainBox {
 };
 
 struct Bed {
-  explicit Bed(std::uint64_t seed) : random(seed), map(1, 1, 1) {
+  explicit Bed(std::uint64_t seed) : random(seed), buffer(1, 1, 1) {
     const std::uint32_t sizes[][3] = {
         {320, 180, 320}, {100, 70, 104}, {17, 23, 21}, {64, 64, 64}, {640, 24, 640}};
     const auto& size = sizes[random.below(5)];
-    map = TestMap(size[0], size[1], size[2]);
+    buffer = TestBuffer(size[0], size[1], size[2]);
     eye_view = randomView(random);
-    view = PixelView(eye_view, map.width, map.height);
+    view = PixelView(eye_view, buffer.width, buffer.height);
     box = randomBox(random, eye_view);
-    projectBoxes(view, map.width, map.height, {&box, 1}, {&image, 1});
+    projectBoxes(view, buffer.width, buffer.height, {&box, 1}, {&image, 1});
   }
   // Rounding of the rectangle's and the outline's borders, pixels.
   double pixelTolerance() const {
@@ -216,7 +216,7 @@ struct Bed {
     const Vec3d farthest = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
     const double in_rectangle =
         0x1p-19 * std::max(view.scale_x, view.scale_y) * maxComponent(farthest) / depth;
-    return 1e-3 + 1e-5 * std::max(map.width, map.height) + 3.0 * in_rectangle * (1.0 + spread());
+    return 1e-3 + 1e-5 * std::max(buffer.width, buffer.height) + 3.0 * in_rectangle * (1.0 + spread());
   }
   // The largest tangent of the view.
   double spread() const {
@@ -224,22 +224,22 @@ struct Bed {
   }
   BoxAnswer ask() const {
     DepthLevels levels;
-    levels.build(map.view());
+    levels.build(buffer.view());
     BoxAnswer answer;
     testBoxes(levels.levels(), view, {&box, 1}, {&image, 1}, {&answer, 1});
     return answer;
   }
 
   ViewRandom random;
-  TestMap map;
+  TestBuffer buffer;
   View eye_view;
   PixelView view;
   Box box;
   PixelBox image;
 };
 
-// Draws into the map what is a little nearer than the box in every pixel that it meets, and nothing (or
-// something farther) elsewhere; then opens some pixels.
+// Draws into the buffer what is a little nearer than the box in every pixel that its outline intersects, and
+// nothing (or something farther) elsewhere; then opens some pixels.
 void drawAround(Bed& bed, const PlainBox& plain, int opened) {
   const double range = std::abs(static_cast<double>(bed.image.nearest) - bed.image.farthest);
   const double ahead =
@@ -248,7 +248,7 @@ void drawAround(Bed& bed, const PlainBox& plain, int opened) {
     for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
       if (plain.distanceTo(x, y) < bed.pixelTolerance()) {
         const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
-        bed.map.at(x, y) = static_cast<float>(own + ahead);
+        bed.buffer.at(x, y) = static_cast<float>(own + ahead);
       }
     }
   }
@@ -258,7 +258,7 @@ void drawAround(Bed& bed, const PlainBox& plain, int opened) {
     const auto y =
         bed.image.y0 + static_cast<std::uint32_t>(bed.random.below(bed.image.y1 - bed.image.y0 + 1u));
     const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
-    bed.map.at(x, y) = bed.random.below(2) == 0 ? kUncovered : static_cast<float>(own - ahead);
+    bed.buffer.at(x, y) = bed.random.below(2) == 0 ? kUncovered : static_cast<float>(own - ahead);
   }
 }
 
@@ -266,7 +266,7 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
   int hidden = 0, refined = 0, open = 0, visible = 0;
   for (std::uint64_t seed = 1; seed <= 6000; ++seed) {
     Bed bed(seed);
-    if (bed.image.place != BoxPlace::kOnMap) {
+    if (bed.image.place != BoxPlace::kOnBuffer) {
       EXPECT_EQ(bed.ask().visibility,
                 bed.image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial);
       continue;
@@ -277,7 +277,7 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
     const double tolerance = bed.pixelTolerance();
     for (std::uint32_t y = bed.image.y0; y <= bed.image.y1; ++y) {
       for (std::uint32_t x = bed.image.x0; x <= bed.image.x1; ++x) {
-        const double at = bed.map.at(x, y), distance = plain.distanceTo(x, y);
+        const double at = bed.buffer.at(x, y), distance = plain.distanceTo(x, y);
         const double own = std::min<double>(plain.reciprocalDepthIn(x, y), bed.image.nearest);
         const double slack = 2e-5 * std::abs(own);
         surely_open |= distance < -tolerance && at <= own - slack;
@@ -303,12 +303,12 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
   EXPECT_GT(visible, 20);
 }
 
-// From the promise alone: a point of the box is hidden where the map is nearer than it.
+// By the promise alone: a point of the box is hidden where the buffer is nearer than the point.
 TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
   int hidden = 0, points = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     Bed bed(seed);
-    if (bed.image.place == BoxPlace::kOnMap) {
+    if (bed.image.place == BoxPlace::kOnBuffer) {
       const PlainBox plain(bed.view, bed.box);
       drawAround(bed, plain, seed % 3 == 0 ? 1 : 0);
     }
@@ -326,13 +326,13 @@ TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
       const Vec3d camera = bed.view.toCamera(p - bed.view.eye);
       const double x = camera.z > 0.0 || bed.view.orthographic ? bed.view.mapX(camera) : -1.0;
       const double y = camera.z > 0.0 || bed.view.orthographic ? bed.view.mapY(camera) : -1.0;
-      const double margin = 1e-9 * bed.map.width;
+      const double margin = 1e-9 * bed.buffer.width;
       if (camera.z < bed.view.near || camera.z > bed.view.far ||
-          !(x > margin && x < bed.map.width - margin) || !(y > margin && y < bed.map.height - margin)) {
+          !(x > margin && x < bed.buffer.width - margin) || !(y > margin && y < bed.buffer.height - margin)) {
         continue;
       }
       ++points;
-      EXPECT_GT(bed.map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
+      EXPECT_GT(bed.buffer.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
                 bed.view.reciprocal_depth(camera.z) - 1e-12)
           << "seed " << seed;
     }
@@ -346,7 +346,7 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
   int hidden = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Bed bed(seed);
-    if (bed.image.place == BoxPlace::kOnMap) {
+    if (bed.image.place == BoxPlace::kOnBuffer) {
       drawAround(bed, PlainBox(bed.view, bed.box), static_cast<int>(seed % 2));
     }
     // The box itself, and parts of it, which are hidden more often.
@@ -364,9 +364,9 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
       boxes.push_back(part);
     }
     std::vector<PixelBox> images(boxes.size());
-    projectBoxes(bed.view, bed.map.width, bed.map.height, boxes, images);
+    projectBoxes(bed.view, bed.buffer.width, bed.buffer.height, boxes, images);
     DepthLevels levels;
-    levels.build(bed.map.view());
+    levels.build(bed.buffer.view());
     std::vector<BoxAnswer> all(boxes.size());
     testBoxes(levels.levels(), bed.view, boxes, images, all);
     const auto same = [&](const std::vector<BoxAnswer>& answers) {

@@ -60,15 +60,15 @@ TEST(DepthPyramid, ABoxIsComparedByItsOwnDepthInEachPixelNotByItsNearestPoint) {
   const std::vector<OraclePolygon> walls{
       {{{0.9f, -3, -30}, {0.9f, -3, -0.5f}, {0.9f, 2, -0.5f}, {0.9f, 2, -30}}, true}};
   const DepthPyramid pyramid = pyramidOf(walls, view);
-  const DepthMapView map = pyramid.map();
+  const DepthBufferView buffer = pyramid.depthBuffer();
   occlusion::PixelBox image;
-  occlusion::projectBoxes(PixelView(view, map.width, map.height), map.width, map.height, {&box, 1},
-                          {&image, 1});
-  ASSERT_EQ(image.place, occlusion::BoxPlace::kOnMap);
+  occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height,
+                          {&box, 1}, {&image, 1});
+  ASSERT_EQ(image.place, occlusion::BoxPlace::kOnBuffer);
   int before_nearest = 0, pixels = 0;
   for (std::uint32_t y = image.y0; y <= image.y1; ++y) {
     for (std::uint32_t x = image.x0; x <= image.x1; ++x, ++pixels) {
-      before_nearest += map.at(x, y) > image.nearest ? 1 : 0;
+      before_nearest += buffer.at(x, y) > image.nearest ? 1 : 0;
     }
   }
   EXPECT_LT(before_nearest, pixels / 2);
@@ -84,7 +84,7 @@ TEST(DepthPyramid, ABoxIsComparedByItsOutlineNotByItsRectangle) {
   view.up = {-h, h, 0};
   const std::vector<OraclePolygon> walls{wall(-2, 2, -2, 2, -5)};
   const DepthPyramid pyramid = pyramidOf(walls, view);
-  EXPECT_FALSE(pyramid.map().covered(70, 70)) << "within the rectangle, beside the wall";
+  EXPECT_FALSE(pyramid.depthBuffer().covered(70, 70)) << "within the rectangle, beside the wall";
   EXPECT_EQ(pyramid.classify(box), Visibility::kHidden);
   EXPECT_EQ(pyramid.classify({{-2.5f, -2, -6}, {2, 2, -5.9f}}), Visibility::kPartial);
 }
@@ -93,7 +93,7 @@ TEST(DepthPyramid, NeverHidesABoxSeenThroughAGap) {
   for (const RasterSettings& size : kSizes) {
     forEachGap([&](std::span<const OraclePolygon> walls, const Box& box, const std::string& what) {
       EXPECT_NE(pyramidOf(walls, kLookingBack, size).classify(box), Visibility::kHidden)
-          << what << ", map " << size.width << " x " << size.height;
+          << what << ", buffer " << size.width << " x " << size.height;
     });
   }
 }
@@ -163,7 +163,7 @@ TEST_P(DepthPyramidFamilies, NothingThatARayReachesIsHidden) {
       EXPECT_FALSE(sight.seen) << GetParam().name << ", seed " << seed << ", box " << b;
     }
   }
-  EXPECT_GT(hidden, 20) << "by the map";
+  EXPECT_GT(hidden, 20) << "by the depth buffer";
 }
 
 TEST_P(DepthPyramidFamilies, NothingIsBeforeABoxThatIsVisible) {
@@ -179,13 +179,13 @@ TEST_P(DepthPyramidFamilies, NothingIsBeforeABoxThatIsVisible) {
         continue;
       }
       ++visible;
-      // The map in its centre's pixel is not nearer than its centre.
-      const DepthMapView map = pyramid.map();
-      const PixelView view(scene.view, map.width, map.height);
+      // The buffer in its centre's pixel is not nearer than its centre.
+      const DepthBufferView buffer = pyramid.depthBuffer();
+      const PixelView view(scene.view, buffer.width, buffer.height);
       const Vec3d camera = view.toCamera(center(box) - view.eye);
-      const double x = std::clamp(view.mapX(camera), 0.0, map.width - 1.0);
-      const double y = std::clamp(view.mapY(camera), 0.0, map.height - 1.0);
-      EXPECT_LE(map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
+      const double x = std::clamp(view.mapX(camera), 0.0, buffer.width - 1.0);
+      const double y = std::clamp(view.mapY(camera), 0.0, buffer.height - 1.0);
+      EXPECT_LE(buffer.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
                 view.reciprocal_depth(camera.z))
           << GetParam().name << ", seed " << seed;
     }

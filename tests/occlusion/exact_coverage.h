@@ -1,12 +1,13 @@
 #pragma once
 
-// An exact judge of maps: is a closed pixel square inside the union of the images of some polygons, and how
-// near are they there? Integers only. Points have small integer coordinates in camera space and the camera's
-// tangents are powers of two, so that points of the map are quotients of small integers. Every piece that is
-// left of a pixel is bounded by lines that were given, never by computed points, so numbers do not grow.
+// An exact judge of buffers: is a closed pixel square inside the union of the images of some polygons, and
+// how near are they there? Integers only. Points have small integer coordinates in camera space and the
+// camera's tangents are powers of two, so that points of the buffer are quotients of small integers. Every
+// piece that is left of a pixel is bounded by lines that were given, never by computed points, so numbers do
+// not grow.
 //
-// Camera space: x to the right, y upwards, z the depth. Map space: pixels, the lower left corner at (0, 0), y
-// upwards. A point of the map is (x, y, w), meaning (x / w, y / w), with w > 0.
+// Camera space: x to the right, y upwards, z the depth. Buffer space: pixels, the lower left corner at (0,
+// 0), y upwards. A point of the buffer is (x, y, w), meaning (x / w, y / w), with w > 0.
 
 #include <cmath>
 #include <cstdint>
@@ -97,7 +98,7 @@ inline Triple reduced(const Triple& line) {
   return divisor > 1 ? Triple{line.x / divisor, line.y / divisor, line.w / divisor} : line;
 }
 
-// A convex part of the map with an area: what is to the left of all its lines, which go round it
+// A convex part of the buffer with an area: what is to the left of all its lines, which go round it
 // counter-clockwise. No lines: the empty part.
 using Part = std::vector<Triple>;
 
@@ -192,7 +193,7 @@ inline Part pixel(std::int64_t x, std::int64_t y, std::int64_t grow = 0) {
 // What a camera sees of a polygon's front, beyond the near plane.
 struct Image {
   Part part;
-  Triple reciprocal_depth;  // over the map, times denominator
+  Triple reciprocal_depth;  // over the buffer, times denominator
   Wide denominator = 1;
   std::size_t polygon = 0;
 
@@ -200,7 +201,7 @@ struct Image {
     return static_cast<double>(dot(reciprocal_depth, point)) /
            static_cast<double>(times(denominator, point.w));
   }
-  // Of the farthest point within a part of the map.
+  // Of the farthest point within a part of the buffer.
   double minReciprocalDepth(const Part& where) const {
     double least = INFINITY;
     for (std::size_t i = 0; i < where.size(); ++i) {
@@ -219,7 +220,7 @@ inline Triple project(const Camera& c, const Point& p, std::int64_t q) {
   return {Wide{c.width} * (p.z + c.gx * p.x), Wide{c.height} * (p.z + c.gy * p.y), Wide{2} * p.z};
 }
 
-// ReciprocalDepth over the map, from the plane n . p = d.
+// ReciprocalDepth over the buffer, from the plane n . p = d.
 inline void setReciprocalDepth(const Camera& c, const Polygon& polygon, Image& image) {
   const Point &a = polygon.vertices[0], &b = polygon.vertices[1], &e = polygon.vertices[2];
   const Triple n = cross({b.x - a.x, b.y - a.y, b.z - a.z}, {e.x - a.x, e.y - a.y, e.z - a.z});
@@ -368,7 +369,7 @@ inline bool covers(const Surface& surface, const Part& where) {
   return isCovered(where, parts);
 }
 
-// Of the farthest point that any of the surface's polygons has in this part of the map.
+// Of the farthest point that any of the surface's polygons has in this part of the buffer.
 inline double minReciprocalDepth(const Surface& surface, const Part& where) {
   double least = INFINITY;
   for (const Image& image : surface.images) {

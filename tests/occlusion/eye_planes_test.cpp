@@ -97,14 +97,14 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
     for (std::size_t i = 0; i < tests.size(); ++i) {
       const EyeShape& shape = scene.shapes[i];
       const auto range = [&](const Vec3d& n, double offset) {
-        double least = INFINITY, most = -INFINITY;
+        double min = INFINITY, max = -INFINITY;
         for (unsigned c = 0; c < 8; ++c) {
           const Vec3d x(c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
                         c & 4 ? box.max.z : box.min.z);
-          least = std::min(least, dot(n, x) + offset);
-          most = std::max(most, dot(n, x) + offset);
+          min = std::min(min, dot(n, x) + offset);
+          max = std::max(max, dot(n, x) + offset);
         }
-        return std::pair(least, most);
+        return std::pair(min, max);
       };
       const auto [deepest, nearest] = range(shape.normal, shape.offset);
       if (std::abs(deepest) < 1e-5 || std::abs(nearest) < 1e-5) {
@@ -119,10 +119,10 @@ TEST(EyePlanes, AgreeWithTheEightCorners) {
       std::uint64_t failing = 0;
       for (std::uint32_t e = 0; e < shape.plane_count; ++e) {
         const EyeQuad& quad = scene.quads[shape.first_quad + e / 4];
-        const auto [least, most] = range({quad.x[e % 4], quad.y[e % 4], quad.z[e % 4]}, quad.offset[e % 4]);
-        near_tie |= std::abs(least) < 1e-8 || std::abs(most) < 1e-8;
-        touches &= least < 0.0;
-        failing |= (most < 0.0 ? std::uint64_t{0} : std::uint64_t{1}) << e;
+        const auto [min, max] = range({quad.x[e % 4], quad.y[e % 4], quad.z[e % 4]}, quad.offset[e % 4]);
+        near_tie |= std::abs(min) < 1e-8 || std::abs(max) < 1e-8;
+        touches &= min < 0.0;
+        failing |= (max < 0.0 ? std::uint64_t{0} : std::uint64_t{1}) << e;
       }
       if (near_tie) {
         continue;

@@ -44,7 +44,7 @@ TEST(OcclusionTree, ABoxThatTouchesTheWallFromBehindIsNotHidden) {
   }
 }
 
-TEST(OcclusionTree, AdjoiningWallsHideABoxAcrossTheirSeamTogether) {
+TEST(OcclusionTree, AdjoiningWallsHideABoxAcrossTheirSharedEdgeTogether) {
   const std::vector<OraclePolygon> walls{wall(-4, 0.3f, -4, 4, -5), wall(0.3f, 4, -4, 4, -5)};
   for (const auto variant : kVariants) {
     EXPECT_EQ(ask(variant, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}), Visibility::kHidden);
@@ -52,7 +52,7 @@ TEST(OcclusionTree, AdjoiningWallsHideABoxAcrossTheirSeamTogether) {
 }
 
 TEST(OcclusionTree, TheSidesOfACornerHideTogether) {
-  // A building's corner towards the eye: two walls that meet in a vertical edge.
+  // A building's corner towards the eye: two walls that share a vertical edge.
   const std::vector<OraclePolygon> walls{
       {{{-3, -2, -8}, {0, -2, -5}, {0, 2, -5}, {-3, 2, -8}}, false},
       {{{0, -2, -5}, {3, -2, -8}, {3, 2, -8}, {0, 2, -5}}, false},
@@ -85,8 +85,9 @@ TEST(OcclusionTree, TouchingSilhouettesOfUnconnectedWallsCountAsAGap) {
 }
 
 TEST(OcclusionTree, TheTipOfAGapThatEndsOnASeamIsSeen) {
-  // The lower polygon's upper edge runs through v, which lies a little below the line of the seam. Above it
-  // two polygons adjoin, one on each side of v, with a gap in the form of a V between them: its tip is at v.
+  // The lower polygon's upper edge runs through v, which lies a little below the line of the shared edge.
+  // Above it two polygons adjoin, one on each side of v, with a gap in the form of a V between them: its tip
+  // is at v.
   for (const double dent : {0.0, 1e-7, 5e-7}) {
     const Vec3f u(-1, 0, -1), v(0, static_cast<float>(-dent), -1), w(1, 0, -1);
     const std::vector<OraclePolygon> polygons{{{{-1, -1, -1}, {1, -1, -1}, w, v, u}, true},
@@ -206,7 +207,8 @@ TEST(OcclusionTree, FlatAndPointLikeBoxesAreAnsweredToo) {
 }
 
 TEST(OcclusionTree, ABoxInFrontThatCrossesTheSupportingPlaneBesideTheOccluderIsNotHidden) {
-  // In front of the slanted wall within its cone, behind its plane outside of it; it does not meet the wall.
+  // In front of the slanted wall within its cone, behind its plane outside of it; it is disjoint from the
+  // wall.
   const OraclePolygon slanted{{{-1, -1, -4}, {1, -1, -6}, {1, 1, -6}, {-1, 1, -4}}, true};
   std::mt19937_64 random(11);
   for (int i = 0; i < 4000; ++i) {

@@ -7,7 +7,7 @@
 
 #include "sightline/comparison/centre_coverage.h"
 #include "tests/occlusion/small_scenes.h"
-#include "tests/occlusion/synthetic_maps.h"
+#include "tests/occlusion/synthetic_buffers.h"
 
 namespace sightline {
 namespace {
@@ -62,7 +62,7 @@ TEST(OpacityMap, TellsHiddenPartialAndVisible) {
   EXPECT_EQ(ask(kLookingBack, walls, {{-0.3f, -0.3f, -4}, {0.3f, 0.3f, -3}}), Visibility::kPartial);
   EXPECT_EQ(ask(kLookingBack, walls, {{-3, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
   EXPECT_EQ(ask(kLookingBack, walls, {{5, -1, -12}, {6, 1, -10}}), Visibility::kVisible);
-  // Off the map.
+  // Off the buffer.
   EXPECT_EQ(ask(kLookingBack, walls, {{25, -1, -12}, {26, 1, -10}}), Visibility::kHidden);
 }
 
@@ -155,8 +155,8 @@ TEST(OpacityMap, SetsDrawnOneAfterTheOtherHideTogether) {
   EXPECT_EQ(map.occluders().size(), 2u);
 }
 
-// Walls that leave a square hole of some width (metres, at 5 metres). In a map of 100 x 100 pixels a pixel is
-// 0.1 metres there. The hole's borders lie on those of pixels, but for rounding.
+// Walls that leave a square hole of some width (metres, at 5 metres). In a buffer of 100 x 100 pixels a pixel
+// is 0.1 metres there. The hole's borders lie on those of pixels, but for rounding.
 std::vector<OraclePolygon> wallsAroundAHole(float width) {
   return {wall(-9, 0, -9, 9, -5), wall(width, 9, -9, 9, -5), wall(-9, 9, -9, 0, -6),
           wall(-9, 9, 1.2f * width, 9, -6)};
@@ -168,7 +168,7 @@ TEST(OpacityMap, ToleranceOverlooksSmallHolesOnly) {
   OpacityMapSettings settings = sized(100, 100);
   OpacityMap map(settings);
   map.build(kLookingBack, set, all(set));
-  const std::uint32_t uncovered = 100 * 100 - coveredByCounting(map.map(), rectangle(0, 0, 99, 99));
+  const std::uint32_t uncovered = 100 * 100 - coveredByCounting(map.depthBuffer(), rectangle(0, 0, 99, 99));
   ASSERT_GE(uncovered, 4u);
   ASSERT_LE(uncovered, 16u);  // a pixel more on each side, where rounding leaves a gap
   for (const std::uint32_t tolerance : {0u, uncovered - 1, uncovered, uncovered + 1}) {
@@ -214,7 +214,7 @@ TEST(OpacityMap, StatsCountTestsUntilTheNextMap) {
     map.classify({{-3, -1, -12}, {1, 1, -10}});              // half covered
     map.classify({{-10, -9, -12}, {10, 9, -10}});            // hardly covered
     map.classify({{5, -1, -12}, {6, 1, -10}});               // not covered
-    map.classify({{55, -1, -12}, {56, 1, -10}});             // off the map: no test
+    map.classify({{55, -1, -12}, {56, 1, -10}});             // off the buffer: no test
     EXPECT_EQ(map.stats().raster.occluders, 1u);
     EXPECT_EQ(map.stats().overlap_tests, 5u);
     EXPECT_EQ(map.stats().overlap_failed, 3u);
@@ -244,13 +244,13 @@ TEST(OpacityMap, TheSparseDepthMapComparesFewerPixels) {
   EXPECT_LT(sparse.stats().depths_compared, pixelwise.stats().depths_compared / 5);
 }
 
-// The answer from the map's pixels, one by one, with the settings' defaults.
+// The answer from the buffer's pixels, one by one, with the settings' defaults.
 Visibility byScanning(const OpacityMap& map, const View& view, const Box& box) {
-  const DepthMapView pixels = map.map();
+  const DepthBufferView pixels = map.depthBuffer();
   PixelBox image;
   occlusion::projectBoxes(PixelView(view, pixels.width, pixels.height), pixels.width, pixels.height,
                           {&box, 1}, {&image, 1});
-  if (image.place != BoxPlace::kOnMap) {
+  if (image.place != BoxPlace::kOnBuffer) {
     return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
   }
   const std::uint32_t covered = coveredByCounting(pixels, image);
@@ -264,7 +264,7 @@ Visibility byScanning(const OpacityMap& map, const View& view, const Box& box) {
 class OpacityMapFamilies : public ::testing::TestWithParam<Family> {};
 
 TEST_P(OpacityMapFamilies, NothingThatARayReachesIsHidden) {
-  int hidden = 0;  // by the map, not for being off it
+  int hidden = 0;  // by the buffer, not for being off it
   // Square pixels, and such that are not.
   BothMaps square(sized(160, 160)), flat(sized(97, 31));
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {

@@ -1,4 +1,4 @@
-// Orthographic views of the occlusion tree, in which distances of all sizes meet.
+// Orthographic views of the occlusion tree, with distances of all sizes.
 
 #include <gtest/gtest.h>
 

@@ -21,9 +21,10 @@ using Wide = long double;
 
 // In 64 bits of precision, corner by corner.
 struct Exact {
-  Wide x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY;  // in the map; where all depths are > 0
-  Wide z0 = INFINITY, z1 = -INFINITY;                                 // depth
-  Wide reach = 0;                // sum of the largest magnitudes relative to the eye
+  Wide x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY,
+       y1 = -INFINITY;                 // in the buffer; where all depths are > 0
+  Wide z0 = INFINITY, z1 = -INFINITY;  // depth
+  Wide reach = 0;                      // sum of the largest magnitudes relative to the eye
   Wide beyond_side = -INFINITY;  // metres, about, that all of it is beyond one side of the view's volume
 
   Exact(const PixelView& view, const Box& box) {
@@ -75,7 +76,7 @@ PixelBox projectOne(const PixelView& view, const Box& box) {
 }
 
 TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
-  int on_map = 0, whole = 0, outside = 0, unbounded = 0;
+  int on_buffer = 0, whole = 0, outside = 0, unbounded = 0;
   for (std::uint64_t seed = 1; seed <= 60000; ++seed) {
     ViewRandom random(seed);
     const View eye_view = randomView(random);
@@ -100,7 +101,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
       EXPECT_TRUE(off) << "seed " << seed;
       continue;
     }
-    ++on_map;
+    ++on_buffer;
     ASSERT_GT(exact.z0, view.near) << "seed " << seed;
     // What a position may be off, pixels.
     const Wide ratio = view.orthographic ? 0 : rounding / exact.z0;
@@ -142,7 +143,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     EXPECT_TRUE(image.whole || !well_inside) << "seed " << seed;
     whole += image.whole ? 1 : 0;
   }
-  EXPECT_GT(on_map, 10000);
+  EXPECT_GT(on_buffer, 10000);
   EXPECT_GT(whole, 3000);
   EXPECT_GT(outside, 1000);
   EXPECT_GT(unbounded, 1000);
@@ -164,11 +165,11 @@ TEST(PixelBoxes, ABoxWhoseEdgesLieOnPixelBordersHasThePixelsOnBothSides) {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.orthographic = true;
-  view.ortho_height = 180.0;  // a pixel is a metre, the middle of the map the eye
+  view.ortho_height = 180.0;  // a pixel is a metre, the middle of the buffer the eye
   view.aspect = 320.0 / 180.0;
   const PixelView pixels(view, kWidth, kHeight);
   const PixelBox image = projectOne(pixels, {{-10, -20, -6}, {30, 5, -5}});
-  ASSERT_EQ(image.place, BoxPlace::kOnMap);
+  ASSERT_EQ(image.place, BoxPlace::kOnBuffer);
   EXPECT_TRUE(image.whole);
   EXPECT_EQ(image.x0, 149);
   EXPECT_EQ(image.x1, 190);

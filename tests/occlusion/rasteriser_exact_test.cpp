@@ -1,4 +1,5 @@
-// Maps of the rasteriser against exact arithmetic, on scenes with small integer coordinates: many ties.
+// Depth buffers of the rasteriser against exact arithmetic, on scenes with small integer coordinates: many
+// ties.
 
 #include <gtest/gtest.h>
 
@@ -264,12 +265,12 @@ struct Placed {
       chosen.push_back(OccluderId(i));
     }
   }
-  DepthMapView draw(const exact::Camera& camera, const CoverageRule* coverage) {
+  DepthBufferView draw(const exact::Camera& camera, const CoverageRule* coverage) {
     rasteriser = Rasteriser(
         {static_cast<std::uint32_t>(camera.width), static_cast<std::uint32_t>(camera.height), coverage});
     rasteriser.begin(view);
     rasteriser.draw(set, chosen);
-    return rasteriser.map();
+    return rasteriser.depthBuffer();
   }
 
   View view;
@@ -280,10 +281,10 @@ struct Placed {
 
 // Calls look(x, y, stored) for all pixels; stored is kUncovered or the reciprocal depth.
 template <typename Look>
-void forEachPixel(const DepthMapView& map, Look&& look) {
-  for (std::uint32_t y = 0; y < map.height; ++y) {
-    for (std::uint32_t x = 0; x < map.width; ++x) {
-      look(std::int64_t{x}, std::int64_t{y}, map.at(x, y));
+void forEachPixel(const DepthBufferView& buffer, Look&& look) {
+  for (std::uint32_t y = 0; y < buffer.height; ++y) {
+    for (std::uint32_t x = 0; x < buffer.width; ++x) {
+      look(std::int64_t{x}, std::int64_t{y}, buffer.at(x, y));
     }
   }
 }
@@ -375,7 +376,7 @@ bool isWellShaped(const exact::Camera& camera, const Polygon& polygon) {
   return true;
 }
 
-// As near as an exact map would have it, but for one hundredth.
+// As near as an exact buffer would have it, but for one hundredth.
 bool isNear(float stored, double exact) {
   return stored > kUncovered && static_cast<double>(stored) >= exact - 0.01 * std::abs(exact);
 }
@@ -414,7 +415,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
     const Scene scene = randomScene(seed);
     const std::vector<exact::Surface> surfaces = exact::surfacesOf(scene.camera, scene.polygons);
     Placed placed(scene, seed);
-    const DepthMapView map = placed.draw(scene.camera, nullptr);
+    const DepthBufferView buffer = placed.draw(scene.camera, nullptr);
     for (const exact::Surface& surface : surfaces) {
       const bool well_shaped = std::ranges::all_of(surface.images, [&](const exact::Image& image) {
         return isWellShaped(scene.camera, scene.polygons[image.polygon]);
@@ -422,7 +423,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
       if (!surface.sheet || surface.tie || surface.images.size() < 2 || !well_shaped) {
         continue;
       }
-      forEachPixel(map, [&](std::int64_t x, std::int64_t y, float stored) {
+      forEachPixel(buffer, [&](std::int64_t x, std::int64_t y, float stored) {
         if (!exact::covers(surface, exact::pixel(x, y, 4))) {
           return;
         }

@@ -18,12 +18,12 @@ const CoverageRule* const kCoverageRules[] = {nullptr, centreCoverage()};
 
 using namespace test;
 
-// The bits of a map, without what lies beyond its width.
-std::vector<std::uint32_t> bitsOf(const DepthMapView& map) {
+// The bits of a buffer, without what lies beyond its width.
+std::vector<std::uint32_t> bitsOf(const DepthBufferView& buffer) {
   std::vector<std::uint32_t> bits;
-  bits.reserve(std::size_t{map.width} * map.height);
-  for (std::uint32_t y = 0; y < map.height; ++y) {
-    for (const float reciprocal_depth : map.row(y)) {
+  bits.reserve(std::size_t{buffer.width} * buffer.height);
+  for (std::uint32_t y = 0; y < buffer.height; ++y) {
+    for (const float reciprocal_depth : buffer.row(y)) {
       bits.push_back(std::bit_cast<std::uint32_t>(reciprocal_depth));
     }
   }
@@ -37,7 +37,7 @@ struct Look {
 };
 
 Look look(const Rasteriser& rasteriser) {
-  Look result{bitsOf(rasteriser.map()), rasteriser.stats(), {}};
+  Look result{bitsOf(rasteriser.depthBuffer()), rasteriser.stats(), {}};
   for (const OccluderId id : rasteriser.occluders()) {
     result.ids.push_back(id.value);
   }
@@ -91,7 +91,7 @@ void threads(std::uint32_t count, const RangeBody& body) {
   }
 }
 
-// A wall of triangles over a grid: many seams.
+// A wall of triangles over a grid: many shared edges.
 std::vector<OraclePolygon> bumpyWall(Random& random, const Vec3d& origin, double scale) {
   constexpr std::size_t kSide = 9;
   std::vector<Vec3f> points;
@@ -190,14 +190,14 @@ TEST(RasteriserBits, DoNotChangeWhenTheSameIsDrawnAgain) {
     Rasteriser rasteriser(settings);
     rasteriser.begin(view);
     rasteriser.draw(set, all(set));
-    const std::vector<std::uint32_t> first = bitsOf(rasteriser.map());
+    const std::vector<std::uint32_t> first = bitsOf(rasteriser.depthBuffer());
     rasteriser.draw(set, all(set));
-    EXPECT_TRUE(bitsOf(rasteriser.map()) == first) << what;
-    // One by one afterwards: fewer seams, so nothing new.
+    EXPECT_TRUE(bitsOf(rasteriser.depthBuffer()) == first) << what;
+    // One by one afterwards: fewer shared edges, so nothing new.
     for (const OccluderId id : all(set)) {
       rasteriser.draw(set, std::span(&id, 1));
     }
-    EXPECT_TRUE(bitsOf(rasteriser.map()) == first) << what;
+    EXPECT_TRUE(bitsOf(rasteriser.depthBuffer()) == first) << what;
     // After another view, of which nothing may stay.
     View other = view;
     other.forward = -view.forward;
@@ -206,7 +206,7 @@ TEST(RasteriserBits, DoNotChangeWhenTheSameIsDrawnAgain) {
     rasteriser.draw(set, all(set));
     rasteriser.begin(view);
     rasteriser.draw(set, all(set));
-    EXPECT_TRUE(bitsOf(rasteriser.map()) == first) << what;
+    EXPECT_TRUE(bitsOf(rasteriser.depthBuffer()) == first) << what;
   });
 }
 
@@ -252,7 +252,7 @@ TEST(RasteriserBits, AreTheSameWhenWhatIsNotConnectedIsDrawnInSeveralCalls) {
           rasteriser.draw(single, std::span(&id, 1), backwards);
         }
         rasteriser.draw(connected, all(connected));
-        EXPECT_TRUE(bitsOf(rasteriser.map()) == first.bits) << family.name << ", seed " << seed;
+        EXPECT_TRUE(bitsOf(rasteriser.depthBuffer()) == first.bits) << family.name << ", seed " << seed;
         const RasterStats& stats = rasteriser.stats();
         EXPECT_EQ(stats.occluders, first.stats.occluders) << family.name << ", seed " << seed;
         EXPECT_EQ(stats.unusable, first.stats.unusable) << family.name << ", seed " << seed;

@@ -16,7 +16,7 @@ const CoverageRule* const kCoverageRules[] = {nullptr, centreCoverage()};
 
 using namespace test;
 
-// A map that is kept together with what it was drawn from.
+// A buffer that is kept together with what it was drawn from.
 struct Drawn {
   Drawn(const View& from, std::span<const OraclePolygon> polygons, const RasterSettings& settings)
       : Drawn(from, setOf(polygons), settings) {}
@@ -27,12 +27,12 @@ struct Drawn {
   void draw() {
     rasteriser.begin(view);
     rasteriser.draw(set, all(set));
-    map = rasteriser.map();
+    buffer = rasteriser.depthBuffer();
   }
   std::size_t covered() const {
     std::size_t count = 0;
-    for (std::uint32_t y = 0; y < map.height; ++y) {
-      for (const float reciprocal_depth : map.row(y)) {
+    for (std::uint32_t y = 0; y < buffer.height; ++y) {
+      for (const float reciprocal_depth : buffer.row(y)) {
         count += reciprocal_depth > kUncovered ? 1 : 0;
       }
     }
@@ -42,7 +42,7 @@ struct Drawn {
   View view;
   OccluderSet set;
   Rasteriser rasteriser;
-  DepthMapView map;
+  DepthBufferView buffer;
 };
 
 // Size of half the picture, in metres at unit depth or anywhere.
@@ -51,21 +51,21 @@ std::array<double, 2> halfSize(const View& view) {
   return {half_height * view.aspect, half_height};
 }
 
-// The point of depth z at a point of the map.
-Vec3d pointAt(const View& view, const DepthMapView& map, double x, double y, double z) {
+// The point of depth z at a point of the buffer.
+Vec3d pointAt(const View& view, const DepthBufferView& buffer, double x, double y, double z) {
   const auto [half_x, half_y] = halfSize(view);
   const double spread = view.orthographic ? 1.0 : z;
-  return view.eye + view.forward * z + view.right * ((2.0 * x / map.width - 1.0) * half_x * spread) +
-         view.up * ((2.0 * y / map.height - 1.0) * half_y * spread);
+  return view.eye + view.forward * z + view.right * ((2.0 * x / buffer.width - 1.0) * half_x * spread) +
+         view.up * ((2.0 * y / buffer.height - 1.0) * half_y * spread);
 }
 
-// (x w, y w, w) of a point's place in the map.
-Vec3d onMap(const View& view, const DepthMapView& map, const Vec3d& point) {
+// (x w, y w, w) of a point's place in the buffer.
+Vec3d inBuffer(const View& view, const DepthBufferView& buffer, const Vec3d& point) {
   const auto [half_x, half_y] = halfSize(view);
   const Vec3d r = point - view.eye;
   const double w = view.orthographic ? 1.0 : dot(view.forward, r);
-  return {0.5 * map.width * (dot(view.right, r) / half_x + w),
-          0.5 * map.height * (dot(view.up, r) / half_y + w), w};
+  return {0.5 * buffer.width * (dot(view.right, r) / half_x + w),
+          0.5 * buffer.height * (dot(view.up, r) / half_y + w), w};
 }
 
 View turned(View view, double yaw, bool orthographic) {
@@ -78,26 +78,27 @@ View turned(View view, double yaw, bool orthographic) {
 // No pixel that the middle of the gap crosses may be covered. With `full`, the walls fill the picture, and
 // all pixels that are clearly beside the gap must be covered.
 void checkGap(const Drawn& drawn, std::span<const OraclePolygon> walls, bool full, const std::string& what) {
-  const DepthMapView& map = drawn.map;
+  const DepthBufferView& buffer = drawn.buffer;
   const auto middle = [&](std::size_t i, std::size_t j) {
     return (Vec3d(walls[0].vertices[i]) + Vec3d(walls[1].vertices[j])) * 0.5;
   };
-  const Vec3d line = cross(onMap(drawn.view, map, middle(1, 0)), onMap(drawn.view, map, middle(2, 3)));
+  const Vec3d line =
+      cross(inBuffer(drawn.view, buffer, middle(1, 0)), inBuffer(drawn.view, buffer, middle(2, 3)));
   const double steepness = std::hypot(line.x, line.y);
   const double gap = length(Vec3d(walls[0].vertices[1]) - Vec3d(walls[1].vertices[0]));
-  const double beside = 1.0 + gap / 5.0 * std::max(map.height, map.width);  // pixels, and some more
+  const double beside = 1.0 + gap / 5.0 * std::max(buffer.height, buffer.width);  // pixels, and some more
   int seen_hidden = 0, missing = 0;
-  for (std::uint32_t y = 0; y < map.height; ++y) {
-    for (std::uint32_t x = 0; x < map.width; ++x) {
+  for (std::uint32_t y = 0; y < buffer.height; ++y) {
+    for (std::uint32_t x = 0; x < buffer.width; ++x) {
       const double at = (line.x * (x + 0.5) + line.y * (y + 0.5) + line.z) / steepness;
       const double reach = 0.5 * (std::abs(line.x) + std::abs(line.y)) / steepness;
-      const bool covered = map.covered(x, y);
+      const bool covered = buffer.covered(x, y);
       seen_hidden += std::abs(at) < reach - 1e-9 && covered ? 1 : 0;
       missing += full && std::abs(at) > reach + beside && !covered ? 1 : 0;
     }
   }
-  EXPECT_EQ(seen_hidden, 0) << what << ", " << map.width << " x " << map.height;
-  EXPECT_EQ(missing, 0) << what << ", " << map.width << " x " << map.height;
+  EXPECT_EQ(seen_hidden, 0) << what << ", " << buffer.width << " x " << buffer.height;
+  EXPECT_EQ(missing, 0) << what << ", " << buffer.width << " x " << buffer.height;
 }
 
 TEST(Rasteriser, NeverCoversAPixelThatAGapCrosses) {
@@ -147,9 +148,9 @@ TEST(Rasteriser, StoresTheDepthOfAWallThatFacesTheEye) {
       EXPECT_EQ(drawn.covered(), 33u * 17u);
       for (std::uint32_t x = 0; x < 33; ++x) {
         const double expected = orthographic ? -5.0 : 0.2;
-        EXPECT_NEAR(static_cast<double>(drawn.map.at(x, 8)), expected, 1e-6 * std::abs(expected));
+        EXPECT_NEAR(static_cast<double>(drawn.buffer.at(x, 8)), expected, 1e-6 * std::abs(expected));
         if (coverage == nullptr) {
-          EXPECT_LE(static_cast<double>(drawn.map.at(x, 8)), expected);
+          EXPECT_LE(static_cast<double>(drawn.buffer.at(x, 8)), expected);
         }
       }
     }
@@ -165,16 +166,16 @@ TEST(Rasteriser, AWallThatEndsOnAPixelsBorderDoesNotCoverThePixelBeyond) {
     for (std::uint32_t y = 0; y < 8; ++y) {
       for (std::uint32_t x = 0; x < 8; ++x) {
         if (x < 2 || x > 5 || y < 3 || y > 4) {
-          EXPECT_FALSE(drawn.map.covered(x, y)) << x << " " << y;
+          EXPECT_FALSE(drawn.buffer.covered(x, y)) << x << " " << y;
         }
       }
     }
     // A hair less, and the pixels within are not covered either; a hair more, and they are.
     const float less = std::nextafter(2.0f, 0.0f);
     const Drawn smaller(view, std::vector{wall(-less, less, -1.5f, 1.5f, -4)}, {8, 8});
-    EXPECT_FALSE(smaller.map.covered(2, 3));
-    EXPECT_TRUE(smaller.map.covered(3, 3));
-    EXPECT_FALSE(smaller.map.covered(5, 4));
+    EXPECT_FALSE(smaller.buffer.covered(2, 3));
+    EXPECT_TRUE(smaller.buffer.covered(3, 3));
+    EXPECT_FALSE(smaller.buffer.covered(5, 4));
     const Drawn larger(view, std::vector{wall(-2.01f, 2.01f, -1.01f, 1.01f, -4)}, {8, 8});
     EXPECT_EQ(larger.covered(), 8u);
   }
@@ -226,12 +227,12 @@ TEST(Rasteriser, SliversCoverNothingOfTheirOwn) {
 TEST(Rasteriser, IsEmptyAfterBeginAndWithoutOccluders) {
   for (const std::uint32_t width : {1u, 7u, 17u, 33u, 321u}) {
     Drawn drawn(kLookingBack, std::vector{wall(-40, 40, -40, 40, -5)}, {width, 5});
-    EXPECT_EQ(drawn.map.width, width);
-    EXPECT_EQ(drawn.map.height, 5u);
-    EXPECT_GE(drawn.map.stride, width);
+    EXPECT_EQ(drawn.buffer.width, width);
+    EXPECT_EQ(drawn.buffer.height, 5u);
+    EXPECT_GE(drawn.buffer.stride, width);
     EXPECT_EQ(drawn.covered(), std::size_t{width} * 5u);
     drawn.rasteriser.begin(kLookingBack);
-    drawn.map = drawn.rasteriser.map();
+    drawn.buffer = drawn.rasteriser.depthBuffer();
     EXPECT_EQ(drawn.covered(), 0u);
     EXPECT_TRUE(drawn.rasteriser.occluders().empty());
     drawn.rasteriser.draw(drawn.set, {});
@@ -250,8 +251,8 @@ TEST(Rasteriser, CornersThatAreNotFiniteCoverNothing) {
       broken.vertices[2][axis] = bad;
       const Drawn drawn(kLookingBack, std::vector{broken, wall(0.1f, 9, -9, 9, -5)}, {64, 64});
       EXPECT_EQ(drawn.set.occluders.size(), 1u);
-      EXPECT_FALSE(drawn.map.covered(20, 32));
-      EXPECT_TRUE(drawn.map.covered(40, 32));
+      EXPECT_FALSE(drawn.buffer.covered(20, 32));
+      EXPECT_TRUE(drawn.buffer.covered(40, 32));
     }
   }
 }
@@ -332,11 +333,11 @@ Body tessellated(const Vec3d& origin, double scale) {
 }
 
 // Is the pixel, with its sides moved outwards by so many pixels, wholly within the outline?
-bool isWithin(const Body& body, const View& view, const DepthMapView& map, std::uint32_t x, std::uint32_t y,
-              double grow) {
+bool isWithin(const Body& body, const View& view, const DepthBufferView& buffer, std::uint32_t x,
+              std::uint32_t y, double grow) {
   for (unsigned corner = 0; corner < 4; ++corner) {
     const double px = x + (corner & 1 ? 1.0 + grow : -grow), py = y + (corner & 2 ? 1.0 + grow : -grow);
-    const Vec3d far = pointAt(view, map, px, py, 1.0);
+    const Vec3d far = pointAt(view, buffer, px, py, 1.0);
     const Vec3d from = view.orthographic ? far - view.forward : view.eye;
     if (!body.isHit(from, far - from)) {
       return false;
@@ -364,10 +365,10 @@ void checkBody(Body (*make)(const Vec3d&, double), double scale, double far_offs
       int leaks = 0, outside = 0, within = 0;
       for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
-          const bool inside = isWithin(body, view, drawn.map, x, y, 0.25);
+          const bool inside = isWithin(body, view, drawn.buffer, x, y, 0.25);
           within += inside ? 1 : 0;
-          leaks += inside && !drawn.map.covered(x, y) ? 1 : 0;
-          outside += drawn.map.covered(x, y) && !isWithin(body, view, drawn.map, x, y, -1e-6) ? 1 : 0;
+          leaks += inside && !drawn.buffer.covered(x, y) ? 1 : 0;
+          outside += drawn.buffer.covered(x, y) && !isWithin(body, view, drawn.buffer, x, y, -1e-6) ? 1 : 0;
         }
       }
       const auto what = ::testing::Message() << "seed " << seed << ", " << width << " x " << height
@@ -397,17 +398,17 @@ TEST(Rasteriser, LeavesNoLeaksInATessellatedWall) {
 
 // The view from a covered pixel: nobody sees past the stored depth.
 void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, std::size_t& covered) {
-  const DepthMapView& map = drawn.map;
+  const DepthBufferView& buffer = drawn.buffer;
   const std::size_t total = drawn.covered();
   const std::size_t step = total / 200 + 1;
   std::size_t index = 0;
-  for (std::uint32_t y = 0; y < map.height; ++y) {
-    for (std::uint32_t x = 0; x < map.width; ++x) {
-      if (!map.covered(x, y) || index++ % step != 0) {
+  for (std::uint32_t y = 0; y < buffer.height; ++y) {
+    for (std::uint32_t x = 0; x < buffer.width; ++x) {
+      if (!buffer.covered(x, y) || index++ % step != 0) {
         continue;
       }
       ++covered;
-      const auto reciprocal_depth = static_cast<double>(map.at(x, y));
+      const auto reciprocal_depth = static_cast<double>(buffer.at(x, y));
       const double depth = scene.view.orthographic ? -reciprocal_depth : 1.0 / reciprocal_depth;
       for (int i = 0; i < 6; ++i) {
         const auto within = [&] {
@@ -416,7 +417,7 @@ void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, 
           return std::clamp(t, 0.0, 1.0);
         };
         const double farther = 1e-4 * depth + (i % 2 == 0 ? 0.0 : scene.random.in(0, 5) * depth);
-        const Vec3d point = pointAt(scene.view, map, x + within(), y + within(), depth + farther);
+        const Vec3d point = pointAt(scene.view, buffer, x + within(), y + within(), depth + farther);
         ASSERT_NE(castAtAll(scene.polygons, scene.view, point), RayAnswer::kClear)
             << what << ", pixel " << x << " " << y << ", depth " << depth << " + " << farther;
       }

@@ -6,25 +6,26 @@
 #include <limits>
 
 #include "src/occlusion/summed_area.h"
-#include "tests/occlusion/synthetic_maps.h"
+#include "tests/occlusion/synthetic_buffers.h"
 
 namespace sightline::occlusion {
 namespace {
 
 using namespace test;
 
-// Looks at all of a map so often that all of its rows are made.
-void makeRows(SparseDepth& depth, const SyntheticMap& map) {
+// Looks at all of a buffer so often that all of its rows are made.
+void makeRows(SparseDepth& depth, const SyntheticMap& buffer) {
   const float nearest = -std::numeric_limits<float>::infinity();
   for (int i = 0; i < 20; ++i) {
-    EXPECT_TRUE(depth.allNearer(rectangle(0, 0, map.width - 1, map.height - 1, nearest))) << map.name;
+    EXPECT_TRUE(depth.allNearer(rectangle(0, 0, buffer.width - 1, buffer.height - 1, nearest)))
+        << buffer.name;
   }
 }
 
-// A depth of the map, or one just before or behind it.
-float someDepth(std::mt19937_64& random, const SyntheticMap& map) {
-  const float depth = map.view().at(static_cast<std::uint32_t>(random() % map.width),
-                                    static_cast<std::uint32_t>(random() % map.height));
+// A depth of the buffer, or one just before or behind it.
+float someDepth(std::mt19937_64& random, const SyntheticMap& buffer) {
+  const float depth = buffer.view().at(static_cast<std::uint32_t>(random() % buffer.width),
+                                       static_cast<std::uint32_t>(random() % buffer.height));
   if (random() % 20 == 0) {
     return random() % 2 == 0 ? std::numeric_limits<float>::infinity()
                              : std::numeric_limits<float>::quiet_NaN();
@@ -38,20 +39,20 @@ TEST(SparseDepth, AnswersAsScanningAllPixelsDoes) {
   SparseDepth depth;
   for (const auto& size : kMapSizes) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-      for (const SyntheticMap& map : syntheticMaps(size[0], size[1], seed)) {
+      for (const SyntheticMap& buffer : syntheticMaps(size[0], size[1], seed)) {
         std::mt19937_64 random(seed);
-        depth = SparseDepth();  // not resting
-        depth.begin(map.view());
+        depth = SparseDepth();  // without a retest delay
+        depth.begin(buffer.view());
         if (seed % 2 == 0) {
-          makeRows(depth, map);
+          makeRows(depth, buffer);
         }
         for (int i = 0; i < 300; ++i) {
-          PixelBox rect = randomRectangle(random, map.width, map.height);
-          rect.nearest = someDepth(random, map);
-          const bool expected = allNearerByScanning(map.view(), rect);
+          PixelBox rect = randomRectangle(random, buffer.width, buffer.height);
+          rect.nearest = someDepth(random, buffer);
+          const bool expected = allNearerByScanning(buffer.view(), rect);
           std::uint64_t compared = 0;
-          ASSERT_EQ(depth.allNearer(rect), expected) << map.name << " seed " << seed << " rectangle " << i;
-          ASSERT_EQ(allNearerPixelwise(map.view(), rect, compared), expected) << map.name << " " << i;
+          ASSERT_EQ(depth.allNearer(rect), expected) << buffer.name << " seed " << seed << " rectangle " << i;
+          ASSERT_EQ(allNearerPixelwise(buffer.view(), rect, compared), expected) << buffer.name << " " << i;
           (expected ? nearer : not_nearer) += 1;
         }
         used += depth.used() ? 1 : 0;
@@ -65,16 +66,16 @@ TEST(SparseDepth, AnswersAsScanningAllPixelsDoes) {
 
 TEST(SparseDepth, EveryRectangleOfARowIsAnsweredRightAtEveryDepth) {
   // All rectangles against all depths: peaks at, beside and beyond both ends.
-  for (const SyntheticMap& map : syntheticMaps(67, 1, 5)) {
+  for (const SyntheticMap& buffer : syntheticMaps(67, 1, 5)) {
     SparseDepth depth;
-    depth.begin(map.view());
-    makeRows(depth, map);
-    for (std::uint32_t x0 = 0; x0 < map.width; ++x0) {
-      for (std::uint32_t x1 = x0; x1 < map.width; ++x1) {
+    depth.begin(buffer.view());
+    makeRows(depth, buffer);
+    for (std::uint32_t x0 = 0; x0 < buffer.width; ++x0) {
+      for (std::uint32_t x1 = x0; x1 < buffer.width; ++x1) {
         for (std::uint32_t at = x0; at <= x1; at += 3) {
-          const PixelBox rect = rectangle(x0, 0, x1, 0, std::nextafter(map.view().at(at, 0), -1e38f));
-          ASSERT_EQ(depth.allNearer(rect), allNearerByScanning(map.view(), rect))
-              << map.name << " " << x0 << " to " << x1 << " depth of " << at;
+          const PixelBox rect = rectangle(x0, 0, x1, 0, std::nextafter(buffer.view().at(at, 0), -1e38f));
+          ASSERT_EQ(depth.allNearer(rect), allNearerByScanning(buffer.view(), rect))
+              << buffer.name << " " << x0 << " to " << x1 << " depth of " << at;
         }
       }
     }
@@ -83,12 +84,12 @@ TEST(SparseDepth, EveryRectangleOfARowIsAnsweredRightAtEveryDepth) {
 
 TEST(SparseDepth, TheLastPixelIsLookedAtWhereTheNextPeakLiesBeyondIt) {
   // Farther and farther to the right up to pixel 90.
-  const SyntheticMap map("valley", 100, 1, [](std::uint32_t x, std::uint32_t) {
+  const SyntheticMap buffer("valley", 100, 1, [](std::uint32_t x, std::uint32_t) {
     return -static_cast<float>(x <= 90 ? x : 180 - x);
   });
   SparseDepth depth;
-  depth.begin(map.view());
-  makeRows(depth, map);
+  depth.begin(buffer.view());
+  makeRows(depth, buffer);
   ASSERT_TRUE(depth.used());
   EXPECT_TRUE(depth.allNearer(rectangle(10, 0, 50, 0, -50.5f)));
   EXPECT_FALSE(depth.allNearer(rectangle(10, 0, 50, 0, -49.5f)));
@@ -96,13 +97,13 @@ TEST(SparseDepth, TheLastPixelIsLookedAtWhereTheNextPeakLiesBeyondIt) {
 }
 
 TEST(SparseDepth, LooksAtFewPixels) {
-  const auto comparedIn = [](const SyntheticMap& map) {
+  const auto comparedIn = [](const SyntheticMap& buffer) {
     SparseDepth depth;
-    depth.begin(map.view());
-    makeRows(depth, map);
-    EXPECT_TRUE(depth.used()) << map.name;
+    depth.begin(buffer.view());
+    makeRows(depth, buffer);
+    EXPECT_TRUE(depth.used()) << buffer.name;
     const std::uint64_t before = depth.compared();
-    EXPECT_TRUE(depth.allNearer(rectangle(0, 0, map.width - 1, map.height - 1, -1e30f)));
+    EXPECT_TRUE(depth.allNearer(rectangle(0, 0, buffer.width - 1, buffer.height - 1, -1e30f)));
     return depth.compared() - before;
   };
   using U = std::uint32_t;
@@ -119,16 +120,16 @@ TEST(SparseDepth, LooksAtFewPixels) {
 }
 
 TEST(SparseDepth, UncoveredPixelsAreLeftOut) {
-  const SyntheticMap map("hole", 60, 1,
-                         [](std::uint32_t x, std::uint32_t) { return x == 30 ? kUncovered : 2.0f; });
+  const SyntheticMap buffer("hole", 60, 1,
+                            [](std::uint32_t x, std::uint32_t) { return x == 30 ? kUncovered : 2.0f; });
   SparseDepth depth;
-  depth.begin(map.view());
+  depth.begin(buffer.view());
   for (const bool made : {false, true}) {
     EXPECT_TRUE(depth.allNearer(rectangle(5, 0, 50, 0, 1.0f))) << made;
     EXPECT_TRUE(depth.allNearer(rectangle(5, 0, 30, 0, 1.0f))) << made;
     EXPECT_TRUE(depth.allNearer(rectangle(30, 0, 30, 0, 9.0f))) << made;
     EXPECT_FALSE(depth.allNearer(rectangle(5, 0, 50, 0, 2.0f))) << made;
-    makeRows(depth, map);
+    makeRows(depth, buffer);
   }
 }
 
@@ -142,7 +143,7 @@ TEST(SparseDepth, AMapOfPeaksIsComparedPixelByPixelAndTheNextOnesAreNotMade) {
   EXPECT_TRUE(depth.worthwhile());
   makeRows(depth, rough);
   EXPECT_FALSE(depth.used());
-  for (U frame = 0; frame < SparseDepth::kRest; ++frame) {
+  for (U frame = 0; frame < SparseDepth::kRetestDelay; ++frame) {
     depth.begin(flat.view());
     EXPECT_FALSE(depth.worthwhile()) << frame;
     makeRows(depth, flat);
@@ -161,22 +162,23 @@ TEST(SparseDepth, AMapOfPeaksIsComparedPixelByPixelAndTheNextOnesAreNotMade) {
 }
 
 TEST(SparseDepth, RoughRowsOfAMapDoNotSpoilItsOthers) {
-  const SyntheticMap map("one rough row", 100, 10,
-                         [](std::uint32_t x, std::uint32_t y) { return y == 4 && x % 2 == 0 ? 2.0f : 1.0f; });
+  const SyntheticMap buffer("one rough row", 100, 10, [](std::uint32_t x, std::uint32_t y) {
+    return y == 4 && x % 2 == 0 ? 2.0f : 1.0f;
+  });
   SparseDepth depth;
-  depth.begin(map.view());
-  makeRows(depth, map);
+  depth.begin(buffer.view());
+  makeRows(depth, buffer);
   const std::uint64_t before = depth.compared();
   EXPECT_TRUE(depth.allNearer(rectangle(0, 0, 99, 9, 0.5f)));
   EXPECT_EQ(depth.compared() - before, 9u * 2 + 100);
-  depth.begin(map.view());
+  depth.begin(buffer.view());
   EXPECT_TRUE(depth.worthwhile());
 }
 
 TEST(SparseDepth, AFewQuestionsMakeNothing) {
-  const SyntheticMap map("flat", 100, 1, [](std::uint32_t, std::uint32_t) { return 1.0f; });
+  const SyntheticMap buffer("flat", 100, 1, [](std::uint32_t, std::uint32_t) { return 1.0f; });
   SparseDepth depth;
-  depth.begin(map.view());
+  depth.begin(buffer.view());
   EXPECT_TRUE(depth.allNearer(rectangle(0, 0, 99, 0, 0.5f)));
   EXPECT_FALSE(depth.used());
   EXPECT_EQ(depth.compared(), 100u);

@@ -180,7 +180,7 @@ TEST(SupportingPlanes, ABoxWhoseShadowTouchesTheOutlineIsNotHidden) {
   EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -12}, {1.999f, 1, -10}}), Visibility::kHidden);
 }
 
-TEST(SupportingPlanes, AdjoiningWallsHideABoxAcrossTheirSeamOnlyTogether) {
+TEST(SupportingPlanes, AdjoiningWallsHideABoxAcrossTheirSharedEdgeOnlyTogether) {
   const std::vector<OraclePolygon> walls{wall(-4, 0.3f, -4, 4, -5), wall(0.3f, 4, -4, 4, -5)};
   const Box box{{-1, -1, -12}, {1, 1, -10}};
   EXPECT_EQ(ask(kLookingBack, walls, box), Visibility::kHidden);
@@ -188,7 +188,8 @@ TEST(SupportingPlanes, AdjoiningWallsHideABoxAcrossTheirSeamOnlyTogether) {
 }
 
 TEST(SupportingPlanes, TheSidesOfACornerHideTogether) {
-  // A building's corner towards the eye, and one away from it: there the seam is a silhouette of neither.
+  // A building's corner towards the eye, and one away from it: there the shared edge is a silhouette of
+  // neither.
   for (const float z : {-5.0f, -11.0f}) {
     const std::vector<OraclePolygon> walls{
         {{{-3, -2, -8}, {0, -2, z}, {0, 2, z}, {-3, 2, -8}}, true},

@@ -69,7 +69,7 @@ class Culler {
   std::uint64_t statistic(std::string_view group, std::string_view name) const;
   // The depth buffer of the opacity map or the depth pyramid; empty with other methods. Of a left-handed view
   // it is mirrored.
-  DepthMapView depthBuffer() const;
+  DepthBufferView depthBuffer() const;
 
   // For drawing depth buffers and for the depth pyramid's traversal, from now on; answers do not depend on
   // it. Serial at first.

@@ -148,7 +148,7 @@ class CullingMethod {
   // Occluders of the scene's set that the structure of the last frame was built from.
   virtual std::span<const OccluderId> occludersUsed() const { return {}; }
   // The depth buffer of the last frame; empty with methods that have none.
-  virtual DepthMapView depthBuffer() const { return {}; }
+  virtual DepthBufferView depthBuffer() const { return {}; }
   // The same ones, in the same order, after every frame and before the first.
   virtual std::span<const MethodStatistic> statistics() const { return {}; }
 };

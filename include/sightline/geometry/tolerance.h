@@ -6,8 +6,8 @@
 // single precision, so the subtraction of the eye has a relative error of 2^-53 and everything after it a few
 // times that. Three numbers, each far above the one before, keep rounding on the visible side:
 //
-//   kOnPlane     a point nearer to a shadow plane than this times its distance from the eye counts as on it;
-//                above the rounding of a plane through two points and of its evaluation (2^-50)
+//   kOnPlane     a point nearer to a shadow plane than this times its distance from the eye counts as on it.
+//                It is above the rounding of a plane through two points and of its evaluation (2^-50)
 //   kEdgeMargin  an occluder's outline is drawn in by at least this angle before its shadow planes are made;
 //                above kOnPlane, so that "on the plane" never reaches the true outline
 //   kDepthMargin a point must lie behind an occluder's plane by at least this times the distances involved;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Depth pyramid: a hierarchical depth map of occluders, made for asking about many boxes at once.
+// Depth pyramid: a hierarchical depth buffer of occluders, made for testing many boxes at once.
 
 #include <cstdint>
 #include <memory>
@@ -24,23 +24,23 @@ struct DepthPyramidStats {
 
 struct BoxAnswer {
   Visibility visibility = Visibility::kVisible;
-  bool within_view = false;    // all of it surely lies in the view's volume
-  bool on_map = false;         // its rectangle in the map is known
-  std::uint16_t x = 0, y = 0;  // then the middle of it, pixels
+  bool within_view = false;    // all of the box surely lies in the view's volume
+  bool on_buffer = false;      // its rectangle in the depth buffer is known
+  std::uint16_t x = 0, y = 0;  // with on_buffer: the middle of that rectangle, pixels
 };
 
-// What a caller who asks about the same boxes view after view knows of them.
+// What a caller knows of boxes that are tested view after view.
 struct BoxHints {
-  // As many as boxes, or none. Not 0: the box was not hidden a short while ago, and is not looked for again:
-  // kPartial unless it is wholly outside the view.
+  // Empty, or one value for each box. Other than 0: the box was not hidden a short while ago and is not
+  // tested again; it is kPartial unless it is wholly outside the view.
   std::span<const std::uint8_t> seen{};
-  // Of the boxes from this one on it does not matter whether they are kVisible or kPartial.
+  // For boxes from this index on, kVisible and kPartial need not be told apart.
   std::size_t plain_from = static_cast<std::size_t>(-1);
-  // First and last pixels of a window of which there is a better map. A box whose rectangle lies in it is
-  // kPartial unless a short test hides it.
+  // First and last pixels of a window for which the caller has a finer buffer. A box whose rectangle lies in
+  // the window is kPartial unless a short test hides it.
   std::uint16_t window_x0 = 1, window_y0 = 1, window_x1 = 0, window_y1 = 0;
 
-  // The same for so many of the boxes.
+  // Returns the hints for `count` boxes from the index `first` on.
   BoxHints from(std::size_t first, std::size_t count) const {
     BoxHints part = *this;
     part.seen = seen.empty() ? seen : seen.subspan(first, count);
@@ -49,12 +49,16 @@ struct BoxHints {
   }
 };
 
-// Usable alone: build() from any occluders, then classify() any boxes at any time. With Coverage::kInner
-// answers are conservative: kHidden only where no point of the box can be seen from the view's eye. kVisible
-// where nothing in the map is before any part of the box. A box is compared by its own outline and depth in
-// each pixel wherever its rectangle leaves doubt. Between begin() and finish(), and before the first view,
-// nothing is hidden but what lies outside the view. After finish() several threads may ask; drawing is for
-// one at a time. Allocates nothing once its storage has grown to what a few builds need.
+// Tells for many boxes whether the drawn occluders hide them. It can be used alone: build() from any
+// occluders, then classify() boxes at any time.
+//
+// With the conservative coverage rule answers are conservative: kHidden only where no point of the box can be
+// seen from the view's eye. kVisible means that nothing in the depth buffer is before any part of the box.
+// Wherever its rectangle leaves doubt, a box is compared by its own outline and depth in each pixel. Between
+// begin() and finish(), and before the first view, nothing is hidden but what lies outside the view.
+//
+// After finish() several threads may classify; all other functions are for one thread at a time. Nothing is
+// allocated once the storage has grown to what a few builds need.
 class DepthPyramid {
  public:
   explicit DepthPyramid(const DepthPyramidSettings& settings = {});
@@ -64,25 +68,24 @@ class DepthPyramid {
 
   void build(const View& view, const OccluderSet& set, std::span<const OccluderId> chosen,
              const ParallelFor& parallel_for = serialFor);
-  // The same in steps: draw() any number of occluders, also of several sets, as those that move; then
-  // finish().
+  // Builds in steps: begin() a view, draw() any number of occluders, also of several sets, then finish().
   void begin(const View& view);
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
   void finish(const ParallelFor& parallel_for = serialFor);
 
-  // Of boxes in scene space, as seen in the last view; one answer for each. Boxes that are not well formed,
-  // and those that reach the near plane, are kPartial or kVisible. What is wholly outside the view is
-  // kHidden.
+  // Classifies boxes in scene space as seen in the last view. answers: as many as boxes. Boxes that are not
+  // well formed, and those that reach the near plane, are kPartial or kVisible. Boxes that are wholly outside
+  // the view are kHidden.
   void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers, const BoxHints& hints = {}) const;
   Visibility classify(const Box& box) const;
-  // The same with the view's volume alone, as if nothing were drawn: kHidden where wholly outside, kVisible
-  // or kPartial elsewhere.
+  // Classifies by the view's volume alone, as if nothing were drawn: kHidden for boxes that are wholly
+  // outside, kVisible or kPartial for all others.
   void classifyInView(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
 
-  // Of the pyramid, level 0 is the map itself.
+  // The number of levels; level 0 is the depth buffer itself.
   std::uint32_t levels() const;
-  DepthMapView map() const;
+  DepthBufferView depthBuffer() const;
   const DepthPyramidStats& stats() const;
   std::span<const OccluderId> occluders() const;
 

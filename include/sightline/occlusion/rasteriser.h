@@ -1,6 +1,6 @@
 #pragma once
 
-// A conservative rasteriser: which pixels of a map occluders cover, and how near they surely are there.
+// A conservative rasteriser: which pixels of a depth buffer occluders cover, and how near they surely are.
 
 #include <cstdint>
 #include <limits>
@@ -46,12 +46,12 @@ inline constexpr std::uint32_t kMaxBufferSize = 8192;
 // The reciprocal depth of a pixel that nothing covers.
 inline constexpr float kUncovered = -std::numeric_limits<float>::max();
 
-// The lowest row comes first. Valid until the map is drawn again.
-struct DepthMapView {
-  std::span<const float>
-      reciprocal_depth{};  // greater is nearer; 1 / depth (1 / metres), orthographic -depth (metres)
+// A view of a depth buffer; the lowest row comes first. It is valid until the buffer is drawn again.
+struct DepthBufferView {
+  // height rows of stride values; greater is nearer. 1 / depth (1 / metres), orthographic -depth (metres).
+  std::span<const float> reciprocal_depth{};
   std::uint32_t width = 0, height = 0;
-  std::uint32_t stride = 0;  // from one row to the next; what lies beyond the width has no meaning
+  std::uint32_t stride = 0;  // from one row to the next; values beyond the width have no meaning
 
   float at(std::uint32_t x, std::uint32_t y) const { return reciprocal_depth[std::size_t{y} * stride + x]; }
   bool covered(std::uint32_t x, std::uint32_t y) const { return at(x, y) > kUncovered; }
@@ -61,17 +61,19 @@ struct DepthMapView {
 };
 
 struct RasterStats {
-  std::uint32_t occluders = 0;  // drawn, or behind what was drawn
-  std::uint32_t unusable =
-      0;  // chosen, but seen from behind, edge-on, wholly before the near plane, or off the map
-  std::uint32_t hidden =
-      0;  // of the occluders: behind what was drawn before, or without a whole pixel of their own
+  std::uint32_t occluders = 0;  // occluders that were drawn, or are behind what was drawn
+  // Chosen, but seen from behind, edge-on, wholly before the near plane, or outside the buffer.
+  std::uint32_t unusable = 0;
+  // Of the occluders: behind what was drawn before, or without a whole pixel of their own.
+  std::uint32_t hidden = 0;
 };
 
-// Usable alone. With Coverage::kInner a covered pixel promises: from every point of the view's near plane or
-// beyond that projects into it, and is farther than the stored depth, the eye is hidden by triangles of the
-// occluders. Every instruction set and any number of threads give the same bits. Not safe to share between
-// threads; allocates nothing once its storage has grown to what a few frames need.
+// Draws occluders into a depth buffer; can be used alone. With the conservative rule a covered pixel
+// promises: every point that projects into it, is not before the view's near plane and is farther than the
+// stored depth is hidden from the eye by triangles of the occluders.
+//
+// Every instruction set and any number of threads give the same bits. Use by one thread at a time; nothing is
+// allocated once the storage has grown to what a few frames need.
 class Rasteriser {
  public:
   explicit Rasteriser(const RasterSettings& settings = {});
@@ -79,19 +81,18 @@ class Rasteriser {
   Rasteriser(Rasteriser&&) noexcept;
   Rasteriser& operator=(Rasteriser&&) noexcept;
 
-  // Clears the map for a view.
+  // Clears the buffer for a view.
   void begin(const View& view);
-  // Draws the chosen occluders, the nearest first, into the map. May be called several times, with the same
-  // or other sets, as for occluders that move; occluders of one call close the seams between them. The set
-  // must outlive the call only.
+  // Draws the chosen occluders. May be called several times, with the same set or others; shared edges are
+  // watertight between occluders of one call. The set must outlive the call only.
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
 
   const RasterSettings& settings() const;
-  DepthMapView map() const;
-  const RasterStats& stats() const;  // since begin()
-  // Those of the chosen ones that were drawn or are behind what was drawn, since begin(), draw by draw; of a
-  // convex body that was drawn as one the first face that was chosen.
+  DepthBufferView depthBuffer() const;
+  const RasterStats& stats() const;  // counts since begin()
+  // The chosen occluders that were drawn or are behind what was drawn, since begin(), draw by draw. A convex
+  // body that was drawn as one is named by the first of its faces that was chosen.
   std::span<const OccluderId> occluders() const;
 
  private:

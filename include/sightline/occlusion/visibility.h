@@ -4,7 +4,7 @@
 
 namespace sightline {
 
-// A region's state for one viewpoint and one set of occluders. Where a predicate can't tell, it says "not
+// A region's state for one viewpoint and one set of occluders. A predicate that cannot tell says "not
 // hidden".
 enum class Visibility : std::uint8_t { kHidden, kPartial, kVisible };
 

@@ -14,9 +14,9 @@ namespace sightline {
 struct VisibleSet {
   static constexpr std::uint32_t kEverything = 0xffffffffu;
 
-  std::uint32_t id = kEverything;  // equal ids of one VisibleSets are equal sets
-  // Of VisibleSets::boxes(), ascending, none below another: all objects below them, and no other ones, may be
-  // seen. The root alone: everything.
+  std::uint32_t id = kEverything;  // sets of one VisibleSets with equal ids are equal
+  // Nodes of VisibleSets::boxes(), ascending, none below another. All objects below them, and no others, may
+  // be seen. The root alone stands for everything.
   std::span<const std::uint32_t> nodes{};
 };
 
@@ -25,14 +25,15 @@ class VisibleSets {
  public:
   virtual ~VisibleSets() = default;
 
-  // Each leaf is one object with its box, as the sets were made for it. A Culler compares them with its own
-  // boxes, and uses no sets of other ones. They stay where they are as long as the sets are in use.
+  // The boxes that the sets were made for; each leaf is one object with its box. A Culler compares them with
+  // its own boxes and does not use sets of other boxes. The view must stay valid as long as the sets are in
+  // use.
   virtual BoxTreeView boxes() const = 0;
 
-  // For a perspective view from `eye` (scene space) in any direction. near_distance: how far from the eye the
-  // farthest point lies that the near plane clips away (nearDistance), metres. Everything where nothing is
-  // known: outside the cells, for what is not finite, and for a near_distance beyond that of the bake.
-  // Valid until the next call. Does not allocate after warm-up.
+  // Returns the set for a perspective view from `eye` (scene space) in any direction, valid until the next
+  // call. near_distance: distance from the eye of the farthest point that the near plane clips away
+  // (nearDistance), metres. The set is everything outside the cells, for values that are not finite, and for
+  // a near_distance beyond that of the bake. Does not allocate after warm-up.
   virtual VisibleSet find(const Vec3d& eye, double near_distance) = 0;
 };
 

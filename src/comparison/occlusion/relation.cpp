@@ -11,7 +11,8 @@ namespace {
 
 using geometry::BoxTangents;
 
-// Rounding of a plane's value at the eye, times the occluder's reach: 16 times the bound.
+// A value at the eye below this times the occluder's reach may be rounding, of which this is 16 times the
+// bound.
 constexpr double kPlaneValue = 0x1p-45;
 // A box is compared with an occluder only while its rounding, this times its farthest corner, is below the
 // inset.
@@ -19,7 +20,8 @@ constexpr double kFarBox = 0x1p-46;
 // A plane that every eye satisfies.
 constexpr double kAlways = 1e300;
 
-// The line's plane through a vertex, normal of the length sin(beta); relative to the occluder's first vertex.
+// Returns the plane through the edge's line and a vertex, with a normal of the length sin(beta), relative to
+// the occluder's first vertex.
 Plane planeThrough(const InsetEdge& edge, const Vec3d& vertex_from_edge) {
   const double l = length(vertex_from_edge);
   Plane plane;

@@ -21,23 +21,24 @@
 
 namespace sightline::occlusion {
 
-// The planes of four edges, two an edge. The occluder lies in front of them.
+// The planes of four edges, two for each edge. The occluder lies in front of them.
 struct PlaneQuad {
   double x[2][4] = {}, y[2][4] = {}, z[2][4] = {}, offset[2][4] = {};
 };
 
 struct Relation {
   OccluderId occluder;
-  // What the planes were made for.
+  // The state of the occluder that the planes were made for.
   std::int16_t inset_exponent = 0;
   bool flipped = false;
   std::uint8_t edge_count = 0;
   bool behind = false;  // all of the box is behind the occluder's plane: [0] are supporting planes, [1]
                         // separating ones. Otherwise it crosses it, and both are separating ones
-  // What was found at the last look.
-  bool touches = false;         // satisfies all separating planes: some of the box may be hidden
-  std::uint64_t satisfied = 0;  // supporting planes, a bit an edge; when it touches
-  double until = 0.0;           // this holds while the eye's path is not longer than that, metres
+  // The result of the last evaluate().
+  bool touches = false;  // the eye satisfies all separating planes: some of the box may be hidden
+  std::uint64_t satisfied =
+      0;               // supporting planes that the eye satisfies, a bit for each edge; if it touches
+  double until = 0.0;  // the result holds until the eye's path is longer than this, metres
 
   bool fits(std::int16_t exponent, bool seen_from_back, std::uint32_t edges) const {
     return inset_exponent == exponent && flipped == seen_from_back && edge_count == edges;
@@ -53,7 +54,7 @@ struct Relation {
 enum class PlaneSide : std::uint8_t { kFront, kCrossing, kBehind };
 PlaneSide sideOf(const ActiveOccluder& occluder, const Box& box);
 
-// Fills a relation and its planes; the box does not lie in front.
+// Fills a relation and its planes, (edges + 3) / 4 of them. The box must not lie in front of the occluder.
 void makeRelation(const ActiveOccluder& occluder, std::span<const InsetEdge> edges, const Box& box,
                   PlaneSide side, TangentSearch search, Relation& relation, std::span<PlaneQuad> planes);
 

@@ -27,7 +27,7 @@ class DepthPyramidMethod final : public CullingMethod {
     own_occluders_ = 0;
     focused_ = false;
     if (settings_.focus.magnification > 1.0 && drawsBodies()) {
-      const DepthMapView buffer = pyramid_->map();
+      const DepthBufferView buffer = pyramid_->depthBuffer();
       window_.emplace(settings_.focus, buffer.width, buffer.height);
       RasterSettings fine = settings_.focus.raster;
       fine.coverage = settings_.raster.coverage;
@@ -77,7 +77,7 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const OccluderId> occludersUsed() const override {
     return pyramid_->occluders().first(own_occluders_);
   }
-  DepthMapView depthBuffer() const override { return pyramid_->map(); }
+  DepthBufferView depthBuffer() const override { return pyramid_->depthBuffer(); }
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:

@@ -48,7 +48,7 @@ class DetailObjects final : public CullingMethod {
     method_->classify(boxes, states);
   }
   std::span<const OccluderId> occludersUsed() const override { return method_->occludersUsed(); }
-  DepthMapView depthBuffer() const override { return method_->depthBuffer(); }
+  DepthBufferView depthBuffer() const override { return method_->depthBuffer(); }
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:

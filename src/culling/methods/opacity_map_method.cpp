@@ -75,7 +75,7 @@ class OpacityMapMethod final : public CullingMethod {
   std::span<const OccluderId> occludersUsed() const override {
     return suspended_ ? std::span<const OccluderId>() : map_->occluders().first(own_occluders_);
   }
-  DepthMapView depthBuffer() const override { return map_->map(); }
+  DepthBufferView depthBuffer() const override { return map_->depthBuffer(); }
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:

@@ -175,7 +175,7 @@ class Walker {
     kept.in_frustum.assign(all.visible().begin(), all.visible().end());
     kept.visible.assign(shown.visible().begin(), shown.visible().end());
     kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
-    const DepthMapView map = shown.depthBuffer();
+    const DepthBufferView map = shown.depthBuffer();
     kept.map.width = map.width;
     kept.map.height = map.height;
     for (std::uint32_t y = 0; y < map.height; ++y) {

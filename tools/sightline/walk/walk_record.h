@@ -71,7 +71,7 @@ struct WalkRun {
   }
 };
 
-// A map of occluders, see DepthMapView, without what lies beyond its width.
+// A map of occluders, see DepthBufferView, without what lies beyond its width.
 struct KeptMap {
   std::uint32_t width = 0, height = 0;
   std::vector<float> reciprocal_depth;

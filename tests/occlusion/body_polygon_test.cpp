@@ -1,4 +1,4 @@
-// Maps of convex bodies that are drawn as one, judged ray by ray in extended precision.
+// Depth buffers of convex bodies that are drawn as one, judged ray by ray in extended precision.
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -34,7 +34,7 @@ Vector operator-(const Vector& a, const Vector& b) {
 }
 
 // The judge: triangles in camera space (x to the right, y upwards, z the depth), and rays through points of
-// the map. What a ray hardly misses it hits, so that the judge never accuses without reason.
+// the buffer. A ray that barely misses counts as a hit, so that the judge never fails a correct answer.
 class Judge {
  public:
   Judge(const View& view, const RasterSettings& settings) : view_(view) {
@@ -44,7 +44,7 @@ class Judge {
     middle_x_ = Real{0.5} * settings.width;
     middle_y_ = Real{0.5} * settings.height;
   }
-  // All sides by their fans; a point of the map is hidden by a front beyond the near plane.
+  // Adds all sides as fans of triangles. A point of the buffer is hidden by a front beyond the near plane.
   void add(const Solid& solid) {
     for (const std::vector<std::uint32_t>& face : solid.faces) {
       for (std::size_t i = 1; i + 1 < face.size(); ++i) {
@@ -53,7 +53,7 @@ class Judge {
       }
     }
   }
-  // The greatest reciprocal depth among the fronts that hide what is behind this point of the map; nothing:
+  // Returns the greatest reciprocal depth among the fronts that cover this point of the buffer; nothing if
   // none does.
   std::optional<Real> reciprocalDepthAt(Real x, Real y) const {
     const Vector across{(x - middle_x_) * step_x_, (y - middle_y_) * step_y_, 0};
@@ -122,7 +122,7 @@ constexpr std::pair<std::uint32_t, std::uint32_t> kSizes[] = {{1, 1}, {16, 16}, 
 
 enum class Place {
   kBefore,          // wholly in view, or nearly
-  kHalfOff,         // about a border of the map
+  kHalfOff,         // about a border of the buffer
   kAcrossNear,      // the near plane runs through it
   kAroundEye,       // the eye is inside
   kInFacePlane,     // the eye lies exactly in the plane of a side
@@ -146,7 +146,7 @@ Solid anyShape(Random& random) {
   }
 }
 
-// Solids of any proportions: slabs and slivers among them.
+// Makes solids of any proportions, with slabs and slivers among them.
 Vec3d anyScale(Random& random, bool& thin) {
   Vec3d scale(random.in(0.5, 3.0), random.in(0.5, 3.0), random.in(0.5, 3.0));
   const std::uint64_t kind = random.engine() % 6;
@@ -174,7 +174,7 @@ struct BodyScene {
     settings = {width, height};
     const double far_away = seed % 5 == 4 ? 1e4 : 0.0;
     view = viewFrom(Vec3d(far_away, -far_away, 0.5 * far_away), random.point(1.0));
-    // From within, parallel rays may still meet a front.
+    // From within, parallel rays may still intersect a front.
     view.orthographic = seed / 4 % 3 == 2 && place != Place::kAroundEye;
     view.ortho_height = random.in(2.0, 12.0);
     view.aspect = random.in(0.5, 2.0);
@@ -237,7 +237,7 @@ struct BodyScene {
     }
     solids.push_back(solid);
   }
-  // Small integers, so that planes and eye meet exactly.
+  // Coordinates are small integers, so that the eye lies in planes exactly.
   void addAxisAligned(Random& random, Place place) {
     const auto whole = [&](int low, int high) {
       return static_cast<float>(low +
@@ -262,8 +262,8 @@ struct Counts {
   std::size_t covered = 0, should = 0, of_those_covered = 0, as_one = 0;
 };
 
-// What is wrong with a covered pixel, by its corners, where reciprocal depth, which is concave over the
-// image, is least, and by some points between them. Empty: nothing.
+// Returns what is wrong with a covered pixel, empty for nothing: by its corners, where reciprocal depth,
+// which is concave over the image, is least, and by some points between them.
 std::string whatIsWrong(const Judge& judge, std::uint32_t x, std::uint32_t y, float stored, Random& random) {
   for (int i = 0; i < 6; ++i) {
     const Real at_x = x + (i < 4 ? Real(i & 1) : Real{random.in(0.0, 1.0)});
@@ -289,33 +289,33 @@ void judge(const BodyScene& scene, Counts& counts) {
     judge.add(solid);
   }
   Random random(1);
-  const DepthMapView map = rasteriser.map();
+  const DepthBufferView buffer = rasteriser.depthBuffer();
   int failures = 0;
-  for (std::uint32_t y = 0; y < map.height && failures < 3; ++y) {
-    for (std::uint32_t x = 0; x < map.width && failures < 3; ++x) {
-      const bool covered = map.covered(x, y);
-      // Of a large map one pixel in seven.
-      if (!scene.thin && (map.width < 100 || (x + y) % 7 == 0) && judge.contains(x, y, Real{0.2})) {
+  for (std::uint32_t y = 0; y < buffer.height && failures < 3; ++y) {
+    for (std::uint32_t x = 0; x < buffer.width && failures < 3; ++x) {
+      const bool covered = buffer.covered(x, y);
+      // In a large buffer one pixel in seven is judged.
+      if (!scene.thin && (buffer.width < 100 || (x + y) % 7 == 0) && judge.contains(x, y, Real{0.2})) {
         ++counts.should;
         counts.of_those_covered += covered ? 1 : 0;
       }
       if (covered) {
         ++counts.covered;
-        const std::string wrong = whatIsWrong(judge, x, y, map.at(x, y), random);
+        const std::string wrong = whatIsWrong(judge, x, y, buffer.at(x, y), random);
         failures += wrong.empty() ? 0 : 1;
-        EXPECT_EQ(wrong, "") << scene.what << ", map " << map.width << " x " << map.height;
+        EXPECT_EQ(wrong, "") << scene.what << ", buffer " << buffer.width << " x " << buffer.height;
       }
     }
   }
 }
 
-class BodyMapAt : public testing::TestWithParam<Place> {};
+class BodyPolygonsAt : public testing::TestWithParam<Place> {};
 
-TEST_P(BodyMapAt, NothingIsCoveredThatTheBodyDoesNotHideWithItsDepth) {
+TEST_P(BodyPolygonsAt, NothingIsCoveredThatTheBodyDoesNotHideWithItsDepth) {
   Counts counts;
   for (std::uint64_t seed = 0; seed < (GetParam() == Place::kOnPixelCorners ? 800 : 96); ++seed) {
     if (GetParam() == Place::kOnPixelCorners && seed % 4 == 3 && seed > 40) {
-      continue;  // large maps take long
+      continue;  // large buffers take long
     }
     judge(BodyScene(GetParam(), seed), counts);
   }
@@ -331,9 +331,9 @@ TEST_P(BodyMapAt, NothingIsCoveredThatTheBodyDoesNotHideWithItsDepth) {
     EXPECT_GT(static_cast<double>(counts.of_those_covered), 0.9 * static_cast<double>(counts.should));
   }
 }
-INSTANTIATE_TEST_SUITE_P(Places, BodyMapAt, testing::ValuesIn(kPlaces));
+INSTANTIATE_TEST_SUITE_P(Places, BodyPolygonsAt, testing::ValuesIn(kPlaces));
 
-TEST(BodyMap, NothingIsCoveredThatSeveralBodiesDoNotHide) {
+TEST(BodyPolygons, NothingIsCoveredThatSeveralBodiesDoNotHide) {
   Counts counts;
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
     BodyScene scene(Place::kBefore, seed);
@@ -355,7 +355,7 @@ TEST(BodyMap, NothingIsCoveredThatSeveralBodiesDoNotHide) {
 }
 
 // A flat sheet is no solid, and its outline has a notch.
-TEST(BodyMap, ANotchInAFlatSheetStaysOpen) {
+TEST(BodyPolygons, ANotchInAFlatSheetStaysOpen) {
   Counts counts;
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     BodyScene scene(Place::kBefore, seed);
@@ -374,7 +374,7 @@ TEST(BodyMap, ANotchInAFlatSheetStaysOpen) {
 
 // Two blocks side by side and the eye in the middle plane between them, turned about the viewing direction.
 struct GapScene {
-  static constexpr std::uint32_t kSize = 64;  // of the map; 90 degrees
+  static constexpr std::uint32_t kSize = 64;  // of the buffer; 90 degrees
   double offset, half_gap;
   std::vector<Solid> blocks;
   View view;
@@ -389,7 +389,7 @@ struct GapScene {
   }
 };
 
-TEST(BodyMap, WhatShowsThroughAGapBetweenBodiesIsNotCovered) {
+TEST(BodyPolygons, WhatShowsThroughAGapBetweenBodiesIsNotCovered) {
   std::size_t covered = 0, looked = 0;
   for (const double pixels : {0.001, 0.3, 0.9}) {
     for (int turn = 0; turn < 60; ++turn) {
@@ -400,10 +400,10 @@ TEST(BodyMap, WhatShowsThroughAGapBetweenBodiesIsNotCovered) {
       ASSERT_EQ(set.bodies.size(), 2u);
       DepthPyramid pyramid({settings});
       pyramid.build(scene.view, set, all(set));
-      const DepthMapView map = pyramid.map();
-      for (std::uint32_t y = 0; y < map.height; ++y) {
-        for (std::uint32_t x = 0; x < map.width; ++x) {
-          covered += map.covered(x, y) ? 1 : 0;
+      const DepthBufferView buffer = pyramid.depthBuffer();
+      for (std::uint32_t y = 0; y < buffer.height; ++y) {
+        for (std::uint32_t x = 0; x < buffer.width; ++x) {
+          covered += buffer.covered(x, y) ? 1 : 0;
         }
       }
       for (int i = 0; i < 200; ++i) {
@@ -414,7 +414,7 @@ TEST(BodyMap, WhatShowsThroughAGapBetweenBodiesIsNotCovered) {
         const double y = 32.0 * (1.0 + sightline::dot(scene.view.up, r) / depth);
         if (x > 0.01 && x < 63.99 && y > 0.01 && y < 63.99) {
           ++looked;
-          EXPECT_FALSE(map.covered(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))) << what;
+          EXPECT_FALSE(buffer.covered(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))) << what;
         }
       }
       const Vec3d behind(scene.view.eye.x, 0.0, -20.0);
@@ -434,7 +434,7 @@ std::vector<std::uint32_t> bitsOf(const BodyScene& scene, const OccluderSet& set
   rasteriser.draw(set, chosen, parallel_for);
   std::vector<std::uint32_t> bits;
   for (std::uint32_t y = 0; y < scene.settings.height; ++y) {
-    for (const float reciprocal_depth : rasteriser.map().row(y)) {
+    for (const float reciprocal_depth : rasteriser.depthBuffer().row(y)) {
       bits.push_back(std::bit_cast<std::uint32_t>(reciprocal_depth));
     }
   }
@@ -450,7 +450,7 @@ void inPieces(std::uint32_t count, const RangeBody& body) {
   }
 }
 
-TEST(BodyMap, HasTheSameBitsWithEveryInstructionSetHoweverTheWorkIsCutAndInAnyOrder) {
+TEST(BodyPolygons, HasTheSameBitsWithEveryInstructionSetHoweverTheWorkIsCutAndInAnyOrder) {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   ASSERT_GE(targets.size(), 2u);
   std::mt19937_64 shuffler(3);
@@ -479,7 +479,7 @@ TEST(BodyMap, HasTheSameBitsWithEveryInstructionSetHoweverTheWorkIsCutAndInAnyOr
   EXPECT_GT(covered, 100'000u);
 }
 
-TEST(BodyMap, OneFaceThatIsChosenDrawsTheWholeBody) {
+TEST(BodyPolygons, OneFaceThatIsChosenDrawsTheWholeBody) {
   const OccluderSet set = setOfSolids(std::vector{block({-2, -1, -9}, {1, 3, -5})});
   const BodyScene any(Place::kAlongTheAxes, 2);
   BodyScene scene = any;
@@ -494,7 +494,7 @@ TEST(BodyMap, OneFaceThatIsChosenDrawsTheWholeBody) {
   }
 }
 
-TEST(BodyMap, ViewsThatAreNotFiniteLeaveTheMapEmpty) {
+TEST(BodyPolygons, ViewsThatAreNotFiniteLeaveTheMapEmpty) {
   const OccluderSet set = setOfSolids(std::vector{block({-2, -1, -9}, {1, 3, -5})});
   const std::vector<OccluderId> ids = all(set);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
@@ -508,10 +508,10 @@ TEST(BodyMap, ViewsThatAreNotFiniteLeaveTheMapEmpty) {
       Rasteriser rasteriser({.width = 32, .height = 32});
       rasteriser.begin(view);
       rasteriser.draw(set, ids);
-      const DepthMapView map = rasteriser.map();
-      for (std::uint32_t y = 0; y < map.height; ++y) {
-        for (std::uint32_t x = 0; x < map.width; ++x) {
-          ASSERT_FALSE(map.covered(x, y)) << "field " << what << " " << bad;
+      const DepthBufferView buffer = rasteriser.depthBuffer();
+      for (std::uint32_t y = 0; y < buffer.height; ++y) {
+        for (std::uint32_t x = 0; x < buffer.width; ++x) {
+          ASSERT_FALSE(buffer.covered(x, y)) << "field " << what << " " << bad;
         }
       }
       EXPECT_EQ(rasteriser.stats().occluders, 0u);
@@ -519,7 +519,7 @@ TEST(BodyMap, ViewsThatAreNotFiniteLeaveTheMapEmpty) {
   }
 }
 
-TEST(BodyMap, ABodyCountsAsOneOccluder) {
+TEST(BodyPolygons, ABodyCountsAsOneOccluder) {
   const OccluderSet set =
       setOfSolids(std::vector{block({-2, -1, -9}, {1, 3, -5}), block({-3, -2, -30}, {2, 4, -20}),
                               block({-0.5f, -0.5f, -1}, {0.5f, 0.5f, 1})});

@@ -1,6 +1,6 @@
 #pragma once
 
-// Depth maps made by rules and at random, without occluders, and counting and scanning them the plain way.
+// Depth buffers made by rules and at random, without occluders, and counting and scanning them the plain way.
 
 #include <random>
 #include <string>
@@ -33,7 +33,7 @@ struct SyntheticMap {
       }
     }
   }
-  DepthMapView view() const { return {reciprocal_depth, width, height, stride}; }
+  DepthBufferView view() const { return {reciprocal_depth, width, height, stride}; }
 };
 
 inline std::vector<SyntheticMap> syntheticMaps(std::uint32_t w, std::uint32_t h, std::uint64_t seed) {
@@ -79,7 +79,7 @@ inline constexpr std::uint32_t kMapSizes[][2] = {{1, 1}, {1, 9},  {9, 1},  {2, 2
 inline PixelBox rectangle(std::uint32_t x0, std::uint32_t y0, std::uint32_t x1, std::uint32_t y1,
                           float nearest = 0.0f) {
   PixelBox rect;
-  rect.place = occlusion::BoxPlace::kOnMap;
+  rect.place = occlusion::BoxPlace::kOnBuffer;
   rect.x0 = static_cast<std::uint16_t>(x0);
   rect.y0 = static_cast<std::uint16_t>(y0);
   rect.x1 = static_cast<std::uint16_t>(x1);
@@ -99,20 +99,20 @@ inline PixelBox randomRectangle(std::mt19937_64& random, std::uint32_t width, st
   return rectangle(std::min(x0, x1), std::min(y0, y1), std::max(x0, x1), std::max(y0, y1));
 }
 
-inline std::uint32_t coveredByCounting(const DepthMapView& map, const PixelBox& rect) {
+inline std::uint32_t coveredByCounting(const DepthBufferView& buffer, const PixelBox& rect) {
   std::uint32_t count = 0;
   for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
     for (std::uint32_t x = rect.x0; x <= rect.x1; ++x) {
-      count += map.covered(x, y) ? 1 : 0;
+      count += buffer.covered(x, y) ? 1 : 0;
     }
   }
   return count;
 }
 
-inline bool allNearerByScanning(const DepthMapView& map, const PixelBox& rect) {
+inline bool allNearerByScanning(const DepthBufferView& buffer, const PixelBox& rect) {
   for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
     for (std::uint32_t x = rect.x0; x <= rect.x1; ++x) {
-      if (map.covered(x, y) && !(map.at(x, y) > rect.nearest)) {
+      if (buffer.covered(x, y) && !(buffer.at(x, y) > rect.nearest)) {
         return false;
       }
     }

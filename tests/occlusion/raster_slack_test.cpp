@@ -1,5 +1,5 @@
-// Meshes whose seams and depths are off their merged polygons by the slack that findOccluders allows, seen so
-// closely that the slack spans pixels: what shows through must not be called hidden.
+// Meshes whose shared edges and depths are off their merged polygons by the slack that findOccluders allows,
+// seen so closely that the slack spans pixels: what shows through must not be called hidden.
 
 #include <gtest/gtest.h>
 
