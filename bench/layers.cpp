@@ -22,6 +22,7 @@
 
 #include "bench/measuring.h"
 #include "scenes/moving_scene.h"
+#include "sightline/comparison/layer_sorting.h"
 #include "sightline/layers/layer_sorter.h"
 
 namespace {
@@ -115,7 +116,7 @@ Distances sortByDistance(const std::vector<Shape>& shapes, const Vec3d& eye, std
 void measure(const ToothpickOptions& options, bool brief) {
   const MovingScene scene = makeToothpicks(options);
   LayerSorter depth_first = makeSorter(scene, {});
-  LayerSorter incremental = makeSorter(scene, {.sort = LayerSort::kIncremental});
+  LayerSorter incremental = makeSorter(scene, {.sort = incrementalSort()});
   LayerSorter all_arcs = makeSorter(scene, {.all_arcs = true});
   std::vector<Mat4> poses(scene.parts.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;

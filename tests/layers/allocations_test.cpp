@@ -9,16 +9,14 @@
 #include <vector>
 
 #include "sightline/layers/shaped_image.h"
-#include "src/comparison/layers/extent_tree.h"
-#include "src/comparison/layers/incremental_sort.h"
 #include "src/layers/extents/extent_scan.h"
 #include "src/layers/extents/part_extents.h"
 #include "src/layers/sort/conditioning_sort.h"
 #include "src/layers/sort/depth_first_sort.h"
 #include "tests/layers/extent_scene.h"
 #include "tests/layers/graph_source.h"
-#include "tests/layers/made_extents.h"
 #include "tests/layers/moving_sorter.h"
+#include "tests/layers/sorter_choices.h"
 #include "tests/support/count_allocations.h"
 
 namespace sightline::layers {
@@ -32,10 +30,9 @@ TEST(Sorts, DoNotAllocateOnceTheyHaveSortedAsMuch) {
   std::mt19937 random(3);
   const std::vector<std::uint32_t> previous = shuffledOrder(60, random);
   GraphSource graph = randomGraph(60, 25, random);
-  IncrementalSort incremental;
   DepthFirstSort depth_first;
   ConditioningSort conditioning;
-  GroupedOrder order, other;
+  GroupedOrder order;
   std::vector<double> keys(60);
   for (double& key : keys) {
     key = below(100, random);
@@ -45,53 +42,12 @@ TEST(Sorts, DoNotAllocateOnceTheyHaveSortedAsMuch) {
   for (int round = 0; round < 3; ++round) {
     before = allocations.load();
     graph.reset();
-    incremental.sort(previous, graph, order);
-    graph.reset();
-    depth_first.sort(previous, graph, other);
-    conditioned = conditioning.sort(std::span(keys).first(other.groups()), keys, {ask, &graph}, {}, other);
+    depth_first.sort(previous, graph, order);
+    conditioned = conditioning.sort(std::span(keys).first(order.groups()), keys, {ask, &graph}, {}, order);
   }
   EXPECT_EQ(allocations.load() - before, 0u);
-  EXPECT_GT(incremental.reinsertions(), 0u);
   EXPECT_GT(conditioned, 0u);
   EXPECT_GT(order.arcs.size(), 0u);
-}
-
-using namespace made;
-
-TEST(ExtentTree, AllocatesNothingAfterWarmUp) {
-  Random random(16);
-  ExtentTable table = makeTable(400, kindsOf(3, 3));
-  scatter(table, random, 0.03f);
-  const ExtentTable start = table;
-  ExtentTreeSettings settings;
-  settings.rebuild_after = 10;
-  settings.rebuild_steps = 50;
-  ExtentTree tree(settings);
-  std::vector<std::uint32_t> parts;
-  const auto frame = [&](std::size_t number) {
-    const float by = 0.05f * std::sin(static_cast<float>(number) * 0.2f);
-    for (std::size_t part = 0; part < table.parts; ++part) {
-      const float own = part % 2 == 0 ? by : -by;
-      set(table, 2, part, {start.lows[2][part] + own, start.highs[2][part] + own});
-    }
-    tree.update(table);
-    for (std::uint32_t part = 0; part < table.parts; ++part) {
-      tree.setActive(part, false);
-      parts.clear();
-      tree.query({table.at(0, part), table.at(1, part), table.at(2, part)}, parts);
-    }
-  };
-  std::size_t number = 0;
-  while (number < 120) {
-    frame(number++);
-  }
-  const std::size_t before = allocations;
-  const std::uint64_t takeovers = tree.work().takeovers;
-  while (number < 180) {
-    frame(number++);
-  }
-  EXPECT_EQ(allocations, before);
-  EXPECT_GT(tree.work().takeovers, takeovers);
 }
 
 }  // namespace
@@ -123,7 +79,7 @@ TEST(PartExtents, DoNotAllocateAfterTheFirstFrame) {
     }
     extents.update(view, scene.store, scene.moved);
     std::next_permutation(order.begin(), order.end());
-    scan.begin(extents.table(), order);
+    scan.beginFrame(extents.table(), order);
     for (std::uint32_t part = 0; part < 50; ++part) {
       found.clear();
       scan.query(extents.query(part), found);
@@ -196,13 +152,13 @@ void expectNoAllocations(const MovingScene& scene, LayerSettings settings) {
 TEST(LayerSorter, DoesNotAllocateAfterWarmUp) {
   MovingScene scene = makeToothpicks({.count = 60});
   scene.frames = 60;
-  for (const LayerSort sort : {LayerSort::kDepthFirst, LayerSort::kIncremental}) {
-    for (const OccluderSearch search : {OccluderSearch::kScan, OccluderSearch::kTree}) {
+  for (const SortChoice sort : kSortChoices) {
+    for (const SearchChoice search : kSearchChoices) {
       for (const bool all_arcs : {false, true}) {
-        SCOPED_TRACE(::testing::Message() << static_cast<int>(sort) << static_cast<int>(search) << all_arcs);
+        SCOPED_TRACE(::testing::Message() << nameOf(sort) << nameOf(search) << all_arcs);
         LayerSettings settings;
-        settings.sort = sort;
-        settings.search = search;
+        settings.sort = sortOf(sort);
+        settings.search = searchOf(search);
         settings.all_arcs = all_arcs;
         expectNoAllocations(scene, settings);
       }

@@ -72,7 +72,7 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsOnEveryInstructionSet) {
     Random random(seed);
     const ExtentTable table = randomTable(random);
     ExtentScan scan;
-    scan.begin(table, shuffledParts(random, table.parts));
+    scan.beginFrame(table, shuffledParts(random, table.parts));
     std::vector<bool> active(table.parts, true);
     for (int round = 0; round < 6; ++round) {
       for (std::size_t i = 0; round > 0 && i < table.parts; ++i) {
@@ -129,7 +129,7 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsThroughThreeLevels) {
     Random random(seed);
     const ExtentTable table = fineTable(random, 4096 + random.below(3) * 1000);
     ExtentScan scan;
-    scan.begin(table, shuffledParts(random, table.parts));
+    scan.beginFrame(table, shuffledParts(random, table.parts));
     for (int round = 0; round < 20; ++round) {
       Extent query{};
       for (std::size_t axis = 0; axis < table.axes(); ++axis) {
@@ -163,18 +163,18 @@ TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
   ExtentScan scan;
   Random random(1);
   const std::vector<std::uint32_t> all = shuffledParts(random, 64);
-  scan.begin(table, all);
+  scan.beginFrame(table, all);
   scan.setActive(63, false);
   Extent query{};
   query[0] = {1.0f, 2.0f};  // touches
   std::vector<std::uint32_t> parts;
   scan.query(query, parts);
   EXPECT_EQ(parts.size(), 63u);
-  scan.begin(table, all);
+  scan.beginFrame(table, all);
   parts.clear();
   scan.query(query, parts);
   EXPECT_EQ(parts.size(), 64u);
-  scan.begin(table, std::vector<std::uint32_t>{40, 7, 12});
+  scan.beginFrame(table, std::vector<std::uint32_t>{40, 7, 12});
   scan.setActive(50, true);  // not listed
   parts.clear();
   scan.query(query, parts);
@@ -196,7 +196,7 @@ TEST(ExtentScan, ComparesOnlyBlocksWhoseUnionOverlapsAndThatHoldActiveParts) {
     table.highs[0].push_back(static_cast<float>(part) + 0.5f);
   }
   ExtentScan scan;
-  scan.begin(table, order);
+  scan.beginFrame(table, order);
   const auto blocksOf = [&](const Interval& interval, std::size_t answers) {
     const std::uint64_t before = scan.blocksCompared();
     std::vector<std::uint32_t> found;

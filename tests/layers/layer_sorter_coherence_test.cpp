@@ -10,6 +10,7 @@
 
 #include "tests/layers/made_parts.h"
 #include "tests/layers/moving_sorter.h"
+#include "tests/layers/sorter_choices.h"
 
 namespace sightline {
 namespace {
@@ -29,14 +30,12 @@ MadeScene cubesAt(const std::vector<Vec3d>& centres, const Vec3d& eye) {
   return scene;
 }
 
-LayerSettings unconditioned(LayerSort sort) {
+LayerSettings unconditioned(SortChoice sort) {
   LayerSettings settings;
-  settings.sort = sort;
+  settings.sort = sortOf(sort);
   settings.conditioning_axis = -1;
   return settings;
 }
-
-constexpr LayerSort kSorts[] = {LayerSort::kDepthFirst, LayerSort::kIncremental};
 
 std::vector<std::uint32_t> partsOf(const LayerOrder& order) {
   std::vector<std::uint32_t> parts;
@@ -63,7 +62,7 @@ const std::vector<Vec3d> kSideBySide{{20, 0, 0}, {0, 0, 0}, {40, 0, 0}, {10, 0, 
 const Vec3d kLeft{-5, 0, 50}, kRight{45, 0, 50};
 
 TEST(LayerSorterCoherence, TheFirstOrderIsByDistanceWhereNothingIsOccluded) {
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     for (const Vec3d& eye : {kLeft, kRight}) {
       LayerSorter sorter = sorterOf(cubesAt(kSideBySide, eye), unconditioned(sort));
       EXPECT_EQ(partsOf(sorter.update(viewFrom(eye))), byDistance(kSideBySide, eye));
@@ -74,7 +73,7 @@ TEST(LayerSorterCoherence, TheFirstOrderIsByDistanceWhereNothingIsOccluded) {
 TEST(LayerSorterCoherence, TheFirstOrderTakesAPartByTheMeanOfItsHulls) {
   MadeScene scene = cubesAt({{}, {12, 0, -16}, {-18, 0, -24}}, {});
   scene.parts[0].hulls = {shapes::cube({0, 0, -10}), shapes::cube({0, 0, -40})};
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSorter sorter = sorterOf(scene, unconditioned(sort));
     EXPECT_EQ(partsOf(sorter.update(scene.view)), (std::vector<std::uint32_t>{1, 0, 2}));
   }
@@ -83,7 +82,7 @@ TEST(LayerSorterCoherence, TheFirstOrderTakesAPartByTheMeanOfItsHulls) {
 // Sorted by depth, what is behind the eye would come in reverse.
 TEST(LayerSorterCoherence, TheFirstOrderIsRightBehindTheEyeToo) {
   const std::vector<Vec3d> row{{0, 0, 15}, {0, 0, -30}, {0, 0, 5}, {0, 0, -10}, {0, 0, 25}, {0, 0, -20}};
-  LayerSorter sorter = sorterOf(cubesAt(row, {}), unconditioned(LayerSort::kIncremental));
+  LayerSorter sorter = sorterOf(cubesAt(row, {}), unconditioned(SortChoice::kIncremental));
   const LayerOrder& order = sorter.update(viewFrom({}));
   EXPECT_EQ(partsOf(order), byDistance(row, {}));
   EXPECT_EQ(order.stats.reinsertions, 0u);
@@ -92,7 +91,7 @@ TEST(LayerSorterCoherence, TheFirstOrderIsRightBehindTheEyeToo) {
 
 TEST(LayerSorterCoherence, TheFirstOrderOfAnOrthographicViewIsAlongItsDirection) {
   const std::vector<Vec3d> spread{{90, 0, -10}, {0, 0, -30}, {-50, 0, -20}, {20, 0, 5}};
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSorter sorter = sorterOf(cubesAt(spread, {}), unconditioned(sort));
     View view = viewFrom({});
     view.orthographic = true;
@@ -101,7 +100,7 @@ TEST(LayerSorterCoherence, TheFirstOrderOfAnOrthographicViewIsAlongItsDirection)
 }
 
 TEST(LayerSorterCoherence, AnOrderThatIsStillRightStaysUntilItIsReset) {
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSorter sorter = sorterOf(cubesAt(kSideBySide, kLeft), unconditioned(sort));
     sorter.update(viewFrom(kLeft));
     EXPECT_EQ(partsOf(sorter.update(viewFrom(kRight))), byDistance(kSideBySide, kLeft));
@@ -112,7 +111,7 @@ TEST(LayerSorterCoherence, AnOrderThatIsStillRightStaysUntilItIsReset) {
 }
 
 TEST(LayerSorterCoherence, WhatIsNewFollowsTheLastOrderByDistance) {
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSorter sorter = sorterOf(cubesAt(kSideBySide, kLeft), unconditioned(sort));
     sorter.setEnabled(PartId(3u), false);
     sorter.setEnabled(PartId(1u), false);
@@ -127,7 +126,7 @@ TEST(LayerSorterCoherence, WhatIsNewFollowsTheLastOrderByDistance) {
 TEST(LayerSorterCoherence, ConditioningBringsTheNearestForwardWhateverTheLastOrder) {
   const std::vector<Vec3d> at{{20, 0, -3}, {0, 0, 9}, {40, 0, -6}, {10, 0, 3}, {30, 0, 6}};
   const std::vector<std::uint32_t> by_depth{1, 4, 3, 0, 2};
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSettings settings = unconditioned(sort);
     LayerSorter plain = sorterOf(cubesAt(at, kLeft), settings);
     ASSERT_EQ(partsOf(plain.update(viewFrom(kLeft))), byDistance(at, kLeft));
@@ -154,9 +153,9 @@ TEST(LayerSorterCoherence, ConditioningTakesAGroupByTheMeanOfItsParts) {
                            .settings = {},
                            .enabled = true});
   }
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSettings settings;
-    settings.sort = sort;
+    settings.sort = sortOf(sort);
     LayerSorter sorter = sorterOf(scene, settings);
     const LayerOrder& order = sorter.update(viewFrom({}));
     ASSERT_EQ(order.groups(), 3u);
@@ -195,7 +194,7 @@ struct Plates {
 
 TEST(LayerSorterCoherence, AFrameInWhichNothingChangesFindsItsOrderConfirmed) {
   const Plates plates;
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSorter sorter = sorterOf(plates.scene, unconditioned(sort));
     const LayerOrder& cold = sorter.update(plates.scene.view);
     ASSERT_EQ(partsOf(cold), Plates::rightOrder());
@@ -208,7 +207,7 @@ TEST(LayerSorterCoherence, AFrameInWhichNothingChangesFindsItsOrderConfirmed) {
     EXPECT_EQ(warm.stats.candidates, 0u);
     EXPECT_EQ(warm.stats.pair_queries, 0u);
     EXPECT_GT(cold_stats.candidates, Plates::kCount);
-    EXPECT_EQ(cold_stats.reinsertions > 0, sort == LayerSort::kIncremental);
+    EXPECT_EQ(cold_stats.reinsertions > 0, sort == SortChoice::kIncremental);
     sorter.reset();
     EXPECT_EQ(sorter.update(plates.scene.view).stats.candidates, cold_stats.candidates);
   }
@@ -217,7 +216,7 @@ TEST(LayerSorterCoherence, AFrameInWhichNothingChangesFindsItsOrderConfirmed) {
 TEST(LayerSorterCoherence, TwoNeighboursThatChangePlacesCostOneReinsertionAndOneCandidate) {
   const Plates plates;
   const std::vector<std::uint32_t> order = Plates::rightOrder();
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     for (const std::size_t at : {std::size_t{0}, std::size_t{20}, order.size() - 2}) {
       LayerSorter sorter = sorterOf(plates.scene, unconditioned(sort));
       sorter.update(plates.scene.view);
@@ -229,16 +228,16 @@ TEST(LayerSorterCoherence, TwoNeighboursThatChangePlacesCostOneReinsertionAndOne
       EXPECT_EQ(partsOf(warm), expected);
       EXPECT_EQ(warm.stats.candidates, 1u);
       EXPECT_EQ(warm.stats.pair_queries, 1u);
-      EXPECT_EQ(warm.stats.reinsertions, sort == LayerSort::kIncremental ? 1u : 0u);
+      EXPECT_EQ(warm.stats.reinsertions, sort == SortChoice::kIncremental ? 1u : 0u);
     }
   }
 }
 
 TEST(LayerSorterCoherence, SmallMotionsCostFewerExactTestsThanSortingAnew) {
   const MovingScene scene = makeToothpicks({.count = 200});
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSettings settings;
-    settings.sort = sort;
+    settings.sort = sortOf(sort);
     MovingSorter warm(scene, settings), cold(scene, settings);
     LayerStats warm_sum, cold_sum;
     const auto add = [](LayerStats& sum, const LayerStats& stats) {
@@ -256,16 +255,16 @@ TEST(LayerSorterCoherence, SmallMotionsCostFewerExactTestsThanSortingAnew) {
     }
     EXPECT_LT(warm_sum.candidates, cold_sum.candidates);
     EXPECT_LT(warm_sum.pair_queries, cold_sum.pair_queries);
-    EXPECT_EQ(warm_sum.reinsertions < cold_sum.reinsertions, sort == LayerSort::kIncremental);
+    EXPECT_EQ(warm_sum.reinsertions < cold_sum.reinsertions, sort == SortChoice::kIncremental);
   }
 }
 
 // What is kept of a pair lives as long as the settings say.
 TEST(LayerSorterCoherence, WhatIsKnownOfPairsShortensTheNextFrameUnlessItExpires) {
   const MovingScene scene = makeToothpicks({.count = 200});
-  for (const LayerSort sort : kSorts) {
+  for (const SortChoice sort : kSortChoices) {
     LayerSettings settings;
-    settings.sort = sort;
+    settings.sort = sortOf(sort);
     MovingSorter keeping(scene, settings);
     settings.pair_expiry = 0;
     MovingSorter forgetting(scene, settings);

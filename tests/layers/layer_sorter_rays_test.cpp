@@ -10,6 +10,7 @@
 
 #include "tests/layers/hull_rays.h"
 #include "tests/layers/moving_sorter.h"
+#include "tests/layers/sorter_choices.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline {
@@ -155,10 +156,10 @@ void checkFrame(MovingSorter& moving, const View& view, Random& random, int anyw
   }
 }
 
-LayerSettings settingsOf(LayerSort sort, OccluderSearch search) {
+LayerSettings settingsOf(SortChoice sort, SearchChoice search) {
   LayerSettings settings;
-  settings.sort = sort;
-  settings.search = search;
+  settings.sort = sortOf(sort);
+  settings.search = searchOf(search);
   settings.all_arcs = true;
   return settings;
 }
@@ -185,8 +186,8 @@ Seen checkToothpicks(std::uint32_t count, const LayerSettings& settings) {
 }
 
 TEST(LayerSorterRays, AgreeOnSixtyToothpicks) {
-  for (const LayerSort sort : {LayerSort::kDepthFirst, LayerSort::kIncremental}) {
-    for (const OccluderSearch search : {OccluderSearch::kScan, OccluderSearch::kTree}) {
+  for (const SortChoice sort : kSortChoices) {
+    for (const SearchChoice search : kSearchChoices) {
       const Seen seen = checkToothpicks(60, settingsOf(sort, search));
       EXPECT_GT(seen.pairs, 500u);
       EXPECT_GT(seen.images, 100u);
@@ -195,7 +196,7 @@ TEST(LayerSorterRays, AgreeOnSixtyToothpicks) {
 }
 
 TEST(LayerSorterRays, AgreeOnTwoHundredToothpicks) {
-  LayerSettings settings = settingsOf(LayerSort::kDepthFirst, OccluderSearch::kTree);
+  LayerSettings settings = settingsOf(SortChoice::kDepthFirst, SearchChoice::kTree);
   for (const std::vector<ExtentAxis>& extents : {cameraExtents(), worldExtents()}) {
     settings.extents = extents;
     const Seen seen = checkToothpicks(200, settings);
@@ -206,7 +207,7 @@ TEST(LayerSorterRays, AgreeOnTwoHundredToothpicks) {
 
 TEST(LayerSorterRays, AgreeOnTheCanyon) {
   const MovingScene scene = makeCanyon({.grid = 10});
-  LayerSettings settings = settingsOf(LayerSort::kDepthFirst, OccluderSearch::kScan);
+  LayerSettings settings = settingsOf(SortChoice::kDepthFirst, SearchChoice::kScan);
   settings.extents = worldExtents();
   MovingSorter moving(scene, settings);
   Random random(3);

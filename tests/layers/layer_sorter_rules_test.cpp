@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/layers/made_parts.h"
+#include "tests/layers/sorter_choices.h"
 
 namespace sightline {
 namespace {
@@ -254,9 +255,9 @@ TEST(LayerSorterRules, SettingsOutOfRangeAreMadeUsable) {
         settings.extents.push_back(cameraExtents()[i % 3]);
       }
       settings.pair_expiry = axes == 3 ? 0 : 0xffffffffu;
-      settings.tree = {
-          .min_gain = 0, .rebuild_after = 1, .rebuild_imbalance = kNan, .rebuild_steps = 0, .tree_axes = 0};
-      settings.search = axes % 2 == 0 ? OccluderSearch::kTree : OccluderSearch::kAutomatic;
+      settings.search = searchOf(
+          axes % 2 == 0 ? SearchChoice::kTree : SearchChoice::kScan,
+          {.min_gain = 0, .rebuild_after = 1, .rebuild_imbalance = kNan, .rebuild_steps = 0, .tree_axes = 0});
       LayerSorter sorter = sorterOf(scene, settings);
       for (int frame = 0; frame < 4; ++frame) {
         expectTrue(Answer(sorter.update(scene.view)), truth, true);
@@ -289,7 +290,7 @@ TEST(LayerSorterRules, NoPartsAndOnePartAndNoneEnabledHaveAnOrder) {
     sorter.reset();
     EXPECT_EQ(sorter.parts(), 0u);
     EXPECT_EQ(sorter.update(viewFrom({})).groups(), 0u);
-    sorter.rebuildTree();
+    sorter.rebuildSearch();
     EXPECT_TRUE(sorter.update(viewFrom({})).parts.empty());
     const PartId only = addMade(sorter, solid(shapes::cube()));
     EXPECT_EQ(sorter.parts(), 1u);

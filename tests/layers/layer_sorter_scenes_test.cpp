@@ -8,6 +8,7 @@
 
 #include "tests/layers/made_parts.h"
 #include "tests/layers/moving_sorter.h"
+#include "tests/layers/sorter_choices.h"
 
 namespace sightline {
 namespace {
@@ -20,15 +21,14 @@ void expectSameInAllFrames(const MovingScene& scene, const std::vector<ExtentAxi
                            std::uint32_t step, bool all_arcs) {
   std::vector<MovingSorter> sorters;
   std::vector<LayerSettings> settings;
-  for (const LayerSort sort : {LayerSort::kDepthFirst, LayerSort::kIncremental}) {
-    for (const OccluderSearch search : {OccluderSearch::kScan, OccluderSearch::kTree}) {
+  for (const SortChoice sort : kSortChoices) {
+    for (const SearchChoice search : kSearchChoices) {
       LayerSettings one;
-      one.sort = sort;
-      one.search = search;
+      one.sort = sortOf(sort);
+      one.search = searchOf(search, {.rebuild_after = 20});
       one.extents = extents;
       one.all_arcs = all_arcs;
-      one.conditioning_axis = sort == LayerSort::kIncremental && search == OccluderSearch::kTree ? -1 : 2;
-      one.tree.rebuild_after = 20;
+      one.conditioning_axis = sort == SortChoice::kIncremental && search == SearchChoice::kTree ? -1 : 2;
       sorters.emplace_back(scene, one);
       settings.push_back(one);
     }

@@ -127,19 +127,21 @@ void changeSomething(MadeScene& scene, LayerSorter& sorter, Random& random) {
     sorter.reset();
   }
   if (random.below(6) == 0) {
-    sorter.rebuildTree();
+    sorter.rebuildSearch();
   }
 }
 
 TEST(LayerSorter, SaysInEveryFrameWhatAFreshOneSays) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
-    for (Way way : allWays(seed % 2 == 0)) {
+    Random common(seed);
+    const std::uint32_t pair_expiry = common.below(4), rebuild_after = common.below(3),
+                        rebuild_steps = 1 + common.below(3);
+    for (Way way : allWays(seed % 2 == 0,
+                           {.min_gain = 1, .rebuild_after = rebuild_after, .rebuild_steps = rebuild_steps})) {
       SCOPED_TRACE(way.name);
-      Random random(seed);
-      way.settings.pair_expiry = random.below(4);
-      way.settings.tree.rebuild_after = random.below(3);
-      way.settings.tree.rebuild_steps = 1 + random.below(3);
+      way.settings.pair_expiry = pair_expiry;
+      Random random = common;
       MadeScene scene = randomScene(random, 4, 5);
       LayerSorter sorter = sorterOf(scene, way.settings);
       for (int frame = 0; frame < 15; ++frame) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sightline/layers/layer_sorter.h"
+#include "tests/layers/sorter_choices.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
@@ -222,31 +223,29 @@ struct Way {
   LayerSettings settings;
 };
 
-// Both sorters with both searches and several extents.
-inline std::vector<Way> allWays(bool all_arcs) {
+// Both sorts with both searches and several extents.
+inline std::vector<Way> allWays(bool all_arcs, const ExtentTreeSettings& tree = {.min_gain = 1}) {
   std::vector<ExtentAxis> mixed = worldExtents();
   const std::vector<ExtentAxis> camera = cameraExtents();
   mixed.insert(mixed.end(), camera.begin(), camera.end());
   mixed.push_back({ExtentAxis::Kind::kAngular, ExtentAxis::Frame::kWorld, {1, 2, 0}, {0, 0, 3}});
   mixed.push_back({ExtentAxis::Kind::kSpatial, ExtentAxis::Frame::kCamera, {1, 1, 0}, {}});
   std::vector<Way> ways;
-  for (const LayerSort sort : {LayerSort::kDepthFirst, LayerSort::kIncremental}) {
-    for (const OccluderSearch search : {OccluderSearch::kScan, OccluderSearch::kTree}) {
+  for (const SortChoice sort : kSortChoices) {
+    for (const SearchChoice search : kSearchChoices) {
       for (int extents = 0; extents < 4; ++extents) {
         LayerSettings settings;
-        settings.sort = sort;
-        settings.search = search;
-        settings.tree.min_gain = 1;
+        settings.sort = sortOf(sort);
+        settings.search = searchOf(search, tree);
         settings.all_arcs = all_arcs;
         settings.extents = extents == 0   ? camera
                            : extents == 1 ? worldExtents()
                            : extents == 2 ? mixed
                                           : std::vector<ExtentAxis>{};
-        settings.conditioning_axis = extents == 0 && sort == LayerSort::kIncremental ? -1 : 2;
-        ways.push_back({(sort == LayerSort::kDepthFirst ? "depth first, " : "incremental, ") +
-                            std::string(search == OccluderSearch::kScan ? "scan" : "tree") + ", extents " +
-                            std::to_string(extents),
-                        settings});
+        settings.conditioning_axis = extents == 0 && sort == SortChoice::kIncremental ? -1 : 2;
+        ways.push_back(
+            {std::string(nameOf(sort)) + ", " + nameOf(search) + ", extents " + std::to_string(extents),
+             settings});
       }
     }
   }

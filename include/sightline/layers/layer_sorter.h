@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -30,31 +31,19 @@ struct LayerArc {
   friend auto operator<=>(const LayerArc&, const LayerArc&) = default;
 };
 
-enum class LayerSort : std::uint8_t {
-  kDepthFirst,   // strongly connected components by depth-first search, from the last frame's order
-  kIncremental,  // the paper's: reinsertion behind the furthest occluder, cycles found by marks
-};
+// What a LayerSorter sorts with and what it finds candidates with. Opaque to callers: the two interfaces
+// speak of the sorter's private tables.
+class LayerSortAlgorithm;
+class CandidateSearch;
 
-enum class OccluderSearch : std::uint8_t {
-  kAutomatic,  // the faster one: the scan, from 25 to 50,000 parts (bench/layers)
-  kScan,       // compares with many parts at a time
-  kTree,       // the paper's kd-tree of extents
-};
-
-struct ExtentTreeSettings {
-  std::uint32_t min_gain = 10;      // a node is divided where its longer child is shorter by so many parts
-  std::uint32_t rebuild_after = 0;  // frames after which a new tree is begun beside the old one; 0: never
-  double rebuild_imbalance =
-      1.5;  // or when a query visits so many times as many nodes' parts as after the build
-  std::uint32_t rebuild_steps = 32;       // nodes made a frame while a new tree is made
-  std::uint32_t tree_axes = 0xffffffffu;  // bit a: nodes may divide along axis a (all are tested in leaves)
-};
+// Factories, called once by each LayerSorter made with them. sightline/comparison/layer_sorting.h has some.
+using MakeLayerSort = std::function<std::unique_ptr<LayerSortAlgorithm>()>;
+using MakeCandidateSearch = std::function<std::unique_ptr<CandidateSearch>()>;
 
 struct LayerSettings {
-  LayerSort sort = LayerSort::kDepthFirst;
+  MakeLayerSort sort{};  // empty: strongly connected components by depth-first search
   std::vector<ExtentAxis> extents = cameraExtents();  // at most kMaxExtentAxes
-  OccluderSearch search = OccluderSearch::kAutomatic;
-  ExtentTreeSettings tree{};
+  MakeCandidateSearch search{};                       // empty: a scan that compares many parts at a time
   // After the sort, groups move to the front of others that do not occlude them and lie farther along this
   // axis of `extents` (a spatial one); none: -1. Keeps the order near what later frames need.
   int conditioning_axis = 2;
@@ -79,10 +68,9 @@ struct LayerStats {
   std::uint64_t candidates = 0;        // parts whose extents did not rule them out
   std::uint64_t pair_queries = 0;      // pairs of parts that were tested exactly
   std::uint64_t chung_steps = 0, gjk_steps = 0;
-  std::uint64_t reinsertions = 0;  // incremental sort
+  std::uint64_t reinsertions = 0;  // parts and groups put back by incrementalSort(); 0 with the default sort
   std::uint64_t conditioned = 0;   // groups that moved
   std::uint64_t known_pairs = 0;   // pairs of which something is kept
-  bool by_tree = false;            // else by scan
 };
 
 // One frame's answer; valid until the next call of update().
@@ -133,9 +121,9 @@ class LayerSorter {
   // lies between them.
   void setContainer(PartId front, PartId back);
 
-  // Builds the tree of extents anew, at once, as it does by itself in the first update that searches by tree
-  // and, spread over frames, later (ExtentTreeSettings). After update().
-  void rebuildTree();
+  // Builds what the search keeps between frames anew, at once (the tree of extentTree()); call it after
+  // update(). Does nothing with the default search.
+  void rebuildSearch();
   // Forgets the last order: the next one begins from distances, as after a cut.
   void reset();
 

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 // Let two angular intervals a, b not be across the cut: -2 <= low and high <= 2 - m, with m = 1e-5. The
@@ -48,4 +48,4 @@ void ExtentKeys::set(const ExtentTable& table) {
   }
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

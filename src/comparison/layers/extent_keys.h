@@ -7,7 +7,10 @@
 
 #include "src/layers/extents/extent_table.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
+
+using layers::ExtentTable;
+using layers::Interval;
 
 struct KeyInterval {
   std::uint32_t low = 0, high = 0xffffffffu;  // low <= high
@@ -28,4 +31,4 @@ struct ExtentKeys {
   void set(const ExtentTable& table);
 };
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -20,14 +20,14 @@
 #include <span>
 #include <vector>
 
-#include "sightline/layers/layer_sorter.h"  // ExtentTreeSettings
+#include "sightline/comparison/layer_sorting.h"
 #include "src/comparison/layers/extent_keys.h"
 #include "src/comparison/layers/leaf_overlap.h"
 #include "src/comparison/layers/min_cost.h"
 #include "src/comparison/layers/row_blocks.h"
 #include "src/layers/extents/extent_table.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 // What has been done, for tests and reports. Counts, never times.
 struct ExtentTreeWork {
@@ -157,4 +157,4 @@ class ExtentNodes {
   std::uint32_t stamp_ = 0;
 };
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

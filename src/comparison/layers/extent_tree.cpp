@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 constexpr std::uint32_t kInactive = 0xffffffffu;
@@ -135,4 +135,4 @@ void ExtentTree::query(const Extent& query, std::vector<std::uint32_t>& parts) {
   std::sort(parts.begin() + before, parts.end());
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "sightline/layers/layer_sorter.h"  // ExtentTreeSettings
+#include "sightline/comparison/layer_sorting.h"
 #include "src/comparison/layers/extent_keys.h"
 #include "src/comparison/layers/extent_nodes.h"
 #include "src/layers/extents/extent_table.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
+
+using layers::Extent;
 
 // For one thread at a time.
 class ExtentTree {
@@ -74,4 +76,4 @@ class ExtentTree {
   ExtentNodes::Query asked_;
 };
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

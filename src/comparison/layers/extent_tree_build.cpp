@@ -6,7 +6,7 @@
 
 #include "src/comparison/layers/extent_nodes.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 void ExtentNodes::begin(const ExtentTreeSettings& settings, std::uint32_t parts, std::size_t axes) {
   axes_ = axes;
@@ -200,4 +200,4 @@ void ExtentNodes::reserve() {
   reserveFor(added_, parts_);
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -7,7 +7,7 @@
 
 #include "src/comparison/layers/extent_nodes.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 std::span<const std::uint32_t> ExtentNodes::partsOfLeaf(std::uint32_t node) const {
   return {leaf_parts_.data() + node_lists_[node].first, node_lists_[node].count};
 }
@@ -80,4 +80,4 @@ std::uint64_t ExtentNodes::query(const Query& query, std::span<std::uint32_t> se
   return visited;
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

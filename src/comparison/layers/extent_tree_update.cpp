@@ -6,7 +6,7 @@
 
 #include "src/comparison/layers/extent_nodes.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 constexpr Bound kMark = 1;
@@ -262,4 +262,4 @@ void ExtentNodes::fillLeaf(const List& list, const ExtentTable& table) {
   }
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 namespace {
 
@@ -222,4 +222,4 @@ void IncrementalSort::collectMembers(std::uint32_t object, std::vector<std::uint
             [this](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; });
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

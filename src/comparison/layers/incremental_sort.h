@@ -13,11 +13,14 @@
 #include <vector>
 
 #include "src/comparison/layers/order_labels.h"
-#include "src/layers/sort/occluder_source.h"
+#include "src/layers/sort/layer_sort_algorithm.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
-class IncrementalSort {
+using layers::GroupedOrder;
+using layers::OccluderSource;
+
+class IncrementalSort final : public LayerSortAlgorithm {
  public:
   // Called with the list as it is at the start and after each step, and the output so far.
   struct Observer {
@@ -36,12 +39,12 @@ class IncrementalSort {
   // not be, and the order is right for what occludersOf() answered last. No allocation after calls as large.
   void sort(std::span<const std::uint32_t> previous, OccluderSource& source, GroupedOrder& order,
             const Observer& observer);
-  void sort(std::span<const std::uint32_t> previous, OccluderSource& source, GroupedOrder& order) {
+  void sort(std::span<const std::uint32_t> previous, OccluderSource& source, GroupedOrder& order) override {
     sort(previous, source, order, Observer{});
   }
 
   // Of the last sort: how often an object went back into the list behind its furthest occluder.
-  std::uint64_t reinsertions() const { return reinsertions_; }
+  std::uint64_t reinsertions() const override { return reinsertions_; }
   // The list from the front; for observers. Allocates.
   std::vector<Listed> list() const;
 
@@ -80,4 +83,4 @@ class IncrementalSort {
   std::vector<std::uint32_t> cycle_;   // objects
 };
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -6,7 +6,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -45,11 +45,11 @@ std::uint32_t overlapBitsOf(const OverlapTests& tests, const float* bounds, std:
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sightline::layers
+}  // namespace sightline::comparison
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 HWY_EXPORT(overlapBitsOf);
@@ -61,5 +61,5 @@ std::uint32_t overlapBits(const OverlapTests& tests, const float* bounds, std::u
   return HWY_DYNAMIC_DISPATCH(overlapBitsOf)(tests, bounds, rows, count);
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison
 #endif

@@ -7,7 +7,9 @@
 
 #include "src/layers/extents/extent_table.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
+
+using layers::Interval;
 
 // A part must overlap, along each axis, one of the tests. Spatial: the interval itself; angular: that, a turn
 // on and a turn back, as in overlapsAngular().
@@ -26,4 +28,4 @@ struct OverlapTests {
 std::uint32_t overlapBits(const OverlapTests& tests, const float* bounds, std::uint32_t rows,
                           std::uint32_t count);
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

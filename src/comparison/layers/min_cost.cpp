@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 constexpr Bound kMarkAndPart = 0xffffffffu;
@@ -59,4 +59,4 @@ Division minCost(std::span<const Bound> lows, std::span<const Bound> highs) {
   return best;
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

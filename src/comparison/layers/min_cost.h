@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 // A bound of an interval: bits 63..32 a key that orders as the bound's value does (see extent_keys.h), bits
 // 31..1 the part, bit 0 a mark of the list's owner. Lists are ascending.
@@ -48,4 +48,4 @@ struct Division {
 // ascending; low <= high for each interval. No interval: all zero.
 Division minCost(std::span<const Bound> lows, std::span<const Bound> highs);
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

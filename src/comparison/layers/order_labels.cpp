@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 namespace {
 
@@ -83,4 +83,4 @@ void OrderLabels::spread(std::uint32_t place) {
   }
 }
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 // A doubly linked list of numbers, each at most once. Removing and comparing take constant time, inserting
 // takes O(log n) amortised. No allocation in a list that was assigned as many numbers before.
@@ -45,4 +45,4 @@ class OrderLabels {
   std::uint64_t step_ = 1;  // between labels of a fresh list
 };
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 
 class RowBlocks {
  public:
@@ -61,4 +61,4 @@ class RowBlocks {
   std::vector<std::uint32_t> next_;       // at each block's beginning: the next free one
 };
 
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

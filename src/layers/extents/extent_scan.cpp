@@ -162,7 +162,7 @@ std::uint32_t spread(std::uint32_t cell) {
 
 }  // namespace
 
-void ExtentScan::begin(const ExtentTable& table, std::span<const std::uint32_t> order) {
+void ExtentScan::beginFrame(const ExtentTable& table, std::span<const std::uint32_t> order) {
   table_ = &table;
   measure(order);
   cluster(order);

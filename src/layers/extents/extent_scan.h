@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "src/layers/extents/candidate_search.h"
 #include "src/layers/extents/extent_table.h"
 
 namespace sightline::layers {
@@ -43,14 +44,14 @@ struct ScanRows {
   std::size_t axes() const { return kinds.size(); }
 };
 
-class ExtentScan {
+class ExtentScan final : public CandidateSearch {
  public:
   // The parts in `order`, each of the table's at most once, are active; others are never found. The table
   // must stay as it is until the next call.
-  void begin(const ExtentTable& table, std::span<const std::uint32_t> order);
-  void setActive(std::uint32_t part, bool active);
+  void beginFrame(const ExtentTable& table, std::span<const std::uint32_t> order) override;
+  void setActive(std::uint32_t part, bool active) override;
   // Appends the active parts that overlap, ascending.
-  void query(const Extent& query, std::vector<std::uint32_t>& parts);
+  void query(const Extent& query, std::vector<std::uint32_t>& parts) override;
 
   // For tests: blocks of ScanRows::kFanOut rows that all queries so far have compared.
   std::uint64_t blocksCompared() const { return blocks_compared_; }

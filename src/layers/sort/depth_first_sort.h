@@ -8,17 +8,17 @@
 #include <span>
 #include <vector>
 
-#include "src/layers/sort/occluder_source.h"
+#include "src/layers/sort/layer_sort_algorithm.h"
 
 namespace sightline::layers {
 
-class DepthFirstSort {
+class DepthFirstSort final : public LayerSortAlgorithm {
  public:
   // previous: every part that is to be sorted, each once; the result stays near this order. The source
   // answers with these parts alone; each is asked about once, while all that are not in the output are
   // active; afterwards none is. Parts of a group are in the previous order. No allocation after calls as
   // large.
-  void sort(std::span<const std::uint32_t> previous, OccluderSource& source, GroupedOrder& order);
+  void sort(std::span<const std::uint32_t> previous, OccluderSource& source, GroupedOrder& order) override;
 
  private:
   struct Visit {

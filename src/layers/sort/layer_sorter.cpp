@@ -9,13 +9,14 @@
 #include <cmath>
 #include <utility>
 
-#include "src/comparison/layers/incremental_sort.h"
+#include "src/layers/extents/extent_scan.h"
 #include "src/layers/extents/part_extents.h"
 #include "src/layers/pairs/pair_rules.h"
 #include "src/layers/pairs/part_occlusion.h"
 #include "src/layers/pairs/part_store.h"
 #include "src/layers/sort/conditioning_sort.h"
 #include "src/layers/sort/depth_first_sort.h"
+#include "src/layers/sort/layer_sort_algorithm.h"
 #include "src/layers/sort/layer_source.h"
 
 namespace sightline {
@@ -51,13 +52,22 @@ View scaled(const View& view) {
   return result;
 }
 
+std::unique_ptr<LayerSortAlgorithm> sortOf(const LayerSettings& settings) {
+  return settings.sort ? settings.sort() : std::make_unique<DepthFirstSort>();
+}
+
+std::unique_ptr<CandidateSearch> searchOf(const LayerSettings& settings) {
+  return settings.search ? settings.search() : std::make_unique<ExtentScan>();
+}
+
 }  // namespace
 
 struct LayerSorter::Impl {
   explicit Impl(LayerSettings given)
       : settings(checked(std::move(given))),
         extents(settings.extents),
-        source(settings, extents, occlusion) {}
+        source(searchOf(settings), settings.exact, extents, occlusion),
+        sort_algorithm(sortOf(settings)) {}
 
   bool isFinite(std::uint32_t part) const;
   bool areParts(PartId first, PartId second) const;
@@ -78,8 +88,7 @@ struct LayerSorter::Impl {
   PartExtents extents;
   PartOcclusion occlusion;
   LayerSource source;
-  DepthFirstSort depth_first;
-  IncrementalSort incremental;
+  std::unique_ptr<LayerSortAlgorithm> sort_algorithm;
   ConditioningSort conditioning;
 
   std::vector<std::uint32_t> previous;  // parts to be sorted, in the last frame's order
@@ -190,8 +199,8 @@ void LayerSorter::setContainer(PartId front, PartId back) {
   }
 }
 
-void LayerSorter::rebuildTree() {
-  impl_->source.rebuildTree();
+void LayerSorter::rebuildSearch() {
+  impl_->source.rebuildSearch();
 }
 
 void LayerSorter::reset() {
@@ -243,11 +252,7 @@ void LayerSorter::Impl::place(const View& view) {
 
 void LayerSorter::Impl::sort() {
   source.beginFrame(previous);
-  if (settings.sort == LayerSort::kDepthFirst) {
-    depth_first.sort(previous, source, order);
-  } else {
-    incremental.sort(previous, source, order);
-  }
+  sort_algorithm->sort(previous, source, order);
 }
 
 // By the mean of its parts' distances from the eye along the axis.
@@ -330,10 +335,9 @@ LayerStats LayerSorter::Impl::stats() const {
           .pair_queries = occlusion.pairQueries(),
           .chung_steps = counts.chung_steps,
           .gjk_steps = counts.gjk_steps,
-          .reinsertions = settings.sort == LayerSort::kIncremental ? incremental.reinsertions() : 0,
+          .reinsertions = sort_algorithm->reinsertions(),
           .conditioned = conditioned,
-          .known_pairs = occlusion.knownPairs(),
-          .by_tree = source.byTree()};
+          .known_pairs = occlusion.knownPairs()};
 }
 
 const LayerOrder& LayerSorter::update(const View& given) {

@@ -1,45 +1,20 @@
 #include "src/layers/sort/layer_source.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sightline::layers {
-LayerSource::LayerSource(const LayerSettings& settings, const PartExtents& extents, PartOcclusion& occlusion)
-    : search_(settings.search),
-      exact_(settings.exact),
-      extents_(extents),
-      occlusion_(occlusion),
-      tree_(settings.tree) {}
+LayerSource::LayerSource(std::unique_ptr<CandidateSearch> search, bool exact, const PartExtents& extents,
+                         PartOcclusion& occlusion)
+    : search_(std::move(search)), exact_(exact), extents_(extents), occlusion_(occlusion) {}
 
 void LayerSource::beginFrame(std::span<const std::uint32_t> sorted) {
-  const ExtentTable& table = extents_.table();
-  by_tree_ = search_ == OccluderSearch::kTree;
-  if (by_tree_) {
-    tree_.update(table);
-    deactivateOthers(sorted);
-  } else {
-    scan_.begin(table, sorted);
-  }
+  search_->beginFrame(extents_.table(), sorted);
   queries_ = candidates_ = 0;
 }
 
-void LayerSource::deactivateOthers(std::span<const std::uint32_t> sorted) {
-  const std::size_t parts = extents_.table().parts;
-  if (sorted.size() == parts) {
-    return;
-  }
-  listed_.assign(parts, 0);
-  for (const std::uint32_t part : sorted) {
-    listed_[part] = 1;
-  }
-  for (std::uint32_t part = 0; part < parts; ++part) {
-    if (listed_[part] == 0) {
-      tree_.setActive(part, false);
-    }
-  }
-}
-
 void LayerSource::setActive(std::uint32_t part, bool active) {
-  by_tree_ ? tree_.setActive(part, active) : scan_.setActive(part, active);
+  search_->setActive(part, active);
 }
 
 bool LayerSource::mayOcclude(std::uint32_t front, std::uint32_t back) const {
@@ -62,7 +37,7 @@ bool LayerSource::occludesOneOf(std::uint32_t front, std::span<const std::uint32
 void LayerSource::occludersOf(std::span<const std::uint32_t> members, std::vector<std::uint32_t>& occluders) {
   const Extent query = members.size() == 1 ? extents_.query(members[0]) : extents_.query(members);
   found_.clear();
-  by_tree_ ? tree_.query(query, found_) : scan_.query(query, found_);
+  search_->query(query, found_);
   ++queries_;
   for (const std::uint32_t part : found_) {
     if (std::find(members.begin(), members.end(), part) != members.end()) {

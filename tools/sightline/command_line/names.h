@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "sightline/layers/compositing.h"
-#include "sightline/layers/layer_sorter.h"
 
 namespace sightline::tool {
 
@@ -20,15 +19,6 @@ struct Name {
   T value;
 };
 
-inline constexpr std::array<Name<LayerSort>, 2> kLayerSorts{{
-    {"depth-first", LayerSort::kDepthFirst},
-    {"incremental", LayerSort::kIncremental},
-}};
-inline constexpr std::array<Name<OccluderSearch>, 3> kOccluderSearches{{
-    {"automatic", OccluderSearch::kAutomatic},
-    {"scan", OccluderSearch::kScan},
-    {"tree", OccluderSearch::kTree},
-}};
 inline constexpr std::array<Name<CompositingForm>, 3> kCompositingForms{{
     {"sum-of-outs", CompositingForm::kSumOfOuts},
     {"over-atop", CompositingForm::kOverAtop},

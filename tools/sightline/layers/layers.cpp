@@ -4,9 +4,11 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 
+#include "sightline/comparison/layer_sorting.h"
 #include "sightline/layers/compositing.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
@@ -28,7 +30,7 @@ struct LayersOptions {
   SceneOptions common;
   PathOptions path;
   LayerPlaces places;
-  std::string sort = "depth-first", search = "automatic", extents = "camera", arcs = "groups",
+  std::string sort = "depth-first", search = "scan", extents = "camera", arcs = "groups",
               expression = "cheapest", conditioning = "on", exact = "on", tints = "on";
   bool no_times = false;
   PictureOptions size;
@@ -37,6 +39,16 @@ struct LayersOptions {
   LayerLensOptions lens;
   LayerDrawingOptions drawings;
 };
+
+// What --sort and --search choose.
+constexpr std::array<Name<MakeLayerSort (*)()>, 2> kSorts{{
+    {"depth-first", [] { return MakeLayerSort(); }},
+    {"incremental", incrementalSort},
+}};
+constexpr std::array<Name<MakeCandidateSearch (*)()>, 2> kSearches{{
+    {"scan", [] { return MakeCandidateSearch(); }},
+    {"tree", [] { return extentTree(); }},
+}};
 
 using FrameMakers = std::vector<std::unique_ptr<FrameMaker>>;
 
@@ -67,8 +79,8 @@ Json orderJson(const LayerOrder& order) {
 
 LayerSettings settingsOf(const LayersOptions& options) {
   LayerSettings settings;
-  settings.sort = valueOf(kLayerSorts, options.sort);
-  settings.search = valueOf(kOccluderSearches, options.search);
+  settings.sort = valueOf(kSorts, options.sort)();
+  settings.search = valueOf(kSearches, options.search)();
   settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
   settings.exact = valueOf(kSwitch, options.exact);
   settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
@@ -102,7 +114,7 @@ Json programJson(const CompositingProgram& program) {
 }
 
 Json frameJson(std::uint32_t frame, const LayerOrder& order, const FrameLayers& layers,
-               const CompositingProgram& program, double sort_us) {
+               const CompositingProgram& program, double sort_us, const std::string& search) {
   const LayerStats& stats = order.stats;
   return {{"frame", frame},
           {"order", orderJson(order)},
@@ -115,7 +127,7 @@ Json frameJson(std::uint32_t frame, const LayerOrder& order, const FrameLayers& 
           {"candidates", stats.candidates},
           {"pair_queries", stats.pair_queries},
           {"reinsertions", stats.reinsertions},
-          {"search", stats.by_tree ? "tree" : "scan"}};
+          {"search", search}};
 }
 
 void print(const LayerTotals& totals, std::size_t parts) {
@@ -182,7 +194,7 @@ class WalkSorter {
                 static_cast<double>(countSteps(program.steps).operations()), sort_us);
     Json json;
     if (!options_.common.json.empty()) {
-      json = frameJson(frame, order, layers, program, sort_us);
+      json = frameJson(frame, order, layers, program, sort_us, options_.search);
     }
     if (!makers_.empty()) {
       placements(input_.moving, frame, scene_from_stored_);
@@ -340,9 +352,9 @@ void addLayers(CLI::App& app, Command& chosen) {
                              const char* help) {
     command->add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
   };
-  addChoice("--sort", options->sort, textsOf(kLayerSorts),
+  addChoice("--sort", options->sort, textsOf(kSorts),
             "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
-  addChoice("--search", options->search, textsOf(kOccluderSearches), "how candidates are found");
+  addChoice("--search", options->search, textsOf(kSearches), "how candidates are found");
   addChoice("--extents", options->extents, {"camera", "world"},
             "two angles and depth of the camera, or x, y, z of the world");
   addChoice("--arcs", options->arcs, {"groups", "all"}, "who occludes whom: within groups, or of all pairs");

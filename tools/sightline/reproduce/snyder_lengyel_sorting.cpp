@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "sightline/comparison/layer_sorting.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/reproduce/snyder_lengyel.h"
@@ -147,8 +148,7 @@ class SortingExperiments {
         const std::string scaling = density ? "ud" : "us";
         const std::size_t column = density ? 0 : 2;
         const LayerTotals own = sortAll(toothpicks(paper.at, density), {});
-        const LayerTotals incremental =
-            sortAll(toothpicks(paper.at, density), {.sort = LayerSort::kIncremental});
+        const LayerTotals incremental = sortAll(toothpicks(paper.at, density), {.sort = incrementalSort()});
         row[scaling + "_mean"] = own.mean(&Frame::sort_us);
         row[scaling + "_max"] = own.largest(&Frame::sort_us);
         row[scaling + "_ivs"] = incremental.mean(&Frame::sort_us);
@@ -194,14 +194,14 @@ class SortingExperiments {
   // The least of some builds.
   double buildTime(const ToothpickOptions& options) {
     const MovingScene scene = makeToothpicks(options);
-    LayerSorter sorter = makeSorter(scene, {.search = OccluderSearch::kTree});
+    LayerSorter sorter = makeSorter(scene, {.search = extentTree()});
     std::vector<Mat4> poses;
     pose(scene, 0, poses, sorter);
     sorter.update(scene.scene.paths.front().view(0, scene.scene.origin));
     double least = 1e300;
     for (int i = 0; i < 5; ++i) {
       Stopwatch watch;
-      sorter.rebuildTree();
+      sorter.rebuildSearch();
       least = std::min(least, watch.lap());
     }
     return least;
@@ -224,8 +224,7 @@ class SortingExperiments {
               .series = {{"depth-first"}, {"incremental"}}};
     for (const PaperRow& paper : kVelocities) {
       const LayerTotals own = sortAll(toothpicks(200, false, paper.at), {});
-      const LayerTotals incremental =
-          sortAll(toothpicks(200, false, paper.at), {.sort = LayerSort::kIncremental});
+      const LayerTotals incremental = sortAll(toothpicks(200, false, paper.at), {.sort = incrementalSort()});
       table.rows.push_back({{"velocity", paper.at},
                             {"mean", own.mean(&Frame::sort_us)},
                             {"max", own.largest(&Frame::sort_us)},
@@ -265,8 +264,8 @@ class SortingExperiments {
                          {"same size, k = 3"},
                          {"same size, k = 1"}},
               .log_y = true};
-    LayerSettings three{.search = OccluderSearch::kTree}, one = three;
-    one.tree.tree_axes = 1u << 2;
+    LayerSettings three{.search = extentTree()};
+    LayerSettings one{.search = extentTree({.tree_axes = 1u << 2})};
     ProgressBar progress("directions");
     for (std::size_t i = 0; i < kDirections.size(); ++i) {
       const PaperRow& paper = kDirections[i];

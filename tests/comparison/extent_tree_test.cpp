@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "src/comparison/layers/extent_tree.h"
-#include "tests/layers/made_extents.h"
+#include "tests/comparison/made_extents.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 using namespace made;
@@ -201,4 +201,4 @@ TEST(ExtentTree, DoesNotCopyPartsWithoutEnd) {
 }
 
 }  // namespace
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "src/comparison/layers/extent_tree.h"
-#include "tests/layers/made_extents.h"
+#include "tests/comparison/made_extents.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 using namespace made;
@@ -142,4 +142,4 @@ TEST(ExtentTree, SortsOutrightWhenAllPartsJump) {
 }
 
 }  // namespace
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

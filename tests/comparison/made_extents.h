@@ -11,7 +11,9 @@
 
 #include "src/comparison/layers/extent_tree.h"
 
-namespace sightline::layers::made {
+namespace sightline::comparison::made {
+
+using namespace layers;
 
 inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
 using Random = std::mt19937;
@@ -227,4 +229,4 @@ inline void expectAnswers(ExtentTree& tree, const ExtentTable& table, const Case
   expectSound(tree, active);
 }
 
-}  // namespace sightline::layers::made
+}  // namespace sightline::comparison::made

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 using Numbers = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // low, high of each part
@@ -146,4 +146,4 @@ TEST(MinCost, IsTheLeastOfAllUpperBoundsOfRandomIntervals) {
 }
 
 }  // namespace
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

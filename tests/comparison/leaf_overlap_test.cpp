@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "tests/layers/made_extents.h"
+#include "tests/comparison/made_extents.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
 
 using namespace made;
@@ -56,4 +56,4 @@ TEST(LeafOverlap, IsThatOfThePairsOnEveryInstructionSet) {
 }
 
 }  // namespace
-}  // namespace sightline::layers
+}  // namespace sightline::comparison

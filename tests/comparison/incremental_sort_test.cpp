@@ -10,8 +10,10 @@
 #include "src/layers/sort/depth_first_sort.h"
 #include "tests/layers/graph_source.h"
 
-namespace sightline::layers {
+namespace sightline::comparison {
 namespace {
+
+using namespace layers;
 
 // A line of the paper's tables: the list and the output, parts named from A.
 struct Trace {
@@ -350,4 +352,4 @@ TEST(OrderLabels, KeepTheOrderOfAPlainListUnderInsertionsAnywhere) {
 }
 
 }  // namespace
-}  // namespace sightline::layers
+}  // namespace sightline::comparison
