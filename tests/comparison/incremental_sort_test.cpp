@@ -80,7 +80,7 @@ TEST(IncrementalSort, TakesTheStepsOfFigure8) {
 }
 
 // Followed by hand through Figures 4 and 5. The caption of Figure 5 names this graph and list.
-TEST(IncrementalSort, ACircleBehindAPartThatNothingOccludesIsGrouped) {
+TEST(IncrementalSort, ACycleBehindAPartThatNothingOccludesIsGrouped) {
   GraphSource graph(3);
   graph.add(0, 1);
   graph.add(1, 0);
@@ -90,7 +90,7 @@ TEST(IncrementalSort, ACircleBehindAPartThatNothingOccludesIsGrouped) {
 
 // A is occluded by the circle of B and C. When it is first, the path leaves it and the circle found is not
 // its own: A must stay in the list, behind the group.
-TEST(IncrementalSort, APartThatLeadsToACircleWithoutBeingInItStays) {
+TEST(IncrementalSort, APartThatLeadsToACycleWithoutBeingInItStays) {
   GraphSource graph(3);
   graph.add(1, 2);
   graph.add(2, 1);
@@ -163,7 +163,7 @@ TEST(IncrementalSort, HaltsOnAHundredThousandSmallGraphs) {
   }
 }
 
-TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCirclesAreSortedFromAnyOrder) {
+TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCyclesAreSortedFromAnyOrder) {
   IncrementalSort sorter;
   const std::uint32_t parts = 40;
   GraphSource complete(parts);
@@ -193,7 +193,7 @@ TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCirclesAreSortedFromAnyO
   }
 }
 
-TEST(IncrementalSort, AValidOrderOfAGraphWithoutCirclesNeedsNoReinsertion) {
+TEST(IncrementalSort, AValidOrderOfAGraphWithoutCyclesNeedsNoReinsertion) {
   IncrementalSort sorter;
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE(seed);

@@ -97,7 +97,7 @@ TEST(LayerMerger, KeepsSinglePartsAsLayersInTheirOrder) {
   EXPECT_TRUE(frame.occlusions.empty());
 }
 
-TEST(LayerMerger, KeepsACircleOfThreeApart) {
+TEST(LayerMerger, KeepsACycleOfThreeApart) {
   OwnedOrder order;
   order.addGroup({4, 1, 9});
   order.addArcs({{4, 1}, {1, 9}, {9, 4}});

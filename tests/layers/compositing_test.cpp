@@ -104,7 +104,7 @@ Scene randomScene(std::mt19937& random) {
 }
 
 // Layers that may cover one pixel, front to back: within a group, each two occlude one way, and not in a
-// circle.
+// cycle.
 std::vector<std::size_t> randomCover(const Scene& scene, std::mt19937& random) {
   std::vector<std::size_t> candidates(scene.layers());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -197,7 +197,7 @@ TEST(CompositingProgram, OfAnyGraphWithoutPairsShowsWhatTheSortedFragmentsShow) 
   EXPECT_GE(deepest, 6u);  // else the pixels test little
 }
 
-TEST(CompositingProgram, OfACircleWithinWhatIsLeftIsRight) {
+TEST(CompositingProgram, OfACycleWithinWhatIsLeftIsRight) {
   // Two rings that share layer 0, and a third beside: without 0 there is one ring less, not two.
   Scene scene({8});
   scene.addRing(0, 3);
@@ -314,7 +314,7 @@ struct PlainCost {
                  [&](std::size_t other) { return scene.occludes[other][layer]; });
     return result;
   }
-  std::vector<Layers> circlesOf(Layers layers) const {
+  std::vector<Layers> cyclesOf(Layers layers) const {
     auto reaches = scene.occludes;
     for (const std::size_t via : layers) {
       for (const std::size_t a : layers) {
@@ -323,41 +323,41 @@ struct PlainCost {
         }
       }
     }
-    std::vector<Layers> circles;
+    std::vector<Layers> cycles;
     while (!layers.empty()) {
       const std::size_t first = layers[0];
-      Layers circle{first};
-      std::copy_if(layers.begin() + 1, layers.end(), std::back_inserter(circle),
+      Layers cycle{first};
+      std::copy_if(layers.begin() + 1, layers.end(), std::back_inserter(cycle),
                    [&](std::size_t other) { return reaches[first][other] && reaches[other][first]; });
       std::erase_if(layers, [&](std::size_t other) {
-        return std::find(circle.begin(), circle.end(), other) != circle.end();
+        return std::find(cycle.begin(), cycle.end(), other) != cycle.end();
       });
-      circles.push_back(circle);
+      cycles.push_back(cycle);
     }
-    return circles;
+    return cycles;
   }
-  // Operations, with one "over" for each circle.
+  // Operations, with one "over" for each cycle.
   std::size_t of(const Layers& layers) const {
     std::size_t total = 0;
-    for (const Layers& circle : circlesOf(layers)) {
-      total += circle.size() == 1 ? 1 : ofCircle(circle);
+    for (const Layers& cycle : cyclesOf(layers)) {
+      total += cycle.size() == 1 ? 1 : ofCycle(cycle);
     }
     return total;
   }
-  std::size_t ofCircle(const Layers& circle) const {
-    const std::size_t sum = arcsAmong(circle) + circle.size() - 1 + 1;
+  std::size_t ofCycle(const Layers& cycle) const {
+    const std::size_t sum = arcsAmong(cycle) + cycle.size() - 1 + 1;
     if (form == kSumOfOuts) {
       return sum;
     }
     const auto rank = [&](std::size_t layer) {
-      const auto occluded = std::count_if(circle.begin(), circle.end(),
-                                          [&](std::size_t b) { return scene.occludes[layer][b]; });
-      return std::pair(occludersOf(layer, circle).size(), -occluded);
+      const auto occluded =
+          std::count_if(cycle.begin(), cycle.end(), [&](std::size_t b) { return scene.occludes[layer][b]; });
+      return std::pair(occludersOf(layer, cycle).size(), -occluded);
     };
     const std::size_t out = *std::min_element(
-        circle.begin(), circle.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
-    const Layers around = occludersOf(out, circle);
-    Layers rest = circle;
+        cycle.begin(), cycle.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+    const Layers around = occludersOf(out, cycle);
+    Layers rest = cycle;
     std::erase(rest, out);
     const std::size_t in = around.size(), outs = around.size() + arcsAmong(around), adds = around.size();
     const std::size_t atop = in + outs + adds + 1 + of(rest);
@@ -382,7 +382,7 @@ TEST(CompositingProgram, TakesAsManyOperationsAsThePlainRecursion) {
     PlainCost::Layers all(scene.layers());
     std::iota(all.begin(), all.end(), std::size_t{0});
     for (const CompositingForm form : kForms) {
-      // Groups are apart from each other: circles never reach over two. The first step is no "over".
+      // Groups are apart from each other: cycles never reach over two. The first step is no "over".
       const std::size_t expected = PlainCost{scene, form}.of(all) - 1;
       ASSERT_EQ(countSteps(compiler.compile(scene.frame, form).steps).operations(), expected);
     }

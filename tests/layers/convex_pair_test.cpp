@@ -14,7 +14,7 @@
 
 namespace sightline::layers {
 
-std::ostream& operator<<(std::ostream& out, Meeting m) {
+std::ostream& operator<<(std::ostream& out, Intersection m) {
   return out << std::array{"apart", "meet", "undecided"}[static_cast<std::size_t>(m)];
 }
 
@@ -32,13 +32,13 @@ ConvexHull hullOf(const Points& points) {
   return hull ? *hull : ConvexHull();
 }
 
-Meeting ask(const ConvexSet& first, const ConvexSet& second) {
+Intersection ask(const ConvexSet& first, const ConvexSet& second) {
   PairWitness witness;
   PairCounts counts;
-  return meeting(first, second, witness, counts);
+  return testIntersection(first, second, witness, counts);
 }
 
-Meeting ask(const Points& first, const Points& second) {
+Intersection ask(const Points& first, const Points& second) {
   const ConvexHull a = hullOf(first), b = hullOf(second);
   return ask(ConvexSet{&a}, ConvexSet{&b});
 }
@@ -64,16 +64,16 @@ Points worldPoints(const ConvexSet& set, const Points& points) {
 void expectExact(const ConvexSet& first, const Points& first_points, const ConvexSet& second,
                  const Points& second_points) {
   const bool meet =
-      test::convexHullsMeet(worldPoints(first, first_points), worldPoints(second, second_points));
+      test::convexHullsIntersect(worldPoints(first, first_points), worldPoints(second, second_points));
   PairWitness there, back;
   PairCounts counts;
   for (int i = 0; i < 2; ++i) {
-    for (const Meeting answer :
-         {meeting(first, second, there, counts), meeting(second, first, back, counts)}) {
+    for (const Intersection answer :
+         {testIntersection(first, second, there, counts), testIntersection(second, first, back, counts)}) {
       if (meet) {
-        EXPECT_NE(answer, Meeting::kApart);
+        EXPECT_NE(answer, Intersection::kDisjoint);
       } else {
-        EXPECT_EQ(answer, Meeting::kApart);
+        EXPECT_EQ(answer, Intersection::kDisjoint);
       }
     }
   }
@@ -116,7 +116,7 @@ TEST(ConvexPair, AgreesWithExactArithmeticAboutSmallWholeNumbers) {
     const WholePair pair(random, kKinds[seed % 3]);
     const ConvexSet &first = pair.first, &second = pair.second;
     expectExact(first, pair.a, second, pair.b);
-    ++seen[ask(first, second) == Meeting::kApart ? 1 : 0];
+    ++seen[ask(first, second) == Intersection::kDisjoint ? 1 : 0];
   }
   EXPECT_GT(seen[0], 400);
   EXPECT_GT(seen[1], 400);
@@ -228,19 +228,19 @@ TEST(ConvexPair, WhatTouchesIsNotApartAndWhatIsOffByATenBillionthOfTheSizeIs) {
   Random random(11);
   for (const Touch& touch : touches()) {
     SCOPED_TRACE(touch.name);
-    EXPECT_NE(ask(touch.first, touch.second), Meeting::kApart);
-    EXPECT_NE(ask(touch.second, touch.first), Meeting::kApart);
+    EXPECT_NE(ask(touch.first, touch.second), Intersection::kDisjoint);
+    EXPECT_NE(ask(touch.second, touch.first), Intersection::kDisjoint);
     const double size = std::max({sizeOf(touch.first), sizeOf(touch.second), 1.0});
     const Vec3d off = normalized(touch.off) * (1e-10 * size);
-    EXPECT_EQ(ask(touch.first, shapes::moved(touch.second, off)), Meeting::kApart);
+    EXPECT_EQ(ask(touch.first, shapes::moved(touch.second, off)), Intersection::kDisjoint);
     const ConvexHull a = hullOf(touch.first), b = hullOf(touch.second);
     for (int i = 0; i < 20; ++i) {
       const shapes::Axes axes = shapes::randomAxes(random);
       const ConvexSet first{&a, {axes.x, axes.y, axes.z, {}}};
       ConvexSet second{&b, {axes.x, axes.y, axes.z, {}}};
-      EXPECT_NE(ask(first, second), Meeting::kApart);
+      EXPECT_NE(ask(first, second), Intersection::kDisjoint);
       second.placement.origin = axes.turn(off);
-      EXPECT_EQ(ask(first, second), Meeting::kApart);
+      EXPECT_EQ(ask(first, second), Intersection::kDisjoint);
     }
   }
 }
@@ -284,7 +284,7 @@ TEST(ConvexPair, SetsAreFoundApartThatAreApartByATenBillionthOfTheirSize) {
     ConvexSet second{&hull_b, {}, kKinds[seed % 3], axes.turn(beyond)};
     second.eye_or_sweep += second.kind == Kind::kWithEye ? axes.turn(up) : Vec3d();
     if (missed < up.z) {
-      EXPECT_EQ(ask(ConvexSet{&hull_a}, second), Meeting::kApart);
+      EXPECT_EQ(ask(ConvexSet{&hull_a}, second), Intersection::kDisjoint);
       ++asked;
     }
   }
@@ -300,7 +300,8 @@ TEST(ConvexPair, DeepOverlapIsFoundToMeetNotLeftUndecided) {
     // Both hold a ball around their centres: of the least semi-axis, 0.01 and 1, less a bit.
     const Vec3d apart = random.direction() * (seed % 2 == 0 ? 0.015 : 1.5) * random.number(0, 1);
     const shapes::Axes axes = shapes::randomAxes(random);
-    EXPECT_EQ(ask(ConvexSet{&hull}, ConvexSet{&hull, {axes.x, axes.y, axes.z, apart}}), Meeting::kMeet);
+    EXPECT_EQ(ask(ConvexSet{&hull}, ConvexSet{&hull, {axes.x, axes.y, axes.z, apart}}),
+              Intersection::kIntersecting);
   }
 }
 
@@ -337,12 +338,12 @@ TEST(ConvexPair, WhatIsKnownDoesNotChangeDecidedAnswers) {
     Mover b = randomMover(random, hulls[random.below(4)], kKinds[seed % 3]);
     PairWitness witness;
     PairCounts counts;
-    Meeting last = Meeting::kUndecided;
+    Intersection last = Intersection::kUndecided;
     for (int frame = 0; frame < 60; ++frame, a.step(), b.step()) {
       SCOPED_TRACE(testing::Message() << "seed " << seed << " frame " << frame);
-      const Meeting warm = meeting(a.set, b.set, witness, counts);
-      const Meeting cold = ask(a.set, b.set);
-      if (warm != Meeting::kUndecided && cold != Meeting::kUndecided) {
+      const Intersection warm = testIntersection(a.set, b.set, witness, counts);
+      const Intersection cold = ask(a.set, b.set);
+      if (warm != Intersection::kUndecided && cold != Intersection::kUndecided) {
         EXPECT_EQ(warm, cold);
         ++decided;
       }
@@ -362,7 +363,7 @@ TEST(ConvexPair, StrangeWitnessesDoNoHarm) {
     const WholePair pair(random, kKinds[seed % 3]);
     const ConvexSet &first = pair.first, &second = pair.second;
     PairWitness witness;
-    witness.apart = random.below(2) == 0;
+    witness.disjoint = random.below(2) == 0;
     witness.pairs = static_cast<std::uint8_t>(random.below(256));
     const std::array<Vec3d, 5> directions{
         {{std::nan(""), 0, 0}, {inf, -inf, 1}, {0, 0, 0}, {1e-310, 0, 0}, {1e200, 3, -1e200}}};
@@ -373,8 +374,8 @@ TEST(ConvexPair, StrangeWitnessesDoNoHarm) {
           random.below(4) == 0 ? PairWitness::kEye : static_cast<std::uint32_t>(random.bits());
     }
     PairCounts counts;
-    const Meeting answer = meeting(first, second, witness, counts);
-    EXPECT_EQ(answer == Meeting::kApart, ask(first, second) == Meeting::kApart);
+    const Intersection answer = testIntersection(first, second, witness, counts);
+    EXPECT_EQ(answer == Intersection::kDisjoint, ask(first, second) == Intersection::kDisjoint);
     EXPECT_TRUE(isFinite(witness.direction));
     EXPECT_LE(witness.pairs, 4);
   }
@@ -391,14 +392,14 @@ TEST(ConvexPair, AskedAgainAPairCostsOneSupportIfApartAndNoneIfItMeets) {
     b.set.placement.origin = a.set.placement.origin + random.direction() * random.number(0.0, 0.2);
     PairWitness witness;
     PairCounts counts;
-    const Meeting answer = meeting(a.set, b.set, witness, counts);
-    ASSERT_NE(answer, Meeting::kUndecided);
+    const Intersection answer = testIntersection(a.set, b.set, witness, counts);
+    ASSERT_NE(answer, Intersection::kUndecided);
     counts = {};
-    EXPECT_EQ(meeting(a.set, b.set, witness, counts), answer);
+    EXPECT_EQ(testIntersection(a.set, b.set, witness, counts), answer);
     EXPECT_EQ(counts.questions, 1u);
-    EXPECT_EQ(counts.chung_steps, answer == Meeting::kApart ? 1u : 0u);
+    EXPECT_EQ(counts.chung_steps, answer == Intersection::kDisjoint ? 1u : 0u);
     EXPECT_EQ(counts.gjk_steps, 0u);
-    ++seen[answer == Meeting::kApart ? 1 : 0];
+    ++seen[answer == Intersection::kDisjoint ? 1 : 0];
   }
   EXPECT_GT(seen[0], 50);
   EXPECT_GT(seen[1], 50);
@@ -409,7 +410,7 @@ TEST(ConvexPair, AnEyeInsideOrOnAHullMeetsIt) {
   const ConvexHull away = hullOf(shapes::cube({9, 9, 9}));
   for (const Vec3d& eye :
        {Vec3d{0, 0, 0}, Vec3d{0.5, -0.25, 0.125}, Vec3d{-1, 0, 0}, Vec3d{-1, -1, 0.5}, Vec3d{-1, -1, -1}}) {
-    EXPECT_NE(ask(ConvexSet{&occluder}, ConvexSet{&away, {}, Kind::kWithEye, eye}), Meeting::kApart);
+    EXPECT_NE(ask(ConvexSet{&occluder}, ConvexSet{&away, {}, Kind::kWithEye, eye}), Intersection::kDisjoint);
   }
 }
 
@@ -419,7 +420,7 @@ TEST(ConvexPair, NumbersThatOverflowOrUnderflowDoNotMakeTheSameSetsApart) {
     const Placement placement{{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {scale, 0, scale}};
     for (const Kind kind : kKinds) {
       const ConvexSet second{&cube, placement, kind, {scale, 3 * scale, 0}};
-      EXPECT_NE(ask(ConvexSet{&cube, placement}, second), Meeting::kApart) << scale;
+      EXPECT_NE(ask(ConvexSet{&cube, placement}, second), Intersection::kDisjoint) << scale;
     }
   }
 }
@@ -436,14 +437,16 @@ TEST(ConvexPair, WhatIsNotFiniteIsUndecidedAtOnce) {
         (*vectors[static_cast<std::size_t>(entry) / 3])[entry % 3] = bad;
         PairWitness witness;
         PairCounts counts;
-        EXPECT_EQ(meeting(set, ConvexSet{&cube}, witness, counts), Meeting::kUndecided) << entry;
-        EXPECT_EQ(meeting(ConvexSet{&cube}, set, witness, counts), Meeting::kUndecided) << entry;
+        EXPECT_EQ(testIntersection(set, ConvexSet{&cube}, witness, counts), Intersection::kUndecided)
+            << entry;
+        EXPECT_EQ(testIntersection(ConvexSet{&cube}, set, witness, counts), Intersection::kUndecided)
+            << entry;
         EXPECT_EQ(counts.chung_steps + counts.gjk_steps, 0u);
       }
     }
   }
-  EXPECT_EQ(ask(ConvexSet{&none}, ConvexSet{&cube}), Meeting::kUndecided);
-  EXPECT_EQ(ask(ConvexSet{&cube}, ConvexSet{}), Meeting::kUndecided);
+  EXPECT_EQ(ask(ConvexSet{&none}, ConvexSet{&cube}), Intersection::kUndecided);
+  EXPECT_EQ(ask(ConvexSet{&cube}, ConvexSet{}), Intersection::kUndecided);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(DepthFirstSort, GroupsAreTheComponentsOfRandomGraphsAndEachPartIsAskedAbout
   }
 }
 
-TEST(DepthFirstSort, AValidOrderOfAGraphWithoutCirclesStays) {
+TEST(DepthFirstSort, AValidOrderOfAGraphWithoutCyclesStays) {
   DepthFirstSort sorter;
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE(seed);

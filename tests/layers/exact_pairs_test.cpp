@@ -76,8 +76,8 @@ TEST(ExactPairs, AgreesWithTryingAllPlanesOnWholePoints) {
     const Points b = shapes::moved(shapes::randomGrid(random, 1 + random.below(5), 3), apart);
     const bool expected = meetByAllPlanes(a, b);
     meeting += expected ? 1 : 0;
-    ASSERT_EQ(test::convexHullsMeet(a, b), expected);
-    ASSERT_EQ(test::convexHullsMeet(b, a), expected);
+    ASSERT_EQ(test::convexHullsIntersect(a, b), expected);
+    ASSERT_EQ(test::convexHullsIntersect(b, a), expected);
   }
   EXPECT_GT(meeting, 60);
   EXPECT_LT(meeting, 540);
@@ -85,8 +85,8 @@ TEST(ExactPairs, AgreesWithTryingAllPlanesOnWholePoints) {
 
 TEST(ExactPairs, TellsTouchingFromTheLeastGap) {
   const Points a = shapes::cube();
-  EXPECT_TRUE(test::convexHullsMeet(a, shapes::box({1, 0, 0}, {2, 1, 1})));
-  EXPECT_FALSE(test::convexHullsMeet(a, shapes::box({std::nextafter(1.0, 2.0), 0, 0}, {2, 1, 1})));
+  EXPECT_TRUE(test::convexHullsIntersect(a, shapes::box({1, 0, 0}, {2, 1, 1})));
+  EXPECT_FALSE(test::convexHullsIntersect(a, shapes::box({std::nextafter(1.0, 2.0), 0, 0}, {2, 1, 1})));
   EXPECT_TRUE(test::inConvexHull({1, 1, 1}, a));
   EXPECT_FALSE(test::inConvexHull({1, 1, std::nextafter(1.0, 2.0)}, a));
   EXPECT_FALSE(test::inConvexHull({0, 0x1p-1000, 1.5}, a));

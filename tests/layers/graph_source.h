@@ -42,20 +42,20 @@ class GraphSource : public OccluderSource {
     queries = pair_questions = 0;
   }
 
-  void occludersOf(std::span<const std::uint32_t> members, std::vector<std::uint32_t>& occluders) override {
+  void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) override {
     ++queries;
     const auto begin = static_cast<std::ptrdiff_t>(occluders.size());
-    for (const std::uint32_t member : members) {
+    for (const std::uint32_t member : group) {
       member_[member] = 1;
     }
-    for (const std::uint32_t member : members) {
+    for (const std::uint32_t member : group) {
       for (const std::uint32_t front : occluders_[member]) {
         if (active_[front] != 0 && member_[front] == 0) {
           occluders.push_back(front);
         }
       }
     }
-    for (const std::uint32_t member : members) {
+    for (const std::uint32_t member : group) {
       member_[member] = 0;
     }
     std::sort(occluders.begin() + begin, occluders.end());

@@ -65,16 +65,16 @@ std::vector<Vec3d> boxAround(const Vec3d& middle, double half) {
 }
 
 // Of two that were apart along the x axis at the last question.
-Meeting askAgain(ConvexSet first, ConvexSet second) {
+Intersection askAgain(ConvexSet first, ConvexSet second) {
   const HullEnvelope around_first = envelopeOf(*first.hull), around_second = envelopeOf(*second.hull);
   first.around = &around_first;
   second.around = &around_second;
   PairWitness witness;
-  witness.apart = true;
+  witness.disjoint = true;
   witness.pairs = 2;
   witness.direction = {1.0, 0.0, 0.0};
   PairCounts counts;
-  return meeting(first, second, witness, counts);
+  return testIntersection(first, second, witness, counts);
 }
 
 TEST(HullEnvelope, SaysNothingOfAPoint) {
@@ -83,7 +83,7 @@ TEST(HullEnvelope, SaysNothingOfAPoint) {
   for (const auto kind : {ConvexSet::Kind::kHull, ConvexSet::Kind::kWithEye, ConvexSet::Kind::kSwept}) {
     ConvexSet in_the_box{&point, {}, kind};
     in_the_box.eye_or_sweep = {-3.0, 0.0, 0.0};
-    EXPECT_NE(askAgain(in_the_box, {&box}), Meeting::kApart) << static_cast<int>(kind);
+    EXPECT_NE(askAgain(in_the_box, {&box}), Intersection::kDisjoint) << static_cast<int>(kind);
   }
 }
 
@@ -93,14 +93,14 @@ TEST(HullEnvelope, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
   huge.placement.x = huge.placement.y = {1e308, 0.0, 0.0};
   huge.kind = ConvexSet::Kind::kWithEye;
   huge.eye_or_sweep = {-5.0, 0.0, 0.0};
-  EXPECT_EQ(askAgain(huge, {&box}), Meeting::kUndecided);
+  EXPECT_EQ(askAgain(huge, {&box}), Intersection::kUndecided);
 
   ConvexSet tiny{&box}, neighbour{&box};
   tiny.placement.x = neighbour.placement.x = {1e-170, 0.0, 0.0};
   tiny.placement.y = neighbour.placement.y = {0.0, 1e-170, 0.0};
   tiny.placement.z = neighbour.placement.z = {0.0, 0.0, 1e-170};
   neighbour.placement.origin = {1.5e-170, 0.0, 0.0};
-  EXPECT_NE(askAgain(tiny, neighbour), Meeting::kApart);
+  EXPECT_NE(askAgain(tiny, neighbour), Intersection::kDisjoint);
 }
 
 // The shortcut for pairs that were apart never says what the whole test does not.
@@ -122,12 +122,13 @@ TEST(HullEnvelope, LetsNoPairBeApartThatIsNot) {
       b.kind = seed % 2 == 0 ? ConvexSet::Kind::kHull : ConvexSet::Kind::kWithEye;
       b.eye_or_sweep = {0.0, reach * 3.0, 0.0};
       PairWitness cold;
-      const Meeting exact = meeting(a, b, cold, counts);
+      const Intersection exact = testIntersection(a, b, cold, counts);
       a.around = &around_first;
       b.around = &around_second;
-      const Meeting quick = meeting(a, b, witness, counts);
-      EXPECT_EQ(quick == Meeting::kApart, exact == Meeting::kApart) << "seed " << seed << ", step " << i;
-      ++(exact == Meeting::kApart ? apart : meets);
+      const Intersection quick = testIntersection(a, b, witness, counts);
+      EXPECT_EQ(quick == Intersection::kDisjoint, exact == Intersection::kDisjoint)
+          << "seed " << seed << ", step " << i;
+      ++(exact == Intersection::kDisjoint ? apart : meets);
     }
   }
   EXPECT_GT(apart, 1000u);

@@ -46,7 +46,7 @@ class HullRays {
   }
 
   // Parts whose hulls, made smaller by a billionth, the ray meets, by number.
-  std::vector<RayStretch> meet(const Vec3d& from, const Vec3d& direction) const {
+  std::vector<RayStretch> hits(const Vec3d& from, const Vec3d& direction) const {
     Hits hits;
     rtcInitIntersectContext(&hits.context);
     hits.context.filter = collect;

@@ -126,7 +126,7 @@ void expectPointsWithinSlack(const ConvexHull& hull, const Points& points, std::
     // A corner of the box is rounded to the coordinates' last digit.
     const double half = s * (1 + 1e-9) + 0x1p-52 * maxComponent(abs(points[i]));
     const Points box = s > 0.0 ? shapes::cube(points[i], half) : Points{points[i]};
-    ASSERT_TRUE(test::convexHullsMeet(box, hull.vertices))
+    ASSERT_TRUE(test::convexHullsIntersect(box, hull.vertices))
         << "point " << i << " dimension " << hull.dimension << " slack " << s;
   }
 }

@@ -93,15 +93,15 @@ std::vector<Ray> manyRays(const MovingSorter& moving, const View& view, Random& 
 }
 
 struct Seen {
-  std::size_t pairs = 0;   // of parts that a ray met one after the other
-  std::size_t images = 0;  // rays that met several parts, all in groups of one
+  std::size_t pairs = 0;   // of parts that a ray hits one after the other
+  std::size_t images = 0;  // rays that hits several parts, all in groups of one
 };
 
 // Whoever is met before another has left must be its occluder.
-void expectArcs(const MovingSorter& moving, std::span<const RayStretch> met, const LayerOrder& order,
+void expectArcs(const MovingSorter& moving, std::span<const RayStretch> hits, const LayerOrder& order,
                 Seen& seen) {
-  for (const RayStretch& a : met) {
-    for (const RayStretch& b : met) {
+  for (const RayStretch& a : hits) {
+    for (const RayStretch& b : hits) {
       if (a.part == b.part || a.enter > b.leave || moving.hasRule(a.part, b.part)) {
         continue;
       }
@@ -114,18 +114,18 @@ void expectArcs(const MovingSorter& moving, std::span<const RayStretch> met, con
 }
 
 // The painter's image is the depth buffer's.
-void expectFirstIsNearest(const MovingSorter& moving, std::span<const RayStretch> met,
+void expectFirstIsNearest(const MovingSorter& moving, std::span<const RayStretch> hits,
                           std::span<const std::uint32_t> place, std::span<const std::uint32_t> group_size,
                           Seen& seen) {
   const bool alone =
-      std::all_of(met.begin(), met.end(), [&](const RayStretch& m) { return group_size[m.part] == 1; });
-  if (met.size() < 2 || !alone) {
+      std::all_of(hits.begin(), hits.end(), [&](const RayStretch& m) { return group_size[m.part] == 1; });
+  if (hits.size() < 2 || !alone) {
     return;
   }
   const RayStretch& first = *std::min_element(
-      met.begin(), met.end(),
+      hits.begin(), hits.end(),
       [&](const RayStretch& a, const RayStretch& b) { return place[a.part] < place[b.part]; });
-  for (const RayStretch& other : met) {
+  for (const RayStretch& other : hits) {
     if (!moving.hasRule(first.part, other.part)) {
       EXPECT_LE(first.enter, other.enter) << moving.scene().parts[first.part].name << " is drawn over "
                                           << moving.scene().parts[other.part].name;
@@ -147,9 +147,9 @@ void checkFrame(MovingSorter& moving, const View& view, Random& random, int anyw
     }
   }
   for (const Ray& ray : manyRays(moving, view, random, anywhere)) {
-    const std::vector<RayStretch> met = hulls.meet(ray.from, ray.direction);
-    expectArcs(moving, met, order, seen);
-    expectFirstIsNearest(moving, met, place, group_size, seen);
+    const std::vector<RayStretch> hits = hulls.hits(ray.from, ray.direction);
+    expectArcs(moving, hits, order, seen);
+    expectFirstIsNearest(moving, hits, place, group_size, seen);
     if (::testing::Test::HasFailure()) {
       return;
     }

@@ -25,7 +25,7 @@ void expectInside(const std::set<Group>& fine, const std::set<Group>& coarse) {
 }
 
 // None of its parts meet.
-bool isCircle(const Group& group, const Truth& truth) {
+bool isCycle(const Group& group, const Truth& truth) {
   return group.size() > 1 &&
          std::none_of(truth.collisions.begin(), truth.collisions.end(), [&](const Pair& pair) {
            return std::binary_search(group.begin(), group.end(), pair.first);
@@ -34,7 +34,7 @@ bool isCircle(const Group& group, const Truth& truth) {
 
 TEST(LayerSorter, FindsExactlyTheArcsGroupsAndCollisions) {
   const std::vector<Way> with_all_arcs = allWays(true), without = allWays(false);
-  std::size_t grouped = 0, circles = 0, alone = 0;
+  std::size_t grouped = 0, cycles = 0, alone = 0;
   for (std::uint64_t seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
@@ -43,7 +43,7 @@ TEST(LayerSorter, FindsExactlyTheArcsGroupsAndCollisions) {
     const Truth truth = truthOf(scene);
     for (const Group& group : truth.groups) {
       ++(group.size() > 1 ? grouped : alone);
-      circles += isCircle(group, truth) ? 1 : 0;
+      cycles += isCycle(group, truth) ? 1 : 0;
     }
     for (const std::vector<Way>* ways : {&with_all_arcs, &without}) {
       for (const Way& way : *ways) {
@@ -55,7 +55,7 @@ TEST(LayerSorter, FindsExactlyTheArcsGroupsAndCollisions) {
     }
   }
   EXPECT_GT(grouped, 50u);
-  EXPECT_GT(circles, 5u);
+  EXPECT_GT(cycles, 5u);
   EXPECT_GT(alone, 100u);
 }
 
@@ -280,7 +280,7 @@ TEST(LayerSorter, WhatCoincidesOrTouchesIsOneGroup) {
   }
 }
 
-TEST(LayerSorter, ThreeBarsThatOverlapInACircleAreOneGroup) {
+TEST(LayerSorter, ThreeBarsThatOverlapInACycleAreOneGroup) {
   // Each lies above the next where they cross.
   MadeScene scene;
   scene.parts = {solid({{-4, -1, 0}, {4, -1, 2}, {-4, -2, 0}, {4, -2, 2}}),

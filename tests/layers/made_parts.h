@@ -173,7 +173,7 @@ inline Truth truthOf(const MadeScene& scene) {
       if (a >= b) {
         continue;
       }
-      const bool meet = anyHulls(hulls[a], hulls[b], test::convexHullsMeet);
+      const bool meet = anyHulls(hulls[a], hulls[b], test::convexHullsIntersect);
       if (meet) {
         truth.collisions.emplace_back(a, b);
       }

@@ -14,7 +14,7 @@ namespace {
 using Question = PairTable::Question;
 
 bool isFresh(const PairWitness& witness) {
-  return !witness.apart && witness.pairs == 0 && witness.direction == Vec3d() && witness.first[0] == 0;
+  return !witness.disjoint && witness.pairs == 0 && witness.direction == Vec3d() && witness.first[0] == 0;
 }
 
 TEST(PairTable, RemembersWhatWasWrittenForAPair) {
@@ -30,11 +30,11 @@ TEST(PairTable, RemembersWhatWasWrittenForAPair) {
 TEST(PairTable, MeetingIsTheSameBothWaysAndOcclusionIsNot) {
   PairTable table;
   table.beginFrame(1);
-  table.use(3, 5, Question::kMeeting).first[0] = 1;
-  EXPECT_EQ(table.use(5, 3, Question::kMeeting).first[0], 1u);
+  table.use(3, 5, Question::kIntersection).first[0] = 1;
+  EXPECT_EQ(table.use(5, 3, Question::kIntersection).first[0], 1u);
   table.use(3, 5, Question::kOcclusion).first[0] = 2;
   EXPECT_TRUE(isFresh(table.use(5, 3, Question::kOcclusion)));
-  EXPECT_EQ(table.use(3, 5, Question::kMeeting).first[0], 1u);
+  EXPECT_EQ(table.use(3, 5, Question::kIntersection).first[0], 1u);
   EXPECT_EQ(table.size(), 3u);
 }
 
@@ -42,33 +42,33 @@ TEST(PairTable, EntriesLastForAsManyFramesAsAskedFor) {
   for (std::uint32_t expiry = 0; expiry < 4; ++expiry) {
     PairTable table;
     table.beginFrame(expiry);
-    table.use(1, 2, Question::kMeeting).first[0] = 9;
+    table.use(1, 2, Question::kIntersection).first[0] = 9;
     for (std::uint32_t frames_later = 1; frames_later <= expiry; ++frames_later) {
       table.beginFrame(expiry);
       EXPECT_EQ(table.size(), 1u) << frames_later << " of " << expiry;
     }
     table.beginFrame(expiry);
     EXPECT_EQ(table.size(), 0u) << expiry;
-    EXPECT_TRUE(isFresh(table.use(1, 2, Question::kMeeting))) << expiry;
+    EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection))) << expiry;
   }
 }
 
 TEST(PairTable, NothingExpiresWhenNeverIsAskedFor) {
   PairTable table;
-  table.use(1, 2, Question::kMeeting).first[0] = 9;
+  table.use(1, 2, Question::kIntersection).first[0] = 9;
   for (int frame = 0; frame < 50; ++frame) {
     table.beginFrame(0xffffffffu);
   }
-  EXPECT_EQ(table.use(1, 2, Question::kMeeting).first[0], 9u);
+  EXPECT_EQ(table.use(1, 2, Question::kIntersection).first[0], 9u);
 }
 
 TEST(PairTable, ClearForgetsAll) {
   PairTable table;
   table.beginFrame(1);
-  table.use(1, 2, Question::kMeeting).first[0] = 9;
+  table.use(1, 2, Question::kIntersection).first[0] = 9;
   table.clear();
   EXPECT_EQ(table.size(), 0u);
-  EXPECT_TRUE(isFresh(table.use(1, 2, Question::kMeeting)));
+  EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection)));
 }
 
 // What the table should hold, kept in the plainest way.
@@ -86,7 +86,7 @@ struct Model {
     std::erase_if(entries, [&](const auto& entry) { return entry.second.last_frame < frame - expiry; });
   }
   Entry& use(std::uint32_t a, std::uint32_t b, Question question) {
-    if (question == Question::kMeeting) {
+    if (question == Question::kIntersection) {
       std::tie(a, b) = std::minmax({a, b});
     }
     Entry& entry = entries[{a, b, question}];
@@ -110,7 +110,7 @@ TEST(PairTable, BehavesAsAMapUnderRandomUse) {
       ASSERT_EQ(table.size(), model.entries.size());
       for (std::uint32_t uses = random.below(400u); uses > 0; --uses) {
         const std::uint32_t a = random.below(parts), b = random.below(parts);
-        const Question question = random.below(2u) == 0 ? Question::kMeeting : Question::kOcclusion;
+        const Question question = random.below(2u) == 0 ? Question::kIntersection : Question::kOcclusion;
         PairWitness& witness = table.use(a, b, question);
         Model::Entry& entry = model.use(a, b, question);
         ASSERT_EQ(witness.first[0], entry.tag) << a << ' ' << b;

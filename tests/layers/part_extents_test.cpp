@@ -236,7 +236,7 @@ TEST(PartExtents, OverlapAcrossTheBranchCut) {
   }
 }
 
-TEST(PartExtents, AreTheFullCircleAroundAnEyeInTheImage) {
+TEST(PartExtents, AreTheFullCycleAroundAnEyeInTheImage) {
   ExtentScene scene;
   scene.addPart(shapes::cube());
   scene.addPart(shapes::moved(shapes::toothpick(2.0), {5, 0, 0}));

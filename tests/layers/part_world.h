@@ -106,7 +106,9 @@ struct PartWorld {
                                : test::occludesExactly(f, b, view.eye);
     });
   }
-  bool meetExactly(std::uint32_t a, std::uint32_t b) const { return anyPair(a, b, test::convexHullsMeet); }
+  bool meetExactly(std::uint32_t a, std::uint32_t b) const {
+    return anyPair(a, b, test::convexHullsIntersect);
+  }
 
  private:
   template <typename Test>

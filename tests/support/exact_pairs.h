@@ -181,19 +181,19 @@ inline bool hullMeetsSwept(std::span<const Vec3d> a, std::span<const Vec3d> b,
 }
 
 // Closed sets: touching is meeting. An empty set meets nothing.
-inline bool convexHullsMeet(std::span<const Vec3d> a, std::span<const Vec3d> b) {
+inline bool convexHullsIntersect(std::span<const Vec3d> a, std::span<const Vec3d> b) {
   return hullMeetsSwept(a, b, std::nullopt);
 }
 
 inline bool inConvexHull(const Vec3d& point, std::span<const Vec3d> points) {
-  return convexHullsMeet(std::span(&point, 1), points);
+  return convexHullsIntersect(std::span(&point, 1), points);
 }
 
 // Does a ray from the eye meet the hull of `front` and then, or in the same place, that of `back`?
 inline bool occludesExactly(std::span<const Vec3d> front, std::span<const Vec3d> back, const Vec3d& eye) {
   std::vector<Vec3d> shadowed(back.begin(), back.end());
   shadowed.push_back(eye);
-  return convexHullsMeet(front, shadowed);
+  return convexHullsIntersect(front, shadowed);
 }
 
 // The same for an eye without end far away in a direction (any length > 0).

@@ -1,6 +1,6 @@
 #pragma once
 
-// From an order with groups to image layers and a program that composites their images into the frame's.
+// Turns an order with groups into image layers, and these into a program that composites the frame.
 //
 //   LayerSorter -> LayerOrder -> LayerMerger -> FrameLayers -> CompositingCompiler -> CompositingProgram
 //
@@ -21,21 +21,22 @@
 
 namespace sightline {
 
-using LayerId = Id<struct LayerTag>;  // layer of a FrameLayers, from 0, group after group
+using LayerId = Id<struct LayerTag>;  // a layer of a FrameLayers, numbered from 0, group after group
 
-// Parts of layer `front` occlude parts of layer `back`.
+// Some part of layer `front` occludes some part of layer `back`.
 struct LayerOcclusion {
   LayerId front{}, back{};
 
   friend auto operator<=>(const LayerOcclusion&, const LayerOcclusion&) = default;
 };
 
-// What to draw into one image each. Plain data: what a recorded animation keeps of a frame.
+// The layers of a frame, each a set of parts to be drawn into one image. Plain data, as a recorded animation
+// keeps it.
 struct FrameLayers {
-  std::vector<PartId> parts{};               // layer after layer; in a layer as in the order
-  std::vector<std::uint32_t> first_part{};   // layers + 1: where each layer's begin in parts
-  std::vector<std::uint32_t> first_layer{};  // groups + 1: the first layer of each; groups front to back
-  std::vector<LayerOcclusion> occlusions{};  // between layers of one group; ascending; never both ways
+  std::vector<PartId> parts{};               // layer after layer; within a layer as in the order
+  std::vector<std::uint32_t> first_part{};   // layers + 1 elements: where each layer begins in parts
+  std::vector<std::uint32_t> first_layer{};  // groups + 1 elements: each group's first layer, front to back
+  std::vector<LayerOcclusion> occlusions{};  // within groups; ascending; never both ways
 
   std::size_t layers() const { return first_part.empty() ? 0 : first_part.size() - 1; }
   std::size_t groups() const { return first_layer.empty() ? 0 : first_layer.size() - 1; }
@@ -45,10 +46,10 @@ struct FrameLayers {
   }
 };
 
-// Puts parts that occlude each other into one layer; then layers that do, until no two are left that do (the
-// paper's binary merged components). No finer division is free of such pairs. Layers of a group are ordered
-// by their first parts. Each round of merging sorts the arcs that are left; there are at most as many as
-// parts. No allocation after warm-up. For one thread at a time.
+// Merges parts that occlude each other mutually into one layer, and then layers that do, until no such pair
+// is left (the paper's binary merged components). This is the finest division without such pairs. Layers of a
+// group are ordered by their first parts. There are at most as many rounds as parts, each of which sorts the
+// remaining arcs. merge() does not allocate after warm-up. For one thread at a time.
 class LayerMerger {
  public:
   LayerMerger();
@@ -56,7 +57,7 @@ class LayerMerger {
   LayerMerger(LayerMerger&&) noexcept;
   LayerMerger& operator=(LayerMerger&&) noexcept;
 
-  // Arcs between groups, if there are any, do not matter. The answer is valid until the next call.
+  // Arcs between groups are ignored. The result is valid until the next call.
   const FrameLayers& merge(const LayerOrder& order);
 
  private:
@@ -64,8 +65,8 @@ class LayerMerger {
   std::unique_ptr<Impl> impl_;
 };
 
-// What a step of a program does. There are three registers (the paper's Figure 15), each holding an image;
-// the operand is a layer's image, or else the register named in brackets.
+// What a step of a program does. There are three registers, each of which holds an image (the paper's
+// Figure 15). The operand is a layer's image or, without a layer, the register in brackets.
 enum class CompositingOp : std::uint8_t {
   kLoad,        // R* = layer
   kIn,          // R* = R* in layer
@@ -78,12 +79,13 @@ enum class CompositingOp : std::uint8_t {
 
 struct CompositingStep {
   CompositingOp op = CompositingOp::kLoad;
-  LayerId layer{};  // not valid: the register. kLoad, kIn and kOut always have one
+  LayerId layer{};  // the operand; not valid: the register. kLoad, kIn and kOut always have a layer
 
   friend bool operator==(const CompositingStep&, const CompositingStep&) = default;
 };
 
-// Steps by kind. `loads` and `moves` are what kLoad and the two starts are, from a layer and from a register.
+// Numbers of steps by kind. kLoad and the two starts count as loads (from a layer) or moves (from a
+// register).
 struct CompositingCounts {
   std::uint64_t loads = 0, moves = 0;
   std::uint64_t ins = 0, outs = 0, adds = 0, overs = 0;
@@ -92,34 +94,34 @@ struct CompositingCounts {
   friend bool operator==(const CompositingCounts&, const CompositingCounts&) = default;
 };
 
-// The image is in Rover after the last step. Without steps it is transparent.
+// A program for the three registers. After the last step the frame's image is in Rover; without steps it is
+// transparent.
 struct CompositingProgram {
   std::vector<CompositingStep> steps{};
-  std::vector<std::uint32_t> first_of{};  // groups + 1: where each group's steps begin
-  std::size_t layers = 0;                 // of the FrameLayers: so many images it takes
+  std::vector<std::uint32_t> first_of{};  // groups + 1 elements: where each group's steps begin
+  std::size_t layers = 0;                 // number of images that the program takes, one per layer
 
   std::span<const CompositingStep> group(std::size_t i) const {
     return std::span(steps).subspan(first_of[i], first_of[i + 1] - first_of[i]);
   }
 };
 
-// How layers that occlude each other in a circle are composited. Wherever the layers that cover a pixel have
-// an order, all give the same; where a whole circle covers one pixel (partly, at silhouettes), none is right
-// and they differ.
+// How a cycle of layers is composited. All forms agree on pixels whose layers have an order. Where a whole
+// cycle covers a pixel (partly, at silhouettes), no form is right and they differ.
 enum class CompositingForm : std::uint8_t {
-  // The paper's expression 3: the sum of all layers, each "out" of all that occlude it.
+  // The paper's expression 3: the sum of all layers, each "out" of all layers that occlude it.
   kSumOfOuts,
   // The paper's expression 4: (occluders of L atop L) over the image of all but L. L is the layer with the
-  // fewest occluders in its circle; of those the one that occludes most; of those the first. Its occluders
-  // are composited by expression 3; what is left without L is divided into circles again, and so on.
+  // fewest occluders in its cycle; ties go to the one that occludes most, then to the first. Its occluders
+  // are composited by expression 3. The rest without L is divided into cycles again, and so on.
   kOverAtop,
-  // In each circle, also of those that are left, whichever takes fewer operations; if both take as many,
-  // fewer steps.
+  // For each cycle the form with fewer operations or, at a tie, fewer steps; also for cycles of a rest.
   kCheapest,
 };
 
-// A layer in no circle takes one step. The time is linear, but for circles by expression 4: there up to
-// layers * occlusions of the circle. No allocation after warm-up. For one thread at a time.
+// Compiles layers to a program. A layer in no cycle takes one step. The time is linear except for cycles by
+// expression 4, which take up to layers * occlusions of the cycle. compile() does not allocate after warm-up.
+// For one thread at a time.
 class CompositingCompiler {
  public:
   CompositingCompiler();
@@ -127,9 +129,9 @@ class CompositingCompiler {
   CompositingCompiler(CompositingCompiler&&) noexcept;
   CompositingCompiler& operator=(CompositingCompiler&&) noexcept;
 
-  // left_out: layers to compile the program without (selective playback), in any order. It then composites
-  // what all the others show, as if these were transparent, and does not touch their images. (To leave out
-  // single parts of a layer, disable them in the sorter.) The answer is valid until the next call.
+  // left_out: layers to leave out (selective playback), in any order. The program treats them as transparent
+  // and does not read their images. To leave out single parts of a layer, disable them in the sorter. The
+  // result is valid until the next call.
   const CompositingProgram& compile(const FrameLayers& layers,
                                     CompositingForm form = CompositingForm::kCheapest,
                                     std::span<const LayerId> left_out = {});
@@ -139,21 +141,22 @@ class CompositingCompiler {
   std::unique_ptr<Impl> impl_;
 };
 
-// What layers that LayerMerger did not just make must fulfil before they are compiled: lists that begin at 0,
-// ascend and end with what they list; occlusions between two layers of one group, ascending, never both ways.
-// Errors: what is not so.
+// Checks layers that do not come from LayerMerger; compile() requires it. Lists of firsts must begin at 0,
+// ascend and end with the number of elements; occlusions must be between two layers of one group, ascending,
+// and never both ways. Errors: the first violation.
 Status checkLayers(const FrameLayers& layers);
 
 CompositingCounts countSteps(std::span<const CompositingStep> steps);
 
-// What a program that was not just compiled must fulfil: its layers are below `layers`, kLoad, kIn and kOut
-// have one, and every register is started before it is used. Errors: the first step that does not.
+// Checks a program that was not just compiled. Its layers must be below `layers`, kLoad, kIn and kOut must
+// have a layer, and every register must be started before it is used. Errors: the first step that violates
+// this.
 Status checkProgram(std::span<const CompositingStep> steps, std::size_t layers);
 
-// "load 3", "in 1", "out 3", "start sum", "add", "start image", "over 2"; a number is a layer's, no number
-// means the register.
+// Returns a step as text: "load 3", "in 1", "out 3", "start sum", "add", "start image", "over 2". A number is
+// a layer's; without a number the operand is the register.
 std::string describe(const CompositingStep& step);
-// One step a line.
+// Returns a program as text, one step per line.
 std::string describe(const CompositingProgram& program);
 
 }  // namespace sightline

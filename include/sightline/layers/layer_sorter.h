@@ -1,6 +1,6 @@
 #pragma once
 
-// The order in which moving things must be drawn, found anew for each eye from the order before.
+// The order in which moving parts must be drawn, found for each view from the order of the last one.
 //
 // Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
 // Microsoft Research MSR-TR-97-11, 1997. docs/algorithms/layers.md says what differs.
@@ -21,10 +21,11 @@
 
 namespace sightline {
 
-using HullId = Id<struct HullTag>;  // hull of a LayerSorter
-using PartId = Id<struct PartTag>;  // part of a LayerSorter, from 0 in the order in which they were added
+using HullId = Id<struct HullTag>;  // a hull of a LayerSorter
+using PartId = Id<struct PartTag>;  // a part of a LayerSorter, numbered from 0 in the order of addPart()
 
-// `front` occludes `back`: some ray from the eye meets the hulls of one and then those of the other.
+// `front` occludes `back`: some ray from the eye hits a hull of `front` and then, or at the same point, one
+// of `back`.
 struct LayerArc {
   PartId front{}, back{};
 
@@ -44,42 +45,43 @@ struct LayerSettings {
   MakeLayerSort sort{};  // empty: strongly connected components by depth-first search
   std::vector<ExtentAxis> extents = cameraExtents();  // at most kMaxExtentAxes
   MakeCandidateSearch search{};                       // empty: a scan that compares many parts at a time
-  // After the sort, groups move to the front of others that do not occlude them and lie farther along this
-  // axis of `extents` (a spatial one); none: -1. Keeps the order near what later frames need.
+  // Index of the spatial axis of `extents` by which groups are moved forward after the sort, past groups that
+  // lie farther and do not occlude them; -1: none. This keeps the order near the one that later frames need.
   int conditioning_axis = 2;
-  bool exact = true;              // false: extents alone decide. Larger groups
-  bool all_arcs = false;          // arcs between groups too: every pair of parts is asked about
-  std::uint32_t pair_expiry = 1;  // frames that what is known of a pair outlives its last use
+  bool exact = true;      // false: parts whose extents overlap count as occluding, which makes groups larger
+  bool all_arcs = false;  // true: also report arcs between groups, which asks about every pair of parts
+  std::uint32_t pair_expiry = 1;  // frames for which a pair's cached result is kept after its last use
 };
 
 struct PartSettings {
   enum class Place : std::uint8_t {
     kSorted,
-    kOverlay,   // before all others, as a head-up display; by number among themselves
-    kBackdrop,  // behind all others, as the sky; by number among themselves
+    kOverlay,   // in front of all others (a head-up display); several are ordered by number
+    kBackdrop,  // behind all others (the sky); several are ordered by number
   };
   Place place = Place::kSorted;
-  bool is_static = false;  // never moves after the first update: setTransform is then refused
+  bool is_static = false;  // true: setTransform() is refused after the first update()
 };
 
+// Counts of the last update().
 struct LayerStats {
-  std::uint64_t extent_updates = 0;    // intervals of parts computed
-  std::uint64_t occluder_queries = 0;  // parts or groups whose occluders were asked for
-  std::uint64_t candidates = 0;        // parts whose extents did not rule them out
-  std::uint64_t pair_queries = 0;      // pairs of parts that were tested exactly
+  std::uint64_t extent_updates = 0;    // intervals computed, one per part and axis
+  std::uint64_t occluder_queries = 0;  // searches for all occluders of a part or group
+  std::uint64_t candidates = 0;        // occluders that the extents did not rule out
+  std::uint64_t pair_queries = 0;      // pairs of parts tested exactly
   std::uint64_t chung_steps = 0, gjk_steps = 0;
   std::uint64_t reinsertions = 0;  // parts and groups put back by incrementalSort(); 0 with the default sort
-  std::uint64_t conditioned = 0;   // groups that moved
-  std::uint64_t known_pairs = 0;   // pairs of which something is kept
+  std::uint64_t conditioned = 0;   // groups moved forward by conditioning
+  std::uint64_t known_pairs = 0;   // pairs of hulls with a cached result
 };
 
-// One frame's answer; valid until the next call of update().
+// The order of one frame. The spans are valid until the next update().
 struct LayerOrder {
   std::span<const PartId> parts{};            // all enabled parts, group after group, front to back
-  std::span<const std::uint32_t> first_of{};  // groups + 1: where each begins in parts
-  std::span<const LayerArc> arcs{};           // within groups, or all (all_arcs); ascending
-  std::span<const LayerArc> collisions{};     // pairs of parts whose hulls meet or touch, front < back;
-                                              // ascending. Pairs with a rule are not looked at
+  std::span<const std::uint32_t> first_of{};  // groups + 1 elements: where each group begins in parts
+  std::span<const LayerArc> arcs{};           // within groups, or all with all_arcs; ascending
+  // Pairs of parts whose hulls intersect or touch, ascending, front < back. Pairs with a rule are left out.
+  std::span<const LayerArc> collisions{};
   LayerStats stats{};
 
   std::size_t groups() const { return first_of.empty() ? 0 : first_of.size() - 1; }
@@ -88,9 +90,10 @@ struct LayerOrder {
   }
 };
 
-// The sorter keeps what it knows from frame to frame. The order is right all around the eye, also for what
-// the view does not show. Undecided means "occludes": that may join groups, it never gives a wrong order. No
-// allocation in update() after warm-up. For one thread at a time.
+// Sorts parts into groups, front to back; a group of several parts is a strongly connected component of "may
+// occlude". The order holds all around the eye, also outside the view. It is conservative: a pair that the
+// tests cannot decide counts as occluding, which may enlarge groups but never gives a wrong order. Results
+// are kept from frame to frame. update() does not allocate after warm-up. For one thread at a time.
 class LayerSorter {
  public:
   explicit LayerSorter(LayerSettings settings = {});
@@ -99,32 +102,32 @@ class LayerSorter {
   LayerSorter& operator=(LayerSorter&&) noexcept;
 
   HullId addHull(ConvexHull hull);
-  // The part is the union of the hulls: at least one, of this sorter.
+  // Adds a part, the union of at least one hull of this sorter.
   PartId addPart(std::span<const HullId> hulls, const PartSettings& settings = {});
   std::size_t parts() const;
 
-  // Affine. Not finite: the part occludes all and is occluded by all until it is finite again. false, and
-  // nothing changed: the part is static and has been sorted.
+  // Places a part by an affine transform. A part with a transform that is not finite occludes all others and
+  // is occluded by all. Returns false and changes nothing if the part is static and has been sorted.
   bool setTransform(PartId part, const Mat4& world_from_part);
-  // A part that is not enabled is not in the order.
+  // Disabled parts are left out of the order.
   void setEnabled(PartId part, bool enabled);
 
-  // What a program knows of two parts. A rule only takes arcs away: where it lets one occlude the other,
-  // hulls decide; those of a joint meet. For both orders of the two, the last one holds. Without effect with
-  // numbers of no part, and where extents alone decide (LayerSettings::exact).
+  // Sets what the program knows about two parts; it replaces the pair's earlier rule, whichever part came
+  // first. A rule only removes arcs: where it allows an occlusion, the hulls decide (those of a joint
+  // intersect). It has no effect for numbers that are no part, and without LayerSettings::exact.
   void setRule(PartId first, PartId second, const PairPlane& rule);
   void setRule(PartId first, PartId second, const SphereCylinderJoint& rule);
   void setRule(PartId first, PartId second, const PairCallback& rule);
   void clearRule(PartId first, PartId second);
-  // Two parts with the same single solid hull and the same transform, of which `front` draws those faces of
-  // one closed convex surface that the eye sees from outside and `back` the others: a part within the hull
-  // lies between them.
+  // Declares that two parts are the near and the far side of one closed convex surface, so that a part inside
+  // it is drawn between them. Both parts must have the same single solid hull and the same transform; `front`
+  // draws the faces that the eye sees from outside, `back` the others.
   void setContainer(PartId front, PartId back);
 
   // Builds what the search keeps between frames anew, at once (the tree of extentTree()); call it after
   // update(). Does nothing with the default search.
   void rebuildSearch();
-  // Forgets the last order: the next one begins from distances, as after a cut.
+  // Forgets the last order, so that the next one starts from distances. For a cut to another view.
   void reset();
 
   const LayerOrder& update(const View& view);

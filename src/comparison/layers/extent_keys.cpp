@@ -5,11 +5,10 @@
 namespace sightline::comparison {
 namespace {
 
-// Let two angular intervals a, b not be across the cut: -2 <= low and high <= 2 - m, with m = 1e-5. The
-// second and third clause of overlapsAngular() ask for a.low + 4 <= b.high or b.low <= a.high - 4. In floats
-// a.low + 4 >= 2 > b.high, since rounding is monotone and 2 is a float; and a.high - 4 rounds to at most
-// -2 - m + 2^-22 < -2 <= b.low. So both are false and the plain comparison decides, which is what a tree
-// does.
+// Why plain comparison suffices away from the cut. Let a and b be angular intervals with -2 <= low and high
+// <= 2 - m, m = 1e-5. The second and third clauses of overlapsAngular() need a.low + 4 <= b.high or b.low <=
+// a.high - 4. In floats a.low + 4 >= 2 > b.high, since rounding is monotone and 2 is a float; and a.high - 4
+// rounds to at most -2 - m + 2^-22 < -2 <= b.low. So both clauses are false and the plain comparison decides.
 constexpr float kCutMargin = 1e-5f;
 
 inline std::uint32_t sortKeyInline(float number) {

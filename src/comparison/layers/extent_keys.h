@@ -1,6 +1,6 @@
 #pragma once
 
-// The bounds by which a tree of extents divides: integers that order as the numbers do.
+// The bounds by which a tree of extents divides, as integers with the order of the numbers.
 
 #include <cstdint>
 #include <vector>
@@ -16,17 +16,18 @@ struct KeyInterval {
   std::uint32_t low = 0, high = 0xffffffffu;  // low <= high
 };
 
-// Ascending with the number; -0 and 0 are the same. Keys of numbers are neither 0 nor 0xffffffff.
+// Returns a key that grows with the number; -0 and 0 have the same key. No number has the key 0 or
+// 0xffffffff.
 std::uint32_t sortKey(float number);
 
-// What a tree takes for the interval. Of an angular axis, an interval across the cut at +-2 is everything
-// here, so that a plain comparison of keys never rules out what overlapsAngular() finds: only leaves know
-// about turns. An interval with low > high, or of which a bound is not a number, is everything too.
+// Returns the interval of keys that a tree uses. An angular interval across the cut at +-2 becomes the
+// interval of all keys, so that a plain comparison never rules out what overlapsAngular() finds; only leaves
+// handle full turns. So does an interval with low > high or with NaN.
 KeyInterval keyInterval(const Interval& interval, bool angular);
 
-// Keys of all parts along all axes, as columns.
+// The keys of all parts along all axes.
 struct ExtentKeys {
-  std::vector<std::vector<std::uint32_t>> lows, highs;  // an axis: one a part
+  std::vector<std::vector<std::uint32_t>> lows, highs;  // one column per axis, with one key per part
 
   void set(const ExtentTable& table);
 };

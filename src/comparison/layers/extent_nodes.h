@@ -1,18 +1,23 @@
 #pragma once
 
-// One kd-tree over the intervals of parts.
+// A kd-tree over the parts' intervals.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.2.
 // Differs from the paper in:
-// - A node's sorted list is two, lower and upper bounds apart (min_cost.h). A part is in the left child iff
-//   its low <= value, so a beginning of the lower list, and in the right child iff its high > value, an end
-//   of the upper list. A mark on each bound says whether the part is in that child now: what must be handed
-//   down or taken out is where mark and place disagree.
-// - There are no child pointers for each part. A part lies in exactly the nodes to which the rule leads with
-//   its own bounds, which is the way of setActive(). A part that leaves a node is handed down as removed and
-//   leaves all nodes below in the same depth-first pass, before any query.
-// - Whether a part is active is noted once a part, not in each leaf. Nodes count their active parts.
-// - Depth and the number of copies of parts are limited; nodes beyond become leaves.
+// - A node has two sorted lists, one of lower and one of upper bounds (min_cost.h). A part is in the left
+// child if
+// its low <= value, so these parts begin the lower list, and in the right child if its high > value, so these
+// end
+// the upper list. A mark on each bound says whether the part is in that child now. Where mark and place
+// disagree,
+//   the part must be handed down or removed.
+// - Parts have no pointers to their nodes. A part lies in exactly the nodes to which the rule leads with its
+// bounds;
+// setActive() follows that path. A part that leaves a node is handed down as removed and leaves all nodes
+// below
+//   in the same depth-first pass, before any query.
+// - Whether a part is active is stored once per part, not in each leaf. Nodes count their active parts.
+// - The depth and the number of copies of parts are limited; nodes beyond the limit become leaves.
 
 #include <array>
 #include <cstddef>
@@ -29,40 +34,42 @@
 
 namespace sightline::comparison {
 
-// What has been done, for tests and reports. Counts, never times.
+// Counts of the work done, for tests and reports.
 struct ExtentTreeWork {
-  std::uint64_t nodes_made = 0;       // by building
-  std::uint64_t nodes_visited = 0;    // by rebalancing
-  std::uint64_t nodes_divided = 0;    // of which: a bound moved, so that they were divided anew
-  std::uint64_t parts_moved = 0;      // handed down to a child, or removed from it
-  std::uint64_t sorted_outright = 0;  // lists too disordered for insertion
-  std::uint64_t takeovers = 0;        // trees made in the background that replaced the one before
+  std::uint64_t nodes_made = 0;       // nodes built
+  std::uint64_t nodes_visited = 0;    // nodes visited by rebalancing
+  std::uint64_t nodes_divided = 0;    // of these, nodes divided anew since a bound moved
+  std::uint64_t parts_moved = 0;      // parts handed down to a child or removed from it
+  std::uint64_t sorted_outright = 0;  // lists too disordered for insertion sort
+  std::uint64_t takeovers = 0;        // trees built in the background that replaced the current one
 };
 
 class ExtentNodes {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::uint32_t kMaxDepth = 64;
-  // Nodes are no longer divided when parts in leaves and nodes to be made are more than so many times the
-  // parts: intervals that overlap nearly all others would else be copied without end.
+  // Nodes are no longer divided once leaves and pending nodes hold more copies than this per part. Otherwise
+  // intervals that overlap nearly all others would be copied without end.
   static constexpr std::uint32_t kMaxCopies = 16;
 
   struct Node {
-    std::uint32_t value = 0;     // key; the part's low <= value: left; high > value: right
+    std::uint32_t value =
+        0;  // a key: parts with low <= value are in the left child, high > value in the right
     std::uint32_t axis = kNone;  // kNone: a leaf
     std::uint32_t left = kNone;  // the right child follows
-    std::uint32_t active = 0;    // active parts in this node
+    std::uint32_t active = 0;    // number of active parts in this node
   };
 
-  // Begins a tree of so many parts. Nodes are made by makeSome().
+  // Begins a tree; makeSome() then makes its nodes.
   void begin(const ExtentTreeSettings& settings, std::uint32_t parts, std::size_t axes);
-  // Makes up to so many nodes, or sorts the bounds of one axis. Whether the tree is whole. keys: the same at
-  // each call. A tree that has just become whole must be rebalanced before it is asked.
-  bool makeSome(const ExtentKeys& keys, std::uint32_t most, ExtentTreeWork& work);
-  // Follows the parts to where they are now. All parts are active afterwards.
+  // Makes up to max_nodes nodes, or sorts the bounds of one axis. Returns whether the tree is complete; it
+  // must then be rebalanced before the first query. keys: the same in each call.
+  bool makeSome(const ExtentKeys& keys, std::uint32_t max_nodes, ExtentTreeWork& work);
+  // Moves the parts to their current nodes. All parts are active afterwards.
   void rebalance(const ExtentKeys& keys, const ExtentTable& table, ExtentTreeWork& work);
 
-  // Adds 1 or -1 to the counts of the nodes in which the part is. keys: those of the last rebalance().
+  // Adds `by` (1 or -1 modulo 2^32) to the counts of the nodes that hold the part. keys: those of the last
+  // rebalance().
   void countActive(const ExtentKeys& keys, std::uint32_t part, std::uint32_t by);
 
   struct Query {
@@ -70,28 +77,29 @@ class ExtentNodes {
     std::array<KeyInterval, kMaxExtentAxes> keys;
     std::uint32_t epoch = 0;
   };
-  // Appends the parts that overlap and for which seen[part] < epoch, and sets that to epoch. Not sorted.
-  // Returns how many parts the leaves held that it went to.
+  // Appends the overlapping parts with seen[part] < epoch, unsorted, and sets their seen[part] to epoch.
+  // Returns how many parts the visited leaves hold. seen: one per part.
   std::uint64_t query(const Query& query, std::span<std::uint32_t> seen,
                       std::vector<std::uint32_t>& parts) const;
 
   // For tests: node 0 is the root.
   std::span<const Node> nodes() const { return nodes_; }
   std::span<const std::uint32_t> partsOfLeaf(std::uint32_t node) const;
-  std::span<const Bound> lowsOf(std::uint32_t node) const;  // of inner nodes
+  std::span<const Bound> lowsOf(std::uint32_t node) const;  // for inner nodes
   std::span<const Bound> highsOf(std::uint32_t node) const;
 
  private:
-  // Where a node's lists are. Inner nodes: rows of bounds_, all lower ones and then all upper ones, which are
-  // `rows` long each. Leaves: rows of leaf_parts_ and leaf_bounds_.
+  // The block that holds a node's lists. Inner nodes: rows of bounds_, first all lower and then all upper
+  // bounds. Leaves: rows of leaf_parts_ and leaf_bounds_.
   struct List {
     std::uint32_t first = 0, count = 0, size_class = 0;
   };
-  struct Pending {  // a node to be made: its bounds of all tree axes are in lists_, from `first`
+  struct Pending {  // a node to be made, whose bounds of all tree axes begin at lists_[first]
     std::uint32_t node = 0, count = 0, depth = 0;
     std::size_t first = 0;
   };
-  struct Handed {  // what a node is handed by its parent: parts in handed_, first the added ones
+  struct Handed {  // a parent's changes to a node: the parts from handed_[first], the added ones before the
+                   // removed
     std::size_t first = 0, added = 0, removed = 0;
   };
   struct Choice {
@@ -130,30 +138,32 @@ class ExtentNodes {
   Handed handRight(const List& list, std::uint32_t in_right);
 
   std::vector<Node> nodes_;
-  std::vector<List> node_lists_;  // one a node
+  std::vector<List> node_lists_;  // one per node
   std::size_t axes_ = 0;
   std::uint32_t parts_ = 0;
 
   RowBlocks inner_rows_, leaf_rows_;
-  std::vector<Bound> bounds_;              // two a row
-  std::vector<std::uint32_t> leaf_parts_;  // one a row
-  std::vector<float> leaf_bounds_;  // 2 * axes_ a row; in a block, for each axis: all lows, then all highs
+  std::vector<Bound> bounds_;              // two per row
+  std::vector<std::uint32_t> leaf_parts_;  // one per row
+  std::vector<float>
+      leaf_bounds_;  // 2 * axes_ per row; a block holds for each axis all lows and then all highs
 
-  // While building.
+  // State and scratch of the build.
   std::vector<std::uint32_t> tree_axes_;
   std::uint32_t min_gain_ = 1;
   std::size_t sorted_axes_ = 0;
-  std::uint64_t copies_ = 0;  // parts in leaves and pending nodes
-  std::vector<Bound> lists_;  // a stack: of each pending node, for each tree axis: lower bounds, upper bounds
+  std::uint64_t copies_ = 0;  // number of parts in all leaves and pending nodes
+  std::vector<Bound>
+      lists_;  // a stack of the pending nodes' bounds: for each tree axis the lows, then the highs
   std::vector<Bound> left_lists_;
   std::vector<Pending> pending_;
-  std::vector<std::uint8_t> sides_;  // one a part: 1 left, 2 right
+  std::vector<std::uint8_t> sides_;  // one per part: bit 0 left, bit 1 right
 
-  // While rebalancing.
+  // Scratch for rebalance().
   std::vector<std::uint32_t> handed_;  // a stack of part numbers
   std::vector<std::uint32_t> dropped_left_, dropped_right_;
   std::vector<Bound> added_;
-  std::vector<std::uint32_t> stamps_;  // one a part
+  std::vector<std::uint32_t> stamps_;  // one per part: stamp_ if it is being removed
   std::uint32_t stamp_ = 0;
 };
 

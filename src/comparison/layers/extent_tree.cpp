@@ -6,7 +6,7 @@ namespace sightline::comparison {
 namespace {
 
 constexpr std::uint32_t kInactive = 0xffffffffu;
-// Frames with queries over which the parts met in leaves are averaged.
+// Frames with queries over which the number of visited parts is averaged.
 constexpr std::uint32_t kWindowFrames = 8;
 
 void setQuery(ExtentNodes::Query& query, const Extent& extent, const std::vector<ExtentAxis::Kind>& kinds) {
@@ -17,7 +17,7 @@ void setQuery(ExtentNodes::Query& query, const Extent& extent, const std::vector
     query.keys[axis] = keyInterval(own, angular);
     OverlapTests::Axis& along = query.tests.along[axis];
     along.count = angular ? 3 : 1;
-    // The same sums as in overlapsAngular().
+    // The sums must be the same as in overlapsAngular().
     along.tests = {own, Interval{own.low + 4.0f, own.high + 4.0f}, Interval{own.low - 4.0f, own.high - 4.0f}};
   }
 }
@@ -55,7 +55,8 @@ void ExtentTree::build(const ExtentTable& table) {
   activateAll();
 }
 
-// One step towards the new tree. True: it is whole, up to date, and answers from now on.
+// Makes one step towards a new tree. Returns true if it is complete and up to date and has replaced the
+// current one.
 bool ExtentTree::takeOver(const ExtentTable& table) {
   ExtentNodes& next = trees_[1 - current_];
   if (!rebuilding_) {
@@ -87,7 +88,7 @@ bool ExtentTree::mustRebuild() {
   return (settings_.rebuild_after > 0 && frames_ >= settings_.rebuild_after) || imbalanced_;
 }
 
-// Compares the frames' parts met in leaves, for each query, with those of the first frames.
+// Compares the number of parts visited per query with that of the first frames.
 void ExtentTree::closeFrame() {
   ++frames_;
   if (frame_.queries == 0) {
@@ -99,7 +100,7 @@ void ExtentTree::closeFrame() {
   ++window.frames;
   frame_ = {};
   if (recent_.frames == kWindowFrames) {
-    // At least one part, so that a scene where queries met nothing at first is not rebuilt for ever.
+    // At least one part, so that a scene whose first queries visited nothing is not rebuilt for ever.
     const double usual = std::max(first_.average(), 1.0);
     imbalanced_ = settings_.rebuild_imbalance > 0 && recent_.average() > settings_.rebuild_imbalance * usual;
     recent_ = {};

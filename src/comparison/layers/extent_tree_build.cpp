@@ -1,4 +1,5 @@
-// Building: the axis of least cost, children's lists by one pass over the parent's, without sorting again.
+// Building the tree. Each node is divided along the axis of minimum cost, and one pass over its lists makes
+// those of its children without sorting again.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.2.2.
 
@@ -31,12 +32,12 @@ void ExtentNodes::begin(const ExtentTreeSettings& settings, std::uint32_t parts,
   pending_.assign(1, Pending{0, parts, 0, 0});
 }
 
-bool ExtentNodes::makeSome(const ExtentKeys& keys, std::uint32_t most, ExtentTreeWork& work) {
+bool ExtentNodes::makeSome(const ExtentKeys& keys, std::uint32_t max_nodes, ExtentTreeWork& work) {
   if (sorted_axes_ < tree_axes_.size()) {
     sortAxis(keys);
     return false;
   }
-  for (; most > 0 && !pending_.empty(); --most) {
+  for (; max_nodes > 0 && !pending_.empty(); --max_nodes) {
     makeNode();
     ++work.nodes_made;
   }
@@ -84,7 +85,7 @@ void ExtentNodes::makeNode() {
   lists_.resize(pending.first);
 }
 
-// False: the node is a leaf.
+// Chooses a division. Returns false if the node becomes a leaf.
 bool ExtentNodes::choose(const Pending& pending, Choice& choice) const {
   if (tree_axes_.empty() || pending.count < min_gain_ || pending.depth >= kMaxDepth) {
     return false;
@@ -125,8 +126,8 @@ void ExtentNodes::makeInner(const Pending& pending, const Choice& choice) {
   }
 }
 
-// Replaces the parent's lists, which end the stack, by those of the right child and, above them, of the left
-// one. The right ones are written over what has been read.
+// Replaces the parent's lists at the top of the stack by those of the right child and, above them, those of
+// the left child. The right child's lists overwrite what has been read.
 void ExtentNodes::shareOut(const Pending& pending, const Choice& choice) {
   const std::size_t lists = 2 * tree_axes_.size();
   left_lists_.clear();
@@ -159,7 +160,7 @@ void ExtentNodes::makeLeaf(std::uint32_t node, std::span<const Bound> bounds) {
   }
 }
 
-// Blocks have room for an eighth more, so that few nodes need another when parts move.
+// Blocks have room for an eighth more rows, so that few nodes need a larger block when parts move.
 void ExtentNodes::takeInner(List& list, std::uint32_t count) {
   list.count = count;
   list.size_class = RowBlocks::classFor(count + count / 8);
@@ -179,8 +180,8 @@ void ExtentNodes::takeLeaf(List& list, std::uint32_t count) {
   }
 }
 
-// Room for what moving parts will need, so that frames allocate nothing. Other trees of the same parts differ
-// a little in size; so where there is not enough room there will be ample.
+// Reserves memory for moving parts, so that frames do not allocate. Other trees of the same parts differ a
+// little in size, so more is reserved than is needed.
 void ExtentNodes::reserve() {
   const auto reserveFor = [](auto& list, std::size_t size) {
     if (list.capacity() < size) {

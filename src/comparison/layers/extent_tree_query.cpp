@@ -1,4 +1,4 @@
-// Asking, and counting active parts.
+// Queries, and counts of active parts.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.2.4.
 
@@ -22,7 +22,7 @@ std::span<const Bound> ExtentNodes::highsOf(std::uint32_t node) const {
 }
 
 void ExtentNodes::countActive(const ExtentKeys& keys, std::uint32_t part, std::uint32_t by) {
-  std::array<std::uint32_t, kMaxDepth + 2> stack;  // at most one other child a level
+  std::array<std::uint32_t, kMaxDepth + 2> stack;  // at most one other child per level
   std::size_t size = 1;
   stack[0] = 0;
   while (size > 0) {
@@ -38,9 +38,9 @@ void ExtentNodes::countActive(const ExtentKeys& keys, std::uint32_t part, std::u
   }
 }
 
-// If the intervals of part and query overlap along a node's axis, they have a child in common: where both
-// have low <= value it is the left one. Else the low of one is > value; then the highs of both are, for each
-// high is >= the other's low, and it is the right one.
+// A part and a query whose intervals overlap along a node's axis have a child in common. If both have low <=
+// value, it is the left one. Otherwise one low is > value, and so are both highs, since each high is >= the
+// other's low; then it is the right one.
 std::uint64_t ExtentNodes::query(const Query& query, std::span<std::uint32_t> seen,
                                  std::vector<std::uint32_t>& parts) const {
   std::array<std::uint32_t, kMaxDepth + 2> stack;

@@ -1,4 +1,4 @@
-// Rebalancing: the divided axis of a node stays, its value follows the parts.
+// Rebalancing: a node keeps its axis, and its value follows the parts.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.2.3.
 
@@ -11,15 +11,16 @@ namespace {
 
 constexpr Bound kMark = 1;
 
-// Insertion moves bounds by so many places each before the rest is sorted outright.
+// Average number of places by which insertion moves a bound before the list is sorted outright.
 constexpr std::uint64_t kMaxPlacesEach = 48;
 
-// The bound's value now.
+// Returns the bound with its current key.
 inline Bound refreshed(Bound bound, const std::uint32_t* keys) {
   return (Bound{keys[partOf(bound)]} << 32) | (bound & 0xffffffffu);
 }
 
-// False: too disordered, so sorted outright. The order is total, so the outcome is the same.
+// Returns false if the list was too disordered and was sorted outright; the order is total, so the result is
+// the same.
 bool sortByInsertion(Bound* bounds, std::uint32_t count) {
   std::uint64_t places_left = kMaxPlacesEach * count + 64;
   for (std::uint32_t i = 1; i < count; ++i) {
@@ -103,9 +104,9 @@ void ExtentNodes::stampRemoved(const Handed& handed) {
   }
 }
 
-// Takes the removed parts out of a list, noting those that were in the child; reads the new values of the
-// others and sorts them. Whether one of these has moved. Reading is a pass of its own, so that the sort's
-// unforeseeable branches do not hold it up.
+// Removes parts from a list, recording those that were in the child, and reads and sorts the new keys of the
+// others. Returns whether a key has changed. Reading is a pass of its own, so that mispredicted branches of
+// the sort do not delay it.
 bool ExtentNodes::refresh(Bound* bounds, std::uint32_t count, std::span<const std::uint32_t> keys,
                           const Handed& handed, std::vector<std::uint32_t>& dropped, Frame& frame) const {
   Bound moved = 0;
@@ -135,7 +136,7 @@ bool ExtentNodes::refresh(Bound* bounds, std::uint32_t count, std::span<const st
   return moved != 0;
 }
 
-// The parts added are sorted by themselves and then merged, from the end.
+// Sorts the added parts and merges them from the end.
 void ExtentNodes::merge(const Handed& handed, std::span<const std::uint32_t> keys, Bound* bounds,
                         std::uint32_t count) {
   added_.clear();
@@ -156,7 +157,7 @@ void ExtentNodes::merge(const Handed& handed, std::span<const std::uint32_t> key
   }
 }
 
-// The block's two halves keep their meaning: upper bounds go to where a larger block has them.
+// Grows the lists, into a larger block if needed, where the upper bounds begin at another row.
 void ExtentNodes::growInner(List& list, std::uint32_t count) {
   if (count > RowBlocks::rowsOf(list.size_class)) {
     const List old = list;
@@ -178,7 +179,7 @@ void ExtentNodes::growLeaf(List& list, std::uint32_t count) {
   list.count = count;
 }
 
-// Where mark and place disagree, a part comes to the child or leaves it.
+// Hands the left child the parts whose mark and place disagree: they enter or leave the child.
 ExtentNodes::Handed ExtentNodes::handLeft(const List& list, std::uint32_t in_left) {
   Bound* const bounds = lows(list);
   Handed handed;

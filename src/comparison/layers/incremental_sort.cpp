@@ -61,7 +61,7 @@ void IncrementalSort::prepare(std::span<const std::uint32_t> previous, GroupedOr
   steps_in_prefix_ = 0;
 }
 
-// One turn of the loop in Figure 4, for the object that was first in the list.
+// One iteration of the loop in Figure 4 for the first object, which has been removed from the list.
 void IncrementalSort::step(std::uint32_t object, OccluderSource& source, GroupedOrder& order) {
   setActive(object, false, source);
   prefix_.clear();
@@ -71,13 +71,15 @@ void IncrementalSort::step(std::uint32_t object, OccluderSource& source, Grouped
   placeByOccluders(object, source, order);
 }
 
-// Whether the marked object was grouped with others of the marked sequence at the front.
+// Groups the marked object with others of the marked sequence at the front, if they form a cycle. Returns
+// whether it did.
 //
-// Halting: let p objects form the sequence, and let no step output, group, or take an object out of it. As
-// no cycle was found, following the first occluder in the sequence ended at an object with none in it, which
-// has not been in front since: it would have left. An object comes to the front again only after each of its
-// occluders has, so k arcs from that one no object comes more than k times, and the steps are at most
-// (p - 1)^2. A source that contradicts itself can make them more; then the whole sequence is grouped.
+// Halting: let p objects form the sequence, and let no step output an object, group some, or take one out of
+// the sequence. As no cycle was found, following the first occluder in the sequence ended at an object
+// without an occluder in it. That object has not been first since, or it would have left. An object becomes
+// first again only after each of its occluders has, so an object k arcs from that one becomes first at most k
+// times, and there are at most (p - 1)^2 steps. A source that contradicts itself can cause more; then the
+// whole sequence is grouped.
 bool IncrementalSort::groupCycle(std::uint32_t object, OccluderSource& source) {
   formMarkedPrefix(object);
   if (!detectCycle(source)) {
@@ -91,7 +93,7 @@ bool IncrementalSort::groupCycle(std::uint32_t object, OccluderSource& source) {
   return true;
 }
 
-// Into the output, or behind the furthest occluder and marked.
+// Outputs the object or, if it is occluded, marks it and puts it behind its furthest occluder.
 void IncrementalSort::placeByOccluders(std::uint32_t object, OccluderSource& source, GroupedOrder& order) {
   collectMembers(object, members_);
   occluders_.clear();
@@ -121,8 +123,8 @@ void IncrementalSort::formMarkedPrefix(std::uint32_t object) {
   }
 }
 
-// Figure 5. Always follows the first occluder in the sequence: if the first m objects are each occluded by
-// one of themselves, then the path never leaves them, and closes.
+// Figure 5. Always follows the first occluder in the sequence. So if each of the first m objects is occluded
+// by one of them, the path never leaves them and closes.
 bool IncrementalSort::detectCycle(OccluderSource& source) {
   path_.assign(1, 0);
   on_path_.assign(prefix_.size(), 0);
@@ -138,7 +140,7 @@ bool IncrementalSort::detectCycle(OccluderSource& source) {
         return true;
       }
     }
-    std::uint32_t occluder = 0;  // those on the path have just been asked
+    std::uint32_t occluder = 0;  // objects on the path have just been tested
     while (occluder < prefix_.size() &&
            (on_path_[occluder] != 0 || !occludes(prefix_[occluder], prefix_[last], source))) {
       ++occluder;
@@ -151,7 +153,7 @@ bool IncrementalSort::detectCycle(OccluderSource& source) {
   return false;
 }
 
-// Makes one object of cycle_ and puts it, unmarked, at the front. `object` is not in the list; it need not be
+// Makes one object of cycle_ and puts it, unmarked, at the front. `object` is not in the list and need not be
 // in the cycle.
 void IncrementalSort::group(std::uint32_t object, OccluderSource& source) {
   setActive(object, true, source);
@@ -172,11 +174,11 @@ void IncrementalSort::group(std::uint32_t object, OccluderSource& source) {
   steps_in_prefix_ = 0;
 }
 
-// The object whose members are in members_, and which is neither in the list nor active.
+// Outputs the object whose parts are in members_; it is neither in the list nor active.
 void IncrementalSort::emit(GroupedOrder& order) {
   order.parts.insert(order.parts.end(), members_.begin(), members_.end());
   order.first_of.push_back(static_cast<std::uint32_t>(order.parts.size()));
-  ++epoch_;  // unmarks everything
+  ++epoch_;  // unmarks all objects
   steps_in_prefix_ = 0;
 }
 
@@ -212,7 +214,7 @@ void IncrementalSort::setActive(std::uint32_t object, bool active, OccluderSourc
   }
 }
 
-// In the previous order.
+// Collects the parts of an object in the previous order.
 void IncrementalSort::collectMembers(std::uint32_t object, std::vector<std::uint32_t>& members) const {
   members.clear();
   for (std::uint32_t part = object; part != kNone; part = next_member_[part]) {

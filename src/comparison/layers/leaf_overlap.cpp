@@ -19,7 +19,7 @@ HWY_INLINE auto overlapWith(const Interval& test, V lows, V highs) {
   return hn::And(hn::Le(lows, hn::Set(lanes, test.high)), hn::Ge(highs, hn::Set(lanes, test.low)));
 }
 
-// Comparisons alone: the same on every instruction set.
+// Uses only comparisons, so the result is the same on every instruction set.
 std::uint32_t overlapBitsOf(const OverlapTests& tests, const float* bounds, std::uint32_t rows,
                             std::uint32_t count) {
   const Lanes lanes;

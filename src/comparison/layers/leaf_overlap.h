@@ -1,6 +1,6 @@
 #pragma once
 
-// Which parts of a leaf overlap a query, a vector of parts at a time.
+// Compares a query with the parts of a leaf, a vector of parts at a time.
 
 #include <array>
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace sightline::comparison {
 
 using layers::Interval;
 
-// A part must overlap, along each axis, one of the tests. Spatial: the interval itself; angular: that, a turn
-// on and a turn back, as in overlapsAngular().
+// A query as intervals. A part must overlap one of them along each axis: the query's interval and, on an
+// angular axis, that interval shifted by a turn in either direction, as in overlapsAngular().
 struct OverlapTests {
   struct Axis {
     std::array<Interval, 3> tests;
@@ -22,9 +22,9 @@ struct OverlapTests {
   std::uint32_t axes = 0;
 };
 
-// Bounds of parts: for each axis `rows` lows and then `rows` highs, from `bounds`. Bit i of the answer: part
-// i overlaps. rows: a multiple of 8. count: 1 to 32; what lies between it and the next multiple of 8 is read
-// and left out.
+// Returns a word with bit i set if part i overlaps.
+// bounds: for each axis `rows` lows and then `rows` highs. rows: a multiple of 8.
+// count: 1 to 32 parts; rows up to the next multiple of 8 are read and ignored.
 std::uint32_t overlapBits(const OverlapTests& tests, const float* bounds, std::uint32_t rows,
                           std::uint32_t count);
 

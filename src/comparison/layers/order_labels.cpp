@@ -9,8 +9,8 @@ namespace {
 constexpr int kLabelBits = 62;
 constexpr std::uint64_t kEndLabel = std::uint64_t{1} << kLabelBits;
 
-// A range of 2^i labels is crowded with (2 / T)^i items or more, for any 1 < T < 2. Here 2 / T = 4 / 3: after
-// spreading, labels are at least 2 apart.
+// A range of 2^i labels is crowded if it holds (2 / T)^i items or more, for some 1 < T < 2. Here 2 / T = 4 /
+// 3, so that labels differ by at least 2 after spreading.
 constexpr double kCrowdGrowth = 4.0 / 3.0;
 
 }  // namespace
@@ -20,7 +20,7 @@ void OrderLabels::assign(std::span<const std::uint32_t> items, std::size_t bound
   labels_.resize(bound + 1);
   next_.resize(bound + 1);
   previous_.resize(bound + 1);
-  // Half of the labels stay free behind the last item: that is where most insertions go.
+  // Half of the labels stay free behind the last item, where most insertions go.
   step_ = kEndLabel / 2 / (items.size() + 1);
   labels_[head_] = 0;
   std::uint32_t last = head_;
@@ -56,7 +56,7 @@ std::uint64_t OrderLabels::gapAfter(std::uint32_t place) const {
   return (after == head_ ? kEndLabel : labels_[after]) - labels_[place];
 }
 
-// Takes the smallest aligned range around the place that is not crowded, and labels its items evenly.
+// Finds the smallest aligned range around the place that is not crowded, and labels its items evenly.
 void OrderLabels::spread(std::uint32_t place) {
   std::uint32_t first = place;
   std::uint32_t last = place;

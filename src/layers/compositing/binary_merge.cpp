@@ -1,4 +1,4 @@
-// Iterated merging of binary cycles.
+// Merges layers that occlude each other mutually (binary cycles) until none are left.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 8, "Compositing Expression Compilation".
 
@@ -14,7 +14,7 @@
 namespace sightline {
 namespace {
 
-// Places in the order stand for parts, and a layer's first place for the layer.
+// An arc between places in the order. A place stands for a part, and a layer's first place for the layer.
 struct PlaceArc {
   std::uint32_t front = 0, back = 0;
 
@@ -26,11 +26,11 @@ constexpr std::uint32_t kNotInOrder = 0xffffffffu;
 }  // namespace
 
 struct LayerMerger::Impl {
-  std::vector<std::uint32_t> place_of;  // by PartId
-  std::vector<std::uint32_t> group_of;  // by place
-  std::vector<std::uint32_t> first;     // by place: one before it in the same layer, or itself
-  std::vector<std::uint32_t> number;    // by place: the layer's
-  std::vector<std::uint32_t> next;      // by layer: where its next part goes
+  std::vector<std::uint32_t> place_of;  // one per part
+  std::vector<std::uint32_t> group_of;  // one per place
+  std::vector<std::uint32_t> first;     // one per place: an earlier place of the same layer, or itself
+  std::vector<std::uint32_t> number;    // one per place: number of its layer
+  std::vector<std::uint32_t> next;      // one per layer: where its next part goes
   std::vector<PlaceArc> arcs;           // ascending, without duplicates
   FrameLayers layers;
 
@@ -84,7 +84,7 @@ std::uint32_t LayerMerger::Impl::firstOf(std::uint32_t place) {
   return place;
 }
 
-// Whether there was a pair that occludes each other.
+// Merges all pairs of layers that occlude each other mutually. Returns whether there was one.
 bool LayerMerger::Impl::mergePairs() {
   bool merged = false;
   for (const PlaceArc& arc : arcs) {
@@ -143,7 +143,7 @@ LayerMerger& LayerMerger::operator=(LayerMerger&&) noexcept = default;
 const FrameLayers& LayerMerger::merge(const LayerOrder& order) {
   Impl& m = *impl_;
   m.read(order);
-  // A merged layer may occlude one that occludes another of its parts.
+  // A merged layer may occlude a layer that occludes another of its parts.
   while (m.mergePairs()) {
     m.contractArcs();
   }
@@ -151,7 +151,7 @@ const FrameLayers& LayerMerger::merge(const LayerOrder& order) {
   m.listParts(order);
   m.layers.occlusions.clear();
   for (const PlaceArc& arc : m.arcs) {
-    // Layers are numbered by their first places: the arcs stay ascending.
+    // Layers are numbered by their first places, so the occlusions are ascending, too.
     m.layers.occlusions.push_back({LayerId(m.number[arc.front]), LayerId(m.number[arc.back])});
   }
   return m.layers;

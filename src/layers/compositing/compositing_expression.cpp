@@ -1,7 +1,8 @@
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 8, expressions 3 and 4. Tarjan. Depth-first search and
 // linear graph algorithms. SIAM J. Comput. 1972.
-// Differs from the paper in: expression 4 uses 3 for the occluders of the layer that is taken out, so that it
-// does not grow without bound; and what is left is divided into circles again, most often single layers.
+// Differs from the paper in: expression 4 uses expression 3 for the occluders of the layer that is taken out,
+// so that it does not grow without bound; the rest is divided into cycles again, most of which are single
+// layers.
 
 #include "src/layers/compositing/compositing_expression.h"
 
@@ -14,14 +15,14 @@ namespace {
 constexpr std::uint32_t kNone = ExpressionNode::kNone;
 constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 
-// Operations of a circle by sum of outs, with the "over" at the end.
+// Operations and steps of a cycle by sum of outs, including the final "over".
 std::uint64_t sumOperations(const ExpressionNode& node) {
   return node.inner + (node.size() - 1) + 1;
 }
 std::uint64_t sumSteps(const ExpressionNode& node) {
   return node.size() + node.inner + node.size() + 1;
 }
-// By over-atop, those for the layer that is taken out.
+// Operations and steps of over-atop for the layer that is taken out, including the "over".
 std::uint64_t atopOperations(const ExpressionNode& node) {
   return node.around + node.among + node.around + node.around + 1;
 }
@@ -39,7 +40,7 @@ void LayerOccluders::build(const FrameLayers& layers) {
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
   occluders.resize(layers.occlusions.size());
-  // From the last to the first: each list ends up ascending, and first[i] where it begins.
+  // Goes backwards, so that each list is ascending and first[i] ends up at its beginning.
   for (std::size_t i = layers.occlusions.size(); i-- > 0;) {
     const LayerOcclusion& o = layers.occlusions[i];
     occluders[--first[o.back.value]] = o.front.value;
@@ -70,7 +71,7 @@ void ExpressionPlanner::plan(std::span<const std::uint32_t> group, CompositingFo
   order_.resize(group.size());
   setOrder(group, 0);
   const auto size = static_cast<std::uint32_t>(group.size());
-  pushCircles({.end = size, .limit = kNoLimit}, kNone);
+  pushCycles({.end = size, .limit = kNoLimit}, kNone);
   while (!pending_.empty()) {
     ExpressionNode node = pending_.back();
     pending_.pop_back();
@@ -85,7 +86,8 @@ void ExpressionPlanner::plan(std::span<const std::uint32_t> group, CompositingFo
   choose(form);
 }
 
-// Takes one layer out; what is left becomes pending, unless that surely takes more operations than allowed.
+// Takes one layer out and makes the rest pending, unless over-atop certainly takes more operations than
+// allowed.
 void ExpressionPlanner::divide(ExpressionNode& node, std::uint32_t index, CompositingForm form) {
   takeOneOut(node);
   ExpressionNode rest{.begin = node.begin + 1, .end = node.end, .limit = kNoLimit};
@@ -98,7 +100,7 @@ void ExpressionPlanner::divide(ExpressionNode& node, std::uint32_t index, Compos
     }
     rest.limit = limit - own;
   }
-  pushCircles(rest, index);
+  pushCycles(rest, index);
 }
 
 void ExpressionPlanner::setOrder(std::span<const std::uint32_t> layers, std::uint32_t begin) {
@@ -108,9 +110,9 @@ void ExpressionPlanner::setOrder(std::span<const std::uint32_t> layers, std::uin
   }
 }
 
-// Divides a range of the order into circles and single layers, front to back, which become pending.
-// Each may take the range's limit less one operation for each layer of the others.
-void ExpressionPlanner::pushCircles(const ExpressionNode& range, std::uint32_t parent) {
+// Divides a range of the order into its strongly connected components, front to back, and makes them pending.
+// Each gets the range's limit minus one operation for each layer of the others.
+void ExpressionPlanner::pushCycles(const ExpressionNode& range, std::uint32_t parent) {
   const std::uint32_t begin = range.begin, end = range.end;
   for (std::uint32_t i = begin; i < end; ++i) {
     number_[order_[i]] = 0;
@@ -120,7 +122,7 @@ void ExpressionPlanner::pushCircles(const ExpressionNode& range, std::uint32_t p
   ends_.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
     if (number_[order_[i]] == 0) {
-      findCirclesFrom(order_[i], range);
+      findCyclesFrom(order_[i], range);
     }
   }
   setOrder(found_, begin);
@@ -133,8 +135,9 @@ void ExpressionPlanner::pushCircles(const ExpressionNode& range, std::uint32_t p
   }
 }
 
-// The search goes from a layer to its occluders: a circle is found after all circles that occlude it.
-void ExpressionPlanner::findCirclesFrom(std::uint32_t root, const ExpressionNode& range) {
+// Tarjan's search, from a layer to its occluders, so that a component is found after all components that
+// occlude it.
+void ExpressionPlanner::findCyclesFrom(std::uint32_t root, const ExpressionNode& range) {
   enter(root);
   while (!visits_.empty()) {
     Visit& visit = visits_.back();
@@ -195,8 +198,8 @@ void ExpressionPlanner::count(ExpressionNode& node) {
   }
 }
 
-// Brings the layer with the fewest occluders, which are what taking it out costs, to the node's begin. Of
-// those, the one that occludes most: without it the fewest occlusions are left.
+// Moves the layer with the fewest occluders, which determine the cost of taking it out, to the node's begin.
+// Ties go to the layer that occludes most, so that the fewest occlusions are left.
 void ExpressionPlanner::takeOneOut(ExpressionNode& node) {
   std::uint32_t best = node.begin;
   std::uint64_t fewest = node.size();
@@ -222,7 +225,7 @@ void ExpressionPlanner::takeOneOut(ExpressionNode& node) {
   }
 }
 
-// Which circles are composited by sum of outs. From the last node to the first: children before parents.
+// Decides which cycles are composited by sum of outs. Goes backwards, so that children come before parents.
 void ExpressionPlanner::choose(CompositingForm form) {
   below_.assign(nodes_.size(), {});
   for (std::size_t i = nodes_.size(); i-- > 0;) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// How a group of layers is composited: the tree of the paper's expressions, before it becomes steps.
+// The plan for compositing a group of layers: a tree of the paper's expressions, which is then turned into
+// steps.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,10 +12,10 @@
 
 namespace sightline::layers {
 
-// Who occludes each layer of a frame, within its group.
+// The occluders of each layer of a frame within its group.
 struct LayerOccluders {
-  std::vector<std::uint32_t> first;      // layers + 1
-  std::vector<std::uint32_t> occluders;  // of layer i: from first[i] up to, not with, first[i + 1]; ascending
+  std::vector<std::uint32_t> first;      // layers + 1 elements
+  std::vector<std::uint32_t> occluders;  // those of layer i are [first[i], first[i + 1]), ascending
 
   void build(const FrameLayers& layers);
   std::size_t layers() const { return first.empty() ? 0 : first.size() - 1; }
@@ -24,18 +25,19 @@ struct LayerOccluders {
   bool occludes(std::uint32_t front, std::uint32_t back) const;
 };
 
-// Layers order[begin] up to, not with, order[end]: one that is in no circle, or all of a circle. Of a circle
-// by over-atop, order[begin] is the layer that is taken out; the nodes of what is left follow, front to back.
+// The layers order[begin] up to, but not including, order[end]: a strongly connected component, which is a
+// single layer or a cycle. In a cycle by over-atop, order[begin] is the layer that is taken out, and the
+// nodes of the rest follow, front to back.
 struct ExpressionNode {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   std::uint32_t begin = 0, end = 0;
   std::uint32_t parent = kNone;
-  bool by_sum = false;       // by sum of outs: the nodes below it do not count
-  std::uint64_t inner = 0;   // occlusions among its layers
-  std::uint64_t around = 0;  // occluders of order[begin] in it
-  std::uint64_t among = 0;   // occlusions among those
-  // With more operations than this, it or a node above it is composited by sum of outs.
+  bool by_sum = false;       // true: composited by sum of outs, and the nodes below are not used
+  std::uint64_t inner = 0;   // number of occlusions among its layers
+  std::uint64_t around = 0;  // number of its layers that occlude order[begin]
+  std::uint64_t among = 0;   // number of occlusions among those
+  // If it takes more operations than this, it or a node above it is composited by sum of outs.
   std::uint64_t limit = 0;
 
   std::uint32_t size() const { return end - begin; }
@@ -43,12 +45,12 @@ struct ExpressionNode {
 
 class ExpressionPlanner {
  public:
-  // occluders must stay until the next call. Layers: as many as it has.
+  // Begins a frame with as many layers as `occluders` has, which must outlive the frame.
   void beginFrame(const LayerOccluders& occluders);
-  // group: layers of one group, ascending. What else there is of the group is left out.
+  // Plans a group. group: layers of one group, ascending; layers that are missing are left out.
   void plan(std::span<const std::uint32_t> group, CompositingForm form);
 
-  // Of the last plan: parents before children, siblings front to back.
+  // The nodes of the last plan, parents before children, siblings front to back.
   std::span<const ExpressionNode> nodes() const { return nodes_; }
   std::span<const std::uint32_t> order() const { return order_; }
   bool contains(const ExpressionNode& node, std::uint32_t layer) const {
@@ -65,9 +67,9 @@ class ExpressionPlanner {
   };
 
   void setOrder(std::span<const std::uint32_t> layers, std::uint32_t begin);
-  void pushCircles(const ExpressionNode& range, std::uint32_t parent);
+  void pushCycles(const ExpressionNode& range, std::uint32_t parent);
   void divide(ExpressionNode& node, std::uint32_t index, CompositingForm form);
-  void findCirclesFrom(std::uint32_t root, const ExpressionNode& range);
+  void findCyclesFrom(std::uint32_t root, const ExpressionNode& range);
   void enter(std::uint32_t layer);
   void leave(std::uint32_t layer);
   void count(ExpressionNode& node);
@@ -76,16 +78,16 @@ class ExpressionPlanner {
 
   const LayerOccluders* occluders_ = nullptr;
   std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> place_of_;  // by layer: in order_, or kNone
+  std::vector<std::uint32_t> place_of_;  // one per layer: its place in order_, or kNone
   std::vector<ExpressionNode> nodes_;
-  std::vector<ExpressionNode> pending_;  // circles yet to become nodes, the next one last
-  std::vector<std::uint32_t> occluded_;  // by layer: how many of the node it occludes
-  std::vector<Cost> below_;              // by node: what its children cost
-  // Tarjan's search, by layer; 0 is not seen, kNone is done.
+  std::vector<ExpressionNode> pending_;  // components yet to become nodes, the next one last
+  std::vector<std::uint32_t> occluded_;  // one per layer: how many layers of the node it occludes
+  std::vector<Cost> below_;              // one per node: the cost of its children
+  // Scratch for Tarjan's search. One per layer; 0: not visited, kNone: done.
   std::vector<std::uint32_t> number_, low_;
   std::vector<std::uint32_t> open_;
   std::vector<Visit> visits_;
-  std::vector<std::uint32_t> found_, ends_;  // circles one after another, and where each ends
+  std::vector<std::uint32_t> found_, ends_;  // the components' layers, and where each component ends
   std::uint32_t seen_ = 0;
 };
 

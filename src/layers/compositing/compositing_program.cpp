@@ -1,12 +1,11 @@
-// Expressions become steps for three registers.
+// Turns expressions into steps for three registers.
 //
-// Based on: Snyder, Lengyel. MSR-TR-97-11, section 8 and Figure 15.
-// Expression 4 needs no more registers than expression 3. With P the occluders of L, and * the image of P by
-// expression 3,
+// Based on: Snyder, Lengyel. MSR-TR-97-11, section 8 and Figure 15. Expression 4 needs no more registers than
+// expression 3. Let P be the occluders of L, and * the image of P by expression 3. Then
 //   (* atop L) = (* in L) + (L out *) = sum over i of P of ((i out its occluders in P) in L) + (L out P):
-// "in" distributes over sums, and what P lets through is the product of what its layers let through. Each
-// term is a chain in R*, their sum is in R+, and as R+ goes over all that is left, it can be added to Rover
-// at once: nothing is kept for later.
+// since "in" distributes over sums, and the transparency of P is the product of its layers' transparencies.
+// Each term is a chain in R*, and their sum is in R+. R+ is composited over Rover at once, so nothing is kept
+// for later.
 
 #include <memory>
 #include <span>
@@ -20,8 +19,8 @@ namespace sightline {
 struct CompositingCompiler::Impl {
   layers::LayerOccluders occluders;
   layers::ExpressionPlanner planner;
-  std::vector<std::uint8_t> is_left_out;  // by layer
-  std::vector<std::uint32_t> members;     // of the group at hand
+  std::vector<std::uint8_t> is_left_out;  // one per layer
+  std::vector<std::uint32_t> group;       // the layers of the current group that are not left out
   CompositingProgram program;
   bool has_image = false, has_sum = false;
 
@@ -38,7 +37,7 @@ void CompositingCompiler::Impl::emitSumOfStar() {
   has_sum = true;
 }
 
-// The layer, or R+ where it is not valid.
+// layer: the operand; not valid: R+.
 void CompositingCompiler::Impl::emitOver(LayerId layer) {
   program.steps.push_back({has_image ? CompositingOp::kOver : CompositingOp::kStartImage, layer});
   has_image = true;
@@ -58,7 +57,7 @@ void CompositingCompiler::Impl::emitSumOfOuts(const layers::ExpressionNode& node
   emitOver(LayerId());
 }
 
-// Of a layer and its occluders; the nodes that follow are what is left without it.
+// Emits a layer and its occluders; the nodes of the rest follow.
 void CompositingCompiler::Impl::emitAtop(const layers::ExpressionNode& node) {
   const std::uint32_t layer = planner.order()[node.begin];
   const auto isAround = [&](std::uint32_t other) {
@@ -125,13 +124,13 @@ const CompositingProgram& CompositingCompiler::compile(const FrameLayers& layers
   c.program.layers = layers.layers();
   c.has_image = c.has_sum = false;
   for (std::size_t g = 0; g < layers.groups(); ++g) {
-    c.members.clear();
+    c.group.clear();
     for (std::uint32_t i = layers.first_layer[g]; i < layers.first_layer[g + 1]; ++i) {
       if (c.is_left_out[i] == 0) {
-        c.members.push_back(i);
+        c.group.push_back(i);
       }
     }
-    c.planner.plan(c.members, form);
+    c.planner.plan(c.group, form);
     c.emitGroup();
     c.program.first_of.push_back(static_cast<std::uint32_t>(c.program.steps.size()));
   }

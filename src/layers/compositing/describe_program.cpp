@@ -30,7 +30,7 @@ const char* nameOf(CompositingOp op) {
   return "?";
 }
 
-// The registers, as bits; which a step reads as its operand and as what it changes, and which it writes.
+// The registers as bits, and those that a step reads as its operand, reads and changes, and writes.
 enum Register : unsigned { kStar = 1, kSum = 2, kImage = 4 };
 struct Use {
   unsigned operand = 0, reads = 0, writes = 0;
@@ -55,7 +55,7 @@ Use useOf(CompositingOp op) {
   return {};
 }
 
-// What is wrong with a step, given which registers hold something; null: nothing.
+// Returns what is wrong with a step, or null. started: the registers that hold an image.
 const char* faultOf(const CompositingStep& step, std::size_t layers, unsigned started) {
   const Use use = useOf(step.op);
   if (use.writes == 0) {

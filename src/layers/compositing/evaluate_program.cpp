@@ -1,6 +1,6 @@
 // Based on: Snyder, Lengyel. MSR-TR-97-11, Figure 15.
-// Differs from the paper in: all steps are done for a few hundred pixels at a time, whose registers stay in
-// the nearest cache; Rover is the target itself.
+// Differs from the paper in: all steps are run for a few hundred pixels at a time, whose registers stay in
+// the L1 cache; Rover is the target itself.
 
 #include <algorithm>
 #include <cstddef>
@@ -28,8 +28,8 @@ ShapedPixel over(const ShapedPixel& p, const ShapedPixel& q) {
   return plus(p, out(q, p));
 }
 
-// A pixel is one vector of four: what the compiler makes of this loop is as fast as wider vectors by hand,
-// which wait for memory.
+// A pixel is one vector of four floats. The compiler's code is as fast as wider vectors, which wait for
+// memory.
 template <typename Combine>
 void forPixels(ShapedPixel* __restrict to, const ShapedPixel* __restrict from, std::size_t pixels,
                Combine combine) {
@@ -57,7 +57,7 @@ void combinePixels(CompositingOp op, ShapedPixel* to, const ShapedPixel* from, s
   }
 }
 
-// Some pixels of a row of all images, and the registers for them.
+// A stretch of pixels of a row in all images, and the registers for it.
 struct Stretch {
   std::span<const ShapedImage> images;
   std::size_t x = 0, y = 0, pixels = 0;
@@ -69,7 +69,7 @@ struct Stretch {
     }
     return op == CompositingOp::kAdd || op == CompositingOp::kStartSum ? sum : star;
   }
-  // Null: transparent.
+  // Returns the operand of a step, or null for a transparent one.
   const ShapedPixel* operand(const CompositingStep& step) const {
     if (step.layer.valid()) {
       const ShapedImage& layer = images[step.layer.value];
@@ -79,7 +79,7 @@ struct Stretch {
   }
 };
 
-// What a step with a transparent operand does.
+// Runs a step with a transparent operand.
 void combineWithNothing(CompositingOp op, ShapedPixel* to, std::size_t pixels) {
   if (op != CompositingOp::kOut && op != CompositingOp::kAdd && op != CompositingOp::kOver) {
     std::fill_n(to, pixels, ShapedPixel{});
@@ -131,15 +131,15 @@ Status evaluate(const CompositingProgram& program, std::span<const ShapedImage> 
   if (auto status = checkProgram(program.steps, program.layers); !status) {
     return status;
   }
-  const std::size_t most = scratch.size() / 2, width = target.width;
+  const std::size_t stretch_pixels = scratch.size() / 2, width = target.width;
   for (std::size_t y = 0; y < target.height; ++y) {
-    for (std::size_t x = 0; x < width; x += most) {
+    for (std::size_t x = 0; x < width; x += stretch_pixels) {
       evaluateStretch(program.steps, {.images = images,
                                       .x = x,
                                       .y = y,
-                                      .pixels = std::min(most, width - x),
+                                      .pixels = std::min(stretch_pixels, width - x),
                                       .star = scratch.data(),
-                                      .sum = scratch.data() + most,
+                                      .sum = scratch.data() + stretch_pixels,
                                       .image = target.pixels + y * target.stride + x});
     }
   }

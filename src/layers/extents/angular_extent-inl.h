@@ -1,23 +1,23 @@
-// The angles under which the eye sees a hull, for code of one instruction set; see support-inl.h for how it
-// is included. Elsewhere: angular_extent.h.
+// The angles under which the eye sees a hull, for code compiled for one instruction set; included as
+// support-inl.h is. Other code includes angular_extent.h.
 //
-// The greatest angle by heights. Let all points p = (x, z) of a hull lie on the positive side of a line
-// through the eye. From a vertex v, the points of a greater angle are those above the line from the eye
-// through v: where the linear function f(p) = n . p is positive, n being the unit normal of v, f(v) = 0. So
-// go uphill from v; where v is the highest vertex of f, it has the greatest angle, otherwise go on from the
-// vertex found, with its line. Angles only grow, so this ends; from the last frame's vertex it mostly ends at
+// Finding the greatest angle by heights. Let all points p = (x, z) of a hull lie on the positive side of a
+// line through the eye. The points with a greater angle than a vertex v are those above the line from the eye
+// through v, where the linear function f(p) = n . p is positive; n is the unit normal of v, and f(v) = 0. So
+// go uphill from v. If v is the highest vertex of f, it has the greatest angle; otherwise continue with the
+// vertex found and its line. Angles only grow, so this ends; from the last frame's vertex it mostly ends at
 // once. (This is Dinkelbach's method for the greatest ratio of two linear functions.)
 //
 // Rounding. Let r = map.rounding and k = ConvexHull::descent_factor. In the hull's space, f is the height
-// along a direction of at most map.stretch. At the end v is the highest vertex that farthest() finds, so that
-// no point that the hull was made of is higher than v by more than supportError(), which is below slack + r
-// (1 + 2 k). Rounding of the direction changes heights by less than r, and v is off by sqrt(2) r. So no
-// point is above the line by more than e = slack + r (4 k + 4). At a distance of at least d - e from the eye
-// that is an angle of asin(e / (d - e)), and for d >= 4 e that is below 2 e / d. The pseudo-angle grows no
-// faster.
+// along a direction no longer than map.stretch. At the end v is the highest vertex that farthest() finds, so
+// no input point of the hull is higher than v by more than supportError(), which is below slack + r (1 + 2
+// k). Rounding of the direction changes heights by less than r, and the error of v is sqrt(2) r. So no point
+// is above the line by more than e = slack + r (4 k + 4). At a distance of at least d - e from the eye that
+// is an angle of asin(e / (d - e)), which is below 2 e / d for d >= 4 e. The pseudo-angle grows no faster
+// than the angle.
 //
-// d is the distance along any direction of reference in the plane, which also proves that the hull is on one
-// side of the eye. If no such direction is at hand, all vertices are looked at.
+// d is the distance along any reference direction in the plane, which also proves that the hull is on one
+// side of the eye. If no such direction is known, all vertices are compared.
 
 #if defined(SIGHTLINE_LAYERS_ANGULAR_EXTENT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIGHTLINE_LAYERS_ANGULAR_EXTENT_INL_H
@@ -34,12 +34,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::layers::HWY_NAMESPACE {
 
-constexpr std::size_t kFewVertices = 12;  // of which all are looked at
+constexpr std::size_t kFewVertices = 12;  // up to this many, all vertices are compared
 constexpr int kMaxSteps = 256;
-// A ball that comes nearer than this times its distance leaves too much room for rounding.
+// A ball nearer to the eye than this times its distance makes the error of the angles too large.
 constexpr double kClearBall = 0x1p-16;
 
-// Along a direction of unit length, the least height of the hull, less what rounding can do.
+// A lower bound of the hull's heights along a direction of unit length.
 HWY_INLINE double minAlong(const ConvexHull& hull, const PlaneMap& map, const PlanePoint& direction,
                            double error, std::uint32_t& vertex) {
   const Support end = farthestHere(hull, -(map.x * direction.x + map.z * direction.z), vertex);
@@ -47,8 +47,8 @@ HWY_INLINE double minAlong(const ConvexHull& hull, const PlaneMap& map, const Pl
   return dot(direction, map.origin) - end.height - error;
 }
 
-// A lower bound of the hull's distance from the eye, along a direction of which all of it is ahead; not
-// positive where none was found.
+// A lower bound of the hull's distance from the eye along a direction in which all of it lies ahead; not
+// positive if no such direction was found.
 HWY_INLINE double distanceAhead(const ConvexHull& hull, const PlaneMap& map, double error,
                                 std::uint32_t& nearest) {
   const PlanePoint centre = map.at(hull.centre);
@@ -64,7 +64,8 @@ HWY_INLINE double distanceAhead(const ConvexHull& hull, const PlaneMap& map, dou
   return by_zero > 4.0 * error ? by_zero : minAlong(hull, map, along_centre, error, nearest);
 }
 
-// The vertex with the greatest angle (sign 1) or the least one (-1). false: rounding led round in circles.
+// Finds the vertex with the greatest (sign 1) or the smallest angle (sign -1). Returns false if rounding made
+// the search cycle.
 HWY_INLINE bool endOf(const ConvexHull& hull, const PlaneMap& map, double sign, std::uint32_t& vertex,
                       PlanePoint& end) {
   const bool uphill = climbs(hull);
@@ -73,7 +74,7 @@ HWY_INLINE bool endOf(const ConvexHull& hull, const PlaneMap& map, double sign, 
     const Vec3d& at = hull.vertices[vertex];
     end = map.at(at);
     const Vec3d ahead = map.x * (sign * end.z) - map.z * (sign * end.x);
-    // One step uphill is enough: the line is another one then.
+    // One step uphill is enough, since the next step uses another line.
     const std::uint32_t found =
         (uphill ? highestAround(hull, ahead, {vertex, dot(ahead, at)}) : farthestOfAll(hull, ahead)).vertex;
     if (found == vertex) {

@@ -29,7 +29,7 @@ AngleRange angularExtent(const ConvexHull& hull, const PlaneMap& map, AngularVer
   return HWY_DYNAMIC_DISPATCH(extentOf)(hull, map, start);
 }
 
-// By looking at all vertices: keeps the ends of the angles so far, which span less than half a turn.
+// Keeps the two ends of the angles of the vertices so far, which span less than half a turn.
 AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error, AngularVertices& ends) {
   const auto count = static_cast<std::uint32_t>(hull.vertices.size());
   PlanePoint low = map.at(hull.vertices[0]), high = low;
@@ -50,13 +50,13 @@ AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error
       return {};
     }
   }
-  // The direction in the middle; where the ends are more than a quarter turn apart, across their chord.
+  // The direction halfway between the ends; if they span more than a quarter turn, across their chord.
   const double low_length = std::sqrt(dot(low, low)), high_length = std::sqrt(dot(high, high));
   const PlanePoint a{low.x / low_length, low.z / low_length}, b{high.x / high_length, high.z / high_length};
   PlanePoint middle = dot(a, b) >= 0.0 ? PlanePoint{a.x + b.x, a.z + b.z} : PlanePoint{a.z - b.z, b.x - a.x};
   const double middle_length = std::sqrt(dot(middle, middle));
   middle = {middle.x / middle_length, middle.z / middle_length};
-  // Also catches a point exactly opposite to another, and all that is not a number.
+  // This also detects two points in exactly opposite directions, and NaN.
   double distance = std::min(dot(middle, low), dot(middle, high));
   for (const Vec3d& vertex : hull.vertices) {
     const double height = dot(middle, map.at(vertex));

@@ -1,10 +1,10 @@
 #pragma once
 
-// The angles under which the eye sees a hull in a plane.
+// The range of angles under which the eye sees a hull in a plane.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.1 and appendix A.
-// Differs from the paper in: the frame of reference is never turned. Which of two directions has the greater
-// angle is told by their cross product, wherever angle 0 is; a branch cut exists only in the final number.
+// Differs from the paper in: the frame of reference is never turned. The cross product of two directions
+// tells which has the greater angle, wherever angle 0 is; only the final number has a branch cut.
 
 #include <cstdint>
 
@@ -13,13 +13,13 @@
 
 namespace sightline::layers {
 
-// From a hull's space to the plane; the eye is its origin.
+// The map from a hull's space to the plane, whose origin is the eye.
 struct PlaneMap {
   Vec3d x, z;          // rows: directions in the hull's space
-  PlanePoint origin;   // where the hull's origin comes to lie
-  double stretch = 1;  // no two points come to lie farther apart than this times their distance
-  // In the plane: no computed point of the hull is farther than `rounding` from the exact one, nor a point
-  // that the hull was made of than `slack` from the hull.
+  PlanePoint origin;   // image of the hull's origin
+  double stretch = 1;  // upper bound of the factor by which the map lengthens distances
+  // Bounds in the plane: of the distance of a computed point from the exact one, and of the distance of an
+  // input point of the hull from the hull.
   double rounding = 0.0, slack = 0.0;
 
   PlanePoint at(const Vec3d& p) const {
@@ -27,23 +27,23 @@ struct PlaneMap {
   }
 };
 
-// Where the search begins: any numbers, best the last answer's.
+// The vertices at which the search starts; any numbers are valid, those of the last answer are best.
 struct AngularVertices {
-  std::uint32_t low = 0, high = 0;  // with the least and the greatest angle
-  std::uint32_t nearest = 0;        // least far along a direction of reference
+  std::uint32_t low = 0, high = 0;  // the vertices with the smallest and the greatest angle
+  std::uint32_t nearest = 0;        // the nearest vertex along a reference direction
 };
 
-// A range that holds the exact angles of all points that the hull was made of; the full circle if the eye
-// lies in the hull's image or so near that rounding does not tell.
+// Returns a range that contains the exact angles of all input points of the hull. It is the full circle if
+// the eye lies in the hull's image or too near to it for rounding to tell.
 AngleRange angularExtent(const ConvexHull& hull, const PlaneMap& map, AngularVertices& start);
-// The same by looking at all vertices. error: see errorOf(). ends: the answer's.
+// Does the same by comparing all vertices. error: as errorOf() returns it. ends: receives the vertices found.
 AngleRange anglesOfAll(const ConvexHull& hull, const PlaneMap& map, double error, AngularVertices& ends);
 
-// What the ends found may be off by, in the plane; angular_extent-inl.h derives it.
+// Returns a bound of the error of the ends, as a length in the plane; angular_extent-inl.h derives it.
 inline double errorOf(const ConvexHull& hull, const PlaneMap& map) {
   return map.slack + map.rounding * (4.0 + 4.0 * hull.descent_factor);
 }
-// From low to high with the hull at least `distance` from the eye.
+// Returns the range from low to high widened by the error, for a hull at least `distance` from the eye.
 inline AngleRange widened(const PlanePoint& low, const PlanePoint& high, double distance, double error) {
   if (!(distance > 4.0 * error)) {
     return {};

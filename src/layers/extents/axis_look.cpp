@@ -11,9 +11,9 @@ using Kind = ExtentAxis::Kind;
 using Frame = ExtentAxis::Frame;
 using Measure = AxisLook::Measure;
 
-// The sine of an angle above all rounding of directions of unit length.
+// Sine of an angle above the rounding error of directions of unit length.
 constexpr double kAcross = 0x1p-40;
-// Shorter than this after the part along the view is taken away, another direction is better.
+// If the component across the view is shorter than this, another direction is used.
 constexpr double kShort = 0.25;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -31,7 +31,7 @@ Vec3d inWorld(const Vec3d& direction, Frame frame, const View& view) {
              : view.right * direction.x + view.up * direction.y + view.forward * direction.z;
 }
 
-// Without the part along the rays of an orthographic view: perpendicular to them up to 2^-50.
+// The component across the rays of an orthographic view, perpendicular to them up to 2^-50.
 Vec3d across(const Vec3d& direction, const View& view) {
   const double squared = dot(view.forward, view.forward);
   return direction - view.forward * (dot(direction, view.forward) / squared);
@@ -42,7 +42,7 @@ bool finiteView(const View& view) {
          dot(view.forward, view.forward) > 0.0;
 }
 
-// The products, not only their sum: then the rays are exactly perpendicular.
+// Tests the products, not only their sum, so that the rays are exactly perpendicular.
 bool exactlyAcross(const Vec3d& direction, const Vec3d& ray) {
   return direction.x * ray.x == 0.0 && direction.y * ray.y == 0.0 && direction.z * ray.z == 0.0;
 }
@@ -66,7 +66,7 @@ ExtentAxis normalizedAxis(const ExtentAxis& axis) {
   unit_axis.zero = axis.kind == Kind::kAngular ? unit(axis.zero) : Vec3d();
   const Vec3d direction = unit(axis.direction);
   const Vec3d residue = direction - unit_axis.zero * dot(direction, unit_axis.zero);
-  // Parallel to zero up to rounding: no plane, and no direction.
+  // A direction parallel to `zero` up to rounding spans no plane and becomes zero.
   unit_axis.direction = length(residue) > kAcross ? unit(residue) : Vec3d();
   return unit_axis;
 }
@@ -87,7 +87,8 @@ AxisLook lookAlong(const ExtentAxis& axis, const View& view, const Vec3d& refere
     look.measure = Measure::kAngles;
     return view.orthographic ? positions(look, view) : look;
   }
-  // Camera axes have just been rounded: across the view up to rounding is meant to be across it.
+  // Camera axes have just been rounded: a direction across the view up to rounding is taken as exactly
+  // across.
   if (of_camera && view.orthographic && std::abs(dot(look.direction, view.forward)) <= kAcross) {
     look.direction = across(look.direction, view);
     look.across = true;

@@ -1,6 +1,6 @@
 #pragma once
 
-// How the extents along an axis are measured for one view.
+// How the extents along an axis are measured in one view.
 
 #include <cstdint>
 
@@ -12,16 +12,16 @@ namespace sightline::layers {
 
 struct AxisLook {
   enum class Measure : std::uint8_t {
-    kHeights,  // along `direction`, above `from`
-    kAngles,   // around `from` in the plane of `zero` and `direction`
-    kNothing,  // the axis says nothing for this view: all extents are infinite
+    kHeights,  // heights along `direction`, above `from`
+    kAngles,   // angles around `from` in the plane of `zero` and `direction`
+    kNothing,  // the axis cannot be measured in this view, so all extents are infinite
   };
   Measure measure = Measure::kHeights;
-  Vec3d direction, zero;  // world space, unit length or somewhat less
+  Vec3d direction, zero;  // world space, of unit length or somewhat shorter
   Vec3d from;
-  bool across = false;  // of heights: made perpendicular to the rays of an orthographic view
+  bool across = false;  // whether `direction` was made perpendicular to the rays of an orthographic view
 
-  // Extents taken for one look hold for an equal one.
+  // Extents measured for one look are valid for an equal one.
   friend bool operator==(const AxisLook&, const AxisLook&) = default;
 
   ExtentAxis::Kind kind() const {
@@ -29,15 +29,16 @@ struct AxisLook {
   }
 };
 
-// The axis with directions of unit length, those of an angular one perpendicular.
+// Returns the axis with directions of unit length, which are perpendicular on an angular axis.
 ExtentAxis normalizedAxis(const ExtentAxis& axis);
 
-// axis: normalized. reference: the point above which the heights of axes that are fixed to the world are
-// taken. An angular axis of an orthographic view becomes one of heights, along a direction across the view.
+// Returns how an axis is measured in a view. An angular axis in an orthographic view becomes one of heights
+// along a direction across the view.
+// axis: normalized. reference: the point above which heights along axes fixed to the world are measured.
 AxisLook lookAlong(const ExtentAxis& axis, const View& view, const Vec3d& reference);
 
-// What a part's heights must be united with to reach the eye: its height (perspective); infinity towards it
-// (orthographic); an empty interval where all rays run across the direction.
+// Returns the interval that widens a part's heights to the eye: the eye's height (perspective), infinity
+// towards the eye (orthographic), or an empty interval if all rays are perpendicular to the direction.
 Interval eyeHeights(const AxisLook& look, const View& view);
 
 }  // namespace sightline::layers

@@ -18,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<std::uint8_t, ScanRows::kFanOut>;
 using Mask = hn::Mask<Lanes>;
 
-// What the intervals of an axis are compared with: the query, and the query a turn on and back where one of
-// them can overlap anything. In cells.
+// The intervals, in cells, with which an axis is compared: the query and, on an angular axis, the query
+// shifted by a turn in either direction if that can overlap anything.
 struct AxisQuery {
   std::uint32_t shifts = 0;
   std::uint8_t low[3], high[3];
@@ -44,7 +44,7 @@ AxisQuery axisQuery(const ScanRows& rows, std::size_t axis, const Interval& quer
   return result;
 }
 
-// Whether low <= query's high and high >= its low.
+// Compares low <= query.high and high >= query.low for a vector of rows.
 HWY_INLINE Mask overlap(const AxisQuery& query, const std::uint8_t* low, const std::uint8_t* high) {
   const Lanes d;
   const auto lows = hn::LoadU(d, low), highs = hn::LoadU(d, high);
@@ -63,9 +63,9 @@ struct Scan {
   const ScanRows& rows;
   AxisQuery axes[kMaxExtentAxes];
   std::vector<std::uint32_t>& found;
-  std::uint64_t blocks = 0;  // of kFanOut rows that were compared
+  std::uint64_t blocks = 0;  // number of blocks of kFanOut rows compared
 
-  // Of kFanOut rows of a level, those whose cells overlap along all axes.
+  // Returns a bit for each of kFanOut rows of a level: whether its cells overlap along all axes.
   HWY_INLINE std::uint64_t overlapBits(std::size_t level, std::size_t first) const {
     const Lanes d;
     std::uint64_t bits = 0;
@@ -88,7 +88,7 @@ struct Scan {
     return bits;
   }
 
-  // Appends rows of level 0.
+  // Appends the overlapping rows of level 0 below a block.
   void visit(std::size_t level, std::size_t first) {
     std::uint64_t there = level == 0 ? rows.active[first / ScanRows::kFanOut] : ~std::uint64_t{0};
     if (level != 0 && rows.count[level] - first < ScanRows::kFanOut) {
@@ -132,8 +132,8 @@ constexpr std::size_t kFanOut = ScanRows::kFanOut;
 constexpr Interval kNothing{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
 constexpr std::size_t kMaxClusterAxes = 3;
 
-// The axes along which parts that lie together are laid together: directions as seen, if there are any, since
-// a query reaches to the eye along the others.
+// The axes by which parts are clustered: angular axes if there are any, since a query reaches to the eye
+// along the others.
 struct ClusterAxes {
   std::array<std::size_t, kMaxClusterAxes> axis{};
   std::size_t count = 0;
@@ -152,7 +152,7 @@ ClusterAxes clusterAxes(const ExtentTable& table) {
   return chosen;
 }
 
-// Bits of a cell's number, two places between each and the next.
+// Spreads the bits of a cell's number, with two zero bits between neighbours, for a Morton code.
 std::uint32_t spread(std::uint32_t cell) {
   std::uint32_t x = cell;
   x = (x | x << 8) & 0x0300f00fu;
@@ -176,7 +176,7 @@ void ExtentScan::beginFrame(const ExtentTable& table, std::span<const std::uint3
   }
 }
 
-// Cells from the least finite bound to the greatest.
+// Divides each axis into 256 cells from the smallest finite bound to the greatest.
 void ExtentScan::measure(std::span<const std::uint32_t> order) {
   rows_.kinds = table_->kinds;
   for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
@@ -193,7 +193,7 @@ void ExtentScan::measure(std::span<const std::uint32_t> order) {
   }
 }
 
-// In the order of a Morton curve through the intervals' middles.
+// Orders the parts along a Morton curve through the middles of their intervals.
 void ExtentScan::cluster(std::span<const std::uint32_t> order) {
   const ClusterAxes axes = clusterAxes(*table_);
   keys_.clear();
@@ -241,7 +241,8 @@ void ExtentScan::fillRows() {
   }
 }
 
-// Of angles as numbers on a line: whatever overlaps a member a turn on or back overlaps the union there, too.
+// Unites angles as numbers on a line: a query that overlaps a row after a shift by a turn then overlaps the
+// union, too.
 void ExtentScan::uniteRows() {
   for (std::size_t axis = 0; axis < rows_.axes(); ++axis) {
     std::uint8_t *const lows = rows_.lows.data() + axis * rows_.stride, *const highs = rows_.highs.data() +

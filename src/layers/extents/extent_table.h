@@ -1,6 +1,6 @@
 #pragma once
 
-// The extents of all parts as columns of numbers, and when two of them rule an occlusion out.
+// The extents of all parts as columns of numbers, and the test of whether two extents overlap.
 
 #include <array>
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace sightline::layers {
 
-// Of a spatial axis: closed, may be infinite. Of an angular one: pseudo-angles, which grow with the angle and
-// make a full turn in 4 (an eighth of a turn is 0.5): low in [-2, 2], high in [low, low + 4]; a width of 4 is
-// the full circle. Rounded outwards.
+// A closed interval, rounded outwards. On a spatial axis it may be infinite. On an angular axis it holds
+// pseudo-angles, which grow with the angle and make a full turn in 4 (an eighth of a turn is 0.5): low is in
+// [-2, 2] and high in [low, low + 4]; a width of 4 is the full circle.
 struct Interval {
   float low = 0.0f, high = 0.0f;
 
@@ -24,16 +24,17 @@ inline Interval unite(const Interval& a, const Interval& b) {
   return {a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
 }
 
-// One interval an axis: of a part, or what a part asks about (its own, its spatial ones widened to the eye).
+// One interval per axis: the bounds of a part, or a query (a part's bounds, the spatial ones widened to the
+// eye).
 using Extent = std::array<Interval, kMaxExtentAxes>;
 
-// Column a holds the intervals of all parts along axis a, and is padded to whole vectors (see kPadding) with
+// Column a holds the intervals of all parts along axis a. It is padded to a multiple of kPadding rows with
 // intervals that overlap nothing.
 struct ExtentTable {
   static constexpr std::size_t kPadding = 16;
 
-  std::vector<ExtentAxis::Kind> kinds;   // one an axis
-  std::vector<std::vector<float>> lows;  // an axis: one a part, then padding
+  std::vector<ExtentAxis::Kind> kinds;   // one per axis
+  std::vector<std::vector<float>> lows;  // per axis one per part, then padding
   std::vector<std::vector<float>> highs;
   std::size_t parts = 0;
 
@@ -42,11 +43,12 @@ struct ExtentTable {
   bool angular(std::size_t axis) const { return kinds[axis] == ExtentAxis::Kind::kAngular; }
 };
 
-// Closed intervals; touching is overlapping.
+// Closed intervals that touch overlap.
 inline bool overlapsSpatial(const Interval& a, const Interval& b) {
   return a.low <= b.high && b.low <= a.high;
 }
-// On the circle of length 4. Adding 4 rounds by less than the outward rounding of the intervals allows for.
+// Intervals on a circle of length 4. The rounding error of adding 4 is less than the intervals' outward
+// rounding.
 inline bool overlapsAngular(const Interval& a, const Interval& b) {
   return (a.low <= b.high && b.low <= a.high) || (a.low + 4.0f <= b.high && b.low <= a.high + 4.0f) ||
          (a.low - 4.0f <= b.high && b.low <= a.high - 4.0f);

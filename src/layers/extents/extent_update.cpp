@@ -21,12 +21,12 @@ using Measure = AxisLook::Measure;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Interval kEndless{-kInfinity, kInfinity};
 
-// Computing a point's height or its place in a plane, from an exact placement and direction: 12 operations in
-// a row at most, each rounding by 2^-53 of a number that is no greater than `reach`. Frames are perpendicular
-// up to their own rounding, and a ray across a direction is so up to 2^-50: as much again.
+// Relative error of a point's height or its place in a plane, from an exact placement and direction: at most
+// 12 operations in a row, each of which rounds by 2^-53 of a number no greater than `reach`. Frames are
+// perpendicular up to their own rounding, and rays across a direction up to 2^-50, which adds as much again.
 constexpr double kRounding = 0x1p-48;
 
-// A part with a hull of its own.
+// One hull of a part, with the rows in its space.
 struct PlacedHull {
   const ConvexHull& hull;
   const HullBounds& bounds;

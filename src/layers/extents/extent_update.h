@@ -1,6 +1,6 @@
 #pragma once
 
-// Brings a table of extents up to date with parts and looks.
+// Brings a table of extents up to date with the parts and the view.
 
 #include <array>
 #include <cstdint>
@@ -14,34 +14,34 @@
 
 namespace sightline::layers {
 
-// Along which heights are taken, and above which point. Axes share them.
+// A direction along which heights are measured, and the point above which they are. Axes share rows.
 struct ExtentRow {
   Vec3d direction, from;
 
   friend bool operator==(const ExtentRow&, const ExtentRow&) = default;
 };
 
-// How one axis is measured now.
+// How one axis is measured in the current view.
 struct MeasuredAxis {
   AxisLook look;
-  std::uint32_t along = 0, zero = 0;  // rows of the look's directions; zero: of angles
-  std::uint32_t first_vertex = 0;     // its place among an instance's numbers
+  std::uint32_t along = 0, zero = 0;  // rows of the look's directions; zero: for angles only
+  std::uint32_t first_vertex = 0;     // index of the axis's first number among those of an instance
 };
 
-// What is the same for all parts that share a hull.
+// Bounds that all parts with the same hull share.
 struct HullBounds {
-  double reach = 0.0;  // no vertex is farther from the hull's origin
-  double error = 0.0;  // of support along a direction of unit length
+  double reach = 0.0;  // upper bound of the vertices' distances from the hull's origin
+  double error = 0.0;  // supportError() along a direction of unit length
 };
 HullBounds boundsOf(const ConvexHull& hull);
 
-// A row as a part has it.
+// A row in the space of a part.
 struct PlacedRow {
   Vec3d direction;      // in the hull's space
   double base = 0.0;    // height of the hull's origin
-  double offset = 0.0;  // magnitude of the way from the row's point to it
+  double offset = 0.0;  // magnitude of the vector from the row's point to the hull's origin
 };
-// Of a part along an axis, not yet rounded.
+// The bounds of a part along an axis, not yet rounded.
 struct PartBounds {
   double low = 0.0, high = 0.0;  // heights
   AngleRange angles;
@@ -49,20 +49,20 @@ struct PartBounds {
 
 struct ExtentUpdate {
   std::vector<MeasuredAxis> axes;
-  std::vector<ExtentRow> rows;  // of all axes, each once
-  std::vector<HullBounds> hulls;
+  std::vector<ExtentRow> rows;    // the distinct rows of all axes
+  std::vector<HullBounds> hulls;  // one per hull
   std::uint32_t vertices_of_instance = 0;
-  std::vector<std::uint32_t> vertices;  // instances * vertices_of_instance: where the next search begins
-  // Scratch, of the part that is looked at.
+  std::vector<std::uint32_t> vertices;  // instances * vertices_of_instance elements: where searches start
+  // Scratch for one part.
   std::array<PlacedRow, 2 * kMaxExtentAxes> placed_rows;
   std::array<PartBounds, kMaxExtentAxes> part_bounds;
 };
 
-// Numbers kept for an instance and an axis.
-inline constexpr std::uint32_t kHeightVertices = 2;  // lowest, highest
-inline constexpr std::uint32_t kAngleVertices = 3;   // AngularVertices; heights need the first two
+// Vertex numbers kept per instance and axis.
+inline constexpr std::uint32_t kHeightVertices = 2;  // the lowest and the highest vertex
+inline constexpr std::uint32_t kAngleVertices = 3;   // AngularVertices; heights use the first two
 
-// The intervals of some parts along some axes. axes_of: one a part, a bit an axis.
+// Computes intervals of parts. axes_of: one element per part, with bit a set if axis a is to be computed.
 void updateExtents(ExtentUpdate& update, const PartStore& parts, std::span<const std::uint32_t> axes_of,
                    ExtentTable& table);
 

@@ -37,7 +37,7 @@ std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
   return computed;
 }
 
-// Returns the axes whose extents must be taken anew for all parts.
+// Measures all axes for the view. Returns a bit for each axis whose extents must be recomputed for all parts.
 std::uint32_t PartExtents::lookFrom(const View& view) {
   if (!has_reference_ && isFinite(view.eye)) {
     has_reference_ = true;
@@ -81,7 +81,7 @@ void PartExtents::addParts(const PartStore& parts) {
   const std::size_t padded =
       (table_.parts + ExtentTable::kPadding - 1) / ExtentTable::kPadding * ExtentTable::kPadding;
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-    // Not a number overlaps nothing, not even what is infinite.
+    // NaN overlaps nothing, not even an infinite interval.
     table_.lows[axis].resize(padded);
     table_.highs[axis].resize(padded);
     for (std::size_t i = table_.parts; i < padded; ++i) {
@@ -94,19 +94,19 @@ Extent PartExtents::query(std::uint32_t part) const {
   return query(std::span(&part, 1));
 }
 
-Extent PartExtents::query(std::span<const std::uint32_t> members) const {
+Extent PartExtents::query(std::span<const std::uint32_t> group) const {
   Extent extent{};
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
     Interval& all = extent[axis];
-    all = table_.at(axis, members[0]);
+    all = table_.at(axis, group[0]);
     if (!table_.angular(axis)) {
-      for (const std::uint32_t member : members.subspan(1)) {
+      for (const std::uint32_t member : group.subspan(1)) {
         all = unite(all, table_.at(axis, member));
       }
       all = unite(all, to_eye_[axis]);
-    } else if (members.size() > 1) {
+    } else if (group.size() > 1) {
       AngleRange range{all.low, all.high};
-      for (const std::uint32_t member : members.subspan(1)) {
+      for (const std::uint32_t member : group.subspan(1)) {
         const Interval own = table_.at(axis, member);
         range = unite(range, AngleRange{own.low, own.high});
       }

@@ -1,12 +1,12 @@
 #pragma once
 
-// Bounds of all parts along the axes, followed from frame to frame by walking from the last farthest vertices
-// along edges.
+// The bounds of all parts along the axes. Each frame's search starts at the last frame's farthest vertices
+// and goes along edges.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 5.1 and appendix A.
-// Differs from the paper in: heights are above the eye, or above the first eye for axes that are fixed to the
-// world, so that scenes far from the origin keep their precision; angles are periodic pseudo-angles; of
-// orthographic views too; everything is rounded outwards.
+// Differs from the paper in: heights are measured above the eye, or above the first eye for axes fixed to the
+// world, so that scenes far from the origin keep their precision; angles are periodic pseudo-angles;
+// orthographic views are supported; all bounds are rounded outwards.
 
 #include <cstdint>
 #include <span>
@@ -23,26 +23,27 @@ namespace sightline::layers {
 
 class PartExtents {
  public:
-  // axes: at most kMaxExtentAxes; what is beyond is left out.
+  // axes: those beyond kMaxExtentAxes are ignored.
   explicit PartExtents(std::vector<ExtentAxis> axes);
 
-  // Brings the table up to date with the view and the parts. moved: one a part, whether its placement changed
-  // since the last call; parts that are new count as moved. World-fixed spatial extents are computed for
-  // those alone, camera-fixed ones and angles for all if the view changed. A part that is not finite has
-  // infinite extents and the full circle. Returns how many intervals were computed. Angular axes of an
-  // orthographic view hold positions across the view: table().kinds says so.
+  // Brings the table up to date with the view and the parts, and returns how many intervals were computed.
+  // Spatial extents fixed to the world are computed only for parts that moved; camera-fixed ones and angles
+  // for all parts if the view changed. A part that is not finite gets infinite intervals and the full circle.
+  // In an orthographic view, angular axes hold positions across the view, as table().kinds says.
+  // moved: one element per part, whether its placement changed since the last call; new parts count as moved.
   std::uint64_t update(const View& view, const PartStore& parts, std::span<const std::uint8_t> moved);
 
   const ExtentTable& table() const { return table_; }
-  // What occluders of a part must overlap: its spatial intervals widened to the eye (perspective: to the
-  // eye's height along the axis; orthographic: without end towards the eye), its angles as they are.
+  // Returns the extent that occluders of a part must overlap: its angles, and its spatial intervals widened
+  // to the eye (perspective: to the eye's height along the axis; orthographic: to infinity towards the eye).
   Extent query(std::uint32_t part) const;
-  // The same for parts taken together. members: at least one.
-  Extent query(std::span<const std::uint32_t> members) const;
-  // Whether a part overlaps another one's query.
+  // Returns the united query of the parts of a group, which is not empty.
+  Extent query(std::span<const std::uint32_t> group) const;
+  // Whether part `front` overlaps the query of part `back`.
   bool mayOcclude(std::uint32_t front, std::uint32_t back) const;
-  // Of an axis: the middle of a part's interval less the eye's height, absolute: what orders parts by
-  // distance. Orthographic: with its sign, growing away from the eye. Not finite: infinite. axis: spatial.
+  // Returns a part's distance from the eye along a spatial axis: the absolute difference of its interval's
+  // middle and the eye's height. In an orthographic view it has a sign and grows away from the eye. Infinite
+  // if it is not finite.
   double distanceAlong(std::size_t axis, std::uint32_t part) const;
 
  private:
@@ -52,13 +53,14 @@ class PartExtents {
 
   std::vector<ExtentAxis> axes_;
   bool has_reference_ = false;
-  Vec3d reference_;               // world-fixed heights are above it
-  std::vector<Interval> to_eye_;  // an axis: see eyeHeights()
-  std::vector<double> eye_;       // an axis: the eye's height
-  std::vector<double> away_;  // an axis: 0, or of orthographic views the sign of heights away from the eye
+  Vec3d reference_;               // heights along axes fixed to the world are measured above this point
+  std::vector<Interval> to_eye_;  // one per axis: eyeHeights()
+  std::vector<double> eye_;       // one per axis: the eye's height
+  // One per axis: 0 (perspective), or the sign of heights that grow away from the eye (orthographic).
+  std::vector<double> away_;
 
   ExtentUpdate own_;
-  std::vector<std::uint32_t> axes_of_;  // scratch
+  std::vector<std::uint32_t> axes_of_;  // scratch for update()
   ExtentTable table_;
 };
 

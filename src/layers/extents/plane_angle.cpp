@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kTurn = 4.0;
 
-// Of a difference of pseudo-angles: in [0, 4).
+// Returns a difference of pseudo-angles modulo a turn, in [0, 4).
 double wrapped(double difference) {
   const double turns = std::floor(difference / kTurn);
   return difference - kTurn * turns;

@@ -1,14 +1,14 @@
 #pragma once
 
-// From double to single precision, never inwards.
+// Rounding from double to single precision, always outwards.
 
 #include <cmath>
 #include <limits>
 
 namespace sightline::layers {
 
-// Conversion rounds by 2^-24 of the value or by 2^-150; twice that is taken off before. What is beyond the
-// range of single precision becomes infinite.
+// Conversion rounds by up to 2^-24 of the value or 2^-150, so twice that is subtracted first. A value beyond
+// the range of float becomes infinite.
 inline float roundedDown(double value) {
   constexpr double kMax = std::numeric_limits<float>::max();
   const double lower = value - (std::abs(value) * 0x1p-23 + 0x1p-148);

@@ -34,7 +34,8 @@ Status check(std::span<const Vec3d> points) {
   return Success{};
 }
 
-// The power of two above the largest coordinate; so that products of three neither overflow nor vanish.
+// Exponent of the power of two above the largest coordinate. Scaled by it, products of three coordinates
+// neither overflow nor underflow.
 int exponentOf(std::span<const Vec3d> points) {
   double largest = 0.0;
   for (const Vec3d& p : points) {
@@ -60,7 +61,7 @@ double roundedUp(double value, double scale) {
                      : 0.0;
 }
 
-// From the coordinates that were computed with to those given.
+// Replaces the scaled coordinates by the given ones.
 void restore(ConvexHull& hull, std::span<const Vec3d> given, std::span<const std::uint32_t> numbers,
              double scale) {
   for (std::size_t v = 0; v < numbers.size(); ++v) {

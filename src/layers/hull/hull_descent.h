@@ -6,8 +6,8 @@
 
 namespace sightline::layers {
 
-// The descent factor of a solid with vertices and edges. outwards: at each vertex, a direction in which all
-// its edges fall.
+// Returns ConvexHull::descent_factor of a solid with vertices and edges.
+// outwards: one per vertex, a direction along which all its edges fall.
 double descentFactor(const ConvexHull& hull, std::span<const Vec3d> outwards);
 
 }  // namespace sightline::layers

@@ -1,8 +1,8 @@
-// The covariance matrix C of the vertices around their mean is L L^T, L lower triangular (Cholesky). With the
-// columns of L as axes, a vertex v lies at w = L^-1 (v - mean), and the ellipsoid is made larger by the
-// length of the longest w. To that comes a ball of the hull's slack and of what rounding can do: an axis
-// longer by r makes the ellipsoid higher by less than r, so each axis is lengthened along itself by as much
-// as the ball's radius in units of the shortest one.
+// The covariance matrix C of the vertices around their mean is L L^T with a lower triangular L (Cholesky).
+// With the columns of L as axes, a vertex v lies at w = L^-1 (v - mean), and the ellipsoid is scaled by the
+// length of the longest w. It must also contain a ball of the hull's slack and the rounding error around each
+// vertex. An axis longer by r makes the ellipsoid higher by less than r, so each axis is lengthened along
+// itself by the ball's radius in units of the shortest axis.
 
 #include "src/layers/hull/hull_envelope.h"
 
@@ -14,12 +14,12 @@
 namespace sightline::layers {
 namespace {
 
-// Thinner than this part of the hull's radius, it is made so thick: then it can be divided by.
+// The thinnest axis relative to the hull's radius; thinner ones are thickened so that they can be divided by.
 constexpr double kThinnest = 1e-6;
-// Relative to the radius; far above the rounding of the sums below, of which the division by the thinnest
-// axis makes 1e6 times as much.
+// Relative to the radius; far above the rounding error of the sums below, which the division by the thinnest
+// axis multiplies by 1e6.
 constexpr double kRounding = 1e-8;
-// Metres. Smaller hulls' squares would underflow.
+// Squares of smaller hulls' coordinates would underflow.
 constexpr double kMinRadius = 1e-100;
 
 struct Covariance {
@@ -50,7 +50,7 @@ HullEnvelope envelopeOf(const ConvexHull& hull) {
   }
   HullEnvelope around;
   around.centre = hull.centre;
-  // Scaled to a trace of at most 1 or so; only the shape counts.
+  // Only the shape counts, so it is scaled to a trace of about 1 at most.
   const Covariance sum = covarianceOf(hull);
   const double n = static_cast<double>(hull.vertices.size());
   const double lxx = positiveRoot(sum.xx / n);
@@ -64,8 +64,8 @@ HullEnvelope envelopeOf(const ConvexHull& hull) {
     const double x = v.x / lxx, y = (v.y - lyx * x) / lyy, z = (v.z - lzx * x - lzy * y) / lzz;
     longest = std::max(longest, x * x + y * y + z * z);
   }
-  // A sphere of radius s lies within the axes times s / (shortest stretch of L); that is at least
-  // lxx lyy lzz / |L|^2, |L| the norm of all entries.
+  // A sphere of radius s lies within the ellipsoid scaled by s / (smallest singular value of L), and that
+  // value is at least lxx lyy lzz / |L|^2, where |L| is the norm of all entries.
   const double square = lxx * lxx + lyx * lyx + lzx * lzx + lyy * lyy + lzy * lzy + lzz * lzz;
   const double shortest = lxx * lyy * lzz / square;
   const double ball = hull.slack / hull.radius + kRounding;

@@ -1,10 +1,10 @@
-// How far outside a convex mesh points are.
+// The distance of points outside a convex mesh.
 //
-// Let c be inside and x above the plane of a facet by a volume V > 0, where c is below it by W > 0 (six times
-// the tetrahedra over the facet). The segment from c to x crosses that plane at c + (x - c) W / (V + W),
-// which is |x - c| V / (V + W) before x. Where the segment leaves the mesh it crosses the plane of the facet
-// there, and the point where it does belongs to the hull: so x is no farther from the hull than the greatest
-// of these values over the facets below it. Volumes are good to 2 %.
+// Let c be a point inside, and x a point above the plane of a facet. Let V > 0 and W > 0 be six times the
+// volumes of the tetrahedra of the facet with x and with c. The segment from c to x crosses the plane at c +
+// (x - c) W / (V + W), at the distance |x - c| V / (V + W) from x. Where the segment leaves the mesh, it
+// crosses the plane of the facet there, at a point of the hull. So the distance of x from the hull is at most
+// the greatest of these values over the facets that x is above. Volumes are within 2 %.
 
 #include "src/layers/hull/hull_excess.h"
 
@@ -15,15 +15,15 @@
 namespace sightline::layers {
 namespace {
 
-// A plane that tells quickly that a point is behind a facet.
+// A plane for a quick test of whether a point is behind a facet.
 struct Behind {
   Vec3d normal;
-  double offset = 0.0;  // the height above `inside` up to which a point is certainly behind the facet
+  double offset = 0.0;  // points up to this height above `inside` are certainly behind the facet
   std::uint32_t facet = 0;
 };
 
-// The normal is off by at most 8 e |u| |v| / |u x v|, e = 2^-53, for sides u and v, and by rounding to unit
-// length; heights by that times the distance, and by their own rounding.
+// The error of the normal is at most 8 e |u| |v| / |u x v| for sides u and v, e = 2^-53, plus the rounding to
+// unit length. The error of a height is that times the distance, plus its own rounding.
 std::vector<Behind> quickPlanes(const HullMesh& mesh, const Vec3d& inside, double reach) {
   std::vector<Behind> planes;
   for (std::uint32_t i = 0; i < mesh.facets().size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSqrt3 = 1.7320508075688774;
 constexpr double kRoundUp = 1.0 + 0x1p-20;
 
-// Points without the coordinate along which their plane is steepest.
+// A point without the coordinate in which its plane's normal is largest.
 struct FlatPoint {
   double x = 0.0, y = 0.0;
   std::uint32_t number = 0;
@@ -37,7 +37,7 @@ std::vector<FlatPoint> flattened(std::span<const Vec3d> points, const Vec3d& nor
   return flat;
 }
 
-// Andrew's monotone chain with exact turns: the outline's corners, in order round it.
+// Returns the outline's corners in order around it, by Andrew's monotone chain with exact turns.
 std::vector<FlatPoint> outlineOf(std::vector<FlatPoint> flat) {
   std::sort(flat.begin(), flat.end(), [](const FlatPoint& a, const FlatPoint& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.number < b.number;
@@ -59,8 +59,9 @@ std::vector<FlatPoint> outlineOf(std::vector<FlatPoint> flat) {
   return outline;
 }
 
-// Keeps corners that stand out from the chord of those kept by more than the tolerance (Douglas, Peucker
-// 1973). What is left of a convex outline is convex. left_out: how far those left out stand out at most.
+// Keeps the corners that stand out by more than the tolerance from the chord of those kept (Douglas, Peucker
+// 1973). The rest of a convex outline is convex. left_out: receives the greatest height of a corner that is
+// left out.
 class OutlineThinner {
  public:
   OutlineThinner(const std::vector<FlatPoint>& outline, double tolerance)
@@ -74,9 +75,9 @@ class OutlineThinner {
       const auto [from, to] = arcs.back();
       arcs.pop_back();
       std::size_t corner = from;
-      const double most = greatestHeight(from, to, corner);
-      if (most <= tolerance_) {
-        left_out = std::max(left_out, most);
+      const double max_height = maxHeight(from, to, corner);
+      if (max_height <= tolerance_) {
+        left_out = std::max(left_out, max_height);
         continue;
       }
       keep_[corner % outline_.size()] = 1;
@@ -95,17 +96,17 @@ class OutlineThinner {
  private:
   const FlatPoint& at(std::size_t i) const { return outline_[i % outline_.size()]; }
 
-  double greatestHeight(std::size_t from, std::size_t to, std::size_t& corner) const {
-    double most = 0.0;
+  double maxHeight(std::size_t from, std::size_t to, std::size_t& corner) const {
+    double max_height = 0.0;
     const double chord = distance(at(from), at(to));
     for (std::size_t i = from + 1; i < to; ++i) {
       const double height = 1.03 * -turn(at(from), at(to), at(i)) / chord;
-      if (height > most) {
-        most = height;
+      if (height > max_height) {
+        max_height = height;
         corner = i;
       }
     }
-    return most;
+    return max_height;
   }
 
   const std::vector<FlatPoint>& outline_;
@@ -113,7 +114,7 @@ class OutlineThinner {
   std::vector<std::uint8_t> keep_;
 };
 
-// Two corners that stand out clearly: the one farthest from the middle, and the one farthest from that.
+// Returns two corners that stand out clearly: the farthest from the middle, and the farthest from that one.
 std::pair<std::size_t, std::size_t> clearCorners(const std::vector<FlatPoint>& outline,
                                                  const FlatPoint& middle) {
   const auto farthestFrom = [&outline](const FlatPoint& p) {
@@ -130,7 +131,8 @@ std::pair<std::size_t, std::size_t> clearCorners(const std::vector<FlatPoint>& o
   return std::minmax(first, second);
 }
 
-// Vertices in the order of the points; ring: points in order round the outline (or the ends of a segment).
+// Sets vertices, in the order of the points, and edges. ring: points in order around the outline, or the ends
+// of a segment.
 void setRing(ConvexHull& hull, std::span<const Vec3d> points, const std::vector<std::uint32_t>& ring,
              std::vector<std::uint32_t>& sorted) {
   sorted = ring;
@@ -155,8 +157,8 @@ void setRing(ConvexHull& hull, std::span<const Vec3d> points, const std::vector<
   }
 }
 
-// A point is off the segment by no more than twice what any is off the line along which they were measured,
-// for the ends may lie on opposite sides of it.
+// A point's distance from the segment is at most twice the greatest distance of a point from the measured
+// line, since the ends may lie on opposite sides of it.
 std::vector<std::uint32_t> segmentEnds(std::span<const Vec3d> points, const HullFrame& frame) {
   const auto along = [&](std::uint32_t i) { return dot(points[i] - frame.origin, frame.along); };
   std::uint32_t low = 0;
@@ -172,7 +174,7 @@ std::vector<std::uint32_t> segmentEnds(std::span<const Vec3d> points, const Hull
 
 ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
                     std::vector<std::uint32_t>& numbers) {
-  // What distances from the frame's line and plane are off by.
+  // Error of distances from the frame's line and plane.
   const double rounding = frame.extent * 0x1p-48;
   ConvexHull hull;
   hull.dimension = std::min(frame.dimension, 2);
@@ -183,8 +185,8 @@ ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
     setRing(hull, points, segmentEnds(points, frame), numbers);
     hull.slack = 2.0 * (frame.off_line + rounding);
   } else {
-    // A point whose shadow lies in that of the polygon is off it by no more than the points' greatest
-    // difference of height along the dropped axis, at most sqrt(3) times that along the normal.
+    // The distance of a point from the polygon below or above it is at most the points' greatest difference
+    // of height along the dropped axis, which is at most sqrt(3) times that along the normal.
     std::vector<FlatPoint> flat = flattened(points, frame.normal);
     const FlatPoint middle = flattened(std::span(&frame.middle, 1), frame.normal)[0];
     const std::vector<FlatPoint> outline = outlineOf(std::move(flat));

@@ -9,8 +9,9 @@
 
 namespace sightline::layers {
 
-// The hull of points that lie in one place, on a line or in a plane, up to rounding: all but centre and
-// radius. points: coordinates of at most 1. numbers: becomes which point each vertex is.
+// Returns the hull, without centre and radius, of points that lie in one place, on a line or in a plane, up
+// to rounding.
+// points: coordinates of at most 1. numbers: receives the point of each vertex.
 ConvexHull flatHull(std::span<const Vec3d> points, const HullFrame& frame,
                     std::vector<std::uint32_t>& numbers);
 

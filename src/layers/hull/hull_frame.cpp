@@ -14,20 +14,20 @@ struct Farthest {
   double value = 0.0;
 };
 
-// The point of greatest value; of those within the tolerance of it the one farthest from the middle, which is
-// a corner where they are points of a side or an edge.
+// Finds the point of greatest value. Of points within the tolerance of it, it takes the one farthest from the
+// middle, which is a corner if the points lie on a side or an edge.
 template <typename Value>
 Farthest farthestOf(std::span<const Vec3d> points, std::span<const std::uint32_t> chosen, const Vec3d& middle,
                     double tolerance, const Value& value) {
-  double most = 0.0;
+  double max_value = 0.0;
   for (const std::uint32_t i : chosen) {
-    most = std::max(most, value(points[i]));
+    max_value = std::max(max_value, value(points[i]));
   }
-  Farthest best{chosen[0], most};
+  Farthest best{chosen[0], max_value};
   double best_distance = -1.0;
   for (const std::uint32_t i : chosen) {
     const double distance = length(points[i] - middle);
-    if (distance > best_distance && value(points[i]) >= most - tolerance) {
+    if (distance > best_distance && value(points[i]) >= max_value - tolerance) {
       best.point = i;
       best_distance = distance;
     }

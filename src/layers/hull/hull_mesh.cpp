@@ -1,10 +1,10 @@
 // Based on: Barber, Dobkin, Huhdanpaa. The Quickhull algorithm for convex hulls. ACM TOMS 1996.
-// Differs from the paper in: which facets a point sees is told without rounding, so that facets need not be
-// merged; which points are worth inserting, and which facet they are kept with, is told with rounding.
+// Differs from the paper in: visibility of facets is exact, so facets need not be merged; the choice of
+// points to insert, and the facet that they are kept with, are subject to rounding.
 //
-// A point that sees facets strictly sees a connected part of the surface whose border is one closed line, and
-// none of the new facets is degenerate: a point in line with an edge of the border would lie in the plane of
-// the visible facet there.
+// The facets that a point sees strictly are a connected part of the surface whose border is one closed line.
+// No new facet is degenerate, since a point in line with an edge of the border would lie in the plane of the
+// visible facet there.
 
 #include "src/layers/hull/hull_mesh.h"
 
@@ -16,8 +16,8 @@
 namespace sightline::layers {
 namespace {
 
-// Of three points that are not in line without rounding. Where rounding puts them nearly in line, the areas
-// of their shadows are taken without it.
+// The normal of three points that are not exactly in line. If they are nearly in line, the exact areas of
+// their projections are used.
 Vec3d normalOf(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   constexpr double kNearlyInLine = 0x1p-30;
   const Vec3d normal = cross(b - a, c - a);
@@ -40,12 +40,12 @@ HullMesh::HullMesh(std::span<const Vec3d> points, std::span<const std::uint32_t>
   for (const std::uint32_t point : chosen) {
     assign(point, 0);
   }
-  // New facets are appended; facets that were passed have no points left.
+  // New facets are appended, and facets already visited have no points left.
   for (std::uint32_t facet = 0; facet < facets_.size(); ++facet) {
     while (facets_[facet].live && !facets_[facet].outside.empty()) {
       const std::uint32_t point = farthestOutside(facets_[facet]);
       insert(point, facet);
-      if (facets_[facet].live) {  // rounding took it for outside
+      if (facets_[facet].live) {  // the point is not outside; its height was rounding error
         std::erase(facets_[facet].outside, point);
       }
     }
@@ -95,7 +95,7 @@ std::uint32_t HullMesh::addFacet(const std::array<std::uint32_t, 3>& corner) {
   return static_cast<std::uint32_t>(facets_.size() - 1);
 }
 
-// Keeps the point with the facet it is highest above, of those from first_facet on.
+// Adds the point to the facet, from first_facet on, above which it is highest.
 void HullMesh::assign(std::uint32_t point, std::uint32_t first_facet) {
   double best = tolerance_;
   std::size_t best_facet = facets_.size();
@@ -111,18 +111,19 @@ void HullMesh::assign(std::uint32_t point, std::uint32_t first_facet) {
   }
 }
 
-// Of those about as high the one farthest from the middle: a corner, not a point of an edge or a side.
+// Of points of about the same height, takes the one farthest from the middle: a corner, not a point of an
+// edge.
 std::uint32_t HullMesh::farthestOutside(const Facet& facet) const {
   const Vec3d first = at(facet.corner[0]);
-  double most = 0.0;
+  double max_height = 0.0;
   for (const std::uint32_t i : facet.outside) {
-    most = std::max(most, dot(facet.normal, at(i) - first));
+    max_height = std::max(max_height, dot(facet.normal, at(i) - first));
   }
   std::uint32_t best = facet.outside[0];
   double best_distance = -1.0;
   for (const std::uint32_t i : facet.outside) {
     const double distance = length(at(i) - middle_);
-    if (distance > best_distance && dot(facet.normal, at(i) - first) >= most - tolerance_) {
+    if (distance > best_distance && dot(facet.normal, at(i) - first) >= max_height - tolerance_) {
       best = i;
       best_distance = distance;
     }
@@ -143,7 +144,7 @@ void HullMesh::findVisible(std::uint32_t point, std::uint32_t facet) {
   }
 }
 
-// A facet from the point to each edge of the border of what it sees.
+// Adds a facet from the point to each border edge of the visible facets.
 void HullMesh::addCone(std::uint32_t point) {
   const auto first_new = static_cast<std::uint32_t>(facets_.size());
   for (const std::uint32_t seen : visible_) {

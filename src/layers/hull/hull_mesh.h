@@ -1,7 +1,7 @@
 #pragma once
 
-// The surface of the convex hull of points that fill space, as triangles that know their neighbours: convex
-// without rounding, for on which side of a triangle a point lies is told exactly.
+// The surface of the convex hull of points that span space, as triangles with neighbours. It is exactly
+// convex, since the side of a triangle on which a point lies is computed exactly.
 
 #include <array>
 #include <cstdint>
@@ -16,27 +16,30 @@ namespace sightline::layers {
 class HullMesh {
  public:
   struct Facet {
-    std::array<std::uint32_t, 3> corner{};  // points, counter-clockwise from outside
+    std::array<std::uint32_t, 3> corner{};  // points, counter-clockwise seen from outside
     std::array<std::uint32_t, 3> across{};  // the facet beyond the edge from corner i to corner i + 1
-    Vec3d normal;                           // unit, outwards, rounded
+    Vec3d normal;                           // outward unit normal, rounded
     bool live = true;
     bool visible = false;
     std::vector<std::uint32_t> outside;  // points above it that are not in the mesh yet
   };
 
-  // The hull of some points (coordinates of at most 1), leaving out what is not above it by more than the
-  // frame's tolerance. frame: of these points, dimension 3. The points must outlive the mesh.
+  // Makes the hull of the chosen points, without those that are not above it by more than the frame's
+  // tolerance.
+  // points: coordinates of at most 1; they must outlive the mesh. frame: that of the chosen points, of
+  // dimension 3.
   HullMesh(std::span<const Vec3d> points, std::span<const std::uint32_t> chosen, const HullFrame& frame);
 
-  // False: the frame's corners lie in a plane after all, there is no mesh.
+  // Returns false if the frame's corners turn out to lie in a plane, so that there is no mesh.
   bool valid() const { return !facets_.empty(); }
-  // Makes the mesh the hull of itself and a point; nothing if that is not above the facet, a live one.
+  // Extends the mesh to the hull of itself and a point; does nothing if the point is not above the given live
+  // facet.
   void insert(std::uint32_t point, std::uint32_t facet);
 
   const std::vector<Facet>& facets() const { return facets_; }
-  // Positive: the point is above the facet. Exact in sign.
+  // Returns a positive number if the point is above the facet. The sign is exact.
   double above(const Facet& facet, const Vec3d& point) const;
-  // Whether the surface bends at the edge from corner i to the next, or is flat there. Exact.
+  // Whether the surface bends at the edge from corner i to the next one; exact.
   bool bends(const Facet& facet, std::size_t i) const;
   const Vec3d& at(std::uint32_t point) const { return points_[point]; }
 
@@ -52,8 +55,8 @@ class HullMesh {
   Vec3d middle_;
   double tolerance_ = 0.0;
   std::vector<Facet> facets_;
-  std::vector<std::uint32_t> visible_;   // facets that the point sees that is being inserted
-  std::vector<std::uint32_t> facet_of_;  // by point: the new facet whose first corner it is
+  std::vector<std::uint32_t> visible_;   // facets visible from the point that is being inserted
+  std::vector<std::uint32_t> facet_of_;  // one per point: the new facet of which it is the first corner
 };
 
 }  // namespace sightline::layers

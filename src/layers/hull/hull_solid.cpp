@@ -14,11 +14,11 @@ namespace sightline::layers {
 namespace {
 
 constexpr int kMaxRounds = 64;
-// Points that are farther outside than so many times the tolerance become vertices.
+// Points farther outside than this many times the tolerance become vertices.
 constexpr double kWorthInserting = 4.0;
-constexpr std::size_t kLookAtAll = 4096;
+constexpr std::size_t kLookAtAll = 4096;  // vertices up to which all are compared to place faces
 
-// The points of the mesh's facets, ascending: all, or those where at least `min_edges` edges end.
+// Returns the corners of the mesh at which at least `min_edges` edges end, ascending.
 std::vector<std::uint32_t> cornersOf(const HullMesh& mesh, std::size_t points, std::uint32_t min_edges) {
   std::vector<std::uint32_t> edges(points, 0);
   std::vector<std::uint8_t> used(points, 0);
@@ -40,7 +40,7 @@ std::vector<std::uint32_t> cornersOf(const HullMesh& mesh, std::size_t points, s
   return corners;
 }
 
-// A point within an edge has two edges, one within a side none: the mesh is made anew without them.
+// Rebuilds the mesh without corners inside an edge, which have two edges, and inside a side, which have none.
 void dropFlatCorners(HullMesh& mesh, std::span<const Vec3d> points) {
   for (int round = 0; round < kMaxRounds; ++round) {
     const std::vector<std::uint32_t> extreme = cornersOf(mesh, points.size(), 3);
@@ -77,7 +77,8 @@ std::optional<Vec3d> pointInside(const HullMesh& mesh, std::span<const Vec3d> po
   return std::nullopt;
 }
 
-// Coplanar triangles make one face: each triangle's face, faces numbered in the order of their first one.
+// Returns the face of each triangle. Coplanar triangles make one face; faces are numbered by their first
+// triangle.
 std::vector<std::uint32_t> facesOf(const HullMesh& mesh, std::uint32_t& faces) {
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> face(mesh.facets().size(), kNone);
@@ -104,7 +105,7 @@ std::vector<std::uint32_t> facesOf(const HullMesh& mesh, std::uint32_t& faces) {
   return face;
 }
 
-// The triangles' edges, without those within a face.
+// Sets the edges of the triangles, without those inside a face.
 void setEdges(ConvexHull& hull, const HullMesh& mesh, std::span<const std::uint32_t> vertex_of) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const HullMesh::Facet& facet : mesh.facets()) {
@@ -123,13 +124,13 @@ void setEdges(ConvexHull& hull, const HullMesh& mesh, std::span<const std::uint3
   std::partial_sum(hull.first_neighbour.begin(), hull.first_neighbour.end(), hull.first_neighbour.begin());
 }
 
-// A face's plane has the normal of its largest triangle and lies at the farthest vertex in that direction or
-// just beyond.
+// Sets the faces. A face's plane has the normal of its largest triangle and lies at or just beyond the
+// farthest vertex in that direction.
 void setFaces(ConvexHull& hull, const HullMesh& mesh, std::span<const std::uint32_t> vertex_of) {
   std::uint32_t count = 0;
   const std::vector<std::uint32_t> face = facesOf(mesh, count);
   std::vector<double> largest(count, -1.0);
-  // As supportError(), of coordinates of at most 1.
+  // supportError() for coordinates of at most 1.
   const double rounding = 0x1p-49 * (1.0 + 2.0 * hull.descent_factor);
   hull.faces.resize(count);
   for (std::size_t i = 0; i < face.size(); ++i) {
@@ -168,7 +169,7 @@ ConvexHull hullOf(const HullMesh& mesh, std::span<const Vec3d> points,
   }
   setEdges(hull, mesh, vertex_of);
   const double factor = descentFactor(hull, uphill);
-  // Planes are tightest if the farthest vertex is found by looking at all.
+  // Comparing all vertices gives the tightest planes.
   hull.descent_factor = hull.vertices.size() > kLookAtAll ? factor : 0.0;
   setFaces(hull, mesh, vertex_of);
   hull.descent_factor = factor;

@@ -10,8 +10,9 @@
 
 namespace sightline::layers {
 
-// The hull of points that fill space: all but centre and radius. points: coordinates of at most 1. numbers:
-// becomes which point each vertex is. Nothing where the points turn out to be flat.
+// Returns the hull, without centre and radius, of points that span space, or nothing if they turn out to be
+// flat.
+// points: coordinates of at most 1. numbers: receives the point of each vertex.
 std::optional<ConvexHull> solidHull(std::span<const Vec3d> points, const HullFrame& frame,
                                     std::vector<std::uint32_t>& numbers);
 

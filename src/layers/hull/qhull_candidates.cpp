@@ -10,8 +10,8 @@ extern "C" {
 namespace sightline::layers {
 namespace {
 
-// Qhull reports what goes wrong to a stream; without one it ends the program. This one keeps nothing, and
-// needs neither a file nor a device: each hull has its own, in memory.
+// A stream that discards what is written. Qhull reports errors to a stream and ends the program without one.
+// The stream is in memory, so it needs neither a file nor a device, and each hull has its own.
 class Discarded {
  public:
 #if defined(_WIN32)
@@ -31,7 +31,7 @@ class Discarded {
   }  // null: no memory
 
  private:
-  char bytes_[16] = {};  // where the stream begins; what does not fit is dropped
+  char bytes_[16] = {};  // buffer of the stream, which drops what does not fit
   std::FILE* stream_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace sightline::layers {
 
-// The numbers of points that Qhull takes for vertices of their convex hull, ascending: all clear ones, and
-// perhaps some that lie on its faces. Empty where Qhull finds none. Writes nothing to the program's outputs.
+// Returns the numbers of the points that Qhull takes for vertices of their convex hull, ascending: all clear
+// vertices and perhaps some points on faces. Empty if Qhull fails. Writes nothing to the program's outputs.
 // Source: Barber, Dobkin, Huhdanpaa. The Quickhull algorithm for convex hulls. ACM TOMS 1996.
 std::vector<std::uint32_t> qhullCandidates(std::span<const Vec3d> points, const Vec3d& middle);
 

@@ -1,5 +1,5 @@
-// The vertex of a hull that is farthest along a direction, for code of one instruction set: included between
-// HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE's files, once a target. Elsewhere: support.h.
+// The farthest vertex of a hull along a direction, for code compiled for one instruction set; Highway
+// includes this file once per target. Other code includes support.h.
 
 #if defined(SIGHTLINE_LAYERS_SUPPORT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIGHTLINE_LAYERS_SUPPORT_INL_H
@@ -17,7 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sightline::layers::HWY_NAMESPACE {
 
-// The highest of a vertex' neighbours, if one is higher than it. Mostly none is, and four are asked at once.
+// Returns the highest neighbour of a vertex, or the vertex if none is higher. Four neighbours are compared at
+// once.
 HWY_INLINE Support highestAround(const ConvexHull& hull, const Vec3d& direction, const Support& at) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::CappedTag<double, 4> d;
@@ -46,7 +47,7 @@ HWY_INLINE Support highestAround(const ConvexHull& hull, const Vec3d& direction,
   return best;
 }
 
-// farthest() of a hull with climbs(hull), from one of its vertices.
+// farthest() for a hull with climbs(hull), from one of its vertices.
 HWY_INLINE Support climb(const ConvexHull& hull, const Vec3d& direction, std::uint32_t start) {
   Support at{start, dot(direction, hull.vertices[start])};
   while (true) {
@@ -58,7 +59,7 @@ HWY_INLINE Support climb(const ConvexHull& hull, const Vec3d& direction, std::ui
   }
 }
 
-// farthest() itself.
+// farthest() for any hull.
 HWY_INLINE Support farthestHere(const ConvexHull& hull, const Vec3d& direction, std::uint32_t start) {
   return HWY_LIKELY(climbs(hull)) ? climb(hull, direction, start < hull.vertices.size() ? start : 0)
                                   : farthestOfAll(hull, direction);

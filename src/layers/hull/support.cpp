@@ -45,7 +45,7 @@ Support farthest(const ConvexHull& hull, const Vec3d& direction, std::uint32_t s
 }
 
 double supportError(const ConvexHull& hull, double length) {
-  // |v| <= |centre| + radius; a dot product is off by at most 3 * 2^-53 * |D| |v| and a little.
+  // |v| <= |centre| + radius, and the error of a dot product is slightly more than 3 * 2^-53 * |D| |v|.
   const double reach = l1Norm(hull.centre) + hull.radius;
   const double rounding = 0x1p-50 * length * reach + std::numeric_limits<double>::min();
   return 1.0001 * (length * hull.slack + rounding * (1.0 + 2.0 * hull.descent_factor));

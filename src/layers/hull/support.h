@@ -1,6 +1,6 @@
 #pragma once
 
-// The vertex of a hull that is farthest along a direction.
+// The farthest vertex of a hull along a direction.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,20 +14,22 @@ struct Support {
   double height = 0.0;  // dot(direction, vertex)
 };
 
-// By going uphill from vertex `start` (any, as the last answer), or by looking at all where that is not safe
-// or not worth it. direction: in the hull's space, any finite one.
+// Finds the farthest vertex by going uphill from vertex `start`, or by comparing all vertices if that is not
+// safe or not worth it.
+// direction: finite, in the hull's space. start: any number; the last answer is best.
 Support farthest(const ConvexHull& hull, const Vec3d& direction, std::uint32_t start);
 
-// By how much the height of any point that the hull was made of, computed exactly, may exceed what farthest()
-// returns. length: of the direction, rounded up.
+// Returns a bound by which the exact height of an input point of the hull may exceed the height from
+// farthest().
+// length: the direction's length, rounded up.
 double supportError(const ConvexHull& hull, double length);
 
-// Whether farthest() goes uphill.
+// Whether farthest() goes uphill for this hull.
 inline bool climbs(const ConvexHull& hull) {
   constexpr std::size_t kScanUpTo = 24;  // vertices
   return hull.descent_factor > 0.0 && hull.vertices.size() > kScanUpTo;
 }
-// farthest() by looking at all.
+// farthest() by comparing all vertices.
 Support farthestOfAll(const ConvexHull& hull, const Vec3d& direction);
 
 }  // namespace sightline::layers

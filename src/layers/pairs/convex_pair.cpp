@@ -1,8 +1,8 @@
 // Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
 // Microsoft Research MSR-TR-97-11, 1997, appendix B; Kelvin Chung, Wenping Wang. Quick collision detection of
 // polytopes in virtual environments. VRST 1996.
-// Differs from the papers in: "apart" is said only of a plane with more room than all rounding, "meet" only
-// of a tetrahedron that holds the origin by more than that; what is left in between is undecided.
+// Differs from the papers in: sets are disjoint only if a plane separates them by more than the rounding
+// error, and intersecting only if a tetrahedron contains the origin by more than that; the rest is undecided.
 
 #include "src/layers/pairs/convex_pair.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kChungSteps = 4;
 
-// From somewhere within the first set to somewhere within the second.
+// The direction from a point inside the first set to one inside the second.
 Vec3d directionBetween(const PairQuestion& question) {
   const Vec3d inner = innerPoint(question.second, innerPoint(question.first, Vec3d()));
   const Vec3d unit = unitOrZero(inner - innerPoint(question.first, inner));
@@ -28,7 +28,7 @@ bool isUnit(const Vec3d& direction) {
   return std::abs(dot(direction, direction) - 1.0) <= 1e-9;
 }
 
-// Where to begin: the kept direction, and the kept vertices of hulls.
+// Starts from the witness's direction and vertices.
 void recall(const PairWitness& witness, PairQuestion& question) {
   for (std::size_t i = std::min<std::size_t>(witness.pairs, witness.first.size()); i-- > 0;) {
     const std::uint32_t first = knownVertex(question.first, witness.first[i]);
@@ -46,7 +46,7 @@ void recall(const PairWitness& witness, PairQuestion& question) {
   }
 }
 
-// The kept vertex pairs as a simplex.
+// The witness's vertex pairs as a simplex.
 Simplex recallSimplex(const PairWitness& witness, const PairQuestion& question) {
   Simplex simplex;
   for (std::size_t i = 0; i < std::min<std::size_t>(witness.pairs, witness.first.size()); ++i) {
@@ -59,9 +59,9 @@ Simplex recallSimplex(const PairWitness& witness, const PairQuestion& question) 
   return simplex;
 }
 
-// The hulls' farthest vertices are kept beside the sets', because a search cannot begin at an eye.
-void keepApart(const PairQuestion& question, PairWitness& witness) {
-  witness.apart = true;
+// Keeps the farthest vertices of the hulls beside those of the sets, since a search cannot start at the eye.
+void keepDisjoint(const PairQuestion& question, PairWitness& witness) {
+  witness.disjoint = true;
   witness.pairs = 2;
   witness.direction = question.direction;
   witness.first[0] = question.first_vertex;
@@ -71,7 +71,7 @@ void keepApart(const PairQuestion& question, PairWitness& witness) {
 }
 
 void keepSimplex(const PairQuestion& question, const Simplex& simplex, PairWitness& witness) {
-  witness.apart = false;
+  witness.disjoint = false;
   witness.pairs = static_cast<std::uint8_t>(simplex.size);
   witness.direction = question.direction;
   for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.size); ++i) {
@@ -80,16 +80,17 @@ void keepSimplex(const PairQuestion& question, const Simplex& simplex, PairWitne
   }
 }
 
-// D' = D - 2 (R . D) R, R from the first set's farthest vertex to the second's: where these two lie the wrong
-// way round along D, they lie the right way round along D'. Chung shows that this ends at a separating
-// direction where there is one. simplex: takes the pairs.
-Meeting chung(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
+// Chung's reflections: D' = D - 2 (R . D) R, with the unit vector R from the first set's farthest vertex
+// along D to the second's. Two vertices that are in the wrong order along D are in the right order along D'.
+// Chung shows that this ends at a separating direction if there is one. The vertex pairs are added to the
+// simplex.
+Intersection chung(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
   for (int step = 0; step < kChungSteps; ++step) {
     if (separates(question, question.direction, steps)) {
-      return Meeting::kApart;
+      return Intersection::kDisjoint;
     }
     if (simplex.has(question.first_vertex, question.second_vertex)) {
-      return Meeting::kUndecided;
+      return Intersection::kUndecided;
     }
     const Difference pair = differenceOf(question, question.first_vertex, question.second_vertex);
     simplex.add(pair);
@@ -97,17 +98,17 @@ Meeting chung(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
     const double along = dot(pair.point, question.direction);
     const Vec3d next = unitOrZero(question.direction - pair.point * (2.0 * along / square));
     if (next == Vec3d()) {
-      return Meeting::kUndecided;
+      return Intersection::kUndecided;
     }
     question.direction = next;
   }
-  return Meeting::kUndecided;
+  return Intersection::kUndecided;
 }
 
-// An upper bound of the set's heights along a direction, whose components do not exceed 1 by more than
-// rounding, above the local origin: by its ellipsoid. Of sums of numbers whose magnitudes add up to m, 2^-45
-// m is far above the rounding, and kTiny above all that underflows. Not a number, or infinite, where anything
-// is not finite.
+// An upper bound, by the hull's envelope, of the set's heights above the local origin along a direction,
+// whose components exceed 1 by no more than rounding. For sums of numbers whose magnitudes add up to m, 2^-45
+// m is far above the rounding error, and kTiny above what underflows. The bound is NaN or infinite if any
+// input is not finite.
 double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& local_origin) {
   constexpr double kRounding = 0x1p-45, kTiny = 1e-150;
   const Placement& p = set.placement;
@@ -126,9 +127,10 @@ double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& lo
   return height;
 }
 
-// Whether the kept direction still separates, seen without looking at vertices. false: not known.
-bool stillApart(const ConvexSet& first, const ConvexSet& second, const PairWitness& witness) {
-  if (!witness.apart || first.around == nullptr || second.around == nullptr || !isUnit(witness.direction)) {
+// Whether the envelopes prove that the witness's direction still separates the sets; false: not known.
+bool stillDisjoint(const ConvexSet& first, const ConvexSet& second, const PairWitness& witness) {
+  if (!witness.disjoint || first.around == nullptr || second.around == nullptr ||
+      !isUnit(witness.direction)) {
     return false;
   }
   const Vec3d& origin = first.placement.origin;
@@ -152,37 +154,38 @@ bool isFinite(const LocalSet& set) {
 
 }  // namespace
 
-Meeting meeting(const ConvexSet& first, const ConvexSet& second, PairWitness& witness, PairCounts& counts) {
+Intersection testIntersection(const ConvexSet& first, const ConvexSet& second, PairWitness& witness,
+                              PairCounts& counts) {
   ++counts.questions;
   if (!hasPoints(first) || !hasPoints(second)) {
     witness = PairWitness();
-    return Meeting::kUndecided;
+    return Intersection::kUndecided;
   }
-  if (stillApart(first, second, witness)) {
+  if (stillDisjoint(first, second, witness)) {
     ++counts.chung_steps;
-    return Meeting::kApart;
+    return Intersection::kDisjoint;
   }
   PairQuestion question = questionOf(first, second);
   if (!isFinite(question.first) || !isFinite(question.second)) {
     witness = PairWitness();
-    return Meeting::kUndecided;
+    return Intersection::kUndecided;
   }
   recall(witness, question);
   Simplex simplex;
-  Meeting result = Meeting::kUndecided;
-  if (witness.apart || witness.pairs == 0) {
+  Intersection result = Intersection::kUndecided;
+  if (witness.disjoint || witness.pairs == 0) {
     result = chung(question, simplex, counts.chung_steps);
   } else {
     simplex = recallSimplex(witness, question);
   }
-  if (result == Meeting::kUndecided) {
+  if (result == Intersection::kUndecided) {
     result = gjk(question, simplex, counts.gjk_steps);
   }
-  if (result == Meeting::kUndecided) {
+  if (result == Intersection::kUndecided) {
     result = gjkAgain(question, simplex, counts.gjk_steps);
   }
-  if (result == Meeting::kApart) {
-    keepApart(question, witness);
+  if (result == Intersection::kDisjoint) {
+    keepDisjoint(question, witness);
   } else {
     keepSimplex(question, simplex, witness);
   }

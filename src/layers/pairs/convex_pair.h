@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether two convex sets meet, from what is known of the same two of a moment before.
+// Whether two convex sets intersect, starting from the result of the last frame.
 
 #include <array>
 #include <cstdint>
@@ -11,34 +11,34 @@
 
 namespace sightline::layers {
 
-// A placed hull; or what is swept on the way from it to the eye: the convex hull of it and the eye, where the
-// eye is a point, or all segments from its points along `sweep`, where the eye is far away in that direction.
-// That an occluder of the hull must meet this set is what makes occlusion a question of meeting.
+// A placed hull, or the set that it sweeps towards the eye: the convex hull of it and the eye (perspective),
+// or all segments from its points along the sweep (orthographic). An occluder of the hull intersects this
+// set, which makes occlusion a question of intersection.
 struct ConvexSet {
   enum class Kind : std::uint8_t { kHull, kWithEye, kSwept };
   const ConvexHull* hull = nullptr;
   Placement placement;
   Kind kind = Kind::kHull;
-  Vec3d eye_or_sweep;  // world space: the eye; or the segment, as long as is needed to pass the other set
-  const HullEnvelope* around = nullptr;  // the hull's; none: pairs known to be apart take longer
+  Vec3d eye_or_sweep;  // world space: the eye, or a segment long enough to pass the other set
+  const HullEnvelope* around = nullptr;  // the hull's envelope; null: known disjoint pairs take longer
 };
 
-enum class Meeting : std::uint8_t {
-  kApart,      // proven: a plane lies between them, with more room than all rounding
-  kMeet,       // a tetrahedron of differences of their points holds the origin
-  kUndecided,  // neither: they touch, nearly do, or are not finite. Counts as meeting
+enum class Intersection : std::uint8_t {
+  kDisjoint,      // proven: a plane separates them with more room than the rounding error
+  kIntersecting,  // a tetrahedron of differences of their points contains the origin
+  kUndecided,     // they touch, nearly touch, or are not finite; counts as intersecting
 };
 
-// What is kept of a pair between two questions.
+// What is kept of a pair from one test to the next.
 struct PairWitness {
-  static constexpr std::uint32_t kEye = 0xffffffffu;       // a vertex number: the eye
-  static constexpr std::uint32_t kSweptBit = 0x80000000u;  // on a vertex number: its far end
+  static constexpr std::uint32_t kEye = 0xffffffffu;       // vertex number of the eye
+  static constexpr std::uint32_t kSweptBit = 0x80000000u;  // in a vertex number: the far end of its segment
 
-  bool apart = false;      // at the last question
-  std::uint8_t pairs = 0;  // how many of the vertex pairs hold something
+  bool disjoint = false;   // result of the last test
+  std::uint8_t pairs = 0;  // number of vertex pairs in use
   Vec3d direction;         // world space, from the first set to the second
-  // Vertices of the two sets. Apart: the farthest along `direction`, then those of the hulls alone; otherwise
-  // the corners of the simplex that holds the origin or came nearest to it.
+  // Vertices of the two sets. Disjoint: the farthest along `direction`, then the farthest of the hulls alone.
+  // Otherwise: the corners of the simplex that contains the origin or came nearest to it.
   std::array<std::uint32_t, 4> first{}, second{};
 };
 
@@ -46,13 +46,14 @@ struct PairCounts {
   std::uint64_t questions = 0, chung_steps = 0, gjk_steps = 0;
 };
 
-// Sets that were apart at the last question are first looked at as their envelopes, which mostly settles it.
-// Then Chung's reflections, at most four and only if they were apart at the last question or nothing is
-// known; then Gilbert's distance, from the vertex pairs found. The answer does not depend on the witness but
-// for pairs that nearly touch; a wrong or strange witness (numbers beyond the hull's) does no harm. Source:
-// Snyder, Lengyel. MSR-TR-97-11, appendix B; Chung, Wang. Quick collision detection of polytopes in virtual
-// environments. VRST 1996; Gilbert, Johnson, Keerthi. A fast procedure for computing the distance between
-// complex objects in three-dimensional space. IEEE J. Robotics and Automation 1988.
-Meeting meeting(const ConvexSet& first, const ConvexSet& second, PairWitness& witness, PairCounts& counts);
+// Tests two sets for intersection and updates the witness. Sets that were disjoint before are first tested by
+// their envelopes, which mostly suffices. Sets that were disjoint or are new then take up to four of Chung's
+// reflections. GJK decides the rest, starting from the vertex pairs found. The witness changes the result
+// only for pairs that nearly touch; any witness is valid, also with numbers that the hulls do not have.
+// Source: Snyder, Lengyel. MSR-TR-97-11, appendix B; Chung, Wang. Quick collision detection of polytopes in
+// virtual environments. VRST 1996; Gilbert, Johnson, Keerthi. A fast procedure for computing the distance
+// between complex objects in three-dimensional space. IEEE J. Robotics and Automation 1988.
+Intersection testIntersection(const ConvexSet& first, const ConvexSet& second, PairWitness& witness,
+                              PairCounts& counts);
 
 }  // namespace sightline::layers

@@ -9,7 +9,8 @@
 namespace sightline::layers {
 namespace {
 
-// Rounding. u = 2^-53, |v| is the sum of a vector's absolute components, D the direction, |D_k| <= 1 + 1e-9.
+// Rounding errors. u = 2^-53, |v| is the sum of a vector's absolute components, D the direction, |D_k| <= 1 +
+// 1e-9.
 //
 // The exact height of a point p of a hull is D . (X p + o), X = (x y z) the placement's axes and o its origin
 // from the local origin. What is computed instead:

@@ -7,7 +7,7 @@
 namespace sightline::layers {
 namespace {
 
-// A sum of doubles kept without rounding: components that do not overlap, ascending in magnitude, none zero.
+// An exact sum of doubles: components that do not overlap, ascending in magnitude, none of them zero.
 class Expansion {
  public:
   void add(double value) {
@@ -91,8 +91,8 @@ double slowVolume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& p
   return sum.value();
 }
 
-// A determinant of three rows is off by at most (7 + 56 e) e times the sum of its products' sizes, e = 2^-53;
-// one of two rows by (3 + 16 e) e. A value 64 times above twice that is good to 2 %.
+// The error of a determinant of three rows is at most (7 + 56 e) e times the sum of its products' magnitudes,
+// e = 2^-53; of one of two rows (3 + 16 e) e. A value 64 times above twice that is within 2 %.
 constexpr double kVolumeFilter = 64.0 * 16.0 * 0x1p-53;
 constexpr double kAreaFilter = 64.0 * 8.0 * 0x1p-53;
 

@@ -7,28 +7,28 @@ namespace sightline::layers {
 namespace {
 
 constexpr int kMaxSteps = 64;
-// Of those, with the origin on the simplex up to rounding: then nothing shows that steps lead anywhere.
+// Steps with the origin on the simplex up to rounding, which may make no progress.
 constexpr int kMaxLevelSteps = 6;
 constexpr double kLevelSquare = 0x1p-96;
-constexpr int kMaxRounds = 4;  // of trying normals and going on from what they lead to
+constexpr int kMaxRounds = 4;  // of gjkAgain(): trying normals and iterating from where they lead
 
-// None of them special: not along edges or normals of anything that people build.
+// Directions that are unlikely to be along edges or normals of man-made shapes.
 constexpr std::array<Vec3d, 4> kOddDirections{{{0.5709, 0.6173, 0.5413},
                                                {-0.6131, -0.5303, 0.5857},
                                                {0.4987, -0.6029, -0.6229},
                                                {-0.5501, 0.5783, -0.6029}}};
 
-// Whether all corners lie beyond the origin, up to rounding.
+// Whether all corners lie beyond the origin along a direction, up to rounding.
 bool maySeparate(const Simplex& simplex, const Vec3d& direction) {
   return direction != Vec3d() &&
          std::all_of(simplex.corners.begin(), simplex.corners.begin() + simplex.size,
                      [&](const Difference& corner) { return dot(corner.point, direction) > -0x1p-46; });
 }
 
-// The normals of the simplex's faces that it leaves possible, also where the origin is too near to a face to
-// see on which side. true: one separates (result: apart), or led to a corner that is new, and the simplex is
-// that face and the corner.
-bool tryNormals(PairQuestion& question, Simplex& simplex, Meeting& result, std::uint64_t& steps) {
+// Tries the normals of the simplex's faces that may separate, also of a face so near to the origin that the
+// side is not known. Returns true if one separates (result becomes kDisjoint) or leads to a new corner (the
+// simplex becomes that face and the corner).
+bool tryNormals(PairQuestion& question, Simplex& simplex, Intersection& result, std::uint64_t& steps) {
   constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{{{0, 1, 2}, {1, 2, 3}, {0, 2, 3}, {0, 1, 3}}};
   const std::size_t faces = simplex.size == 3 ? 1 : simplex.size == 4 ? 4 : 0;
   for (std::size_t i = 0; i < faces; ++i) {
@@ -40,7 +40,7 @@ bool tryNormals(PairQuestion& question, Simplex& simplex, Meeting& result, std::
         continue;
       }
       if (separates(question, direction, steps)) {
-        result = Meeting::kApart;
+        result = Intersection::kDisjoint;
         return true;
       }
       if (!simplex.has(question.first_vertex, question.second_vertex)) {
@@ -68,58 +68,58 @@ bool separates(PairQuestion& question, const Vec3d& direction, std::uint64_t& st
 }
 
 Difference differenceOf(const PairQuestion& question, std::uint32_t first, std::uint32_t second) {
-  const Vec3d apart = pointOf(question.second, second) - pointOf(question.first, first);
-  return {apart * question.unit, first, second};
+  const Vec3d between = pointOf(question.second, second) - pointOf(question.first, first);
+  return {between * question.unit, first, second};
 }
 
-Meeting gjk(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
+Intersection gjk(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
   int level_steps = 0;
   for (int step = 0; step < kMaxSteps && level_steps < kMaxLevelSteps; ++step) {
     const NearestPart part = nearestPart(simplex);
     if (part.holds_origin) {
-      return Meeting::kMeet;
+      return Intersection::kIntersecting;
     }
     if (part.direction == Vec3d()) {
-      return Meeting::kUndecided;
+      return Intersection::kUndecided;
     }
     level_steps += part.square <= kLevelSquare ? 1 : 0;
     if (separates(question, part.direction, steps)) {
-      return Meeting::kApart;
+      return Intersection::kDisjoint;
     }
-    // A corner that comes again, even one that is about to be left out: no nearer than rounding lets us see.
+    // A corner found again, even one about to be dropped, means that rounding prevents progress.
     const bool again = simplex.has(question.first_vertex, question.second_vertex);
     keepCorners(simplex, part.corners);
     if (!simplex.has(question.first_vertex, question.second_vertex)) {
       simplex.add(differenceOf(question, question.first_vertex, question.second_vertex));
     }
     if (again) {
-      return Meeting::kUndecided;
+      return Intersection::kUndecided;
     }
   }
-  return Meeting::kUndecided;
+  return Intersection::kUndecided;
 }
 
-Meeting gjkAgain(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
-  Meeting result = Meeting::kUndecided;
+Intersection gjkAgain(PairQuestion& question, Simplex& simplex, std::uint64_t& steps) {
+  Intersection result = Intersection::kUndecided;
   for (int round = 0; round < kMaxRounds && tryNormals(question, simplex, result, steps); ++round) {
-    if (result != Meeting::kApart) {
+    if (result != Intersection::kDisjoint) {
       result = gjk(question, simplex, steps);
     }
-    if (result != Meeting::kUndecided) {
+    if (result != Intersection::kUndecided) {
       return result;
     }
   }
   Simplex other;
   for (const Vec3d& direction : kOddDirections) {
     if (separates(question, direction, steps)) {
-      return Meeting::kApart;
+      return Intersection::kDisjoint;
     }
     if (!other.has(question.first_vertex, question.second_vertex)) {
       other.add(differenceOf(question, question.first_vertex, question.second_vertex));
     }
   }
   result = gjk(question, other, steps);
-  if (result == Meeting::kMeet) {
+  if (result == Intersection::kIntersecting) {
     simplex = other;
   }
   return result;

@@ -5,7 +5,7 @@
 namespace sightline::layers {
 namespace {
 
-constexpr std::size_t kFewestSlots = 64;
+constexpr std::size_t kMinSlots = 64;
 
 // Steele, Lea, Flood. Fast splittable pseudorandom number generators. OOPSLA 2014: SplitMix64's finish.
 std::uint64_t hashOf(const PairKey& key) {
@@ -31,7 +31,7 @@ void PairIndex::add(const PairKey& key) {
   const auto number = static_cast<std::uint32_t>(keys_.size());
   keys_.push_back(key);
   if (2 * keys_.size() > slots_.size()) {
-    slots_.resize(std::max(kFewestSlots, 2 * slots_.size()));
+    slots_.resize(std::max(kMinSlots, 2 * slots_.size()));
     fillSlots();
   } else {
     slots_[slotOf(key)] = number;

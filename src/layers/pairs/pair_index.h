@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers for pairs, counted from 0 in the order in which they were added: open addressing, linear probing.
+// A hash table that numbers pairs from 0 in the order of add(), with open addressing and linear probing.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,21 +21,21 @@ class PairIndex {
 
   std::size_t size() const { return keys_.size(); }
   const PairKey& key(std::uint32_t number) const { return keys_[number]; }
-  // kNone: not there.
+  // Returns the number of a key, or kNone.
   std::uint32_t find(const PairKey& key) const { return slots_.empty() ? kNone : slots_[slotOf(key)]; }
-  // key: not there yet. Its number is the size before.
+  // Adds a key that is not in the table; its number is the size before.
   void add(const PairKey& key);
-  // Keeps the keys with keep[number] != 0, which move up in their order. keep: one a key.
+  // Removes the keys with keep[number] == 0 and renumbers the others in order. keep: one per key.
   void keepOnly(const std::vector<std::uint8_t>& keep);
   void clear();
 
  private:
-  // The slot that holds the key, or the free one where it belongs.
+  // Returns the slot of the key, or the free slot where it belongs.
   std::size_t slotOf(const PairKey& key) const;
   void fillSlots();
 
   std::vector<PairKey> keys_;
-  std::vector<std::uint32_t> slots_;  // numbers or kNone; a power of two, at least twice the keys
+  std::vector<std::uint32_t> slots_;  // numbers or kNone; the size is a power of two, at least twice the keys
 };
 
 }  // namespace sightline::layers

@@ -1,12 +1,12 @@
 // Based on: Snyder, Lengyel. MSR-TR-97-11, appendix C.
-// Differs from the paper in: the cone is not tested by its apex, which is at l = s^2 / h and moves away
-// without end as the cylinder becomes as thick as the sphere. The eye sees no point of the rim if it lies
-// behind the sphere's tangent planes in all of them. With e the eye from the centre, a its height along V
-// and rho its distance from the axis, the plane in the rim's point h V + r u has the normal h V + r u and the
-// offset s^2; over all unit u across V the condition is
+// Differs from the paper in: the cone is not tested by its apex, which lies at l = s^2 / h and so moves to
+// infinity as the cylinder becomes as thick as the sphere. The eye sees no point of the rim if it lies behind
+// the sphere's tangent plane in each of them. Let e be the eye relative to the centre, a its height along V,
+// and rho its distance from the axis. The plane in the rim's point h V + r u has the normal h V + r u and the
+// offset s^2. Over all unit vectors u across V the condition is
 //   h a + r rho <= s^2,
-// which is the paper's cone without the part beyond the apex, and for r = s the cylinder rho <= s. An eye far
-// away in the direction D gives the same with e = D and 0 for s^2.
+// which is the paper's cone without the part beyond the apex, and for r = s the cylinder rho <= s. For an eye
+// at infinity in the direction D, e = D and 0 replaces s^2.
 
 #include "sightline/layers/pair_rule.h"
 
@@ -20,16 +20,16 @@ namespace sightline {
 namespace layers {
 namespace {
 
-// Relative to coordinates. Some hundred times the rounding of the sums below.
+// Relative to the coordinates; some hundred times the rounding error of the sums below.
 constexpr double kBand = 1e-12;
-// Below this products lose digits.
+// Products below this lose digits to underflow.
 constexpr double kTiny = std::numeric_limits<double>::min() * 0x1p60;
 
 constexpr PairOrder kFirstOnly{true, false};
 constexpr PairOrder kSecondOnly{false, true};
 constexpr PairOrder kBoth{true, true};
 
-// Unit vector of one of any size; not finite where there is none.
+// Normalizes a vector of any length; the result is not finite if there is none.
 Vec3d unit(const Vec3d& direction) {
   const Vec3d scaled = direction / maxComponent(abs(direction));
   return scaled / length(scaled);
@@ -49,7 +49,7 @@ PairEye pairEye(const View& view_in_part) {
 
 PairEye pairEye(const View& view_world, const Placement& world_from_part) {
   const Placement& p = world_from_part;
-  // The rows of the inverse are these by the determinant.
+  // The rows of the inverse, times the determinant.
   const Vec3d row_x = cross(p.y, p.z), row_y = cross(p.z, p.x), row_z = cross(p.x, p.y);
   const double determinant = dot(p.x, row_x);
   const bool far = view_world.orthographic;
@@ -93,9 +93,10 @@ PairOrder orderOf(const SphereCylinderJoint& joint, const PairEye& eye) {
   const double h = std::sqrt((s - r) * (s + r));
   const double along = dot(axis, e);               // a
   const double across = length(e - axis * along);  // rho
-  const double rim = eye.far ? 0.0 : h;            // of the plane, along the axis
+  const double rim = eye.far ? 0.0 : h;            // height of the rim's plane along the axis
   const double tangent = eye.far ? 0.0 : s * s;
-  const double moved = eye.error + kBand * (reach + s) + kTiny;  // by which along, across, rim may be wrong
+  const double moved =
+      eye.error + kBand * (reach + s) + kTiny;  // bound of the error of along, across and rim
   if (!eye.far && !(length(e) > s + moved)) {
     return kBoth;
   }

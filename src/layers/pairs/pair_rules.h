@@ -1,6 +1,6 @@
 #pragma once
 
-// What the program has said about pairs of parts.
+// The rules that the program has set for pairs of parts.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,20 +16,20 @@ namespace sightline::layers {
 struct ContainerRule {};
 
 struct PairRule {
-  std::uint32_t first = 0, second = 0;  // parts; of a container: front, back
-  // std::monostate: taken back.
+  std::uint32_t first = 0, second = 0;  // parts; of a container: its front and its back
+  // std::monostate: the rule has been cleared.
   std::variant<std::monostate, PairPlane, SphereCylinderJoint, PairCallback, ContainerRule> what;
 };
 
-// At most one rule a pair, whichever of the two comes first; the last one set holds. A part is of at most one
-// container: a new one, or another rule for its two parts, ends the old one. Rules of a part with itself are
-// left out. Looking for a rule costs next to nothing for parts that have none.
+// Holds at most one rule per unordered pair; a new rule replaces the old one. A part belongs to at most one
+// container, which ends with a new container or another rule for its two parts. A rule of a part with itself
+// is ignored. Searching is almost free for parts without rules.
 class PairRules {
  public:
   static constexpr std::uint32_t kNone = PairIndex::kNone;
 
   struct Container {
-    std::uint32_t other = kNone;  // its other part; kNone: in no container
+    std::uint32_t other = kNone;  // the container's other part; kNone: in no container
     bool is_front = false;
   };
 
@@ -39,12 +39,12 @@ class PairRules {
   void setContainer(std::uint32_t front, std::uint32_t back);
   void clear(std::uint32_t first, std::uint32_t second);
 
-  // The number of the rule for two parts, in any order, or kNone.
+  // Returns the number of the rule for two parts in any order, or kNone.
   std::uint32_t find(std::uint32_t a, std::uint32_t b) const {
     return ruled(a) && ruled(b) ? findRuled(a, b) : kNone;
   }
   const PairRule& rule(std::uint32_t number) const { return rules_[number]; }
-  // Numbers of rules are below this.
+  // All rule numbers are below this.
   std::size_t numbers() const { return rules_.size(); }
   Container containerOf(std::uint32_t part) const {
     return part < parts_.size() ? parts_[part].container : Container{};
@@ -60,7 +60,7 @@ class PairRules {
   std::uint32_t findRuled(std::uint32_t a, std::uint32_t b) const;
   void set(const PairRule& rule);
 
-  PairIndex index_;  // of all pairs that ever had a rule
+  PairIndex index_;  // all pairs that ever had a rule
   std::vector<PairRule> rules_;
   std::vector<Part> parts_;
 };

@@ -24,7 +24,7 @@ void PairTable::beginFrame(std::uint32_t expiry) {
 namespace {
 
 PairKey keyOf(std::uint32_t a, std::uint32_t b, PairTable::Question question) {
-  const bool swapped = question == PairTable::Question::kMeeting && a > b;
+  const bool swapped = question == PairTable::Question::kIntersection && a > b;
   return {swapped ? b : a, swapped ? a : b, static_cast<std::uint32_t>(question)};
 }
 

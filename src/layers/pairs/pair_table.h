@@ -1,6 +1,6 @@
 #pragma once
 
-// What is kept of pairs of parts between frames: open addressing, linear probing, entries that expire.
+// A table of the witnesses of pairs, whose entries expire when they are not used.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,18 +13,19 @@ namespace sightline::layers {
 
 class PairTable {
  public:
-  // Of hulls (or parts) a and b: do they meet; or does a meet b and what lies between b and the eye?
-  enum class Question : std::uint8_t { kMeeting, kOcclusion };
+  // kIntersection: does hull a intersect hull b? kOcclusion: does a intersect the set that b sweeps to the
+  // eye?
+  enum class Question : std::uint8_t { kIntersection, kOcclusion };
 
-  // Entries not used in the last `expiry` frames before this one are gone (0: all). Moves entries, so that
-  // the table stays compact; allocates only when it holds more than ever before.
+  // Begins a frame and removes entries that were not used in the last `expiry` frames (0: all). Moves the
+  // others together. Allocates only when the table holds more entries than ever before.
   void beginFrame(std::uint32_t expiry);
-  // The entry for a pair, fresh if it is new; valid until the next call. kMeeting: the same for (b, a), a <
-  // b.
+  // Returns the entry of a pair, which it makes if there is none; valid until the next call. The entries of
+  // kIntersection for (a, b) and (b, a) are the same, with a < b.
   PairWitness& use(std::uint32_t a, std::uint32_t b, Question question);
   struct Kept {
-    const PairWitness* witness = nullptr;  // null: nothing is kept
-    bool used_now = false;                 // in this frame
+    const PairWitness* witness = nullptr;  // null: there is no entry
+    bool used_now = false;                 // whether the entry was used in this frame
   };
   Kept find(std::uint32_t a, std::uint32_t b, Question question) const;
   std::size_t size() const { return index_.size(); }
@@ -32,10 +33,10 @@ class PairTable {
 
  private:
   PairIndex index_;
-  std::vector<PairWitness> witnesses_;    // one an entry of the index
-  std::vector<std::uint32_t> last_used_;  // one an entry: the frame
-  std::vector<std::uint8_t> keep_;        // scratch
-  std::uint32_t frame_ = 0;               // may wrap: only differences count
+  std::vector<PairWitness> witnesses_;    // one per entry of the index
+  std::vector<std::uint32_t> last_used_;  // one per entry: the frame of its last use
+  std::vector<std::uint8_t> keep_;        // scratch for beginFrame()
+  std::uint32_t frame_ = 0;               // may wrap around, since only differences are used
 };
 
 }  // namespace sightline::layers

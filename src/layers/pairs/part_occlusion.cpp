@@ -10,13 +10,13 @@
 namespace sightline::layers {
 namespace {
 
-// Relative to the coordinates involved; some hundred times the rounding of what it is compared with.
+// Relative to the coordinates; some hundred times the rounding error of what it is compared with.
 constexpr double kMargin = 1e-12;
 
-// A ball that holds a placed hull, as heights along a direction of the world.
+// The heights of a ball around a placed hull along a direction of the world.
 struct Heights {
   double middle = 0.0, half = 0.0;
-  double magnitude = 0.0;  // of what the middle was computed from
+  double magnitude = 0.0;  // sum of the magnitudes from which the middle was computed
 };
 
 double reachOf(const ConvexSet& set) {
@@ -128,7 +128,7 @@ bool PartOcclusion::spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) cons
   return true;
 }
 
-// test(i, j) of the instances of two parts, until it is true.
+// Whether test(i, j) is true for some pair of instances of the two parts.
 template <typename Test>
 bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const {
   for (std::uint32_t i = parts_->first_hull[front]; i < parts_->first_hull[front + 1]; ++i) {
@@ -141,10 +141,10 @@ bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& 
   return false;
 }
 
-// a < b.
-bool PartOcclusion::hullsMeet(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
-  PairWitness& witness = table_.use(i, j, PairTable::Question::kMeeting);
-  return meeting(placed(a, i), placed(b, j), witness, counts_) != Meeting::kApart;
+// Precondition: a < b.
+bool PartOcclusion::hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
+  PairWitness& witness = table_.use(i, j, PairTable::Question::kIntersection);
+  return testIntersection(placed(a, i), placed(b, j), witness, counts_) != Intersection::kDisjoint;
 }
 
 void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
@@ -152,34 +152,36 @@ void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
   collisions_are_sorted_ = false;
 }
 
-// Whether the parts met at the last question and do so now: then each occludes the other, and one question
-// serves both orders.
+// Whether the parts intersected at their last test and do so now. Then each occludes the other, and one test
+// serves both directions.
 bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
-  const bool meet = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
-    const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kMeeting);
-    return kept.witness != nullptr && !kept.witness->apart && (kept.used_now || hullsMeet(low, i, high, j));
+  const bool intersect = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
+    const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kIntersection);
+    return kept.witness != nullptr && !kept.witness->disjoint &&
+           (kept.used_now || hullsIntersect(low, i, high, j));
   });
-  if (meet) {
+  if (intersect) {
     addCollision(low, high);
   }
-  return meet;
+  return intersect;
 }
 
-// Whether the parts meet; then they are kept as a collision. Parts that meet occlude each other, so none goes
-// unseen of those that are asked about.
+// Whether the parts intersect; if so, records a collision. Parts that intersect occlude each other, so no
+// collision of a tested pair is missed.
 bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
-  const bool meet =
-      spatialExtentsOverlap(low, high) &&
-      anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) { return hullsMeet(low, i, high, j); });
-  if (meet) {
+  const bool intersect =
+      spatialExtentsOverlap(low, high) && anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
+        return hullsIntersect(low, i, high, j);
+      });
+  if (intersect) {
     addCollision(low, high);
   }
-  return meet;
+  return intersect;
 }
 
-// The hull in front must meet what lies between the one behind and the eye.
+// Whether the hull in front intersects the set that the hull behind sweeps to the eye.
 bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j) {
   const ConvexSet in_front = placed(front, i);
   ConvexSet swept = placed(back, j);
@@ -192,11 +194,11 @@ bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint
     swept.eye_or_sweep = view_.eye;
   }
   PairWitness& witness = table_.use(i, j, PairTable::Question::kOcclusion);
-  return meeting(in_front, swept, witness, counts_) != Meeting::kApart;
+  return testIntersection(in_front, swept, witness, counts_) != Intersection::kDisjoint;
 }
 
-// Makes the segments just long enough to pass all of the hull in front; false: that lies wholly farther from
-// the eye than the one behind. The length is a power of two, so that the direction stays exact.
+// Makes the sweep just long enough to pass the hull in front. Returns false if that lies wholly farther from
+// the eye than the hull behind. The direction is scaled by a power of two, so that it stays exact.
 bool PartOcclusion::sweepPast(const ConvexSet& front, ConvexSet& back) const {
   const Vec3d towards_eye = -view_.forward;
   const Heights f = heightsAlong(front, towards_eye), b = heightsAlong(back, towards_eye);
@@ -208,7 +210,7 @@ bool PartOcclusion::sweepPast(const ConvexSet& front, ConvexSet& back) const {
   const double steps = way / dot(towards_eye, towards_eye);
   int exponent = 0;
   (void)std::frexp(steps, &exponent);
-  // Not finite: meeting() leaves it undecided.
+  // testIntersection() leaves sets that are not finite undecided.
   back.eye_or_sweep = towards_eye * (std::isfinite(steps) ? std::ldexp(1.0, exponent) : steps);
   return true;
 }
@@ -219,7 +221,8 @@ bool PartOcclusion::isContainer(std::uint32_t front, std::uint32_t back) const {
          parts_->hulls[of_front[0]].dimension == 3 && parts_->placements[front] == parts_->placements[back];
 }
 
-// What lies in a container is behind its front and before its back. Asked where hulls meet.
+// Whether a part inside a container decides the question: it is behind the container's front and in front of
+// its back. Called for parts whose hulls intersect.
 PartOcclusion::Verdict PartOcclusion::containment(std::uint32_t front, std::uint32_t back) const {
   const PairRules::Container around_front = rules_->containerOf(back);
   if (around_front.other != PairRules::kNone && isContainer(back, around_front.other) &&
@@ -234,9 +237,9 @@ PartOcclusion::Verdict PartOcclusion::containment(std::uint32_t front, std::uint
   return Verdict::kOpen;
 }
 
-// Whether all of a part lies inside the shell's hull, clear of its faces by more than rounding. A face with
-// the normal n and the offset d of the hull's space, placed by M, has the normal N = cof(M) n sign(det M),
-// and a point w of the world is behind it if N . (w - origin) <= -d |det M|.
+// Whether all of a part lies inside the shell's hull by more than the rounding error. A face with the normal
+// n and the offset d in the hull's space, placed by M, has the normal N = cof(M) n sign(det M), and a point w
+// of the world is behind it if N . (w - origin) <= -d |det M|.
 bool PartOcclusion::contains(std::uint32_t shell, std::uint32_t part) const {
   const ConvexSet around = placed(shell, parts_->first_hull[shell]);
   const Placement& m = around.placement;

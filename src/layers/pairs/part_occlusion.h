@@ -1,11 +1,11 @@
 #pragma once
 
-// Whether one part occludes another, exactly: the last resort after extents.
+// The exact test of whether one part occludes another, for pairs that the extents do not rule out.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 6.
-// Differs from the paper in: hulls are first tested for occlusion, and for collision only where they occlude,
-// which most pairs do not, or met in the last frame; parts are unions of hulls; the eye may be far away
-// (orthographic); rules allow or forbid directions before hulls are looked at; containers.
+// Differs from the paper in: hulls are first tested for occlusion, which most pairs fail, and for collision
+// only if they occlude or collided in the last frame; parts are unions of hulls; views may be orthographic;
+// rules are applied before hulls are tested; containers.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,21 +25,23 @@ namespace sightline::layers {
 
 class PartOcclusion {
  public:
-  // Parts, extents and rules must stay as they are until the frame's last question. Of the extents those of
-  // spatial axes are used, as they are. expiry: frames that what is known of a pair outlives its last use.
+  // Begins a frame. Parts, extents and rules must not change until its last question.
+  // extents: only those of spatial axes are used. expiry: frames for which a pair's result is kept after its
+  // last use.
   void beginFrame(const View& view, const PartStore& parts, const ExtentTable& extents,
                   const PairRules& rules, std::uint32_t expiry);
-  // Whether some ray from the eye meets `front` and then `back`, two parts; true where it is not certain. A
-  // part that is not finite occludes all and is occluded by all.
+  // Whether some ray from the eye hits part `front` and then part `back`. Conservative: true if it is not
+  // certain. A part that is not finite occludes all others and is occluded by all.
   bool occludes(std::uint32_t front, std::uint32_t back);
-  // The pairs of parts without a rule that were asked about this frame and meet, touch, or nearly do: front <
-  // back, each once, ascending. Valid until the next question.
+  // Returns the pairs of parts that were asked about in this frame, have no rule, and intersect, touch, or
+  // nearly
+  // touch: front < back, each once, ascending. Valid until the next question.
   std::span<const Arc> collisions();
 
-  std::uint64_t pairQueries() const { return pair_queries_; }  // this frame's questions that came to hulls
-  const PairCounts& counts() const { return counts_; }         // this frame's
+  std::uint64_t pairQueries() const { return pair_queries_; }  // pairs whose hulls were tested in this frame
+  const PairCounts& counts() const { return counts_; }         // counts of this frame
   std::size_t knownPairs() const { return table_.size(); }
-  // Forgets all pairs.
+  // Forgets the results of all pairs.
   void clear();
 
  private:
@@ -50,7 +52,7 @@ class PartOcclusion {
   template <typename Test>
   bool anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const;
   bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j);
-  bool hullsMeet(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
+  bool hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
   bool stillCollide(std::uint32_t front, std::uint32_t back);
   bool collide(std::uint32_t front, std::uint32_t back);
   void addCollision(std::uint32_t a, std::uint32_t b);
@@ -73,7 +75,7 @@ class PartOcclusion {
     std::uint64_t frame = 0;
     PairOrder order;
   };
-  std::vector<RuleOrder> rule_orders_;  // one a rule, of the frame in which it was asked for
+  std::vector<RuleOrder> rule_orders_;  // one per rule: its last order and the frame of it
   std::uint64_t frame_ = 0;
   std::vector<Arc> collisions_;
   bool collisions_are_sorted_ = true;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The parts of a sorter as columns, and the hulls that they share.
+// The parts of a sorter as columns of data, and the hulls that they share.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,15 +15,15 @@ namespace sightline::layers {
 
 struct PartStore {
   std::vector<ConvexHull> hulls;
-  std::vector<HullEnvelope> envelopes;       // one a hull, or none
-  std::vector<std::uint32_t> first_hull{0};  // parts + 1: where each part's begin in part_hulls
-  std::vector<std::uint32_t> part_hulls;     // into hulls; the place here is an "instance"
-  std::vector<Placement> placements;         // one a part
-  std::vector<std::uint8_t> finite;          // one a part: its placement is, and its hulls have vertices
+  std::vector<HullEnvelope> envelopes;       // one per hull, or empty
+  std::vector<std::uint32_t> first_hull{0};  // parts + 1 elements: where each part begins in part_hulls
+  std::vector<std::uint32_t> part_hulls;     // indices of hulls; an index of this column is an "instance"
+  std::vector<Placement> placements;         // one per part
+  std::vector<std::uint8_t> finite;  // one per part: its placement is finite and its hulls have vertices
 
   std::size_t parts() const { return placements.size(); }
   std::size_t instances() const { return part_hulls.size(); }
-  // Of part p: instances [first_hull[p], first_hull[p + 1]).
+  // Returns the hulls of part p, those of instances [first_hull[p], first_hull[p + 1]).
   std::span<const std::uint32_t> hullsOf(std::uint32_t part) const {
     return std::span(part_hulls).subspan(first_hull[part], first_hull[part + 1] - first_hull[part]);
   }

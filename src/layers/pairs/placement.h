@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a hull is: an affine map from its space to the world.
+// An affine map from a hull's space to the world.
 
 #include <algorithm>
 #include <cmath>
@@ -11,19 +11,19 @@
 namespace sightline::layers {
 
 struct Placement {
-  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  // what the hull's axes become
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  // the hull's axes in the world
   Vec3d origin;
 
   friend bool operator==(const Placement&, const Placement&) = default;
   Vec3d point(const Vec3d& p) const { return x * p.x + y * p.y + z * p.z + origin; }
-  // The direction in the hull's space along which the height is that along a direction of the world.
+  // Returns the direction in the hull's space whose heights are those along a direction of the world.
   Vec3d toHull(const Vec3d& direction_world) const {
     return {dot(direction_world, x), dot(direction_world, y), dot(direction_world, z)};
   }
 };
 
-// No vector becomes longer than this times its length: the greatest row sum of the products of the axes
-// bounds the square of the greatest singular value.
+// Returns an upper bound of the factor by which the placement lengthens a vector. The greatest row sum of the
+// axes' dot products bounds the square of the greatest singular value.
 inline double stretchOf(const Placement& p) {
   const double xy = std::abs(dot(p.x, p.y)), yz = std::abs(dot(p.y, p.z)), zx = std::abs(dot(p.z, p.x));
   const double x = dot(p.x, p.x) + xy + zx, y = dot(p.y, p.y) + xy + yz, z = dot(p.z, p.z) + yz + zx;

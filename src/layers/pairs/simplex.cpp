@@ -8,20 +8,19 @@
 namespace sightline::layers {
 namespace {
 
-// Directions are made by cross products of edges, not from the nearest point: that point is a difference of
-// large numbers where the origin is near, and a direction made of it lets the part's own corners stick out.
-// A cross product is perpendicular to the edges however near the origin is.
+// Directions are cross products of edges. The nearest point itself would not do: near the origin it is a
+// difference of large numbers, and along a direction made of it the part's own corners differ in height. A
+// cross product is perpendicular to the edges however near the origin is.
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Times the sum of the corners' squares: more than the rounding of three corners' determinant, with that of
-// the corners themselves.
+// Times the sum of the corners' squared lengths: a bound of the error of the determinant of three corners.
 constexpr double kVolumeRounding = 0x1p-47;
-// The square of what the corners' rounding makes of an edge: triangles less wide are lines.
+// Square of the error of an edge; triangles narrower than this count as lines.
 constexpr double kFlatSquare = 0x1p-96;
-// The square of the height below which it is not known on which side of a plane the origin is.
+// Square of the height below which the origin's side of a plane is not known.
 constexpr double kLevelSquare = 0x1p-90;
 
-// Part of a part, while the nearest is looked for.
+// A part of the simplex that may be the nearest.
 struct Candidate {
   std::uint32_t corners = 0;
   double square = kInfinity;
@@ -53,8 +52,8 @@ Candidate ofEdge(const Simplex& simplex, int i, int j) {
   return {1u << i | 1u << j, dot(turn, turn) / dot(edge, edge), cross(turn, edge)};
 }
 
-// Whether no corner of the triangle is lower than the part that was found nearest. Should be so; is not where
-// the direction to an edge near the origin is mostly rounding.
+// Whether no corner of the triangle is lower than the part found nearest. This fails only if the direction to
+// an edge near the origin is mostly rounding error.
 bool isLowest(const Simplex& simplex, const Candidate& part, const std::array<int, 3>& triangle) {
   double highest_of_part = -kInfinity, lowest = kInfinity;
   for (const int i : triangle) {
@@ -68,8 +67,8 @@ bool isLowest(const Simplex& simplex, const Candidate& part, const std::array<in
   return lowest >= highest_of_part;
 }
 
-// far: on which side of the triangle the rest of the simplex lies, if there is more of it: decides the side
-// where the origin is too near to the plane to say.
+// far: the simplex's fourth corner, or null. It decides the side if the origin is too near to the plane to
+// tell.
 Candidate ofTriangle(const Simplex& simplex, const std::array<int, 3>& triangle, const Vec3d* far) {
   const auto [i, j, k] = triangle;
   const Vec3d& a = simplex.corners[static_cast<std::size_t>(i)].point;
@@ -79,7 +78,7 @@ Candidate ofTriangle(const Simplex& simplex, const std::array<int, 3>& triangle,
   const double square = dot(normal, normal);
   const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
   const bool flat = square <= kFlatSquare * longest;
-  // Of the foot of the perpendicular: on which side of each edge.
+  // Whether the foot of the perpendicular from the origin lies outside each edge.
   const std::array<bool, 3> past{flat || !(dot(normal, cross(a, b)) > 0.0),
                                  flat || !(dot(normal, cross(b, c)) > 0.0),
                                  flat || !(dot(normal, cross(c, a)) > 0.0)};
@@ -107,7 +106,7 @@ Candidate ofTetrahedron(const Simplex& simplex, bool& holds_origin) {
   const Vec3d& b = simplex.corners[1].point;
   const Vec3d& c = simplex.corners[2].point;
   const Vec3d& d = simplex.corners[3].point;
-  // Six times the volume of the tetrahedron with the origin in the place of one corner.
+  // Six times the volumes of the tetrahedra in which the origin replaces one corner.
   const Vec3d cd = cross(c, d), ab = cross(a, b);
   const std::array<double, 4> volumes{dot(b, cd), -dot(a, cd), dot(d, ab), -dot(c, ab)};
   const double aa = dot(a, a), bb = dot(b, b), cc = dot(c, c), dd = dot(d, d);
@@ -169,7 +168,7 @@ void keepCorners(Simplex& simplex, std::uint32_t corners) {
   simplex.size = kept;
 }
 
-// Of the two shortest edges, which keeps the most digits.
+// Uses the two shortest edges, which keep the most digits.
 Vec3d normalOf(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d ab = b - a, bc = c - b, ca = a - c;
   const double ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);

@@ -12,7 +12,7 @@ double comparable(double key) {
   return std::isnan(key) ? std::numeric_limits<double>::infinity() : key;
 }
 
-// Whether no part of one group occludes a part of the other. Not known once the tests are spent: false.
+// Whether certainly no part of `passed` occludes a part of `moving`; false once no tests are left.
 bool mayPass(std::span<const std::uint32_t> passed, std::span<const std::uint32_t> moving,
              const ConditioningSort::MayOcclude& may_occlude, std::uint64_t& tests_left) {
   for (const std::uint32_t front : passed) {

@@ -1,13 +1,12 @@
 #pragma once
 
-// Brings groups to the front of others that they need not be behind, so that the order stays near the one by
-// distance, which later frames need.
+// Moves groups forward past farther groups that do not occlude them, so that the order stays near the one by
+// distance, which is close to what later frames need.
 //
 // Based on: Snyder, Lengyel. Visibility Sorting and Compositing for Image-Based Rendering. MSR-TR-97-11,
 // 1997, section 7.
-// Differs from the paper in: a group moves only past groups that do not occlude it (the paper asks of those
-// passed whether the moving one occludes them, which it may); the tests of a frame are
-// limited.
+// Differs from the paper in: a group moves past groups that do not occlude it (the paper tests whether the
+// moving group occludes those that it passes, which it may); the number of tests per frame is limited.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,28 +19,28 @@ namespace sightline::layers {
 
 class ConditioningSort {
  public:
-  // Whether one part may occlude another: true where it does; may be true where it does not.
+  // Whether one part may occlude another. Conservative: always true where it does.
   struct MayOcclude {
     bool (*ask)(void* user, std::uint32_t front, std::uint32_t back) = nullptr;
     void* user = nullptr;
   };
   struct Settings {
-    std::uint64_t max_tests =
-        100'000;  // pairs of parts that are asked about; then groups stay where they are
+    std::uint64_t max_tests = 100'000;  // pairs of parts tested, after which groups stay where they are
   };
 
-  // Stable insertion sort of the groups by their keys, in which a group stops behind one that may occlude it;
-  // then stable sort of the parts of each group by theirs, whoever occludes whom. Small keys come first; keys
-  // that are not numbers count as infinite. A valid order stays valid: no part is occluded by one of a later
-  // group. The arcs stay as they are. group_keys: one a group, in the order's order as it is before.
-  // part_keys: by part. Returns how many groups moved to the front. No allocation after calls as large.
+  // Sorts the groups by their keys, ascending, with a stable insertion sort in which a group stops behind one
+  // that may occlude it; then sorts the parts within each group by their own keys. A key that is NaN counts
+  // as infinite. A valid order stays valid: no part is occluded by one of a later group. Arcs are not
+  // changed.
+  // group_keys: one per group, in the given order. part_keys: one per part, by part number.
+  // Returns the number of groups that moved forward. Does not allocate after a call of the same size.
   std::uint64_t sort(std::span<const double> group_keys, std::span<const double> part_keys,
                      const MayOcclude& may_occlude, const Settings& settings, GroupedOrder& order);
 
  private:
   struct Keyed {
     double key;
-    std::uint32_t place, item;  // place: before; breaks ties
+    std::uint32_t place, item;  // place: index before the sort, which breaks ties
   };
 
   std::uint64_t moveGroups(const MayOcclude& may_occlude, std::uint64_t tests_left,
@@ -50,7 +49,7 @@ class ConditioningSort {
   void sortParts(std::span<const double> part_keys, GroupedOrder& order);
 
   std::vector<Keyed> groups_, members_;
-  std::vector<std::uint32_t> parts_, first_of_;  // the order before
+  std::vector<std::uint32_t> parts_, first_of_;  // copy of the order before the sort
 };
 
 }  // namespace sightline::layers

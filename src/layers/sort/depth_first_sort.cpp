@@ -10,8 +10,8 @@ constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
 }  // namespace
 
-// The search goes from parts to their occluders. A group is finished when all its parts' occluders are, so
-// groups come out front to back.
+// The search goes from a part to its occluders. A group is complete when the occluders of all its parts are,
+// so groups are emitted front to back.
 void DepthFirstSort::sort(std::span<const std::uint32_t> previous, OccluderSource& source,
                           GroupedOrder& order) {
   prepare(previous);
@@ -43,7 +43,7 @@ void DepthFirstSort::prepare(std::span<const std::uint32_t> previous) {
   occluders_.clear();
   open_.clear();
   path_.clear();
-  // What these hold is known beforehand; the rest grows with the arcs.
+  // Their greatest size is known; that of occluders_ depends on the arcs.
   open_.reserve(previous.size());
   path_.reserve(previous.size());
   entered_ = 0;
@@ -89,8 +89,7 @@ void DepthFirstSort::leave(std::uint32_t part, OccluderSource& source, GroupedOr
   }
 }
 
-// The group is the root and all open parts that were entered after it. Their occluders are the last ones
-// kept.
+// Emits the root and all open parts that were visited after it as one group. Their occluders end occluders_.
 void DepthFirstSort::emit(std::uint32_t root, OccluderSource& source, GroupedOrder& order) {
   const auto group = static_cast<std::uint32_t>(order.groups());
   const std::size_t begin = order.parts.size();

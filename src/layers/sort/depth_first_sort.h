@@ -1,6 +1,7 @@
 #pragma once
 
-// Groups of parts that occlude each other in a circle, front to back, by one search from the last order.
+// Strongly connected components of the occlusion graph, front to back, by one depth-first search that starts
+// from the last order.
 //
 // Based on: Tarjan. Depth-first search and linear graph algorithms. SIAM J. Computing 1972.
 
@@ -14,10 +15,8 @@ namespace sightline::layers {
 
 class DepthFirstSort final : public LayerSortAlgorithm {
  public:
-  // previous: every part that is to be sorted, each once; the result stays near this order. The source
-  // answers with these parts alone; each is asked about once, while all that are not in the output are
-  // active; afterwards none is. Parts of a group are in the previous order. No allocation after calls as
-  // large.
+  // Asks the source for the occluders of each part exactly once, while all parts that are not in the output
+  // are active. The result stays near the previous order. Does not allocate after a call of the same size.
   void sort(std::span<const std::uint32_t> previous, OccluderSource& source, GroupedOrder& order) override;
 
  private:
@@ -32,15 +31,15 @@ class DepthFirstSort final : public LayerSortAlgorithm {
   void leave(std::uint32_t part, OccluderSource& source, GroupedOrder& order);
   void emit(std::uint32_t root, OccluderSource& source, GroupedOrder& order);
 
-  // One a part.
-  std::vector<std::uint32_t> rank_;        // in the previous order
-  std::vector<std::uint32_t> found_;       // when it was entered, from 1; 0: not yet
-  std::vector<std::uint32_t> low_;         // the earliest part that it is known to reach, by found_
-  std::vector<std::uint32_t> group_;       // where it is in the output
-  std::vector<std::size_t> first_, last_;  // its occluders, in occluders_
+  // One element per part:
+  std::vector<std::uint32_t> rank_;        // place in the previous order
+  std::vector<std::uint32_t> found_;       // number of the visit, from 1; 0: not visited
+  std::vector<std::uint32_t> low_;         // lowest found_ of the parts that it is known to reach
+  std::vector<std::uint32_t> group_;       // its group in the output, or kNoGroup
+  std::vector<std::size_t> first_, last_;  // range of its occluders in occluders_
 
-  // Of the parts that were entered and are not in the output, in the order in which they were entered.
-  std::vector<std::uint32_t> occluders_;
+  // Stacks of the parts that were visited and are not in the output yet:
+  std::vector<std::uint32_t> occluders_;  // their occluders, part after part
   std::vector<std::uint32_t> open_;
   std::vector<Visit> path_;
   std::uint32_t entered_ = 0;

@@ -1,5 +1,5 @@
 // Based on: Snyder, Lengyel. Visibility Sorting and Compositing for Image-Based Rendering. MSR-TR-97-11,
-// 1997. Differs from the paper in: depth-first search is the default sorter; extents overlap periodically;
+// 1997. Differs from the paper in: depth-first search is the default sort; angular extents are periodic;
 // parts may be unions of hulls, backdrops, overlays and containers; see docs/algorithms/layers.md.
 
 #include "sightline/layers/layer_sorter.h"
@@ -39,8 +39,8 @@ LayerSettings checked(LayerSettings settings) {
   return settings;
 }
 
-// A power of two times the direction, so that no product of two of its coordinates vanishes. What an
-// orthographic view looks along needs no length.
+// Scales the forward direction of an orthographic view, which may have any length, by a power of two, so that
+// no product of two of its coordinates underflows.
 View scaled(const View& view) {
   const double largest = maxComponent(abs(view.forward));
   View result = view;
@@ -83,7 +83,8 @@ struct LayerSorter::Impl {
   LayerSettings settings;
   PartStore store;
   std::vector<PartSettings> part_settings;
-  std::vector<std::uint8_t> enabled, moved, sorted;  // one a part; sorted: has been in an update
+  // One element per part; sorted: it has been in an update().
+  std::vector<std::uint8_t> enabled, moved, sorted;
   PairRules rules;
   PartExtents extents;
   PartOcclusion occlusion;
@@ -92,9 +93,9 @@ struct LayerSorter::Impl {
   ConditioningSort conditioning;
 
   std::vector<std::uint32_t> previous;  // parts to be sorted, in the last frame's order
-  std::vector<std::uint8_t> listed;     // one a part: in previous
+  std::vector<std::uint8_t> listed;     // one per part: whether it is in `previous`
   std::vector<std::uint32_t> occluders;
-  std::vector<double> distances;  // one a part
+  std::vector<double> distances;  // one per part
   std::vector<double> group_distances;
   GroupedOrder order;
   std::uint64_t extent_updates = 0, conditioned = 0;
@@ -153,7 +154,7 @@ bool LayerSorter::setTransform(PartId part, const Mat4& world_from_part) {
   return true;
 }
 
-// A hull without vertices, which buildHull never makes, leaves open where the part is.
+// A hull without vertices, which buildHull() never makes, has no position.
 bool LayerSorter::Impl::isFinite(std::uint32_t part) const {
   const std::span<const std::uint32_t> hulls = store.hullsOf(part);
   return layers::isFinite(store.placements[part]) && !hulls.empty() &&
@@ -208,7 +209,8 @@ void LayerSorter::reset() {
   std::fill(impl_->listed.begin(), impl_->listed.end(), 0);
 }
 
-// To the middle of the part's hulls; of an orthographic view along its forward direction.
+// Distance from the eye to the mean of the hulls' centres; in an orthographic view along the forward
+// direction.
 double LayerSorter::Impl::distance(const View& view, std::uint32_t part) const {
   const std::span<const std::uint32_t> hulls = store.hullsOf(part);
   Vec3d centre;
@@ -230,7 +232,7 @@ void LayerSorter::Impl::sortByDistance(const View& view, std::span<std::uint32_t
   });
 }
 
-// The last order without what is gone, then what is new.
+// Brings `previous` up to date: the last order without removed parts, then new parts by distance.
 void LayerSorter::Impl::place(const View& view) {
   const auto sorts = [&](std::uint32_t part) {
     return enabled[part] != 0 && part_settings[part].place == Place::kSorted;
@@ -255,7 +257,7 @@ void LayerSorter::Impl::sort() {
   sort_algorithm->sort(previous, source, order);
 }
 
-// By the mean of its parts' distances from the eye along the axis.
+// Conditions the order by each group's mean distance from the eye along the axis.
 void LayerSorter::Impl::condition() {
   conditioned = 0;
   if (settings.conditioning_axis < 0) {
@@ -280,7 +282,7 @@ void LayerSorter::Impl::condition() {
   conditioned = conditioning.sort(group_distances, distances, may_occlude, {}, order);
 }
 
-// Every part is asked about while all others are active.
+// Asks for the occluders of every part while all parts are active.
 void LayerSorter::Impl::addArcsBetweenGroups() {
   for (const std::uint32_t part : order.parts) {
     source.setActive(part, true);

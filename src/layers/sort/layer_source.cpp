@@ -25,26 +25,27 @@ bool LayerSource::occludes(std::uint32_t front, std::uint32_t back) {
   return mayOcclude(front, back) && (!exact_ || occlusion_.occludes(front, back));
 }
 
-// The united extents of a group enclose room between its members, so each is asked about alone (section 5.3).
-bool LayerSource::occludesOneOf(std::uint32_t front, std::span<const std::uint32_t> members) {
-  if (members.size() == 1) {  // whose extents are those that found it
-    return !exact_ || occlusion_.occludes(front, members[0]);
+// The united extents of a group also enclose the space between its parts, so each part is tested alone
+// (section 5.3 of the paper).
+bool LayerSource::occludesOneOf(std::uint32_t front, std::span<const std::uint32_t> group) {
+  if (group.size() == 1) {  // the search has compared the extents already
+    return !exact_ || occlusion_.occludes(front, group[0]);
   }
-  return std::any_of(members.begin(), members.end(),
+  return std::any_of(group.begin(), group.end(),
                      [&](std::uint32_t member) { return occludes(front, member); });
 }
 
-void LayerSource::occludersOf(std::span<const std::uint32_t> members, std::vector<std::uint32_t>& occluders) {
-  const Extent query = members.size() == 1 ? extents_.query(members[0]) : extents_.query(members);
+void LayerSource::occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) {
+  const Extent query = group.size() == 1 ? extents_.query(group[0]) : extents_.query(group);
   found_.clear();
   search_->query(query, found_);
   ++queries_;
   for (const std::uint32_t part : found_) {
-    if (std::find(members.begin(), members.end(), part) != members.end()) {
+    if (std::find(group.begin(), group.end(), part) != group.end()) {
       continue;
     }
     ++candidates_;
-    if (occludesOneOf(part, members)) {
+    if (occludesOneOf(part, group)) {
       occluders.push_back(part);
     }
   }

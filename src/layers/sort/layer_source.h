@@ -1,6 +1,6 @@
 #pragma once
 
-// Who occludes whom among the parts of a frame: extents first, then exact tests of pairs.
+// The occlusion graph of a frame's parts: candidates by their extents, then exact tests of pairs.
 
 #include <cstdint>
 #include <memory>
@@ -20,23 +20,23 @@ class LayerSource final : public OccluderSource {
   LayerSource(std::unique_ptr<CandidateSearch> search, bool exact, const PartExtents& extents,
               PartOcclusion& occlusion);
 
-  // Once a frame, when extents and occlusion know the view. sorted: the parts that take part, in about the
-  // order in which they will leave; all of them are active, and no others.
+  // Call once a frame, after the extents and the occlusion tests have been given the view.
+  // sorted: the parts to be sorted, in about their final order; they alone are active afterwards.
   void beginFrame(std::span<const std::uint32_t> sorted);
   void rebuildSearch() { search_->rebuild(extents_.table()); }
 
-  void occludersOf(std::span<const std::uint32_t> members, std::vector<std::uint32_t>& occluders) override;
+  void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) override;
   bool occludes(std::uint32_t front, std::uint32_t back) override;
   void setActive(std::uint32_t part, bool active) override;
 
-  // By extents alone: false is certain.
+  // Whether the extents allow that `front` occludes `back`; false is certain.
   bool mayOcclude(std::uint32_t front, std::uint32_t back) const;
 
   std::uint64_t queries() const { return queries_; }
   std::uint64_t candidates() const { return candidates_; }
 
  private:
-  bool occludesOneOf(std::uint32_t front, std::span<const std::uint32_t> members);
+  bool occludesOneOf(std::uint32_t front, std::span<const std::uint32_t> group);
 
   std::unique_ptr<CandidateSearch> search_;
   bool exact_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a sorter asks: who occludes whom, among the parts that are not in the order yet.
+// The occlusion graph as a sort algorithm sees it, and the order that the algorithm makes of it.
 
 #include <cstdint>
 #include <span>
@@ -12,12 +12,12 @@ class OccluderSource {
  public:
   virtual ~OccluderSource() = default;
 
-  // Appends, each once and ascending, the active parts that occlude at least one of the members, without the
-  // members themselves.
-  virtual void occludersOf(std::span<const std::uint32_t> members, std::vector<std::uint32_t>& occluders) = 0;
-  // Whether one part occludes another, active or not.
+  // Appends the active parts that occlude at least one part of the group, each once and ascending, without
+  // the group's own parts.
+  virtual void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) = 0;
+  // Whether `front` occludes `back`, whether they are active or not.
   virtual bool occludes(std::uint32_t front, std::uint32_t back) = 0;
-  // All parts are active at first.
+  // Parts are active until they are put into the order.
   virtual void setActive(std::uint32_t part, bool active) = 0;
 };
 
@@ -28,11 +28,11 @@ struct Arc {
   friend auto operator<=>(const Arc&, const Arc&) = default;
 };
 
-// Groups front to back; in a group, parts that occlude each other in a circle.
+// Strongly connected components of the occlusion graph ("groups"), front to back.
 struct GroupedOrder {
   std::vector<std::uint32_t> parts;     // group after group
-  std::vector<std::uint32_t> first_of;  // groups + 1: where each begins in parts
-  std::vector<Arc> arcs;                // all between parts of one group, ascending
+  std::vector<std::uint32_t> first_of;  // groups + 1 elements: where each group begins in parts
+  std::vector<Arc> arcs;                // all arcs within groups, ascending
 
   std::size_t groups() const { return first_of.empty() ? 0 : first_of.size() - 1; }
   std::span<const std::uint32_t> group(std::size_t i) const {

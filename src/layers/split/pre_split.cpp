@@ -21,7 +21,7 @@ struct Bounds {
     min = sightline::min(min, p);
     max = sightline::max(max, p);
   }
-  bool meets(const Bounds& b, double slack) const {
+  bool intersects(const Bounds& b, double slack) const {
     for (int axis = 0; axis < 3; ++axis) {
       if (min[axis] > b.max[axis] + slack || b.min[axis] > max[axis] + slack) {
         return false;
@@ -31,14 +31,14 @@ struct Bounds {
   }
 };
 
-// What lies in the plane between two cells belongs to the one of them whose plane has such a normal; the
-// other's is the opposite.
+// Whether a cell owns the triangles in its plane. The neighbour's plane has the opposite normal, so exactly
+// one of the two cells does.
 bool ownsItsPlane(const Vec3d& normal) {
   return normal.x > 0.0 || (normal.x == 0.0 && (normal.y > 0.0 || (normal.y == 0.0 && normal.z > 0.0)));
 }
 
-// Where an edge goes through the plane. Reckoned from its end in front, so that triangles that share an edge
-// get the same point.
+// The point where an edge crosses the plane. Computed from the end in front, so that triangles that share an
+// edge get the same point.
 Corner crossing(const Corner& front, const Corner& behind, double front_distance, double behind_distance) {
   const double t = front_distance / (front_distance - behind_distance);
   return {front.position + (behind.position - front.position) * t,
@@ -47,7 +47,7 @@ Corner crossing(const Corner& front, const Corner& behind, double front_distance
 
 class Clipper {
  public:
-  // What is left of the triangle in front of all planes; empty or at least three corners.
+  // Returns the part of the triangle in front of all planes: empty, or at least three corners.
   std::span<const Corner> clip(const std::array<Vec3d, 3>& triangle, std::span<const Plane> planes) {
     polygon_.assign({{triangle[0], {1, 0, 0}}, {triangle[1], {0, 1, 0}}, {triangle[2], {0, 0, 1}}});
     for (const Plane& plane : planes) {
@@ -119,12 +119,12 @@ std::vector<SplitNeighbours> neighboursOf(const SplitMesh& mesh, const SplitCell
     bounds.push_back(boundsOf(piece));
     size = std::max({size, maxComponent(abs(bounds.back().min)), maxComponent(abs(bounds.back().max))});
   }
-  // Cutting rounds: pieces that meet in truth may lie this far apart.
+  // Rounding of the clipping may separate boxes that touch by this much.
   const double slack = 1e-12 * size;
   std::vector<SplitNeighbours> neighbours;
   for (std::uint32_t i = 0; i < mesh.pieces.size(); ++i) {
     for (std::uint32_t k = i + 1; k < mesh.pieces.size(); ++k) {
-      if (bounds[i].meets(bounds[k], slack)) {
+      if (bounds[i].intersects(bounds[k], slack)) {
         neighbours.push_back({i, k, {planeBetween(cells, mesh.pieces[i].cell, mesh.pieces[k].cell)}});
       }
     }

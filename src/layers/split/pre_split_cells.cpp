@@ -1,4 +1,4 @@
-// The cells that meshes are cut to, and the planes between them.
+// The cells to which meshes are clipped, and the planes between them.
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,10 @@ struct Direction2 {
   double x, y;
 };
 
-// The unit vector at this part of a full turn. Sums and products alone: the same bits on every machine. By
-// Taylor series to the last bit or two, of at most an eighth of a turn; whole quarters are turned exactly.
+// Returns the unit vector at a fraction of a full turn. Uses only sums and products, so the bits are the same
+// on every
+// machine: a Taylor series for at most an eighth of a turn, accurate to the last bit or two, and exact
+// quarter turns.
 Direction2 atTurns(double turns) {
   const double quarters = std::floor(turns * 4.0 + 0.5);
   const double a = (turns - quarters * 0.25) * (2.0 * std::numbers::pi);
@@ -39,22 +41,23 @@ Direction2 atTurns(double turns) {
   }
 }
 
-// Where slab `index` of `count` lies. Neighbours share the same bits.
+// Returns slab `index` of `count`. The common bound of two neighbours has the same bits in both.
 CellSlab slabOf(double low, double high, std::uint32_t index, std::uint32_t count) {
   const auto at = [&](std::uint32_t i) { return low + (high - low) * (static_cast<double>(i) / count); };
   return {index == 0 ? -kInfinity : at(index), index + 1 == count ? kInfinity : at(index + 1)};
 }
 
-// The plane through the axis in whose front angles of this part of a turn and up to half a turn more lie.
+// Returns the plane through the axis with the angles from `turns` to half a turn more in front.
 Plane axisPlane(const SplitCells& cells, double turns) {
   const Direction2 d = atTurns(turns);
   const Vec3d normal = cells.quarter * d.x - cells.zero * d.y;
   return {normal, -dot(normal, cells.axis_point)};
 }
 
-// Sector `second` begins `ahead` sectors after `first`. Counted in sectors from the first one's beginning, a
-// line at angle t has the first behind it where 1 <= t <= n / 2, and the second before it where ahead + 1 - n
-// / 2 <= t <= ahead. The middle of what is common is exactly the border between neighbours.
+// Returns a plane through the axis between two sectors. Sector `second` begins `ahead` sectors after `first`.
+// Let t be an angle in sectors, measured from the beginning of `first`. A line at t has `first` behind it for
+// 1 <= t <= n / 2, and `second` in front for ahead + 1 - n / 2 <= t <= ahead. The middle of the common range
+// is used, which for neighbours is exactly their border.
 Plane sectorPlane(const SplitCells& cells, std::uint32_t first, std::uint32_t second) {
   const double n = cells.sectors;
   const double ahead = (second + cells.sectors - first) % cells.sectors;
@@ -62,24 +65,24 @@ Plane sectorPlane(const SplitCells& cells, std::uint32_t first, std::uint32_t se
   return axisPlane(cells, std::fmod(first + 0.5 * (low + high), n) / n).flipped();
 }
 
-// Where the middle of a hexagon is along the grid's three directions, in halves of a hexagon's width. The
-// first direction is u, the others are at 60 and at 120 degrees from it.
+// The middle of a hexagon along the grid's three directions, in halves of a hexagon's width. The first
+// direction is u, the others are at 60 and 120 degrees from it.
 struct HexagonPlace {
   long long along[3];
 };
 
 HexagonPlace hexagonAt(long long column, long long row) {
-  // Rows are 1.5 sides apart, odd ones half a width farther along u.
+  // The distance of rows is 1.5 sides; odd rows are shifted by half a width along u.
   const long long first = 2 * column + (row & 1);
   return {{first, (first + 3 * row) / 2, (3 * row - first) / 2}};
 }
 
-// Whether the rectangle meets the closed hexagon: a slab of either's sides may part them.
-bool meetsRectangle(const HexagonOptions& o, const HexagonPlace& place) {
+// Whether the rectangle intersects the closed hexagon, by the slabs of both shapes' sides (separating axes).
+bool intersectsRectangle(const HexagonOptions& o, const HexagonPlace& place) {
   const double half = 0.5 * o.width, radius = o.width / std::numbers::sqrt3;
   const double middle_u = half * static_cast<double>(place.along[0]);
   const double middle_v = 0.5 * radius * static_cast<double>(place.along[1] + place.along[2]);
-  // A little more than touching counts: a hexagon too many does no harm.
+  // Hexagons that nearly touch count, too; one too many does no harm.
   const double slack = 1e-9 * o.width;
   if (middle_u - half > o.high_u + slack || middle_u + half < o.low_u - slack ||
       middle_v - radius > o.high_v + slack || middle_v + radius < o.low_v - slack) {
@@ -156,7 +159,7 @@ SplitCells hexagonCells(const HexagonOptions& options) {
   for (long long row = first_row; row <= last_row; ++row) {
     for (long long column = first_column; column <= last_column; ++column) {
       const HexagonPlace place = hexagonAt(column, row);
-      if (!meetsRectangle(options, place)) {
+      if (!intersectsRectangle(options, place)) {
         continue;
       }
       for (std::size_t k = 0; k < 3; ++k) {
@@ -188,7 +191,7 @@ std::vector<Plane> cellPlanes(const SplitCells& cells, std::uint32_t cell, doubl
     const std::uint32_t sector = cells.sector_of[cell];
     planes.push_back(axisPlane(cells, sector / n));
     planes.back().offset += out;
-    // Of two sectors, each is a half space.
+    // Each of two sectors is a half space, with a single plane.
     if (cells.sectors > 2) {
       planes.push_back(axisPlane(cells, (sector + 1) % cells.sectors / n).flipped());
       planes.back().offset += out;

@@ -6,19 +6,19 @@
 namespace sightline::tool {
 namespace {
 
-constexpr float kTie = 1e-5f;  // of the distance
+constexpr float kTie = 1e-5f;  // differences up to this share of the distance are ignored
 
-// Depths of one object where it is seen, in the smallest rectangle that holds them.
+// The depths of an object in the pixels in which it is visible, in their smallest rectangle.
 struct SeenDepths {
-  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // right and bottom are beyond it
-  std::vector<float> depths;                               // rows of the rectangle; kNoDepth: not seen
+  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // right and bottom are exclusive
+  std::vector<float> depths;                               // row by row; kNoDepth: not visible
 
   float at(std::uint32_t x, std::uint32_t y) const {
     return depths[std::size_t{y - top} * (right - left) + (x - left)];
   }
 };
 
-// Of the pixels in which it lies before `hidden_from`, depths of a whole picture.
+// Finds the pixels in which the object is nearer than `hidden_from`, which holds one depth per pixel.
 SeenDepths seenDepths(const LayerImage& alone, const std::vector<float>& hidden_from) {
   SeenDepths seen{.left = alone.width, .top = alone.height, .right = 0, .bottom = 0, .depths = {}};
   const auto is_seen = [&](std::size_t pixel) { return alone.depths[pixel] < hidden_from[pixel]; };
@@ -43,7 +43,7 @@ SeenDepths seenDepths(const LayerImage& alone, const std::vector<float>& hidden_
 
 struct PairLook {
   bool overlap = false;
-  bool first_before = false, second_before = false;  // in some pixel
+  bool first_before = false, second_before = false;  // whether one is in front of the other in some pixel
 };
 
 PairLook look(const SeenDepths& first, const SeenDepths& second) {
@@ -69,7 +69,7 @@ PairLook look(const SeenDepths& first, const SeenDepths& second) {
 DistanceOrder orderByDistance(const SceneView& scene, const View& view, std::span<const ObjectId> objects,
                               std::span<const Mat4> scene_from_stored) {
   DistanceOrder order;
-  std::vector<std::pair<double, ObjectId>> blended;  // farthest first
+  std::vector<std::pair<double, ObjectId>> blended;  // negated distance and object
   for (const ObjectId id : objects) {
     const Object& object = scene.objects[id.value];
     if (scene.materialOf(object).opacity != Opacity::kBlended) {
@@ -85,7 +85,7 @@ DistanceOrder orderByDistance(const SceneView& scene, const View& view, std::spa
   }
   std::sort(blended.begin(), blended.end());
   order.first_blended = order.order.size();
-  for (const auto& [reciprocal_depth, id] : blended) {
+  for (const auto& [negated_distance, id] : blended) {
     order.order.push_back(id);
   }
   return order;
@@ -96,7 +96,7 @@ DistancePairs countWrongPairs(LayerRenderer& renderer, const View& view, const D
   LayerImage image;
   renderer.draw(view, all.first(order.first_blended), {.depths = true}, image);
   const std::vector<float> opaque = image.depths;
-  std::vector<SeenDepths> seen;  // as they are drawn
+  std::vector<SeenDepths> seen;  // in the order of drawing
   for (const ObjectId& id : all.subspan(order.first_blended)) {
     renderer.draw(view, {&id, 1}, {.depths = true}, image);
     seen.push_back(seenDepths(image, opaque));

@@ -1,7 +1,6 @@
 #pragma once
 
-// What an order of see-through things by the distances of their centres, as most programs draw them, makes of
-// a frame.
+// Draws a frame with see-through objects ordered by the distances of their centres, as most programs do.
 
 #include <cstdint>
 #include <span>
@@ -12,27 +11,29 @@
 namespace sightline::tool {
 
 struct DistanceOrder {
-  // Objects by number: those that are not blended, then the blended ones from the farthest centre to the
-  // nearest. Distances are to the middles of the boxes; along the view where it is orthographic.
+  // Objects that are not blended, by number, then blended objects from the farthest centre to the nearest.
+  // Distances are to the centres of the bounding boxes; in an orthographic view they are measured along the
+  // view.
   std::vector<ObjectId> order;
   std::size_t first_blended = 0;
 };
-// scene_from_stored: one an object, or none.
+// Orders objects by distance. scene_from_stored: one per object, or empty.
 DistanceOrder orderByDistance(const SceneView& scene, const View& view, std::span<const ObjectId> objects,
                               std::span<const Mat4> scene_from_stored);
 
-// Pairs of blended objects that share pixels of the picture in which opaque ones hide neither.
+// Counts of pairs of blended objects that overlap in some pixel in which no opaque object hides either.
 struct DistancePairs {
   std::uint64_t overlapping = 0;
-  std::uint64_t wrong = 0;  // in some pixel the one that is drawn first lies before the other
-  // Of the wrong ones: in some other pixel it is the other way round. No order of the two is right.
+  std::uint64_t wrong = 0;  // pairs of which the one drawn first is in front of the other in some pixel
+  // Wrong pairs with the opposite order in another pixel, so that no order of the two is right.
   std::uint64_t without_order = 0;
 };
-// By drawing each blended object alone, with the transforms that the renderer has. What counts is the nearest
-// surface of each in a pixel; nearer to each other than a hundred-thousandth of the distance: nothing.
+// Counts wrong pairs by drawing each blended object alone, with the renderer's transforms. The nearest
+// surfaces of two objects in a pixel are compared; a difference below 1e-5 of the distance is ignored.
 DistancePairs countWrongPairs(LayerRenderer& renderer, const View& view, const DistanceOrder& order);
 
-// The picture without the sky: opaque objects by a depth buffer, blended ones over them in the order.
+// Draws the picture without the sky: opaque objects with a depth buffer, then blended objects in the given
+// order.
 void drawByDistance(LayerRenderer& renderer, const View& view, const DistanceOrder& order, LayerImage& image);
 
 }  // namespace sightline::tool

@@ -83,7 +83,7 @@ class LayerDrawings : public FrameMaker {
   }
 
  private:
-  // All frames of a scene are posed with the same indices.
+  // The renderer is made once, since all frames of a scene have the same indices.
   void place(const MovingScene& moving, std::uint32_t frame) {
     if (!renderer_ || moving.pose) {
       posedScene(moving, frame, posed_);
@@ -190,7 +190,7 @@ FeatureSettings featuresOf(const LayerDrawingOptions& options) {
 }
 
 Status checkLines(const LayerDrawingOptions& options) {
-  // Ranges let them pass.
+  // CLI::Range accepts NaN.
   if (std::isnan(options.crease_deg) || std::isnan(options.stroke_width)) {
     return Error{"--crease and --stroke-width: must be numbers"};
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// `layers --svg, --pdf`: hidden-line drawings of frames.
+// `layers --svg` and `--pdf`: hidden-line drawings of frames.
 
 #include <memory>
 #include <string>
@@ -22,14 +22,14 @@ struct LayerDrawingOptions {
 void addLayerDrawingOptions(CLI::App& command, LayerDrawingOptions& options);
 
 FeatureSettings featuresOf(const LayerDrawingOptions& options);
-// That numbers are numbers and some kind of line is to be drawn.
+// Checks that no number is NaN and that some kind of line is to be drawn.
 Status checkLines(const LayerDrawingOptions& options);
 
 // Whether the sorter must find the arcs of all pairs (LayerSettings::all_arcs).
 bool needAllArcs(const LayerDrawingOptions& options);
 
-// The page is as high as the pictures in pixels, and as wide as the view's aspect says. Objects keep their
-// names. Frames in a moving scene show the parts where they are.
+// Makes a hidden-line drawing of each frame. The page is as high as the pictures in pixels and has the view's
+// aspect. Objects keep their names. Parts of a moving scene are drawn at their place in the frame.
 Result<std::unique_ptr<FrameMaker>> makeLayerDrawings(const LayerDrawingOptions& options,
                                                       const FrameMakerInput& input);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `layers` hands on, frame by frame: the sorted layers, to whatever makes pictures or drawings of them.
+// The interface by which `layers` passes each sorted frame to what makes pictures or drawings of it.
 
 #include <cstdint>
 #include <functional>
@@ -16,45 +16,45 @@
 
 namespace sightline::tool {
 
-// Valid during the call that it is given to.
+// A sorted frame; valid during the call of FrameMaker::make().
 struct SortedFrame {
-  std::uint32_t number = 0;  // in the walk
+  std::uint32_t number = 0;  // number of the frame on the camera path
   const View& view;          // with square pixels
   const LayerOrder& order;
   const FrameLayers& layers;
-  std::span<const Mat4> scene_from_stored;    // where the parts are, one a part; none: as stored
-  std::function<void(double done)> progress;  // takes the share of the maker's work on this frame
+  std::span<const Mat4> scene_from_stored;    // one transform per part; empty: as stored
+  std::function<void(double done)> progress;  // called with the share of the maker's work done, 0 to 1
 };
 
-// What a maker works with. Outlives it.
+// The input of a maker, which must outlive it.
 struct FrameMakerInput {
   const LayerInput& input;
   std::string scene_file;       // as the user named it
-  std::uint32_t width, height;  // of the pictures, pixels
-  std::uint32_t samples = 1;    // a side of each pixel: 1, 2 or 4
+  std::uint32_t width, height;  // size of the pictures in pixels
+  std::uint32_t samples = 1;    // samples along each side of a pixel: 1, 2 or 4
   bool tints = true;            // see LayerRendererOptions
   CompositingForm form = CompositingForm::kCheapest;
   bool several_frames = false;  // see frameFile
 };
 
-// Makes files of frames. A maker is created before anything is sorted, by
+// Makes files of frames. A maker is created before the first frame is sorted, by a function
 //   Result<std::unique_ptr<FrameMaker>> make...(const ...Options&, const FrameMakerInput&)
-// which gives nullptr where the options ask for nothing, and checks all that can be checked then: options and
-// OpenGL; output files were checked before (checkFiles).
+// which returns nullptr if the options ask for nothing. It checks the options and OpenGL; the output files
+// have been checked before (checkFiles).
 class FrameMaker {
  public:
   virtual ~FrameMaker() = default;
-  // Once a frame, ascending. The answer's keys are added to the frame's JSON: one key with an object.
+  // Called once per frame, ascending. Returns an object with one key, which is added to the frame's JSON.
   virtual Result<Json> make(const SortedFrame& frame) = 0;
-  // After the last frame: a few lines on standard output, of what was measured.
+  // Called after the last frame; prints a few lines of measurements on standard output.
   virtual void print() const = 0;
 };
 
-// Of the pictures that the input asks for.
+// Returns a renderer for pictures of the size that the input asks for.
 Result<LayerRenderer> makeRenderer(const FrameMakerInput& input);
 
-// Where a frame's file goes: `target` itself, or, of several frames, with the number before the extension:
-// "dir/out_0012.png".
+// Returns the name of a frame's file: `target`, or for several frames `target` with the number before the
+// extension, as in "dir/out_0012.png".
 std::string frameFile(const std::string& target, std::uint32_t frame, bool several_frames);
 
 }  // namespace sightline::tool

@@ -32,7 +32,7 @@ constexpr std::array<Name<LayerBlur>, 3> kLayerBlurs{{
 }};
 constexpr std::uint32_t kMaxPasses = 10000;
 
-// Motion blur alone goes by layers.
+// Motion blur without depth of field is done by layers.
 std::string methodName(const LayerLensOptions& options) {
   return options.depth_of_field.empty() ? "layers" : options.depth_of_field;
 }
@@ -89,7 +89,8 @@ class LayerLens : public FrameMaker {
   }
 
  private:
-  // To the next frame; of the last one to the one before, which is the same line.
+  // Sets the motion to the next frame. The last frame uses the one before, which gives the same line of
+  // motion.
   void setMotion(const SortedFrame& frame) {
     const Walk& walk = input_.input.walk;
     const std::size_t frames = walk.path.frames.size();
@@ -122,7 +123,7 @@ class LayerLens : public FrameMaker {
     return json;
   }
 
-  // With the reference; its picture beside ours, and where they differ.
+  // Compares the picture with the reference and writes both and their difference side by side.
   Result<Json> compare(const SortedFrame& frame, std::string& line) {
     LensSettings reference = settings_;
     reference.method = LensMethod::kAccumulation;
@@ -147,7 +148,7 @@ class LayerLens : public FrameMaker {
   LensPicture lens_;
   LensSettings settings_;
   LayerImage picture_, reference_;
-  std::vector<Mat4> other_stored_;  // where the parts are in the frame that they move to
+  std::vector<Mat4> other_stored_;  // transforms of the parts in the frame to which they move
   std::vector<std::string> lines_;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// layers --depth-of-field, --motion-blur: blurred pictures of sorted frames, beside the accumulation of whole
-// pictures.
+// `layers --depth-of-field` and `--motion-blur`: blurred pictures of sorted frames, compared with the
+// accumulation of whole pictures.
 
 #include <cstdint>
 #include <memory>
@@ -15,9 +15,9 @@ namespace sightline::tool {
 struct LayerLensOptions {
   std::string depth_of_field;  // empty: none
   double focus = 0.0, aperture = 0.0;
-  double motion_blur = 0.0;             // the shutter's share of a frame; 0: none
-  std::uint32_t passes = 21;            // of accumulation
-  std::uint32_t reference_passes = 64;  // of what --compare compares with
+  double motion_blur = 0.0;             // share of a frame's time for which the shutter is open; 0: none
+  std::uint32_t passes = 21;            // pictures that an accumulation takes
+  std::uint32_t reference_passes = 64;  // pictures that the reference of --compare takes
   std::vector<std::string> blur_layer;  // PART=even|depth|accumulate
   std::string blurred, compare;         // files; empty: none
 

@@ -15,21 +15,21 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::uint32_t kFinest = 4;        // fine pixels a side of a pixel
-constexpr std::uint32_t kMaxPixels = 8192;  // a side of LayerRenderer's pictures
-constexpr double kRounding = 1e-6;          // of a depth; in orthographic views, of the far distance
-constexpr double kEven = 0.25;              // changes that differ by less than this share are of one plane
+constexpr std::uint32_t kFinest = 4;        // greatest number of fine pixels along each side of a pixel
+constexpr std::uint32_t kMaxPixels = 8192;  // greatest width and height of LayerRenderer's pictures
+constexpr double kRounding = 1e-6;          // relative to the depth, or to the far distance (orthographic)
+constexpr double kEven = 0.25;              // changes that differ by less than this share belong to one plane
 
-// Finest that the renderer can draw.
+// Returns the greatest number of fine pixels along a side of a pixel that the renderer can draw.
 std::uint32_t finenessFor(std::uint32_t width, std::uint32_t height) {
   return std::clamp(kMaxPixels / std::max({width, height, 1u}), 1u, kFinest);
 }
 
-// The nearest surface at the fine pixels' centres. ReciprocalDepth is 1 / depth, in orthographic views
-// -depth: of a plane it is linear in the picture.
+// The reciprocal depth of the nearest surface at the centre of each fine pixel: 1 / depth or, in an
+// orthographic view, -depth. It is linear in the picture over a plane.
 class NearestSurfaces {
  public:
-  // takes the image's depths
+  // Takes over the image's depths.
   NearestSurfaces(const View& view, LayerImage& image)
       : width_(static_cast<int>(image.width)),
         height_(static_cast<int>(image.height)),
@@ -43,13 +43,13 @@ class NearestSurfaces {
 
   double reciprocalDepthOf(double depth) const { return orthographic_ ? -depth : 1.0 / depth; }
 
-  // x, y: fine pixels.
+  // Whether the surfaces hide a point at x, y in fine pixels.
   bool hides(double x, double y, double reciprocal_depth) const {
     const double rounding = kRounding * (orthographic_ ? far_ : reciprocal_depth);
     const int left = static_cast<int>(std::floor(x - 0.5)), top = static_cast<int>(std::floor(y - 0.5));
     for (const int row : {top, top + 1}) {
       for (const int column : {left, left + 1}) {
-        // Beyond the border there is no surface to ask.
+        // There are no surfaces beyond the border.
         if (contains(column, row) && at(column, row) - slope(column, row) <= reciprocal_depth + rounding) {
           return false;
         }
@@ -64,12 +64,13 @@ class NearestSurfaces {
     return reciprocal_depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                              static_cast<std::size_t>(x)];
   }
-  // How much the surface changes within a fine pixel: as it does on the steeper side of those on which it
-  // goes on evenly. (Across an edge it goes on otherwise, or there is another surface.)
+  // Returns by how much the surface's reciprocal depth changes within a fine pixel. It uses the steeper side
+  // of those on which the surface continues evenly, since across an edge there is another slope or another
+  // surface.
   double slope(int x, int y) const { return slopeAlong(x, y, 1, 0) + slopeAlong(x, y, 0, 1); }
   double slopeAlong(int x, int y, int dx, int dy) const {
     double steepest = 0.0;
-    std::optional<double> least;  // for surfaces of one or two fine pixels
+    std::optional<double> min_change;  // for surfaces of one or two fine pixels
     for (const int sign : {-1, 1}) {
       const int u = x + sign * dx, v = y + sign * dy, far_u = u + sign * dx, far_v = v + sign * dy;
       if (!contains(far_u, far_v)) {
@@ -79,9 +80,9 @@ class NearestSurfaces {
       if (std::abs(change - next) <= kEven * std::abs(change)) {
         steepest = std::max(steepest, std::abs(change));
       }
-      least = std::min(least.value_or(std::abs(change)), std::abs(change));
+      min_change = std::min(min_change.value_or(std::abs(change)), std::abs(change));
     }
-    const double change = steepest > 0.0 ? steepest : least.value_or(0.0);
+    const double change = steepest > 0.0 ? steepest : min_change.value_or(0.0);
     return std::isfinite(change) ? change : 0.0;
   }
 
@@ -91,7 +92,8 @@ class NearestSurfaces {
   std::vector<float> reciprocal_depth_;
 };
 
-// In camera space; x and y in halves of the picture at depth 1, or, in orthographic views, of the picture.
+// A point in camera space. The unit of x and y is half the picture, at depth 1 unless the view is
+// orthographic.
 struct CameraPoint {
   double x = 0.0, y = 0.0, depth = 0.0;
 };
@@ -107,9 +109,9 @@ CameraPoint between(const CameraPoint& a, const CameraPoint& b, double share) {
   return {std::lerp(a.x, b.x, share), std::lerp(a.y, b.y, share), std::lerp(a.depth, b.depth, share)};
 }
 
-// Shortens the line to what is in the view. false: nothing is, or a number is not finite.
+// Clips a line to the view. Returns false if nothing is left or a number is not finite.
 bool clip(const View& view, CameraPoint& a, CameraPoint& b) {
-  // Above zero inside.
+  // Distances from the planes of the view volume, positive inside.
   const auto distances = [&](const CameraPoint& p) {
     const double w = view.orthographic ? 1.0 : p.depth;
     return std::array{p.depth - view.near, view.far - p.depth, w - p.x, w + p.x, w - p.y, w + p.y};
@@ -193,7 +195,7 @@ class LinePicture : public FrameMaker {
  private:
   std::uint32_t fineness() const { return renderer_.width() / input_.width; }
 
-  // Their number, hidden ones too.
+  // Draws all lines and returns their number, including hidden ones.
   std::uint64_t drawLines(const View& view, const NearestSurfaces& surfaces, Image& picture) {
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < posed_.objects.size(); ++i) {
@@ -210,7 +212,7 @@ class LinePicture : public FrameMaker {
     return count;
   }
 
-  // ReciprocalDepth is linear along the line in the picture.
+  // Draws a line. The reciprocal depth is linear along it in the picture.
   void drawLine(const View& view, const NearestSurfaces& surfaces, const CameraPoint& a, const CameraPoint& b,
                 Image& picture) const {
     const auto place = [&](const CameraPoint& p) {
@@ -233,7 +235,7 @@ class LinePicture : public FrameMaker {
   std::string file_;
   FeatureSettings features_;
   const FrameMakerInput& input_;
-  LayerRenderer renderer_;  // of fine pixels
+  LayerRenderer renderer_;  // draws fine pixels
   std::vector<ObjectId> opaque_;
   std::optional<FeatureEdges> edges_;
   Scene posed_;

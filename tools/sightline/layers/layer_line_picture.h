@@ -1,6 +1,7 @@
 #pragma once
 
-// `layers --line-picture`: a frame's feature lines against a depth buffer, what drawings are compared with.
+// `layers --line-picture`: a frame's feature lines hidden by a depth buffer, with which drawings are
+// compared.
 
 #include <memory>
 
@@ -8,13 +9,12 @@
 
 namespace sightline::tool {
 
-// Draws the lines that a drawing with these options has (lines of all objects, kinds and angle as they say),
-// in pixels of the pictures' size, black on white, without antialiasing. It asks neither the sorter nor
-// HiddenLines: the opaque objects' depths are drawn by OpenGL, four times as fine as the picture each way (as
-// far as its largest picture allows), and each line is looked up in them at every fine pixel that it passes.
-// It is hidden there if the four nearest surfaces all lie before it by more than they slope within a fine
-// pixel. So where a line comes out from behind something is right within a fine pixel, and what lies behind a
-// surface by less than it slopes in that is drawn.
+// Draws the lines of a drawing with these options in black on white, in pixels of the pictures' size, without
+// antialiasing. It uses neither the sorter nor HiddenLines. OpenGL draws a depth buffer of the opaque objects
+// with up to four fine pixels along each side of a pixel, and each line is tested at every fine pixel that it
+// passes. It is hidden there if the surfaces in the four nearest fine pixels are all in front of it by more
+// than they slope within a fine pixel. So the ends of visible lines are right within a fine pixel, and a line
+// behind a surface by less than that slope is drawn.
 Result<std::unique_ptr<FrameMaker>> makeLinePicture(const LayerDrawingOptions& options,
                                                     const FrameMakerInput& input);
 

@@ -28,10 +28,10 @@ constexpr std::array<Name<CompositeSettings::Peel>, 2> kPeels{{
 struct ReplacedPart {
   std::uint32_t part = 0;
   Image file;
-  LayerImage image;  // of the pictures' size, in this frame
+  LayerImage image;  // the file fitted into this frame's picture
 };
 
-// What toImage() made of linear light.
+// Converts a pixel back to linear light; the inverse of toImage().
 ShapedPixel pixelOf(const Image& image, std::uint32_t x, std::uint32_t y) {
   const std::uint8_t* p = &image.rgba[4 * (std::size_t{y} * image.width + x)];
   const float alpha = static_cast<float>(p[3]) / 255.0f;
@@ -43,10 +43,10 @@ ShapedPixel pixelOf(const Image& image, std::uint32_t x, std::uint32_t y) {
 }
 
 struct Rectangle {
-  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // right and bottom are beyond it
+  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // right and bottom are exclusive
 };
 
-// The smallest that holds all that is not transparent.
+// Returns the smallest rectangle of all pixels that are not transparent.
 Rectangle rectangleOf(const LayerImage& image) {
   Rectangle found{image.width, image.height, 0, 0};
   for (std::uint32_t y = 0; y < image.height; ++y) {
@@ -59,7 +59,7 @@ Rectangle rectangleOf(const LayerImage& image) {
   return found;
 }
 
-// Each pixel of the rectangle shows the nearest of the file.
+// Stretches the file over a rectangle, with the nearest pixel for each.
 void fit(const Image& file, const Rectangle& to, LayerImage& image) {
   for (std::uint32_t y = to.top; y < to.bottom; ++y) {
     const std::uint64_t row = std::uint64_t{y - to.top} * file.height / (to.bottom - to.top);
@@ -125,7 +125,7 @@ class LayerPictures : public FrameMaker {
     return std::find(options_.without.begin(), options_.without.end(), part.value) != options_.without.end();
   }
 
-  // Which layers the parts are in that the options name.
+  // Finds the layers of the parts that the options name, and the objects to draw.
   void setUses(const SortedFrame& frame) {
     settings_ = {};
     settings_.peel = valueOf(kPeels, options_.peel);
@@ -151,7 +151,8 @@ class LayerPictures : public FrameMaker {
     std::sort(objects_.begin(), objects_.end());
   }
 
-  // The file as it is where it has the pictures' size, else stretched over what the part covers.
+  // Prepares the image: the file itself if it has the pictures' size, else stretched over the part's
+  // rectangle.
   void prepare(ReplacedPart& replaced, const View& view) {
     LayerImage& image = replaced.image;
     Rectangle to{0, 0, input_.width, input_.height};
@@ -204,7 +205,7 @@ class LayerPictures : public FrameMaker {
   }
   const std::string& nameOf(PartId part) const { return input_.input.moving.parts[part.value].name; }
 
-  // The parts of groups that no order gets right, as far as they are drawn.
+  // Returns the drawn parts of groups for which no order is right.
   Json unorderedGroups(const SortedFrame& frame) const {
     Json groups = Json::array();
     for (const std::uint32_t g : compositor_.unorderedGroups()) {
@@ -227,7 +228,7 @@ class LayerPictures : public FrameMaker {
            std::none_of(settings_.replaced.begin(), settings_.replaced.end(), is_layer);
   }
 
-  // More than were asked for, where these share layers with others.
+  // Returns the parts left out, which include other parts of the same layers.
   Json leftOutParts(const SortedFrame& frame) const {
     Json parts = Json::array();
     for (const LayerId layer : settings_.left_out) {
@@ -238,7 +239,7 @@ class LayerPictures : public FrameMaker {
     return parts;
   }
 
-  // The first see-through parts of each group, as "12 pane"; JSON has all parts.
+  // Returns the first see-through parts of each group, as in "12 pane"; the JSON has all parts.
   static std::string unorderedText(const Json& groups) {
     constexpr std::size_t kMaxNames = 8;
     std::string text;
@@ -267,7 +268,7 @@ class LayerPictures : public FrameMaker {
   LayerCompositor compositor_;
   CompositeSettings settings_;
   std::vector<ReplacedPart> replaced_;
-  std::vector<ObjectId> objects_;  // of this frame, less those left out; ascending
+  std::vector<ObjectId> objects_;  // this frame's objects without those left out, ascending
   LayerImage picture_, other_, sky_;
   std::string line_;
   std::vector<std::string> lines_;

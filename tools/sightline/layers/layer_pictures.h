@@ -1,7 +1,7 @@
 #pragma once
 
-// layers --image, --by-distance: pictures composited from layers, and what other ways of drawing differ from
-// them.
+// `layers --image` and `--by-distance`: pictures composited from layers, and their difference from other
+// methods.
 
 #include <memory>
 #include <string>

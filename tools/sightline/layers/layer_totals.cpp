@@ -39,11 +39,11 @@ double LayerTotals::mean(double Frame::*value) const {
 }
 
 double LayerTotals::largest(double Frame::*value) const {
-  double most = 0.0;
+  double max = 0.0;
   for (const Frame& frame : frames_) {
-    most = std::max(most, frame.*value);
+    max = std::max(max, frame.*value);
   }
-  return most;
+  return max;
 }
 
 double LayerTotals::meanGroupedSize() const {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What layers come to over the frames of a walk.
+// Means and maxima of the sort over the frames of a camera path.
 
 #include <cstddef>
 #include <vector>
@@ -12,10 +12,11 @@ namespace sightline::tool {
 class LayerTotals {
  public:
   struct Frame {
-    double groups = 0.0, grouped = 0.0, grouped_share = 0.0;  // groups of more than one part
-    double parts_in_groups_share = 0.0;                       // in those
-    double grouped_size = 0.0;                                // mean size of those; 0: there are none
-    double largest = 0.0;
+    double groups = 0.0;
+    double grouped = 0.0, grouped_share = 0.0;  // number and share of groups of more than one part
+    double parts_in_groups_share = 0.0;         // share of the parts that are in those groups
+    double grouped_size = 0.0;                  // mean size of those groups; 0: there are none
+    double largest = 0.0;                       // size of the largest group
     double layers = 0.0, operations = 0.0;
     double arcs = 0.0, collisions = 0.0, pair_queries = 0.0, reinsertions = 0.0, sort_us = 0.0;
   };
@@ -25,7 +26,7 @@ class LayerTotals {
   std::size_t frames() const { return frames_.size(); }
   double mean(double Frame::*value) const;
   double largest(double Frame::*value) const;
-  // Of the groups with more than one part in all frames.
+  // Returns the mean size of the groups of more than one part in all frames.
   double meanGroupedSize() const;
 
  private:

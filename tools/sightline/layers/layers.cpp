@@ -1,4 +1,4 @@
-// sightline layers: the order in which the parts of a scene must be drawn, in every frame of a walk.
+// sightline layers: the order in which the parts of a scene must be drawn, in every frame of a camera path.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -84,7 +84,7 @@ LayerSettings settingsOf(const LayersOptions& options) {
   settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
   settings.exact = valueOf(kSwitch, options.exact);
   settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
-  // The world's axes say nothing about what is near.
+  // None of the world's axes measures the distance from the camera.
   if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
     settings.conditioning_axis = -1;
   }
@@ -148,7 +148,7 @@ void print(const LayerTotals& totals, std::size_t parts) {
   line("sort time, largest, us", totals.largest(&LayerTotals::Frame::sort_us));
 }
 
-// Everything that is made of sorted frames besides JSON.
+// Makes all that the options ask to make of sorted frames besides JSON.
 Result<FrameMakers> makersOf(const LayersOptions& options, const FrameMakerInput& input) {
   FrameMakers makers;
   Result<std::unique_ptr<FrameMaker>> made[] = {
@@ -169,7 +169,7 @@ double aspectOf(const PictureOptions& size) {
   return static_cast<double>(size.width) / static_cast<double>(size.height);
 }
 
-// Sorts the frames of a walk one after another.
+// Sorts the frames of a camera path one after the other.
 class WalkSorter {
  public:
   WalkSorter(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers)
@@ -179,7 +179,7 @@ class WalkSorter {
         aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
         sorter_(makeSorter(input.moving, settingsOf(options))) {}
 
-  // progress: takes the share of the frame that is done.
+  // Sorts a frame and makes its files. progress: called with the share of the frame that is done.
   Status sort(std::uint32_t frame, const std::function<void(double)>& progress) {
     View view = input_.walk.view(frame, input_.moving.scene);
     view.aspect = aspect_;
@@ -223,7 +223,7 @@ class WalkSorter {
   const LayersOptions& options_;
   const LayerInput& input_;
   const FrameMakers& makers_;
-  double aspect_;  // of the pictures
+  double aspect_;  // aspect of the pictures
   LayerSorter sorter_;
   LayerMerger merger_;
   CompositingCompiler compiler_;
@@ -289,7 +289,7 @@ Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::u
       continue;
     }
     if (output.option == "--json") {
-      outputs.push_back(output);  // one for all frames
+      outputs.push_back(output);  // one file for all frames
       continue;
     }
     for (const std::uint32_t frame : frames) {
@@ -337,6 +337,32 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
   return makers ? sortWalk(options, *input, *makers) : makers.error();
 }
 
+void addChoice(CLI::App& command, const char* name, std::string& value,
+               const std::vector<std::string>& values, const char* help) {
+  command.add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
+}
+
+void addSortOptions(CLI::App& command, LayersOptions& options) {
+  addChoice(command, "--sort", options.sort, textsOf(kSorts),
+            "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
+  addChoice(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
+  addChoice(command, "--extents", options.extents, {"camera", "world"},
+            "two angles and depth of the camera, or x, y, z of the world");
+  addChoice(command, "--arcs", options.arcs, {"groups", "all"},
+            "who occludes whom: within groups, or of all pairs");
+  addChoice(command, "--expression", options.expression, textsOf(kCompositingForms),
+            "how cycles without mutual occlusion are composited");
+  addChoice(command, "--conditioning", options.conditioning, textsOf(kSwitch),
+            "let near groups move forward in the order (camera extents only)");
+  addChoice(command, "--exact", options.exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
+  command.add_option("--backdrop", options.places.backdrops, "parts behind all others, by number")
+      ->check(isNotEmpty())
+      ->delimiter(',');
+  command.add_option("--overlay", options.places.overlays, "parts before all others, by number")
+      ->check(isNotEmpty())
+      ->delimiter(',');
+}
+
 }  // namespace
 
 void addLayers(CLI::App& app, Command& chosen) {
@@ -348,27 +374,7 @@ void addLayers(CLI::App& app, Command& chosen) {
   for (const char* option : {"SCENE", "--json"}) {
     command->get_option(option)->check(isNotEmpty());
   }
-  const auto addChoice = [&](const char* name, std::string& value, const std::vector<std::string>& values,
-                             const char* help) {
-    command->add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
-  };
-  addChoice("--sort", options->sort, textsOf(kSorts),
-            "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
-  addChoice("--search", options->search, textsOf(kSearches), "how candidates are found");
-  addChoice("--extents", options->extents, {"camera", "world"},
-            "two angles and depth of the camera, or x, y, z of the world");
-  addChoice("--arcs", options->arcs, {"groups", "all"}, "who occludes whom: within groups, or of all pairs");
-  addChoice("--expression", options->expression, textsOf(kCompositingForms),
-            "how cycles without mutual occlusion are composited");
-  addChoice("--conditioning", options->conditioning, textsOf(kSwitch),
-            "let near groups move forward in the order (camera extents only)");
-  addChoice("--exact", options->exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
-  command->add_option("--backdrop", options->places.backdrops, "parts behind all others, by number")
-      ->check(isNotEmpty())
-      ->delimiter(',');
-  command->add_option("--overlay", options->places.overlays, "parts before all others, by number")
-      ->check(isNotEmpty())
-      ->delimiter(',');
+  addSortOptions(*command, *options);
   addLayerPictureOptions(*command, options->pictures);
   addLayerLensOptions(*command, options->lens);
   addLayerDrawingOptions(*command, options->drawings);
@@ -377,13 +383,13 @@ void addLayers(CLI::App& app, Command& chosen) {
       ->check(isOneOf({"1", "2", "4"}))
       ->capture_default_str();
   addChoice(
-      "--tints", options->tints, textsOf(kSwitch),
+      *command, "--tints", options->tints, textsOf(kSwitch),
       "pictures: objects of one material differ a little in lightness; off: where objects overlap in one "
       "surface, it does not matter which of them is drawn");
   command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
   command->footer(
       "A part is an object of the scene, taken as its convex hull. Groups are parts that occlude each other "
-      "in a circle; layers, what must be drawn together within them. Of several frames each "
+      "in a cycle; layers, what must be drawn together within them. Of several frames each "
       "picture or drawing has the frame's number before its ending.\n"
       "Examples:\n"
       "  sightline layers demo:toothpicks --json order.json\n"

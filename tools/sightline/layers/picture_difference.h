@@ -1,6 +1,6 @@
 #pragma once
 
-// How two pictures of a frame differ, as `layers` tells and shows it.
+// The difference of two pictures of a frame as JSON, text and picture.
 
 #include <string>
 
@@ -10,12 +10,12 @@
 
 namespace sightline::tool {
 
-// Pixels count as different beyond it, of 255; see measureDifference.
+// Difference, of 255, above which a pixel counts as different; see measureDifference().
 inline constexpr double kDifferenceTolerance = 4.0;
 
 Json differenceJson(const PictureDifference& difference);
 std::string differenceText(const PictureDifference& difference);
-// Ours, theirs, and where they differ, side by side, as a PNG file.
+// Writes a PNG file with our picture, theirs, and their difference side by side.
 Status writeComparison(const LayerImage& ours, const LayerImage& theirs, const std::string& file);
 
 }  // namespace sightline::tool
