@@ -22,11 +22,6 @@
 namespace sightline {
 
 using namespace occluders;
-using occluders::DatabaseKind;
-using occluders::ListPacker;
-using occluders::PackedLists;
-using occluders::SphereDirections;
-using occluders::StepProgress;
 
 struct OccluderDatabase::Data {
   Data(std::uint32_t direction_count, std::uint32_t occluders)
@@ -92,9 +87,8 @@ OccluderDatabase OccluderDatabase::build(const Hierarchy& kd_tree, const Occlude
   const CandidateTree candidates(set, settings.turned_away);
   const std::uint32_t directions = data->directions.count();
   const std::size_t length = std::min(settings.occluder_count, candidates.count());
-  data->cells =
-      buildCells(kd_tree, candidates.bounds(),
-                 cellLimit(settings.max_bytes, sizeof(OccluderDatabase) + data->bytes(), directions, length));
+  data->cells = buildCells(kd_tree, candidates.bounds(),
+                           cellLimit(settings.max_bytes, sizeof(data) + data->bytes(), directions, length));
   data->lists =
       findLists(candidates, data->directions, data->cells,
                 {static_cast<std::uint32_t>(length), settings.view_angle_deg, settings.area_angle_direction},
@@ -103,6 +97,10 @@ OccluderDatabase OccluderDatabase::build(const Hierarchy& kd_tree, const Occlude
   OccluderDatabase database;
   database.data_ = data;
   return database;
+}
+
+std::span<const OccluderId> OccluderDatabase::find(const Vec3d& viewpoint, const Vec3d& direction) const {
+  return list(cellOf(viewpoint), nearestDirection(direction));
 }
 
 std::span<const OccluderId> OccluderDatabase::list(std::uint32_t cell, std::uint32_t direction) const {
@@ -141,7 +139,7 @@ double OccluderDatabase::coveringAngle() const {
 }
 
 std::size_t OccluderDatabase::bytes() const {
-  return sizeof(*this) + (data_ ? data_->bytes() : 0);
+  return sizeof(data_) + (data_ ? data_->bytes() : 0);
 }
 
 std::vector<std::byte> OccluderDatabase::save() const {

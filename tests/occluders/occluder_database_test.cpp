@@ -249,6 +249,16 @@ TEST(OccluderDatabase, ListsHoldTheBestOfAllOccludersOfDemoScenes) {
   }
 }
 
+TEST(OccluderDatabase, GivesListsToBeRanked) {
+  const OccluderDatabase database = OccluderDatabase::build(
+      smallCity().kd_tree, smallCity().set, {.directions = 8, .occluder_count = 4, .max_bytes = 10000});
+  const OccluderLists& lists = database;
+  EXPECT_FALSE(lists.inOrder());
+  const Vec3d eye(1.0, 2.0, 3.0), direction(1.0, 0.0, 0.5);
+  EXPECT_TRUE(std::ranges::equal(lists.find(eye, direction),
+                                 database.list(database.cellOf(eye), database.nearestDirection(direction))));
+}
+
 // Whether some corner or the centroid is in the cone: a part of the polygon that surely is.
 bool surelyInCone(const Model& model, const Occluder& occluder, const View& view, double half_angle) {
   const std::span<const Vec3f> corners = model.set.verticesOf(occluder);

@@ -86,9 +86,7 @@ class ViewpointDatabase final : public OccluderLists {
   // to `direction` (any length > 0). Best first: its first k are a good choice of k. Time: logarithmic in the
   // number of points, as a rule, and a table for the direction; allocates nothing. Any viewpoint has a list,
   // also one that is not finite. The list lives as long as a copy of the database.
-  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const override {
-    return list(nearestPoint(viewpoint), nearestDirection(direction));
-  }
+  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const override;
   bool inOrder() const override { return true; }
 
   // What find looks up. point < pointCount(), direction < directionCount().
@@ -104,7 +102,7 @@ class ViewpointDatabase final : public OccluderLists {
   Vec3d direction(std::uint32_t index) const;  // unit length
   double spacing() const;                      // of the grid, metres
 
-  std::size_t bytes() const;  // in memory, all of it
+  std::size_t bytes() const;  // of memory that the data takes, all of it
 
   // All of it as bytes, for baked files: little-endian, the same for equal databases.
   std::vector<std::byte> save() const;

@@ -62,9 +62,7 @@ class OccluderDatabase final : public OccluderLists {
   // first. Time: a comparison for each level of the kd-tree, then a table for the direction; allocates
   // nothing. Any viewpoint has a list, also one that is not finite. The list lives as long as a copy of the
   // database.
-  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const override {
-    return list(cellOf(viewpoint), nearestDirection(direction));
-  }
+  std::span<const OccluderId> find(const Vec3d& viewpoint, const Vec3d& direction) const override;
   bool inOrder() const override { return false; }
 
   // What find looks up. cell < cellCount(), direction < directionCount().
@@ -84,7 +82,7 @@ class OccluderDatabase final : public OccluderLists {
   // Bounds the angle between any direction and its nearest stored one, radians.
   double coveringAngle() const;
 
-  std::size_t bytes() const;  // in memory, all of it
+  std::size_t bytes() const;  // of memory that the data takes, all of it
 
   // All of it as bytes, for baked files: little-endian, the same for equal databases.
   std::vector<std::byte> save() const;

@@ -1,5 +1,7 @@
 #pragma once
 
+// What the culler asks of an occluder database: the good occluders for a viewpoint and a viewing direction.
+
 #include <span>
 
 #include "sightline/base/ids.h"
@@ -7,18 +9,25 @@
 
 namespace sightline {
 
-// Lists of occluders that were made ahead: which ones may matter at a place, in a direction. Safe to share
-// between threads.
+// Lists of occluders that were chosen in advance. Implementations do not change once they are built, so that
+// any number of threads may ask them at the same time.
 class OccluderLists {
  public:
   virtual ~OccluderLists() = default;
 
-  // The list for the place and direction (scene space; the direction need not have a length of 1). Valid as
-  // long as this is.
+  // The list for an eye (scene space) that looks along `direction` (any length > 0), best first. Every eye
+  // has a list, also one that is not finite. Allocates nothing. The list lives as long as the database.
   virtual std::span<const OccluderId> find(const Vec3d& eye, const Vec3d& direction) const = 0;
-  // Whether the best come first, so that the first ones in view are taken; otherwise they are ranked anew for
-  // each view.
+
+  // True: the first occluders that are in view are taken, in the order of the list. False: the occluders of
+  // the list are ranked by their area-angle for the view.
   virtual bool inOrder() const = 0;
+
+ protected:
+  // Implementations are values that may be copied; this part of them is not copied alone.
+  OccluderLists() = default;
+  OccluderLists(const OccluderLists&) = default;
+  OccluderLists& operator=(const OccluderLists&) = default;
 };
 
 }  // namespace sightline

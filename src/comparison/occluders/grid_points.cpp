@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 constexpr double kFarthest = 1e12;           // metres from the origin
@@ -212,4 +212,4 @@ std::uint32_t PointTree::nearest(const Vec3d& place) const {
   return best.index;
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

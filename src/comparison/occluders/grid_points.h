@@ -10,7 +10,7 @@
 #include "sightline/math/box.h"
 #include "src/base/byte_stream.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 struct PointGrid {
   std::vector<Vec3d> points;  // at least one
@@ -56,4 +56,4 @@ class PointTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

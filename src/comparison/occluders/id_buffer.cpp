@@ -1,6 +1,6 @@
 #include "src/comparison/occluders/id_buffer.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 void IdBuffer::clear(const OccluderPicture& picture) {
   index_.assign(picture.pixelCount(), kNoOccluder);
@@ -26,4 +26,4 @@ void IdBuffer::draw(const OccluderPicture& picture, std::uint32_t index) {
   });
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

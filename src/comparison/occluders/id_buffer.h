@@ -7,7 +7,7 @@
 
 #include "src/comparison/occluders/occluder_picture.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 inline constexpr std::uint32_t kNoOccluder = 0xffffffffu;
 
@@ -32,4 +32,4 @@ class IdBuffer {
   std::uint32_t survivors_ = 0;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

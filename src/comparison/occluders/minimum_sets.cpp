@@ -12,7 +12,7 @@
 
 #include "src/occluders/group_by_key.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 // Both bound the time and the stack that hostile tables take; tables of real scenes are far smaller.
@@ -114,13 +114,14 @@ void MinimumSetSearch::orderMembers(const CombinationTable& table) {
     }
     first_of_slot_.push_back(static_cast<std::uint32_t>(ordered_.size()));
   }
-  groupByKey(static_cast<std::uint32_t>(number_of_.size()), slots_of_, first_of_member_, [&](auto&& body) {
-    for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
-      for (std::uint32_t i = first_of_slot_[s]; i < first_of_slot_[s + 1]; ++i) {
-        body(ordered_[i], s);
-      }
-    }
-  });
+  occluders::groupByKey(static_cast<std::uint32_t>(number_of_.size()), slots_of_, first_of_member_,
+                        [&](auto&& body) {
+                          for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
+                            for (std::uint32_t i = first_of_slot_[s]; i < first_of_slot_[s + 1]; ++i) {
+                              body(ordered_[i], s);
+                            }
+                          }
+                        });
   const auto slotsFor = [this](std::uint32_t m) {
     return static_cast<double>(first_of_member_[m + 1] - first_of_member_[m]) / cost_of_[m];
   };
@@ -229,4 +230,4 @@ void MinimumSetSearch::keep() {
   }
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 // For each pixel of an occludee's image, which occluders are in front of it there. Pixels with the same
 // occluders are one slot.
@@ -94,4 +94,4 @@ class MinimumSetSearch {
   std::uint32_t kept_count_ = 0;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

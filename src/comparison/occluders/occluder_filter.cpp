@@ -5,7 +5,7 @@
 
 #include "src/occluders/occluder_radius.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 bool allFinite(const OccluderSet& set, const Occluder& occluder) {
@@ -47,4 +47,4 @@ void OccluderFilter::find(const Vec3d& eye, double min_solid_angle, std::vector<
   }
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

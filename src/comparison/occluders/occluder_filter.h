@@ -6,7 +6,7 @@
 
 #include "sightline/occluders/occluder_set.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 // An occluder that may be in a picture.
 struct NearOccluder {
@@ -30,4 +30,4 @@ class OccluderFilter {
   std::vector<NearOccluder> all_;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

@@ -12,7 +12,7 @@
 
 #include "src/geometry/clip_convex.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 constexpr double kFarthest = 1e12;  // metres; beyond it everything has the same reciprocal depth
@@ -114,4 +114,4 @@ void OccluderPicture::drawOne(const OccluderSet& set, const NearOccluder& candid
   shown_.push_back(shown);
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

@@ -13,7 +13,7 @@
 #include "src/geometry/centre_spans.h"
 #include "src/scene/pixel_view.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 inline constexpr std::uint32_t kMaxResolution = 512;
 
@@ -90,4 +90,4 @@ class OccluderPicture {
   std::vector<PixelPoint> corners_px_;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

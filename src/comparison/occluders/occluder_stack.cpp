@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 // An occluder that lies in an occludee's own front face does not hide it: it has to be nearer by more than
@@ -191,4 +191,4 @@ void OccluderStack::tableOf(const Occludee& occludee, CombinationTable& table) {
   table.finish();
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

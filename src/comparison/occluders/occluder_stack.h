@@ -11,7 +11,7 @@
 #include "src/comparison/occluders/minimum_sets.h"
 #include "src/comparison/occluders/occluder_picture.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 // Pixels with left <= x < right and low <= y < high.
 struct PixelRect {
@@ -70,4 +70,4 @@ class OccluderStack {
   std::vector<std::vector<std::uint32_t>> below_;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

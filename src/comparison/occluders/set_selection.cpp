@@ -10,7 +10,7 @@
 
 #include "src/occluders/group_by_key.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 constexpr double kMinCost = 1e-6;  // for weights of zero
@@ -82,7 +82,7 @@ void SetPool::indexByRarest(std::uint32_t occluder_count) {
       ++uses_[member];
     }
   }
-  groupByKey(occluder_count, by_rarest_, first_by_rarest_, [this](auto&& body) {
+  occluders::groupByKey(occluder_count, by_rarest_, first_by_rarest_, [this](auto&& body) {
     for (std::uint32_t s = 0; s < sets_.size(); ++s) {
       const auto members = membersOf(sets_[s]);
       body(*std::min_element(members.begin(), members.end(),
@@ -147,14 +147,14 @@ void SetSelection::prepare(const OccluderPicture& picture, const SetPool& pool,
   for (std::uint32_t gain = 0; gain <= occludee_count; ++gain) {
     worth_of_.push_back(std::pow(static_cast<double>(gain), weights.gain));
   }
-  groupByKey(occluder_count, sets_of_occluder_, first_of_occluder_, [&](auto&& body) {
+  occluders::groupByKey(occluder_count, sets_of_occluder_, first_of_occluder_, [&](auto&& body) {
     for (std::uint32_t s = 0; s < pool.setCount(); ++s) {
       for (const std::uint32_t member : pool.members(s)) {
         body(member, s);
       }
     }
   });
-  groupByKey(occludee_count, sets_of_occludee_, first_of_occludee_, [&](auto&& body) {
+  occluders::groupByKey(occludee_count, sets_of_occludee_, first_of_occludee_, [&](auto&& body) {
     for (std::uint32_t s = 0; s < pool.setCount(); ++s) {
       for (const std::uint32_t occludee : pool.occludees(s)) {
         body(occludee, s);
@@ -283,4 +283,4 @@ void SetSelection::append(std::uint32_t occluder, std::uint32_t limit) {
   }
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

@@ -12,7 +12,7 @@
 #include "src/comparison/occluders/occluder_picture.h"
 #include "src/comparison/occluders/occluder_stack.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 // Of one occluder, with weights >= 0. A set's cost is the sum.
 double costOf(const ShownOccluder& occluder, std::uint32_t picture_pixels, const MinimumSetWeights& weights);
@@ -111,4 +111,4 @@ class SetSelection {
   std::vector<std::uint32_t> list_;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

@@ -20,12 +20,8 @@
 
 namespace sightline {
 
+using namespace comparison;
 using namespace occluders;
-using occluders::DatabaseKind;
-using occluders::ListPacker;
-using occluders::PackedLists;
-using occluders::SphereDirections;
-using occluders::StepProgress;
 
 namespace {
 
@@ -128,6 +124,10 @@ ViewpointDatabase ViewpointDatabase::build(const Hierarchy& hierarchy, const Occ
   return database;
 }
 
+std::span<const OccluderId> ViewpointDatabase::find(const Vec3d& viewpoint, const Vec3d& direction) const {
+  return list(nearestPoint(viewpoint), nearestDirection(direction));
+}
+
 std::span<const OccluderId> ViewpointDatabase::list(std::uint32_t point, std::uint32_t direction) const {
   if (!data_) {
     return {};
@@ -164,7 +164,7 @@ double ViewpointDatabase::spacing() const {
 }
 
 std::size_t ViewpointDatabase::bytes() const {
-  return sizeof(*this) + (data_ ? data_->bytes() : 0);
+  return sizeof(data_) + (data_ ? data_->bytes() : 0);
 }
 
 std::vector<std::byte> ViewpointDatabase::save() const {

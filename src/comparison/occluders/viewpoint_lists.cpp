@@ -8,7 +8,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 constexpr double kNearOfExtent = 0x1p-14;  // near distance of a picture, of the scene's diagonal
@@ -121,4 +121,4 @@ void ListMaker::byMinimumSets(std::vector<OccluderId>& list) {
   }
 }
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

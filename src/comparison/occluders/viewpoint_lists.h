@@ -13,7 +13,7 @@
 #include "src/comparison/occluders/occluder_stack.h"
 #include "src/comparison/occluders/set_selection.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 
 // What all pictures of a database have in common. The settings are in range.
 struct PictureSource {
@@ -64,4 +64,4 @@ class ListMaker {
   SetSelection selection_;
 };
 
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

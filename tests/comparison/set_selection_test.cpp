@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <set>
 
-#include "tests/occluders/picture_scenes.h"
+#include "tests/comparison/picture_scenes.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 using namespace picture_scenes;
@@ -293,4 +293,4 @@ TEST(SetSelection, HidesAllThatItsSetsHideWithFewOccluders) {
 }
 
 }  // namespace
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

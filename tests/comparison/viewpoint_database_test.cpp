@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "scenes/procedural.h"
-#include "tests/occluders/picture_scenes.h"
+#include "tests/comparison/picture_scenes.h"
 
 namespace sightline {
 namespace {
@@ -309,6 +309,17 @@ TEST(ViewpointDatabase, FindsTheNearestPoint) {
       EXPECT_EQ(database.nearestPoint(database.point(p)), p);
     }
   }
+}
+
+TEST(ViewpointDatabase, GivesListsInTheirOrder) {
+  const auto database = ViewpointDatabase::build(smallCity().hierarchy, smallCity().set, {},
+                                                 {.max_points = 4, .directions = 4, .resolution = 32});
+  const OccluderLists& lists = database;
+  EXPECT_TRUE(lists.inOrder());
+  const Vec3d eye(1.0, 2.0, 3.0), direction(1.0, 0.0, 0.5);
+  EXPECT_TRUE(
+      std::ranges::equal(lists.find(eye, direction),
+                         database.list(database.nearestPoint(eye), database.nearestDirection(direction))));
 }
 
 TEST(ViewpointDatabase, AnyViewpointAndDirectionHasAList) {

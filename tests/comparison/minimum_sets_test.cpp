@@ -8,7 +8,7 @@
 
 #include "tests/occluders/flat_mesh.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 using flat_mesh::Random;
@@ -245,4 +245,4 @@ TEST(MinimumSets, CopeWithATableOfThousandsOfSlots) {
 }
 
 }  // namespace
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison

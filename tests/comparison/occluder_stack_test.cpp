@@ -7,9 +7,9 @@
 #include <numbers>
 #include <set>
 
-#include "tests/occluders/picture_scenes.h"
+#include "tests/comparison/picture_scenes.h"
 
-namespace sightline::occluders {
+namespace sightline::comparison {
 namespace {
 
 using namespace picture_scenes;
@@ -278,4 +278,4 @@ TEST(Occludees, AreTheFirstSmallEnoughNodesOnTheWayDown) {
 }
 
 }  // namespace
-}  // namespace sightline::occluders
+}  // namespace sightline::comparison
