@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/base/ids.h"
+#include "src/base/rows.h"
 
 namespace sightline::culling {
 
@@ -33,20 +34,12 @@ class TreeMarks {
 
   // parents: by item; kTop for those that have none. places: any number an object.
   TreeMarks(std::vector<std::uint32_t> parents, std::span<const Place> places, std::size_t object_count)
-      : parents_(std::move(parents)),
-        first_(object_count + 1, 0),
-        items_(places.size()),
-        marks_(parents_.size(), 0) {
-    for (const Place& place : places) {
-      ++first_[place.object.value + 1];
-    }
-    for (std::size_t o = 1; o < first_.size(); ++o) {
-      first_[o] += first_[o - 1];
-    }
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (const Place& place : places) {
-      items_[next[place.object.value]++] = place.item;
-    }
+      : parents_(std::move(parents)), marks_(parents_.size(), 0) {
+    items_of_.group(object_count, [&](auto&& body) {
+      for (const Place& place : places) {
+        body(place.object.value, place.item);
+      }
+    });
     marked_.reserve(parents_.size());
   }
 
@@ -57,8 +50,8 @@ class TreeMarks {
     }
     marked_.clear();
     for (const ObjectId object : objects) {
-      for (std::uint32_t i = first_[object.value]; i < first_[object.value + 1]; ++i) {
-        for (std::uint32_t item = items_[i]; item != kTop && marks_[item] == 0; item = parents_[item]) {
+      for (std::uint32_t item : items_of_[object.value]) {
+        for (; item != kTop && marks_[item] == 0; item = parents_[item]) {
           marks_[item] = kMarked;
           marked_.push_back(item);
         }
@@ -73,8 +66,7 @@ class TreeMarks {
   static constexpr std::uint8_t kMarked = 0xff;
 
   std::vector<std::uint32_t> parents_;
-  std::vector<std::uint32_t> first_,
-      items_;  // of an object: items_[first_[o]] to before items_[first_[o + 1]]
+  base::Rows<std::uint32_t> items_of_;  // by object
   std::vector<std::uint8_t> marks_;
   std::vector<std::uint32_t> marked_;
 };

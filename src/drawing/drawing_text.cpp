@@ -11,38 +11,6 @@ namespace {
 constexpr int kMaxDecimals = 15;
 constexpr double kLargestCoordinate = 1e16;  // units; hundredths of it are below 2^63
 
-bool isContinuation(char c) {
-  return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u;
-}
-
-// The bytes that a first byte announces; 0: it is none.
-std::size_t lengthOf(unsigned char first) {
-  return first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
-}
-
-// At the beginning of text: a code point and the bytes that it takes; 0 bytes: it is not UTF-8.
-std::pair<char32_t, std::size_t> decodeOne(std::string_view text) {
-  const auto first = static_cast<unsigned char>(text[0]);
-  const std::size_t length = lengthOf(first);
-  if (length == 0 || length > text.size()) {
-    return {0, 0};
-  }
-  if (length == 1) {
-    return {first, 1};
-  }
-  char32_t code = first & (0xffu >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if (!isContinuation(text[i])) {
-      return {0, 0};
-    }
-    code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3fu);
-  }
-  constexpr std::array<char32_t, 5> kMin{0, 0, 0x80, 0x800, 0x10000};
-  const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-  const bool is_valid = code >= kMin[length] && code <= 0x10ffff && !is_surrogate;
-  return {code, is_valid ? length : 0};
-}
-
 }  // namespace
 
 DecimalGrid::DecimalGrid(const Drawing& drawing) {
@@ -142,16 +110,6 @@ DrawingStyle usableStyle(const DrawingStyle& style) {
     usable.stroke_width = defaults.stroke_width;
   }
   return usable;
-}
-
-std::u32string decodeUtf8(std::string_view text) {
-  std::u32string decoded;
-  while (!text.empty()) {
-    const auto [code, length] = decodeOne(text);
-    decoded += length == 0 ? U'\ufffd' : code;
-    text.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return decoded;
 }
 
 std::string nameOf(const DrawingObject& object) {

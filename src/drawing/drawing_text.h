@@ -50,9 +50,6 @@ std::optional<std::array<int, 3>> parseColour(std::string_view text);
 // A style that can be written: colours and width that are none are replaced by the defaults.
 DrawingStyle usableStyle(const DrawingStyle& style);
 
-// Code points; what is not UTF-8 becomes U+FFFD.
-std::u32string decodeUtf8(std::string_view text);
-
 // The object's name, or "object 12" where it has none.
 std::string nameOf(const DrawingObject& object);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "sightline/drawing/drawing.h"
+#include "src/base/rows.h"
 #include "src/drawing/line_view.h"
 #include "src/drawing/outline.h"
 #include "src/drawing/polylines.h"
@@ -19,34 +20,20 @@ constexpr double kToleranceShare = 1.0 / 200000.0;  // of the page's height
 // Which objects may occlude each, from the arcs of an order.
 class OccludersOf {
  public:
-  OccludersOf(std::span<const LayerArc> arcs, std::size_t objects) : first_(objects + 1, 0) {
-    const auto isInScene = [&](const LayerArc& arc) {
-      return arc.front.value < objects && arc.back.value < objects;
-    };
-    for (const LayerArc& arc : arcs) {
-      if (isInScene(arc)) {
-        ++first_[arc.back.value + 1];
+  OccludersOf(std::span<const LayerArc> arcs, std::size_t objects) {
+    fronts_.group(objects, [&](auto&& body) {
+      for (const LayerArc& arc : arcs) {
+        if (arc.front.value < objects && arc.back.value < objects) {
+          body(arc.back.value, ObjectId(arc.front.value));
+        }
       }
-    }
-    for (std::size_t i = 1; i < first_.size(); ++i) {
-      first_[i] += first_[i - 1];
-    }
-    fronts_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (const LayerArc& arc : arcs) {
-      if (isInScene(arc)) {
-        fronts_[next[arc.back.value]++] = ObjectId(arc.front.value);
-      }
-    }
+    });
   }
 
-  std::span<const ObjectId> find(ObjectId object) const {
-    return std::span(fronts_).subspan(first_[object.value], first_[object.value + 1] - first_[object.value]);
-  }
+  std::span<const ObjectId> find(ObjectId object) const { return fronts_[object.value]; }
 
  private:
-  std::vector<std::size_t> first_;  // objects + 1, into fronts_
-  std::vector<ObjectId> fronts_;
+  base::Rows<ObjectId> fronts_;  // by object
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "src/drawing/drawing_text.h"
+#include "src/base/utf8.h"
 
 namespace sightline::drawing {
 namespace {
@@ -56,7 +56,7 @@ std::string deflated(std::string_view bytes) {
 }  // namespace
 
 std::string pdfString(std::string_view utf8) {
-  const std::u32string text = decodeUtf8(utf8);
+  const std::u32string text = base::decodeUtf8(utf8);
   return std::all_of(text.begin(), text.end(), isPlain) ? inParentheses(text) : inUtf16(text);
 }
 

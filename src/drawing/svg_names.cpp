@@ -1,6 +1,6 @@
 #include "src/drawing/svg_names.h"
 
-#include "src/drawing/drawing_text.h"
+#include "src/base/utf8.h"
 
 namespace sightline::drawing {
 namespace {
@@ -18,30 +18,11 @@ bool isXmlCharacter(char32_t code) {
          code >= 0x10000;
 }
 
-void appendUtf8(std::string& text, char32_t code) {
-  const auto put = [&](char32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
-  if (code < 0x80) {
-    put(code);
-  } else if (code < 0x800) {
-    put(0xc0 | code >> 6);
-    put(0x80 | (code & 0x3f));
-  } else if (code < 0x10000) {
-    put(0xe0 | code >> 12);
-    put(0x80 | (code >> 6 & 0x3f));
-    put(0x80 | (code & 0x3f));
-  } else {
-    put(0xf0 | code >> 18);
-    put(0x80 | (code >> 12 & 0x3f));
-    put(0x80 | (code >> 6 & 0x3f));
-    put(0x80 | (code & 0x3f));
-  }
-}
-
 }  // namespace
 
 std::string escapeXml(std::string_view text) {
   std::string escaped;
-  for (const char32_t code : decodeUtf8(text)) {
+  for (const char32_t code : base::decodeUtf8(text)) {
     switch (code) {
       case U'&':
         escaped += "&amp;";
@@ -62,7 +43,7 @@ std::string escapeXml(std::string_view text) {
         escaped += "&#" + std::to_string(static_cast<int>(code)) + ";";
         break;
       default:
-        appendUtf8(escaped, isXmlCharacter(code) ? code : U'\ufffd');
+        base::appendUtf8(escaped, isXmlCharacter(code) ? code : U'\ufffd');
     }
   }
   return escaped;
@@ -70,7 +51,7 @@ std::string escapeXml(std::string_view text) {
 
 std::string XmlIds::make(std::string_view name) {
   std::string base;
-  for (const char32_t code : decodeUtf8(name)) {
+  for (const char32_t code : base::decodeUtf8(name)) {
     const char c = code < 0x80 ? static_cast<char>(code) : '_';
     base += isNameCharacter(c) ? c : '_';
   }

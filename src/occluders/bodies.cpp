@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "src/occluders/union_find.h"
+#include "src/base/union_find.h"
 
 namespace sightline::occluders {
 namespace {
@@ -155,7 +155,7 @@ class BodyMaker {
 void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const> polygons, double tolerance) {
   const std::vector<const FoundPolygon*> read(polygons.begin(), polygons.end());
   const Mates mates(read);
-  UnionFind components(polygons.size());  // of polygons that share edges
+  base::UnionFind components(polygons.size());  // of polygons that share edges
   for (std::size_t i = 0; i + 1 < mates.chains.size(); ++i) {
     if (mates.chains[i].key() == mates.chains[i + 1].key()) {
       components.unite(mates.chains[i].owner, mates.chains[i + 1].owner);

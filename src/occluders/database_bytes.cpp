@@ -13,14 +13,14 @@ constexpr std::uint32_t kVersion = 1;
 
 }  // namespace
 
-void addDatabaseHead(ByteWriter& writer, const DatabaseKind& kind, const DatabaseHead& head) {
+void addDatabaseHead(base::ByteWriter& writer, const DatabaseKind& kind, const DatabaseHead& head) {
   writer.addAll(std::span<const char>(kind.letters));
   for (const std::uint32_t value : {kVersion, head.directions, head.occluders}) {
     writer.add(value);
   }
 }
 
-Result<std::uint32_t> readDatabaseHead(ByteReader& reader, const DatabaseKind& kind,
+Result<std::uint32_t> readDatabaseHead(base::ByteReader& reader, const DatabaseKind& kind,
                                        std::uint32_t occluder_count) {
   const std::vector<char> letters = reader.readAll<char>(kind.letters.size());
   const auto version = reader.read<std::uint32_t>();
@@ -43,7 +43,7 @@ Result<std::uint32_t> readDatabaseHead(ByteReader& reader, const DatabaseKind& k
   return directions;
 }
 
-Error databaseError(const DatabaseKind& kind, const ByteReader& reader, const Error* part) {
+Error databaseError(const DatabaseKind& kind, const base::ByteReader& reader, const Error* part) {
   const std::string subject = "the " + std::string(kind.name) + " ";
   if (!reader.ok()) {
     return {subject + "is truncated at byte " + std::to_string(reader.position())};

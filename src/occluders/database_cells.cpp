@@ -158,7 +158,7 @@ CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::ui
   return cells;
 }
 
-void CellTree::save(ByteWriter& writer) const {
+void CellTree::save(base::ByteWriter& writer) const {
   Box all;
   for (const Box& region : regions) {
     all.extend(region);
@@ -177,7 +177,7 @@ void CellTree::save(ByteWriter& writer) const {
   }
 }
 
-Result<CellTree> loadCells(ByteReader& reader, std::uint32_t cells) {
+Result<CellTree> CellTree::load(base::ByteReader& reader, std::uint32_t cells) {
   const std::uint32_t count = 2 * cells - 1;
   CellTree tree;
   tree.nodes.resize(count);

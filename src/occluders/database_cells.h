@@ -9,6 +9,7 @@
 #include "sightline/base/result.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "src/base/byte_stream.h"
+#include "src/occluders/database_bytes.h"
 
 namespace sightline::occluders {
 
@@ -27,6 +28,9 @@ inline constexpr std::uint32_t kMaxCells = 1u << 30;
 inline constexpr std::size_t kBytesPerCell = 2 * sizeof(CellNode) + sizeof(Box);
 
 struct CellTree {
+  static constexpr DatabaseKind kKind{"occluder database", "occd", "cells"};
+  static constexpr std::uint32_t maxCount(std::uint32_t) { return kMaxCells; }
+
   std::vector<CellNode> nodes;  // [0] is the root
   // By cell. Together they tile the box of the root, enlarged a little; beyond it the outermost cells go on
   // to infinity, which their boxes here do not say.
@@ -39,7 +43,10 @@ struct CellTree {
 
   // The box of the root (six of 32 bits), then for each node its axis (8 bits) and, if it is not a cell, its
   // plane and its link (32 each). Cells are numbered in the order of their nodes.
-  void save(ByteWriter& writer) const;
+  void save(base::ByteWriter& writer) const;
+  // So many cells (at least 1, at most kMaxCells), for which the caller has to know that the bytes are
+  // enough.
+  static Result<CellTree> load(base::ByteReader& reader, std::uint32_t cells);
 };
 
 // Splits the cell with the longest diagonal (of equal ones, the one made first) as the kd-tree does, until
@@ -47,8 +54,5 @@ struct CellTree {
 // so is what is not a kd-tree; objects with a broken box do not count. default_bounds: the region where the
 // tree has no finite box of its own.
 CellTree buildCells(const Hierarchy& kd_tree, const Box& default_bounds, std::uint32_t max_cells);
-
-// So many cells (at least 1, at most kMaxCells), for which the caller has to know that the bytes are enough.
-Result<CellTree> loadCells(ByteReader& reader, std::uint32_t cells);
 
 }  // namespace sightline::occluders

@@ -37,7 +37,7 @@ namespace {
 
 constexpr double kFullSolidAngle = 2.0 * std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-9;  // relative: far above that of a few operations
+constexpr double kRelativeRounding = 1e-9;  // relative: far above that of a few operations
 
 // Squared distance between two boxes, or of a point from a box.
 double squaredGap(const Vec3d& a_min, const Vec3d& a_max, const Vec3d& b_min, const Vec3d& b_max) {
@@ -184,7 +184,7 @@ void ListFinder::push(const Entry& entry) {
 void ListFinder::open(std::uint32_t index) {
   const CandidateTree::Node& node = tree_.nodes()[index];
   const Vec3d from_cell = 0.5 * (node.min + node.max) - cell_.center;
-  const double radius = node.radius + kRounding * (node.radius + length(from_cell));
+  const double radius = node.radius + kRelativeRounding * (node.radius + length(from_cell));
   const double least = minDotInCone(from_cell, radius);
   if (std::none_of(open_.begin(), open_.end(),
                    [&](std::uint32_t d) { return dot(directions_[d], from_cell) >= least; })) {

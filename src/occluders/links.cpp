@@ -9,8 +9,9 @@
 #include <numeric>
 #include <tuple>
 
+#include "src/base/rows.h"
+#include "src/base/union_find.h"
 #include "src/occluders/bodies.h"
-#include "src/occluders/union_find.h"
 
 namespace sightline::occluders {
 namespace {
@@ -237,7 +238,7 @@ class Linker {
   std::span<const Vec3f> positions_;
   std::span<const RankedPolygon> polygons_;
   OccluderSet& set_;
-  UnionFind classes_;                // of edges along one seam
+  base::UnionFind classes_;          // of edges along one seam
   std::vector<Use> uses_, by_edge_;  // sorted by mesh edge; in the order of edges
   std::vector<std::uint32_t> owner_, chain_start_, chain_length_;  // by edge
 };
@@ -270,12 +271,7 @@ void listByObject(const OccluderSet& set, Listed&& listed, std::vector<std::uint
       }
     }
   };
-  first.assign(set.objects.size() + 1, 0);
-  forEachListed([&](std::size_t place, OccluderId) { ++first[place + 1]; });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  ids.resize(first.back());
-  forEachListed([&](std::size_t place, OccluderId id) { ids[next[place]++] = id; });
+  base::groupIntoRows(set.objects.size(), first, ids, forEachListed);
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "src/occluders/database_bytes.h"
 #include "src/occluders/database_cells.h"
 #include "src/occluders/database_lists.h"
+#include "src/occluders/direction_lists.h"
 #include "src/occluders/packed_lists.h"
 #include "src/occluders/sphere_directions.h"
 #include "src/occluders/step_progress.h"
@@ -23,24 +23,11 @@ namespace sightline {
 
 using namespace occluders;
 
-struct OccluderDatabase::Data {
-  Data(std::uint32_t direction_count, std::uint32_t occluders)
-      : occluder_count(occluders), directions(direction_count) {}
-
-  std::uint32_t occluder_count = 0;  // of the set
-  SphereDirections directions;
-  CellTree cells;
-  PackedLists lists;  // by cell * directions + direction
-
-  std::size_t bytes() const { return sizeof(Data) + directions.bytes() + cells.bytes() + lists.bytes(); }
-
-  // An error lacks its subject.
-  static Result<std::shared_ptr<const Data>> load(ByteReader& reader, std::uint32_t occluder_count);
+struct OccluderDatabase::Data : DirectionLists<CellTree> {
+  using DirectionLists::DirectionLists;
 };
 
 namespace {
-
-constexpr DatabaseKind kKind{"occluder database", "occd"};
 
 // So many cells fit when all lists are of full length and different; at least 1.
 std::uint32_t cellLimit(std::size_t max_bytes, std::size_t bytes_without_cells, std::size_t directions,
@@ -87,10 +74,10 @@ OccluderDatabase OccluderDatabase::build(const Hierarchy& kd_tree, const Occlude
   const CandidateTree candidates(set, settings.turned_away);
   const std::uint32_t directions = data->directions.count();
   const std::size_t length = std::min(settings.occluder_count, candidates.count());
-  data->cells = buildCells(kd_tree, candidates.bounds(),
-                           cellLimit(settings.max_bytes, sizeof(data) + data->bytes(), directions, length));
+  data->places = buildCells(kd_tree, candidates.bounds(),
+                            cellLimit(settings.max_bytes, sizeof(data) + data->bytes(), directions, length));
   data->lists =
-      findLists(candidates, data->directions, data->cells,
+      findLists(candidates, data->directions, data->places,
                 {static_cast<std::uint32_t>(length), settings.view_angle_deg, settings.area_angle_direction},
                 parallel_for, progress);
 
@@ -107,11 +94,11 @@ std::span<const OccluderId> OccluderDatabase::list(std::uint32_t cell, std::uint
   if (!data_) {
     return {};
   }
-  return data_->lists[std::size_t{cell} * data_->directions.count() + direction];
+  return data_->list(cell, direction);
 }
 
 std::uint32_t OccluderDatabase::cellCount() const {
-  return data_ ? data_->cells.count() : 1;
+  return data_ ? data_->places.count() : 1;
 }
 
 std::uint32_t OccluderDatabase::directionCount() const {
@@ -119,11 +106,11 @@ std::uint32_t OccluderDatabase::directionCount() const {
 }
 
 std::uint32_t OccluderDatabase::cellOf(const Vec3d& viewpoint) const {
-  return data_ ? data_->cells.cellOf(viewpoint) : 0;
+  return data_ ? data_->places.cellOf(viewpoint) : 0;
 }
 
 Box OccluderDatabase::cellRegion(std::uint32_t cell) const {
-  return data_ ? data_->cells.regions[cell] : Box{{0, 0, 0}, {0, 0, 0}};
+  return data_ ? data_->places.regions[cell] : Box{{0, 0, 0}, {0, 0, 0}};
 }
 
 Vec3d OccluderDatabase::direction(std::uint32_t index) const {
@@ -143,56 +130,14 @@ std::size_t OccluderDatabase::bytes() const {
 }
 
 std::vector<std::byte> OccluderDatabase::save() const {
-  ByteWriter writer;
-  if (!data_) {
-    addDatabaseHead(writer, kKind, {});
-    return writer.take();
-  }
-  addDatabaseHead(writer, kKind, {data_->directions.count(), data_->occluder_count});
-  writer.add(data_->cells.count());
-  data_->cells.save(writer);
-  data_->lists.save(writer);
-  return writer.take();
-}
-
-// Null: of a default-constructed database. Directions come last, because their tables take more memory than
-// their number in the bytes justifies; the lists do.
-Result<std::shared_ptr<const OccluderDatabase::Data>> OccluderDatabase::Data::load(
-    ByteReader& reader, std::uint32_t occluder_count) {
-  using Loaded = std::shared_ptr<const Data>;
-  const Result<std::uint32_t> directions = readDatabaseHead(reader, kKind, occluder_count);
-  if (!directions) {
-    return directions.error();
-  }
-  if (*directions == 0) {
-    return Loaded();
-  }
-  const auto cell_count =
-      reader.readCount<std::uint32_t>(std::size_t{*directions} * PackedLists::savedBytesPerList());
-  if (cell_count == 0 || cell_count > kMaxCells) {
-    return Error{"has " + std::to_string(cell_count) + " cells"};
-  }
-  Result<CellTree> cells = loadCells(reader, cell_count);
-  if (!cells) {
-    return cells.error();
-  }
-  Result<PackedLists> lists =
-      PackedLists::load(reader, std::uint64_t{cell_count} * *directions, occluder_count);
-  if (!lists) {
-    return lists.error();
-  }
-  const auto data = std::make_shared<Data>(*directions, occluder_count);
-  data->cells = std::move(*cells);
-  data->lists = std::move(*lists);
-  return Loaded(data);
+  return saveLists<CellTree>(data_.get());
 }
 
 Result<OccluderDatabase> OccluderDatabase::load(std::span<const std::byte> bytes,
                                                 std::uint32_t occluder_count) {
-  ByteReader reader(bytes);
-  Result<std::shared_ptr<const Data>> data = Data::load(reader, occluder_count);
-  if (!data || !reader.atEnd()) {
-    return databaseError(kKind, reader, data ? nullptr : &data.error());
+  Result<std::shared_ptr<const Data>> data = loadLists<Data>(bytes, occluder_count);
+  if (!data) {
+    return data.error();
   }
   OccluderDatabase database;
   database.data_ = std::move(*data);

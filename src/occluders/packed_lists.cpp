@@ -17,7 +17,7 @@ std::uint64_t hashOf(std::span<const OccluderId> list) {  // FNV-1a
 
 }  // namespace
 
-void PackedLists::save(ByteWriter& writer) const {
+void PackedLists::save(base::ByteWriter& writer) const {
   std::vector<std::uint64_t> firsts;  // of the different ones
   std::vector<std::uint32_t> lengths;
   std::uint64_t end = 0;
@@ -40,7 +40,7 @@ void PackedLists::save(ByteWriter& writer) const {
 }
 
 // entries: of all lists together.
-Result<std::vector<PackedLists::List>> PackedLists::loadRanges(ByteReader& reader, std::uint64_t lists,
+Result<std::vector<PackedLists::List>> PackedLists::loadRanges(base::ByteReader& reader, std::uint64_t lists,
                                                                std::uint64_t& entries) {
   const auto different = reader.readCount<std::uint64_t>(sizeof(std::uint32_t));
   std::vector<List> ranges{List{}};  // [0]: empty
@@ -74,7 +74,8 @@ Result<std::vector<PackedLists::List>> PackedLists::loadRanges(ByteReader& reade
   return found;
 }
 
-Result<PackedLists> PackedLists::load(ByteReader& reader, std::uint64_t lists, std::uint32_t occluder_count) {
+Result<PackedLists> PackedLists::load(base::ByteReader& reader, std::uint64_t lists,
+                                      std::uint32_t occluder_count) {
   std::uint64_t entries = 0;
   Result<std::vector<List>> ranges = loadRanges(reader, lists, entries);
   if (!ranges) {

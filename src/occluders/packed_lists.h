@@ -24,9 +24,10 @@ class PackedLists {
 
   // The different lists that are not empty, in the order in which they first occur: their number (64 bits)
   // and lengths (32); for each list 0 if it is empty, else which of those it is, from 1 (64); their ids (32).
-  void save(ByteWriter& writer) const;
+  void save(base::ByteWriter& writer) const;
   // So many lists of ids < occluder_count. Takes no more memory than some times the bytes.
-  static Result<PackedLists> load(ByteReader& reader, std::uint64_t lists, std::uint32_t occluder_count);
+  static Result<PackedLists> load(base::ByteReader& reader, std::uint64_t lists,
+                                  std::uint32_t occluder_count);
   static constexpr std::size_t savedBytesPerList() { return sizeof(std::uint64_t); }  // at least
 
   std::size_t bytes() const;  // beside the object itself
@@ -41,7 +42,7 @@ class PackedLists {
     std::uint64_t first = 0;
     std::uint32_t length = 0;
   };
-  static Result<std::vector<List>> loadRanges(ByteReader& reader, std::uint64_t lists,
+  static Result<std::vector<List>> loadRanges(base::ByteReader& reader, std::uint64_t lists,
                                               std::uint64_t& entries);
 
   std::vector<List> lists_;  // equal ones are the same range

@@ -16,7 +16,7 @@ namespace {
 constexpr double kCosGoldenAngle = -0.7373688780783197;
 constexpr double kSinGoldenAngle = 0.6754902942615238;
 constexpr double kTexelsPerDirection = 16.0;
-constexpr double kTableRounding = 1e-9;  // far above that of a scalar product, far below the texels' size
+constexpr double kCosineRounding = 1e-9;  // far above that of a scalar product, far below the texels' size
 
 double angleBetween(const Vec3d& unit_a, const Vec3d& unit_b) {
   return std::acos(std::clamp(dot(unit_a, unit_b), -1.0, 1.0));
@@ -72,16 +72,15 @@ SphereDirections::SphereDirections(std::uint32_t count) {
 void SphereDirections::buildTable() {
   texels_per_edge_ = static_cast<std::uint32_t>(std::ceil(std::sqrt(kTexelsPerDirection * count() / 6.0)));
   const double size = 2.0 / texels_per_edge_;
-  first_of_.push_back(0);
   for (std::uint32_t face = 0; face < 6; ++face) {
     for (std::uint32_t row = 0; row < texels_per_edge_; ++row) {
       for (std::uint32_t column = 0; column < texels_per_edge_; ++column) {
         appendCandidates({face, -1.0 + column * size, -1.0 + row * size, size});
-        first_of_.push_back(static_cast<std::uint32_t>(candidates_.size()));
+        candidates_.endRow();
       }
     }
   }
-  candidates_.shrink_to_fit();
+  candidates_.shrinkToFit();
 }
 
 // All that can be nearest somewhere in the texel. Whatever is nearest within radius r of a centre, whose
@@ -94,7 +93,7 @@ void SphereDirections::appendCandidates(const Quad& texel) {
     best = std::max(best, dot(center, direction));
   }
   const double reach = std::acos(std::min(best, 1.0)) + 2.0 * texel.radius();
-  const double least = reach < std::numbers::pi ? std::cos(reach) - kTableRounding : -2.0;
+  const double least = reach < std::numbers::pi ? std::cos(reach) - kCosineRounding : -2.0;
   std::vector<std::uint16_t> near;
   for (std::uint32_t i = 0; i < count(); ++i) {
     if (dot(center, directions_[i]) >= least) {
@@ -106,10 +105,10 @@ void SphereDirections::appendCandidates(const Quad& texel) {
     const bool beaten = std::any_of(near.begin(), near.end(), [&](std::uint16_t j) {
       const Vec3d difference = directions_[j] - directions_[i];
       return std::all_of(corners.begin(), corners.end(),
-                         [&](const Vec3d& corner) { return dot(difference, corner) > kTableRounding; });
+                         [&](const Vec3d& corner) { return dot(difference, corner) > kCosineRounding; });
     });
     if (!beaten) {
-      candidates_.push_back(i);
+      candidates_.add(i);
     }
   }
 }
@@ -130,12 +129,13 @@ std::uint32_t SphereDirections::nearest(const Vec3d& direction) const {
   const std::uint32_t column = texelAlong(on_cube[(axis + 1) % 3]);
   const std::uint32_t row = texelAlong(on_cube[(axis + 2) % 3]);
   const std::uint32_t texel = (face * texels_per_edge_ + row) * texels_per_edge_ + column;
-  std::uint32_t best = candidates_[first_of_[texel]];
+  const std::span<const std::uint16_t> candidates = candidates_[texel];
+  std::uint32_t best = candidates[0];
   double best_cosine = dot(directions_[best], on_cube);
-  for (std::uint32_t c = first_of_[texel] + 1; c < first_of_[texel + 1]; ++c) {
-    const double cosine = dot(directions_[candidates_[c]], on_cube);
+  for (const std::uint16_t candidate : candidates.subspan(1)) {
+    const double cosine = dot(directions_[candidate], on_cube);
     if (cosine > best_cosine) {
-      best = candidates_[c];
+      best = candidate;
       best_cosine = cosine;
     }
   }
@@ -170,8 +170,7 @@ double SphereDirections::boundCoveringAngle() const {
 }
 
 std::size_t SphereDirections::bytes() const {
-  return directions_.capacity() * sizeof(Vec3d) + first_of_.capacity() * sizeof(std::uint32_t) +
-         candidates_.capacity() * sizeof(std::uint16_t);
+  return directions_.capacity() * sizeof(Vec3d) + candidates_.bytes();
 }
 
 }  // namespace sightline::occluders

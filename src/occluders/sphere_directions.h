@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sightline/math/vec3.h"
+#include "src/base/rows.h"
 
 namespace sightline::occluders {
 
@@ -37,11 +38,10 @@ class SphereDirections {
   double boundCoveringAngle() const;
 
   std::vector<Vec3d> directions_;  // unit
-  // A cube [-1, 1]^3 with texels_per_edge_^2 texels a face; texel t lists candidates_[first_of_[t]] to
-  // candidates_[first_of_[t + 1]], ascending.
+  // The directions that can be nearest in each texel of a cube [-1, 1]^3 with texels_per_edge_^2 texels a
+  // face, ascending.
   std::uint32_t texels_per_edge_ = 1;
-  std::vector<std::uint32_t> first_of_;
-  std::vector<std::uint16_t> candidates_;
+  base::Rows<std::uint16_t> candidates_;
   double covering_angle_ = 0.0;
 };
 

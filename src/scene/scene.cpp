@@ -4,6 +4,8 @@
 #include <bit>
 #include <numeric>
 
+#include "src/base/hash_slots.h"
+
 namespace sightline {
 namespace {
 
@@ -48,10 +50,8 @@ void weldPositions(Scene& scene) {
     if (renamed == kFree) {
       const Vec3f& position = scene.positions[index];
       const PositionKey key = keyOf(position);
-      std::size_t slot = hashOf(key) & (capacity - 1);
-      while (table[slot] != kFree && keyOf(kept[table[slot]]) != key) {
-        slot = (slot + 1) & (capacity - 1);
-      }
+      const std::size_t slot = base::probeSlots(
+          table, hashOf(key), [&](std::uint32_t at) { return at == kFree || keyOf(kept[at]) == key; });
       if (table[slot] == kFree) {
         table[slot] = static_cast<std::uint32_t>(kept.size());
         kept.push_back({position.x + 0.0f, position.y + 0.0f, position.z + 0.0f});

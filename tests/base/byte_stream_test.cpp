@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <limits>
 
-namespace sightline {
+namespace sightline::base {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -162,4 +162,4 @@ TEST(ByteReader, SharesBytesWithWhatItReads) {
 }
 
 }  // namespace
-}  // namespace sightline
+}  // namespace sightline::base

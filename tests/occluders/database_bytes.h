@@ -251,7 +251,7 @@ struct Layout {
   std::string rest;
 
   Bytes bytes() const {
-    ByteWriter writer;
+    base::ByteWriter writer;
     writer.addAll(std::span<const char>(letters));
     for (const std::uint32_t value : {version, directions, occluders, places}) {
       writer.add(value);

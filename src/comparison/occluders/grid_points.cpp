@@ -9,6 +9,8 @@
 namespace sightline::comparison {
 namespace {
 
+constexpr std::uint32_t kMaxPoints = 65536;
+constexpr std::uint32_t kMaxLists = 1u << 22;
 constexpr double kFarthest = 1e12;           // metres from the origin
 constexpr std::uint32_t kChosenPoints = 48;  // near viewpoints, when the spacing is chosen
 constexpr double kFinestOfExtent = 1.0 / 1024.0;
@@ -129,34 +131,6 @@ PointGrid makeGrid(const Box& bounds, std::span<const Vec3d> viewpoints, double 
   return gridNear(usable, std::max(extentOf(low, high), extentOf(lowest, highest)), wanted, max_points);
 }
 
-void saveGrid(ByteWriter& writer, const PointGrid& grid) {
-  writer.add(grid.spacing);
-  for (const Vec3d& point : grid.points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      writer.add(point[axis]);
-    }
-  }
-}
-
-Result<PointGrid> loadGrid(ByteReader& reader, std::uint32_t points) {
-  PointGrid grid;
-  grid.spacing = reader.read<double>();
-  reader.expect(points, 3 * sizeof(double));
-  if (!reader.ok() || !std::isfinite(grid.spacing) || !(grid.spacing > 0.0)) {
-    return Error{"has no spacing of its points"};
-  }
-  grid.points.resize(points);
-  for (Vec3d& point : grid.points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      point[axis] = reader.read<double>();
-    }
-    if (!isFinite(point)) {
-      return Error{"has a point that is not finite"};
-    }
-  }
-  return grid;
-}
-
 PointTree::PointTree(std::span<const Vec3d> points) {
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     nodes_.push_back({points[i], i, 0});
@@ -210,6 +184,38 @@ std::uint32_t PointTree::nearest(const Vec3d& place) const {
     search(0, nodes_.size(), place, best);
   }
   return best.index;
+}
+
+std::uint32_t GridPoints::maxCount(std::uint32_t directions) {
+  return std::min(kMaxPoints, kMaxLists / directions);
+}
+
+void GridPoints::save(base::ByteWriter& writer) const {
+  writer.add(grid_.spacing);
+  for (const Vec3d& point : grid_.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      writer.add(point[axis]);
+    }
+  }
+}
+
+Result<GridPoints> GridPoints::load(base::ByteReader& reader, std::uint32_t points) {
+  PointGrid grid;
+  grid.spacing = reader.read<double>();
+  reader.expect(points, 3 * sizeof(double));
+  if (!reader.ok() || !std::isfinite(grid.spacing) || !(grid.spacing > 0.0)) {
+    return Error{"has no spacing of its points"};
+  }
+  grid.points.resize(points);
+  for (Vec3d& point : grid.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] = reader.read<double>();
+    }
+    if (!isFinite(point)) {
+      return Error{"has a point that is not finite"};
+    }
+  }
+  return GridPoints(std::move(grid));
 }
 
 }  // namespace sightline::comparison

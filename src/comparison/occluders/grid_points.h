@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sightline/base/result.h"
 #include "sightline/math/box.h"
 #include "src/base/byte_stream.h"
+#include "src/occluders/database_bytes.h"
 
 namespace sightline::comparison {
 
@@ -22,11 +24,6 @@ struct PointGrid {
 // not positive: chosen.
 PointGrid makeGrid(const Box& bounds, std::span<const Vec3d> viewpoints, double spacing,
                    std::uint32_t max_points);
-
-// The spacing, then x, y, z of each point (64 bits each).
-void saveGrid(ByteWriter& writer, const PointGrid& grid);
-// So many points, all finite.
-Result<PointGrid> loadGrid(ByteReader& reader, std::uint32_t points);
 
 // Finds the nearest of some points. Does not change once it is made.
 class PointTree {
@@ -54,6 +51,31 @@ class PointTree {
   void search(std::size_t begin, std::size_t end, const Vec3d& place, Best& best) const;
 
   std::vector<Node> nodes_;
+};
+
+// The places of a viewpoint database: grid points, and the search tree of them.
+class GridPoints {
+ public:
+  static constexpr occluders::DatabaseKind kKind{"viewpoint database", "vptd", "points"};
+  static std::uint32_t maxCount(std::uint32_t directions);
+
+  GridPoints() = default;
+  explicit GridPoints(PointGrid grid) : grid_(std::move(grid)), tree_(grid_.points) {}
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(grid_.points.size()); }
+  std::span<const Vec3d> points() const { return grid_.points; }
+  double spacing() const { return grid_.spacing; }  // metres
+  std::uint32_t nearest(const Vec3d& place) const { return tree_.nearest(place); }
+  std::size_t bytes() const { return grid_.points.capacity() * sizeof(Vec3d) + tree_.bytes(); }
+
+  // The spacing, then x, y and z of each point, all of 64 bits.
+  void save(base::ByteWriter& writer) const;
+  // So many points; refused where one is not finite.
+  static Result<GridPoints> load(base::ByteReader& reader, std::uint32_t points);
+
+ private:
+  PointGrid grid_;
+  PointTree tree_;
 };
 
 }  // namespace sightline::comparison

@@ -9,8 +9,7 @@
 #include "src/comparison/occluders/minimum_sets.h"
 
 #include <algorithm>
-
-#include "src/occluders/group_by_key.h"
+#include <utility>
 
 namespace sightline::comparison {
 namespace {
@@ -105,32 +104,30 @@ void MinimumSetSearch::prepare(const CombinationTable& table, std::span<const do
 // Fills the lists of members by slot and of slots by member. An occluder is promising when it hits many slots
 // for its cost; ties by number.
 void MinimumSetSearch::orderMembers(const CombinationTable& table) {
-  ordered_.clear();
-  first_of_slot_.assign(1, 0);
+  members_of_.clear();
   for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
     for (const std::uint32_t number : table.slot(s)) {
       const auto at = std::lower_bound(number_of_.begin(), number_of_.end(), number);
-      ordered_.push_back(static_cast<std::uint32_t>(at - number_of_.begin()));
+      members_of_.add(static_cast<std::uint32_t>(at - number_of_.begin()));
     }
-    first_of_slot_.push_back(static_cast<std::uint32_t>(ordered_.size()));
+    members_of_.endRow();
   }
-  occluders::groupByKey(static_cast<std::uint32_t>(number_of_.size()), slots_of_, first_of_member_,
-                        [&](auto&& body) {
-                          for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
-                            for (std::uint32_t i = first_of_slot_[s]; i < first_of_slot_[s + 1]; ++i) {
-                              body(ordered_[i], s);
-                            }
-                          }
-                        });
+  slots_of_.group(number_of_.size(), [&](auto&& body) {
+    for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
+      for (const std::uint32_t member : std::as_const(members_of_)[s]) {
+        body(member, s);
+      }
+    }
+  });
   const auto slotsFor = [this](std::uint32_t m) {
-    return static_cast<double>(first_of_member_[m + 1] - first_of_member_[m]) / cost_of_[m];
+    return static_cast<double>(slots_of_[m].size()) / cost_of_[m];
   };
   for (std::uint32_t s = 0; s < table.slotCount(); ++s) {
-    std::sort(ordered_.begin() + first_of_slot_[s], ordered_.begin() + first_of_slot_[s + 1],
-              [&](std::uint32_t a, std::uint32_t b) {
-                const double for_a = slotsFor(a), for_b = slotsFor(b);
-                return for_a > for_b || (for_a == for_b && a < b);
-              });
+    const std::span<std::uint32_t> members = members_of_[s];
+    std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const double for_a = slotsFor(a), for_b = slotsFor(b);
+      return for_a > for_b || (for_a == for_b && a < b);
+    });
   }
 }
 
@@ -147,8 +144,7 @@ void MinimumSetSearch::extend(std::uint32_t slot) {
   if (picked_.size() == kMaxMembers) {
     return;
   }
-  const auto members =
-      std::span(ordered_).subspan(first_of_slot_[slot], first_of_slot_[slot + 1] - first_of_slot_[slot]);
+  const std::span<const std::uint32_t> members = std::as_const(members_of_)[slot];
   for (const std::uint32_t member : members) {
     if (tried_[member] != 0) {
       continue;
@@ -177,8 +173,7 @@ void MinimumSetSearch::extend(std::uint32_t slot) {
 // False: some member, maybe another one, is redundant now.
 bool MinimumSetSearch::pick(std::uint32_t member) {
   bool all_needed = true;
-  for (std::uint32_t i = first_of_member_[member]; i < first_of_member_[member + 1]; ++i) {
-    const std::uint32_t slot = slots_of_[i];
+  for (const std::uint32_t slot : slots_of_[member]) {
     if (hits_[slot] == 0) {
       ++only_hits_[member];
     } else if (hits_[slot] == 1) {
@@ -194,8 +189,7 @@ bool MinimumSetSearch::pick(std::uint32_t member) {
 
 void MinimumSetSearch::unpick(std::uint32_t member) {
   picked_.pop_back();
-  for (std::uint32_t i = first_of_member_[member]; i < first_of_member_[member + 1]; ++i) {
-    const std::uint32_t slot = slots_of_[i];
+  for (const std::uint32_t slot : slots_of_[member]) {
     --hits_[slot];
     hitters_[slot] ^= member;
     if (hits_[slot] == 0) {

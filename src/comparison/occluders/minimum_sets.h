@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "src/base/rows.h"
+
 namespace sightline::comparison {
 
 // For each pixel of an occludee's image, which occluders are in front of it there. Pixels with the same
@@ -76,10 +78,8 @@ class MinimumSetSearch {
   // Members are numbered anew, by their place in number_of_.
   std::vector<std::uint32_t> number_of_;  // by member, ascending
   std::vector<double> cost_of_;           // by member
-  // Slot s has the members ordered_[first_of_slot_[s]] to ordered_[first_of_slot_[s + 1]], the most promising
-  // first; member m is in the slots slots_of_[first_of_member_[m]] to slots_of_[first_of_member_[m + 1]].
-  std::vector<std::uint32_t> ordered_, first_of_slot_;
-  std::vector<std::uint32_t> slots_of_, first_of_member_;
+  base::Rows<std::uint32_t> members_of_;  // by slot, the most promising first
+  base::Rows<std::uint32_t> slots_of_;    // by member, ascending
 
   // Where the search stands.
   std::vector<std::uint32_t> picked_;     // members

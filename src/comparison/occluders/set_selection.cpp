@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "src/occluders/group_by_key.h"
-
 namespace sightline::comparison {
 namespace {
 
@@ -55,23 +53,24 @@ void SetPool::mergeEqual() {
     return at_b != in_b.end() && (at_a == in_a.end() || *at_a < *at_b);
   });
   own_.clear();
-  first_own_.assign(1, 0);
   std::size_t kept = 0;
   for (const Set& set : sets_) {
     const auto members = membersOf(set);
     const bool is_new =
         kept == 0 || !std::equal(members.begin(), members.end(), membersOf(sets_[kept - 1]).begin(),
                                  membersOf(sets_[kept - 1]).end());
-    const bool is_twice = !is_new && own_.back() == set.occludee;
+    const bool is_twice = !is_new && own_.items().back() == set.occludee;
     if (is_new) {
+      if (kept > 0) {
+        own_.endRow();
+      }
       sets_[kept++] = set;
-      first_own_.push_back(first_own_.back());
     }
     if (!is_twice) {
-      own_.push_back(set.occludee);
-      ++first_own_.back();
+      own_.add(set.occludee);
     }
   }
+  own_.endRow();
   sets_.resize(kept);
 }
 
@@ -82,7 +81,7 @@ void SetPool::indexByRarest(std::uint32_t occluder_count) {
       ++uses_[member];
     }
   }
-  occluders::groupByKey(occluder_count, by_rarest_, first_by_rarest_, [this](auto&& body) {
+  by_rarest_.group(occluder_count, [this](auto&& body) {
     for (std::uint32_t s = 0; s < sets_.size(); ++s) {
       const auto members = membersOf(sets_[s]);
       body(*std::min_element(members.begin(), members.end(),
@@ -97,29 +96,27 @@ void SetPool::inherit(std::uint32_t occluder_count, std::uint32_t occludee_count
   mark_of_occluder_.assign(occluder_count, 0);
   mark_of_occludee_.assign(occludee_count, 0);
   hidden_.clear();
-  first_hidden_.assign(1, 0);
   for (std::uint32_t s = 0; s < sets_.size(); ++s) {
     const std::uint32_t mark = s + 1;
     for (const std::uint32_t member : membersOf(sets_[s])) {
       mark_of_occluder_[member] = mark;
     }
     for (const std::uint32_t member : membersOf(sets_[s])) {
-      for (std::uint32_t i = first_by_rarest_[member]; i < first_by_rarest_[member + 1]; ++i) {
-        const std::uint32_t other = by_rarest_[i];
+      for (const std::uint32_t other : by_rarest_[member]) {
         const auto others = membersOf(sets_[other]);
         if (!std::all_of(others.begin(), others.end(),
                          [&](std::uint32_t m) { return mark_of_occluder_[m] == mark; })) {
           continue;
         }
-        for (std::uint32_t o = first_own_[other]; o < first_own_[other + 1]; ++o) {
-          if (mark_of_occludee_[own_[o]] != mark) {
-            mark_of_occludee_[own_[o]] = mark;
-            hidden_.push_back(own_[o]);
+        for (const std::uint32_t occludee : own_[other]) {
+          if (mark_of_occludee_[occludee] != mark) {
+            mark_of_occludee_[occludee] = mark;
+            hidden_.add(occludee);
           }
         }
       }
     }
-    first_hidden_.push_back(static_cast<std::uint32_t>(hidden_.size()));
+    hidden_.endRow();
   }
 }
 
@@ -147,14 +144,14 @@ void SetSelection::prepare(const OccluderPicture& picture, const SetPool& pool,
   for (std::uint32_t gain = 0; gain <= occludee_count; ++gain) {
     worth_of_.push_back(std::pow(static_cast<double>(gain), weights.gain));
   }
-  occluders::groupByKey(occluder_count, sets_of_occluder_, first_of_occluder_, [&](auto&& body) {
+  sets_of_occluder_.group(occluder_count, [&](auto&& body) {
     for (std::uint32_t s = 0; s < pool.setCount(); ++s) {
       for (const std::uint32_t member : pool.members(s)) {
         body(member, s);
       }
     }
   });
-  occluders::groupByKey(occludee_count, sets_of_occludee_, first_of_occludee_, [&](auto&& body) {
+  sets_of_occludee_.group(occludee_count, [&](auto&& body) {
     for (std::uint32_t s = 0; s < pool.setCount(); ++s) {
       for (const std::uint32_t occludee : pool.occludees(s)) {
         body(occludee, s);
@@ -175,7 +172,7 @@ void SetSelection::prepare(const OccluderPicture& picture, const SetPool& pool,
   }
   open_.clear();
   for (std::uint32_t o = 0; o < occludee_count; ++o) {
-    if (first_of_occludee_[o] < first_of_occludee_[o + 1]) {
+    if (!sets_of_occludee_[o].empty()) {
       open_.push_back({o, occludees[o].rect.low * picture.resolution() + occludees[o].rect.left});
     }
   }
@@ -200,8 +197,8 @@ void SetSelection::take(const OccluderPicture& picture, const SetPool& pool, std
     occluder_taken_[member] = 1;
     taken_.push_back(member);
     buffer_.draw(picture, member);
-    for (std::uint32_t i = first_of_occluder_[member]; i < first_of_occluder_[member + 1]; ++i) {
-      set_cost_[sets_of_occluder_[i]] -= cost_of_[member];
+    for (const std::uint32_t touched : sets_of_occluder_[member]) {
+      set_cost_[touched] -= cost_of_[member];
     }
   }
 }
@@ -212,9 +209,8 @@ void SetSelection::updateHidden(const OccluderPicture& picture, std::span<const 
     if (!hides(buffer_, picture.resolution(), occludees[open.occludee], open.pixel)) {
       return false;
     }
-    for (std::uint32_t i = first_of_occludee_[open.occludee]; i < first_of_occludee_[open.occludee + 1];
-         ++i) {
-      --set_gain_[sets_of_occludee_[i]];
+    for (const std::uint32_t touched : sets_of_occludee_[open.occludee]) {
+      --set_gain_[touched];
     }
     return true;
   };

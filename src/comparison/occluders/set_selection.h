@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/comparison/viewpoint_database.h"
+#include "src/base/rows.h"
 #include "src/comparison/occluders/id_buffer.h"
 #include "src/comparison/occluders/occluder_picture.h"
 #include "src/comparison/occluders/occluder_stack.h"
@@ -35,10 +36,8 @@ class SetPool {
     return std::span(members_).subspan(sets_[set].first, sets_[set].count);
   }
   // The occludees that it hides, each once.
-  std::span<const std::uint32_t> occludees(std::uint32_t set) const {
-    return std::span(hidden_).subspan(first_hidden_[set], first_hidden_[set + 1] - first_hidden_[set]);
-  }
-  std::uint32_t gain(std::uint32_t set) const { return first_hidden_[set + 1] - first_hidden_[set]; }
+  std::span<const std::uint32_t> occludees(std::uint32_t set) const { return hidden_[set]; }
+  std::uint32_t gain(std::uint32_t set) const { return static_cast<std::uint32_t>(hidden_[set].size()); }
 
  private:
   struct Set {
@@ -54,10 +53,9 @@ class SetPool {
 
   std::vector<Set> sets_;  // each different one once, after finish()
   std::vector<std::uint32_t> members_;
-  std::vector<std::uint32_t> own_, first_own_;        // occludees by set, before they are inherited
-  std::vector<std::uint32_t> hidden_, first_hidden_;  // occludees by set
-  // Each set once, under its member that is in the fewest sets.
-  std::vector<std::uint32_t> by_rarest_, first_by_rarest_;
+  base::Rows<std::uint32_t> own_;        // occludees by set, before they are inherited
+  base::Rows<std::uint32_t> hidden_;     // occludees by set
+  base::Rows<std::uint32_t> by_rarest_;  // by occluder: each set once, under its member that is in the fewest
   std::vector<std::uint32_t> uses_, mark_of_occluder_, mark_of_occludee_;
 };
 
@@ -97,8 +95,7 @@ class SetSelection {
   std::vector<double> set_score_;  // by set: at first
   std::vector<std::uint32_t> set_gain_;
   std::vector<std::uint8_t> set_taken_, occluder_taken_, in_list_;
-  std::vector<std::uint32_t> sets_of_occluder_, first_of_occluder_;
-  std::vector<std::uint32_t> sets_of_occludee_, first_of_occludee_;
+  base::Rows<std::uint32_t> sets_of_occluder_, sets_of_occludee_;
 
   struct Open {
     std::uint32_t occludee = 0;

@@ -5,6 +5,8 @@
 #include <bit>
 #include <utility>
 
+#include "src/base/hash_slots.h"
+
 namespace sightline::occlusion {
 
 RelationStore::RelationStore(std::size_t max_bytes)
@@ -14,16 +16,10 @@ RelationStore::RelationStore(std::size_t max_bytes)
 std::size_t RelationStore::slotOf(Item item, OccluderId occluder) const {
   const std::uint64_t key = std::uint64_t{item} << 32 | occluder.value;
   // The upper bits of the product depend on all bits of the key.
-  std::size_t slot =
-      static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> (64 - std::countr_zero(slots_.size())));
-  while (slots_[slot] != kNone) {
-    const Entry& entry = entries_[slots_[slot]];
-    if (entry.item == item && entry.relation.occluder == occluder) {
-      break;
-    }
-    slot = (slot + 1) & (slots_.size() - 1);
-  }
-  return slot;
+  const std::uint64_t hash = (key * 0x9e3779b97f4a7c15u) >> (64 - std::countr_zero(slots_.size()));
+  return base::probeSlots(slots_, hash, [&](Index r) {
+    return r == kNone || (entries_[r].item == item && entries_[r].relation.occluder == occluder);
+  });
 }
 
 RelationStore::Index RelationStore::find(Item item, OccluderId occluder) {

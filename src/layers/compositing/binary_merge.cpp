@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <vector>
 
 #include "sightline/layers/compositing.h"
+#include "src/base/rows.h"
+#include "src/base/union_find.h"
 
 namespace sightline {
 namespace {
@@ -28,15 +29,13 @@ constexpr std::uint32_t kNotInOrder = 0xffffffffu;
 struct LayerMerger::Impl {
   std::vector<std::uint32_t> place_of;  // one per part
   std::vector<std::uint32_t> group_of;  // one per place
-  std::vector<std::uint32_t> first;     // one per place: an earlier place of the same layer, or itself
+  base::UnionFind places;               // sets of places in the same layer, which is named by its first place
   std::vector<std::uint32_t> number;    // one per place: number of its layer
-  std::vector<std::uint32_t> next;      // one per layer: where its next part goes
   std::vector<PlaceArc> arcs;           // ascending, without duplicates
   FrameLayers layers;
 
   void read(const LayerOrder& order);
   void takeArcs(std::span<const LayerArc> given);
-  std::uint32_t firstOf(std::uint32_t place);
   bool mergePairs();
   void contractArcs();
   void numberLayers(const LayerOrder& order);
@@ -50,8 +49,7 @@ void LayerMerger::Impl::read(const LayerOrder& order) {
   }
   place_of.assign(parts, kNotInOrder);
   group_of.resize(order.parts.size());
-  first.resize(order.parts.size());
-  std::iota(first.begin(), first.end(), 0u);
+  places.reset(order.parts.size());
   for (std::size_t g = 0; g < order.groups(); ++g) {
     for (std::uint32_t i = order.first_of[g]; i < order.first_of[g + 1]; ++i) {
       place_of[order.parts[i].value] = i;
@@ -76,21 +74,12 @@ void LayerMerger::Impl::takeArcs(std::span<const LayerArc> given) {
   arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
 }
 
-std::uint32_t LayerMerger::Impl::firstOf(std::uint32_t place) {
-  while (first[place] != place) {
-    first[place] = first[first[place]];
-    place = first[place];
-  }
-  return place;
-}
-
 // Merges all pairs of layers that occlude each other mutually. Returns whether there was one.
 bool LayerMerger::Impl::mergePairs() {
   bool merged = false;
   for (const PlaceArc& arc : arcs) {
     if (arc.front < arc.back && std::binary_search(arcs.begin(), arcs.end(), PlaceArc{arc.back, arc.front})) {
-      const std::uint32_t a = firstOf(arc.front), b = firstOf(arc.back);
-      first[std::max(a, b)] = std::min(a, b);
+      places.unite(arc.front, arc.back);
       merged = true;
     }
   }
@@ -99,7 +88,7 @@ bool LayerMerger::Impl::mergePairs() {
 
 void LayerMerger::Impl::contractArcs() {
   for (PlaceArc& arc : arcs) {
-    arc = {firstOf(arc.front), firstOf(arc.back)};
+    arc = {places.root(arc.front), places.root(arc.back)};
   }
   std::erase_if(arcs, [](const PlaceArc& arc) { return arc.front == arc.back; });
   std::sort(arcs.begin(), arcs.end());
@@ -110,29 +99,25 @@ void LayerMerger::Impl::numberLayers(const LayerOrder& order) {
   const std::size_t parts = order.parts.size();
   number.resize(parts);
   layers.first_layer.assign(1, 0u);
-  layers.first_part.assign(1, 0u);
   std::uint32_t count = 0;
   for (std::size_t g = 0; g < order.groups(); ++g) {
     for (std::uint32_t i = order.first_of[g]; i < order.first_of[g + 1]; ++i) {
-      const std::uint32_t of = firstOf(i);
+      const std::uint32_t of = places.root(i);
       if (of == i) {
         number[i] = count++;
-        layers.first_part.push_back(0u);
       }
       number[i] = number[of];
-      ++layers.first_part[number[i] + 1];
     }
     layers.first_layer.push_back(count);
   }
-  std::partial_sum(layers.first_part.begin(), layers.first_part.end(), layers.first_part.begin());
 }
 
 void LayerMerger::Impl::listParts(const LayerOrder& order) {
-  next.assign(layers.first_part.begin(), layers.first_part.end());
-  layers.parts.resize(order.parts.size());
-  for (std::size_t i = 0; i < order.parts.size(); ++i) {
-    layers.parts[next[number[i]]++] = order.parts[i];
-  }
+  base::groupIntoRows(layers.first_layer.back(), layers.first_part, layers.parts, [&](auto&& body) {
+    for (std::size_t i = 0; i < order.parts.size(); ++i) {
+      body(number[i], order.parts[i]);
+    }
+  });
 }
 
 LayerMerger::LayerMerger() : impl_(std::make_unique<Impl>()) {}

@@ -7,7 +7,8 @@
 #include "src/layers/compositing/compositing_expression.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "src/base/rows.h"
 
 namespace sightline::layers {
 namespace {
@@ -34,17 +35,12 @@ std::uint64_t atopSteps(const ExpressionNode& node) {
 }  // namespace
 
 void LayerOccluders::build(const FrameLayers& layers) {
-  first.assign(layers.layers() + 1, 0);
-  for (const LayerOcclusion& o : layers.occlusions) {
-    ++first[o.back.value];
-  }
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  occluders.resize(layers.occlusions.size());
-  // Goes backwards, so that each list is ascending and first[i] ends up at its beginning.
-  for (std::size_t i = layers.occlusions.size(); i-- > 0;) {
-    const LayerOcclusion& o = layers.occlusions[i];
-    occluders[--first[o.back.value]] = o.front.value;
-  }
+  // Occlusions are sorted: each list ends up ascending.
+  base::groupIntoRows(layers.layers(), first, occluders, [&](auto&& body) {
+    for (const LayerOcclusion& o : layers.occlusions) {
+      body(o.back.value, o.front.value);
+    }
+  });
 }
 
 bool LayerOccluders::occludes(std::uint32_t front, std::uint32_t back) const {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "src/base/rows.h"
 #include "src/layers/hull/hull_descent.h"
 #include "src/layers/hull/hull_excess.h"
 #include "src/layers/hull/qhull_candidates.h"
@@ -116,12 +117,11 @@ void setEdges(ConvexHull& hull, const HullMesh& mesh, std::span<const std::uint3
     }
   }
   std::sort(edges.begin(), edges.end());
-  hull.first_neighbour.assign(hull.vertices.size() + 1, 0);
-  for (const auto& [from, to] : edges) {
-    ++hull.first_neighbour[from + 1];
-    hull.neighbours.push_back(to);
-  }
-  std::partial_sum(hull.first_neighbour.begin(), hull.first_neighbour.end(), hull.first_neighbour.begin());
+  base::groupIntoRows(hull.vertices.size(), hull.first_neighbour, hull.neighbours, [&](auto&& body) {
+    for (const std::array<std::uint32_t, 2>& edge : edges) {
+      body(edge[0], edge[1]);
+    }
+  });
 }
 
 // Sets the faces. A face's plane has the normal of its largest triangle and lies at or just beyond the

@@ -2,29 +2,23 @@
 
 #include <algorithm>
 
+#include "src/base/hash_slots.h"
+
 namespace sightline::layers {
 namespace {
 
 constexpr std::size_t kMinSlots = 64;
 
-// Steele, Lea, Flood. Fast splittable pseudorandom number generators. OOPSLA 2014: SplitMix64's finish.
 std::uint64_t hashOf(const PairKey& key) {
-  std::uint64_t z = (static_cast<std::uint64_t>(key.a) << 32) | key.b;
-  z += 0x9e3779b97f4a7c15ull * (key.kind + 1ull);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return z ^ (z >> 31);
+  const std::uint64_t pair = (static_cast<std::uint64_t>(key.a) << 32) | key.b;
+  return base::mixBits(pair + 0x9e3779b97f4a7c15ull * (key.kind + 1ull));
 }
 
 }  // namespace
 
 std::size_t PairIndex::slotOf(const PairKey& key) const {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = static_cast<std::size_t>(hashOf(key)) & mask;
-  while (slots_[slot] != kNone && keys_[slots_[slot]] != key) {
-    slot = (slot + 1) & mask;
-  }
-  return slot;
+  return base::probeSlots(slots_, hashOf(key),
+                          [&](std::uint32_t number) { return number == kNone || keys_[number] == key; });
 }
 
 void PairIndex::add(const PairKey& key) {

@@ -91,7 +91,7 @@ double firstSearchDistance(const BakeScene& scene) {
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,
                      std::uint32_t base_depth, const CellBox& region) {
-  ByteWriter bytes;
+  base::ByteWriter bytes;
   for (const std::uint64_t number :
        {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
         s.triangle_budget, std::uint64_t{s.max_depth}, std::uint64_t{base_depth}}) {
@@ -196,7 +196,7 @@ struct PartHead {
   PartSummary summary;
 };
 
-void write(const PartHead& head, ByteWriter& bytes) {
+void write(const PartHead& head, base::ByteWriter& bytes) {
   bytes.add(head.magic);
   bytes.add(head.plan);
   bytes.add(head.id);
@@ -205,7 +205,7 @@ void write(const PartHead& head, ByteWriter& bytes) {
   bytes.add(head.summary.share);
 }
 
-PartHead readHead(ByteReader& bytes) {
+PartHead readHead(base::ByteReader& bytes) {
   PartHead head;
   head.magic = bytes.read<std::uint64_t>();
   head.plan = bytes.read<std::uint64_t>();
@@ -222,7 +222,7 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
   const BakeScene& scene = impl_->data->scene;
   const CellTask task{cellOf(part.id), part.search_distance};
   PartHead head{.plan = impl_->data->hash, .id = part.id, .summary = {}};
-  ByteWriter bytes;
+  base::ByteWriter bytes;
   BakedCell cell;
   if (task.cell.level < partLevel(scene.settings)) {
     CellOutcome outcome = decide(impl_->baker, scene, task);
@@ -250,12 +250,12 @@ const BakeStats& Bake::Worker::stats() const {
 }
 
 PartSummary Bake::summaryOf(std::span<const std::byte> part) const {
-  ByteReader bytes(part);
+  base::ByteReader bytes(part);
   return readHead(bytes).summary;
 }
 
 std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
-  ByteReader bytes(part);
+  base::ByteReader bytes(part);
   const PartHead head = readHead(bytes);
   std::vector<PartTask> below;
   if (head.summary.leaves == 0) {
@@ -268,7 +268,7 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
 }
 
 bool Bake::isPart(std::uint64_t id, std::span<const std::byte> part) const {
-  ByteReader bytes(part);
+  base::ByteReader bytes(part);
   const PartHead head = readHead(bytes);
   return bytes.ok() && head.magic == kPartMagic && head.plan == data_->hash && head.id == id;
 }
@@ -334,7 +334,7 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
   if (part == parts.end() || !bake.isPart(id, part->second)) {
     return std::nullopt;
   }
-  ByteReader bytes(part->second);
+  base::ByteReader bytes(part->second);
   if (readHead(bytes).summary.leaves > 0) {
     std::optional<BakedCell> cell =
         readCell(bytes, level, static_cast<std::uint32_t>(scene.boxes.objects.size()));

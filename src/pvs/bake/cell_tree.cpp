@@ -122,7 +122,7 @@ namespace {
 // First byte of a cell.
 constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2;
 
-void write(const Runs& runs, ByteWriter& bytes) {
+void write(const Runs& runs, base::ByteWriter& bytes) {
   bytes.add(static_cast<std::uint32_t>(runs.size()));
   for (const ObjectRun& run : runs) {
     bytes.add(run.begin);
@@ -130,7 +130,7 @@ void write(const Runs& runs, ByteWriter& bytes) {
   }
 }
 
-bool read(ByteReader& bytes, std::uint32_t object_count, Runs& runs) {
+bool read(base::ByteReader& bytes, std::uint32_t object_count, Runs& runs) {
   std::uint32_t after = 0;
   runs.resize(bytes.readCount<std::uint32_t>(2 * sizeof(std::uint32_t)));
   for (ObjectRun& run : runs) {
@@ -146,7 +146,7 @@ bool read(ByteReader& bytes, std::uint32_t object_count, Runs& runs) {
 
 }  // namespace
 
-void write(const BakedCell& cell, ByteWriter& bytes) {
+void write(const BakedCell& cell, base::ByteWriter& bytes) {
   if (!cell.leaf()) {
     bytes.add(kInner);
     for (const BakedCell& child : cell.children) {
@@ -167,7 +167,7 @@ void write(const BakedCell& cell, ByteWriter& bytes) {
   }
 }
 
-std::optional<BakedCell> readCell(ByteReader& bytes, std::uint32_t level, std::uint32_t object_count) {
+std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, std::uint32_t object_count) {
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(level);
   const auto kind = bytes.read<std::uint8_t>();

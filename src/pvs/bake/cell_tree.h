@@ -41,8 +41,8 @@ BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 // Makes a cell whose children are leaves with like sets a leaf.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
-void write(const BakedCell& cell, ByteWriter& bytes);
+void write(const BakedCell& cell, base::ByteWriter& bytes);
 // Nothing: the bytes are not of a cell of this level within a tree of so many objects.
-std::optional<BakedCell> readCell(ByteReader& bytes, std::uint32_t level, std::uint32_t object_count);
+std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, std::uint32_t object_count);
 
 }  // namespace sightline::pvs

@@ -3,25 +3,14 @@
 #include <algorithm>
 #include <bit>
 
+#include "src/base/hash_slots.h"
+
 namespace sightline::pvs {
-namespace {
-
-// Finalizer of SplitMix64.
-std::uint64_t mixed(std::uint64_t v) {
-  v = (v ^ (v >> 30)) * 0xbf58476d1ce4e5b9u;
-  v = (v ^ (v >> 27)) * 0x94d049bb133111ebu;
-  return v ^ (v >> 31);
-}
-
-}  // namespace
 
 std::size_t Sample::slotOf(std::uint32_t occluder) const {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = mixed(occluder) & mask;
-  while (slots_[slot].occluder != kFree && slots_[slot].occluder != occluder) {
-    slot = (slot + 1) & mask;
-  }
-  return slot;
+  return base::probeSlots(slots_, base::mixBits(occluder), [&](const Slot& slot) {
+    return slot.occluder == kFree || slot.occluder == occluder;
+  });
 }
 
 std::optional<std::span<const ObjectRun>> Sample::find(std::uint32_t occluder) const {
@@ -54,7 +43,7 @@ void Sample::grow() {
 }
 
 std::size_t SampleStore::KeyHash::operator()(const Key& k) const {
-  return static_cast<std::size_t>(mixed(k.x + mixed(k.y + mixed(k.z))));
+  return static_cast<std::size_t>(base::mixBits(k.x + base::mixBits(k.y + base::mixBits(k.z))));
 }
 
 SampleStore::Key SampleStore::keyOf(const Vec3d& eye) {

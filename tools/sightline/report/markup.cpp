@@ -6,35 +6,17 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "src/base/utf8.h"
+
 namespace sightline::tool {
 namespace {
 
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";  // U+FFFD
 
-// Length in bytes of the well-formed UTF-8 sequence that text starts with; 0 when there is none.
-std::size_t sequenceLength(std::string_view text) {
-  const auto byte = [&text](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
-  const std::uint8_t lead = byte(0);
-  if (lead < 0x80) {
-    return 1;
-  }
-  const std::size_t length = lead >= 0xc2 && lead < 0xe0   ? 2
-                             : lead >= 0xe0 && lead < 0xf0 ? 3
-                             : lead >= 0xf0 && lead < 0xf5 ? 4
-                                                           : 0;
-  if (length == 0 || text.size() < length) {
-    return 0;
-  }
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) {
-      return 0;
-    }
-  }
-  const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
-  const bool surrogate = lead == 0xed && byte(1) >= 0xa0;
-  const bool too_large = lead == 0xf4 && byte(1) >= 0x90;
-  const bool not_xml = lead == 0xef && byte(1) == 0xbf && byte(2) >= 0xbe;  // U+FFFE, U+FFFF
-  return overlong || surrogate || too_large || not_xml ? 0 : length;
+// The length in bytes of the character that text begins with; 0: no UTF-8, or no character of XML.
+std::size_t characterLength(std::string_view text) {
+  const base::Utf8Character character = base::firstCharacter(text);
+  return character.code == 0xfffe || character.code == 0xffff ? 0 : character.length;
 }
 
 std::string_view entity(char c) {
@@ -60,7 +42,7 @@ std::string escapeMarkup(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t length = sequenceLength(text);
+    const std::size_t length = characterLength(text);
     if (length == 0) {
       out += kReplacement;
     } else if (const std::string_view replaced = entity(text[0]); !replaced.empty()) {
