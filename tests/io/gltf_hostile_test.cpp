@@ -204,6 +204,27 @@ const Fault kFaults[] = {
        g.json["scenes"][0]["nodes"] = {1};
      },
      "node 0: its transform to world space is too large"},
+    {"ComponentTypeUnknown", [](Glb& g) { g.json["accessors"][0]["componentType"] = 5119; },
+     "Invalid `componentType` in accessor. Got 5119"},
+    {"IndicesWithoutAccessor", [](Glb& g) { g.json["meshes"][0]["primitives"][0]["indices"] = 2; },
+     "primitive indices accessor out of bounds"},
+    {"IndicesWithoutView", [](Glb& g) { g.json["accessors"][1].erase("bufferView"); },
+     "accessor[1] invalid bufferView"},
+    {"CameraTypeUnknown",
+     [](Glb& g) {
+       g.json["cameras"] = {{{"type", "fisheye"}}};
+     },
+     "Invalid camera type: \"fisheye\""},
+    {"CameraWithoutPerspective",
+     [](Glb& g) {
+       g.json["cameras"] = {{{"type", "perspective"}}};
+     },
+     "Perspective camera description not found."},
+    {"CameraWithoutOrthographic",
+     [](Glb& g) {
+       g.json["cameras"] = {{{"type", "orthographic"}}};
+     },
+     "Orthographic camera description not found."},
     {"Draco", [](Glb& g) { g.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
      "requires the extension \"KHR_draco_mesh_compression\""},
     {"Instancing", [](Glb& g) { g.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"}; },

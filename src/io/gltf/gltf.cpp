@@ -28,23 +28,42 @@ bool honoured(std::string_view extension) {
              kHonouredTextureFormats.end();
 }
 
-std::string firstLine(const std::string& text) {
-  const std::string line = text.substr(0, text.find('\n'));
-  return line.empty() ? "unknown reason" : line;
-}
-
-// Parses text that checkJson has passed; tinygltf sees no files, no buffers and no images.
-Status parse(const CheckedJson& checked, Document& document) {
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*,
-                           int, void*) { return true; },
-                        nullptr);
-  loader.SetFsCallbacks(tinygltf::FsCallbacks{nullptr, nullptr, nullptr, nullptr, nullptr});
-  std::string error;
-  std::string warning;
-  if (!loader.LoadASCIIFromString(&document.model, &error, &warning, checked.text.data(),
-                                  static_cast<unsigned int>(checked.text.size()), "", tinygltf::NO_REQUIRE)) {
-    return failure("{}: is not valid glTF: {}", document.name, firstLine(error));
+// What nothing that follows checks, because it is not used or would be read in another way.
+Status checkParts(const Document& document) {
+  const std::string& name = document.name;
+  const GltfFile& file = document.file;
+  for (const GltfFile::Accessor& accessor : file.accessors) {
+    if (accessor.type_of_component < component_type::kByte ||
+        accessor.type_of_component > component_type::kDouble) {
+      return failure("{}: is not valid glTF: Invalid `componentType` in accessor. Got {}", name,
+                     accessor.type_of_component);
+    }
+  }
+  for (const GltfFile::Mesh& mesh : file.meshes) {
+    for (const GltfFile::Primitive& primitive : mesh.primitives) {
+      if (primitive.indices < 0) {
+        continue;
+      }
+      if (!isIndexInto(primitive.indices, file.accessors.size())) {
+        return failure("{}: is not valid glTF: primitive indices accessor out of bounds", name);
+      }
+      const int view = file.accessors[static_cast<std::size_t>(primitive.indices)].buffer_view;
+      if (!isIndexInto(view, file.buffer_views.size())) {
+        return failure("{}: is not valid glTF: accessor[{}] invalid bufferView", name, primitive.indices);
+      }
+    }
+  }
+  for (const GltfFile::Camera& camera : file.cameras) {
+    const bool orthographic = camera.type == "orthographic";
+    if (!orthographic && camera.type != "perspective") {
+      return failure(
+          "{}: is not valid glTF: Invalid camera type: \"{}\". Must be \"perspective\" or \"orthographic\"",
+          name, camera.type);
+    }
+    if (orthographic ? !camera.orthographic : !camera.perspective) {
+      return failure("{}: is not valid glTF: {} camera description not found.", name,
+                     orthographic ? "Orthographic" : "Perspective");
+    }
   }
   return Success{};
 }
@@ -52,8 +71,8 @@ Status parse(const CheckedJson& checked, Document& document) {
 // The elements that sparse accessors replace are checked one by one, and accessors may share them.
 Status checkSparseWork(const Document& document) {
   std::uint64_t replaced = 0;
-  for (const tinygltf::Accessor& accessor : document.model.accessors) {
-    replaced += accessor.sparse.isSparse ? static_cast<std::uint64_t>(accessor.sparse.count) : 0;
+  for (const GltfFile::Accessor& accessor : document.file.accessors) {
+    replaced += accessor.sparse ? accessor.sparse->count : 0;
   }
   if (replaced > document.limits.sparse_elements) {
     return failure("{}: its sparse accessors replace {} elements; at most {} are read", document.name,
@@ -71,7 +90,7 @@ Result<Document> load(std::string_view bytes, const std::string& base_dir, const
   if (!container) {
     return container.error();
   }
-  const Result<CheckedJson> checked = checkJson(container->json, limits, name);
+  Result<CheckedJson> checked = checkJson(container->json, limits, name);
   if (!checked) {
     return checked.error();
   }
@@ -86,7 +105,8 @@ Result<Document> load(std::string_view bytes, const std::string& base_dir, const
     return buffers.error();
   }
   document.buffers = std::move(*buffers);
-  Status status = parse(*checked, document);
+  document.file = std::move(checked->file);
+  Status status = checkParts(document);
   if (status) {
     status = checkSparseWork(document);
   }

@@ -19,14 +19,14 @@ T readAs(const char* bytes) {
 // 0: not a component type of glTF 2.0.
 std::uint64_t componentSize(int component_type) {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case component_type::kByte:
+    case component_type::kUnsignedByte:
       return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case component_type::kShort:
+    case component_type::kUnsignedShort:
       return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+    case component_type::kUnsignedInt:
+    case component_type::kFloat:
       return 4;
     default:
       return 0;
@@ -34,15 +34,15 @@ std::uint64_t componentSize(int component_type) {
 }
 
 // 0: a type that nothing we read may have (matrices).
-std::uint64_t componentCount(int type) {
+std::uint64_t componentCount(ElementType type) {
   switch (type) {
-    case TINYGLTF_TYPE_SCALAR:
+    case ElementType::kScalar:
       return 1;
-    case TINYGLTF_TYPE_VEC2:
+    case ElementType::kVec2:
       return 2;
-    case TINYGLTF_TYPE_VEC3:
+    case ElementType::kVec3:
       return 3;
-    case TINYGLTF_TYPE_VEC4:
+    case ElementType::kVec4:
       return 4;
     default:
       return 0;
@@ -63,23 +63,23 @@ struct RangeRequest {
 
 // Checks that the elements lie in the buffer view and the view in its buffer.
 Result<Range> viewRange(const Document& document, const RangeRequest& request, const std::string& user) {
-  const auto& views = document.model.bufferViews;
+  const auto& views = document.file.buffer_views;
   const std::string& name = document.name;
   if (!isIndexInto(request.buffer_view, views.size())) {
     return failure("{}: {}: buffer view {} does not exist (the file has {})", name, user, request.buffer_view,
                    views.size());
   }
-  const tinygltf::BufferView& view = views[static_cast<std::size_t>(request.buffer_view)];
+  const GltfFile::BufferView& view = views[static_cast<std::size_t>(request.buffer_view)];
   if (!isIndexInto(view.buffer, document.buffers.bytes.size())) {
     return failure("{}: buffer view {}: buffer {} does not exist (the file has {})", name,
                    request.buffer_view, view.buffer, document.buffers.bytes.size());
   }
   const std::string_view buffer = document.buffers.bytes[static_cast<std::size_t>(view.buffer)];
-  if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset) {
+  if (view.byte_offset > buffer.size() || view.byte_length > buffer.size() - view.byte_offset) {
     return failure("{}: buffer view {}: {} bytes from byte {} do not lie in buffer {} of {} bytes", name,
-                   request.buffer_view, view.byteLength, view.byteOffset, view.buffer, buffer.size());
+                   request.buffer_view, view.byte_length, view.byte_offset, view.buffer, buffer.size());
   }
-  const std::uint64_t stride = view.byteStride == 0 ? request.element_size : view.byteStride;
+  const std::uint64_t stride = view.byte_stride == 0 ? request.element_size : view.byte_stride;
   if (stride < request.element_size) {
     return failure("{}: {}: elements of {} bytes overlap at the stride of {} of buffer view {}", name, user,
                    request.element_size, stride, request.buffer_view);
@@ -87,15 +87,15 @@ Result<Range> viewRange(const Document& document, const RangeRequest& request, c
   // Last element's end, without overflow: offset and length are below 2^53, the stride below 2^8.
   const bool fits =
       request.count == 0 ||
-      (request.offset <= view.byteLength && request.element_size <= view.byteLength - request.offset &&
-       request.count - 1 <= (view.byteLength - request.offset - request.element_size) / stride);
+      (request.offset <= view.byte_length && request.element_size <= view.byte_length - request.offset &&
+       request.count - 1 <= (view.byte_length - request.offset - request.element_size) / stride);
   if (!fits) {
     return failure(
         "{}: {}: {} elements of {} bytes every {} from byte {} do not lie in buffer view {} of {} bytes",
         name, user, request.count, request.element_size, stride, request.offset, request.buffer_view,
-        view.byteLength);
+        view.byte_length);
   }
-  return Range{buffer.data() + view.byteOffset + (request.count == 0 ? 0 : request.offset), stride};
+  return Range{buffer.data() + view.byte_offset + (request.count == 0 ? 0 : request.offset), stride};
 }
 
 }  // namespace
@@ -116,23 +116,23 @@ double AccessorView::number(std::uint64_t element, int component) const {
     return 0.0;
   }
   switch (component_type_) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: {
+    case component_type::kByte: {
       const double value = readAs<std::int8_t>(address + component);
       return normalized_ ? std::max(value / 127.0, -1.0) : value;
     }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: {
+    case component_type::kUnsignedByte: {
       const double value = readAs<std::uint8_t>(address + component);
       return normalized_ ? value / 255.0 : value;
     }
-    case TINYGLTF_COMPONENT_TYPE_SHORT: {
+    case component_type::kShort: {
       const double value = readAs<std::int16_t>(address + 2 * component);
       return normalized_ ? std::max(value / 32767.0, -1.0) : value;
     }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
+    case component_type::kUnsignedShort: {
       const double value = readAs<std::uint16_t>(address + 2 * component);
       return normalized_ ? value / 65535.0 : value;
     }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case component_type::kUnsignedInt:
       return readAs<std::uint32_t>(address + 4 * component);
     default:
       return static_cast<double>(readAs<float>(address + 4 * component));
@@ -145,9 +145,9 @@ std::uint32_t AccessorView::index(std::uint64_t element) const {
     return 0;
   }
   switch (component_type_) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case component_type::kUnsignedByte:
       return readAs<std::uint8_t>(address);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case component_type::kUnsignedShort:
       return readAs<std::uint16_t>(address);
     default:
       return readAs<std::uint32_t>(address);
@@ -156,25 +156,21 @@ std::uint32_t AccessorView::index(std::uint64_t element) const {
 
 // The replaced elements of a sparse accessor whose own fields are set.
 Status addSparse(const Document& document, int accessor, AccessorView& view) {
-  const auto& sparse = document.model.accessors[static_cast<std::size_t>(accessor)].sparse;
+  const GltfFile::Sparse& sparse = *document.file.accessors[static_cast<std::size_t>(accessor)].sparse;
   const std::string where = fmt::format("accessor {} sparse", accessor);
-  const int type = sparse.indices.componentType;
-  if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-      type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
+  const int type = sparse.indices_type;
+  if (type != component_type::kUnsignedByte && type != component_type::kUnsignedShort &&
+      type != component_type::kUnsignedInt) {
     return failure("{}: {}: component type {} is not an unsigned integer", document.name, where, type);
   }
-  const auto count = static_cast<std::uint64_t>(sparse.count);
-  const RangeRequest request{sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset),
-                             count, componentSize(type)};
+  const std::uint64_t count = sparse.count;
+  const RangeRequest request{sparse.indices_view, sparse.indices_offset, count, componentSize(type)};
   const Result<Range> indices = viewRange(document, request, where + " indices");
   if (!indices) {
     return indices.error();
   }
-  const Result<Range> values =
-      viewRange(document,
-                {sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
-                 view.element_size_},
-                where + " values");
+  const Result<Range> values = viewRange(
+      document, {sparse.values_view, sparse.values_offset, count, view.element_size_}, where + " values");
   if (!values) {
     return values.error();
   }
@@ -200,21 +196,21 @@ Status addSparse(const Document& document, int accessor, AccessorView& view) {
 
 // Precondition: the accessor exists.
 Result<AccessorView> openAccessor(const Document& document, int accessor, const std::string& user) {
-  const tinygltf::Accessor& source = document.model.accessors[static_cast<std::size_t>(accessor)];
+  const GltfFile::Accessor& source = document.file.accessors[static_cast<std::size_t>(accessor)];
   const std::string where = fmt::format("accessor {}", accessor);
   AccessorView view;
   view.count_ = source.count;
-  view.component_type_ = source.componentType;
+  view.component_type_ = source.type_of_component;
   view.type_ = source.type;
   view.normalized_ = source.normalized;
-  view.element_size_ = componentSize(source.componentType) * componentCount(source.type);
+  view.element_size_ = componentSize(source.type_of_component) * componentCount(source.type);
   if (view.element_size_ == 0) {
     return failure("{}: {}: component type {} or its type cannot be used for {}", document.name, where,
-                   source.componentType, user);
+                   source.type_of_component, user);
   }
-  if (source.bufferView >= 0) {
-    const Result<Range> range =
-        viewRange(document, {source.bufferView, source.byteOffset, source.count, view.element_size_}, where);
+  if (source.buffer_view >= 0) {
+    const Result<Range> range = viewRange(
+        document, {source.buffer_view, source.byte_offset, source.count, view.element_size_}, where);
     if (!range) {
       return range.error();
     }
@@ -224,7 +220,7 @@ Result<AccessorView> openAccessor(const Document& document, int accessor, const 
     return failure("{}: {}: has {} elements without a buffer view; at most {} are read", document.name, where,
                    source.count, document.limits.implied_elements);
   }
-  if (source.sparse.isSparse) {
+  if (source.sparse) {
     const Status status = addSparse(document, accessor, view);
     if (!status) {
       return status.error();

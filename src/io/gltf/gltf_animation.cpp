@@ -96,17 +96,17 @@ Value Track::sample(double time) const {
                    : mix(value(low), value(high), 1.0 - fraction, fraction);
 }
 
-Result<Track> openTrack(const Document& document, std::size_t animation,
-                        const tinygltf::AnimationChannel& channel, Accessors& accessors) {
-  const auto& samplers = document.model.animations[animation].samplers;
+Result<Track> openTrack(const Document& document, std::size_t animation, const GltfFile::Channel& channel,
+                        Accessors& accessors) {
+  const auto& samplers = document.file.animations[animation].samplers;
   const std::string user = fmt::format("animation {} sampler {}", animation, channel.sampler);
   const std::string where = document.name + ": " + user;
   if (!isIndexInto(channel.sampler, samplers.size())) {
     return failure("{}: does not exist (the animation has {})", where, samplers.size());
   }
-  const tinygltf::AnimationSampler& sampler = samplers[static_cast<std::size_t>(channel.sampler)];
+  const GltfFile::Sampler& sampler = samplers[static_cast<std::size_t>(channel.sampler)];
   Track track;
-  track.rotation_ = channel.target_path == "rotation";
+  track.rotation_ = channel.path == "rotation";
   if (sampler.interpolation == "STEP" || sampler.interpolation == "CUBICSPLINE") {
     track.interpolation_ =
         sampler.interpolation == "STEP" ? Track::Interpolation::kStep : Track::Interpolation::kCubic;
@@ -122,9 +122,8 @@ Result<Track> openTrack(const Document& document, std::size_t animation,
   if (!values) {
     return values.error();
   }
-  if ((*times)->type() != TINYGLTF_TYPE_SCALAR ||
-      (*times)->componentType() != TINYGLTF_COMPONENT_TYPE_FLOAT ||
-      (*values)->type() != (track.rotation_ ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3)) {
+  if ((*times)->type() != ElementType::kScalar || (*times)->componentType() != component_type::kFloat ||
+      (*values)->type() != (track.rotation_ ? ElementType::kVec4 : ElementType::kVec3)) {
     return failure("{}: times must be SCALAR of floats, and values VEC4 for a rotation, else VEC3", where);
   }
   const std::uint64_t values_per_key = track.interpolation_ == Track::Interpolation::kCubic ? 3 : 1;
@@ -142,24 +141,21 @@ Result<Track> openTrack(const Document& document, std::size_t animation,
 
 Result<ChannelMap> channelsOf(const Document& document) {
   ChannelMap channels;
-  const tinygltf::Model& model = document.model;
-  for (std::size_t animation = 0; animation < model.animations.size(); ++animation) {
-    const auto& list = model.animations[animation].channels;
+  const GltfFile& file = document.file;
+  for (std::size_t animation = 0; animation < file.animations.size(); ++animation) {
+    const auto& list = file.animations[animation].channels;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const tinygltf::AnimationChannel& channel = list[i];
-      if (channel.target_node < 0) {
-        continue;  // targets something of an extension
-      }
-      if (!isIndexInto(channel.target_node, model.nodes.size())) {
+      const GltfFile::Channel& channel = list[i];
+      if (!isIndexInto(channel.node, file.nodes.size())) {
         return failure("{}: animation {} channel {}: node {} does not exist (the file has {})", document.name,
-                       animation, i, channel.target_node, model.nodes.size());
+                       animation, i, channel.node, file.nodes.size());
       }
-      NodeChannels& of_node = channels[channel.target_node][animation];
-      if (channel.target_path == "translation") {
+      NodeChannels& of_node = channels[channel.node][animation];
+      if (channel.path == "translation") {
         of_node.translation = &channel;
-      } else if (channel.target_path == "rotation") {
+      } else if (channel.path == "rotation") {
         of_node.rotation = &channel;
-      } else if (channel.target_path == "scale") {
+      } else if (channel.path == "scale") {
         of_node.scale = &channel;
       }
     }

@@ -19,7 +19,7 @@ class Track {
   std::array<double, 4> sample(double time) const;
 
  private:
-  friend Result<Track> openTrack(const Document&, std::size_t, const tinygltf::AnimationChannel&, Accessors&);
+  friend Result<Track> openTrack(const Document&, std::size_t, const GltfFile::Channel&, Accessors&);
   enum class Interpolation { kLinear, kStep, kCubic };
 
   std::array<double, 4> value(std::uint64_t key) const;
@@ -33,14 +33,14 @@ class Track {
 };
 
 // Checks a channel's sampler: types, counts, finite ascending times.
-Result<Track> openTrack(const Document& document, std::size_t animation,
-                        const tinygltf::AnimationChannel& channel, Accessors& accessors);
+Result<Track> openTrack(const Document& document, std::size_t animation, const GltfFile::Channel& channel,
+                        Accessors& accessors);
 
 // The channels of all animations by animation and node; of several for the same property the last.
 struct NodeChannels {
-  const tinygltf::AnimationChannel* translation = nullptr;
-  const tinygltf::AnimationChannel* rotation = nullptr;
-  const tinygltf::AnimationChannel* scale = nullptr;
+  const GltfFile::Channel* translation = nullptr;
+  const GltfFile::Channel* rotation = nullptr;
+  const GltfFile::Channel* scale = nullptr;
 };
 using ChannelMap = std::map<int, std::map<std::size_t, NodeChannels>>;  // node, animation
 Result<ChannelMap> channelsOf(const Document& document);

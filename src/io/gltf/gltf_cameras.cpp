@@ -49,18 +49,18 @@ class CameraAdder {
         work_left_(document.limits.camera_work) {}
 
   Result<CameraPath> pathOf(std::size_t node_number) {
-    const tinygltf::Node& node = document_.model.nodes[node_number];
+    const GltfFile::Node& node = document_.file.nodes[node_number];
     where_ = fmt::format("{}: node {}: camera {}", document_.name, node_number, node.camera);
-    if (!isIndexInto(node.camera, document_.model.cameras.size())) {
-      return failure("{} does not exist (the file has {})", where_, document_.model.cameras.size());
+    if (!isIndexInto(node.camera, document_.file.cameras.size())) {
+      return failure("{} does not exist (the file has {})", where_, document_.file.cameras.size());
     }
-    const tinygltf::Camera& camera = document_.model.cameras[static_cast<std::size_t>(node.camera)];
+    const GltfFile::Camera& camera = document_.file.cameras[static_cast<std::size_t>(node.camera)];
     CameraPath path;
     path.name = !node.name.empty()     ? node.name
                 : !camera.name.empty() ? camera.name
                                        : fmt::format("camera{}", node.camera);
-    Status status = camera.type == "orthographic" ? orthographic(camera.orthographic, path)
-                                                  : perspective(camera.perspective, path);
+    Status status = camera.type == "orthographic" ? orthographic(*camera.orthographic, path)
+                                                  : perspective(*camera.perspective, path);
     if (status) {
       status = addFrames(node_number, path);
     }
@@ -71,21 +71,20 @@ class CameraAdder {
   }
 
  private:
-  Status perspective(const tinygltf::PerspectiveCamera& camera, CameraPath& path) const {
+  Status perspective(const GltfFile::Perspective& camera, CameraPath& path) const {
     if (!(camera.yfov > 0.0 && camera.yfov < std::numbers::pi)) {
       return failure("{}: yfov {} is not between 0 and pi", where_, camera.yfov);
     }
-    // tinygltf gives 0 for an absent zfar, which means "no far plane".
     if (!(camera.znear > 0.0) || (camera.zfar != 0.0 && !(camera.zfar > camera.znear))) {
       return failure("{}: znear {} and zfar {} are not 0 < znear < zfar", where_, camera.znear, camera.zfar);
     }
     path.fovy_deg = camera.yfov * 180.0 / std::numbers::pi;
     path.near = camera.znear;
     path.far = camera.zfar;
-    return setSize(camera.aspectRatio == 0.0 ? 16.0 / 9.0 : camera.aspectRatio, path);
+    return setSize(camera.aspect_ratio == 0.0 ? 16.0 / 9.0 : camera.aspect_ratio, path);
   }
 
-  Status orthographic(const tinygltf::OrthographicCamera& camera, CameraPath& path) {
+  Status orthographic(const GltfFile::Orthographic& camera, CameraPath& path) {
     if (!(camera.xmag > 0.0 && camera.ymag > 0.0)) {
       return failure("{}: xmag {} and ymag {} are not positive", where_, camera.xmag, camera.ymag);
     }
@@ -154,7 +153,7 @@ class CameraAdder {
   // From the camera's node to its root, with the tracks of the first animation that moves any of them.
   Result<std::vector<Link>> chainOf(int node) {
     std::vector<int> nodes;
-    std::size_t animation = document_.model.animations.size();
+    std::size_t animation = document_.file.animations.size();
     for (int at = node; at >= 0; at = tree_.parent[static_cast<std::size_t>(at)]) {
       nodes.push_back(at);
       const auto found = channels_.find(at);
@@ -181,12 +180,12 @@ class CameraAdder {
   }
 
   Status animate(int node, std::size_t animation, const NodeChannels& channels, Link& link) {
-    const tinygltf::Node& source = document_.model.nodes[static_cast<std::size_t>(node)];
-    if (!source.matrix.empty()) {
+    const GltfFile::Node& source = document_.file.nodes[static_cast<std::size_t>(node)];
+    if (source.matrix) {
       return failure("{}: animation {}: moves node {}, which has a matrix", document_.name, animation, node);
     }
     link.animated = true;
-    link.pose = poseOf(source);
+    link.pose = source.pose;
     for (const auto& [channel, track] :
          {std::pair(channels.translation, &link.translation), std::pair(channels.rotation, &link.rotation),
           std::pair(channels.scale, &link.scale)}) {
@@ -249,7 +248,7 @@ Status addCameras(const Document& document, const NodeTree& tree, Accessors& acc
   }
   CameraAdder adder(document, tree, *channels, accessors);
   for (const int node : tree.visited) {
-    if (document.model.nodes[static_cast<std::size_t>(node)].camera < 0) {
+    if (document.file.nodes[static_cast<std::size_t>(node)].camera < 0) {
       continue;
     }
     Result<CameraPath> path = adder.pathOf(static_cast<std::size_t>(node));

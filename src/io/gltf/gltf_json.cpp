@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "src/io/failure.h"
+#include "src/io/gltf/gltf_parts.h"
 #include "src/io/gltf/gltf_schema.h"
 
 namespace sightline::io {
@@ -257,9 +258,8 @@ Result<CheckedJson> checkJson(std::string_view text, const ImportLimits& limits,
         source.uri = buffer["uri"].get<std::string>();
       }
     }
-    document.erase("buffers");
   }
-  checked.text = document.dump();
+  checked.file = partsOf(document);
   return checked;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The first line of defence of the glTF reader: container, JSON nesting, and the type and range of every
-// value. What is not used by Sightline (images, textures, skins, extras, ...) does not get past it.
+// The first steps of the glTF reader: container, JSON nesting, and the type and range of every value. What
+// Sightline does not use (images, textures, skins, extras, ...) is left behind here.
 
 #include <cstdint>
 #include <optional>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sightline/base/result.h"
+#include "src/io/gltf/gltf_file.h"
 #include "src/io/scene_builder.h"
 
 namespace sightline::io {
@@ -26,9 +27,8 @@ struct BufferSource {
   std::optional<std::string> uri;
 };
 
-// What remains of the JSON after checking.
 struct CheckedJson {
-  std::string text;  // for tinygltf: only known keys, each of its right type and in range
+  GltfFile file;
   std::vector<BufferSource> buffers;
   std::vector<std::string> extensions_required;
 };

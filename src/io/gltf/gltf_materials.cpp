@@ -6,28 +6,21 @@
 namespace sightline::io {
 namespace {
 
-// Transmission lets light through whatever the alpha mode says.
-bool transmits(const tinygltf::Material& material) {
-  const auto found = material.extensions.find("KHR_materials_transmission");
-  return found != material.extensions.end() && found->second.Has("transmissionFactor") &&
-         found->second.Get("transmissionFactor").GetNumberAsDouble() > 0.0;
-}
-
 Result<Material> convert(const Document& document, std::size_t number) {
-  const tinygltf::Material& source = document.model.materials[number];
+  const GltfFile::Material& source = document.file.materials[number];
   Material material;
   material.name = source.name.empty() ? fmt::format("material{}", number) : source.name;
-  material.double_sided = source.doubleSided;
-  if (source.alphaMode == "BLEND" || transmits(source)) {
+  material.double_sided = source.double_sided;
+  // Transmission lets light through whatever the alpha mode says.
+  if (source.alpha_mode == "BLEND" || source.transmission > 0.0) {
     material.opacity = Opacity::kBlended;
-  } else if (source.alphaMode == "MASK") {
+  } else if (source.alpha_mode == "MASK") {
     material.opacity = Opacity::kAlphaTested;
-  } else if (source.alphaMode != "OPAQUE") {
+  } else if (source.alpha_mode != "OPAQUE") {
     return failure("{}: material {}: alpha mode \"{}\" is not OPAQUE, MASK or BLEND", document.name, number,
-                   source.alphaMode);
+                   source.alpha_mode);
   }
-  const std::vector<double>& color = source.pbrMetallicRoughness.baseColorFactor;
-  std::transform(color.begin(), color.end(), material.base_color.begin(),
+  std::transform(source.base_color.begin(), source.base_color.end(), material.base_color.begin(),
                  [](double c) { return static_cast<float>(std::clamp(c, 0.0, 1.0)); });
   return material;
 }
@@ -35,7 +28,7 @@ Result<Material> convert(const Document& document, std::size_t number) {
 }  // namespace
 
 Status addMaterials(const Document& document, SceneBuilder& builder) {
-  for (std::size_t i = 0; i < document.model.materials.size(); ++i) {
+  for (std::size_t i = 0; i < document.file.materials.size(); ++i) {
     Result<Material> material = convert(document, i);
     if (!material) {
       return material.error();

@@ -5,13 +5,6 @@
 namespace sightline::io {
 namespace {
 
-std::optional<OccluderMark> markOf(const tinygltf::Value& extras) {
-  if (!extras.Has("occluder")) {
-    return std::nullopt;
-  }
-  return extras.Get("occluder").Get<bool>() ? OccluderMark::kOccluder : OccluderMark::kNever;
-}
-
 class ObjectAdder {
  public:
   ObjectAdder(const Document& document, const NodeTree& tree, Accessors& accessors, SceneBuilder& builder)
@@ -35,7 +28,7 @@ class ObjectAdder {
       const std::uint64_t count = (*mesh)->primitives.size();
       objects += count;
       triangles += (*mesh)->triangles;
-      name_bytes += count * (document_.model.nodes[number].name.size() + 24);
+      name_bytes += count * (document_.file.nodes[number].name.size() + 24);
       if (objects > limits.objects || triangles > limits.triangles || name_bytes > limits.name_bytes) {
         return failure(
             "{}: node {}: up to here the scene has {} objects, {} triangles and {} bytes of names; at most "
@@ -70,20 +63,20 @@ class ObjectAdder {
  private:
   // nullptr: the node has none.
   Result<const MeshSource*> meshOf(std::size_t node_number) {
-    const int mesh = document_.model.nodes[node_number].mesh;
+    const int mesh = document_.file.nodes[node_number].mesh;
     if (mesh < 0) {
       return static_cast<const MeshSource*>(nullptr);
     }
-    if (!isIndexInto(mesh, document_.model.meshes.size())) {
+    if (!isIndexInto(mesh, document_.file.meshes.size())) {
       return failure("{}: node {}: mesh {} does not exist (the file has {})", document_.name, node_number,
-                     mesh, document_.model.meshes.size());
+                     mesh, document_.file.meshes.size());
     }
     return meshes_.open(static_cast<std::size_t>(mesh));
   }
 
   void addObject(const PrimitiveSource& primitive, std::size_t node_number) {
-    const tinygltf::Node& node = document_.model.nodes[node_number];
-    const tinygltf::Mesh& mesh = document_.model.meshes[static_cast<std::size_t>(node.mesh)];
+    const GltfFile::Node& node = document_.file.nodes[node_number];
+    const GltfFile::Mesh& mesh = document_.file.meshes[static_cast<std::size_t>(node.mesh)];
     std::string name = node.name.empty() ? fmt::format("node{}", node_number) : node.name;
     if (mesh.primitives.size() > 1) {
       name += fmt::format("/primitive{}", primitive.number);
@@ -104,16 +97,13 @@ class ObjectAdder {
   }
 
   // Node, then mesh, then material.
-  OccluderMark markFor(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
+  OccluderMark markFor(const GltfFile::Node& node, const GltfFile::Mesh& mesh,
                        const PrimitiveSource& primitive) const {
-    std::optional<OccluderMark> mark = markOf(node.extras);
-    if (!mark) {
-      mark = markOf(mesh.extras);
+    std::optional<bool> occluder = node.occluder ? node.occluder : mesh.occluder;
+    if (!occluder && primitive.material >= 0) {
+      occluder = document_.file.materials[static_cast<std::size_t>(primitive.material)].occluder;
     }
-    if (!mark && primitive.material >= 0) {
-      mark = markOf(document_.model.materials[static_cast<std::size_t>(primitive.material)].extras);
-    }
-    return mark.value_or(OccluderMark::kAutomatic);
+    return !occluder ? OccluderMark::kAutomatic : *occluder ? OccluderMark::kOccluder : OccluderMark::kNever;
   }
 
   Status addTriangles(const PrimitiveSource& source, std::size_t node_number) {

@@ -2,8 +2,6 @@
 
 // What the steps of the glTF reader share: the parsed file with its bytes, and checked access to its parts.
 
-#include <tiny_gltf.h>
-
 #include <array>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 #include "sightline/math/mat4.h"
 #include "src/io/failure.h"
 #include "src/io/gltf/gltf_buffers.h"
+#include "src/io/gltf/gltf_file.h"
 #include "src/io/scene_builder.h"
 
 namespace sightline::io {
@@ -20,7 +19,7 @@ namespace sightline::io {
 struct Document {
   std::string name;  // of the file, in errors
   ImportLimits limits;
-  tinygltf::Model model;  // without buffers; indices between its parts are not yet checked
+  GltfFile file;
   Buffers buffers;
 };
 
@@ -29,7 +28,7 @@ class AccessorView {
  public:
   std::uint64_t count() const { return count_; }
   int componentType() const { return component_type_; }
-  int type() const { return type_; }
+  ElementType type() const { return type_; }
 
   // Component of an element, normalised where the accessor says so. Precondition: element < count().
   double number(std::uint64_t element, int component) const;
@@ -47,7 +46,7 @@ class AccessorView {
   std::uint64_t count_ = 0;
   std::uint64_t element_size_ = 0;
   int component_type_ = 0;
-  int type_ = 0;
+  ElementType type_ = ElementType::kScalar;
   bool normalized_ = false;
   std::vector<std::uint32_t> replaced_;  // sparse: ascending
   const char* replacements_ = nullptr;
@@ -57,7 +56,7 @@ class AccessorView {
 class Accessors {
  public:
   explicit Accessors(const Document& document)
-      : document_(document), views_(document.model.accessors.size()) {}
+      : document_(document), views_(document.file.accessors.size()) {}
 
   // Valid as long as this object. user: who refers to the accessor, in errors ("mesh 3 primitive 0").
   Result<const AccessorView*> view(int accessor, const std::string& user);
@@ -76,14 +75,6 @@ struct NodeTree {
 };
 Result<NodeTree> buildNodeTree(const Document& document);
 
-// Translation, rotation (x, y, z, w), scale.
-struct NodePose {
-  Vec3d translation;
-  std::array<double, 4> rotation{0, 0, 0, 1};
-  Vec3d scale{1, 1, 1};
-};
-// Of a node without a matrix whose numbers buildNodeTree has checked.
-NodePose poseOf(const tinygltf::Node& node);
 Mat4 matrixOf(const NodePose& pose);
 
 Status addMaterials(const Document& document, SceneBuilder& builder);

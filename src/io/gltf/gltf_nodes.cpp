@@ -15,15 +15,15 @@ bool allFinite(const Mat4& matrix) {
 }
 
 Result<Mat4> parentFromNode(const Document& document, std::size_t number) {
-  const tinygltf::Node& node = document.model.nodes[number];
+  const GltfFile::Node& node = document.file.nodes[number];
   Mat4 matrix;
-  if (!node.matrix.empty()) {
-    std::copy(node.matrix.begin(), node.matrix.end(), matrix.m.begin());
+  if (node.matrix) {
+    matrix.m = *node.matrix;
     if (matrix(3, 0) != 0.0 || matrix(3, 1) != 0.0 || matrix(3, 2) != 0.0 || matrix(3, 3) != 1.0) {
       return failure("{}: node {}: the last row of its matrix must be 0 0 0 1", document.name, number);
     }
   } else {
-    matrix = matrixOf(poseOf(node));
+    matrix = matrixOf(node.pose);
   }
   if (!allFinite(matrix)) {
     return failure("{}: node {}: its transform is not finite (a rotation of length 0, or numbers too large)",
@@ -34,7 +34,7 @@ Result<Mat4> parentFromNode(const Document& document, std::size_t number) {
 
 // Children exist and have one parent each.
 Status linkNodes(const Document& document, NodeTree& tree) {
-  const auto& nodes = document.model.nodes;
+  const auto& nodes = document.file.nodes;
   tree.parent.assign(nodes.size(), -1);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const int child : nodes[i].children) {
@@ -67,7 +67,7 @@ Status visitFrom(const Document& document, int root, NodeTree& tree, std::vector
     if (!allFinite(tree.world_from_node[node])) {
       return failure("{}: node {}: its transform to world space is too large", document.name, node);
     }
-    const auto& children = document.model.nodes[node].children;
+    const auto& children = document.file.nodes[node].children;
     open.insert(open.end(), children.rbegin(), children.rend());
   }
   return Success{};
@@ -86,7 +86,7 @@ Status refuseCycles(const Document& document, const NodeTree& tree) {
     const auto node = static_cast<std::size_t>(open.back());
     open.pop_back();
     reached[node] = true;
-    const auto& children = document.model.nodes[node].children;
+    const auto& children = document.file.nodes[node].children;
     open.insert(open.end(), children.begin(), children.end());
   }
   for (std::size_t i = 0; i < reached.size(); ++i) {
@@ -100,13 +100,13 @@ Status refuseCycles(const Document& document, const NodeTree& tree) {
 // The default scene's roots; those of the first scene, or all nodes without parent, when the file does not
 // say.
 Result<std::vector<int>> rootsOf(const Document& document, const NodeTree& tree) {
-  const tinygltf::Model& model = document.model;
+  const GltfFile& file = document.file;
   std::vector<int> roots;
-  if (model.defaultScene >= 0 && !isIndexInto(model.defaultScene, model.scenes.size())) {
-    return failure("{}: scene {} does not exist (the file has {})", document.name, model.defaultScene,
-                   model.scenes.size());
+  if (file.scene >= 0 && !isIndexInto(file.scene, file.scenes.size())) {
+    return failure("{}: scene {} does not exist (the file has {})", document.name, file.scene,
+                   file.scenes.size());
   }
-  if (model.scenes.empty()) {
+  if (file.scenes.empty()) {
     for (std::size_t i = 0; i < tree.parent.size(); ++i) {
       if (tree.parent[i] < 0) {
         roots.push_back(static_cast<int>(i));
@@ -114,12 +114,12 @@ Result<std::vector<int>> rootsOf(const Document& document, const NodeTree& tree)
     }
     return roots;
   }
-  const auto scene = static_cast<std::size_t>(std::max(model.defaultScene, 0));
+  const auto scene = static_cast<std::size_t>(std::max(file.scene, 0));
   std::vector<bool> named(tree.parent.size(), false);
-  for (const int root : model.scenes[scene].nodes) {
-    if (!isIndexInto(root, model.nodes.size())) {
+  for (const int root : file.scenes[scene].nodes) {
+    if (!isIndexInto(root, file.nodes.size())) {
       return failure("{}: scene {}: node {} does not exist (the file has {})", document.name, scene, root,
-                     model.nodes.size());
+                     file.nodes.size());
     }
     const auto at = static_cast<std::size_t>(root);
     if (named[at] || tree.parent[at] >= 0) {
@@ -134,21 +134,6 @@ Result<std::vector<int>> rootsOf(const Document& document, const NodeTree& tree)
 }
 
 }  // namespace
-
-NodePose poseOf(const tinygltf::Node& node) {
-  NodePose pose;
-  // The arrays are of these lengths or absent.
-  if (node.translation.size() == 3) {
-    pose.translation = {node.translation[0], node.translation[1], node.translation[2]};
-  }
-  if (node.rotation.size() == 4) {
-    std::copy(node.rotation.begin(), node.rotation.end(), pose.rotation.begin());
-  }
-  if (node.scale.size() == 3) {
-    pose.scale = {node.scale[0], node.scale[1], node.scale[2]};
-  }
-  return pose;
-}
 
 Mat4 matrixOf(const NodePose& pose) {
   const auto [qx, qy, qz, qw] = pose.rotation;
@@ -185,7 +170,7 @@ Result<NodeTree> buildNodeTree(const Document& document) {
   if (!status) {
     return status.error();
   }
-  const std::size_t count = document.model.nodes.size();
+  const std::size_t count = document.file.nodes.size();
   tree.parent_from_node.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Result<Mat4> matrix = parentFromNode(document, i);

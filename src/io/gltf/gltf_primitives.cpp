@@ -5,22 +5,22 @@ namespace {
 
 bool isIndexType(const AccessorView& view) {
   const int type = view.componentType();
-  return view.type() == TINYGLTF_TYPE_SCALAR &&
-         (type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+  return view.type() == ElementType::kScalar &&
+         (type == component_type::kUnsignedByte || type == component_type::kUnsignedShort ||
+          type == component_type::kUnsignedInt);
 }
 
 bool isPositionType(const AccessorView& view) {
-  return view.type() == TINYGLTF_TYPE_VEC3 && view.componentType() != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  return view.type() == ElementType::kVec3 && view.componentType() != component_type::kUnsignedInt;
 }
 
 }  // namespace
 
 std::array<std::uint64_t, 3> PrimitiveSource::cornersOf(std::uint64_t triangle) const {
   switch (mode) {
-    case TINYGLTF_MODE_TRIANGLE_STRIP:
+    case primitive_mode::kTriangleStrip:
       return {triangle, triangle + 1 + triangle % 2, triangle + 2 - triangle % 2};
-    case TINYGLTF_MODE_TRIANGLE_FAN:
+    case primitive_mode::kTriangleFan:
       return {triangle + 1, triangle + 2, 0};
     default:
       return {3 * triangle, 3 * triangle + 1, 3 * triangle + 2};
@@ -33,7 +33,7 @@ Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
     return &*cached;
   }
   MeshSource source;
-  for (std::size_t number = 0; number < document_.model.meshes[mesh].primitives.size(); ++number) {
+  for (std::size_t number = 0; number < document_.file.meshes[mesh].primitives.size(); ++number) {
     Result<PrimitiveSource> primitive = openPrimitive(mesh, number);
     if (!primitive) {
       return primitive.error();
@@ -48,19 +48,19 @@ Result<const MeshSource*> MeshSources::open(std::size_t mesh) {
 }
 
 Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t number) {
-  const tinygltf::Primitive& primitive = document_.model.meshes[mesh].primitives[number];
+  const GltfFile::Primitive& primitive = document_.file.meshes[mesh].primitives[number];
   PrimitiveSource source;
   source.where = fmt::format("mesh {} primitive {}", mesh, number);
   source.number = number;
   source.mode = primitive.mode;
   source.material = primitive.material;
-  if (source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+  if (source.mode > primitive_mode::kTriangleFan) {
     return failure("{}: {}: mode {} does not exist", document_.name, source.where, source.mode);
   }
-  if (source.mode < TINYGLTF_MODE_TRIANGLES) {
+  if (source.mode < primitive_mode::kTriangles) {
     return source;  // points and lines
   }
-  const std::size_t materials = document_.model.materials.size();
+  const std::size_t materials = document_.file.materials.size();
   if (source.material >= 0 && !isIndexInto(source.material, materials)) {
     return failure("{}: {}: material {} does not exist (the file has {})", document_.name, source.where,
                    source.material, materials);
@@ -70,20 +70,19 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
     return status.error();
   }
   const std::uint64_t corners = (source.indices == nullptr ? source.positions : source.indices)->count();
-  if (source.mode == TINYGLTF_MODE_TRIANGLES && corners % 3 != 0) {
+  if (source.mode == primitive_mode::kTriangles && corners % 3 != 0) {
     return failure("{}: {}: {} corners do not make whole triangles", document_.name, source.where, corners);
   }
   const std::uint64_t strung = corners < 3 ? 0 : corners - 2;  // of a strip or fan
-  source.triangles = source.mode == TINYGLTF_MODE_TRIANGLES ? corners / 3 : strung;
+  source.triangles = source.mode == primitive_mode::kTriangles ? corners / 3 : strung;
   return source;
 }
 
-Status MeshSources::openAccessors(const tinygltf::Primitive& primitive, PrimitiveSource& source) {
-  const auto attribute = primitive.attributes.find("POSITION");
-  if (attribute == primitive.attributes.end()) {
+Status MeshSources::openAccessors(const GltfFile::Primitive& primitive, PrimitiveSource& source) {
+  if (primitive.positions < 0) {
     return failure("{}: {}: has no POSITION attribute", document_.name, source.where);
   }
-  source.position_accessor = attribute->second;
+  source.position_accessor = primitive.positions;
   const Result<const AccessorView*> positions = accessors_.view(source.position_accessor, source.where);
   if (!positions) {
     return positions.error();

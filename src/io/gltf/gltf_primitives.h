@@ -14,7 +14,7 @@ struct PrimitiveSource {
   std::string where;  // "mesh 3 primitive 0", for errors
   std::size_t number = 0;
   int material = -1;
-  int mode = 0;
+  int mode = primitive_mode::kTriangles;
   int position_accessor = -1;
   const AccessorView* positions = nullptr;
   const AccessorView* indices = nullptr;  // nullptr: vertices in order
@@ -33,14 +33,14 @@ struct MeshSource {
 class MeshSources {
  public:
   MeshSources(const Document& document, Accessors& accessors)
-      : document_(document), accessors_(accessors), meshes_(document.model.meshes.size()) {}
+      : document_(document), accessors_(accessors), meshes_(document.file.meshes.size()) {}
 
   // Precondition: the mesh exists.
   Result<const MeshSource*> open(std::size_t mesh);
 
  private:
   Result<PrimitiveSource> openPrimitive(std::size_t mesh, std::size_t number);
-  Status openAccessors(const tinygltf::Primitive& primitive, PrimitiveSource& source);
+  Status openAccessors(const GltfFile::Primitive& primitive, PrimitiveSource& source);
 
   const Document& document_;
   Accessors& accessors_;

@@ -1,0 +1,134 @@
+#pragma once
+
+// The parts of a glTF file that Sightline reads, as plain data. Their names are those of the glTF 2.0
+// specification. An index of -1 means that the file names none; whether the others exist is not yet checked.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sightline/math/vec3.h"
+
+namespace sightline::io {
+
+// Numbers in files; others may stand there too.
+namespace component_type {
+inline constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kInt = 5124,
+                     kUnsignedInt = 5125, kFloat = 5126, kDouble = 5130;
+}
+namespace primitive_mode {
+inline constexpr int kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
+}
+
+enum class ElementType : std::uint8_t { kScalar, kVec2, kVec3, kVec4, kMat2, kMat3, kMat4 };
+
+// Translation, rotation (x, y, z, w), scale.
+struct NodePose {
+  Vec3d translation;
+  std::array<double, 4> rotation{0, 0, 0, 1};
+  Vec3d scale{1, 1, 1};
+};
+
+struct GltfFile {
+  struct BufferView {
+    int buffer = -1;
+    std::uint64_t byte_offset = 0, byte_length = 0;
+    std::uint64_t byte_stride = 0;  // 0: elements follow each other closely
+  };
+
+  struct Sparse {
+    std::uint64_t count = 0;
+    int indices_view = -1;
+    std::uint64_t indices_offset = 0;
+    int indices_type = 0;  // component_type
+    int values_view = -1;
+    std::uint64_t values_offset = 0;
+  };
+  struct Accessor {
+    int buffer_view = -1;  // -1: all elements are zero
+    std::uint64_t byte_offset = 0;
+    int type_of_component = 0;  // component_type
+    std::uint64_t count = 0;
+    ElementType type = ElementType::kScalar;
+    bool normalized = false;
+    std::optional<Sparse> sparse;
+  };
+
+  struct Primitive {
+    int positions = -1;  // accessor of the attribute POSITION
+    int indices = -1;
+    int material = -1;
+    int mode = primitive_mode::kTriangles;
+  };
+  struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+    std::optional<bool> occluder;  // extras
+  };
+
+  struct Node {
+    std::string name;
+    int camera = -1;
+    int mesh = -1;
+    std::vector<int> children;
+    std::optional<std::array<double, 16>> matrix;
+    NodePose pose;  // of a node without a matrix
+    std::optional<bool> occluder;
+  };
+  struct Scene {
+    std::vector<int> nodes;
+  };
+
+  struct Material {
+    std::string name;
+    std::string alpha_mode = "OPAQUE";
+    bool double_sided = false;
+    std::array<double, 4> base_color{1, 1, 1, 1};
+    double transmission = 0.0;
+    std::optional<bool> occluder;
+  };
+
+  struct Perspective {
+    double yfov = 0.0;  // radians
+    double znear = 0.0;
+    double zfar = 0.0;          // 0: none
+    double aspect_ratio = 0.0;  // 0: not given
+  };
+  struct Orthographic {
+    double xmag = 0.0, ymag = 0.0, znear = 0.0, zfar = 0.0;
+  };
+  struct Camera {
+    std::string name;
+    std::string type;
+    std::optional<Perspective> perspective;
+    std::optional<Orthographic> orthographic;
+  };
+
+  struct Channel {
+    int sampler = -1;
+    int node = -1;
+    std::string path;
+  };
+  struct Sampler {
+    int input = -1, output = -1;
+    std::string interpolation = "LINEAR";
+  };
+  struct Animation {
+    std::vector<Channel> channels;  // without those that move no node
+    std::vector<Sampler> samplers;
+  };
+
+  int scene = -1;
+  std::vector<Scene> scenes;
+  std::vector<Node> nodes;
+  std::vector<Mesh> meshes;
+  std::vector<Accessor> accessors;
+  std::vector<BufferView> buffer_views;
+  std::vector<Material> materials;
+  std::vector<Camera> cameras;
+  std::vector<Animation> animations;
+};
+
+}  // namespace sightline::io

@@ -1,0 +1,212 @@
+#include "src/io/gltf/gltf_parts.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace sightline::io {
+namespace {
+
+using nlohmann::json;
+
+// Leaves the value as it is where the key is absent.
+template <typename T>
+void take(const json& object, const char* key, T& value) {
+  const auto found = object.find(key);
+  if (found != object.end()) {
+    found->get_to(value);
+  }
+}
+
+void take(const json& object, const char* key, Vec3d& value) {
+  const auto found = object.find(key);
+  if (found != object.end()) {
+    value = {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()};
+  }
+}
+
+// The items of an array, one by one; none where the key is absent.
+template <typename Part>
+void takeAll(const json& object, const char* key, std::vector<Part>& parts, Part (*read)(const json&)) {
+  const auto found = object.find(key);
+  if (found != object.end()) {
+    parts.reserve(found->size());
+    for (const json& item : *found) {
+      parts.push_back(read(item));
+    }
+  }
+}
+
+std::optional<bool> occluderMark(const json& object) {
+  const auto extras = object.find("extras");
+  return extras == object.end() ? std::nullopt : std::optional((*extras)["occluder"].get<bool>());
+}
+
+ElementType elementType(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, ElementType>, 7> kTypes{{{"SCALAR", ElementType::kScalar},
+                                                                            {"VEC2", ElementType::kVec2},
+                                                                            {"VEC3", ElementType::kVec3},
+                                                                            {"VEC4", ElementType::kVec4},
+                                                                            {"MAT2", ElementType::kMat2},
+                                                                            {"MAT3", ElementType::kMat3},
+                                                                            {"MAT4", ElementType::kMat4}}};
+  return std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& type) { return type.first == name; })
+      ->second;
+}
+
+GltfFile::BufferView bufferView(const json& source) {
+  GltfFile::BufferView view;
+  take(source, "buffer", view.buffer);
+  take(source, "byteOffset", view.byte_offset);
+  take(source, "byteLength", view.byte_length);
+  take(source, "byteStride", view.byte_stride);
+  return view;
+}
+
+GltfFile::Sparse sparse(const json& source) {
+  GltfFile::Sparse sparse;
+  take(source, "count", sparse.count);
+  take(source["indices"], "bufferView", sparse.indices_view);
+  take(source["indices"], "byteOffset", sparse.indices_offset);
+  take(source["indices"], "componentType", sparse.indices_type);
+  take(source["values"], "bufferView", sparse.values_view);
+  take(source["values"], "byteOffset", sparse.values_offset);
+  return sparse;
+}
+
+GltfFile::Accessor accessor(const json& source) {
+  GltfFile::Accessor accessor;
+  take(source, "bufferView", accessor.buffer_view);
+  take(source, "byteOffset", accessor.byte_offset);
+  take(source, "componentType", accessor.type_of_component);
+  take(source, "count", accessor.count);
+  accessor.type = elementType(source["type"].get_ref<const std::string&>());
+  take(source, "normalized", accessor.normalized);
+  if (source.contains("sparse")) {
+    accessor.sparse = sparse(source["sparse"]);
+  }
+  return accessor;
+}
+
+GltfFile::Primitive primitive(const json& source) {
+  GltfFile::Primitive primitive;
+  take(source["attributes"], "POSITION", primitive.positions);
+  take(source, "indices", primitive.indices);
+  take(source, "material", primitive.material);
+  take(source, "mode", primitive.mode);
+  return primitive;
+}
+
+GltfFile::Mesh mesh(const json& source) {
+  GltfFile::Mesh mesh;
+  take(source, "name", mesh.name);
+  takeAll(source, "primitives", mesh.primitives, primitive);
+  mesh.occluder = occluderMark(source);
+  return mesh;
+}
+
+GltfFile::Node node(const json& source) {
+  GltfFile::Node node;
+  take(source, "name", node.name);
+  take(source, "camera", node.camera);
+  take(source, "mesh", node.mesh);
+  take(source, "children", node.children);
+  if (source.contains("matrix")) {
+    take(source, "matrix", node.matrix.emplace());
+  } else {
+    take(source, "translation", node.pose.translation);
+    take(source, "rotation", node.pose.rotation);
+    take(source, "scale", node.pose.scale);
+  }
+  node.occluder = occluderMark(source);
+  return node;
+}
+
+GltfFile::Scene scene(const json& source) {
+  GltfFile::Scene scene;
+  take(source, "nodes", scene.nodes);
+  return scene;
+}
+
+GltfFile::Material material(const json& source) {
+  GltfFile::Material material;
+  take(source, "name", material.name);
+  take(source, "alphaMode", material.alpha_mode);
+  take(source, "doubleSided", material.double_sided);
+  if (source.contains("pbrMetallicRoughness")) {
+    take(source["pbrMetallicRoughness"], "baseColorFactor", material.base_color);
+  }
+  if (source.contains("extensions") && source["extensions"].contains("KHR_materials_transmission")) {
+    take(source["extensions"]["KHR_materials_transmission"], "transmissionFactor", material.transmission);
+  }
+  material.occluder = occluderMark(source);
+  return material;
+}
+
+GltfFile::Camera camera(const json& source) {
+  GltfFile::Camera camera;
+  take(source, "name", camera.name);
+  take(source, "type", camera.type);
+  if (source.contains("perspective")) {
+    const json& shape = source["perspective"];
+    GltfFile::Perspective& perspective = camera.perspective.emplace();
+    take(shape, "yfov", perspective.yfov);
+    take(shape, "znear", perspective.znear);
+    take(shape, "zfar", perspective.zfar);
+    take(shape, "aspectRatio", perspective.aspect_ratio);
+  }
+  if (source.contains("orthographic")) {
+    const json& shape = source["orthographic"];
+    GltfFile::Orthographic& orthographic = camera.orthographic.emplace();
+    take(shape, "xmag", orthographic.xmag);
+    take(shape, "ymag", orthographic.ymag);
+    take(shape, "znear", orthographic.znear);
+    take(shape, "zfar", orthographic.zfar);
+  }
+  return camera;
+}
+
+GltfFile::Channel channel(const json& source) {
+  GltfFile::Channel channel;
+  take(source, "sampler", channel.sampler);
+  take(source["target"], "node", channel.node);
+  take(source["target"], "path", channel.path);
+  return channel;
+}
+
+GltfFile::Sampler sampler(const json& source) {
+  GltfFile::Sampler sampler;
+  take(source, "input", sampler.input);
+  take(source, "output", sampler.output);
+  take(source, "interpolation", sampler.interpolation);
+  return sampler;
+}
+
+GltfFile::Animation animation(const json& source) {
+  GltfFile::Animation animation;
+  takeAll(source, "channels", animation.channels, channel);
+  // Those without a node move something of an extension.
+  std::erase_if(animation.channels, [](const GltfFile::Channel& channel) { return channel.node < 0; });
+  takeAll(source, "samplers", animation.samplers, sampler);
+  return animation;
+}
+
+}  // namespace
+
+GltfFile partsOf(const json& document) {
+  GltfFile file;
+  take(document, "scene", file.scene);
+  takeAll(document, "scenes", file.scenes, scene);
+  takeAll(document, "nodes", file.nodes, node);
+  takeAll(document, "meshes", file.meshes, mesh);
+  takeAll(document, "accessors", file.accessors, accessor);
+  takeAll(document, "bufferViews", file.buffer_views, bufferView);
+  takeAll(document, "materials", file.materials, material);
+  takeAll(document, "cameras", file.cameras, camera);
+  takeAll(document, "animations", file.animations, animation);
+  return file;
+}
+
+}  // namespace sightline::io
