@@ -145,25 +145,33 @@ GltfFile::Material material(const json& source) {
   return material;
 }
 
+GltfFile::Perspective perspective(const json& source) {
+  GltfFile::Perspective shape;
+  take(source, "yfov", shape.yfov);
+  take(source, "znear", shape.znear);
+  take(source, "zfar", shape.zfar);
+  take(source, "aspectRatio", shape.aspect_ratio);
+  return shape;
+}
+
+GltfFile::Orthographic orthographic(const json& source) {
+  GltfFile::Orthographic shape;
+  take(source, "xmag", shape.xmag);
+  take(source, "ymag", shape.ymag);
+  take(source, "znear", shape.znear);
+  take(source, "zfar", shape.zfar);
+  return shape;
+}
+
 GltfFile::Camera camera(const json& source) {
   GltfFile::Camera camera;
   take(source, "name", camera.name);
   take(source, "type", camera.type);
   if (source.contains("perspective")) {
-    const json& shape = source["perspective"];
-    GltfFile::Perspective& perspective = camera.perspective.emplace();
-    take(shape, "yfov", perspective.yfov);
-    take(shape, "znear", perspective.znear);
-    take(shape, "zfar", perspective.zfar);
-    take(shape, "aspectRatio", perspective.aspect_ratio);
+    camera.perspective = perspective(source["perspective"]);
   }
   if (source.contains("orthographic")) {
-    const json& shape = source["orthographic"];
-    GltfFile::Orthographic& orthographic = camera.orthographic.emplace();
-    take(shape, "xmag", orthographic.xmag);
-    take(shape, "ymag", orthographic.ymag);
-    take(shape, "znear", orthographic.znear);
-    take(shape, "zfar", orthographic.zfar);
+    camera.orthographic = orthographic(source["orthographic"]);
   }
   return camera;
 }
