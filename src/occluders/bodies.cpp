@@ -66,50 +66,50 @@ struct Mates {
   }
 };
 
-// Convex, with some thickness below each face.
+// Whether the faces bound a convex solid that has some thickness below each of them.
 bool isConvex(std::span<const Vec3f> positions, std::span<const FoundPolygon* const> faces,
               double tolerance) {
   for (const FoundPolygon* face : faces) {
-    double least = 0.0;
+    double lowest = 0.0;
     for (const FoundPolygon* other : faces) {
       for (const std::uint32_t corner : other->corners) {
         const double height = face->plane.evaluate(Vec3d(positions[other->loop[corner]]));
         if (height > tolerance) {
           return false;
         }
-        least = std::min(least, height);
+        lowest = std::min(lowest, height);
       }
     }
-    if (!(least < -4.0 * tolerance)) {
+    if (!(lowest < -4.0 * tolerance)) {
       return false;  // flat: a sheet may have a notch
     }
   }
   return true;
 }
 
-// A body while it is made.
+// Adds bodies to a set, one after the other.
 class BodyMaker {
  public:
   BodyMaker(std::span<const Vec3f> positions, OccluderSet& set) : positions_(positions), set_(set) {}
 
-  void add(std::span<const RankedPolygon> polygons, std::span<const std::uint32_t> members) {
+  void add(std::span<const RankedPolygon> polygons, std::span<const std::uint32_t> ids) {
     std::vector<const FoundPolygon*> faces;
     OccluderBody body;
     body.first_vertex = static_cast<std::uint32_t>(set_.body_vertices.size());
     body.first_edge = static_cast<std::uint32_t>(set_.body_edges.size());
     body.first_face = static_cast<std::uint32_t>(set_.body_faces.size());
-    body.face_count = static_cast<std::uint8_t>(members.size());
+    body.face_count = static_cast<std::uint8_t>(ids.size());
     vertices_.clear();
-    for (const std::uint32_t member : members) {
-      faces.push_back(&polygons[member].polygon);
-      const Occluder& occluder = set_.occluders[member];
+    for (const std::uint32_t id : ids) {
+      faces.push_back(&polygons[id].polygon);
+      const Occluder& occluder = set_.occluders[id];
       body.slack = std::max(body.slack, occluder.slack);
       for (const std::uint32_t corner : faces.back()->corners) {
         numberOf(faces.back()->loop[corner], body.bounds);
       }
       set_.body_faces.push_back(
-          {occluder.plane, OccluderId(member), numberOf(firstCorner(*faces.back()), body.bounds)});
-      set_.body_of[member] = static_cast<std::uint32_t>(set_.bodies.size());
+          {occluder.plane, OccluderId(id), numberOf(firstCorner(*faces.back()), body.bounds)});
+      set_.body_of[id] = static_cast<std::uint32_t>(set_.bodies.size());
     }
     for (const FoundPolygon* face : faces) {
       for (const std::uint32_t corner : face->corners) {
@@ -191,24 +191,24 @@ void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const>
 void assembleBodies(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
                     OccluderSet& set) {
   set.body_of.assign(polygons.size(), OccluderSet::kNoBody);
-  std::vector<std::uint32_t> members;
+  std::vector<std::uint32_t> faces;  // polygons of bodies
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
     if (polygons[p].polygon.body != FoundPolygon::kNoBody) {
-      members.push_back(p);
+      faces.push_back(p);
     }
   }
   const auto key = [&](std::uint32_t p) {
     return std::tuple(polygons[p].object.value, polygons[p].polygon.body);
   };
-  std::stable_sort(members.begin(), members.end(),
+  std::stable_sort(faces.begin(), faces.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   BodyMaker maker(positions, set);
-  for (std::size_t first = 0, last = 0; first < members.size(); first = last) {
-    while (last < members.size() && key(members[last]) == key(members[first])) {
+  for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
+    while (last < faces.size() && key(faces[last]) == key(faces[first])) {
       ++last;
     }
-    if (last - first == polygons[members[first]].polygon.body_size) {
-      maker.add(polygons, std::span(members).subspan(first, last - first));
+    if (last - first == polygons[faces[first]].polygon.body_size) {
+      maker.add(polygons, std::span(faces).subspan(first, last - first));
     }
   }
 }

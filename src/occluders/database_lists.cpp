@@ -185,9 +185,9 @@ void ListFinder::open(std::uint32_t index) {
   const CandidateTree::Node& node = tree_.nodes()[index];
   const Vec3d from_cell = 0.5 * (node.min + node.max) - cell_.center;
   const double radius = node.radius + kRelativeRounding * (node.radius + length(from_cell));
-  const double least = minDotInCone(from_cell, radius);
+  const double min_dot = minDotInCone(from_cell, radius);
   if (std::none_of(open_.begin(), open_.end(),
-                   [&](std::uint32_t d) { return dot(directions_[d], from_cell) >= least; })) {
+                   [&](std::uint32_t d) { return dot(directions_[d], from_cell) >= min_dot; })) {
     return;
   }
   if (!node.leaf()) {
@@ -208,12 +208,12 @@ void ListFinder::open(std::uint32_t index) {
 // whatever follows it in the queue, could not improve.
 void ListFinder::take(const Candidate& candidate, double bound) {
   const Vec3d from_cell = candidate.centroid - cell_.center;
-  const double least = minDotInCone(from_cell, candidate.radius);
+  const double min_dot = minDotInCone(from_cell, candidate.radius);
   const bool along_view = settings_.direction == AreaAngleDirection::kView;
   const Sight sight = along_view ? sightOf(candidate) : Sight{};
   const auto finished = [&](std::uint32_t d) {
     std::vector<Ranked>& list = best_[d];
-    if (dot(directions_[d], from_cell) >= least) {
+    if (dot(directions_[d], from_cell) >= min_dot) {
       const double score = along_view ? scoreAlong(directions_[d], candidate, sight) : bound;
       if (score > 0.0) {
         insert({score, candidate.id}, list);

@@ -1,7 +1,7 @@
-// Which occluders share seams of the mesh. Two polygons that have a mesh edge in common leave no gap between
-// them; to keep it so in the occlusion structures, the edges along one seam are put on one line, given by two
-// mesh vertices, and each edge knows which polygons lie beyond each of the mesh edges that it was merged
-// from.
+// Which occluders share edges of the mesh. Two polygons that have a mesh edge in common leave no gap between
+// them. So that the occlusion structures stay watertight there, all occluder edges along one shared edge are
+// put on one line, given by two mesh vertices, and each of them knows which polygons lie beyond each of the
+// mesh edges that it was merged from.
 
 #include "src/occluders/links.h"
 
@@ -36,7 +36,7 @@ class Linker {
 
   void run() {
     collectUses();
-    uniteSeams();
+    uniteSharedEdges();
     chooseLines();
     writeCovers();
     shareSlack();
@@ -86,7 +86,7 @@ class Linker {
     }
   }
 
-  void uniteSeams() {
+  void uniteSharedEdges() {
     forEachSharedMeshEdge([this](std::span<const Use> users) {
       for (const Use& use : users.subspan(1)) {
         classes_.unite(users[0].edge, use.edge);
@@ -127,15 +127,15 @@ class Linker {
     }
   }
 
-  // One line for all edges of a seam: through its outermost mesh vertices along its longest edge. Where a
-  // vertex is farther from it than rounding explains, each edge keeps a line of its own and the seam is not
-  // closed.
-  void chooseLine(std::span<const std::uint32_t> seam) {
-    std::array<Vec3f, 2> line = ownLine(seam[0]);
-    if (seam.size() > 1) {
+  // Chooses one line for all occluder edges along a shared edge: through their outermost mesh vertices, in
+  // the direction of the longest of them. Where a vertex is farther from that line than rounding explains,
+  // each occluder edge keeps a line of its own, and the shared edge is not watertight.
+  void chooseLine(std::span<const std::uint32_t> shared) {
+    std::array<Vec3f, 2> line = ownLine(shared[0]);
+    if (shared.size() > 1) {
       double longest = 0.0;
       Vec3d along;
-      for (const std::uint32_t edge : seam) {
+      for (const std::uint32_t edge : shared) {
         const auto own = ownLine(edge);
         const Vec3d d = Vec3d(own[1]) - Vec3d(own[0]);
         if (length(d) > longest) {
@@ -145,7 +145,7 @@ class Linker {
       }
       double low = 0.0, high = 0.0;
       bool first = true;
-      for (const std::uint32_t edge : seam) {
+      for (const std::uint32_t edge : shared) {
         forEachVertex(edge, [&](const Vec3f& p) {
           const double t = dot(along, Vec3d(p));
           if (first || t < low) {
@@ -161,17 +161,17 @@ class Linker {
       }
     }
     double deviation = 0.0, largest = 0.0;
-    for (const std::uint32_t edge : seam) {
+    for (const std::uint32_t edge : shared) {
       forEachVertex(edge, [&](const Vec3f& p) {
         deviation = std::max(deviation, distanceToLine(Vec3d(p), Vec3d(line[0]), Vec3d(line[1])));
         largest = std::max(largest, static_cast<double>(maxComponent(abs(p))));
       });
     }
     if (deviation <= 4.0 * roundingTolerance(largest)) {
-      assign(seam, line, deviation);
+      assign(shared, line, deviation);
       return;
     }
-    for (const std::uint32_t edge : seam) {
+    for (const std::uint32_t edge : shared) {
       set_.edges[edge].chain = 0;
       assign(std::span(&edge, 1), ownLine(edge), 0.0);
     }
@@ -219,8 +219,8 @@ class Linker {
     }
   }
 
-  // The outline of a neighbour beyond a seam is as uncertain as its own slack says, and as near as the seam's
-  // end.
+  // An occluder's slack also bounds that of its neighbours: the uncertain outline of a neighbour begins at
+  // the end of the edge that both share.
   void shareSlack() {
     std::vector<float> slack;
     for (const Occluder& occluder : set_.occluders) {
@@ -238,13 +238,13 @@ class Linker {
   std::span<const Vec3f> positions_;
   std::span<const RankedPolygon> polygons_;
   OccluderSet& set_;
-  base::UnionFind classes_;          // of edges along one seam
+  base::UnionFind classes_;          // of occluder edges along one shared edge
   std::vector<Use> uses_, by_edge_;  // sorted by mesh edge; in the order of edges
   std::vector<std::uint32_t> owner_, chain_start_, chain_length_;  // by edge
 };
 
-// No corner sharper than three degrees: near such a one a neighbour's own boundary would be too close to the
-// seam.
+// False where a corner is sharper than three degrees: near it, a neighbour's own boundary would be too close
+// to the shared edge.
 bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   constexpr double kSine = 0.052;
   const std::size_t n = corners.size();
@@ -259,7 +259,7 @@ bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   return true;
 }
 
-// Those of an object that listed(id) says, in the order of their ids.
+// Lists, for each object, the occluders for which listed(id) is true, in the order of their ids.
 template <typename Listed>
 void listByObject(const OccluderSet& set, Listed&& listed, std::vector<std::uint32_t>& first,
                   std::vector<OccluderId>& ids) {

@@ -7,8 +7,8 @@
 
 namespace sightline::occluders {
 
-// Of a sphere around the centroid that holds the polygon, metres. Vertices with NaN are passed over; infinite
-// ones make it infinite.
+// The radius, in metres, of a sphere around the centroid that holds the polygon. Vertices with NaN are passed
+// over; infinite ones make it infinite.
 inline double radiusOf(const OccluderSet& set, const Occluder& occluder) {
   double squared = 0.0;
   for (const Vec3f& vertex : set.verticesOf(occluder)) {

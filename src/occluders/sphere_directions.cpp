@@ -93,10 +93,10 @@ void SphereDirections::appendCandidates(const Quad& texel) {
     best = std::max(best, dot(center, direction));
   }
   const double reach = std::acos(std::min(best, 1.0)) + 2.0 * texel.radius();
-  const double least = reach < std::numbers::pi ? std::cos(reach) - kCosineRounding : -2.0;
+  const double min_cosine = reach < std::numbers::pi ? std::cos(reach) - kCosineRounding : -2.0;
   std::vector<std::uint16_t> near;
   for (std::uint32_t i = 0; i < count(); ++i) {
-    if (dot(center, directions_[i]) >= least) {
+    if (dot(center, directions_[i]) >= min_cosine) {
       near.push_back(static_cast<std::uint16_t>(i));
     }
   }

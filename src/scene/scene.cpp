@@ -11,7 +11,7 @@ namespace {
 
 struct PositionKey {
   std::uint32_t x, y, z;
-  friend auto operator<=>(const PositionKey&, const PositionKey&) = default;
+  friend bool operator==(const PositionKey&, const PositionKey&) = default;
 };
 
 PositionKey keyOf(const Vec3f& p) {

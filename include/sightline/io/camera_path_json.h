@@ -12,18 +12,19 @@
 
 namespace sightline {
 
-// A key that is none of the form's, most likely a mistyped one.
+// A key that the form does not have, most likely a mistyped one.
 struct UnknownKey {
   std::string key{};
   std::optional<std::size_t> frame{};         // the first frame that has it; none: it is beside "frames"
-  std::size_t frames = 0;                     // so many frames have it
-  std::span<const std::string_view> known{};  // the keys that there are in its place
+  std::size_t frames = 0;                     // how many frames have it
+  std::span<const std::string_view> known{};  // the keys that may stand in its place
 };
 
-// The JSON form "path". Unknown keys are ignored, and the first 20 added to unknown_keys, each once, also
-// before an error; wrong types, non-finite numbers, zero directions, no frames, near >= far and angles
-// outside (0, 180) are errors that name the key and the frame. Only "frames" with "eye" and "forward" is
-// required; the rest has CameraPath's defaults, "up" is +Y.
+// Reads a camera path in the JSON form "path" (docs/formats.md). Only "frames" with "eye" and "forward" is
+// required; other keys default to those of CameraPath, and "up" to +Y. Wrong types, numbers that are not
+// finite, zero directions, no frames, near >= far and angles outside (0, 180) are errors that name the key
+// and the frame. Unknown keys are ignored; the first 20 of them are added to unknown_keys, each once, also
+// before an error.
 Result<CameraPath> parseCameraPath(std::string_view json, const std::string& name_in_errors,
                                    std::vector<UnknownKey>* unknown_keys = nullptr);
 Result<CameraPath> readCameraPath(const std::string& file);

@@ -7,10 +7,11 @@
 
 namespace sightline {
 
-// The whole file; an error names it and the reason.
+// Reads a whole file. An error names the file and the reason.
 Result<std::string> readFile(const std::string& file);
 
-// Writes under a temporary name beside the target and renames: never half a file under the final name.
+// Writes a file under a temporary name beside the target and renames it, so that half a file never has the
+// final name.
 Status writeFile(const std::string& file, std::string_view bytes);
 
 }  // namespace sightline

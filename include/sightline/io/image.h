@@ -18,8 +18,8 @@ struct Image {
 };
 
 Status writePng(const Image& image, const std::string& file);
-// Any PNG, as eight bits a channel; without opacity it is opaque. Errors: no such file, no PNG, more than
-// 16384 pixels a side.
+// Reads any PNG as eight bits a channel; one without an alpha channel is opaque. Errors: no such file, no
+// PNG, more than 16384 pixels a side.
 Result<Image> readPng(const std::string& file);
 
 }  // namespace sightline

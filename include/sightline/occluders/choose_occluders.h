@@ -1,6 +1,6 @@
 #pragma once
 
-// Dynamic occluder selection: the k best of the potential occluders for one view.
+// Chooses the k best of the potential occluders for one view.
 
 #include <cstdint>
 #include <span>
@@ -25,26 +25,28 @@ struct ChoiceSettings {
   bool bodies = false;        // of objects: convex bodies count as one, and are named by their first face
 };
 
-// Area-angle of an occluder (Coorg and Teller 1997; Bittner et al. 1998, eq. 1): larger is better, 0 when it
-// is seen from a side that does not hide. Square metres per square metre; orthographic views: square metres.
+// The area-angle of an occluder; larger is better, and 0 means that the eye sees a side that does not hide.
+// In square metres per square metre; for orthographic views in square metres. Sources: Coorg and Teller 1997;
+// Bittner et al. 1998, equation 1.
 double areaAngle(const Occluder& occluder, const View& view, AreaAngleDirection direction);
 
-// Keeps its storage between frames.
+// Chooses occluders frame by frame. Keeps its storage between frames; for one thread at a time.
 class OccluderChooser {
  public:
-  // The best of the occluders that belong to the given objects (each named at most once), best first, ties by
-  // id; occluders wholly outside the frustum are passed over. object_bounds: by ObjectId.
+  // The best occluders of the given objects (each named at most once), best first, ties by id. Occluders
+  // wholly outside the frustum are passed over. object_bounds: one box for each ObjectId. The result is valid
+  // until the next call.
   std::span<const OccluderId> choose(const View& view, const OccluderSet& set,
                                      std::span<const ObjectId> objects, std::span<const Box> object_bounds,
                                      const ChoiceSettings& settings);
 
-  // The best of these occluders (each named at most once), in the same way; max_distance and bodies are not
-  // regarded. What is not in the set, as of a database of another one, is passed over.
+  // The best of the candidates (each named at most once), chosen in the same way, but max_distance and bodies
+  // have no effect. Candidates that are not in the set, as from a database of another set, are passed over.
   std::span<const OccluderId> choose(const View& view, const OccluderSet& set,
                                      std::span<const OccluderId> candidates, const ChoiceSettings& settings);
 
-  // The first of these occluders that may hide something in the view, in their order; what is not in the set
-  // is passed over.
+  // The first `count` candidates that may hide something in the view, in their order. Candidates that are not
+  // in the set are passed over.
   std::span<const OccluderId> takeFirst(const View& view, const OccluderSet& set,
                                         std::span<const OccluderId> candidates, std::uint32_t count);
 

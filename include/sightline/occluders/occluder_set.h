@@ -21,21 +21,21 @@ struct Occluder {
   std::uint32_t first_vertex = 0;  // into OccluderSet::vertices and OccluderSet::edges
   std::uint16_t vertex_count = 0;
   bool double_sided = false;
-  bool seals = false;  // no sharp corner: it may close the seam to a neighbour (see docs/conservative.md)
-  ObjectId object{};   // that its triangles belong to; not valid: none
+  bool seals = false;  // no sharp corner: the edge to a neighbour may be watertight (docs/conservative.md)
+  ObjectId object{};   // the object of its triangles; not valid: none
   float area = 0.0f;   // square metres
-  float slack =
-      0.0f;  // metres: bounds how far the polygon and its triangles lie apart, in and across its plane
-  Vec3f centroid{};  // of area
+  // Metres: bounds the distance between the polygon and its triangles, in its plane and across it.
+  float slack = 0.0f;
+  Vec3f centroid{};  // of its area
   Plane plane{};     // unit normal, towards the front; scene space
 };
 
 // The edge from one corner of an occluder to the next.
 struct OccluderEdge {
-  std::uint32_t line = 0;         // into OccluderSet::lines; edges along one seam of the mesh share a line
+  std::uint32_t line = 0;         // into OccluderSet::lines; edges along one shared edge have the same line
   std::uint32_t first_cover = 0;  // into OccluderSet::covers
   std::uint16_t cover_count = 0;
-  std::uint16_t chain = 0;        // mesh edges that it consists of; 0: it may never be sealed
+  std::uint16_t chain = 0;        // mesh edges that it consists of; 0: it is never watertight
   std::uint32_t first_joint = 0;  // into OccluderSet::joints: the chain - 1 mesh vertices between its corners
 };
 
@@ -45,7 +45,8 @@ struct EdgeCover {
   std::uint32_t element = 0;  // which mesh edge of the chain, from 0
 };
 
-// A convex solid of one object that occluders enclose: seen from outside, all of its image hides.
+// A convex solid of one object that occluders enclose: seen from outside, everything behind its image is
+// hidden.
 struct OccluderBody {
   std::uint32_t first_vertex = 0, first_edge = 0, first_face = 0;  // into OccluderSet::body_...
   std::uint8_t vertex_count = 0, edge_count = 0, face_count = 0;
@@ -63,7 +64,7 @@ struct BodyFace {
   std::uint8_t vertex = 0;  // on the plane, number within the body
 };
 
-// Why triangles are in no occluder: one count each, in triangles.
+// How many triangles became part of an occluder, and why the others did not.
 struct OccluderReport {
   std::uint64_t used = 0;          // in occluders
   std::uint64_t see_through = 0;   // blended or alpha-tested material
@@ -155,31 +156,30 @@ struct OccluderSet {
   }
 };
 
-// Some occluders of one set, for structures made of several sets, as of a scene and of what moves in it. Sets
-// know nothing of each other: a seam between occluders of two sets stays open.
+// Some occluders of one set. Occlusion structures take several sets, for instance that of the scene and that
+// of what moves in it. Sets do not know each other: no edge between occluders of two sets is watertight.
 struct ChosenOccluders {
   const OccluderSet* set = nullptr;
   std::span<const OccluderId> chosen{};
 };
 
-// Finds them in raw triangles. Deterministic, whatever the number of threads.
+// Finds the occluders of a scene in its triangles. The result does not depend on the threads.
 OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settings = {},
                           const ParallelFor& parallel_for = serialFor);
 
-// A polygon of the caller's own: what he really draws and nobody sees through.
+// A polygon that the caller gives: it has to be drawn and opaque, or what lies behind it is wrongly hidden.
 struct OccluderPolygon {
   std::span<const Vec3f> vertices{};  // scene space, counter-clockwise from the front, convex, in one plane
   bool double_sided = false;
-  // The object that shows this polygon: OccluderChooser, and so a Culler, looks for occluders among the
-  // objects in view. Any number; those in between cost nothing. ObjectId(): no object. Such an occluder is
-  // used where it is named, as by the caller of an OcclusionTree, and where it moves: Culler::cull uses all
-  // that move, whatever this is.
+  // The object that shows this polygon, any number: OccluderChooser, and so a Culler, looks for occluders
+  // among the objects in view. ObjectId(): none. Such an occluder is used only where the caller names it, as
+  // for an OcclusionTree, and where it moves: Culler::cull uses all that move.
   ObjectId object = ObjectId(0u);
 };
 
-// A set from polygons given by the caller, for scenes that change or come without meshes. Edges with equal
-// end points close the seam between their polygons. Polygons that are not convex or not planar beyond
-// rounding, and those without area, are left out (conservative: they then hide nothing).
+// Makes a set of the caller's polygons, for scenes that change or come without meshes. Edges with equal end
+// points are watertight between their polygons. Polygons without area, and those that deviate from convex or
+// planar by more than rounding, are left out, which is conservative: they hide nothing.
 OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons);
 
 }  // namespace sightline

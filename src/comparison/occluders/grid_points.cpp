@@ -165,12 +165,12 @@ void PointTree::search(std::size_t begin, std::size_t end, const Vec3d& place, B
   }
   const std::size_t middle = begin + (end - begin) / 2;
   const Node& node = nodes_[middle];
-  const Vec3d apart = place - node.point;
-  const double squared = dot(apart, apart);
+  const Vec3d offset = place - node.point;
+  const double squared = dot(offset, offset);
   if (squared < best.squared || (squared == best.squared && node.index < best.index)) {
     best = {squared, node.index};
   }
-  const double beyond = apart[static_cast<int>(node.axis)];
+  const double beyond = offset[static_cast<int>(node.axis)];
   const bool after_first = beyond > 0.0;
   search(after_first ? middle + 1 : begin, after_first ? end : middle, place, best);
   if (beyond * beyond <= best.squared) {
