@@ -15,6 +15,7 @@
 namespace {
 
 using namespace sightline;
+using namespace sightline::io;
 
 void appendUint32(std::string& bytes, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) {

@@ -18,7 +18,7 @@ template <typename T>
 concept ByteNumber =
     (std::integral<T> && !std::same_as<T, bool>) || std::same_as<T, float> || std::same_as<T, double>;
 
-namespace detail {
+namespace base {
 
 template <ByteNumber T>
 std::uint64_t bitsOf(T value) {
@@ -42,7 +42,7 @@ T numberOf(std::uint64_t bits) {
   }
 }
 
-}  // namespace detail
+}  // namespace base
 
 class ByteWriter {
  public:
@@ -51,7 +51,7 @@ class ByteWriter {
 
   template <ByteNumber T>
   void add(T value) {
-    const std::uint64_t bits = detail::bitsOf(value);
+    const std::uint64_t bits = base::bitsOf(value);
     const std::size_t at = bytes_.size();
     bytes_.resize(at + sizeof(T));
     for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -144,7 +144,7 @@ class ByteReader {
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       bits |= static_cast<std::uint64_t>(bytes_[position + i]) << 8 * i;
     }
-    return detail::numberOf<T>(bits);
+    return base::numberOf<T>(bits);
   }
 
   std::span<const std::byte> bytes_;

@@ -10,6 +10,9 @@
 #include "src/drawing/triangle_side.h"
 
 namespace sightline {
+
+using namespace drawing;
+
 namespace {
 
 // Corners are rounded to single precision: by up to 2^-24 of their largest coordinate in each axis.

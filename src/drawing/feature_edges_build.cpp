@@ -4,7 +4,7 @@
 #include <bit>
 #include <tuple>
 
-namespace sightline {
+namespace sightline::drawing {
 namespace {
 
 // Corners are rounded to single precision by up to 2^-24 of their largest coordinate, an edge and a corner on
@@ -188,4 +188,4 @@ void EdgeBuilder::store(FeatureEdges& edges) const {
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

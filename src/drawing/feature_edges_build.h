@@ -9,7 +9,7 @@
 
 #include "sightline/drawing/feature_edges.h"
 
-namespace sightline {
+namespace sightline::drawing {
 
 class EdgeBuilder {
  public:
@@ -53,4 +53,4 @@ class EdgeBuilder {
   std::vector<OnEdge> on_edge_;
 };
 
-}  // namespace sightline
+}  // namespace sightline::drawing

@@ -13,6 +13,9 @@
 #include "src/drawing/polylines.h"
 
 namespace sightline {
+
+using namespace drawing;
+
 namespace {
 
 constexpr double kToleranceShare = 1.0 / 200000.0;  // of the page's height
@@ -56,7 +59,7 @@ struct HiddenLineRenderer::Impl {
              const DrawingSettings& settings, Drawing& drawing);
   // The object with its name; strokes are what it itself and the occluders leave of its lines, but for what
   // is drawn before.
-  DrawingObject drawLines(ObjectId object, drawing::DrawnPieces* before, Drawing& drawing);
+  DrawingObject drawLines(ObjectId object, DrawnPieces* before, Drawing& drawing);
   void drawOutline(DrawingObject& object);
   void tellProgress();  // after each object
   // Those that may show something.
@@ -65,7 +68,7 @@ struct HiddenLineRenderer::Impl {
 
   FeatureEdges edges;
   HiddenLines hidden;
-  drawing::Outliner outliner;
+  Outliner outliner;
   std::vector<FeatureLine> lines;
   std::vector<LinePiece> pieces;
   std::vector<ObjectId> occluders;
@@ -103,8 +106,7 @@ bool HiddenLineRenderer::Impl::begin(const SceneView& scene_in, std::span<const 
   return true;
 }
 
-DrawingObject HiddenLineRenderer::Impl::drawLines(ObjectId object, drawing::DrawnPieces* before,
-                                                  Drawing& drawing) {
+DrawingObject HiddenLineRenderer::Impl::drawLines(ObjectId object, DrawnPieces* before, Drawing& drawing) {
   DrawingObject drawn{.object = object,
                       .name = object.value < names.size() ? names[object.value] : std::string()};
   occluders.push_back(object);
@@ -117,7 +119,7 @@ DrawingObject HiddenLineRenderer::Impl::drawLines(ObjectId object, drawing::Draw
   if (before != nullptr) {
     before->leaveNew(pieces);
   }
-  drawing::joinPieces(pieces, tolerance, drawn.strokes);
+  joinPieces(pieces, tolerance, drawn.strokes);
   drawing.pairs += lines.size() * occluders.size();
   drawing.all_pairs += lines.size() * objects;
   return drawn;
@@ -138,7 +140,7 @@ void HiddenLineRenderer::Impl::drawOutline(DrawingObject& object) {
   for (PagePath& ring : object.outline) {
     // As a closed line, so that the last edge is simplified too.
     ring.push_back(ring.front());
-    drawing::simplify(ring, tolerance);
+    simplify(ring, tolerance);
     ring.pop_back();
   }
   std::erase_if(object.outline, [](const PagePath& ring) { return ring.size() < 3; });
@@ -208,7 +210,7 @@ Drawing HiddenLineRenderer::plot(const SceneView& scene, std::span<const std::st
   const std::vector<ObjectId> members = own.objectsOf(order.parts);
   own.objects = members.size();
   const OccludersOf occluders_of(order.arcs, scene.objects.size());
-  drawing::DrawnPieces drawn(own.tolerance);
+  DrawnPieces drawn(own.tolerance);
   for (auto member = members.rbegin(); member != members.rend(); ++member) {
     const auto& backdrops = settings.backdrops;
     if (std::find(backdrops.begin(), backdrops.end(), *member) != backdrops.end()) {

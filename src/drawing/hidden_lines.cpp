@@ -8,6 +8,9 @@
 #include "src/drawing/line_view.h"
 
 namespace sightline {
+
+using namespace drawing;
+
 namespace {
 
 using Interval = LineIntervals::Interval;

@@ -5,7 +5,7 @@
 #include "sightline/geometry/tolerance.h"
 #include "src/drawing/triangle_side.h"
 
-namespace sightline {
+namespace sightline::drawing {
 namespace {
 
 // Of the part beyond the near plane; none() if there is none.
@@ -80,4 +80,4 @@ void HidingTriangles::addTriangle(const SceneView& scene, std::span<const std::u
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

@@ -10,7 +10,7 @@
 #include "src/drawing/hidden_lines_tree.h"
 #include "src/drawing/triangle_hiding.h"
 
-namespace sightline {
+namespace sightline::drawing {
 
 class HidingTriangles {
  public:
@@ -32,4 +32,4 @@ class HidingTriangles {
   std::vector<HidingTrees::Item> items_;
 };
 
-}  // namespace sightline
+}  // namespace sightline::drawing

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace sightline {
+namespace sightline::drawing {
 
 HidingBox HidingBox::none() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -86,4 +86,4 @@ std::uint32_t HidingTrees::add(std::span<Item> items) {
   return index;
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

@@ -10,7 +10,7 @@
 
 #include "src/drawing/line_view.h"
 
-namespace sightline {
+namespace sightline::drawing {
 
 struct HidingBox {
   double min_x = 0.0, min_y = 0.0, max_x = 0.0, max_y = 0.0;  // screen
@@ -82,4 +82,4 @@ class HidingTrees {
   std::vector<std::uint32_t> ids_;
 };
 
-}  // namespace sightline
+}  // namespace sightline::drawing

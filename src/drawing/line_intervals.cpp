@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace sightline {
+namespace sightline::drawing {
 
 void LineIntervals::add(double from, double to) {
   const auto first = std::partition_point(intervals_.begin(), intervals_.end(),
@@ -24,4 +24,4 @@ bool LineIntervals::covers(double from, double to) const {
   return first != intervals_.end() && first->from <= from && to <= first->to;
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

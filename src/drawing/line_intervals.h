@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace sightline {
+namespace sightline::drawing {
 
 // A closed set of numbers as intervals that do not touch each other, ascending. Keeps its memory.
 class LineIntervals {
@@ -24,4 +24,4 @@ class LineIntervals {
   std::vector<Interval> intervals_;
 };
 
-}  // namespace sightline
+}  // namespace sightline::drawing

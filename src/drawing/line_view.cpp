@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sightline {
+namespace sightline::drawing {
 namespace {
 
 // Units. Beyond, doubles do not hold thousandths.
@@ -84,4 +84,4 @@ bool LineView::clip(const Vec3d& a, const Vec3d& b, double& from, double& to) co
          narrow(half_height_ * scale_a - a.y, half_height_ * scale_b - b.y, from, to);
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

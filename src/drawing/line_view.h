@@ -6,7 +6,7 @@
 #include "sightline/math/vec3.h"
 #include "sightline/scene/camera.h"
 
-namespace sightline {
+namespace sightline::drawing {
 
 struct ScreenPoint {
   double x = 0.0, y = 0.0;        // perspective: at unit depth; orthographic: metres
@@ -48,4 +48,4 @@ class LineView {
 // nowhere, or it is not a number.
 bool narrow(double at_0, double at_1, double& from, double& to);
 
-}  // namespace sightline
+}  // namespace sightline::drawing

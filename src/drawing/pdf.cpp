@@ -13,16 +13,15 @@
 #include "src/drawing/pdf_file.h"
 
 namespace sightline {
-namespace {
 
-using drawing::DecimalGrid;
-using drawing::RoundedPath;
-using drawing::RoundedPoint;
+using namespace drawing;
+
+namespace {
 
 class PdfWriter {
  public:
   PdfWriter(const Drawing& drawing, const DrawingStyle& style)
-      : drawing_(&drawing), style_(drawing::usableStyle(style)), grid_(drawing) {}
+      : drawing_(&drawing), style_(usableStyle(style)), grid_(drawing) {}
 
   std::string write() {
     const std::size_t catalogue = file_.reserve(), pages = file_.reserve(), page = file_.reserve(),
@@ -37,7 +36,7 @@ class PdfWriter {
                                 "/Resources << /ProcSet [/PDF] /Properties <<{} >> >> >>",
                                 pages, width, height, contents, properties_));
     file_.addStream(contents, marks);
-    file_.add(info, fmt::format("<< /Title {} /Producer (Sightline) >>", drawing::pdfString(style_.title)));
+    file_.add(info, fmt::format("<< /Title {} /Producer (Sightline) >>", pdfString(style_.title)));
     return file_.finish(catalogue, info);
   }
 
@@ -62,7 +61,7 @@ class PdfWriter {
     fmt::format_to(std::back_inserter(text_), "1 0 0 -1 0 {} cm\n1 J 1 j {} w\n{} RG {} rg\n",
                    grid_.lengthText(drawing_->height), grid_.lengthText(style_.stroke_width),
                    colour(style_.stroke), colour(style_.paper));
-    if (drawing::hasOutlines(*drawing_)) {
+    if (hasOutlines(*drawing_)) {
       fmt::format_to(std::back_inserter(text_), "0 0 {} {} re f\n", grid_.lengthText(drawing_->width),
                      grid_.lengthText(drawing_->height));
     }
@@ -74,7 +73,7 @@ class PdfWriter {
 
   // In shares of 1.
   static std::string colour(const std::string& text) {
-    const std::array<int, 3> rgb = *drawing::parseColour(text);
+    const std::array<int, 3> rgb = *parseColour(text);
     return fmt::format("{:.3g} {:.3g} {:.3g}", rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
   }
 
@@ -104,7 +103,7 @@ class PdfWriter {
 
   std::size_t addLayer(const DrawingObject& object) {
     const std::size_t layer = file_.reserve();
-    file_.add(layer, fmt::format("<< /Type /OCG /Name {} >>", drawing::pdfString(drawing::nameOf(object))));
+    file_.add(layer, fmt::format("<< /Type /OCG /Name {} >>", pdfString(nameOf(object))));
     fmt::format_to(std::back_inserter(properties_), " /L{} {} 0 R", layer, layer);
     layers_.push_back(layer);
     return layer;
@@ -143,7 +142,7 @@ class PdfWriter {
   const Drawing* drawing_;
   DrawingStyle style_;
   DecimalGrid grid_;
-  drawing::PdfFile file_;
+  PdfFile file_;
   std::vector<std::size_t> layers_;    // their object numbers
   std::vector<std::string> branches_;  // of Order, one a group
   std::string properties_, text_;

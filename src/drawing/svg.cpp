@@ -15,11 +15,10 @@
 #include "src/drawing/svg_names.h"
 
 namespace sightline {
-namespace {
 
-using drawing::DecimalGrid;
-using drawing::RoundedPath;
-using drawing::RoundedPoint;
+using namespace drawing;
+
+namespace {
 
 // Writes paths relative to the last point, with h and v for lines along the page's borders.
 class PathData {
@@ -89,7 +88,7 @@ class PathData {
 class SvgWriter {
  public:
   SvgWriter(const Drawing& drawing, const DrawingStyle& style)
-      : drawing_(&drawing), style_(drawing::usableStyle(style)), grid_(drawing) {}
+      : drawing_(&drawing), style_(usableStyle(style)), grid_(drawing) {}
 
   std::string write() {
     head();
@@ -120,9 +119,9 @@ class SvgWriter {
         "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n",
         width, height);
     if (!style_.title.empty()) {
-      print("<title>{}</title>\n", drawing::escapeXml(style_.title));
+      print("<title>{}</title>\n", escapeXml(style_.title));
     }
-    if (drawing::hasOutlines(*drawing_)) {
+    if (hasOutlines(*drawing_)) {
       print("<rect id=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", ids_.make("paper"), width, height,
             style_.paper);
     }
@@ -137,7 +136,7 @@ class SvgWriter {
     const std::string id = ids_.make(name);
     print("<g id=\"{}\"", id);
     if (id != name) {
-      print(" inkscape:label=\"{}\"", drawing::escapeXml(name));
+      print(" inkscape:label=\"{}\"", escapeXml(name));
     }
     text_ += ">\n";
   }
@@ -162,7 +161,7 @@ class SvgWriter {
     if (outline.empty() && strokes.empty()) {
       return;
     }
-    openGroup(drawing::nameOf(object));
+    openGroup(nameOf(object));
     if (!outline.empty()) {
       print("<path fill=\"{}\" stroke=\"none\" d=\"{}\"/>\n", style_.paper, outline);
     }
@@ -181,7 +180,7 @@ class SvgWriter {
     const std::size_t empty = text_.size();
     for (const DrawingObject& object : group.objects) {
       if (const std::string outline = outlineOf(object); !outline.empty()) {
-        print("<path id=\"{}\" d=\"{}\"/>\n", ids_.make(drawing::nameOf(object) + "-outline"), outline);
+        print("<path id=\"{}\" d=\"{}\"/>\n", ids_.make(nameOf(object) + "-outline"), outline);
       }
     }
     if (text_.size() == empty) {
@@ -191,7 +190,7 @@ class SvgWriter {
     }
     for (const DrawingObject& object : group.objects) {
       if (const std::string strokes = strokesOf(object); !strokes.empty()) {
-        openGroup(drawing::nameOf(object));
+        openGroup(nameOf(object));
         print("<path d=\"{}\"/>\n</g>\n", strokes);
       }
     }
@@ -201,7 +200,7 @@ class SvgWriter {
   const Drawing* drawing_;
   DrawingStyle style_;
   DecimalGrid grid_;
-  drawing::XmlIds ids_;
+  XmlIds ids_;
   std::string text_;
 };
 

@@ -6,7 +6,7 @@
 
 #include "sightline/geometry/tolerance.h"
 
-namespace sightline {
+namespace sightline::drawing {
 namespace {
 
 constexpr double kSideRounding = 0x1p-48;
@@ -105,4 +105,4 @@ bool hiddenPart(const HidingTriangle& triangle, const HidableLine& line, const V
          (!crosses_near || beyondNear(triangle, normal, line, view, from, to));
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

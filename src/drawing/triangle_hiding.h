@@ -21,7 +21,7 @@
 
 #include "src/drawing/line_view.h"
 
-namespace sightline {
+namespace sightline::drawing {
 
 struct HidingTriangle {
   std::array<Vec3d, 3> corners;  // camera space; turned as above
@@ -42,4 +42,4 @@ struct HidableLine {
 bool hiddenPart(const HidingTriangle& triangle, const HidableLine& line, const View& view, double& from,
                 double& to);
 
-}  // namespace sightline
+}  // namespace sightline::drawing

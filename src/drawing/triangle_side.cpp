@@ -1,6 +1,6 @@
 #include "src/drawing/triangle_side.h"
 
-namespace sightline {
+namespace sightline::drawing {
 
 // The sign of dot(n, v), n = (b - a) x (c - a), v the way from the eye to a. The differences b - a and a -
 // eye are off by 2^-53 of their size each; six products and five sums follow. So the value is off by less
@@ -14,4 +14,4 @@ int sideSeen(const Vec3f& a, const Vec3f& b, const Vec3f& c, const View& view) {
   return value < -bound ? 1 : value > bound ? -1 : 0;
 }
 
-}  // namespace sightline
+}  // namespace sightline::drawing

@@ -14,7 +14,7 @@
 #include "sightline/math/mat4.h"
 #include "src/io/failure.h"
 
-namespace sightline {
+namespace sightline::io {
 namespace {
 
 constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
@@ -183,4 +183,4 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::io

@@ -11,6 +11,9 @@
 #include "src/io/failure.h"
 
 namespace sightline {
+
+using namespace io;
+
 namespace {
 
 using nlohmann::json;

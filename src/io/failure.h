@@ -7,7 +7,7 @@
 
 #include "sightline/base/result.h"
 
-namespace sightline {
+namespace sightline::io {
 
 // Text from a file may hold line breaks and other control characters; an error has one line.
 inline std::string oneLine(std::string text) {
@@ -24,4 +24,4 @@ Error failure(fmt::format_string<Args...> text, Args&&... args) {
   return Error{oneLine(fmt::format(text, std::forward<Args>(args)...))};
 }
 
-}  // namespace sightline
+}  // namespace sightline::io

@@ -11,6 +11,9 @@
 #include "src/io/failure.h"
 
 namespace sightline {
+
+using namespace io;
+
 namespace fs = std::filesystem;
 
 Result<std::string> readFile(const std::string& file) {

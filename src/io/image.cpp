@@ -7,6 +7,8 @@
 
 namespace sightline {
 
+using namespace io;
+
 Status writePng(const Image& image, const std::string& file) {
   if (image.width == 0 || image.height == 0 ||
       image.rgba.size() != std::size_t{4} * image.width * image.height) {

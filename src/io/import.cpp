@@ -11,6 +11,8 @@
 
 namespace sightline {
 
+using namespace io;
+
 Result<Scene> importScene(const std::string& file) {
   const std::filesystem::path path(file);
   std::string extension = path.extension().string();

@@ -6,7 +6,7 @@
 
 #include "src/io/failure.h"
 
-namespace sightline {
+namespace sightline::io {
 namespace {
 
 struct Header {
@@ -80,4 +80,4 @@ Status checkPlyIsWhole(std::string_view bytes, const std::string& name) {
   return Success{};
 }
 
-}  // namespace sightline
+}  // namespace sightline::io

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace sightline {
+namespace sightline::io {
 namespace {
 
 struct Bounds {
@@ -92,4 +92,4 @@ Scene SceneBuilder::finish() {
   return std::exchange(scene_, Scene{});
 }
 
-}  // namespace sightline
+}  // namespace sightline::io

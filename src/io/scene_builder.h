@@ -10,7 +10,7 @@
 #include "sightline/base/result.h"
 #include "sightline/scene/scene.h"
 
-namespace sightline {
+namespace sightline::io {
 
 // What one file may grow to, so that a small hostile file cannot ask for all memory.
 struct ImportLimits {
@@ -60,4 +60,4 @@ class SceneBuilder {
   std::vector<Vec3d> positions_world_;
 };
 
-}  // namespace sightline
+}  // namespace sightline::io

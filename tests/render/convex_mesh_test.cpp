@@ -10,7 +10,7 @@
 #include "sightline/layers/hull.h"
 #include "tests/render/test_scene.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 struct Mesh {
@@ -199,4 +199,4 @@ TEST(CoversOnce, RaysAgreeOnAFewTrianglesAnyhow) {
 }
 
 }  // namespace
-}  // namespace sightline
+}  // namespace sightline::render

@@ -7,7 +7,7 @@
 
 #include "tests/support/random_numbers.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 constexpr std::uint32_t kWidth = 200, kHeight = 100;
@@ -124,4 +124,4 @@ TEST(LayerRendererRect, IsThePictureWhereABoxIsAroundTheEyeOrNotFinite) {
 }
 
 }  // namespace
-}  // namespace sightline
+}  // namespace sightline::render

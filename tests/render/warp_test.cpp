@@ -9,7 +9,7 @@
 
 #include "src/render/reuse/warp_image.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -360,4 +360,4 @@ TEST(WarpImage, NothingIsWarpedToNothing) {
 }
 
 }  // namespace
-}  // namespace sightline
+}  // namespace sightline::render

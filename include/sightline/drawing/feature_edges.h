@@ -28,6 +28,10 @@
 
 namespace sightline {
 
+namespace drawing {
+class EdgeBuilder;
+}
+
 enum class LineKind : std::uint8_t {
   kCrease,      // between faces whose normals differ by at least crease_deg; a drawn one is enough
   kSilhouette,  // all that is there lies on one side of the line in the picture, a face edge on on neither:
@@ -61,7 +65,7 @@ class FeatureEdges {
               std::vector<FeatureLine>& lines) const;
 
  private:
-  friend class EdgeBuilder;
+  friend class drawing::EdgeBuilder;
 
   // One side of a triangle.
   struct FaceSide {

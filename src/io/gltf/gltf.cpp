@@ -137,22 +137,23 @@ Result<Scene> convert(const Document& document) {
 }
 
 }  // namespace
-}  // namespace io
 
 Result<Scene> importGltf(std::string_view bytes, const std::string& base_dir,
                          const std::string& name_in_errors, const ImportLimits& limits) {
   // The libraries below may throw (above all when memory runs out); nothing leaves here.
   try {
-    const Result<io::Document> document = io::load(bytes, base_dir, name_in_errors, limits);
-    return document ? io::convert(*document) : Result<Scene>(document.error());
+    const Result<Document> document = load(bytes, base_dir, name_in_errors, limits);
+    return document ? convert(*document) : Result<Scene>(document.error());
   } catch (const std::exception& exception) {
     return failure("{}: could not be read: {}", name_in_errors, exception.what());
   }
 }
 
+}  // namespace io
+
 Result<Scene> importGltf(std::string_view bytes, const std::string& base_dir,
                          const std::string& name_in_errors) {
-  return importGltf(bytes, base_dir, name_in_errors, ImportLimits{});
+  return io::importGltf(bytes, base_dir, name_in_errors, ImportLimits{});
 }
 
 }  // namespace sightline

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 // libepoxy ends the process when it finds no OpenGL library at all, so look first.
@@ -233,4 +233,4 @@ void destroy(Framebuffer& framebuffer) {
   framebuffer = {};
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -10,7 +10,7 @@
 
 #include "sightline/base/result.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Owns the context. All objects made in it go with it.
 class GlContext {
@@ -60,4 +60,4 @@ struct Framebuffer {
 Result<Framebuffer> makeFramebuffer(std::uint32_t width, std::uint32_t height);
 void destroy(Framebuffer& framebuffer);
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace sightline {
+namespace sightline::render {
 
 Image readPixels(const Framebuffer& framebuffer) {
   Image image{.width = framebuffer.width, .height = framebuffer.height, .rgba = {}};
@@ -36,4 +36,4 @@ Image halved(const Image& image) {
   return half;
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

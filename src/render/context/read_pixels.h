@@ -3,7 +3,7 @@
 #include "sightline/io/image.h"
 #include "src/render/context/gl_context.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // The colours of a frame buffer, rows from the top. Precondition: its context is current.
 Image readPixels(const Framebuffer& framebuffer);
@@ -11,4 +11,4 @@ Image readPixels(const Framebuffer& framebuffer);
 // Half the width and height (both even), each pixel the mean of four.
 Image halved(const Image& image);
 
-}  // namespace sightline
+}  // namespace sightline::render

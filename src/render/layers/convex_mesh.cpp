@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 constexpr std::size_t kMaxTriangles = 8192;
@@ -125,4 +125,4 @@ bool coversOnce(std::span<const Vec3f> positions, std::span<const std::uint32_t>
   return true;
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

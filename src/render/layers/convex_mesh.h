@@ -7,7 +7,7 @@
 
 #include "sightline/math/vec3.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Whether every ray from outside meets at most one triangle that is drawn: of single-sided meshes those whose
 // front it meets. So it is of pieces of convex surfaces, fronts outwards, and of flat meshes; where no two
@@ -18,4 +18,4 @@ namespace sightline {
 // nothing. indices: three a triangle, into positions. Time: triangles squared.
 bool coversOnce(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices, bool double_sided);
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -4,7 +4,7 @@
 
 #include "src/render/scene/scene_programs.h"
 
-namespace sightline {
+namespace sightline::render {
 
 Result<DepthPeeler> DepthPeeler::create(const LayerTarget& target) {
   DepthPeeler peeler;
@@ -69,4 +69,4 @@ std::uint32_t DepthPeeler::peel(const LayerTarget& target, std::uint64_t most,
   return peels;
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -15,7 +15,7 @@
 #include "sightline/base/result.h"
 #include "src/render/layers/layer_renderer_target.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Precondition of all functions: the context that it was created in is current.
 class DepthPeeler {
@@ -36,4 +36,4 @@ class DepthPeeler {
   GLuint depths_[2] = {0, 0}, framebuffers_[2] = {0, 0}, query_ = 0;
 };
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -11,6 +11,9 @@
 #include "src/render/layers/convex_mesh.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 // How a layer comes into the picture.

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 namespace sightline {
+
 namespace {
 
 // 0 to 255; what is not a number counts as nothing.

@@ -16,6 +16,9 @@
 #include "src/render/scene/shaders.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 constexpr std::array<float, 4> kTransparent{0.0f, 0.0f, 0.0f, 0.0f};
@@ -28,12 +31,12 @@ struct LayerPrograms {
 Result<LayerPrograms> makeLayerPrograms(const char* vertex, std::uint32_t samples) {
   LayerPrograms p;
   const std::array<std::pair<SceneProgram*, const char*>, 6> all{
-      {{&p.opaque, shaders::kLayerOpaqueFragment},
-       {&p.alpha_tested, shaders::kLayerAlphaTestedFragment},
-       {&p.blended, shaders::kLayerBlendedFragment},
-       {&p.peel_depth, shaders::kPeelDepthFragment},
-       {&p.peel_color, shaders::kPeelColorFragment},
-       {&p.depth, shaders::kNoColorFragment}}};
+      {{&p.opaque, kLayerOpaqueFragment},
+       {&p.alpha_tested, kLayerAlphaTestedFragment},
+       {&p.blended, kLayerBlendedFragment},
+       {&p.peel_depth, kPeelDepthFragment},
+       {&p.peel_color, kPeelColorFragment},
+       {&p.depth, kNoColorFragment}}};
   for (const auto& [program, fragment] : all) {
     const Result<SceneProgram> made = makeSceneProgram("layer", fragment, nullptr, vertex);
     if (!made) {
@@ -92,9 +95,9 @@ Status LayerRenderer::Impl::prepare(const SceneView& scene, const LayerRendererO
   if (!new_target) {
     return new_target.error();
   }
-  Result<LayerPrograms> stored_programs = makeLayerPrograms(shaders::kSceneVertex, new_options.samples);
-  Result<LayerPrograms> moved_programs = makeLayerPrograms(shaders::kMovedSceneVertex, new_options.samples);
-  Result<SkyProgram> new_sky = makeSkyProgram(shaders::kLinearSkyFragment);
+  Result<LayerPrograms> stored_programs = makeLayerPrograms(kSceneVertex, new_options.samples);
+  Result<LayerPrograms> moved_programs = makeLayerPrograms(kMovedSceneVertex, new_options.samples);
+  Result<SkyProgram> new_sky = makeSkyProgram(kLinearSkyFragment);
   Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene, new_options.tints);
   Result<ObjectPlaces> new_places = ObjectPlaces::create(static_cast<std::uint32_t>(scene.objects.size()));
   for (const Error* error :

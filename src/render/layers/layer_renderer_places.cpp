@@ -9,7 +9,7 @@
 
 #include "src/render/scene/scene_programs.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 constexpr std::size_t kFloats = 20;  // of an object: five texels of four
@@ -105,4 +105,4 @@ void ObjectPlaces::bind(const Vec3d& eye) {
   glActiveTexture(GL_TEXTURE0);
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -11,7 +11,7 @@
 #include "sightline/base/result.h"
 #include "sightline/math/mat4.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Precondition of create() and bind(): the context is current.
 class ObjectPlaces {
@@ -46,4 +46,4 @@ class ObjectPlaces {
   GLuint buffer_ = 0, texture_ = 0;
 };
 
-}  // namespace sightline
+}  // namespace sightline::render

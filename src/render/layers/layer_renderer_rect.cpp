@@ -8,7 +8,7 @@
 
 #include "src/render/scene/scene_programs.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 // A pixel more on each side than the exact borders, for the rounding of what is drawn.
@@ -96,4 +96,4 @@ void RectCollector::grow(const Extent& extent) {
            std::max(rect_.right, more.right), std::max(rect_.top, more.top)};
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

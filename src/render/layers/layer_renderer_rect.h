@@ -9,7 +9,7 @@
 #include "sightline/render/layer_renderer.h"
 #include "sightline/scene/camera.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Pixels, rows from the bottom as OpenGL's.
 struct PixelRect {
@@ -42,4 +42,4 @@ class RectCollector {
   PixelRect rect_;
 };
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -10,7 +10,7 @@
 #include "src/render/context/gl_context.h"
 #include "src/render/scene/shaders.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 GLuint makeTargetOf(GLuint color, GLuint depth, GLenum depth_attachment) {
@@ -114,8 +114,8 @@ Result<LayerTarget> LayerTarget::create(std::uint32_t width, std::uint32_t heigh
 
 Status LayerTarget::makeResolved() {
   const std::string fragment =
-      fmt::format("#version 430 core\nconst int samples = {};\n{}", samples_, shaders::kResolveFragment);
-  const Result<GLuint> program = makeProgram("samples", shaders::kResolveVertex, fragment.c_str());
+      fmt::format("#version 430 core\nconst int samples = {};\n{}", samples_, kResolveFragment);
+  const Result<GLuint> program = makeProgram("samples", kResolveVertex, fragment.c_str());
   if (!program) {
     return program.error();
   }
@@ -184,4 +184,4 @@ void LayerTarget::read(const View& view, bool depths, LayerImage& image) {
   place(read_depths_, rect_, width_, height_, LayerImage::kNoDepth, image.depths);
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

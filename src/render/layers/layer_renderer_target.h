@@ -12,7 +12,7 @@
 #include "sightline/scene/camera.h"
 #include "src/render/layers/layer_renderer_rect.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // RGBA32F or R32F or 32-bit float depth, without filtering; unit 0 is left bound to it.
 GLuint makeTexture(GLenum format, std::uint32_t width, std::uint32_t height);
@@ -50,4 +50,4 @@ class LayerTarget {
   GLuint resolved_ = 0, program_ = 0, vertex_array_ = 0;  // with several samples: of pixels
 };
 
-}  // namespace sightline
+}  // namespace sightline::render

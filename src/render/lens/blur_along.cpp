@@ -9,6 +9,9 @@
 #include "src/render/lens/blur_area.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 struct Tap {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace sightline {
+namespace sightline::render {
 
 double largestBlur(const LayerImage& image) {
   return static_cast<double>(image.width) + image.height;
@@ -57,4 +57,4 @@ ShapedPixel pixelAt(const LayerImage& image, int x, int y) {
   return isFinite(pixel) ? pixel : ShapedPixel{};
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -4,7 +4,7 @@
 
 #include "sightline/render/layer_image.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Pixels from (x0, y0) to before (x1, y1); signed, since it may reach beyond a picture.
 struct PixelArea {
@@ -33,4 +33,4 @@ PixelArea grownBeyondBorders(const PixelArea& area, int reach, const LayerImage&
 // The pixel at (x, y) or, beyond the borders, the outermost one next to it; transparent where not finite.
 ShapedPixel pixelAt(const LayerImage& image, int x, int y);
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -13,6 +13,9 @@
 #include "src/render/lens/blur_disc.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 // Less opacity than this arrives nowhere but by the rounding of differences.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 // Integral of sqrt(r^2 - t^2) for t from 0 to y; of all that is beyond the disc, 0.
@@ -29,4 +29,4 @@ void setDiameter(BlurDisc& disc, double diameter) {
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace sightline {
+namespace sightline::render {
 
 struct BlurDisc {
   // Half the chord of row dy and of row -dy, pixels, averaged over the row's height; >= 0. The middle row
@@ -18,4 +18,4 @@ struct BlurDisc {
 // Keeps the memory. Precondition: diameter > 0 and finite.
 void setDiameter(BlurDisc& disc, double diameter);
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -11,6 +11,9 @@
 #include "src/render/lens/blur_disc.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 constexpr std::size_t kChannels = 4;

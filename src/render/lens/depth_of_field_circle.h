@@ -6,9 +6,9 @@
 
 #include "sightline/render/depth_of_field.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // As circleOfConfusion, but negative before the plane of focus.
 double signedCircle(const View& view, const Lens& lens, double depth, std::uint32_t height);
 
-}  // namespace sightline
+}  // namespace sightline::render

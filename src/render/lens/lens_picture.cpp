@@ -10,6 +10,9 @@
 #include "src/render/lens/lens_picture_seen.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 // One of the images whose mean is a picture.

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 Mat4 placeOf(std::span<const Mat4> transforms, std::size_t object) {
@@ -93,4 +93,4 @@ PixelStep skyStep(const View& view, const FrameMotion& motion, const LayerImage&
                : PixelStep{};
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -10,7 +10,7 @@
 #include "sightline/render/lens_picture.h"
 #include "src/render/lens/lens_picture_seen.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // A step on the screen, pixels: x to the right, y down.
 struct PixelStep {
@@ -28,4 +28,4 @@ PixelStep layerStep(const View& view, const FrameMotion& motion, std::span<const
 // The same of what is at infinity, in the picture's middle. None in orthographic views.
 PixelStep skyStep(const View& view, const FrameMotion& motion, const LayerImage& image);
 
-}  // namespace sightline
+}  // namespace sightline::render

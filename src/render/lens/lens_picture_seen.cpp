@@ -7,7 +7,7 @@
 
 #include "src/render/lens/depth_of_field_circle.h"
 
-namespace sightline {
+namespace sightline::render {
 
 SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
   SeenLayer seen;
@@ -42,4 +42,4 @@ SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
   return seen;
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

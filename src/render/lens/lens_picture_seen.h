@@ -5,7 +5,7 @@
 #include "sightline/render/depth_of_field.h"
 #include "sightline/render/layer_image.h"
 
-namespace sightline {
+namespace sightline::render {
 
 struct SeenLayer {
   bool empty = true;  // then nothing else is known
@@ -18,4 +18,4 @@ struct SeenLayer {
 // image: with depths; pixels without one do not count.
 SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens);
 
-}  // namespace sightline
+}  // namespace sightline::render

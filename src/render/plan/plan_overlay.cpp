@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 struct Point {
@@ -151,4 +151,4 @@ std::vector<OverlayVertex> planOverlay(const PlanView& plan) {
   return builder.take();
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -6,7 +6,7 @@
 
 #include "sightline/render/plan_view.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // A corner of a triangle over a plan view: clip space and straight alpha.
 struct OverlayVertex {
@@ -17,4 +17,4 @@ struct OverlayVertex {
 // The triangles, back to front, of what is drawn over a plan: occluders, the frustum's outline, the eye.
 std::vector<OverlayVertex> planOverlay(const PlanView& plan);
 
-}  // namespace sightline
+}  // namespace sightline::render

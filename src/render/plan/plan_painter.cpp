@@ -9,7 +9,7 @@
 #include "src/render/plan/plan_overlay.h"
 #include "src/render/scene/shaders.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 constexpr double kWallWidthPx = 1.6;
@@ -58,11 +58,9 @@ std::vector<std::array<std::uint8_t, 4>> stateColors(const PlanView& plan, std::
 }  // namespace
 
 Result<PlanPainter> PlanPainter::create() {
-  const Result<SceneProgram> faces = makeSceneProgram("plan", shaders::kPlanFragment);
-  const Result<SceneProgram> walls =
-      makeSceneProgram("plan walls", shaders::kPlanWallFragment, shaders::kPlanWallGeometry);
-  const Result<GLuint> overlay =
-      makeProgram("plan overlay", shaders::kOverlayVertex, shaders::kOverlayFragment);
+  const Result<SceneProgram> faces = makeSceneProgram("plan", kPlanFragment);
+  const Result<SceneProgram> walls = makeSceneProgram("plan walls", kPlanWallFragment, kPlanWallGeometry);
+  const Result<GLuint> overlay = makeProgram("plan overlay", kOverlayVertex, kOverlayFragment);
   if (!faces || !walls || !overlay) {
     return !faces ? faces.error() : !walls ? walls.error() : overlay.error();
   }
@@ -128,4 +126,4 @@ void PlanPainter::drawOverlay(const PlanView& plan) const {
   glDisable(GL_BLEND);
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -5,7 +5,7 @@
 #include "src/render/scene/scene_buffers.h"
 #include "src/render/scene/scene_programs.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Draws plan views. Precondition of all functions: the context is current.
 class PlanPainter {
@@ -24,4 +24,4 @@ class PlanPainter {
   GLuint overlay_program_ = 0, overlay_array_ = 0, overlay_buffer_ = 0;
 };
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -9,6 +9,9 @@
 #include "src/render/reuse/layer_reuse_points.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 bool isFinite(const Mat4& m) {

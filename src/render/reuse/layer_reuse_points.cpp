@@ -5,7 +5,7 @@
 
 #include "src/geometry/clip_convex.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 constexpr std::size_t kSidePlanes = 4;  // of a frustum, before its near and its far plane
@@ -227,4 +227,4 @@ void LayerShapes::addClipped(ObjectId object, const Mat4& scene_from_stored, con
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

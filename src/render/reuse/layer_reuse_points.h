@@ -13,7 +13,7 @@
 #include "sightline/scene/scene.h"
 #include "src/render/reuse/warp_image.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // A view with the picture that it makes; rows from the top.
 class PictureView {
@@ -84,4 +84,4 @@ class LayerShapes {
 // points' box to its corners and to the middles of its edges and sides. Ascending, each once.
 std::vector<std::size_t> extremesOf(std::span<const Vec3d> points);
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 bool isFinite(const Warp& warp) {
@@ -227,4 +227,4 @@ double largestStretch(const Warp& warp, PicturePoint at) {
   return std::isfinite(stretch) ? stretch : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

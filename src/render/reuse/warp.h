@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-namespace sightline {
+namespace sightline::render {
 
 // Of a picture, pixels, rows from the top: pixel (x, y) has its centre at (x + 0.5, y + 0.5).
 struct PicturePoint {
@@ -55,4 +55,4 @@ double largestDeviation(const Warp& warp, std::span<const PicturePoint> from,
 // values and of their reciprocals, so at least 1. Infinite where it is singular.
 double largestStretch(const Warp& warp, PicturePoint at);
 
-}  // namespace sightline
+}  // namespace sightline::render

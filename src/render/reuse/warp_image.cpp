@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 bool isTransparent(const ShapedPixel& p) {
@@ -133,4 +133,4 @@ void drawWarped(const Sprite& sprite, const Warp& picture_from_target, LayerImag
   }
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

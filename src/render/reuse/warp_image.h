@@ -8,7 +8,7 @@
 #include "sightline/render/layer_image.h"
 #include "src/render/reuse/warp.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Sides of a picture, from the left on clockwise.
 enum PictureSide : std::size_t { kLeftSide, kTopSide, kRightSide, kBottomSide, kPictureSides };
@@ -38,4 +38,4 @@ void cropSprite(const LayerImage& picture, const PictureRect& within, const Side
 // its width and height are given, all else is written.
 void drawWarped(const Sprite& sprite, const Warp& picture_from_target, LayerImage& target);
 
-}  // namespace sightline
+}  // namespace sightline::render

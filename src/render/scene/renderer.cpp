@@ -12,6 +12,9 @@
 #include "src/render/scene/shaders.h"
 
 namespace sightline {
+
+using namespace render;
+
 namespace {
 
 constexpr std::array<float, 4> kBlack{0.0f, 0.0f, 0.0f, 1.0f};
@@ -40,9 +43,9 @@ Status Renderer::Impl::prepare(const SceneView& scene, std::uint32_t width, std:
   if (!framebuffer) {
     return framebuffer.error();
   }
-  Result<SceneProgram> solid_program = makeSceneProgram("solid", shaders::kSceneFragment);
-  Result<SceneProgram> alpha_program = makeSceneProgram("alpha-tested", shaders::kAlphaTestedFragment);
-  Result<SkyProgram> new_sky = makeSkyProgram(shaders::kSkyFragment);
+  Result<SceneProgram> solid_program = makeSceneProgram("solid", kSceneFragment);
+  Result<SceneProgram> alpha_program = makeSceneProgram("alpha-tested", kAlphaTestedFragment);
+  Result<SkyProgram> new_sky = makeSkyProgram(kSkyFragment);
   Result<PlanPainter> painter = PlanPainter::create();
   Result<SceneBuffers> scene_buffers = SceneBuffers::create(scene);
   for (const Error* error :

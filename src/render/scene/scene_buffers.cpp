@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 struct Vertex {
@@ -282,4 +282,4 @@ void SceneBuffers::bindStateColors(std::span<const std::array<std::uint8_t, 4>> 
   glBindTexture(GL_TEXTURE_BUFFER, state_texture_);
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

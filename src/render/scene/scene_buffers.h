@@ -16,7 +16,7 @@
 #include "sightline/base/result.h"
 #include "sightline/scene/scene.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // In the order of drawing. Blended triangles of both kinds of sidedness lie together: their order matters.
 enum class Pass : std::uint8_t {
@@ -90,4 +90,4 @@ class SceneBuffers {
   GLuint vertex_array_ = 0, color_buffer_ = 0, color_texture_ = 0, state_buffer_ = 0, state_texture_ = 0;
 };
 
-}  // namespace sightline
+}  // namespace sightline::render

@@ -7,7 +7,7 @@
 #include "src/render/context/gl_context.h"
 #include "src/render/scene/shaders.h"
 
-namespace sightline {
+namespace sightline::render {
 namespace {
 
 // What a lens point d to the side sees, sheared by d * z / focus: x' = x - d at depth z is drawn where
@@ -65,7 +65,7 @@ Mat4 reversedClipFromRelative(const View& view, const LensPoint& lens) {
 
 Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, const char* geometry,
                                       const char* vertex) {
-  const Result<GLuint> id = makeProgram(name, vertex ? vertex : shaders::kSceneVertex, fragment, geometry);
+  const Result<GLuint> id = makeProgram(name, vertex ? vertex : kSceneVertex, fragment, geometry);
   if (!id) {
     return id.error();
   }
@@ -103,7 +103,7 @@ float hazeFor(const Box& bounds) {
 }
 
 Result<SkyProgram> makeSkyProgram(const char* fragment) {
-  const Result<GLuint> program = makeProgram("sky", shaders::kSkyVertex, fragment);
+  const Result<GLuint> program = makeProgram("sky", kSkyVertex, fragment);
   if (!program) {
     return program.error();
   }
@@ -146,4 +146,4 @@ void beginPicture(GLuint framebuffer, std::uint32_t width, std::uint32_t height,
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-}  // namespace sightline
+}  // namespace sightline::render

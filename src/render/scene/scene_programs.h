@@ -12,7 +12,7 @@
 #include "sightline/render/layer_renderer.h"
 #include "sightline/scene/camera.h"
 
-namespace sightline {
+namespace sightline::render {
 
 // Texture units of what the programs read.
 inline constexpr GLint kColorsUnit = 0, kPlacesUnit = 1, kBehindUnit = 2;
@@ -52,4 +52,4 @@ void drawSkyBehind(const SkyProgram& sky, const View& view);
 void beginPicture(GLuint framebuffer, std::uint32_t width, std::uint32_t height,
                   const std::array<float, 4>& background);
 
-}  // namespace sightline
+}  // namespace sightline::render

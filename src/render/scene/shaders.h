@@ -6,7 +6,7 @@
 // that what is near the eye keeps the stored precision wherever the scene lies. Depth runs from 1 at the near
 // plane to 0 at the far one, which spends a float's precision evenly over distance.
 
-namespace sightline::shaders {
+namespace sightline::render {
 
 // One vertex a corner of an object. Colours come from a buffer, one an object, as square roots (which spends
 // eight bits better); the plan view puts states in their place.
@@ -249,4 +249,4 @@ out vec4 result;
 void main() { result = color; }
 )";
 
-}  // namespace sightline::shaders
+}  // namespace sightline::render
