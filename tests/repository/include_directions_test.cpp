@@ -202,5 +202,19 @@ TEST(IncludeDirections, TheOracleKnowsOnlyTheScene) {
   }
 }
 
+// What exists only to reproduce a paper's experiments lies apart: the rest of the tool does without it.
+TEST(IncludeDirections, NothingButItsTestsIncludesWhatReproducesPapers) {
+  for (const std::string& file : projectFiles()) {
+    const std::string extension = std::filesystem::path(file).extension();
+    if ((extension != ".h" && extension != ".cpp") || startsWith(file, "tools/sightline/reproduce/") ||
+        startsWith(file, "tests/tool/")) {
+      continue;
+    }
+    for (const Include& include : includesOf(file)) {
+      EXPECT_FALSE(startsWith(include.target, "tools/sightline/reproduce/")) << where(include);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sightline::repository

@@ -27,11 +27,7 @@ void addReproduce(CLI::App& app, Command& chosen);
 void addBake(CLI::App& app, Command& chosen);
 void addQuery(CLI::App& app, Command& chosen);
 void addLayers(CLI::App& app, Command& chosen);
-// help, version, completion and manual, which tell what the others declare; so these are added last.
+// help, version, completion and manual. They tell what the other commands declare, so they are added last.
 void addFrontDoor(CLI::App& app, Command& chosen);
-
-// Those that this program has: all (all_commands.cpp), or walk alone (walk_command.cpp), which is built in a
-// few minutes.
-void addCommands(CLI::App& app, Command& chosen);
 
 }  // namespace sightline::tool

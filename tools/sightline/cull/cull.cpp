@@ -130,14 +130,7 @@ Result<ExitCode> runCull(const CullOptions& options) {
   if (!setting) {
     return setting.error();
   }
-  const std::string& baked = options.method.baked;
-  if (const Status ok = checkFiles({.scenes = {options.common.scene},
-                                    .inputs = walkInputs(options.common.scene, options.path, baked),
-                                    .outputs = {{"--json", options.common.json}}});
-      !ok) {
-    return ok.error();
-  }
-  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, baked);
+  const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method.baked);
   if (!input) {
     return input.error();
   }

@@ -16,7 +16,7 @@
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/info_sight.h"
-#include "tools/sightline/input/path_file.h"
+#include "tools/sightline/input/camera_path_file.h"
 
 namespace sightline::tool {
 namespace {
@@ -56,7 +56,7 @@ Result<std::vector<Vec3d>> pointsOfFile(const std::string& name) {
   const Json json = Json::parse(*text, nullptr, false);
   std::vector<Vec3d> points;
   if (json.is_object() && json.contains("frames")) {
-    const Result<CameraPath> path = parsePathFile(*text, name);
+    const Result<CameraPath> path = parseCameraPathFile(*text, name);
     if (!path) {
       return path.error();
     }

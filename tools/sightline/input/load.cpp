@@ -12,15 +12,15 @@
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/input/camera_path_file.h"
 #include "tools/sightline/input/cell_path.h"
-#include "tools/sightline/input/path_file.h"
 
 namespace sightline::tool {
 namespace {
 
-constexpr const char* kPathBesideScene = "walk.path.json";
+constexpr const char* kCameraPathBesideScene = "walk.path.json";
 
-std::string pathNames(const Scene& scene) {
+std::string cameraPathNames(const Scene& scene) {
   std::string names;
   for (const CameraPath& path : scene.paths) {
     names += (names.empty() ? "" : ", ") + path.name;
@@ -28,7 +28,7 @@ std::string pathNames(const Scene& scene) {
   return names;
 }
 
-Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
+Result<CameraPath> namedCameraPath(const std::string& name, const Scene& scene) {
   for (const CameraPath& path : scene.paths) {
     if (path.name == name) {
       return path;
@@ -36,9 +36,9 @@ Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
   }
   std::error_code ignored;
   if (std::filesystem::exists(name, ignored)) {
-    return readPathFile(name);
+    return readCameraPathFile(name);
   }
-  const std::string walks = pathNames(scene);
+  const std::string walks = cameraPathNames(scene);
   return Error{fmt::format(
       "--path {}: there is no such file, and {}{}", name,
       walks.empty() ? "the scene has no walks" : "the scene's walks are: " + walks,
@@ -46,15 +46,16 @@ Result<CameraPath> namedPath(const std::string& name, const Scene& scene) {
 }
 
 // The path's file beside the scene's file; empty where there is none.
-std::string pathBeside(const std::string& scene_name) {
-  const std::filesystem::path beside = std::filesystem::path(scene_name).parent_path() / kPathBesideScene;
+std::string cameraPathBeside(const std::string& scene_name) {
+  const std::filesystem::path beside =
+      std::filesystem::path(scene_name).parent_path() / kCameraPathBesideScene;
   std::error_code ignored;
   return !isDemoUrl(scene_name) && std::filesystem::is_regular_file(beside, ignored) ? beside.string() : "";
 }
 
-Result<CameraPath> defaultPath(const std::string& scene_name, const Scene& scene) {
-  if (const std::string beside = pathBeside(scene_name); !beside.empty()) {
-    Result<CameraPath> path = readPathFile(beside);
+Result<CameraPath> defaultCameraPath(const std::string& scene_name, const Scene& scene) {
+  if (const std::string beside = cameraPathBeside(scene_name); !beside.empty()) {
+    Result<CameraPath> path = readCameraPathFile(beside);
     if (path) {
       fmt::print(stderr, "sightline: using the camera path {}\n", beside);
     }
@@ -65,7 +66,7 @@ Result<CameraPath> defaultPath(const std::string& scene_name, const Scene& scene
   }
   return Error{fmt::format(
       "{}: has no camera; give a path with --path FILE.json, put a {} beside it, or add a camera to it",
-      scene_name, kPathBesideScene)};
+      scene_name, kCameraPathBesideScene)};
 }
 
 }  // namespace
@@ -100,8 +101,8 @@ Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name,
   const bool cells = baked && options.path == kCellsPath;
   CellPath at_cells = cells ? cellPath(*baked, scene) : CellPath{};
   Result<CameraPath> path = cells                  ? Result<CameraPath>(std::move(at_cells.path))
-                            : options.path.empty() ? defaultPath(scene_name, scene)
-                                                   : namedPath(options.path, scene);
+                            : options.path.empty() ? defaultCameraPath(scene_name, scene)
+                                                   : namedCameraPath(options.path, scene);
   if (!path) {
     return path.error();
   }
@@ -117,7 +118,7 @@ Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name,
 
 std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptions& path,
                                   const std::string& baked) {
-  return {{"--path", path.path.empty() ? pathBeside(scene_name) : path.path}, {"--baked", baked}};
+  return {{"--path", path.path.empty() ? cameraPathBeside(scene_name) : path.path}, {"--baked", baked}};
 }
 
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
@@ -135,6 +136,17 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
     return walk.error();
   }
   return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file)};
+}
+
+Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
+                                  const std::string& baked) {
+  if (const Status ok = checkFiles({.scenes = {common.scene},
+                                    .inputs = walkInputs(common.scene, path, baked),
+                                    .outputs = {{"--json", common.json}}});
+      !ok) {
+    return ok.error();
+  }
+  return loadSceneAndWalk(common.scene, path, baked);
 }
 
 CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk,

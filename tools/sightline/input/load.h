@@ -54,6 +54,10 @@ struct SceneAndWalk {
 // baked: a .sight file, or empty.
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
                                       const std::string& baked = "");
+// loadSceneAndWalk for a command that writes no file but --json: checks first that this is none of the
+// inputs.
+Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
+                                  const std::string& baked);
 
 // What cullers of one scene share.
 class CullingData {

@@ -12,7 +12,7 @@
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/observer_speeds.h"
-#include "tools/sightline/reproduce/reproduction.h"
+#include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/walk/walk_report.h"
 #include "tools/sightline/walk/walk_runs.h"
 

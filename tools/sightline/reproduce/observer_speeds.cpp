@@ -4,7 +4,7 @@
 
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/cull/cull_run.h"
-#include "tools/sightline/input/path_line.h"
+#include "tools/sightline/reproduce/camera_path_line.h"
 
 namespace sightline::tool {
 namespace {
@@ -60,7 +60,7 @@ struct Stretch {
   std::uint32_t steps = 0;  // at walking speed
 };
 
-void walkStretch(Walkers& walkers, const PathLine& line, const Vec3d& origin, const Stretch& stretch,
+void walkStretch(Walkers& walkers, const CameraPathLine& line, const Vec3d& origin, const Stretch& stretch,
                  SpeedResult& sum) {
   walkers.reset();
   for (std::uint32_t step = 0; step <= stretch.steps; step += sum.speed) {
@@ -83,7 +83,7 @@ SpeedResult meanOf(SpeedResult sum) {
 
 std::vector<SpeedResult> measureSpeeds(const SceneAndWalk& input, CullingData& data, const Setting& setting,
                                        std::uint32_t stretch_frames) {
-  const PathLine line(input.walk.path);
+  const CameraPathLine line(input.walk.path);
   const double apart = line.length() / kStretches;  // from one stretch's beginning to the next one's
   const auto room = static_cast<std::uint32_t>(std::min(apart / kWalkingStep, 1e9));
   const std::uint32_t steps = std::min(stretch_frames, room);

@@ -16,7 +16,7 @@
 #include "tools/sightline/command_line/output_files.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/commands.h"
-#include "tools/sightline/reproduce/reproduction.h"
+#include "tools/sightline/reproduce/papers.h"
 
 namespace sightline::tool {
 namespace {
@@ -44,9 +44,8 @@ const std::vector<std::pair<std::string, Paper>>& papers() {
         {"demo:city"},
         reproducePoonWang}},
       {"saona-vazquez",
-       {"Saona-Vazquez, Navazo, Brunet. The Visibility Octree: A Data Structure for 3D Navigation. Computers "
-        "& "
-        "Graphics 1999.",
+       {"Saona-Vazquez, Navazo, Brunet. The Visibility Octree: A Data Structure for 3D Navigation. "
+        "Computers & Graphics 1999.",
         {"demo:ship"},
         reproduceSaonaVazquez,
         true,
@@ -247,8 +246,8 @@ void addReproduce(CLI::App& app, Command& chosen) {
   command->add_flag(
       "--short", options->fewer_frames,
       "few frames, unless --frames says which; experiments on stretches of the path have their own; of "
-      "snyder-lengyel small pictures too, unless --height is given; of "
-      "saona-vazquez a small ship and depth 4 as well, unless --scene and --depth say others");
+      "snyder-lengyel small pictures too, unless --height is given; of saona-vazquez a small ship and depth "
+      "4 as well, unless --scene and --depth say others");
   command->add_option("--depth", options->depth, "saona-vazquez: of the octree (default: 6)")
       ->check(CLI::Range(1u, kMaxOctreeDepth));
   command
@@ -261,8 +260,7 @@ void addReproduce(CLI::App& app, Command& chosen) {
       ->type_name(kFolderType);
   command->footer(
       "poon-wang has routes of its own where the scene has walks best, average and worst, saona-vazquez "
-      "where "
-      "it has walk and random; --path takes the place of them.\n"
+      "where it has walk and random; --path takes the place of them.\n"
       "Examples:\n"
       "  sightline reproduce coorg-teller\n"
       "  sightline reproduce poon-wang -o report\n"

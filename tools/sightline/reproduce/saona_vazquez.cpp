@@ -19,6 +19,7 @@
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/walk/walk_runs.h"
 
 namespace sightline::tool {

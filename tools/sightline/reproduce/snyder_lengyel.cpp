@@ -12,6 +12,7 @@
 
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/reproduce/layer_figures.h"
+#include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/reproduce/saved_rendering.h"
 
 namespace sightline::tool {

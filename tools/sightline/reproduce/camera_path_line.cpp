@@ -1,4 +1,4 @@
-#include "tools/sightline/input/path_line.h"
+#include "tools/sightline/reproduce/camera_path_line.h"
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ Vec3d directionBetween(const Vec3d& a, const Vec3d& b, double t) {
 
 }  // namespace
 
-PathLine::PathLine(const CameraPath& path) : path_(path), camera_(path), distances_{0.0} {
+CameraPathLine::CameraPathLine(const CameraPath& path) : path_(path), camera_(path), distances_{0.0} {
   camera_.frames.clear();
   for (std::size_t f = 1; f < path.frames.size(); ++f) {
     const double step = sightline::length(path.frames[f].eye - path.frames[f - 1].eye);
@@ -26,7 +26,7 @@ PathLine::PathLine(const CameraPath& path) : path_(path), camera_(path), distanc
   }
 }
 
-CameraFrame PathLine::at(double distance) const {
+CameraFrame CameraPathLine::at(double distance) const {
   const auto after = std::upper_bound(distances_.begin(), distances_.end(), distance);
   if (after == distances_.end()) {
     return path_.frames.back();
@@ -39,7 +39,7 @@ CameraFrame PathLine::at(double distance) const {
           directionBetween(a.up, b.up, t)};
 }
 
-View PathLine::view(double distance, const Vec3d& scene_origin) const {
+View CameraPathLine::view(double distance, const Vec3d& scene_origin) const {
   CameraPath one = camera_;
   one.frames = {at(distance)};
   return one.view(0, scene_origin);

@@ -1,4 +1,4 @@
-#include "tools/sightline/input/path_file.h"
+#include "tools/sightline/input/camera_path_file.h"
 
 #include <fmt/format.h>
 
@@ -29,12 +29,12 @@ std::string describe(const UnknownKey& unknown) {
 
 }  // namespace
 
-Result<CameraPath> readPathFile(const std::string& file) {
+Result<CameraPath> readCameraPathFile(const std::string& file) {
   const Result<std::string> text = readFile(file);
-  return text ? parsePathFile(*text, file) : Result<CameraPath>(text.error());
+  return text ? parseCameraPathFile(*text, file) : Result<CameraPath>(text.error());
 }
 
-Result<CameraPath> parsePathFile(std::string_view text, const std::string& file) {
+Result<CameraPath> parseCameraPathFile(std::string_view text, const std::string& file) {
   std::vector<UnknownKey> unknown_keys;
   Result<CameraPath> path = parseCameraPath(text, file, &unknown_keys);
   if (!path) {

@@ -8,9 +8,9 @@
 
 namespace sightline::tool {
 
-class PathLine {
+class CameraPathLine {
  public:
-  explicit PathLine(const CameraPath& path);
+  explicit CameraPathLine(const CameraPath& path);
 
   double length() const { return distances_.back(); }  // metres
   // The camera that far along the line; position and look between two frames are interpolated.
