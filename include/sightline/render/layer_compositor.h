@@ -1,6 +1,6 @@
 #pragma once
 
-// From a sorted frame to its picture: each layer drawn alone, then composited by the compiled program.
+// Draws a sorted frame: each layer alone, then all of them composited by the compiled program.
 
 #include <cstdint>
 #include <functional>
@@ -14,61 +14,62 @@
 
 namespace sightline {
 
-// An image put in place of a layer (an external stream on a proxy).
+// An image that takes the place of a layer, such as a video on a proxy.
 struct LayerReplacement {
   LayerId layer{};
-  const LayerImage* image = nullptr;  // of the renderer's size
+  const LayerImage* image = nullptr;  // must have the renderer's size
 };
 
 struct CompositeSettings {
   // Which layers are peeled (LayerDraw::peel).
   enum class Peel : std::uint8_t {
     kNever,
-    // Layers whose own order is not known: of several parts of which some are blended, or of one blended part
-    // whose surface may lie over itself (pieces of convex surfaces, fronts outwards, and flat ones do not). A
-    // group of several layers of which some are blended is drawn as one layer: where a circle covers a pixel,
-    // expressions are wrong. If a layer of it is replaced, they are used nevertheless: a foreign image cannot
-    // be peeled.
+    // Peels a layer of several parts of which some are blended, and a layer of one blended part whose surface
+    // may overlap itself (pieces of convex surfaces with their fronts outwards and flat ones do not). A group
+    // of several layers of which some are blended is drawn as one layer, because compositing expressions are
+    // wrong where a whole cycle covers a pixel. If one of its layers is replaced, expressions are used
+    // nevertheless: an image cannot be peeled.
     kWhereNeeded,
   };
   Peel peel = Peel::kWhereNeeded;
   CompositingForm form = CompositingForm::kCheapest;
-  bool sky = true;                  // behind everything
-  std::vector<LayerId> left_out{};  // others than the frame's do not matter; before `replaced`
+  bool sky = true;                  // draw the sky behind everything
+  std::vector<LayerId> left_out{};  // not drawn, even if replaced; ids that the frame lacks are ignored
   std::vector<LayerReplacement> replaced{};
-  // Draws a layer's image, of the renderer's size, in place of LayerRenderer::draw (depth of field, motion
-  // blur, reuse). Empty: draw().
+  // Called in place of LayerRenderer::draw for each layer's image (for depth of field, motion blur or reuse),
+  // which must have the renderer's size. Empty: LayerRenderer::draw.
   std::function<void(std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image)> draw_layer;
 };
 
 struct CompositeStats {
-  std::uint32_t layers = 0;            // drawn; a group that is peeled as one layer counts once
-  std::uint32_t peeled = 0;            // of them
-  std::uint32_t unordered_groups = 0;  // see LayerCompositor::unorderedGroups
-  std::uint64_t triangles = 0;         // sent to OpenGL; none of what draw_layer draws
+  std::uint32_t layers = 0;            // layers drawn; a group that is peeled as one layer counts once
+  std::uint32_t peeled = 0;            // those of them that were peeled
+  std::uint32_t unordered_groups = 0;  // the number of LayerCompositor::unorderedGroups
+  std::uint64_t triangles = 0;         // sent to OpenGL, except by draw_layer
   CompositingCounts operations{};
 };
 
-// Part i of the order is object i of the renderer's scene. Holds the images of one group at a time. For one
-// thread at a time.
+// Composites frames whose part i is object i of the renderer's scene. Holds the images of one group at a
+// time. For one thread at a time.
 class LayerCompositor {
  public:
-  // scene: what the renderer was made of, for materials and shapes; kept as copies of what is needed. The
-  // renderer must stay where it is, and outlive this. Time: of each blended mesh, its triangles squared.
+  // scene is the one that the renderer was made of; what is needed of its materials and shapes is copied. The
+  // renderer must not be moved and must outlive this. Takes time proportional to the square of each blended
+  // mesh's triangles.
   LayerCompositor(const SceneView& scene, LayerRenderer& renderer);
   ~LayerCompositor();
   LayerCompositor(LayerCompositor&&) noexcept;
   LayerCompositor& operator=(LayerCompositor&&) noexcept;
 
-  // picture: of the renderer's size afterwards, without depths. layers: as LayerMerger gives them
-  // (checkLayers). No allocation of pictures after warm-up.
-  // Errors: a replacement of another size or of a layer that is not there; a part that is no object; an image
-  // of draw_layer of another size.
+  // Draws and composites a frame's layers, as LayerMerger gives them (checkLayers). picture gets the
+  // renderer's size and no depths. Allocates no pictures after warm-up. Errors: a replacement of the wrong
+  // size or of a layer that the frame lacks; a part that is no object; an image of the wrong size from
+  // draw_layer.
   Result<CompositeStats> composite(const View& view, const FrameLayers& layers,
                                    const CompositeSettings& settings, LayerImage& picture);
 
-  // Of the last picture: the frame's groups of which several parts were drawn and some of them were blended,
-  // which no order gets right. Ascending; valid until the next picture.
+  // The groups of the last frame of which several parts were drawn, some of them blended: no order draws them
+  // correctly. Ascending; valid until the next picture.
   std::span<const std::uint32_t> unorderedGroups() const;
 
  private:

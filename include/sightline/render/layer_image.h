@@ -1,6 +1,6 @@
 #pragma once
 
-// Float pictures with opacity and depth: what layers are drawn to and composited from.
+// Float pictures with opacity and depth, to which layers are drawn and from which they are composited.
 
 #include <cstdint>
 #include <limits>
@@ -11,37 +11,38 @@
 
 namespace sightline {
 
-// Linear light, colour times opacity, rows from the top.
+// A picture in linear light, colour multiplied by opacity; rows count from the top.
 struct LayerImage {
   std::uint32_t width = 0, height = 0;
   std::vector<ShapedPixel> pixels{};  // width * height
-  // Metres along the view's forward to the nearest surface of the pixel; kNoDepth where there is none. As
-  // many as pixels, or none where depth was not asked for.
+  // For each pixel the metres along the view's forward to its nearest surface, kNoDepth if there is none.
+  // Empty if depths were not asked for.
   std::vector<float> depths{};
 
   static constexpr float kNoDepth = std::numeric_limits<float>::infinity();
 
   ShapedImage view() const { return {pixels.data(), width, height, width}; }
   ShapedTarget target() { return {pixels.data(), width, height, width}; }
-  // Transparent, of this size, without depths; keeps its memory.
+  // Makes the picture transparent, of this size and without depths. Reuses its memory.
   void clear(std::uint32_t new_width, std::uint32_t new_height);
 };
 
-// front = front over back; its depths are the nearer ones. Where back has no depths (as the sky), front's
-// stay as they are; where front has none, there are none. Precondition: equal sizes.
+// Sets front to front over back, with the nearer one of their depths. If back has no depths (the sky has
+// none), front keeps its own; if front has none, it gets none. Precondition: equal sizes.
 void compositeOver(LayerImage& front, const LayerImage& back);
 
-// Eight bits a channel, not premultiplied, colours as square roots, as Renderer's pictures are. (A PNG's
-// readers take that for sRGB, which is near.) What is no number counts as 0; what is out of range is clamped.
+// Converts to eight bits for each channel, not premultiplied, with colours as square roots, as Renderer's
+// pictures are. (Readers of PNG take that for sRGB, which is close.) NaN becomes 0; values out of range are
+// clamped.
 Image toImage(const LayerImage& image);
 
-// The stated measure of two pictures: of all four channels of what toImage() makes of them (0 to 255).
-// Pictures of different sizes differ everywhere and as much as can be.
+// How much two pictures differ, over all four channels (0 to 255) of what toImage() makes of them. Pictures
+// of different sizes differ everywhere by the maximum.
 struct PictureDifference {
-  double mean = 0.0;  // of all channels' absolute differences
-  double rms = 0.0;   // root of the mean square
+  double mean = 0.0;  // mean of all channels' absolute differences
+  double rms = 0.0;   // root of the mean of their squares
   double largest = 0.0;
-  double share_beyond = 0.0;  // of pixels in which some channel differs by more than `tolerance`
+  double share_beyond = 0.0;  // share of pixels in which some channel differs by more than `tolerance`
 };
 PictureDifference measureDifference(const LayerImage& a, const LayerImage& b, double tolerance = 4.0);
 

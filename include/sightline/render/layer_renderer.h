@@ -1,9 +1,9 @@
 #pragma once
 
-// Draws any of a scene's objects alone, to a picture with opacity, by headless OpenGL.
+// Draws any of a scene's objects alone to a picture with opacity, by headless OpenGL.
 //
-// Shading is Renderer's, in linear light; so the picture of opaque objects over the sky is Renderer's within
-// a step of eight bits. Blended surfaces differ from it: it blends square roots.
+// Shading is Renderer's in linear light, so opaque objects over the sky equal Renderer's picture within one
+// step of eight bits. Blended surfaces differ, because Renderer blends square roots.
 
 #include <cstdint>
 #include <memory>
@@ -19,69 +19,70 @@
 namespace sightline {
 
 struct LayerRendererOptions {
-  // Of the pictures, pixels, 1 to 8192; times `samples` no more than OpenGL's largest texture (16384 at
-  // least).
+  // Size of the pictures in pixels, each 1 to 8192. Times `samples` it must not exceed OpenGL's largest
+  // texture (at least 16384).
   std::uint32_t width = 1280, height = 720;
-  // A side of each pixel: 1, 2 or 4. Colours are averaged, premultiplied and linear; the depth is that of the
-  // nearest sample. Holes of alpha-tested objects are whole pixels.
+  // Samples along each side of a pixel: 1, 2 or 4. Colours are averaged premultiplied and in linear light; a
+  // pixel's depth is that of its nearest sample. Holes of alpha-tested objects are whole pixels.
   std::uint32_t samples = 1;
-  // Objects of one material differ a little in lightness, as in Renderer's pictures. false: the materials'
-  // colours alone, so that a surface that several objects share looks alike, whichever of them is drawn.
+  // Makes objects of one material differ a little in lightness, as in Renderer's pictures. Without tints a
+  // surface that several objects share looks the same whichever of them is drawn.
   bool tints = true;
 };
 
-// A point of a thin lens. The picture is drawn from there, sheared so that what lies at the focus distance
-// stays where it is: a point at depth z moves by (right, up) * (z / focus - 1) across the line of sight. In
-// orthographic views all rays are turned by the same angle.
+// A point of a thin lens from which a picture is drawn, sheared so that points at the focus distance stay in
+// place: a point at depth z moves by (right, up) * (z / focus - 1) across the line of sight. In orthographic
+// views all rays are turned by the same angle.
 struct LensPoint {
   double right = 0.0, up = 0.0;  // metres from the eye, along the view's axes
-  double focus = 1.0;            // metres along forward, > 0; does not matter where right and up are 0
+  double focus = 1.0;            // metres along forward, > 0; ignored if right and up are 0
 };
 
 struct LayerDraw {
-  // Blended surfaces: false, drawn over the opaque ones in the order of the objects' ids and triangles. True,
-  // peeled: composited in the order of depth, pixel by pixel, however many lie over each other; those of
-  // equal depth in the order of ids and triangles. They are sent twice for each peel.
+  // Composites blended surfaces in the order of depth, pixel by pixel, however many lie over each other;
+  // those of equal depth in the order of ids and triangles. Their triangles are sent twice for each peel.
+  // Otherwise they are drawn over the opaque ones in the order of the objects' ids and triangles.
   bool peel = false;
-  // Without peeling: objects are drawn in the order in which they are given, not by their ids (those of each
-  // pass: opaque, alpha-tested, blended).
+  // Without peeling, draws the objects of each pass (opaque, alpha-tested, blended) in the order in which
+  // they are given, not by their ids.
   bool as_given = false;
-  // LayerImage::depths too; of the nearest surface, opaque or not. Their error is a few units of a float's
-  // last place; in orthographic views, of the far distance.
+  // Also fills LayerImage::depths with the depth of the nearest surface, opaque or not. Depths err by a few
+  // units in the last place; in orthographic views by as much of the far distance.
   bool depths = false;
   LensPoint lens{};
 };
 
 struct LayerDrawStats {
-  std::uint64_t triangles = 0;  // sent to OpenGL, all passes
-  std::uint32_t passes = 0;     // 1, or peels (at least 1): the most depths of one sample
+  std::uint64_t triangles = 0;  // sent to OpenGL in all passes
+  std::uint32_t passes =
+      0;  // 1, or the number of peels (at least 1): the largest number of depths at a sample
 };
 
-// Owns an OpenGL context of its own and the scene's triangles in it. Movable; used by one thread at a time; a
-// context of the caller's that is current stays so.
+// Owns an OpenGL context and the scene's triangles in it. Movable. Used by one thread at a time; the caller's
+// current context stays current.
 class LayerRenderer {
  public:
-  // Uploads the scene, whose memory is not needed afterwards. Fails, with the reason, where no OpenGL 4.3
-  // with ARB_clip_control can be had without a window, or where the scene does not fit.
+  // Uploads the scene, whose memory is not needed afterwards. Error, with the reason, if there is no
+  // OpenGL 4.3 with ARB_clip_control without a window, or if the scene does not fit.
   static Result<LayerRenderer> create(const SceneView& scene, const LayerRendererOptions& options);
   ~LayerRenderer();
   LayerRenderer(LayerRenderer&&) noexcept;
   LayerRenderer& operator=(LayerRenderer&&) noexcept;
 
-  // Where the objects are from now on: scene space from the stored positions, affine, one an object; those
-  // beyond the list are as stored, with an empty list all. Identities change no bit of a picture. A transform
-  // may mirror: fronts stay fronts. An object whose transform is not finite is not drawn.
+  // Sets the affine transforms of the objects, from stored positions to scene space, one for each object.
+  // Objects beyond the end of the list are drawn as stored. Identities change no bit of a picture. A
+  // transform may mirror: fronts stay fronts. An object whose transform is not finite is not drawn.
   void setTransforms(std::span<const Mat4> scene_from_stored);
 
-  // The objects alone (ids in any order; repeated ones count once, others than the scene's not at all),
-  // transparent where there is none of them. What a pixel shows does not depend on what else is drawn with
-  // it, but for what hides it; so layers composited in a right order are the picture of all objects, where
-  // each pixel has one sample: bit for bit where all are opaque, else to the rounding of floats. What it
-  // costs besides the triangles goes with the rectangle of pixels that the objects cover.
+  // Draws these objects alone over transparency. Ids may come in any order; repeated ones count once, those
+  // that the scene lacks are ignored. A surface's pixels do not depend on what else is drawn, except where
+  // that hides it. So with one sample for each pixel, layers composited in a correct order equal the picture
+  // of all objects: bit for bit if all are opaque, else up to the rounding of floats. Beside the triangles,
+  // the cost grows with the rectangle of pixels that the objects cover.
   LayerDrawStats draw(const View& view, std::span<const ObjectId> objects, const LayerDraw& how,
                       LayerImage& image);
 
-  // What is behind everything: opaque, without depths.
+  // Draws the sky, which is opaque and has no depths.
   void drawSky(const View& view, LayerImage& image);
 
   std::uint32_t width() const;

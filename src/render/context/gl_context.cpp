@@ -11,7 +11,7 @@
 namespace sightline::render {
 namespace {
 
-// libepoxy ends the process when it finds no OpenGL library at all, so look first.
+// Whether an OpenGL library is installed. libepoxy ends the process if there is none, so this is asked first.
 bool openGlLibraryExists() {
   for (const char* name : {"libOpenGL.so.0", "libGL.so.1"}) {
     if (void* handle = dlopen(name, RTLD_LAZY | RTLD_LOCAL)) {
@@ -28,7 +28,7 @@ bool isSoftware(EGLDeviceEXT device) {
          std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
 }
 
-// Displays that need no window system: hardware first, then Mesa's choice, then whatever is the default.
+// Displays that need no window system: those of hardware first, then Mesa's choice, then the default display.
 std::vector<EGLDisplay> candidateDisplays() {
   std::vector<EGLDisplay> displays;
   const auto has = [](const char* name) { return epoxy_has_egl_extension(EGL_NO_DISPLAY, name); };
@@ -103,7 +103,7 @@ Result<GlContext> GlContext::create() {
                "graphics card"};
 }
 
-// The display stays initialised at the end: it is shared by all users of EGL in the process.
+// The display is never terminated: all users of EGL in the process share it.
 Result<GlContext> GlContext::createOn(EGLDisplay display) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) {
     return Error{"an EGL display does not open"};

@@ -12,7 +12,7 @@
 
 namespace sightline::render {
 
-// Owns the context. All objects made in it go with it.
+// Owns an OpenGL context. All OpenGL objects made in it are freed with it.
 class GlContext {
  public:
   static Result<GlContext> create();
@@ -22,7 +22,7 @@ class GlContext {
 
   std::string device() const { return device_; }
 
-  // Makes a context current for a block, and the one that was before current again at its end.
+  // Makes a context current for the life of this object, then restores the one that was current before.
   class Current {
    public:
     explicit Current(const GlContext& context);
@@ -47,8 +47,8 @@ class GlContext {
   std::string device_;
 };
 
-// Compiles and links; geometry may be empty. The error carries the compiler's log. Precondition: a context is
-// current.
+// Compiles and links a program; geometry may be null. The error carries the compiler's log. Precondition: a
+// context is current.
 Result<GLuint> makeProgram(std::string_view name, const char* vertex, const char* fragment,
                            const char* geometry = nullptr);
 

@@ -5,10 +5,10 @@
 
 namespace sightline::render {
 
-// The colours of a frame buffer, rows from the top. Precondition: its context is current.
+// Reads the colours of a frame buffer; rows count from the top. Precondition: its context is current.
 Image readPixels(const Framebuffer& framebuffer);
 
-// Half the width and height (both even), each pixel the mean of four.
+// The picture at half its width and height, which are even; each pixel is the mean of four.
 Image halved(const Image& image);
 
 }  // namespace sightline::render

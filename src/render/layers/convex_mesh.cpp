@@ -1,6 +1,6 @@
-// Every two triangles are looked at. Seen along the normal of one, another that faces the same way and lies
-// nowhere in front of its plane can be met by the same ray only where the two touch; so it is enough that
-// those which touch it do not overlap it in that view.
+// Tests every pair of triangles a and b. Where b faces the same way as a and lies nowhere in front of a's
+// plane, one ray can intersect both only where they touch. So it is enough that, seen along a's normal,
+// triangles that touch a do not overlap it.
 
 #include "src/render/layers/convex_mesh.h"
 
@@ -26,7 +26,7 @@ double longestSide(const std::array<Vec3d, 3>& corners) {
       {length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
 }
 
-// Triangles that have an area. false: numbers that are not finite.
+// Reads the triangles that have an area. False if some number is not finite.
 bool readTriangles(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices,
                    std::vector<Triangle>& triangles) {
   for (std::size_t i = 0; i + 3 <= indices.size(); i += 3) {
@@ -47,7 +47,7 @@ bool readTriangles(std::span<const Vec3f> positions, std::span<const std::uint32
   return true;
 }
 
-// A corner that lies elsewhere tilts the plane, the more the lower the triangle is.
+// A corner that is off by the rounding tilts the triangle's plane, the more the lower the triangle is.
 void setRoundings(std::vector<Triangle>& triangles) {
   double largest = 0.0, size = 0.0;
   for (const Triangle& t : triangles) {
@@ -63,8 +63,8 @@ void setRoundings(std::vector<Triangle>& triangles) {
   }
 }
 
-// Whether an edge of `a`, seen along `direction`, has all of `a` on one side and all of `b` on the other, or
-// on it.
+// Whether an edge of `a`, seen along `direction`, separates the two: all of `a` lies on one side of it, all
+// of `b` on the other side or on the edge.
 bool anEdgeSeparates(const Triangle& a, const Triangle& b, const Vec3d& direction, double rounding) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d start = a.corners[k], edge = a.corners[(k + 1) % 3] - start;
@@ -85,8 +85,9 @@ bool anEdgeSeparates(const Triangle& a, const Triangle& b, const Vec3d& directio
   return false;
 }
 
-// Whether no ray that meets the front of `a` meets `b` too, or its front, as far as a's plane shows.
-bool apart(const Triangle& a, const Triangle& b, bool double_sided) {
+// Whether no ray that intersects the front of `a` also intersects `b` (if single-sided: the front of `b`), as
+// far as a's plane tells.
+bool neverBothIntersected(const Triangle& a, const Triangle& b, bool double_sided) {
   double lowest = INFINITY, highest = -INFINITY;
   for (const Vec3d& corner : b.corners) {
     const double height = dot(corner - a.corners[0], a.normal);
@@ -94,7 +95,7 @@ bool apart(const Triangle& a, const Triangle& b, bool double_sided) {
     highest = std::max(highest, height);
   }
   const double rounding = a.rounding;
-  // Backs are seen through fronts, unless all lie in one plane.
+  // The back of a double-sided triangle shows through a front, unless both lie in one plane.
   if (highest > rounding || (double_sided && lowest < -rounding)) {
     return false;
   }
@@ -117,7 +118,7 @@ bool coversOnce(std::span<const Vec3f> positions, std::span<const std::uint32_t>
   setRoundings(triangles);
   for (const Triangle& a : triangles) {
     for (const Triangle& b : triangles) {
-      if (&a != &b && !apart(a, b, double_sided)) {
+      if (&a != &b && !neverBothIntersected(a, b, double_sided)) {
         return false;
       }
     }

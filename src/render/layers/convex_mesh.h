@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a see-through mesh can be drawn as it is, or its own surface must be put in order first.
+// Tells whether a blended mesh can be drawn in any order of its triangles.
 
 #include <cstdint>
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace sightline::render {
 
-// Whether every ray from outside meets at most one triangle that is drawn: of single-sided meshes those whose
-// front it meets. So it is of pieces of convex surfaces, fronts outwards, and of flat meshes; where no two
-// triangles lie in each other's place. For an eye within a convex body too: it sees no fronts at all.
-// Conservative: false also where it takes too long to tell (more than 8192 triangles) and for numbers that
-// are not finite. Up to rounding: positions count as known to 2^-22 of the largest coordinate, and what would
-// not lie over itself if they were elsewhere within that counts as not doing so; it does then by next to
-// nothing. indices: three a triangle, into positions. Time: triangles squared.
+// Whether every ray from outside intersects at most one triangle that is drawn. Of a single-sided mesh only
+// triangles count whose front the ray intersects. True for pieces of convex surfaces with their fronts
+// outwards and for flat meshes, unless triangles coincide; an eye within a convex body sees no fronts at all.
+// Conservative: false also for more than 8192 triangles and for coordinates that are not finite. Positions
+// count as known to 2^-22 of the largest coordinate: a mesh that would not overlap itself with positions
+// changed by less counts as not overlapping. indices: three for each triangle, into positions. Takes time
+// proportional to the square of the number of triangles.
 bool coversOnce(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices, bool double_sided);
 
 }  // namespace sightline::render

@@ -24,8 +24,8 @@ Result<DepthPeeler> DepthPeeler::create(const LayerTarget& target) {
   return peeler;
 }
 
-// The farthest depth of each sample that is nearer than the last one; false: there is none anywhere. Samples
-// without one get the nearest possible depth, before which nothing can be found later on.
+// Finds, for each sample, the farthest depth that is nearer than the one of the last peel. False if no sample
+// has one. A sample without one gets the nearest possible depth, so that later peels find nothing there.
 bool DepthPeeler::findNext(GLuint framebuffer, const std::function<void(Stage)>& draw) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -42,11 +42,11 @@ bool DepthPeeler::findNext(GLuint framebuffer, const std::function<void(Stage)>&
   return any != 0;
 }
 
-std::uint32_t DepthPeeler::peel(const LayerTarget& target, std::uint64_t most,
+std::uint32_t DepthPeeler::peel(const LayerTarget& target, std::uint64_t max_peels,
                                 const std::function<void(Stage)>& draw) {
   GLuint behind = target.depth();
   std::uint32_t peels = 0;
-  while (peels < most) {
+  while (peels < max_peels) {
     const std::uint32_t next = peels % 2;
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(kBehindUnit));
     glBindTexture(GL_TEXTURE_2D, behind);

@@ -1,5 +1,5 @@
-// Group after group, front to back: the images of the group's layers, its program, and the picture so far
-// over that.
+// Groups are composited one after another, front to back: the images of a group's layers are drawn, its
+// program combines them, and the picture so far is put over the result.
 
 #include "sightline/render/layer_compositor.h"
 
@@ -16,7 +16,7 @@ using namespace render;
 
 namespace {
 
-// How a layer comes into the picture.
+// Where a layer's image comes from: drawn, unless it is left out or replaced.
 struct LayerUse {
   bool left_out = false;
   const LayerImage* replacement = nullptr;
@@ -30,18 +30,18 @@ Error replacementError(LayerId layer, const std::string& what) {
 
 struct LayerCompositor::Impl {
   LayerRenderer* renderer = nullptr;
-  std::vector<std::uint8_t> is_blended, covers_once;  // by object
+  std::vector<std::uint8_t> is_blended, covers_once;  // one for each object
 
   CompositingCompiler compiler;
-  CompositingProgram group_program;  // of one group, whose layers it numbers from 0
-  std::vector<LayerUse> uses;        // by layer of the frame
-  std::vector<LayerImage> images;    // of one group's layers; more than it has
+  CompositingProgram group_program;  // one group's steps, with its layers numbered from 0
+  std::vector<LayerUse> uses;        // one for each layer of the frame
+  std::vector<LayerImage> images;    // of one group's layers; never shrinks
   std::vector<ShapedImage> operands;
   std::vector<ObjectId> objects;
   std::array<ShapedPixel, kCompositingScratch> scratch;
   LayerImage composited, sky;
   std::vector<std::uint32_t> unordered_groups;
-  bool all_sizes_fit = true;  // of the images that were drawn
+  bool all_sizes_fit = true;  // whether every image drawn so far has the renderer's size
 
   Status readUses(const FrameLayers& layers, const CompositeSettings& settings);
   bool isOfRenderersSize(const LayerImage& image) const;
@@ -92,14 +92,14 @@ bool LayerCompositor::Impl::hasBlended(const FrameLayers& layers, LayerId layer)
   return std::any_of(parts.begin(), parts.end(), [&](PartId part) { return is_blended[part.value] != 0; });
 }
 
-// Of what is in `objects`, which is drawn at once.
+// Whether the layer of all of `objects` must be peeled.
 bool LayerCompositor::Impl::needsPeel() const {
   const bool any_blended =
       std::any_of(objects.begin(), objects.end(), [&](ObjectId o) { return is_blended[o.value] != 0; });
   return any_blended && (objects.size() > 1 || covers_once[objects.front().value] == 0);
 }
 
-// Whether the layers of a group, as far as they are drawn, are in a circle that see-through ones are part of.
+// Whether the layers of a group that are drawn form a cycle of which some are blended.
 bool LayerCompositor::Impl::isUnordered(const FrameLayers& layers, std::uint32_t first,
                                         std::uint32_t end) const {
   std::size_t parts = 0;
@@ -113,7 +113,7 @@ bool LayerCompositor::Impl::isUnordered(const FrameLayers& layers, std::uint32_t
   return parts > 1 && any_blended;
 }
 
-// The objects of these layers, as far as they are drawn.
+// Collects the objects of those of these layers that are drawn.
 void LayerCompositor::Impl::collect(const FrameLayers& layers, std::uint32_t first, std::uint32_t end) {
   objects.clear();
   for (std::uint32_t i = first; i < end; ++i) {
@@ -172,7 +172,7 @@ void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers
   const bool any_replaced = std::any_of(uses.begin() + first, uses.begin() + end, [](const LayerUse& use) {
     return use.replacement != nullptr && !use.left_out;
   });
-  // A foreign image has no depths by which it could be peeled with the others.
+  // An image that replaces a layer has no depths by which it could be peeled with the others.
   if (unordered && !any_replaced && settings.peel == CompositeSettings::Peel::kWhereNeeded) {
     collect(layers, first, end);
     drawObjects(view, settings, images.front(), stats);

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::array<float, 4> kTransparent{0.0f, 0.0f, 0.0f, 0.0f};
 
-// One way to colour each, for one of the scene's vertex shaders.
+// The programs of all passes for one vertex shader.
 struct LayerPrograms {
   SceneProgram opaque, alpha_tested, blended, peel_depth, peel_color, depth;
 };
@@ -49,7 +49,7 @@ Result<LayerPrograms> makeLayerPrograms(const char* vertex, std::uint32_t sample
   return p;
 }
 
-// Of each object's vertices, whatever the scene says that they are.
+// The bounds of each object's vertices. The scene's own bounds are not relied on.
 std::vector<Box> boundsOf(const SceneView& scene) {
   std::vector<Box> bounds(scene.objects.size());
   for (std::size_t i = 0; i < bounds.size(); ++i) {
@@ -80,10 +80,10 @@ struct LayerRenderer::Impl {
   LayerPrograms stored, moved;
   SkyProgram sky;
   LayerTarget target;
-  std::optional<DepthPeeler> peeler;  // where the scene has blended surfaces
-  std::vector<Box> bounds;            // of each object as stored
-  std::vector<ObjectId> chosen;       // in the order of drawing
-  std::vector<std::uint8_t> seen;     // of each object: whether it is among them
+  std::optional<DepthPeeler> peeler;  // if the scene has blended surfaces
+  std::vector<Box> bounds;            // of each object, in stored coordinates
+  std::vector<ObjectId> chosen;       // the objects to draw, in the order of drawing
+  std::vector<std::uint8_t> seen;     // one for each object: whether it is among the chosen ones
   float haze = 0.0f;
   LayerRendererOptions options;
 };
@@ -128,7 +128,7 @@ Status LayerRenderer::Impl::prepare(const SceneView& scene, const LayerRendererO
   return Success{};
 }
 
-// In the order in which they are drawn, each once.
+// Sets `chosen`: the objects that can be drawn, each once, in the order of drawing.
 void LayerRenderer::Impl::choose(std::span<const ObjectId> objects, bool as_given) {
   chosen.clear();
   seen.assign(bounds.size(), 0);
@@ -143,7 +143,7 @@ void LayerRenderer::Impl::choose(std::span<const ObjectId> objects, bool as_give
   }
 }
 
-// By the chosen objects.
+// The rectangle that the chosen objects cover.
 PixelRect LayerRenderer::Impl::covered(const View& view, const LensPoint& lens) const {
   RectCollector collector(view, lens, options.width, options.height);
   for (std::size_t i = 0; i < chosen.size() && !collector.full(); ++i) {
@@ -234,7 +234,7 @@ LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> o
   if (blended > 0 && how.peel) {
     const std::uint32_t peels = r.peel(view, how.lens);
     stats.passes = std::max(peels, 1u);
-    // Each peel is sent twice; after the last one it is seen that there are no more.
+    // Each peel sends the triangles twice, and one more time finds that there are no further peels.
     stats.triangles += blended * (peels + std::min<std::uint64_t>(peels + 1, blended) - 1);
   } else if (blended > 0) {
     r.blendInOrder(view, how.lens);

@@ -12,9 +12,9 @@
 namespace sightline::render {
 namespace {
 
-constexpr std::size_t kFloats = 20;  // of an object: five texels of four
+constexpr std::size_t kFloats = 20;  // for each object: five texels of four floats
 
-// The point that the transform moves to p; the origin where there is none near enough to be one.
+// The point that the transform moves to p; the origin if the transform is singular or the point too far away.
 Vec3d inverseOf(const Mat4& m, const Vec3d& p) {
   const Vec3d x(m(0, 0), m(1, 0), m(2, 0)), y(m(0, 1), m(1, 1), m(2, 1)), z(m(0, 2), m(1, 2), m(2, 2));
   const Vec3d from(p.x - m(0, 3), p.y - m(1, 3), p.z - m(2, 3));
@@ -25,8 +25,8 @@ Vec3d inverseOf(const Mat4& m, const Vec3d& p) {
   return isFinite(found) && maxComponent(abs(found)) < kFarthest ? found : Vec3d();
 }
 
-// stored - eye = L (p - pivot) + (M pivot - eye), with the linear part L of M. Any pivot is right; the one
-// that M moves to the eye leaves nothing to the second term but what its rounding took.
+// With L the linear part of M: M p - eye = L (p - pivot) + (M pivot - eye). Any pivot is correct. For the
+// pivot that M moves to the eye the second term is no more than the pivot's rounding.
 void write(const Mat4& m, const Vec3d& eye, std::span<float, kFloats> texels) {
   const Vec3d pivot = inverseOf(m, eye);
   const Vec3d rest = transformPoint(m, pivot) - eye;
@@ -44,7 +44,7 @@ void write(const Mat4& m, const Vec3d& eye, std::span<float, kFloats> texels) {
   texels[15] = texels[19] = 0.0f;
 }
 
-// So large that a float's square still is finite.
+// Whether all elements are so small that the square of a float stays finite.
 bool canBeDrawn(const Mat4& m) {
   return std::all_of(m.m.begin(), m.m.end(), [](double value) { return std::abs(value) < 1e18; });
 }

@@ -11,7 +11,7 @@
 namespace sightline::render {
 namespace {
 
-// A pixel more on each side than the exact borders, for the rounding of what is drawn.
+// One pixel is added on each side of the exact borders, for the rounding of what OpenGL draws.
 std::uint32_t borderBefore(double ndc, std::uint32_t pixels) {
   const double at = std::floor((ndc + 1.0) * 0.5 * pixels) - 1.0;
   return static_cast<std::uint32_t>(std::clamp(at, 0.0, 1.0 * pixels));
@@ -23,7 +23,7 @@ std::uint32_t borderAfter(double ndc, std::uint32_t pixels) {
 
 }  // namespace
 
-// Of projected points, normalised device coordinates; grows to everything where one is not a number.
+// The extent of projected points in normalised device coordinates. It becomes everything if one is NaN.
 struct RectCollector::Extent {
   double left = std::numeric_limits<double>::infinity(), bottom = left, right = -left, top = -left;
 
@@ -49,13 +49,15 @@ RectCollector::RectCollector(const View& view, const LensPoint& lens, std::uint3
       width_(width),
       height_(height) {}
 
-// The corners of what the near plane leaves of the box: its own, and where the plane cuts its edges.
+// Adds the corners of the part of the box beyond the near plane: the box's own corners and the points where
+// the plane cuts its edges.
 void RectCollector::add(const Box& box, const Mat4& scene_from_box) {
   if (box.empty()) {
     return;
   }
   std::array<Vec3d, 8> corners;
-  std::array<double, 8> beyond{};  // metres behind the near plane; not a number: not a box
+  std::array<double, 8>
+      beyond{};  // each corner's distance beyond the near plane in metres; NaN: not a valid box
   for (std::size_t i = 0; i < 8; ++i) {
     const Vec3d corner((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
                        (i & 4) != 0 ? box.max.z : box.min.z);

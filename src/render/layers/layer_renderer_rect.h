@@ -1,6 +1,6 @@
 #pragma once
 
-// Which part of a picture objects can cover: what is outside it need not be cleared, resolved or read.
+// The rectangle of a picture that objects can cover. Pixels outside it need not be cleared, resolved or read.
 
 #include <cstdint>
 
@@ -11,7 +11,7 @@
 
 namespace sightline::render {
 
-// Pixels, rows from the bottom as OpenGL's.
+// A rectangle of pixels; rows count from the bottom, as OpenGL's do.
 struct PixelRect {
   std::uint32_t left = 0, bottom = 0, right = 0, top = 0;  // right and top are the first ones outside
 
@@ -20,15 +20,15 @@ struct PixelRect {
   friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
-// Collects the pixels that boxes cover, rather too many than too few: none of an empty box, all of one that
-// is not finite.
+// Collects a rectangle of all pixels that boxes cover. Conservative: it may hold more pixels. An empty box
+// covers none, a box that is not finite covers all.
 class RectCollector {
  public:
   RectCollector(const View& view, const LensPoint& lens, std::uint32_t width, std::uint32_t height);
 
   void add(const Box& box, const Mat4& scene_from_box);
   bool full() const { return rect_ == PixelRect{0, 0, width_, height_}; }
-  // Of width and height 0, where nothing was added that is in view.
+  // Of width and height 0 if no box that was added is in view.
   const PixelRect& rect() const { return rect_; }
 
  private:

@@ -26,7 +26,7 @@ Error doesNotFit(std::uint32_t width, std::uint32_t height) {
   return Error{fmt::format("the driver makes no float picture of {} x {} samples", width, height)};
 }
 
-// Whether the frame buffer just made, the current one, can be drawn to.
+// Whether the current frame buffer, which was just made, can be drawn to.
 bool complete() {
   return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE &&
          glGetError() != GL_OUT_OF_MEMORY;
@@ -40,8 +40,8 @@ std::uint32_t largestSide() {
   return static_cast<std::uint32_t>(std::max(std::min({texture, viewport[0], viewport[1]}), 0));
 }
 
-// The picture of `width` and `height` whose pixels in the rectangle are these; OpenGL's rows begin at the
-// bottom.
+// Copies a rectangle of pixels as OpenGL gives them, rows from the bottom, into a picture of width x height,
+// rows from the top.
 template <typename T>
 void place(const std::vector<T>& pixels, const PixelRect& rect, std::size_t width, std::size_t height,
            const T& outside, std::vector<T>& picture) {
@@ -59,8 +59,9 @@ void place(const std::vector<T>& pixels, const PixelRect& rect, std::size_t widt
   }
 }
 
-// A value d of the depth buffer is n (f - z) / (z (f - n)), orthographic (f - z) / (f - n), at the depth z;
-// n and f are the near and the far distance. 0: nothing was drawn.
+// Converts values of the depth buffer to metres. With the near distance n and the far distance f, depth z is
+// stored as n (f - z) / (z (f - n)), in orthographic views as (f - z) / (f - n). 0 means that nothing was
+// drawn.
 void toMetres(const View& view, std::vector<float>& depths) {
   const double range = view.far - view.near;
   for (float& depth : depths) {

@@ -1,4 +1,4 @@
-// Blur along a line: a kernel of the pixels near it.
+// Blur along a line by a kernel of the pixels near the line.
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ struct Tap {
   float weight = 0.0f;
 };
 
-// The line drawn so that each of its points is shared out to the four pixels around it, by reciprocal depth
-// (bilinear). Between two lines of pixel centres a share is a polynomial of degree 2 along the line, which
-// Simpson's rule sums exactly.
+// The weights of pixels near a line: each point of the line is shared out to the four pixels around it with
+// bilinear weights. Between two grid lines of pixel centres a weight is a polynomial of degree 2 along the
+// line, which Simpson's rule integrates exactly.
 class LineKernel {
  public:
   LineKernel(double dx, double dy) : dx_(dx), dy_(dy) {
@@ -54,7 +54,7 @@ class LineKernel {
   }
 
  private:
-  // Where, along the line from 0 to 1, a coordinate that goes from -d / 2 to d / 2 is whole.
+  // Adds the shares in [0, 1] of the line at which a coordinate that runs from -d / 2 to d / 2 is an integer.
   static void addCuts(double d, std::vector<double>& cuts) {
     const double half = 0.5 * std::abs(d);
     for (double whole = std::ceil(-half); whole <= half && half > 0.0; whole += 1.0) {

@@ -11,7 +11,7 @@ double largestBlur(const LayerImage& image) {
 }
 
 bool isFinite(const ShapedPixel& pixel) {
-  // Zero times a number is zero only if the number is finite.
+  // Zero times a number is zero if the number is finite, else NaN.
   return 0.0f * pixel.red + 0.0f * pixel.green + 0.0f * pixel.blue + 0.0f * pixel.alpha == 0.0f;
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-// Which pixels a blur reads and which it writes.
+// Rectangles of pixels that a blur reads and writes.
 
 #include "sightline/render/layer_image.h"
 
 namespace sightline::render {
 
-// Pixels from (x0, y0) to before (x1, y1); signed, since it may reach beyond a picture.
+// The pixels from (x0, y0) inclusive to (x1, y1) exclusive. Signed, since it may reach beyond a picture.
 struct PixelArea {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 
@@ -15,22 +15,25 @@ struct PixelArea {
   int height() const { return y1 - y0; }
 };
 
-// No blur reaches farther: pixels.
+// The largest diameter of a blur, in pixels; larger ones are clamped to it.
 double largestBlur(const LayerImage& image);
 
-// Colour and opacity are finite.
+// Whether colour and opacity are finite.
 bool isFinite(const ShapedPixel& pixel);
 
-// Around all pixels that are not transparent (those not finite count as such).
+// The bounding rectangle of all pixels that are not transparent. Pixels that are not finite count as
+// transparent.
 PixelArea paintedArea(const LayerImage& image);
 
-// The area grown by `reach` to all sides, cut off at the picture's borders.
+// The area grown by `reach` pixels on all sides and clamped to the picture.
 PixelArea grown(const PixelArea& area, int reach, const LayerImage& image);
 
-// The area grown by `reach` beyond those borders of the picture that it touches, where the picture goes on.
+// The area grown by `reach` pixels beyond those borders of the picture that it touches: blurs continue the
+// picture there.
 PixelArea grownBeyondBorders(const PixelArea& area, int reach, const LayerImage& image);
 
-// The pixel at (x, y) or, beyond the borders, the outermost one next to it; transparent where not finite.
+// The pixel at (x, y) or, beyond the borders, the nearest one of the picture. Transparent if it is not
+// finite.
 ShapedPixel pixelAt(const LayerImage& image, int x, int y);
 
 }  // namespace sightline::render

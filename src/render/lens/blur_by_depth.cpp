@@ -1,5 +1,5 @@
-// Blur by depth: each pixel adds a disc of its own. A chord is added to a row's differences, at its two ends,
-// and each row is summed once at the end.
+// Blur by depth: each pixel adds a disc of its own size. A chord changes a row of differences at its two ends
+// only, and each row is summed once at the end.
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ using namespace render;
 
 namespace {
 
-// Less opacity than this arrives nowhere but by the rounding of differences.
+// Opacity below this is the rounding of differences.
 constexpr double kNothing = 1e-9;
 
 class DepthBlur {
@@ -53,7 +53,7 @@ class DepthBlur {
     return std::clamp(circleOfConfusion(view_, lens_, depth, image_.height), 1.0, largestBlur(image_));
   }
 
-  // Pixels that a disc of the area's reaches at most.
+  // The farthest that the disc of any pixel in the area reaches, in pixels.
   int largestReach(const PixelArea& area) const {
     double largest = 1.0;
     for (int y = area.y0; y < area.y1; ++y) {
@@ -100,7 +100,7 @@ class DepthBlur {
     addEnd(sums, to, value, -1.0);
   }
 
-  // From `at` on there is so much more: of the pixel that it is in, a part.
+  // Adds `value` to the row from position `at` on; the pixel that contains `at` gets its share.
   static void addEnd(Sum* sums, double at, const Sum& value, double sign) {
     const auto pixel = static_cast<std::size_t>(at);
     const double next = at - static_cast<double>(pixel);
@@ -135,8 +135,8 @@ class DepthBlur {
   const Lens& lens_;
   PixelArea painted_, target_;
   BlurDisc disc_;
-  double diameter_ = 0.0;         // of disc_; neighbours often have the same
-  std::vector<Sum> differences_;  // two more than pixels a row: an end may lie on the border
+  double diameter_ = 0.0;         // of disc_, which is kept because neighbours often have the same
+  std::vector<Sum> differences_;  // width + 2 for each row: a chord may end on the border
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace sightline::render {
 namespace {
 
-// Integral of sqrt(r^2 - t^2) for t from 0 to y; of all that is beyond the disc, 0.
+// The integral of sqrt(r^2 - t^2) for t from 0 to min(y, r).
 double areaUpTo(double y, double r) {
   const double t = std::min(y, r);
   return 0.5 * (t * std::sqrt(std::max(r * r - t * t, 0.0)) + r * r * std::asin(t / r));
@@ -23,7 +23,7 @@ void setDiameter(BlurDisc& disc, double diameter) {
   disc.half_chords.push_back(2.0 * below);
   for (double y = 0.5; y < r; y += 1.0) {
     const double above = areaUpTo(y + 1.0, r);
-    // The last row may be thinner than rounding.
+    // The disc's part in its last row may be thinner than rounding.
     disc.half_chords.push_back(std::max(above - below, 0.0));
     below = above;
   }

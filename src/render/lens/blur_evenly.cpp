@@ -1,4 +1,4 @@
-// Even blur: each row's chords by sums that run along the row, so that their length costs nothing.
+// Even blur: a chord's sum is the difference of two prefix sums of its row, so its length costs nothing.
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ class EvenBlur {
     if (source_.empty()) {
       return;
     }
-    // As far as a chord reaches from the target's ends, so that no end needs to be asked about.
+    // The row reaches beyond the target's ends as far as a chord does, so that no chord needs to be clamped.
     first_ = target_.x0 - disc_.reach() - 1;
     const int width = target_.x1 + disc_.reach() + 1 - first_;
     row_.assign(kChannels * static_cast<std::size_t>(width), 0.0);
@@ -59,7 +59,7 @@ class EvenBlur {
  private:
   bool inTarget(int y) const { return y >= target_.y0 && y < target_.y1; }
 
-  // The row's pixels and the sums of all before each.
+  // Reads the row's pixels and computes their prefix sums.
   void readRow(int y) {
     std::array<double, kChannels> sum{};
     const int end = first_ + static_cast<int>(row_.size() / kChannels);
@@ -76,10 +76,11 @@ class EvenBlur {
     }
   }
 
-  // For each pixel of the target's width, the mean over the disc of what a chord around it covers.
+  // Sets chords_ to the sums over a chord around each pixel of the target's width, divided by the disc's
+  // area. half is half the chord's length in pixels.
   void sumChords(double half) {
     const auto whole =
-        static_cast<std::size_t>(std::lround(half));  // the pixel, to either side, that the end is in
+        static_cast<std::size_t>(std::lround(half));  // distance to the pixel that contains the chord's end
     const double part = whole == 0 ? half : half + 0.5 - static_cast<double>(whole);
     const double scale = 1.0 / disc_.area;
     const auto middle = kChannels * static_cast<std::size_t>(target_.x0 - first_);
@@ -114,8 +115,8 @@ class EvenBlur {
   LayerImage& blurred_;
   BlurDisc disc_;
   PixelArea source_, target_;
-  int first_ = 0;                   // column of row_'s first pixel
-  std::vector<double> row_, sums_;  // four a pixel
+  int first_ = 0;                   // the column of row_'s first pixel
+  std::vector<double> row_, sums_;  // four numbers for each pixel
   std::vector<float> chords_;
 };
 

@@ -23,7 +23,7 @@ std::vector<DiscPoint> discPoints(std::uint32_t count) {
     points.emplace_back();
   }
   for (std::uint32_t i = 0; i < count / 2; ++i) {
-    // In the middle, by area, of the ring that is for these two.
+    // These two points share a ring of the disc; this radius halves the ring's area.
     const double radius = 0.5 * std::sqrt((odd + 2.0 * i + 1.0) / count);
     const DiscPoint point{radius * std::cos(kTurn * i), radius * std::sin(kTurn * i)};
     points.push_back(point);

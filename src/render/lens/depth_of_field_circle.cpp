@@ -4,8 +4,8 @@
 
 namespace sightline::render {
 
-// Seen from a point o of the lens, what lies at depth z moves on the plane at distance 1 by
-// o (1 / focus - 1 / z), sheared as the picture is to hold the plane of focus.
+// Seen from the lens point o, in a picture sheared so that the plane of focus stays in place, a point at
+// depth z moves by o (1 / focus - 1 / z) on the plane at distance 1.
 double signedCircle(const View& view, const Lens& lens, double depth, std::uint32_t height) {
   if (!(lens.aperture > 0.0) || !(lens.focus > 0.0) || std::isnan(depth)) {
     return 0.0;

@@ -8,7 +8,7 @@
 
 namespace sightline::render {
 
-// As circleOfConfusion, but negative before the plane of focus.
+// circleOfConfusion with a negative sign for depths before the plane of focus.
 double signedCircle(const View& view, const Lens& lens, double depth, std::uint32_t height);
 
 }  // namespace sightline::render

@@ -15,14 +15,14 @@ using namespace render;
 
 namespace {
 
-// One of the images whose mean is a picture.
+// One of the images whose mean is the accumulated picture.
 struct LensPass {
   LensPoint point;
-  double time = 0.0;  // frames from this one on
+  double time = 0.0;  // in frames from this one on
 };
 
-// Points of the lens with times of the shutter. Multiples of the golden ratio spread the times evenly over
-// any stretch of the points, whose order goes from the middle outwards.
+// Points of the lens, each with a time of the shutter. The points run from the middle of the lens outwards;
+// multiples of the golden ratio spread the times evenly over every stretch of them.
 std::vector<LensPass> passesOf(const LensSettings& settings) {
   constexpr double kGolden = 0.6180339887498949;
   const double aperture = settings.lens.aperture > 0.0 ? settings.lens.aperture : 0.0;
@@ -45,7 +45,7 @@ void addTo(LayerImage& sum, const LayerImage& image, float weight) {
   }
 }
 
-// Where more arrived than a pixel holds it is the mean of that.
+// Scales pixels with an opacity above 1 down to 1: they show the mean of what arrived there.
 void limitOpacity(LayerImage& image) {
   for (ShapedPixel& p : image.pixels) {
     if (p.alpha > 1.0f) {
@@ -73,12 +73,12 @@ struct LensPicture::Impl {
     }
   }
 
-  // One draw() at a time, with these.
+  // The arguments and the results so far of one draw() call.
   struct Frame {
     const View& view;
     const LensSettings& settings;
     LensStats stats;
-    std::size_t steps = 0, drawn = 0;  // passes of accumulation, or layers, of which some are drawn as one
+    std::size_t steps = 0, drawn = 0;  // passes of accumulation, or layers; some layers may be drawn as one
 
     void tellProgress() {
       ++drawn;
@@ -192,7 +192,7 @@ void LensPicture::Impl::drawSingle(Frame& frame, std::span<const ObjectId> ids, 
   }
   blurByDepth(drawn, frame.view, frame.settings.lens, spread, picture);
   if (spread == Spread::kAsItArrives && frame.settings.sky) {
-    // What did not arrive is black, and what arrived too much too bright.
+    // A pixel at which less opacity arrived is darker, one at which more arrived is brighter.
     for (ShapedPixel& pixel : picture.pixels) {
       pixel.alpha = 1.0f;
     }
@@ -204,7 +204,7 @@ void LensPicture::Impl::drawAccumulated(Frame& frame, std::span<const ObjectId> 
   if (!frame.settings.sky) {
     return;
   }
-  // A sky shows little detail, so the mean of pictures before it is their mean before its own.
+  // A sky shows little detail, so the mean of pictures over skies is taken as their mean over the mean sky.
   if (!frame.settings.motion) {
     renderer->drawSky(frame.view, drawn);
   } else {
@@ -218,7 +218,7 @@ void LensPicture::Impl::drawAccumulated(Frame& frame, std::span<const ObjectId> 
   compositeOver(picture, sky);
 }
 
-// From `drawn` to `sky`.
+// Blurs the sky in `drawn` into `sky`.
 void LensPicture::Impl::blurSky(const Frame& frame) {
   const double circle =
       circleOfConfusion(frame.view, frame.settings.lens, LayerImage::kNoDepth, drawn.height);
@@ -283,7 +283,7 @@ void LensPicture::Impl::drawLayer(Frame& frame, std::span<const ObjectId> ids, L
   }
 }
 
-// From `drawn`.
+// Blurs the layer's image in `drawn`.
 void LensPicture::Impl::blurLayer(Frame& frame, std::span<const ObjectId> ids, const SeenLayer& seen,
                                   LayerBlur blur, LayerImage& image) {
   if (blur == LayerBlur::kEven) {

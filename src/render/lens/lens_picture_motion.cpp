@@ -11,7 +11,7 @@ Mat4 placeOf(std::span<const Mat4> transforms, std::size_t object) {
   return transforms.empty() ? Mat4{} : transforms[object];
 }
 
-// The point that an affine matrix takes to `to`; none where there is not one.
+// The point that an affine matrix maps to `to`; none if the matrix is singular.
 std::optional<Vec3d> pointBefore(const Mat4& m, const Vec3d& to) {
   const double determinant = determinant3(m);
   const Vec3d x(m(0, 0), m(1, 0), m(2, 0)), y(m(0, 1), m(1, 1), m(2, 1)), z(m(0, 2), m(1, 2), m(2, 2));
@@ -28,7 +28,7 @@ Vec3d pointAt(const View& view, const SeenLayer& seen, const LayerImage& image) 
          view.up * (up * half);
 }
 
-// Pixels of a point, or of a direction that is a point at infinity.
+// Where a point, or a direction taken as a point at infinity, is seen, in pixels.
 std::optional<PixelStep> pixelOf(const View& view, const Vec3d& from_eye, const LayerImage& image) {
   const double depth = dot(from_eye, view.forward);
   if (!view.orthographic && !(depth > 0.0)) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where things are between two frames, and how far their images move.
+// Interpolates views and transforms between two frames, and measures how far layers move on the screen.
 
 #include <cstdint>
 #include <span>
@@ -17,15 +17,16 @@ struct PixelStep {
   double x = 0.0, y = 0.0;
 };
 
-// time: frames from this one on.
+// time is counted in frames from this one on: 0 is this frame, 1 the next.
 View viewAt(const View& view, const View& later, double time);
 void transformsAt(const FrameMotion& motion, std::size_t objects, double time, std::vector<Mat4>& transforms);
 
-// While the shutter is open, of what is seen of a layer of these objects; of several the mean of where each
-// would take the layer's middle. None where it leaves what can be projected.
+// How far the visible part of a layer moves while the shutter is open: the mean over its objects of how far
+// each would carry the layer's middle. Zero where the middle leaves what can be projected.
 PixelStep layerStep(const View& view, const FrameMotion& motion, std::span<const ObjectId> objects,
                     const SeenLayer& seen, const LayerImage& image);
-// The same of what is at infinity, in the picture's middle. None in orthographic views.
+// How far a point at infinity in the picture's middle moves while the shutter is open. Zero in orthographic
+// views.
 PixelStep skyStep(const View& view, const FrameMotion& motion, const LayerImage& image);
 
 }  // namespace sightline::render

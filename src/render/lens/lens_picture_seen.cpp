@@ -34,7 +34,8 @@ SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
   }
   seen.x = x / weight;
   seen.y = y / weight;
-  // The circle is linear in the depth, or in perspective in its inverse; so its mean is the mean depth's.
+  // The circle of confusion is linear in the depth (perspective: in 1 / depth), so its mean is that of the
+  // mean depth.
   seen.depth = view.orthographic ? depths / weight : weight / inverse;
   seen.min_circle = signedCircle(view, lens, least, image.height);
   seen.max_circle = signedCircle(view, lens, most, image.height);

@@ -19,7 +19,7 @@ class OverlayBuilder {
     return {(p.x - plan_.camera.eye.x) / plan_.radius, -(p.z - plan_.camera.eye.z) / plan_.radius};
   }
 
-  // A convex polygon.
+  // Fills a convex polygon.
   void fill(std::span<const Point> polygon, const PlanColor& color, double alpha) {
     for (std::size_t i = 2; i < polygon.size(); ++i) {
       add(polygon[0], color, alpha);
@@ -47,7 +47,8 @@ class OverlayBuilder {
   std::vector<OverlayVertex> take() { return std::move(vertices_); }
 
  private:
-  // With square ends that reach half a width beyond, so that corners close and points show.
+  // Draws a line whose square ends reach half its width beyond its points, so that corners close and a line
+  // without length shows.
   void line(const Point& a, const Point& b, const PlanColor& color, double width_px) {
     const double half = 0.5 * width_px * pixel_;
     const double length = std::hypot(b.x - a.x, b.y - a.y);
@@ -76,7 +77,7 @@ double turn(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Andrew's monotone chain; counter-clockwise.
+// The convex hull by Andrew's monotone chain, counter-clockwise.
 std::vector<Point> convexHull(std::vector<Point> points) {
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
@@ -95,7 +96,7 @@ std::vector<Point> convexHull(std::vector<Point> points) {
   return hull;
 }
 
-// The visible volume's shadow on the ground, cut off at twice the picture's radius.
+// The outline of the view's volume seen from above, cut off at twice the picture's radius.
 std::vector<Point> frustumOutline(const OverlayBuilder& builder, const PlanView& plan) {
   const View& view = plan.camera;
   const double far = std::min(view.far, 4.0 * plan.radius);

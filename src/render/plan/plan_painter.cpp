@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWallWidthPx = 1.6;
 
-// Straight down, from above everything or from the cut; right is +x, up is -z.
+// An orthographic view straight down, from above the scene or from the cut; right is +x, up is -z.
 View viewFromAbove(const Box& bounds, const PlanView& plan) {
   const double bottom = bounds.wellFormed() ? bounds.min.y : 0.0;
   const double top = std::min(bounds.wellFormed() ? bounds.max.y + 1.0 : 1.0, plan.cut_height);
@@ -36,7 +36,7 @@ bool fillsHalfThePicture(const Object& object, const PlanView& plan) {
   return object.bounds.wellFormed() && extent.x * extent.z > 2.0 * plan.radius * plan.radius;
 }
 
-// A colour an object: its state's, a little lighter or darker from object to object.
+// One colour for each object: its state's, a little lighter or darker from object to object.
 std::vector<std::array<std::uint8_t, 4>> stateColors(const PlanView& plan, std::uint32_t object_count) {
   std::vector<std::array<std::uint8_t, 4>> colors(object_count);
   for (std::uint32_t i = 0; i < object_count; ++i) {
@@ -82,7 +82,7 @@ Result<PlanPainter> PlanPainter::create() {
 }
 
 Image PlanPainter::paint(const SceneBuffers& scene, const Box& scene_bounds, const PlanView& plan) const {
-  // Drawn at twice the size for smooth lines, where the driver can.
+  // The plan is drawn at twice its size, for smooth lines, if the driver can.
   Result<Framebuffer> picture = makeFramebuffer(2 * plan.size_px, 2 * plan.size_px);
   const bool smooth = picture.has_value();
   if (!smooth) {

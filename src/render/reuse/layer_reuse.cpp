@@ -32,7 +32,7 @@ bool areEqual(const View& a, const View& b) {
          a.aspect == b.aspect;
 }
 
-// Radians, about, between the two places of an object; also what it has grown or shrunk by counts.
+// How far an object has turned between two transforms, about in radians; growing and shrinking count too.
 double turnBetween(const Mat4& a, const Mat4& b) {
   double sum = 0.0;
   for (int row = 0; row < 3; ++row) {
@@ -41,21 +41,21 @@ double turnBetween(const Mat4& a, const Mat4& b) {
       sum += difference * difference;
     }
   }
-  return std::sqrt(0.5 * sum);  // of a turn by t: 2 sin(t / 2)
+  return std::sqrt(0.5 * sum);  // 2 sin(t / 2) for a turn by t
 }
 
-// The last image of a layer.
+// The last image drawn of a layer, and what decides whether it can be reused.
 struct KeptImage {
-  View view;  // of the picture, guard band and all
+  View view;  // of the picture with its guard band
   bool peel = false;
-  std::vector<Mat4> transforms;  // of the layer's objects
+  std::vector<Mat4> transforms;  // of the layer's objects when it was drawn
   LayerPoints layer;
   Sprite sprite;
-  std::uint64_t drawn_in = 0, used_in = 0;  // frames
+  std::uint64_t drawn_in = 0, used_in = 0;  // frame numbers
 };
 
 struct FoundWarp {
-  Warp frame_from_kept;  // both in the picture with the guard band
+  Warp frame_from_kept;  // between pictures with the guard band
   double error_px = 0.0;
 };
 
@@ -91,23 +91,23 @@ struct LayerReuse::Impl {
   std::uint32_t width = 0, height = 0;  // of the frames
   ReuseStats stats;
 
-  // This frame.
+  // The current frame.
   std::uint64_t frame = 0;
   View view, guarded;
   bool is_view_finite = false;
-  Frustum frustum;      // of the frame, without the guard band
-  PictureView picture;  // with it
+  Frustum frustum;      // of the frame without the guard band
+  PictureView picture;  // of the frame with the guard band
   std::vector<Mat4> transforms;
 
-  std::map<std::vector<ObjectId>, KeptImage> kept_images;  // by the layers' objects, ascending
+  std::map<std::vector<ObjectId>, KeptImage> kept_images;  // by each layer's objects, ascending
 
-  // This layer.
+  // The current layer.
   std::vector<ObjectId> objects;  // ascending
-  LayerImage drawn;               // with the guard band
+  LayerImage drawn;               // its image with the guard band
   std::vector<PicturePoint> from, to;
 };
 
-// The same picture in the middle, pixel by pixel.
+// The view with the guard band; its middle shows the frame's picture, pixel by pixel.
 View LayerReuse::Impl::guardedView(const View& frame_view) const {
   View wide = frame_view;
   const double across = static_cast<double>(renderer->width()) / width;
@@ -125,7 +125,7 @@ void LayerReuse::Impl::takeObjects(std::span<const ObjectId> given) {
   std::erase_if(objects, [&](ObjectId object) { return object.value >= shapes.objects(); });
 }
 
-// Where the view and the objects are can be told.
+// Whether the view and the transforms of the layer's objects are finite.
 bool LayerReuse::Impl::isPlaced() const {
   return is_view_finite && std::all_of(objects.begin(), objects.end(),
                                        [&](ObjectId object) { return isFinite(transforms[object.value]); });
@@ -154,16 +154,16 @@ bool LayerReuse::Impl::hasTurned(const KeptImage& kept) const {
   return false;
 }
 
-// But for its warp.
+// Whether the kept image can be reused, as far as this does not depend on its warp.
 bool LayerReuse::Impl::isUsable(const KeptImage& kept, const LayerDraw& how) const {
   return how.peel == kept.peel && frame - kept.drawn_in < settings.max_frames &&
          areOfOneKind(kept.view, guarded);
 }
 
-// Fills from and to. Points far outside the frame do not matter. False: none is left, or one is where it
-// cannot be seen.
+// Sets `from` and `to` to the places of the characteristic points then and now. Points far outside the frame
+// are left out. False if none is left, or if one cannot be projected.
 bool LayerReuse::Impl::matchPoints(const KeptImage& kept) {
-  constexpr double kOutside = 0.5;  // of the frame's size
+  constexpr double kOutside = 0.5;  // "far" as a share of the frame's size
   from.clear();
   to.clear();
   const double guard = settings.guard_px, w = width, h = height;
@@ -183,10 +183,10 @@ bool LayerReuse::Impl::matchPoints(const KeptImage& kept) {
   return !from.empty();
 }
 
-// The map tears nothing in the frame, stretches no point too much, and asks for nothing that was outside the
-// picture.
+// Whether the warp's inverse is defined all over the frame, no point is stretched too much, and the frame
+// shows nothing that was outside the picture when it was drawn.
 bool LayerReuse::Impl::suits(const Warp& frame_from_kept, const LayerPoints& layer) const {
-  constexpr double kBeyond = 0.5;  // pixels: the sprite's margin
+  constexpr double kBeyond = 0.5;  // pixels beyond the picture that the sprite's margin still covers
   const std::optional<Warp> kept_from_frame = inverseOf(frame_from_kept);
   if (!kept_from_frame || std::any_of(from.begin(), from.end(), [&](PicturePoint p) {
         return !(largestStretch(frame_from_kept, p) <= settings.max_stretch);
@@ -235,7 +235,7 @@ std::optional<FoundWarp> LayerReuse::Impl::findWarp(const KeptImage& kept) {
   return std::nullopt;
 }
 
-// False: the image must be drawn.
+// Warps the kept image. False if the layer must be drawn.
 bool LayerReuse::Impl::warpKept(const LayerDraw& how, LayerImage& image) {
   const auto found = kept_images.find(objects);
   if (found == kept_images.end() || !isUsable(found->second, how)) {
@@ -274,7 +274,7 @@ void LayerReuse::Impl::drawAnew(std::span<const ObjectId> given, const LayerDraw
   }
 }
 
-// What was just drawn.
+// Keeps the image that was just drawn.
 void LayerReuse::Impl::keep(bool peel) {
   KeptImage& kept = kept_images[objects];
   kept.view = guarded;
@@ -331,8 +331,8 @@ void LayerReuse::image(std::span<const ObjectId> objects, const LayerDraw& how, 
   const std::uint64_t triangles = r.triangles();
   ++r.stats.layers;
   r.stats.triangles += triangles;
-  // Points are told from the eye: from elsewhere on a lens they are seen elsewhere. Images are kept by their
-  // objects, not by an order of these.
+  // Points are projected from the eye, so images from other points of the lens are not reused. Images are
+  // kept by their objects without an order, so those drawn in a given order are not reused either.
   const bool is_reusable =
       is_placed && !how.depths && !how.as_given && how.lens.right == 0.0 && how.lens.up == 0.0;
   if (is_reusable && r.warpKept(how, image)) {

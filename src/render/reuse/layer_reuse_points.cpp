@@ -8,13 +8,13 @@
 namespace sightline::render {
 namespace {
 
-constexpr std::size_t kSidePlanes = 4;  // of a frustum, before its near and its far plane
+constexpr std::size_t kSidePlanes = 4;  // a frustum's first planes; near and far follow
 
 struct Corner {
   Vec3d position;
 };
 
-// The plane in the space of the stored positions.
+// The plane in the space that m maps from.
 Plane pulledBack(const Plane& plane, const Mat4& m) {
   const auto column = [&](int i) { return Vec3d(m(0, i), m(1, i), m(2, i)); };
   return {{dot(plane.normal, column(0)), dot(plane.normal, column(1)), dot(plane.normal, column(2))},
@@ -34,7 +34,7 @@ struct Bounds {
   }
 };
 
-// All corners are beyond one of the planes.
+// Whether all corners lie beyond one of the frustum's planes.
 bool isBeyond(std::span<const Vec3d> corners, const Mat4& m, const Frustum& frustum) {
   return std::any_of(frustum.planes.begin(), frustum.planes.end(), [&](const Plane& plane) {
     return std::all_of(corners.begin(), corners.end(),
@@ -75,7 +75,7 @@ std::vector<std::size_t> extremesOf(std::span<const Vec3d> points) {
         static_cast<std::size_t>(std::max_element(points.begin(), points.end(), nearer) - points.begin()));
   }
   if (chosen.empty() && !points.empty()) {
-    chosen.push_back(0);  // all in one place
+    chosen.push_back(0);  // all points lie in one place
   }
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
@@ -95,7 +95,7 @@ std::optional<PicturePoint> PictureView::find(const Vec3d& point_scene) const {
   const double divisor = view_.orthographic ? 1.0 : depth;
   const PicturePoint at{0.5 * width_ + scale_x_ * dot(relative, view_.right) / divisor,
                         0.5 * height_ - scale_y_ * dot(relative, view_.up) / divisor};
-  // What was clipped at these planes comes back a little before or behind them.
+  // Corners that were clipped at these planes lie a little before or behind them.
   constexpr double kSlack = 1e-9;
   const bool is_between = depth >= view_.near * (1.0 - kSlack) && depth <= view_.far * (1.0 + kSlack);
   if (!is_between || !std::isfinite(at.x) || !std::isfinite(at.y)) {
@@ -213,7 +213,7 @@ void LayerShapes::addClipped(ObjectId object, const Mat4& scene_from_stored, con
     layer.cut[kRightSide] |= at->x > view.width_ - kAtSide;
     layer.cut[kTopSide] |= at->y < kAtSide;
     layer.cut[kBottomSide] |= at->y > view.height_ - kAtSide;
-    // Planes are flat in these three: position in the picture, and reciprocal depth.
+    // In these three coordinates, place in the picture and reciprocal depth, planes stay planes.
     const double depth = dot(point - view.view_.eye, view.view_.forward);
     seen.emplace_back(at->x, at->y, view.view_.orthographic ? -depth : 1.0 / depth);
     corners[kept++] = corner;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Characteristic points of layers: where they are told from the scene, and where they are seen.
+// Characteristic points of layers: points of their objects, and where a picture shows them.
 
 #include <array>
 #include <cstdint>
@@ -15,14 +15,15 @@
 
 namespace sightline::render {
 
-// A view with the picture that it makes; rows from the top.
+// A view and the size of its picture in pixels; rows count from the top.
 class PictureView {
  public:
   PictureView() = default;
   PictureView(const View& view, std::uint32_t width, std::uint32_t height);
 
   const Frustum& frustum() const { return frustum_; }
-  // Where a point of the scene is seen; none: before the near plane, beyond the far one, or nowhere.
+  // Where the picture shows a point of the scene. None where the point lies before the near plane or beyond
+  // the far plane, or where its place is not finite.
   std::optional<PicturePoint> find(const Vec3d& point_scene) const;
 
  private:
@@ -38,7 +39,7 @@ struct CharacteristicPoint {
   Vec3d position;  // as stored
 };
 
-// What is known of a layer when its picture is drawn.
+// What is kept of a layer beside its image when the image is drawn.
 struct LayerPoints {
   std::vector<CharacteristicPoint> points;
   std::vector<PicturePoint> seen_at;  // one a point
@@ -47,16 +48,17 @@ struct LayerPoints {
   bool cut_in_depth = false;          // something is before the near plane or beyond the far one
 };
 
-// The shapes of a scene's objects.
+// The triangles of a scene's objects, with a box and some extreme vertices of each. Immutable.
 class LayerShapes {
  public:
   explicit LayerShapes(const SceneView& scene);
 
   std::size_t objects() const { return shapes_.size(); }
   std::uint64_t triangles(ObjectId object) const { return shapes_[object.value].index_count / 3; }
-  // Some of the object's surface is inside the frustum. scene_from_stored: finite.
+  // Whether some of the object's surface lies inside the frustum. Precondition: scene_from_stored is finite.
   bool isSeen(ObjectId object, const Mat4& scene_from_stored, const Frustum& frustum) const;
-  // The points of the objects in a picture; transforms: one an object of the scene, finite.
+  // The characteristic points that a picture shows of these objects. scene_from_stored has one finite
+  // transform for each object of the scene.
   LayerPoints pointsOf(std::span<const ObjectId> objects, std::span<const Mat4> scene_from_stored,
                        const PictureView& view) const;
 
@@ -66,12 +68,12 @@ class LayerShapes {
     std::array<Vec3d, 8> corners;  // of the box
     std::vector<Vec3d> extremes;   // vertices farthest in some directions
   };
-  // Clips each triangle by the frustum, its sides first; as stored. visit(corners that are left, was it cut
-  // in depth) returns whether to go on.
+  // Clips each triangle, in stored coordinates, by the frustum: by its sides first, then by near and far.
+  // visit(corners, cut_in_depth) gets what is left of a triangle and returns whether to go on.
   template <typename Visit>
   void clipTriangles(const Shape& shape, const Mat4& scene_from_stored, const Frustum& frustum,
                      Visit&& visit) const;
-  // Of an object that is partly in the picture.
+  // Adds the points of an object that is only partly in the picture.
   void addClipped(ObjectId object, const Mat4& scene_from_stored, const PictureView& view,
                   LayerPoints& layer) const;
 
@@ -80,8 +82,9 @@ class LayerShapes {
   std::vector<Shape> shapes_;
 };
 
-// Numbers of points that are farthest of all in one of 26 directions, which are those from the middle of the
-// points' box to its corners and to the middles of its edges and sides. Ascending, each once.
+// The indices of the points that lie farthest in one of 26 directions: those from the middle of the points'
+// box to its corners, to the middles of its edges and to the middles of its sides. Ascending, each index
+// once.
 std::vector<std::size_t> extremesOf(std::span<const Vec3d> points);
 
 }  // namespace sightline::render

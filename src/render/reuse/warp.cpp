@@ -21,7 +21,7 @@ PicturePoint meanOf(std::span<const PicturePoint> points) {
   return {sum.x / count, sum.y / count};
 }
 
-// To coordinates of about 1 round the middle of the points, in which sums of squares are well conditioned.
+// Takes points to coordinates of about 1 around their middle, in which sums of squares are well conditioned.
 struct Normalisation {
   PicturePoint middle;
   double scale = 1.0;
@@ -40,13 +40,13 @@ struct Normalisation {
   Warp backward() const { return {{1 / scale, 0, middle.x, 0, 1 / scale, middle.y, 0, 0, 1}}; }
 };
 
-constexpr std::size_t kUnknowns = 8;  // of a projective map whose last element is 1
+constexpr std::size_t kUnknowns = 8;  // a projective map's elements, the last one being 1
 
 // Normal equations of linear least squares, solved by elimination with pivots.
 struct LeastSquares {
   std::array<std::array<double, kUnknowns + 1>, kUnknowns> sums{};
 
-  // row . unknowns = value
+  // Adds the equation row . unknowns = value.
   void add(const std::array<double, kUnknowns>& row, double value) {
     for (std::size_t i = 0; i < kUnknowns; ++i) {
       for (std::size_t j = 0; j < kUnknowns; ++j) {
@@ -56,7 +56,7 @@ struct LeastSquares {
     }
   }
 
-  // Wishes the unknowns to be near these, for what the rows do not say.
+  // Adds the equations unknowns = wished with this weight, to settle what the rows leave open.
   void prefer(const std::array<double, kUnknowns>& wished, double weight) {
     for (std::size_t i = 0; i < kUnknowns; ++i) {
       sums[i][i] += weight;
@@ -90,8 +90,8 @@ struct LeastSquares {
   }
 };
 
-// Multiplied by the divisor, x' = (a x + b y + c) / (g x + h y + 1) is linear in the unknowns; divided by the
-// divisor of the round before it is, but for the change of the divisor, the distance in the picture.
+// Multiplied by its divisor, x' = (a x + b y + c) / (g x + h y + 1) is linear in the unknowns. Divided by the
+// divisor of the round before, the residual is the distance in the picture, up to the change of the divisor.
 LeastSquares projectiveEquations(std::span<const PicturePoint> from, std::span<const PicturePoint> to,
                                  const Normalisation& from_unit, const Normalisation& to_unit,
                                  const Warp& before) {
@@ -147,9 +147,9 @@ std::optional<Warp> fitAffine(std::span<const PicturePoint> from, std::span<cons
     return std::nullopt;
   }
   const PicturePoint from_middle = meanOf(from), to_middle = meanOf(to);
-  // The linear part is the identity and what must be added to it.
+  // Solves for what must be added to the identity.
   double xx = 0, xy = 0, yy = 0;              // sums of products of `from`
-  double dxx = 0, dxy = 0, dyx = 0, dyy = 0;  // of what is to be added with `from`
+  double dxx = 0, dxy = 0, dyx = 0, dyy = 0;  // sums of products of `to - from` with `from`
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double x = from[i].x - from_middle.x, y = from[i].y - from_middle.y;
     const double dx = to[i].x - to_middle.x - x, dy = to[i].y - to_middle.y - y;
@@ -161,7 +161,7 @@ std::optional<Warp> fitAffine(std::span<const PicturePoint> from, std::span<cons
     dyx += dy * x;
     dyy += dy * y;
   }
-  // What points a thousandth of a pixel apart say is not listened to.
+  // Keeps points within a thousandth of a pixel from determining the map.
   const double ridge = 1e-6 + 1e-12 * (xx + yy);
   xx += ridge;
   yy += ridge;
@@ -206,7 +206,7 @@ double largestDeviation(const Warp& warp, std::span<const PicturePoint> from,
   for (std::size_t i = 0; i < from.size(); ++i) {
     const PicturePoint p = warp(from[i]);
     const double deviation = std::hypot(p.x - to[i].x, p.y - to[i].y);
-    // Not a number counts as far.
+    // NaN counts as infinitely far.
     largest = deviation <= largest       ? largest
               : std::isfinite(deviation) ? std::max(largest, deviation)
                                          : std::numeric_limits<double>::infinity();
@@ -220,7 +220,7 @@ double largestStretch(const Warp& warp, PicturePoint at) {
   const auto& m = warp.m;
   const double a = (m[0] - p.x * m[6]) / w, b = (m[1] - p.x * m[7]) / w;
   const double c = (m[3] - p.y * m[6]) / w, d = (m[4] - p.y * m[7]) / w;
-  // Singular values of (a b; c d): their sum and their difference.
+  // The sum and the difference of the singular values of (a b; c d).
   const double sum = std::hypot(a + d, c - b), difference = std::hypot(a - d, b + c);
   const double largest = 0.5 * (sum + difference), least = 0.5 * std::abs(sum - difference);
   const double stretch = std::max(largest, 1.0 / least);

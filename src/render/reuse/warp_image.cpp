@@ -10,7 +10,7 @@ bool isTransparent(const ShapedPixel& p) {
   return p == ShapedPixel{};
 }
 
-// The part of the rectangle that has anything in it.
+// The bounding rectangle of the pixels within `within` that are not transparent.
 PictureRect coveredIn(const LayerImage& picture, const PictureRect& within) {
   PictureRect covered{within.right, within.bottom, within.left, within.top};
   for (std::uint32_t y = within.top; y < within.bottom; ++y) {
@@ -32,7 +32,7 @@ PictureRect coveredIn(const LayerImage& picture, const PictureRect& within) {
   return covered;
 }
 
-// The picture goes on beyond sides that are cut.
+// The pixel at (x, y): beyond sides that are cut the picture's outermost one, beyond the others transparent.
 ShapedPixel pixelBeyond(const LayerImage& picture, const SideFlags& cut, std::int64_t x, std::int64_t y) {
   const std::int64_t right = std::int64_t{picture.width} - 1, bottom = std::int64_t{picture.height} - 1;
   if ((x < 0 && !cut[kLeftSide]) || (x > right && !cut[kRightSide]) || (y < 0 && !cut[kTopSide]) ||
@@ -50,9 +50,9 @@ ShapedPixel mix(const ShapedPixel& a, const ShapedPixel& b, float t) {
           a.alpha * s + b.alpha * t};
 }
 
-// Of coordinates in which the sprite's pixel (i, j) has its centre at (i, j).
+// Samples the sprite in coordinates in which its pixel (i, j) has its centre at (i, j).
 ShapedPixel bilinear(const Sprite& sprite, double x, double y) {
-  // Also false where they are no numbers.
+  // The comparisons are also false for NaN.
   if (!(x >= 0.0 && y >= 0.0 && x <= sprite.width - 1.0 && y <= sprite.height - 1.0)) {
     return {};
   }
@@ -65,7 +65,8 @@ ShapedPixel bilinear(const Sprite& sprite, double x, double y) {
   return mix(mix(upper[0], upper[1], tx), mix(lower[0], lower[1], tx), ty);
 }
 
-// Whole pixels of the target that the sprite may touch: all of it where the map tears.
+// The pixels of the target that the sprite may touch: all of them if the warp is not defined all over the
+// sprite.
 PictureRect touchedBy(const Sprite& sprite, const Warp& picture_from_target, const LayerImage& target) {
   const PictureRect all{0, 0, target.width, target.height};
   const std::optional<Warp> target_from_picture = inverseOf(picture_from_target);
@@ -85,8 +86,8 @@ PictureRect touchedBy(const Sprite& sprite, const Warp& picture_from_target, con
     top = std::min(top, p.y);
     bottom = std::max(bottom, p.y);
   }
-  const auto clamped = [](double v, std::uint32_t most) {
-    return static_cast<std::uint32_t>(std::clamp(v, 0.0, static_cast<double>(most)));
+  const auto clamped = [](double v, std::uint32_t end) {
+    return static_cast<std::uint32_t>(std::clamp(v, 0.0, static_cast<double>(end)));
   };
   return {clamped(std::floor(left) - 1.0, all.right), clamped(std::floor(top) - 1.0, all.bottom),
           clamped(std::ceil(right) + 1.0, all.right), clamped(std::ceil(bottom) + 1.0, all.bottom)};

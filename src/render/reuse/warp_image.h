@@ -1,6 +1,6 @@
 #pragma once
 
-// A picture's pixels that are not empty, and what they look like moved by a warp.
+// Crops a picture to the pixels that are not transparent, and resamples them through a warp.
 
 #include <cstdint>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace sightline::render {
 
-// Sides of a picture, from the left on clockwise.
+// The sides of a picture, clockwise from the left.
 enum PictureSide : std::size_t { kLeftSide, kTopSide, kRightSide, kBottomSide, kPictureSides };
 using SideFlags = std::array<bool, kPictureSides>;
 
@@ -21,21 +21,22 @@ struct PictureRect {
   bool empty() const { return left >= right || top >= bottom; }
 };
 
-// A rectangle of a picture with one more row and column of pixels on each side, whose pixels say what is
-// beyond it.
+// A rectangle of a picture with a margin of one pixel on each side. The margin holds what lies beyond the
+// rectangle.
 struct Sprite {
   std::int32_t left = -1, top = -1;     // of the picture, where the first pixel of the margin lies
   std::uint32_t width = 0, height = 0;  // with the margin
   std::vector<ShapedPixel> pixels;      // width * height; none: all transparent
 };
 
-// What there is in `within` of the picture (which may reach beyond it), cropped to what is not transparent.
-// What lies beyond the picture is taken to go on where that side is cut, otherwise to be transparent.
+// Crops the picture to the pixels within `within` that are not transparent; `within` may reach beyond the
+// picture. Beyond a side in `cut` the picture is continued by its outermost pixels; beyond the other sides it
+// is transparent.
 void cropSprite(const LayerImage& picture, const PictureRect& within, const SideFlags& cut, Sprite& sprite);
 
-// The sprite where `picture_from_target` looks it up, by bilinear resampling: a target pixel's centre (x +
-// 0.5, y + 0.5) is mapped to the sprite's picture; where its divisor is not positive nothing is. target:
-// its width and height are given, all else is written.
+// Draws the sprite through a warp, by bilinear resampling: each target pixel's centre (x + 0.5, y + 0.5) is
+// mapped to the sprite's picture. Pixels where the warp's divisor is not positive become transparent. target
+// has its width and height set; its pixels are overwritten.
 void drawWarped(const Sprite& sprite, const Warp& picture_from_target, LayerImage& target);
 
 }  // namespace sightline::render

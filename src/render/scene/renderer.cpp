@@ -136,7 +136,7 @@ Image Renderer::readBack() const {
 
 std::uint64_t Renderer::countShowing(const View& view, std::span<const ObjectId> kept,
                                      std::span<const ObjectId> culled) {
-  // A few times the rounding of a float depth buffer and of its interpolation.
+  // Moves surfaces away by a few times the rounding of a float depth buffer and of its interpolation.
   constexpr float kDepthScale = 1.0f - 4e-6f;
   const GlContext::Current current(impl_->context);
   (void)impl_->timedDraw(view, kept);

@@ -16,7 +16,7 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 16);
 
-constexpr std::uint32_t kLargestRange = 0x7ffffff8u / 3u * 3u;  // of a signed count, whole triangles
+constexpr std::uint32_t kLargestRange = 0x7ffffff8u / 3u * 3u;  // whole triangles that a signed count holds
 
 Pass passOf(const Material& material) {
   switch (material.opacity) {
@@ -30,13 +30,13 @@ Pass passOf(const Material& material) {
   return Pass::kOpaque;
 }
 
-// A little above or below 1.
+// A factor a little above or below 1 that depends on the object's index.
 float tintOf(std::uint32_t object) {
   const std::uint32_t hash = (object * 2654435761u) >> 16;
   return 0.88f + 0.24f * static_cast<float>(hash & 0xffu) / 255.0f;
 }
 
-// Square root of the linear colour, made lighter or darker by the tint.
+// The square root of the linear colour, made lighter or darker by the tint.
 std::array<std::uint8_t, 4> colorOf(const Material& material, float tint) {
   std::array<std::uint8_t, 4> color{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -48,7 +48,7 @@ std::array<std::uint8_t, 4> colorOf(const Material& material, float tint) {
   return color;
 }
 
-// One corner of an object becomes one vertex, however many triangles share it.
+// Makes one vertex of each corner of an object, however many triangles share it.
 class VertexBuilder {
  public:
   explicit VertexBuilder(const SceneView& scene) : scene_(scene), latest_(scene.positions.size()) {
@@ -73,7 +73,7 @@ class VertexBuilder {
     std::uint32_t vertex = 0;
   };
   SceneView scene_;
-  std::vector<Latest> latest_;  // of each position
+  std::vector<Latest> latest_;  // one for each position: the last object that used it, and its vertex
   std::vector<Vertex> vertices_;
 };
 
@@ -93,7 +93,7 @@ void uploadTriangles(std::span<const Vertex> vertices, std::span<const std::uint
                GL_STATIC_DRAW);
 }
 
-// A buffer of RGBA8 colours that shaders read as a texture.
+// Makes a buffer of RGBA8 colours and a texture by which shaders read it.
 std::array<GLuint, 2> makeColorTexture() {
   std::array<GLuint, 2> buffer_texture{};
   glGenBuffers(1, &buffer_texture[0]);

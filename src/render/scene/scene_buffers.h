@@ -1,10 +1,10 @@
 #pragma once
 
-// The scene's triangles in OpenGL: one vertex buffer, one index buffer, one colour an object.
+// The scene's triangles in OpenGL: one vertex buffer, one index buffer, one colour for each object.
 //
-// Triangles lie in the index buffer by pass, then by object, so that any ascending list of objects becomes
-// few contiguous ranges a pass. Vertices carry the number of their object (a position shared by two objects
-// is stored twice): no state changes between objects.
+// Triangles lie in the index buffer by pass, then by object, so that an ascending list of objects becomes few
+// contiguous ranges in each pass. Vertices carry the index of their object, so no state changes between
+// objects; a position that two objects share is stored twice.
 
 #include <epoxy/gl.h>
 
@@ -18,7 +18,8 @@
 
 namespace sightline::render {
 
-// In the order of drawing. Blended triangles of both kinds of sidedness lie together: their order matters.
+// The passes in the order of drawing. Blended triangles share one pass, single-sided or not, because their
+// order matters.
 enum class Pass : std::uint8_t {
   kOpaque,
   kOpaqueDoubleSided,
@@ -28,7 +29,7 @@ enum class Pass : std::uint8_t {
 };
 inline constexpr std::size_t kPassCount = 5;
 
-// Contiguous ranges of the index buffer, as glMultiDrawElements takes them.
+// Contiguous ranges of the index buffer in the form that glMultiDrawElements takes.
 class RangeList {
  public:
   void clear();
@@ -45,7 +46,7 @@ class RangeList {
 
 class SceneBuffers {
  public:
-  // Precondition of all functions: the context is current. tints: each object is a little lighter or darker
+  // Precondition of all functions: the context is current. tints makes each object a little lighter or darker
   // than its material.
   static Result<SceneBuffers> create(const SceneView& scene, bool tints = true);
 
@@ -53,12 +54,12 @@ class SceneBuffers {
     std::uint64_t triangles = 0;
     std::uint32_t ranges = 0;
   };
-  // Sorts the objects' triangles by pass; drawPass() then draws them. mirrored: of each object, not 0 where a
-  // transform turns its triangles' fronts round; empty where none does.
+  // Sorts the objects' triangles by pass; drawPass() then draws them. mirrored has one entry for each object
+  // of the scene, not 0 if a transform reverses the winding of its triangles; it is empty if none does.
   Drawn select(std::span<const ObjectId> objects, std::span<const std::uint8_t> mirrored = {});
   void drawPass(Pass pass) const;
   void drawAll() const;
-  std::uint64_t blendedTriangles() const { return blended_triangles_; }  // of those selected
+  std::uint64_t blendedTriangles() const { return blended_triangles_; }  // among the selected ones
 
   // Binds the vertices and one of the two colour buffers (texture unit 0).
   void bind() const;
@@ -72,7 +73,7 @@ class SceneBuffers {
     Pass pass = Pass::kOpaque;
     bool double_sided = false;
   };
-  // Which sides OpenGL leaves away, by the stored order of vertices.
+  // Which sides of triangles OpenGL discards, by the stored order of vertices.
   enum class Cull : std::uint8_t { kNothing, kBacks, kFronts };
   struct BlendedRun {
     RangeList ranges;
@@ -83,7 +84,8 @@ class SceneBuffers {
 
   std::vector<ObjectRange> ranges_;  // one an object
   std::array<RangeList, kPassCount> selected_, mirrored_;
-  std::vector<BlendedRun> blended_;  // of equal culling each; kept between frames for their memory
+  std::vector<BlendedRun>
+      blended_;  // runs of equal culling; more than blended_count_ are kept for their memory
   std::size_t blended_count_ = 0;
   std::uint64_t blended_triangles_ = 0;
   std::uint32_t index_count_ = 0;

@@ -10,8 +10,8 @@
 namespace sightline::render {
 namespace {
 
-// What a lens point d to the side sees, sheared by d * z / focus: x' = x - d at depth z is drawn where
-// x' + d * z / focus is, which at the focus distance is x.
+// Shears what a lens point at the offset d sees: x' = x - d at depth z is drawn at x' + d * z / focus, which
+// at the focus distance is x.
 void shear(Mat4& clip_from_relative, const View& view, const LensPoint& lens) {
   const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   const double x = lens.right / lens.focus / (half_height * view.aspect);
@@ -46,14 +46,14 @@ Vec3d lensOffset(const View& view, const LensPoint& lens) {
   return view.right * lens.right + view.up * lens.up;
 }
 
-// In double precision the eye's translation cancels to rounding, so single precision never sees large
+// Computed in double precision: the eye's translation cancels, so that single precision never sees large
 // coordinates.
 Mat4 reversedClipFromRelative(const View& view, const LensPoint& lens) {
   Mat4 scene_from_relative;
   scene_from_relative(0, 3) = view.eye.x;
   scene_from_relative(1, 3) = view.eye.y;
   scene_from_relative(2, 3) = view.eye.z;
-  Mat4 reverse;  // z' = (w - z) / 2
+  Mat4 reverse;  // maps z to (w - z) / 2
   reverse(2, 2) = -0.5;
   reverse(2, 3) = 0.5;
   Mat4 clip_from_relative = reverse * (clipFromScene(view) * scene_from_relative);
@@ -116,7 +116,7 @@ Result<SkyProgram> makeSkyProgram(const char* fragment) {
 }
 
 void drawSkyBehind(const SkyProgram& sky, const View& view) {
-  // Orthographic rays are parallel; a mild gradient all the same.
+  // Orthographic rays are parallel; their sky still gets a mild gradient.
   const double half_height = view.orthographic ? 0.3 : view.tan_half_fovy;
   const Vec3f forward(view.forward);
   const Vec3f right(view.right * (half_height * view.aspect));

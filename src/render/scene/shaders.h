@@ -2,14 +2,14 @@
 
 // All shaders of the reference renderer and of layers, GLSL 4.30.
 //
-// Precision: positions are floats in scene space; the eye comes as two floats a coordinate (high + low), so
-// that what is near the eye keeps the stored precision wherever the scene lies. Depth runs from 1 at the near
-// plane to 0 at the far one, which spends a float's precision evenly over distance.
+// Precision: positions are floats in scene space. The eye comes as two floats for each coordinate (high +
+// low), so that surfaces near the eye keep the stored precision wherever the scene lies. Depth runs from 1 at
+// the near plane to 0 at the far plane, which spends a float's precision evenly over distance.
 
 namespace sightline::render {
 
-// One vertex a corner of an object. Colours come from a buffer, one an object, as square roots (which spends
-// eight bits better); the plan view puts states in their place.
+// Each corner of an object is one vertex. Colours come from a buffer with one entry for each object, as
+// square roots (which spends eight bits better). The plan view puts colours of states in their place.
 inline constexpr const char* kSceneVertex = R"(#version 430 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in uint object;
@@ -28,9 +28,10 @@ void main() {
 }
 )";
 
-// The same for objects that move: each is placed by three rows of scene_from_stored less the eye, applied to
-// positions relative to a pivot, which comes in two floats a coordinate too. The pivot is where the eye lies
-// among the stored positions, so that here as well what is near the eye keeps the stored precision.
+// The vertex shader for objects that move. Each object is placed by three rows of scene_from_stored, less the
+// eye, applied to positions relative to a pivot, which also comes as two floats for each coordinate. The
+// pivot is the eye's place among the stored positions, so that surfaces near the eye keep the stored
+// precision.
 inline constexpr const char* kMovedSceneVertex = R"(#version 430 core
 layout(location = 0) in vec3 position;
 layout(location = 1) in uint object;
@@ -58,8 +59,8 @@ void main() {
 }
 )";
 
-// Sun, sky and a little difference between walls on flat faces; haze with distance. Linear light; its square
-// root is what pictures of eight bits hold.
+// Light and shade of flat faces: sun, sky and a small difference between walls, then haze by distance. In
+// linear light; pictures of eight bits hold its square root.
 #define SIGHTLINE_SHADE                                                                                  \
   "in vec3 relative;\n"                                                                                  \
   "flat in vec4 color;\n"                                                                                \
@@ -80,7 +81,7 @@ void main() {
 inline constexpr const char* kSceneFragment =
     "#version 430 core\n" SIGHTLINE_SHADE "void main() { result = shade(); }\n";
 
-// Foliage and fences: holes in a checkerboard of pixels, so that half of what is behind shows.
+// Alpha-tested surfaces (foliage, fences): every second pixel, as on a checkerboard, is a hole.
 inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTLINE_SHADE
                                                     "void main() {\n"
                                                     "  ivec2 p = ivec2(gl_FragCoord.xy);\n"
@@ -88,11 +89,11 @@ inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTL
                                                     "  result = shade();\n"
                                                     "}\n";
 
-// Layers: linear light, colour times opacity, to float pictures.
+// Layers are drawn to float pictures in linear light, colour multiplied by opacity.
 inline constexpr const char* kLayerOpaqueFragment =
     "#version 430 core\n" SIGHTLINE_SHADE "void main() { result = vec4(linearLight(), 1.0); }\n";
 
-// The holes are whole pixels also where a pixel has several samples.
+// A hole is a whole pixel, however many samples the pixel has.
 inline constexpr const char* kLayerAlphaTestedFragment = "#version 430 core\n" SIGHTLINE_SHADE
                                                          "uniform int samples;\n"
                                                          "void main() {\n"
@@ -105,7 +106,7 @@ inline constexpr const char* kLayerBlendedFragment =
     "#version 430 core\n" SIGHTLINE_SHADE
     "void main() { result = vec4(linearLight() * color.a, color.a); }\n";
 
-// Peeling: only what is nearer than the depths in `behind` (larger is nearer).
+// Depth peeling discards fragments that are not nearer than the depth in `behind`. Greater depths are nearer.
 #define SIGHTLINE_BEHIND        \
   "uniform sampler2D behind;\n" \
   "bool peeled() { return !(gl_FragCoord.z > texelFetch(behind, ivec2(gl_FragCoord.xy), 0).r); }\n"
@@ -125,8 +126,8 @@ inline constexpr const char* kPeelColorFragment = "#version 430 core\n" SIGHTLIN
 
 inline constexpr const char* kNoColorFragment = "#version 430 core\nvoid main() {}\n";
 
-// One pixel from its samples: colours averaged, the nearest depth (the largest). To be headed by the version
-// and "const int samples = ...;".
+// Resolves the samples of a pixel: the mean of the colours and the nearest (greatest) depth. The caller puts
+// the version and "const int samples = ...;" before this text.
 inline constexpr const char* kResolveVertex = R"(#version 430 core
 void main() {
   gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
@@ -150,7 +151,7 @@ void main() {
 }
 )";
 
-// Background: a gradient by elevation.
+// The sky is a gradient by elevation.
 inline constexpr const char* kSkyVertex = R"(#version 430 core
 uniform vec3 forward, right, up;
 out vec3 direction;
@@ -175,7 +176,8 @@ inline constexpr const char* kLinearSkyFragment =
     SIGHTLINE_SKY "void main() { vec3 root = sky(); result = vec4(root * root, 1.0); }\n";
 #undef SIGHTLINE_SKY
 
-// Plan: state colours, a little light on slopes; what the cut lays open (backs of faces) is darker.
+// Plan views show colours of states with a little light on slopes. Backs of faces, which the cut lays open,
+// are darker.
 inline constexpr const char* kPlanFragment = R"(#version 430 core
 in vec3 relative;
 flat in vec4 color;
@@ -189,8 +191,8 @@ void main() {
 }
 )";
 
-// Walls seen from above have no area: draws each steep triangle as a line of some width (its longest side,
-// seen from above, covers the others).
+// A wall seen from above has no area, so each steep triangle is drawn as a line of some width along its
+// longest side, which covers the other two.
 inline constexpr const char* kPlanWallGeometry = R"(#version 430 core
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 4) out;
@@ -233,7 +235,7 @@ out vec4 result;
 void main() { result = vec4(wall_color.rgb * 0.62, 1.0); }
 )";
 
-// Lines and polygons drawn over a plan, given in clip space.
+// Lines and polygons over a plan view, given in clip space.
 inline constexpr const char* kOverlayVertex = R"(#version 430 core
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec4 vertex_color;
