@@ -73,7 +73,7 @@ bool DecimalGrid::round(const PagePath& path, bool ring, RoundedPath& rounded) c
   while (rounded.closed && rounded.points.size() > 1 && rounded.points.front() == rounded.points.back()) {
     rounded.points.pop_back();
   }
-  // A closed stroke that became a line back and forth.
+  // Rounding may leave two points of a closed stroke: a line back and forth.
   rounded.closed = rounded.closed && rounded.points.size() > 2;
   return rounded.points.size() > (ring ? 2u : 1u);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the writers of drawings share: rounded coordinates, colours, names.
+// Rounded coordinates, colours and names, for all writers of drawings.
 
 #include <array>
 #include <cstdint>
@@ -20,40 +20,41 @@ struct RoundedPoint {
 };
 
 struct RoundedPath {
-  std::vector<RoundedPoint> points;  // no two in a row are the same; if closed, the first is not repeated
+  std::vector<RoundedPoint> points;  // neighbours differ; if closed, the first is not repeated
   bool closed = false;
 };
 
-// Coordinates with as many decimals as a page needs: two, and on pages below 100 units four digits in all.
+// Coordinates with as many decimals as the page needs: two; on pages below 100 units four digits in all.
 class DecimalGrid {
  public:
   explicit DecimalGrid(const Drawing& drawing);
 
-  std::int64_t round(double value) const;  // of no finite one: 0
-  // As a decimal number without superfluous digits: "12", "-.5".
+  std::int64_t round(double value) const;  // in steps of the grid; 0 if the value is not finite
+  // Appends a decimal number without superfluous digits: "12", "-.5".
   void append(std::string& text, std::int64_t steps) const;
   std::string text(double value) const;
-  // Of a length: what is not zero is at least one step.
+  // The text of a length. A length that is not zero is at least one step.
   std::string lengthText(double value) const;
 
-  // ring: closed without a repeated point. false: nothing is left of it, or a point is not finite.
+  // A ring is closed and does not repeat its first point. False if nothing is left of the path, or if a point
+  // is not finite.
   bool round(const PagePath& path, bool ring, RoundedPath& rounded) const;
 
  private:
   int decimals_ = 2;
-  std::int64_t steps_ = 100;  // a unit
+  std::int64_t steps_ = 100;  // steps for each unit
 };
 
-// "#rrggbb" as three shares of 255; none for any other text.
+// Red, green and blue (0 to 255) of "#rrggbb"; none for any other text.
 std::optional<std::array<int, 3>> parseColour(std::string_view text);
 
-// A style that can be written: colours and width that are none are replaced by the defaults.
+// The style with invalid colours and an invalid width replaced by the defaults.
 DrawingStyle usableStyle(const DrawingStyle& style);
 
-// The object's name, or "object 12" where it has none.
+// The object's name, or "object 12" if it has none.
 std::string nameOf(const DrawingObject& object);
 
-// Whether the painter's form: some object has an outline.
+// Whether some object has an outline, which is so in the painter's form.
 bool hasOutlines(const Drawing& drawing);
 
 }  // namespace sightline::drawing

@@ -23,16 +23,16 @@ double angleBetween(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// A face at an edge. Turned as if it were wound from a to b, so that two faces of one flat surface, on either
-// side of the edge, have opposite normals, and two that lie on one another have the same.
+// A face at an edge, turned as if it were wound from a to b: two faces of one flat surface, on either side of
+// the edge, have opposite normals, and two that lie on one another have the same normal.
 struct Wing {
   Vec3d normal;           // unit
-  double tilt_rad = 0.0;  // by how much rounding may have turned it
-  int side = 0;           // of the edge in the picture: 1 left, -1 right, 0 edge on
+  double tilt_rad = 0.0;  // the angle by which rounding may have turned the normal
+  int side = 0;           // the face's side of the edge in the picture: 1 left, -1 right, 0 edge on
   bool drawn = false;
 };
 
-// All faces of an edge, those that lie on one another taken as one.
+// The faces of an edge, with those that lie on one another merged.
 class Fan {
  public:
   void add(const Wing& wing) {
@@ -71,7 +71,7 @@ class Fan {
     return count_ == 2 &&
            angleBetween(wings_[0].normal, -wings_[1].normal) <= wings_[0].tilt_rad + wings_[1].tilt_rad;
   }
-  // By how much any two of them differ from lying flat; negative: there is one alone.
+  // The largest angle by which two of the faces differ from lying flat; negative if there is one face only.
   double sharpestFold() const {
     double sharpest = -1e9;
     for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {

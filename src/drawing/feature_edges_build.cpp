@@ -7,12 +7,12 @@
 namespace sightline::drawing {
 namespace {
 
-// Corners are rounded to single precision by up to 2^-24 of their largest coordinate, an edge and a corner on
-// it together by some 2^-22.
+// Corners are rounded to single precision by up to 2^-24 of their largest coordinate, so the distance between
+// an edge and a corner on it is off by some 2^-22.
 constexpr double kPlaceRounding = 0x1p-21;
-constexpr std::size_t kLeaf = 8;  // of the tree of corners
+constexpr std::size_t kLeaf = 8;  // corners in a leaf of the k-d tree
 
-// Equal for equal places, -0 taken as 0, and ordered also where coordinates are not numbers.
+// A key that is equal for equal places (-0 counts as 0) and that orders NaN too.
 std::array<std::uint32_t, 3> placeKey(const Vec3f& p) {
   return {std::bit_cast<std::uint32_t>(p.x + 0.0f), std::bit_cast<std::uint32_t>(p.y + 0.0f),
           std::bit_cast<std::uint32_t>(p.z + 0.0f)};
@@ -34,7 +34,7 @@ void EdgeBuilder::add(const Object& object, FeatureEdges& edges) {
   store(edges);
 }
 
-// Sets stands_for_, corners_ and the tolerance.
+// Merges corners at the same place: sets stands_for_, corners_ and tolerance_.
 void EdgeBuilder::weld(std::span<const std::uint32_t> indices) {
   corners_.assign(indices.begin(), indices.end());
   std::sort(corners_.begin(), corners_.end());
@@ -75,8 +75,8 @@ void EdgeBuilder::addHalfEdge(std::uint32_t from, std::uint32_t to, std::uint32_
   half_edges_.push_back({std::min(from, to), std::max(from, to), first_index, from < to});
 }
 
-// Triangles thinner than the rounding of their corners have no plane. Without them their neighbours meet in a
-// T-junction.
+// Whether a triangle is thicker than the rounding of its corners; a thinner one has no plane. If it is left
+// out, its neighbours form a T-junction.
 bool EdgeBuilder::hasArea(const std::array<std::uint32_t, 3>& corners) const {
   const Vec3d a = at(corners[0]);
   const Vec3d b = at(corners[1]);
@@ -85,7 +85,7 @@ bool EdgeBuilder::hasArea(const std::array<std::uint32_t, 3>& corners) const {
   return length(cross(b - a, c - a)) > tolerance_ * longest;
 }
 
-// Edges of one face alone end at the corners that lie on them.
+// Cuts edges that belong to one face alone at the corners that lie on them.
 void EdgeBuilder::cutAtCorners() {
   const auto alone = [this](std::size_t i) {
     const auto same = [&](const HalfEdge& other) {
@@ -120,7 +120,7 @@ void EdgeBuilder::cutAtCorners() {
   }
 }
 
-// Fills on_edge_, from a to b.
+// Sets on_edge_ to the corners that lie on the edge, from a to b.
 void EdgeBuilder::findCornersOn(const HalfEdge& edge) {
   if (tree_.empty()) {
     tree_ = corners_;
@@ -158,7 +158,7 @@ void EdgeBuilder::divide(std::span<std::uint32_t> corners, int axis) {
   divide(corners.subspan(half + 1), (axis + 1) % 3);
 }
 
-// Appends to near_ the corners of a part of the tree between low and high, and some others.
+// Appends to near_ all corners of a part of the tree that lie between low and high, and possibly others.
 void EdgeBuilder::findNear(std::span<const std::uint32_t> corners, int axis, const Vec3d& low,
                            const Vec3d& high) {
   if (corners.size() <= kLeaf) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Finds the edges of objects: corners at the same place are one, edges are cut at T-junctions.
+// Finds the edges of objects. Corners at the same place are merged and edges cut at T-junctions.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ class EdgeBuilder {
 
  private:
   struct HalfEdge {
-    std::uint32_t a = 0, b = 0;  // corners that stand for all at their place, a < b
+    std::uint32_t a = 0, b = 0;  // merged corners, a < b
     std::uint32_t first_index = 0;
     bool along = true;
   };
@@ -43,10 +43,10 @@ class EdgeBuilder {
 
   const SceneView& scene_;
   double tolerance_ = 0.0;                 // metres
-  std::vector<std::uint32_t> stands_for_;  // of all positions; set for the object's
-  std::vector<std::uint32_t> corners_;     // that stand for others, each once
-  // The same as a k-d tree: the middle one parts the others along x, their halves along y, and so on. Empty
-  // until it is needed.
+  std::vector<std::uint32_t> stands_for_;  // each position's merged corner; valid for the object's positions
+  std::vector<std::uint32_t> corners_;     // the object's merged corners, each once
+  // corners_ as an implicit k-d tree: the middle one divides the others along x, the halves are divided along
+  // y, and so on. Empty until it is needed.
   std::vector<std::uint32_t> tree_;
   std::vector<std::uint32_t> near_;
   std::vector<HalfEdge> half_edges_, cut_;

@@ -1,8 +1,8 @@
-// From an order of objects to a drawing of outlines and strokes.
+// Makes a drawing of outlines and strokes from an order of objects.
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, 1997, section 11: "Hidden-line drawings" from layers.
-// Differs from the paper in: outlines by the union of triangles; in the plot, which it does not have, the
-// arcs of the sort say which objects can hide a line at all.
+// Differs from the paper in: outlines are unions of triangles; there is a second form, the plot, in which the
+// arcs of the sort tell which objects can hide a line.
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kToleranceShare = 1.0 / 200000.0;  // of the page's height
 
-// Which objects may occlude each, from the arcs of an order.
+// The objects that may occlude each object, from the arcs of an order.
 class OccludersOf {
  public:
   OccludersOf(std::span<const LayerArc> arcs, std::size_t objects) {
@@ -36,7 +36,7 @@ class OccludersOf {
   std::span<const ObjectId> find(ObjectId object) const { return fronts_[object.value]; }
 
  private:
-  base::Rows<ObjectId> fronts_;  // by object
+  base::Rows<ObjectId> fronts_;  // one row per object
 };
 
 }  // namespace
@@ -54,15 +54,15 @@ std::uint64_t countStrokes(const Drawing& drawing) {
 struct HiddenLineRenderer::Impl {
   explicit Impl(const SceneView& of) : edges(of) {}
 
-  // false: nothing can be drawn.
+  // Prepares a drawing. False if nothing can be drawn.
   bool begin(const SceneView& scene, std::span<const std::string> names, const View& view,
              const DrawingSettings& settings, Drawing& drawing);
-  // The object with its name; strokes are what it itself and the occluders leave of its lines, but for what
-  // is drawn before.
+  // The object with its name and its strokes: the parts of its lines that neither it nor the occluders hide,
+  // without the pieces in `before`.
   DrawingObject drawLines(ObjectId object, DrawnPieces* before, Drawing& drawing);
   void drawOutline(DrawingObject& object);
-  void tellProgress();  // after each object
-  // Those that may show something.
+  void tellProgress();  // called after each object
+  // The objects of these parts that may show something.
   std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
   bool mayShow(ObjectId object) const { return object.value < shows.size() && shows[object.value]; }
 
@@ -73,14 +73,14 @@ struct HiddenLineRenderer::Impl {
   std::vector<LinePiece> pieces;
   std::vector<ObjectId> occluders;
 
-  // Of the drawing that is being made.
+  // State of the drawing that is being made.
   SceneView scene;
   std::span<const std::string> names;
   View view;
   const DrawingSettings* settings = nullptr;
   double tolerance = 0.0;
-  std::vector<bool> shows;                       // by object: it may
-  std::uint64_t objects = 0, objects_drawn = 0;  // in the order, that may
+  std::vector<bool> shows;                       // one for each object: whether it may show something
+  std::uint64_t objects = 0, objects_drawn = 0;  // objects of the order that may show something
 };
 
 bool HiddenLineRenderer::Impl::begin(const SceneView& scene_in, std::span<const std::string> names_in,
@@ -138,7 +138,7 @@ void HiddenLineRenderer::Impl::drawOutline(DrawingObject& object) {
   }
   outliner.outline(scene, object.object, object.outline);
   for (PagePath& ring : object.outline) {
-    // As a closed line, so that the last edge is simplified too.
+    // Closing the line lets the last edge be simplified too.
     ring.push_back(ring.front());
     simplify(ring, tolerance);
     ring.pop_back();

@@ -15,10 +15,10 @@ namespace {
 
 using Interval = LineIntervals::Interval;
 
-constexpr double kNoLength = 0x1p-40;  // of the page's height
-constexpr double kSpeck = 0x1p-18;     // of the page's height
+constexpr double kNoLength = 0x1p-40;  // shorter pieces have no length; a share of the page's height
+constexpr double kSpeck = 0x1p-18;     // the shortest piece that a pen draws; a share of the page's height
 
-// A line within the view.
+// The part of a line within the view, in camera space and on the screen.
 struct PageLine {
   HidableLine line;
   ScreenLine screen;
@@ -33,7 +33,7 @@ struct PageLine {
     const PagePoint q = at(to);
     return std::hypot(q.x - p.x, q.y - p.y);
   }
-  // The share in space of one on the screen.
+  // Converts a share of the line on the screen to a share in space.
   double inSpace(double on_screen) const {
     double share = on_screen;
     if (!view->view().orthographic) {
@@ -50,8 +50,8 @@ struct PageLine {
 struct HiddenLines::Impl {
   LineView view;
   double page_height = 0.0;
-  std::vector<Vec3d> camera;  // of all positions
-  std::vector<float> size;    // the largest coordinate of each
+  std::vector<Vec3d> camera;  // all positions in camera space
+  std::vector<float> size;    // the largest coordinate of each position
   HidingTriangles triangles;
   HidingTrees occluders;
   std::vector<HidingTrees::Item> items;
@@ -66,7 +66,7 @@ struct HiddenLines::Impl {
   void addPieces(const FeatureLine& line, const PageLine& placed, std::vector<LinePiece>& pieces);
 };
 
-// A tree over the occluders.
+// Builds a tree of the objects' trees and returns its root.
 std::uint32_t HiddenLines::Impl::gather(std::span<const ObjectId> objects) {
   items.clear();
   occluders.clear();
@@ -80,7 +80,7 @@ std::uint32_t HiddenLines::Impl::gather(std::span<const ObjectId> objects) {
   return occluders.add(items);
 }
 
-// false: nothing of it is in the view, or it has no length there.
+// Clips the line to the view. False if nothing is left, or if what is left has no length.
 bool HiddenLines::Impl::place(const FeatureLine& line, PageLine& placed) const {
   if (line.a >= camera.size() || line.b >= camera.size() || !isFinite(camera[line.a]) ||
       !isFinite(camera[line.b])) {
@@ -98,7 +98,7 @@ bool HiddenLines::Impl::place(const FeatureLine& line, PageLine& placed) const {
   return from.z > 0.0 && to.z > 0.0 && placed.pageLength(l.from, l.to) > kNoLength * page_height;
 }
 
-// Finds what of the line the occluders hide.
+// Sets `hidden` to the parts of the line that the occluders hide.
 void HiddenLines::Impl::hide(const PageLine& placed, std::uint32_t root) {
   hidden.clear();
   if (root == HidingTrees::kNoTree) {
@@ -115,13 +115,13 @@ void HiddenLines::Impl::hide(const PageLine& placed, std::uint32_t root) {
       hidden.add(from, to);
     }
   };
-  occluders.walk(root, placed.screen, known, [&](std::uint32_t object_root) {
-    triangles.trees().walk(object_root, placed.screen, known, test);
+  occluders.traverse(root, placed.screen, known, [&](std::uint32_t object_root) {
+    triangles.trees().traverse(object_root, placed.screen, known, test);
   });
 }
 
-// Sets stretches to what is hidden on the page: what no pen could draw between two hidden stretches, or
-// between one and an end, is hidden too; then stretches too short for a gap are not.
+// Sets `stretches` to what is hidden on the page. Visible specks between two hidden stretches, or between one
+// and an end, are hidden too; hidden stretches that are then too short for a gap are not.
 void HiddenLines::Impl::joinStretches(const PageLine& placed) {
   const double speck = kSpeck * page_height;
   const HidableLine& line = placed.line;

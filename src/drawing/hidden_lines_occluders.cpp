@@ -8,7 +8,7 @@
 namespace sightline::drawing {
 namespace {
 
-// Of the part beyond the near plane; none() if there is none.
+// The box of the triangle's part beyond the near plane; HidingBox::none() if there is none.
 HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
   HidingBox box = HidingBox::none();
   const double near = view.view().near;

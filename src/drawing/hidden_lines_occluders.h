@@ -14,7 +14,7 @@ namespace sightline::drawing {
 
 class HidingTriangles {
  public:
-  // Of all objects; a tree for each.
+  // Reads the triangles of all objects and builds a tree for each object.
   void set(const SceneView& scene, const LineView& view);
 
   std::size_t objects() const { return roots_.size(); }

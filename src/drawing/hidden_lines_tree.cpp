@@ -33,7 +33,7 @@ void HidingBox::widen() {
   reciprocal_depth += kWider * std::abs(reciprocal_depth);
 }
 
-bool ScreenLine::meets(const HidingBox& box, double& first, double& last) const {
+bool ScreenLine::mayBeHiddenBy(const HidingBox& box, double& first, double& last) const {
   first = 0.0;
   last = 1.0;
   if (!narrow(from.x - box.min_x, to.x - box.min_x, first, last) ||

@@ -1,7 +1,7 @@
 #pragma once
 
-// Trees over boxes on the screen, each with the reciprocal depth of the nearest thing in it: what may hide a
-// line is found without looking at what lies beside it or behind it.
+// Trees of boxes on the screen, each with the reciprocal depth of its nearest point: they find what may hide
+// a line without visiting what lies beside or behind the line.
 
 #include <array>
 #include <cstdint>
@@ -19,16 +19,16 @@ struct HidingBox {
   static HidingBox none();
   void extend(const ScreenPoint& point);
   void extend(const HidingBox& box);
-  void widen();  // by more than the rounding of its corners
+  void widen();  // grows the box by more than the rounding of its corners
 };
 
 // A line on the screen.
 struct ScreenLine {
   ScreenPoint from, to;
 
-  // The part of the line over the box, shares on the screen; false: none, or all of it is nearer than what is
-  // in the box.
-  bool meets(const HidingBox& box, double& first, double& last) const;
+  // Finds the part of the line over the box, as shares on the screen. False if there is none, or if all of it
+  // is nearer than everything in the box.
+  bool mayBeHiddenBy(const HidingBox& box, double& first, double& last) const;
 };
 
 class HidingTrees {
@@ -40,22 +40,22 @@ class HidingTrees {
   static constexpr std::uint32_t kNoTree = 0xffffffffu;
 
   void clear();
-  // Returns the new tree's root. items: reordered.
+  // Adds a tree and returns its root. Reorders items.
   std::uint32_t add(std::span<Item> items);
   const HidingBox& box(std::uint32_t root) const { return nodes_[root].box; }
 
-  // Calls visit(id) for what may hide the line, roughly from near to far. skip(first, last): whether nothing
-  // needs to be known of this part of the line, screen shares; asked again and again.
+  // Calls visit(id) for each item that may hide the line, roughly from near to far. skip(first, last), called
+  // for each box, returns whether this part of the line (shares on the screen) is of no further interest.
   template <typename Skip, typename Visit>
-  void walk(std::uint32_t root, const ScreenLine& line, const Skip& skip, const Visit& visit) const {
-    std::array<std::uint32_t, 64> waiting;  // halves at every step: 32 would do
+  void traverse(std::uint32_t root, const ScreenLine& line, const Skip& skip, const Visit& visit) const {
+    std::array<std::uint32_t, 64> waiting;  // each level halves the items, so 32 would be enough
     std::size_t count = 0;
     waiting[count++] = root;
     while (count > 0) {
       const Node& node = nodes_[waiting[--count]];
       double first = 0.0;
       double last = 1.0;
-      if (!line.meets(node.box, first, last) || skip(first, last)) {
+      if (!line.mayBeHiddenBy(node.box, first, last) || skip(first, last)) {
         continue;
       }
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -73,8 +73,9 @@ class HidingTrees {
  private:
   struct Node {
     HidingBox box;
-    std::uint32_t first = 0;  // leaves: into ids_; inner nodes: the second child; the first one follows
-    std::uint32_t count = 0;  // 0: an inner node
+    std::uint32_t first =
+        0;  // a leaf's first entry in ids_; an inner node's second child (the first child follows it)
+    std::uint32_t count = 0;  // a leaf's entries; 0 in inner nodes
   };
   static constexpr std::size_t kLeaf = 4;
 

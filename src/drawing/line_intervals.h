@@ -6,7 +6,7 @@
 
 namespace sightline::drawing {
 
-// A closed set of numbers as intervals that do not touch each other, ascending. Keeps its memory.
+// A closed set of numbers as ascending intervals that do not touch each other. Reuses its memory.
 class LineIntervals {
  public:
   struct Interval {
@@ -14,7 +14,7 @@ class LineIntervals {
   };
 
   void clear() { intervals_.clear(); }
-  // Adds [from, to], from <= to. What touches becomes one.
+  // Adds [from, to] and joins it with the intervals that it touches. Precondition: from <= to.
   void add(double from, double to);
   // Whether all of [from, to] is in the set.
   bool covers(double from, double to) const;

@@ -1,7 +1,7 @@
 #pragma once
 
-// A view as lines and triangles are taken to it: camera space (x right, y up, z forward, the eye at zero) and
-// the screen. On the screen a line stays a line, and what is called reciprocal depth here is linear along it.
+// Transforms points to camera space (x right, y up, z forward, the eye at zero), to the screen and to the
+// page. On the screen lines stay lines, and reciprocal depth is linear along them.
 
 #include "sightline/math/vec3.h"
 #include "sightline/scene/camera.h"
@@ -19,7 +19,7 @@ bool isDrawable(const View& view, double page_height);
 
 class LineView {
  public:
-  LineView() = default;  // nothing is in it
+  LineView() = default;  // a view that is not drawable and shows nothing
   LineView(const View& view, double page_height);
 
   const View& view() const { return view_; }
@@ -27,15 +27,16 @@ class LineView {
 
   Vec3d cameraPoint(const Vec3f& position) const;
   ScreenPoint onScreen(const Vec3d& camera) const;  // camera.z > 0 in perspective
-  double halfWidth() const { return half_width_; }  // of the screen
+  double halfWidth() const { return half_width_; }  // half the screen's width
   double halfHeight() const { return half_height_; }
-  double pageScale() const { return page_scale_; }  // page units a unit of the screen
+  double pageScale() const { return page_scale_; }  // page units for each unit of the screen
 
-  // On the page: units, x to the right, y down, clamped to it.
+  // From the screen to the page: units, x to the right, y down, clamped to the page.
   double pageX(double screen_x) const;
   double pageY(double screen_y) const;
 
-  // The part of the segment from a to b (camera space) within the view's volume; false: nothing.
+  // Clips the segment from a to b (camera space) by the view's volume to the shares [from, to]. False if
+  // nothing is left.
   bool clip(const Vec3d& a, const Vec3d& b, double& from, double& to) const;
 
  private:
@@ -44,8 +45,8 @@ class LineView {
   double half_width_ = 0.0, half_height_ = 0.0, page_scale_ = 0.0;
 };
 
-// Narrows [from, to] to where the linear function with these values at 0 and 1 is not negative; false:
-// nowhere, or it is not a number.
+// Narrows [from, to] to where the linear function with these values at 0 and 1 is >= 0. False if that is
+// nowhere, or if a value is NaN.
 bool narrow(double at_0, double at_1, double& from, double& to);
 
 }  // namespace sightline::drawing

@@ -10,11 +10,11 @@ namespace sightline::drawing {
 namespace {
 
 constexpr std::uint32_t kBorders = 6;    // near, far, left, right, lower, upper
-constexpr double kFewestLines = 1024.0;  // of the grid, a unit
-constexpr double kLinesAcross = 0x1p20;  // of the grid, at least
+constexpr double kFewestLines = 1024.0;  // lines of the grid for each unit, at least
+constexpr double kLinesAcross = 0x1p20;  // lines of the grid across the page, at least
 
-// A power of two, so that pages of round sizes have corners on the grid. The largest pages need 2^60 lines,
-// below Clipper's limit.
+// Grid lines for each unit. A power of two, so that the corners of pages of round sizes lie on the grid. The
+// largest pages need 2^60 lines, which is below Clipper's limit.
 double gridScaleOf(double extent) {
   return std::max(kFewestLines, std::exp2(std::ceil(std::log2(kLinesAcross / extent))));
 }
@@ -42,7 +42,7 @@ bool Outliner::mayShow(const SceneView& scene, ObjectId object) const {
   return false;
 }
 
-// Not negative inside.
+// The distance from a border of the view's volume, >= 0 inside.
 double Outliner::borderDistance(std::uint32_t border, const Vec3d& p) const {
   const double depth = view_.view().orthographic ? 1.0 : p.z;
   switch (border) {
@@ -69,8 +69,8 @@ std::uint32_t Outliner::bordersBeyond(const Vec3d& p) const {
   return borders;
 }
 
-// x to the right and y down, as on the page. The clamp holds what rounding leaves beyond the margin; what it
-// leaves before the near plane may have no depth at all.
+// The nearest grid point, x to the right and y down as on the page. It is clamped, because rounding may leave
+// points beyond the margin, and points before the near plane that have no depth at all.
 GridPoint Outliner::onGrid(const Vec3d& p) const {
   const double depth = view_.view().orthographic ? 1.0 : std::max(p.z, view_.view().near);
   const double x = std::clamp(p.x / depth, -widest_, widest_);
@@ -79,7 +79,7 @@ GridPoint Outliner::onGrid(const Vec3d& p) const {
   return {std::llround((x + view_.halfWidth()) * lines), std::llround((view_.halfHeight() - y) * lines)};
 }
 
-// Cuts polygon_ at some borders.
+// Clips polygon_ by these borders. False if nothing is left.
 bool Outliner::clip(std::uint32_t borders) {
   for (std::uint32_t border = 0; border < kBorders; ++border) {
     if ((borders >> border & 1u) != 0 && !clipConvex(polygon_, scratch_, Corner{}, [&](const Vec3d& p) {
@@ -112,7 +112,7 @@ void Outliner::addTriangle(const SceneView& scene, std::span<const std::uint32_t
   for (const Corner& corner : polygon_) {
     ring_.push_back(onGrid(corner.position));
   }
-  // Seen from the front, corners are counter-clockwise: with y down, of negative area.
+  // Seen from the front, corners are counter-clockwise: with y down their area is negative.
   const int turn = orientationOf(ring_);
   if (turn == 0 || (turn > 0 && !double_sided)) {
     return;

@@ -15,28 +15,28 @@
 
 namespace sightline::drawing {
 
-// Corners are rounded to a grid of at least 1,024 lines a unit, more on small pages. All that follows is
-// exact, but for the corners where borders cross. For one thread at a time; keeps its memory.
+// Rounds corners to a grid of at least 1,024 lines for each unit, more on small pages. Everything after that
+// is exact, except the corners where borders cross. For one thread at a time. Reuses its memory.
 class Outliner {
  public:
-  // Outlines end this share of the page's height beyond its borders, so that the cut is not seen.
+  // Outlines reach beyond the page's borders by this share of its height, so that the cut does not show.
   static constexpr double kMargin = 1.0 / 64.0;
-  // Rings whose mean width is below this many grid lines are slivers of rounding, and left out.
+  // Rings whose mean width is below this many grid lines are slivers from rounding and are left out.
   static constexpr double kMinWidth = 4.0;
 
   // Precondition: isDrawable().
   void setView(const View& view, double page_height);
 
-  // rings: replaced. Outer borders and holes of what the object draws between the near and the far plane, to
-  // be filled even-odd; the first corner is not repeated. Backs of single-sided materials are not drawn.
-  // Triangles with a corner that is not finite are left out.
+  // Replaces `rings` by the outer borders and holes of what the object draws between the near and the far
+  // plane, to be filled even-odd. The first corner is not repeated. Backs of single-sided materials are not
+  // drawn. Triangles with a corner that is not finite are left out.
   void outline(const SceneView& scene, ObjectId object, std::vector<PagePath>& rings);
 
-  // false: all corners of the object lie beyond one border of the page with its margin, or before the near or
-  // beyond the far plane; it shows nothing and hides nothing.
+  // False if all corners of the object lie beyond one border of the page with its margin, or all before the
+  // near or beyond the far plane: the object then shows nothing and hides nothing.
   bool mayShow(const SceneView& scene, ObjectId object) const;
 
-  // Grid lines a unit.
+  // Grid lines for each page unit.
   double gridScale() const { return scale_; }
 
  private:
@@ -51,7 +51,7 @@ class Outliner {
   bool clip(std::uint32_t borders);
 
   LineView view_;
-  double widest_ = 0.0, highest_ = 0.0;  // half of the screen with margin
+  double widest_ = 0.0, highest_ = 0.0;  // half the screen's width and height, with the margin
   double scale_ = 1024.0;
   std::vector<Corner> polygon_, scratch_;
   std::vector<GridPoint> ring_;

@@ -17,7 +17,7 @@ Wide crossOf(const GridPoint& origin, const GridPoint& a, const GridPoint& b) {
   return Wide(a.x - origin.x) * (b.y - origin.y) - Wide(a.y - origin.y) * (b.x - origin.x);
 }
 
-// Corners on the straight line between their neighbours, and spikes that go back on themselves.
+// Drops corners on the straight line between their neighbours, and spikes that go back on themselves.
 void dropCollinear(GridPath& ring) {
   GridPath kept;
   for (const GridPoint& p : ring) {
@@ -28,7 +28,7 @@ void dropCollinear(GridPath& ring) {
       kept.push_back(p);
     }
   }
-  // The same across the seam.
+  // Do the same where the ring closes.
   std::size_t first = 0;
   while (kept.size() - first >= 3) {
     if (turnOf(kept[kept.size() - 2], kept.back(), kept[first]) == 0) {
@@ -71,7 +71,8 @@ void OutlineChain::add(std::span<const GridPoint> ring) {
   }
 }
 
-// Leaves in steps_ as many edges as go more often one way than the other.
+// Cancels opposite steps: for each edge, as many remain as it is used more often in one direction than in the
+// other.
 void OutlineChain::cancel() {
   std::sort(edges_.begin(), edges_.end(),
             [](const Edge& s, const Edge& t) { return std::tie(s.a, s.b) < std::tie(t.a, t.b); });
@@ -89,8 +90,8 @@ void OutlineChain::cancel() {
             [](const Step& s, const Step& t) { return std::tie(s.from, s.to) < std::tie(t.from, t.to); });
 }
 
-// As many steps leave a point as arrive there, since they are what is left of closed rings. So a walk along
-// unused steps ends where it began.
+// The steps are what is left of closed rings, so as many leave each point as arrive there. Following unused
+// steps therefore ends at the point where it began.
 void OutlineChain::takeLoops(std::vector<GridPath>& loops) {
   cancel();
   edges_.clear();
@@ -101,7 +102,7 @@ void OutlineChain::takeLoops(std::vector<GridPath>& loops) {
                          [](const Step& step, const GridPoint& q) { return step.from < q; }) -
         steps_.begin());
   };
-  // next_[i], where i is the first step of its point: the point's first unused step.
+  // If i is the first step of its point, next_[i] is the point's first unused step.
   next_.resize(steps_.size());
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     next_[i] = i;

@@ -1,11 +1,11 @@
 #pragma once
 
-// The border of many polygons that are oriented alike, in whole numbers.
+// The border of many polygons of the same orientation, in integers.
 //
-// Where two neighbours share an edge, one goes along it forwards and the other backwards: the two cancel.
-// What is left closes to loops, around which every point has the winding number that all polygons together
-// give it: how many of them cover it. So the union of the polygons is where the loops' winding number is not
-// zero, and the loops have some hundred edges where the polygons had some hundred thousand.
+// Two neighbours traverse a shared edge in opposite directions, so the two cancel. The edges that are left
+// form loops, whose winding number at a point is the number of polygons that cover it. So the union of the
+// polygons is where the winding number is not zero, and the loops have some hundred edges where the polygons
+// had some hundred thousand.
 
 #include <compare>
 #include <cstdint>
@@ -21,18 +21,18 @@ struct GridPoint {
 };
 using GridPath = std::vector<GridPoint>;  // a closed ring; the first corner is not repeated
 
-// Sign of the ring's area: 1 from x towards y.
+// The sign of the ring's area: 1 if it turns from x towards y.
 int orientationOf(std::span<const GridPoint> ring);
-// Of the turn at b.
+// The sign of the turn at b: 1 from x towards y.
 int turnOf(const GridPoint& a, const GridPoint& b, const GridPoint& c);
 
 class OutlineChain {
  public:
   void clear();
-  // Edges of a ring. Rings are of positive orientation.
+  // Adds the edges of a ring. Precondition: its orientation is positive.
   void add(std::span<const GridPoint> ring);
-  // What is left after edges have cancelled, as closed loops without collinear corners. They may touch and
-  // cross. The chain is empty afterwards.
+  // Takes out the edges that are left after cancelling, as closed loops without collinear corners; loops may
+  // touch and cross. The chain is empty afterwards.
   void takeLoops(std::vector<GridPath>& loops);
 
  private:
@@ -46,8 +46,9 @@ class OutlineChain {
   void cancel();
 
   std::vector<Edge> edges_;
-  std::vector<Step> steps_;        // ascending by `from`
-  std::vector<std::size_t> next_;  // of each step: the first at its `from` that may be unused
+  std::vector<Step> steps_;  // ascending by `from`
+  std::vector<std::size_t>
+      next_;  // for the first step of each point: the point's first step that may be unused
 };
 
 }  // namespace sightline::drawing

@@ -7,9 +7,10 @@
 namespace sightline::drawing {
 namespace {
 
-constexpr int kCoarsest = 16;  // bits that may be given up where Clipper fails
+constexpr int kCoarsest = 16;  // low bits that may be dropped where Clipper fails
 
-// Clipper's sweep gives up, rarely, where many edges cross within a grid cell.
+// Unites the loops with their coordinates' lowest `bits` dropped. Clipper's sweep rarely fails where many
+// edges cross within a grid cell.
 bool unite(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& result) {
   ClipperLib::Clipper clipper;
   ClipperLib::Path path;
@@ -23,7 +24,7 @@ bool unite(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& resu
   return clipper.Execute(ClipperLib::ctUnion, result, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
 }
 
-// It throws where its sweep meets what it cannot be in; that is no more than a failure.
+// Clipper throws if its sweep reaches an invalid state; that counts as a failure.
 bool uniteSafely(const std::vector<GridPath>& loops, int bits, ClipperLib::Paths& result) {
   try {
     return unite(loops, bits, result);
@@ -63,7 +64,7 @@ bool isConvexRing(const GridPath& ring) {
   if (count < 3) {
     return false;
   }
-  // Turning only one way, it goes once around if it goes down once and up once.
+  // A ring that turns one way only goes around once if it goes down once and up once.
   int changes = 0;
   bool was_up = ring[0] > ring[count - 1];
   for (std::size_t i = 0; i < count; ++i) {
@@ -87,7 +88,7 @@ void uniteLoops(std::vector<GridPath>& loops, double min_width) {
     dropSlivers();
     return;
   }
-  // Where all fail, the loops themselves are better than nothing.
+  // If all attempts fail, the loops stay as they are.
   for (int bits = 0; bits <= kCoarsest; ++bits) {
     ClipperLib::Paths united;
     if (uniteSafely(loops, bits, united)) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// From loops with winding numbers to rings that can be filled even-odd.
+// Converts loops with winding numbers to rings that can be filled even-odd.
 
 #include <vector>
 
@@ -8,13 +8,14 @@
 
 namespace sightline::drawing {
 
-// Replaces the loops by outer borders and holes of where their winding number is not zero, without rings that
-// are narrower than min_width (twice the area by the perimeter) in the mean. One convex loop, the outline
-// of most simple things, is its own union; all else is left to Clipper, which rounds crossings to the grid.
-// The loops have no collinear corners.
+// Replaces the loops by the outer borders and holes of the region where their winding number is not zero,
+// without rings whose mean width (twice the area divided by the perimeter) is below min_width. A single
+// convex loop, the outline of most simple objects, is its own union; Clipper unites the others and rounds
+// crossings to the grid. Precondition: the loops have no collinear corners.
 void uniteLoops(std::vector<GridPath>& loops, double min_width);
 
-// Whether it goes once around a convex polygon, in positive orientation. No collinear corners.
+// Whether the ring goes once around a convex polygon in positive orientation. Precondition: no collinear
+// corners.
 bool isConvexRing(const GridPath& ring);
 
 }  // namespace sightline::drawing

@@ -26,7 +26,7 @@ class PdfWriter {
   std::string write() {
     const std::size_t catalogue = file_.reserve(), pages = file_.reserve(), page = file_.reserve(),
                       contents = file_.reserve(), info = file_.reserve();
-    // A page has a size, whatever the drawing is.
+    // A PDF's page must have a size even if the drawing has none.
     const std::string width = grid_.lengthText(drawing_->width > 0.0 ? drawing_->width : 1.0);
     const std::string height = grid_.lengthText(drawing_->height > 0.0 ? drawing_->height : 1.0);
     const std::string marks = pageContents();
@@ -41,7 +41,7 @@ class PdfWriter {
   }
 
  private:
-  // Readers list layers as `Order` says: the front ones first, and groups as a branch.
+  // Readers list layers in the order of `Order`: front ones first, a group as a branch.
   void addCatalogue(std::size_t number, std::size_t pages) {
     std::string all, order;
     for (const std::size_t layer : layers_) {
@@ -55,7 +55,7 @@ class PdfWriter {
                                   pages, all, order));
   }
 
-  // y down, as in the drawing.
+  // The page's drawing commands, with y pointing down as in the drawing.
   std::string pageContents() {
     text_.clear();
     fmt::format_to(std::back_inserter(text_), "1 0 0 -1 0 {} cm\n1 J 1 j {} w\n{} RG {} rg\n",
@@ -71,13 +71,13 @@ class PdfWriter {
     return std::move(text_);
   }
 
-  // In shares of 1.
+  // The colour as three numbers from 0 to 1.
   static std::string colour(const std::string& text) {
     const std::array<int, 3> rgb = *parseColour(text);
     return fmt::format("{:.3g} {:.3g} {:.3g}", rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
   }
 
-  // All outlines, then all strokes; an object's are marked with the same layer.
+  // Writes all outlines, then all strokes; both paths of an object are marked with its layer.
   void addGroup(const DrawingGroup& group, std::size_t number) {
     std::vector<std::size_t> layers;
     for (const DrawingObject& object : group.objects) {
@@ -143,8 +143,8 @@ class PdfWriter {
   DrawingStyle style_;
   DecimalGrid grid_;
   PdfFile file_;
-  std::vector<std::size_t> layers_;    // their object numbers
-  std::vector<std::string> branches_;  // of Order, one a group
+  std::vector<std::size_t> layers_;    // the layers' object numbers
+  std::vector<std::string> branches_;  // of Order, one for each group
   std::string properties_, text_;
   RoundedPath rounded_;
 };

@@ -25,7 +25,7 @@ std::string inParentheses(const std::u32string& text) {
   return string + ")";
 }
 
-// With the byte order mark by which readers know UTF-16.
+// UTF-16 in hexadecimal digits, with the byte order mark by which readers recognise it.
 std::string inUtf16(const std::u32string& text) {
   std::string string = "<FEFF";
   const auto put = [&](char32_t unit) {
@@ -42,7 +42,7 @@ std::string inUtf16(const std::u32string& text) {
   return string + ">";
 }
 
-// Empty: zlib had no memory.
+// The bytes compressed by zlib; empty if zlib had no memory.
 std::string deflated(std::string_view bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::string out(size, '\0');
@@ -60,7 +60,7 @@ std::string pdfString(std::string_view utf8) {
   return std::all_of(text.begin(), text.end(), isPlain) ? inParentheses(text) : inUtf16(text);
 }
 
-// The second line has bytes above 127, by which programs see that the file is not text.
+// The bytes above 127 in the second line tell programs that the file is not text.
 PdfFile::PdfFile() : bytes_("%PDF-1.5\n%\xe2\xe3\xcf\xd3\n") {}
 
 std::size_t PdfFile::reserve() {
@@ -84,7 +84,7 @@ void PdfFile::addStream(std::size_t number, std::string_view bytes, std::string_
   bytes_ += "\nendstream\nendobj\n";
 }
 
-// Lines of the table have 20 bytes each, the line's end with them.
+// Each line of the table has 20 bytes, its end included.
 std::string PdfFile::finish(std::size_t catalogue, std::size_t info) {
   const std::size_t table = bytes_.size();
   const auto out = std::back_inserter(bytes_);

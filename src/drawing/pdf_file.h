@@ -1,6 +1,6 @@
 #pragma once
 
-// The frame of a PDF file: numbered objects, and the table that says where they begin.
+// Writes the structure of a PDF file: numbered objects and the table of their offsets.
 
 #include <cstddef>
 #include <string>
@@ -9,25 +9,25 @@
 
 namespace sightline::drawing {
 
-// A text as a PDF string object: in parentheses where it is ASCII, else UTF-16 in hexadecimal digits.
+// A text as a PDF string object: in parentheses if it is ASCII, else UTF-16 in hexadecimal digits.
 std::string pdfString(std::string_view utf8);
 
 class PdfFile {
  public:
   PdfFile();
 
-  // A number for an object that is added later, from 1.
+  // Returns the number (from 1) of an object that is added later.
   std::size_t reserve();
-  // Each reserved object exactly once, in any order.
+  // Adds an object. Each reserved number is added exactly once, in any order.
   void add(std::size_t number, std::string_view body);
-  // Compressed; `entries` go into its dictionary beside its length and its filter.
+  // Adds a compressed stream; `entries` are added to its dictionary, which has its length and its filter.
   void addStream(std::size_t number, std::string_view bytes, std::string_view entries = "");
-  // The whole file. Call it last, once.
+  // Returns the whole file. Called once, at the end.
   std::string finish(std::size_t catalogue, std::size_t info);
 
  private:
   std::string bytes_;
-  std::vector<std::size_t> offsets_;  // of object 1, 2, ...
+  std::vector<std::size_t> offsets_;  // in bytes, of the objects 1, 2, ...
 };
 
 }  // namespace sightline::drawing

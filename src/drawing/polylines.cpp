@@ -9,14 +9,14 @@
 namespace sightline::drawing {
 namespace {
 
-// Ends are numbered 2 * piece (from) and 2 * piece + 1 (to).
+// Piece i has the ends 2 i (from) and 2 i + 1 (to).
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::size_t kManyEnds = 16;
 
 struct CornerEnd {
-  std::uint32_t corner = 0;  // into SceneView::positions
+  std::uint32_t corner = 0;  // index into SceneView::positions
   std::uint32_t end = 0;
-  double angle = 0.0;  // of the piece as it leaves the corner
+  double angle = 0.0;  // direction of the piece as it leaves the corner
 };
 
 std::vector<CornerEnd> endsAtCorners(std::span<const LinePiece> pieces) {
@@ -37,20 +37,20 @@ std::vector<CornerEnd> endsAtCorners(std::span<const LinePiece> pieces) {
   return ends;
 }
 
-// 0: one goes straight on where the other ends.
+// The angle by which a stroke bends from one end of a corner to the other; 0 if it goes straight on.
 double bendOf(const CornerEnd& s, const CornerEnd& t) {
   const double between = std::remainder(s.angle - t.angle, 2.0 * std::numbers::pi);
   return std::numbers::pi - std::abs(between);
 }
 
-// Joins all ends of a corner two by two, but for one if they are odd in number.
+// Pairs all ends of a corner, except one if their number is odd.
 void pairEnds(std::span<CornerEnd> ends, std::vector<std::uint32_t>& mates) {
   const auto join = [&](const CornerEnd& s, const CornerEnd& t) {
     mates[s.end] = t.end;
     mates[t.end] = s.end;
   };
   if (ends.size() > kManyEnds) {
-    // The tip of a cone: across the circle is nearly straight, and quick to find.
+    // At the tip of a cone the opposite end is nearly straight, and found quickly.
     std::stable_sort(ends.begin(), ends.end(),
                      [](const CornerEnd& s, const CornerEnd& t) { return s.angle < t.angle; });
     const std::size_t half = ends.size() / 2;
@@ -95,7 +95,7 @@ const PagePoint& pointOf(std::span<const LinePiece> pieces, std::uint32_t end) {
   return end % 2 == 0 ? piece.from : piece.to;
 }
 
-// From an end on, over mates, until there is none or the way closes.
+// Follows pieces from an end on, from mate to mate, until there is none or the stroke closes.
 PagePath follow(std::span<const LinePiece> pieces, const std::vector<std::uint32_t>& mates,
                 std::uint32_t start, std::vector<bool>& done) {
   PagePath path{pointOf(pieces, start)};
@@ -132,7 +132,7 @@ class Sleeve {
  public:
   Sleeve(const PagePoint& anchor, double tolerance) : anchor_(anchor), tolerance_(tolerance) {}
 
-  // false: a line from the anchor to p does not pass all points before it.
+  // False if a line from the anchor to p does not pass all points before p.
   bool add(const PagePoint& p) {
     const double reach = distance(anchor_, p);
     if (reach < farthest_) {
@@ -199,7 +199,7 @@ void joinPieces(std::span<const LinePiece> pieces, double tolerance, std::vector
       take(end);
     }
   }
-  // What is left closes.
+  // Strokes that are left are closed.
   for (std::uint32_t i = 0; i < pieces.size(); ++i) {
     if (!done[i]) {
       take(2 * i);

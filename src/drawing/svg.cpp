@@ -1,8 +1,8 @@
-// Drawings as SVG.
+// Writes drawings as SVG.
 //
-// One <g> around all carries what most paths share, so that a path has no attributes but its coordinates and,
-// if it is an outline, its fill. Everything is in attributes and inherited: programs that know no style
-// sheets (plotters, cutters) draw it too.
+// One <g> around all holds the attributes that most paths share, so that a path has no attributes but its
+// coordinates and, if it is an outline, its fill. There are no style sheets, so programs that know none
+// (plotters, cutters) draw the file too.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ using namespace drawing;
 
 namespace {
 
-// Writes paths relative to the last point, with h and v for lines along the page's borders.
+// Writes paths with relative coordinates, and with h and v for horizontal and vertical lines.
 class PathData {
  public:
   explicit PathData(const DecimalGrid& grid) : grid_(&grid) {}
@@ -33,7 +33,7 @@ class PathData {
     command_ = ' ';
     const RoundedPoint& start = rounded_.points.front();
     put('m', start);
-    command_ = 'l';  // what pairs mean behind an m
+    command_ = 'l';  // the meaning of coordinates that follow an m
     for (std::size_t i = 1; i < rounded_.points.size(); ++i) {
       line(rounded_.points[i]);
     }
@@ -49,7 +49,7 @@ class PathData {
     text_ += is_first || steps < 0 ? "" : " ";
     grid_->append(text_, steps);
   }
-  // true: the letter was written, and no space is needed.
+  // Returns true if the letter was written, so that no space is needed.
   bool letter(char command) {
     if (command_ == command) {
       return false;
@@ -131,7 +131,7 @@ class SvgWriter {
         ids_.make("drawing"), style_.stroke, grid_.lengthText(style_.stroke_width));
   }
 
-  // Editors show the label; an id need not be what the name is.
+  // Editors show the label; the id may differ from the name.
   void openGroup(const std::string& name) {
     const std::string id = ids_.make(name);
     print("<g id=\"{}\"", id);
@@ -171,7 +171,7 @@ class SvgWriter {
     text_ += "</g>\n";
   }
 
-  // All outlines lie below all strokes, so that they cannot be in the objects' own groups.
+  // All outlines lie below all strokes, so they cannot be in the objects' own groups.
   void together(const DrawingGroup& group, std::size_t number) {
     const std::string name = fmt::format("group-{}", number + 1);
     print("<g id=\"{}\">\n", ids_.make(name));

@@ -39,7 +39,7 @@ std::string escapeXml(std::string_view text) {
       case U'\t':
       case U'\n':
       case U'\r':
-        // As they are, attributes would turn them into spaces.
+        // Unescaped, these characters become spaces in attributes.
         escaped += "&#" + std::to_string(static_cast<int>(code)) + ";";
         break;
       default:

@@ -1,6 +1,6 @@
 #pragma once
 
-// Names in XML.
+// Text and ids in XML.
 
 #include <cstdint>
 #include <string>
@@ -10,18 +10,18 @@
 
 namespace sightline::drawing {
 
-// For attributes and text; characters that XML does not have become U+FFFD.
+// Escapes text for XML attributes and content. Characters that XML does not allow become U+FFFD.
 std::string escapeXml(std::string_view text);
 
-// Ids that are valid in XML and CSS and unique: ASCII letters, digits, '.', '-' and '_' of a name, the others
-// replaced by '_'; a number behind it where it is taken.
+// Makes unique ids that are valid in XML and CSS: ASCII letters, digits, '.', '-' and '_' of a name stay,
+// other characters become '_', and a number is appended if the id is taken.
 class XmlIds {
  public:
   std::string make(std::string_view name);
 
  private:
   std::unordered_set<std::string> taken_;
-  std::unordered_map<std::string, std::uint32_t> last_;  // number given to a name
+  std::unordered_map<std::string, std::uint32_t> last_;  // the last number appended to each name
 };
 
 }  // namespace sightline::drawing

@@ -27,7 +27,8 @@ bool insideEdge(const HidingTriangle& triangle, const Vec3d& p, const Vec3d& q, 
     const double wider = kSideRounding * triangle.reach * triangle.reach;
     return narrow(dot(inwards, line.a) + wider * size_a, dot(inwards, line.b) + wider * size_b, from, to);
   }
-  // (q - p) x (X - p) along z, such that p, q and q, p give the same bits but for the sign.
+  // The z component of (q - p) x (X - p), computed so that p, q and q, p give the same bits with opposite
+  // signs.
   const auto side = [&](const Vec3d& point) {
     return flatCross(p, q) + (p.y - q.y) * point.x + (q.x - p.x) * point.y;
   };
@@ -36,7 +37,7 @@ bool insideEdge(const HidingTriangle& triangle, const Vec3d& p, const Vec3d& q, 
                 side(line.b) + wider * (triangle.reach + size_b), from, to);
 }
 
-// Narrows to where the sight meets the triangle at the near plane or beyond it.
+// Narrows [from, to] to where the ray from the eye intersects the triangle at or beyond the near plane.
 bool beyondNear(const HidingTriangle& triangle, const Vec3d& normal, const HidableLine& line,
                 const View& view, double& from, double& to) {
   const Vec3d& p = triangle.corners[0];
@@ -49,13 +50,13 @@ bool beyondNear(const HidingTriangle& triangle, const Vec3d& normal, const Hidab
   return narrow(excess(line.a), excess(line.b), from, to);
 }
 
-// Narrows to where the line is behind the triangle's plane.
+// Narrows [from, to] to where the line is behind the triangle's plane.
 bool behindPlane(const HidingTriangle& triangle, const Vec3d& normal, const HidableLine& line, double& from,
                  double& to) {
   const Vec3d& p = triangle.corners[0];
   const double behind_a = dot(normal, line.a - p);
   const double behind_b = dot(normal, line.b - p);
-  // 1 behind, -1 before, 0 in the plane as far as rounding tells.
+  // 1 behind the plane, -1 before it, 0 in it as far as rounding tells.
   const auto place = [&](double share, double& behind) {
     const double rest = 1.0 - share;
     behind = rest * behind_a + share * behind_b;

@@ -2,9 +2,9 @@
 
 namespace sightline::drawing {
 
-// The sign of dot(n, v), n = (b - a) x (c - a), v the way from the eye to a. The differences b - a and a -
-// eye are off by 2^-53 of their size each; six products and five sums follow. So the value is off by less
-// than 2^-49 times the product of the largest components (six terms, eight roundings each).
+// The sign of dot(n, v) with n = (b - a) x (c - a) and v the vector from the eye to a. The differences b - a
+// and a - eye are off by 2^-53 of their size each; six products and five sums follow. So the value is off by
+// less than 2^-49 times the product of the largest components (six terms, eight roundings each).
 int sideSeen(const Vec3f& a, const Vec3f& b, const Vec3f& c, const View& view) {
   const Vec3d ab = Vec3d(b) - Vec3d(a);
   const Vec3d ac = Vec3d(c) - Vec3d(a);

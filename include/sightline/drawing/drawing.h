@@ -1,6 +1,7 @@
 #pragma once
 
-// Hidden-line drawings as editable vector graphics: groups, outlines, strokes; SVG and PDF.
+// Hidden-line drawings as editable vector graphics, made of groups, outlines and strokes, written as SVG or
+// PDF.
 
 #include <cstdint>
 #include <functional>
@@ -19,7 +20,7 @@ namespace sightline {
 
 using PagePath = std::vector<PagePoint>;
 
-// One object of a drawing. Strokes lie over the outline.
+// One object of a drawing. Its strokes lie over its outline.
 struct DrawingObject {
   ObjectId object{};
   std::string name{};
@@ -27,7 +28,7 @@ struct DrawingObject {
   std::vector<PagePath> strokes{};  // open or (first == last) closed polylines
 };
 
-// Objects that are drawn together: all outlines, then all strokes.
+// Objects that are drawn together: first all outlines, then all strokes.
 struct DrawingGroup {
   std::vector<DrawingObject> objects{};
 };
@@ -36,8 +37,8 @@ struct Drawing {
   double width = 0.0, height = 0.0;    // page units
   std::vector<DrawingGroup> groups{};  // in the order of drawing, back to front
   HiddenLineStats stats{};
-  // Of objects that may show something on the page: pairs of a line and an object that it was tested against,
-  // and how many they would be if each line were tested against all objects.
+  // Pairs of a line and an object that the line was tested against, and how many pairs there would be if each
+  // line were tested against all objects. Both count objects that may show on the page.
   std::uint64_t pairs = 0, all_pairs = 0;
 };
 
@@ -46,37 +47,37 @@ std::uint64_t countStrokes(const Drawing& drawing);
 struct DrawingSettings {
   FeatureSettings features{};
   double page_height = 720.0;
-  // For plots: the parts that the sorter was told to draw in front of or behind all others
-  // (PartSettings::place). It has no arcs of them, so lines are tested against all overlays, and those of a
-  // backdrop against everything. What hides there is still decided by depth.
+  // For plots: the parts that the sorter draws in front of or behind all others (PartSettings::place). The
+  // sorter has no arcs of them, so all lines are tested against all overlays, and lines of a backdrop against
+  // everything. Depth still decides what is hidden.
   std::vector<ObjectId> overlays{}, backdrops{};
-  // Called after each object with the share of them that is drawn, ascending to 1.
+  // Called after each object with the share of objects that is drawn, ascending to 1.
   std::function<void(double done)> progress = {};
 };
 
-// Draws scenes, one view after another. Part i of an order is object i. Objects that show nothing on the page
-// are left out. Lines of an object are joined to strokes at its corners; strokes and outlines leave out
-// points within about a 200,000th of the page's height. A view or a page without a size that is a finite
-// number above zero (pages: 1e-15 to 1e15 units) gives an empty drawing. For one thread at a time.
+// Draws a scene, one view after another. Part i of an order is object i. Objects that show nothing on the
+// page are left out. Lines of an object are joined to strokes at its corners; strokes and outlines are
+// simplified within about 1 / 200,000 of the page's height. The drawing is empty if the view or the page has
+// no valid size (pages: 1e-15 to 1e15 units on each side). For one thread at a time.
 class HiddenLineRenderer {
  public:
-  explicit HiddenLineRenderer(const SceneView& scene);  // the scene's triangles; positions may change later
+  explicit HiddenLineRenderer(const SceneView& scene);  // reads the triangles; positions may change later
   ~HiddenLineRenderer();
   HiddenLineRenderer(HiddenLineRenderer&&) noexcept;
   HiddenLineRenderer& operator=(HiddenLineRenderer&&) noexcept;
 
-  // The painter's form (Snyder, Lengyel, section 11): groups back to front; each object's outline is filled
-  // and hides what is behind; lines are tested against their own object and those of its group that may
-  // occlude it (order.arcs), so strokes of an object that hides nothing of itself are whole. What does not
-  // hide, blended and alpha-tested objects, has strokes and no outline: what is behind it shows through.
-  // scene: of the constructor, but for positions. names: of the objects; missing ones are empty.
+  // The painter's form (Snyder, Lengyel, section 11): groups from back to front, with each object's outline
+  // filled so that it hides what is behind. A line is tested against its own object and those of its group
+  // that may occlude it (order.arcs), so the strokes of an object that hides nothing of itself stay whole.
+  // Blended and alpha-tested objects hide nothing: they have strokes and no outline. scene must be the
+  // constructor's, except for positions. names has one entry for each object; missing ones are empty.
   Drawing paint(const SceneView& scene, std::span<const std::string> names, const View& view,
                 const LayerOrder& order, const DrawingSettings& settings);
 
-  // The visible pieces of all lines, nothing else: for plotters and CAD. Each line is tested against its
-  // object and those that may occlude it: order.arcs, which must be of all pairs (LayerSettings::all_arcs).
-  // Each object is a group of its own. What several objects draw at the same place, from end to end, as walls
-  // that share an edge do, only the first one has: a pen goes there once.
+  // The visible pieces of all lines and nothing else, for plotters and CAD. A line is tested against its
+  // object and those that may occlude it by order.arcs, which must hold all pairs (LayerSettings::all_arcs).
+  // Each object is a group of its own. A piece that several objects draw at the same place, as walls that
+  // share an edge do, is drawn by the first one only, so that a pen goes there once.
   Drawing plot(const SceneView& scene, std::span<const std::string> names, const View& view,
                const LayerOrder& order, const DrawingSettings& settings);
 
@@ -91,15 +92,15 @@ struct DrawingStyle {
   std::string title{};
 };
 
-// An SVG 1.1 document. Each object is a <g>, whose id is made of its name, with the name itself as
-// inkscape:label where the two differ; it holds one path of its outline and one of all its strokes. A group
-// of several objects is a <g> around theirs, in which the outlines are a <g> below. Two decimals, more on
-// pages below 100 units. Drawings with outlines have a rectangle of paper below everything. Paths with
-// coordinates that are not finite are left out; a colour that is not #rrggbb or a width that is no number is
-// replaced by the default.
+// An SVG 1.1 document. Each object is a <g> with one path for its outline and one for all its strokes; its id
+// is made of the object's name, which is added as inkscape:label if the two differ. A group of several
+// objects is a <g> around theirs, with all outlines in a <g> below the strokes. Coordinates have two
+// decimals, more on pages below 100 units. Drawings with outlines have a rectangle of paper below everything.
+// Paths with coordinates that are not finite are left out; a colour that is not #rrggbb or a width that is
+// not a number is replaced by the default.
 std::string toSvg(const Drawing& drawing, const DrawingStyle& style = {});
-// A PDF 1.5 document of one page, one unit a point; each object is an optional content group (a layer) with
-// its name. Many readers show no page beyond 14,400 points.
+// A PDF 1.5 document of one page. One unit is one point. Each object is an optional content group (a layer)
+// with its name. Many readers show no page larger than 14,400 points.
 std::string toPdf(const Drawing& drawing, const DrawingStyle& style = {});
 
 }  // namespace sightline
