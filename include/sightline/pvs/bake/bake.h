@@ -1,6 +1,6 @@
 #pragma once
 
-// Baking: for every cell of space, what may be seen from anywhere in it. Once a scene, in parts that any
+// Baking: computes the potentially visible set of every cell of space, once per scene, in parts that any
 // thread or machine may bake.
 
 #include <cstddef>
@@ -20,102 +20,102 @@
 namespace sightline {
 
 struct BakeSettings {
-  std::uint64_t triangle_budget = 0;  // a cell with so few is not divided (the target frame rate)
-  // How often a cell of the octree is halved, which decides on memory: at most kMaxOctreeDepth, or
-  // kChooseDepth for one that suits the sizes of the region and of the occluders.
+  std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
+  // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
+  // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders.
   static constexpr std::uint32_t kChooseDepth = 0xffffffffu;
   std::uint32_t max_depth = kChooseDepth;
-  // The farthest from a viewer's eye that its near plane clips, metres (nearDistance): what occluders hide
-  // only from closer does not count. Viewers with a greater one get everything as their set.
+  // Maximum distance in metres from a viewer's eye to what its near plane clips (nearDistance). Occluders
+  // closer to a cell than this do not count. Viewers with a greater distance get all objects as their set.
   double near_distance = 0.25;
-  // Viewers are in this box, scene space; an empty one: in the bounds of the scene.
+  // Viewers are in this box, in scene space; if it is empty, in the bounds of the scene.
   Box region{};
-  // Occluders are looked for within so many metres of a viewpoint, at first; 0: chosen. Doubled where that
-  // helps.
+  // Occluders are searched within this distance of a viewpoint at first, in metres; 0 chooses one. It is
+  // doubled where that helps.
   double search_distance = 0.0;
-  // An occluder is of use to a cell when its area is so many times that of the cell's smallest face, or its
-  // volume so many times the cell's.
+  // An occluder is useful to a cell if its area is at least this many times that of the cell's smallest face,
+  // or its volume at least this many times the cell's.
   double occluder_size = 1.0;
-  // Dividing helps where some point, of the cell's corners and centre and its children's centres, sees less
-  // than the cell by this part of the cell's triangles.
+  // Dividing a cell helps if some point sees less than the cell by this fraction of the cell's triangles. The
+  // points are the cell's corners and centre and its children's centres.
   double similarity = 0.1;
-  double min_gain = 0.02;  // doubling the search box helped when it hid this part of the triangles
-  // Siblings are merged when all together see at most this part more than each.
+  double min_gain = 0.02;  // doubling the search box helped if it hid this fraction of the triangles
+  // Siblings are merged if their union sees at most this fraction more than each of them.
   double merge_tolerance = 0.05;
-  // Of a worker, between cells; what is forgotten is computed again.
+  // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
 };
 
-// A cell of the octree that one thread bakes, or divides into eight such parts: which parts there are comes
-// out as the bake goes.
+// A cell of the octree that one thread bakes, or divides into eight such parts. The list of parts emerges
+// during the bake.
 struct PartTask {
   std::uint64_t id = 1;          // 1: the root; 8 * id + i: child number i of it
-  double search_distance = 0.0;  // metres, from the part that it is a child of
+  double search_distance = 0.0;  // metres; set by the parent part
   friend bool operator==(const PartTask&, const PartTask&) = default;
 };
 
-// What became of one part, as plain bytes, the same wherever it was baked.
+// The result of one part as plain bytes, the same wherever it was baked.
 using BakedPart = std::vector<std::byte>;
 using BakedParts = std::map<std::uint64_t, BakedPart>;  // by PartTask::id
 
 struct PartSummary {
-  std::uint32_t leaves = 0;     // 0: it was divided into parts
-  double mean_triangles = 0.0;  // of the leaves' sets
-  double share = 0.0;           // of the viewers' region that the leaves cover, 0 to 1
+  std::uint32_t leaves = 0;     // 0 if the part was divided into parts
+  double mean_triangles = 0.0;  // mean over the leaves' sets
+  double share = 0.0;           // fraction of the viewing region that the leaves cover, 0 to 1
 };
 
 struct BakeStats {
-  std::uint64_t samples = 0;         // viewpoints from which something was computed
-  std::uint64_t shadows = 0;         // occluders seen from a viewpoint
-  std::uint64_t forgotten = 0;       // samples, for want of memory
-  std::size_t max_sample_bytes = 0;  // that samples took at any time
+  std::uint64_t samples = 0;         // viewpoints for which something was computed
+  std::uint64_t shadows = 0;         // pairs of an occluder and a viewpoint
+  std::uint64_t forgotten = 0;       // samples discarded because memory ran out
+  std::size_t max_sample_bytes = 0;  // peak memory of samples, bytes
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };
 
-void add(BakeStats& sum, const BakeStats& stats);  // of several workers together
+void add(BakeStats& sum, const BakeStats& stats);  // sums the workers' statistics
 
-// Potential occluders: convex bodies and convex polygons.
+// Counts of potential occluders: convex bodies and convex polygons.
 struct OccluderCounts {
   std::uint32_t all = 0;
-  std::uint32_t inner = 0;    // that are not the region's floor, ceiling or outer wall
-  std::uint32_t of_use = 0;   // of those, large enough for the smallest cells
-  double largest_area = 0.0;  // of those, square metres of the largest face
+  std::uint32_t inner = 0;    // those that are not the region's floor, ceiling or outer wall
+  std::uint32_t of_use = 0;   // the inner ones that are large enough for the smallest cells
+  double largest_area = 0.0;  // area of the largest face of the inner ones, square metres
 };
 
-// The plan of a bake: what all of its parts share. Does not change; any number of threads may bake parts.
+// The plan of a bake: everything that its parts share. Immutable; any number of threads may bake parts.
 //
 //   std::vector<PartTask> open{bake.firstPart()};   // until it is empty: take one, bake it, add partsBelow
 //   BakedParts parts;                               // then assemble
 class Bake {
  public:
-  // scene, occluders: need not outlive it. An error where settings are out of range, where there is no region
-  // and no object with a finite box, and where an occluder belongs to no object of the scene. occluders: all
-  // that are to be considered; area_fraction = 1 leaves none out.
+  // scene and occluders need not outlive the plan. occluders: all that are to be considered; area_fraction =
+  // 1 omits none. Returns an error if settings are out of range, if there is neither a region nor an object
+  // with a finite box, or if an occluder belongs to no object of the scene.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {});
 
-  const BakeSettings& settings() const;  // with the depth that was chosen
-  // Down to this level any cell may be divided; below it, down to settings().max_depth, only those near
-  // occluders.
+  const BakeSettings& settings() const;  // including the chosen depth
+  // Any cell may be divided down to this level. Below it, down to settings().max_depth, only cells near
+  // occluders are divided.
   std::uint32_t baseDepth() const;
   const OccluderCounts& occluders() const;
-  // Says which plan it is: parts and checkpoints of one plan are of no use to another.
+  // Identifies the plan: parts and checkpoints of one plan cannot be used with another.
   std::uint64_t hash() const;
 
   PartTask firstPart() const;
-  // The parts that a baked one was divided into: eight or none.
+  // The parts that a baked part was divided into: eight or none.
   std::vector<PartTask> partsBelow(std::span<const std::byte> part) const;
   PartSummary summaryOf(std::span<const std::byte> part) const;
-  // Whether these bytes say that they are this part of this plan.
+  // True if these bytes claim to be this part of this plan.
   bool isPart(std::uint64_t id, std::span<const std::byte> part) const;
 
-  // Holds the samples of the parts that it bakes, one after the other. For one thread at a time.
+  // Bakes parts one after the other and keeps the samples they share. For use by one thread at a time.
   class Worker {
    public:
-    explicit Worker(const Bake& bake);  // keeps its plan alive
+    explicit Worker(const Bake& bake);  // keeps the plan's data alive
     ~Worker();
     Worker(Worker&&) noexcept;
-    // part: the first one, or one of partsBelow. Depends on nothing but the plan and the part.
+    // part: the first one, or one of partsBelow(). The result depends only on the plan and the part.
     BakedPart bake(const PartTask& part);
     const BakeStats& stats() const;
 
@@ -124,12 +124,12 @@ class Bake {
     std::unique_ptr<Impl> impl_;
   };
 
-  // All parts, in the threads of parallel_for. stats: of all workers, if asked for.
+  // Bakes all parts in the threads of parallel_for. stats: summed over all workers, if not null.
   BakedParts bakeAll(const ParallelFor& parallel_for = serialFor, const Progress& progress = {},
                      BakeStats* stats = nullptr) const;
 
-  // parts: all. The same for the same plan, whoever baked the parts. An error where one is missing, or bytes
-  // are not of this plan.
+  // parts: all parts of the plan. The result is the same whoever baked them. Returns an error if a part is
+  // missing or its bytes are not of this plan.
   Result<BakedVisibility> assemble(const BakedParts& parts) const;
 
  private:
@@ -137,7 +137,7 @@ class Bake {
   std::shared_ptr<const Data> data_;
 };
 
-// All of it in one call, in the threads of parallel_for.
+// Plans, bakes and assembles in one call, in the threads of parallel_for.
 Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet& occluders,
                                        const BakeSettings& settings = {},
                                        const ParallelFor& parallel_for = serialFor);

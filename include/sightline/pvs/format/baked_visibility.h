@@ -1,6 +1,6 @@
 #pragma once
 
-// All that a .sight file holds, in memory.
+// The contents of a .sight file in memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,19 +14,20 @@
 
 namespace sightline {
 
-// How a file came to be; part of it, for people and for --resume.
+// How a file was made; stored in the file, for people and for --resume.
 struct BakeRecord {
   double near_distance = 0.0;  // metres, BakeSettings::near_distance
   std::uint64_t triangle_budget = 0;
   std::uint32_t max_depth = 0;
-  std::string settings{};  // all of them as JSON, one line
+  std::string settings{};  // all settings as JSON, one line
 
   friend bool operator==(const BakeRecord&, const BakeRecord&) = default;
 };
 
-// Sets of nodes of a BoxTree, equal ones once. Each ascending, none below another.
+// Sets of nodes of a BoxTree, each distinct set once. Nodes are ascending, and none is below another.
 struct NodeSets {
-  std::vector<std::uint64_t> first{0};  // one more than there are sets, into nodes
+  std::vector<std::uint64_t> first{
+      0};  // index of each set's first node in nodes; one more than there are sets
   std::vector<std::uint32_t> nodes{};
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(first.size() - 1); }
@@ -35,10 +36,10 @@ struct NodeSets {
   }
 };
 
-// What OccluderDatabase::save and ViewpointDatabase::save give.
+// The bytes of OccluderDatabase::save or ViewpointDatabase::save.
 struct DatabaseBlob {
   std::string name{};         // "area-angle", "detail", "minimum-sets", "first-hit", "projected-size"
-  std::uint64_t occluders{};  // hash of the OccluderSet whose ids it names
+  std::uint64_t occluders{};  // hash of the OccluderSet that its ids refer to
   std::vector<std::byte> bytes{};
 };
 
@@ -47,7 +48,7 @@ struct BakedVisibility {
   BakeRecord record{};
   BoxTree boxes{};
   VisibilityOctree octree{};
-  NodeSets sets{};  // that the octree's leaves name
+  NodeSets sets{};  // the sets that the octree's leaves refer to
   std::vector<DatabaseBlob> databases{};
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Tells scenes apart: baked data holds for the scene that it was baked from, and for no other.
+// Identifies a scene: baked data is valid only for the scene that it was baked from.
 
 #include <cstdint>
 
@@ -10,17 +10,18 @@
 namespace sightline {
 
 struct SceneId {
-  std::uint64_t hash = 0;  // of all that decides what is visible
+  std::uint64_t hash = 0;  // of everything that determines what is visible
   std::uint64_t objects = 0, triangles = 0;
 
   friend bool operator==(const SceneId&, const SceneId&) = default;
 };
 
-// Of positions, triangles, objects with their boxes, and of materials and marks as far as they decide what
-// occludes. Not of names, colours or where the origin lies.
+// Hashes positions, triangles and objects with their boxes, and materials and marks as far as they determine
+// what occludes. Names, colours and the origin do not count.
 SceneId sceneId(const SceneView& scene);
 
-// Of all that its OccluderIds mean: databases of occluders hold for equal sets alone.
+// Hashes everything that gives OccluderIds their meaning: databases of occluders are valid only for equal
+// sets.
 std::uint64_t occluderSetHash(const OccluderSet& set);
 
 }  // namespace sightline

@@ -1,6 +1,6 @@
 #pragma once
 
-// The visibility octree as plain data: cells of space, each with the set of what may be seen from it.
+// The visibility octree as plain data: cells of space, each with the set of objects that may be seen from it.
 // Source: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999.
 
 #include <array>
@@ -15,25 +15,26 @@ namespace sightline {
 
 inline constexpr std::uint32_t kMaxOctreeDepth = 20;
 
-// Why a cell was not divided (section 3.2, and past it: merging).
+// Why a cell was not divided (section 3.2, and later, by merging).
 enum class StopReason : std::uint8_t {
   kBudgetMet,      // few enough triangles
   kNothingGained,  // neither smaller cells nor a larger search box would hide more
   kMaxDepth,
-  kMerged,   // eight cells with like sets were made one
-  kOutside,  // no viewers are there
+  kMerged,   // eight cells with similar sets became one
+  kOutside,  // outside the viewing region
 };
 inline constexpr std::uint32_t kStopReasons = 5;
 
-// A plane that divides a cell, with the solid that it stands for: eyes with dot(normal, eye) >= front are
-// before it, those with dot(normal, eye) <= back behind it, the others in it or so near that they may look
+// A plane that divides a cell, with the solid that it stands for. Eyes with dot(normal, eye) >= front are in
+// front of it and those with dot(normal, eye) <= back behind it. The others are inside the solid or so close
+// to it that they may look through it. back <= front.
 // through it. back <= front.
 //
-// The dot product is computed in double precision, x, then y, then z, by whoever looks up: it is off by less
-// than 2^-50 of the coordinates' size, the largest absolute value in the octree's box. So that this does no
-// harm, the sets of both sides hold for sides that are larger by m = 2^-40 of that size: front_set for all
-// eyes of the cell with dot(normal, eye) >= front - m, back_set for those with dot(normal, eye) <= back + m.
-// Whoever makes planes sees to it.
+// The look-up computes the dot product in double precision, x, then y, then z, with an error below 2^-50 of
+// the coordinates' magnitude (the largest absolute value in the octree's box). To allow for this, the sets of
+// both sides hold for sides enlarged by m = 2^-40 of that magnitude: front_set for all eyes of the cell with
+// dot(normal, eye) >= front - m, back_set for those with dot(normal, eye) <= back + m. Whoever creates planes
+// must ensure this.
 struct CellPlane {
   Vec3d normal{};  // unit length
   double front = 0.0, back = 0.0;
@@ -43,7 +44,7 @@ struct CellPlane {
 
 enum class CellSide : std::uint8_t { kFront, kBetween, kBack };
 
-// The side of the plane that the eye is on; between for what is not a number.
+// The side of the plane that the eye is on; `between` if the dot product is not a number.
 inline CellSide sideOf(const CellPlane& plane, const Vec3d& eye) {
   const double distance = dot(plane.normal, eye);
   return distance >= plane.front  ? CellSide::kFront
@@ -51,29 +52,29 @@ inline CellSide sideOf(const CellPlane& plane, const Vec3d& eye) {
                                   : CellSide::kBetween;
 }
 
-// Each belongs to one node. 16 bytes.
+// One leaf of the octree, 16 bytes. Each belongs to exactly one node.
 struct OctreeLeaf {
   static constexpr std::uint32_t kNoPlane = 0xffffffffu;
 
-  std::uint32_t set = 0;           // seen from anywhere in the cell; with a plane: from between its sides
+  std::uint32_t set = 0;           // seen from anywhere in the cell; with a plane, from between its sides
   std::uint32_t plane = kNoPlane;  // into planes
-  std::uint32_t front_set = 0, back_set = 0;  // with a plane only
+  std::uint32_t front_set = 0, back_set = 0;  // only with a plane
 
   friend bool operator==(const OctreeLeaf&, const OctreeLeaf&) = default;
 };
 static_assert(sizeof(OctreeLeaf) == 16);
 
-// An inner node: the index of the first of its eight children, which follow each other; child number i is the
-// upper half in x, y, z where bit 0, 1, 2 of i is set. A leaf: kOctreeLeaf and the index of the leaf.
+// Of an inner node: the index of the first of its eight children, which are consecutive. Child i is in the
+// upper half in x, y, z if bit 0, 1, 2 of i is set. Of a leaf: kOctreeLeaf plus the index of the leaf.
 using OctreeLink = std::uint32_t;
 inline constexpr OctreeLink kOctreeLeaf = 0x80000000u;
 
 struct OctreeView {
-  Vec3d min{}, max{};                   // scene space, of the root
+  Vec3d min{}, max{};                   // box of the root, scene space
   std::span<const OctreeLink> nodes{};  // [0] is the root; children have greater indices than their parent
   std::span<const OctreeLeaf> leaves{};
-  std::span<const std::uint8_t> depths{};   // by leaf
-  std::span<const std::uint8_t> reasons{};  // by leaf, StopReason
+  std::span<const std::uint8_t> depths{};   // level of each leaf
+  std::span<const std::uint8_t> reasons{};  // StopReason of each leaf
   std::span<const CellPlane> planes{};
 };
 
@@ -87,7 +88,7 @@ struct VisibilityOctree {
   OctreeView view() const { return {min, max, nodes, leaves, depths, reasons, planes}; }
 };
 
-// One cell of the grid of a level: 2^level cells along each axis.
+// One cell of a level's grid, which has 2^level cells along each axis.
 struct OctreeCell {
   std::uint32_t level = 0;
   std::array<std::uint32_t, 3> at{};
@@ -98,8 +99,8 @@ struct OctreeCell {
   friend bool operator==(const OctreeCell&, const OctreeCell&) = default;
 };
 
-// Where the grid line `at` of a level crosses an axis. The same real place has the same bits on every level:
-// this one function places the baker's cells and finds the viewer's.
+// The coordinate at which grid line `at` of a level crosses an axis. The same place has the same bits on
+// every level, because the baker and the look-up both use this function.
 inline double gridLine(double min, double max, std::uint32_t level, std::uint32_t at) {
   return min + (max - min) * (static_cast<double>(at) / static_cast<double>(1u << level));
 }
@@ -112,7 +113,7 @@ inline Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
           gridLine(min.z, max.z, c.level, c.at[2] + 1)};
 }
 
-// Calls visit(leaf index, cell) for all leaves, depth first, children in their order.
+// Calls visit(leaf index, cell) for all leaves, depth first, children in order.
 template <typename Visit>
 void forEachLeaf(const OctreeView& octree, Visit&& visit) {
   struct Entry {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Look-up in a baked file at run time: a viewpoint's cell, its side, its set.
+// Look-up in a baked file at run time: the viewpoint's cell, its side of the plane, its set.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +12,29 @@
 namespace sightline {
 
 struct SetQuerySettings {
-  std::size_t cache_bytes = 16u << 20;  // of decoded sets; the last one is always kept
+  std::size_t cache_bytes = 16u << 20;  // memory of decoded sets; the last one is always kept
 };
 
 struct SetQueryStats {
   std::uint64_t finds = 0;
-  std::uint64_t same_cell = 0;    // in the cell of the find before
-  std::uint64_t decoded = 0;      // sets that had to be decoded
-  std::uint64_t outside = 0;      // answered "everything" for want of a cell
-  std::uint64_t beyond_near = 0;  // answered "everything" because of their near distance
-  std::uint64_t broken = 0;       // answered "everything" because a chunk was broken
-  std::size_t cached_bytes = 0;   // storage of the decoded sets
+  std::uint64_t same_cell = 0;    // lookups in the same cell as the one before
+  std::uint64_t decoded = 0;      // sets decoded
+  std::uint64_t outside = 0;      // lookups that returned all objects because the eye is in no cell
+  std::uint64_t beyond_near = 0;  // lookups that returned all objects because of their near distance
+  std::uint64_t broken = 0;       // lookups that returned all objects because a chunk is corrupt
+  std::size_t cached_bytes = 0;   // memory of the decoded sets
 };
 
-// A viewpoint's place in the octree.
+// The leaf and set of a viewpoint.
 struct CellPlace {
   static constexpr std::uint32_t kOutside = 0xffffffffu;
 
-  std::uint32_t leaf = kOutside;  // into OctreeView::leaves
-  std::uint32_t set = 0;          // of its side; where it is outside: meaningless
+  std::uint32_t leaf = kOutside;  // index into OctreeView::leaves
+  std::uint32_t set = 0;          // set of the viewpoint's side; undefined outside
   OctreeCell cell{};
 };
 
-// Used by one thread at a time; several may share one SightFile.
+// Looks up sets in a SightFile. For use by one thread at a time; several queries may share one file.
 class SetQuery final : public VisibleSets {
  public:
   explicit SetQuery(SightFile file, const SetQuerySettings& settings = {});
@@ -43,12 +43,13 @@ class SetQuery final : public VisibleSets {
   SetQuery& operator=(SetQuery&&) noexcept;
 
   BoxTreeView boxes() const override;
-  // Starts from the last leaf. A viewpoint on the border of cells is in the upper one. Least recently used
-  // sets leave the cache first.
+  // Starts from the last leaf. A viewpoint on the border of cells is in the upper one. The cache evicts the
+  // least recently used sets first.
   VisibleSet find(const Vec3d& eye, double near_distance) override;
 
-  // Where the eye is, without its set. Outside: not in the box of the root, borders included, or not finite.
-  // (Where min + (max - min) is not max by rounding, the lesser of the two is the upper border.)
+  // Finds the eye's leaf without its set. Outside means not in the box of the root, borders included, or not
+  // finite. (If min + (max - min) rounds to another value than max, the smaller of the two is the upper
+  // border.)
   CellPlace locate(const Vec3d& eye);
 
   const SetQueryStats& stats() const;

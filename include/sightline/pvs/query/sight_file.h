@@ -1,6 +1,6 @@
 #pragma once
 
-// A .sight file, opened by memory map and verified: whatever its bytes are, reading it is safe.
+// A .sight file, memory-mapped and verified: reading it is safe whatever its bytes are.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,16 +16,17 @@
 
 namespace sightline {
 
-// Does not change: any number of threads may read it. Copies share one memory.
+// Immutable: any number of threads may read it. Copies share the same memory.
 class SightFile {
  public:
-  // Errors name the file and say what is wrong: not such a file, another version, truncated, altered.
-  // Verified when opened: the structure and the checksum of all that is read in place (hierarchy, octree,
-  // the index of sets). Compressed chunks are verified when they are decoded. The file is read as it is used:
-  // it must not be changed while it is open, but another one may be renamed over it, as writeSight does.
+  // Opens and verifies a file: its structure and the checksum of everything that is read in place (hierarchy,
+  // octree, index of sets). Compressed chunks are verified when they are decoded. Errors name the file and
+  // say what is wrong: not a .sight file, another version, truncated, altered. The file is read while it is
+  // used, so it must not be modified while it is open; another file may be renamed over it, as writeSight
+  // does.
   static Result<SightFile> open(const std::string& file);
-  // The same of bytes in memory, which must outlive it; name: for errors. Bytes that do not start at a
-  // multiple of eight are copied.
+  // Does the same with bytes in memory, which must outlive the result. name: for errors. Bytes that do not
+  // start at a multiple of eight are copied.
   static Result<SightFile> fromBytes(std::span<const std::byte> bytes, const std::string& name);
 
   const SceneId& scene() const;
@@ -34,29 +35,30 @@ class SightFile {
   OctreeView octree() const;
   std::uint32_t setCount() const;
 
-  // Success where the file was baked from this scene. The objects of boxes() are then those of the scene,
-  // each once.
+  // Success if the file was baked from this scene. boxes() then contains each object of the scene exactly
+  // once.
   Status matches(const SceneId& scene) const;
 
-  // Decodes a set: appends the nodes. set < setCount(). An error where the chunk is broken. For many sets in
-  // a row SetQuery is faster.
+  // Decodes a set and appends its nodes. set < setCount(). Returns an error if the chunk is corrupt. SetQuery
+  // is faster for many look-ups.
   Status readSet(std::uint32_t set, std::vector<std::uint32_t>& nodes) const;
-  // Calls visit(set, nodes) for all of them, ascending, each chunk decoded once; ends at the first broken
-  // one.
+  // Calls visit(set, nodes) for all sets in ascending order, decoding each chunk once. Stops at the first
+  // corrupt chunk.
   Status forEachSet(const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) const;
   // Decodes all chunks, as a check.
   Status verifyAll() const;
 
-  // Names of the occluder databases in it, and what they were saved as.
+  // Names of the occluder databases in the file, and their saved bytes.
   std::vector<std::string> databaseNames() const;
   Result<DatabaseBlob> readDatabase(const std::string& name) const;
 
   struct Section {
     std::string name{};
-    std::uint64_t bytes = 0;      // in the file
-    std::uint64_t raw_bytes = 0;  // before compression
+    std::uint64_t bytes = 0;      // size in the file
+    std::uint64_t raw_bytes = 0;  // size before compression
   };
-  std::vector<Section> sections() const;  // they make up the file, but for some hundred bytes
+  // All sections. They make up the file except for a few hundred bytes.
+  std::vector<Section> sections() const;
   std::uint64_t fileBytes() const;
 
  private:
