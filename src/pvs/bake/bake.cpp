@@ -29,11 +29,12 @@ struct Bake::Data {
 
 namespace {
 
-constexpr std::uint32_t kVersion = 2;  // of the method: other cells for the same input need another number
+// Of the method: increase it whenever the same input would give other cells.
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
-// Cells above this level are divided into parts. Below it a part has at most 73 cells, so that little is lost
-// when a bake is interrupted, and most of a part's samples are shared within.
+// Cells above this level are divided into parts. Below it, a part has at most 73 cells, so an interrupted
+// bake loses little and most samples of a part are shared within it.
 std::uint32_t partLevel(const BakeSettings& settings) {
   return settings.max_depth - std::min(settings.max_depth, 2u);
 }
@@ -68,7 +69,7 @@ std::string problemWith(const BakeSettings& s) {
   return {};
 }
 
-// Where viewers are. Nothing: nowhere.
+// The viewing region, or nothing if it is empty.
 std::optional<CellBox> regionOf(const SceneView& scene, const BakeSettings& settings) {
   Box bounds = settings.region;
   if (bounds.empty()) {
@@ -84,7 +85,7 @@ std::optional<CellBox> regionOf(const SceneView& scene, const BakeSettings& sett
   return CellBox{Vec3d(bounds.min), Vec3d(bounds.max)};
 }
 
-// An eighth of the scene's diagonal, which reaches over a few rooms or a few streets.
+// An eighth of the scene's diagonal, which spans a few rooms or a few streets.
 double firstSearchDistance(const BakeScene& scene) {
   return scene.settings.search_distance > 0.0 ? scene.settings.search_distance : 0.125 * scene.diagonal;
 }
@@ -105,7 +106,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   return pvs::checksumOf(bytes.take());
 }
 
-// The share of the region that lies in the cell. An axis along which the region has no extent does not count.
+// The fraction of the region that lies in the cell. Axes along which the region has no extent do not count.
 double shareOf(const BakeScene& scene, const OctreeCell& cell) {
   const CellBox box = scene.boxOf(cell);
   const Vec3d common = min(box.max, scene.region.max) - max(box.min, scene.region.min);
@@ -179,7 +180,7 @@ Bake::Worker::Worker(Worker&&) noexcept = default;
 
 namespace {
 
-// Adds the leaves of the cell, and the triangles that their sets keep, to the sums.
+// Adds the number of the cell's leaves, and the triangles that their sets keep, to the sums.
 void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& leaves, double& triangles) {
   for (const BakedCell& child : cell.children) {
     summarize(scene, child, leaves, triangles);
@@ -190,7 +191,8 @@ void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& lea
   }
 }
 
-// How a part begins. After it: of one that was divided the search distance of those below, else the cells.
+// The header of a part. After it comes the search distance for the child parts if the part was divided, else
+// the cells.
 struct PartHead {
   std::uint64_t magic = kPartMagic, plan = 0, id = 0;
   PartSummary summary;
@@ -276,7 +278,7 @@ bool Bake::isPart(std::uint64_t id, std::span<const std::byte> part) const {
 BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progress, BakeStats* stats) const {
   BakedParts parts;
   std::mutex mutex;
-  std::vector<std::unique_ptr<Worker>> resting;  // as many as threads ever baked at the same time
+  std::vector<std::unique_ptr<Worker>> resting;  // at most one per thread that baked at the same time
   double share = 0.0;
   const auto bakeRange = [&](std::span<const PartTask> tasks) {
     std::unique_ptr<Worker> worker;
@@ -299,7 +301,7 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
     const std::lock_guard lock(mutex);
     resting.push_back(std::move(worker));
   };
-  // Level by level: all parts of one level, then those that they were divided into.
+  // Breadth first: all parts of one level, then the parts that they were divided into.
   for (std::vector<PartTask> level{firstPart()}; !level.empty();) {
     parallel_for(static_cast<std::uint32_t>(level.size()), [&](std::uint32_t begin, std::uint32_t end) {
       bakeRange(std::span(level).subspan(begin, end - begin));
@@ -324,8 +326,8 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
 
 namespace {
 
-// The cell of a part with all below it, merged. Nothing: a part is missing, broken or of another plan; broken
-// is its id then.
+// The cell of a part with everything below it, merged. Returns nothing if a part is missing, corrupt or of
+// another plan; `broken` is then its id.
 std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, const BakedParts& parts,
                                     std::uint64_t id, std::uint64_t& broken) {
   const std::uint32_t level = cellOf(id).level;

@@ -22,7 +22,7 @@ std::vector<std::uint32_t> trianglesOf(const SceneView& scene) {
   return triangles;
 }
 
-// Whether test(number of the box) holds for one of the boxes that meet this one; asks no more after it.
+// True if test(index of the box) holds for one of the boxes that intersect this one. Stops at the first.
 template <typename Test>
 bool anyMeeting(const BoxTree& tree, const CellBox& box, Test&& test) {
   for (std::uint32_t n = 0; n < tree.nodes.size();) {
@@ -39,7 +39,7 @@ bool anyMeeting(const BoxTree& tree, const CellBox& box, Test&& test) {
   return false;
 }
 
-// Calls visit(number of the box) for all boxes that meet this one.
+// Calls visit(index of the box) for all boxes that intersect this one.
 template <typename Visit>
 void forEachMeeting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
   anyMeeting(tree, box, [&](std::uint32_t i) {
@@ -48,14 +48,14 @@ void forEachMeeting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
   });
 }
 
-// The cube that begins where the box does, on every axis a little wider than its longest edge.
+// A cube with the box's minimum corner, slightly wider on every axis than the box's longest edge.
 CellBox cubeAround(const CellBox& box) {
   const double reach = maxComponent(max(abs(box.min), abs(box.max)));
   const double edge = std::max({maxComponent(box.extent()), 0x1p-20 * reach, 1e-6}) * (1.0 + 0x1p-20);
   return {box.min, box.min + Vec3d{edge, edge, edge}};
 }
 
-// Of the smallest box around this one and all objects with a box.
+// Diagonal of the smallest box around this one and all objects that have a box.
 double diagonalOf(const SceneView& scene, const CellBox& box) {
   Vec3d low = box.min, high = box.max;
   for (const Object& object : scene.objects) {
@@ -67,21 +67,21 @@ double diagonalOf(const SceneView& scene, const CellBox& box) {
   return length(high - low);
 }
 
-// Whether the occluder is large enough for cells of this size.
+// True if the occluder is large enough for cells of this size.
 bool isOfUse(const ConvexOccluder& occluder, const CellBox& cell, double occluder_size) {
   const Vec3d extent = cell.extent();
   return occluder.area >= occluder_size * cell.smallestFace() ||
          occluder.volume >= occluder_size * extent.x * extent.y * extent.z;
 }
 
-// A chosen depth has so many cells at most, where it is not the least.
+// Limits of a chosen depth: its minimum, and the maximum number of cells beyond that.
 constexpr std::uint32_t kMinChosenDepth = 6;
 constexpr std::uint64_t kMaxChosenCells = 1u << 15;
 constexpr std::uint32_t kLargeInLevels = 3;  // at most kMinChosenDepth
-// Cells are no smaller than so many near distances: from them, what is closest would not occlude any more.
+// Minimum edge of a cell in near distances. In smaller cells, the closest occluders would no longer count.
 constexpr double kMinEdgeInNears = 4.0;
-// The region's floor, ceiling or outer wall: hides nothing that lies in the region. In parts of the region's
-// extent.
+// Detects the region's floor, ceiling and outer walls, which hide nothing inside the region. In fractions of
+// the region's extent.
 constexpr double kSpans = 0.9, kTouches = 1e-3, kThin = 0.125;
 
 bool isBorder(const Box& box, const CellBox& region) {
@@ -95,7 +95,7 @@ bool isBorder(const Box& box, const CellBox& region) {
          (touches(2) && spans(0) && spans(1));
 }
 
-// Cells of a level that meet the region.
+// Number of cells of a level that intersect the region.
 std::uint64_t cellsOfRegion(const CellBox& root, const CellBox& region, std::uint32_t level) {
   const double edge = root.extent().x / std::ldexp(1.0, static_cast<int>(level));
   std::uint64_t count = 1;
@@ -105,7 +105,7 @@ std::uint64_t cellsOfRegion(const CellBox& root, const CellBox& region, std::uin
   return count;
 }
 
-// The number of those of these cells that meet one of the boxes; counting ends at the limit.
+// Number of these cells that intersect one of the boxes; counting stops at the limit.
 std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox& region,
                         const OctreeCell& cell, std::uint32_t level, std::uint64_t limit) {
   const CellBox box{cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
@@ -162,8 +162,8 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   face_tree_ = buildBoxTree(bounds, {});
 }
 
-// Cells as small as the region can have without becoming too many; below them those near an occluder, as long
-// as they are not too many.
+// Chooses the base depth, with cells as small as possible while they are not too many; then a greater depth
+// for cells near an occluder, while those are not too many.
 void BakeScene::chooseDepth() {
   base_depth_ = settings.max_depth;
   if (settings.max_depth != BakeSettings::kChooseDepth) {
@@ -191,8 +191,9 @@ void BakeScene::chooseDepth() {
   }
 }
 
-// An occluder reaches as far as it is large: from farther away it hides little. None that is of no use to
-// cells of the level; nor one so large that cells much larger can use it, as the ground is.
+// The boxes within which occluders count as near, for cells of the level. An occluder hides little from
+// farther away than its own size. Occluders that are not useful to cells of the level are omitted, and so are
+// those useful to much larger cells, such as the ground.
 BoxTree BakeScene::reachOfOccluders(std::uint32_t level) const {
   std::vector<Box> reached;
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {

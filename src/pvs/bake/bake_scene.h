@@ -1,6 +1,6 @@
 #pragma once
 
-// What a bake knows of its scene: objects, occluders, and trees to find them by. Does not change.
+// The scene data of a bake: objects, occluders, and the trees that find them. Immutable.
 
 #include <cstdint>
 #include <span>
@@ -16,53 +16,53 @@
 namespace sightline::pvs {
 
 struct BakeScene {
-  // settings: usable ones. region: where viewers are.
+  // settings: must be valid. region: where viewers are.
   BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& settings,
             const CellBox& region);
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
-  BakeSettings settings;  // max_depth: chosen, where it was to be
+  BakeSettings settings;  // including the chosen max_depth
   CellBox region;
   CellBox root;   // a cube
-  BoxTree boxes;  // of the objects; sets are made of its nodes
+  BoxTree boxes;  // of the objects; sets are expressed in terms of its nodes
   ShadowTree shadow_tree;
   TriangleCounts triangles;
-  std::vector<std::uint32_t> position_of;  // by object, into BoxTree::objects
+  std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
   ConvexOccluders occluders;
   OccluderCounts counts;
-  double side_margin = 0.0;  // metres, of the root
-  double diagonal = 0.0;     // metres, of the region and all objects
-  double reach = 0.0;        // metres, from any viewer to any box
+  double side_margin = 0.0;  // sideMargin of the root, metres
+  double diagonal = 0.0;     // diagonal of the region and all objects, metres
+  double reach = 0.0;        // maximum distance from any viewer to any box, metres
 
   CellBox boxOf(const OctreeCell& cell) const {
     return {cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
   }
-  // All cells down to this level may be divided; below it, only those near occluders.
+  // Any cell down to this level may be divided; below it, only cells near occluders.
   std::uint32_t baseDepth() const { return base_depth_; }
-  // Whether the depth lets the cell be divided.
+  // True if the cell's depth allows dividing it.
   bool mayDivide(const OctreeCell& cell) const;
-  // Appends, ascending, the occluders that meet the box and are of use to cells of this level.
+  // Appends, in ascending order, the occluders that intersect the box and are useful to cells of this level.
   void findOccluders(const CellBox& box, std::uint32_t level, std::vector<std::uint32_t>& found) const;
-  // Appends the faces that meet the box.
+  // Appends the faces that intersect the box.
   void findFaces(const CellBox& box, std::vector<DividingFace>& found) const;
-  // Whether some occluder that meets the box is too small for cells of this level, and of use to smaller
+  // True if some occluder that intersects the box is too small for cells of this level but useful to smaller
   // ones.
   bool holdsSmallOccluders(const CellBox& box, std::uint32_t level) const;
-  // Whether no occluder is of use to any cell and outside the box.
+  // True if every occluder that is useful to any cell intersects the box.
   bool holdsAllOccluders(const CellBox& box) const;
 
  private:
-  // Deeper than the base, down to settings.max_depth, only cells that meet one of the boxes are divided.
+  // Below base_depth_, down to settings.max_depth, only cells that intersect one of these boxes are divided.
   std::uint32_t base_depth_ = 0;
   BoxTree reach_tree_;
   std::vector<ConvexEdge> face_edges_;
-  std::vector<DividingFace> faces_;  // of all occluders, also of those of bodies
+  std::vector<DividingFace> faces_;  // of all occluders, including bodies
   BoxTree face_tree_;
-  // Of the occluders that are of use to cells of one level: large enough for their size.
+  // The occluders that are large enough for the cells of one level.
   struct LevelOccluders {
     std::vector<std::uint32_t> occluders;  // ascending
-    BoxTree tree;                          // its objects are numbers into `occluders`
+    BoxTree tree;                          // its objects are indices into `occluders`
   };
   void chooseDepth();
   void countOccluders();

@@ -10,7 +10,7 @@
 namespace sightline::pvs {
 namespace {
 
-// Corners that differ in one coordinate.
+// Two corners that differ in one coordinate.
 struct BoxEdge {
   std::uint32_t from, to;
   int axis;
@@ -28,11 +28,12 @@ constexpr std::array<BoxEdge, 12> kBoxEdges{{{0, 1, 0},
                                              {2, 6, 2},
                                              {3, 7, 2}}};
 
-// A plane that faces cover less of divides no cell.
+// Minimum fraction of a plane's cross-section that faces must cover for the plane to divide a cell.
 constexpr double kMinCoverage = 0.5;
-constexpr std::size_t kMaxTried = 16;  // faces whose planes are looked at
+constexpr std::size_t kMaxTried = 16;  // maximum number of faces whose planes are tried
 
-// Where the plane dot(normal, x) = level crosses the edge, kept on it. Its ends lie on different sides.
+// The point where the plane dot(normal, x) = level crosses the edge, clamped to the edge. The edge's ends
+// must lie on different sides.
 Vec3d crossing(const CellBox& cell, const BoxEdge& edge, const Vec3d& normal, double level) {
   Vec3d point = cell.corner(edge.from);
   const Vec3d end = cell.corner(edge.to);
@@ -42,7 +43,8 @@ Vec3d crossing(const CellBox& cell, const BoxEdge& edge, const Vec3d& normal, do
   return point;
 }
 
-// The plane's cross-section with the cell, in no order. Empty: it passes the cell by.
+// Corners of the plane's cross-section with the cell, unordered. Empty if the plane does not intersect the
+// cell.
 std::vector<Vec3d> crossSection(const CellBox& cell, const Vec3d& normal, double level) {
   std::vector<Vec3d> points;
   for (const BoxEdge& edge : kBoxEdges) {
@@ -67,7 +69,7 @@ double areaOf(std::span<const Corner> polygon) {
   return 0.5 * length(twice);
 }
 
-// Keeps what of the polygon is in the cell.
+// Clips the polygon to the cell.
 void clipTo(const CellBox& cell, std::vector<Corner>& polygon) {
   std::vector<Corner> scratch;
   for (int axis = 0; axis < 3; ++axis) {
@@ -76,7 +78,8 @@ void clipTo(const CellBox& cell, std::vector<Corner>& polygon) {
   }
 }
 
-// The plane's cross-section with the cell: a square on the plane that is larger than the cell, clipped.
+// Area of the plane's cross-section with the cell, computed by clipping a square that is larger than the
+// cell.
 double sectionArea(const CellBox& cell, const Vec3d& normal, double level) {
   const Vec3d centre = cell.centre() + normal * (level - dot(normal, cell.centre()));
   const int axis = std::abs(normal.x) < 0.5 ? 0 : 1;
@@ -89,19 +92,19 @@ double sectionArea(const CellBox& cell, const Vec3d& normal, double level) {
   return areaOf(square);
 }
 
-// Metres along its normal from the origin.
+// Distance of the face's plane from the origin along its normal, metres.
 double levelOf(const DividingFace& face) {
   return -face.plane.offset;
 }
 
-// A face that lies in the cell, or just outside.
+// A face that lies in the cell or just outside.
 struct FaceInCell {
   const DividingFace* face = nullptr;
-  double area = 0.0;     // of it, in the cell
-  double section = 0.0;  // of its plane, in the cell
+  double area = 0.0;     // area of the face in the cell
+  double section = 0.0;  // area of its plane's cross-section with the cell
 };
 
-// Metres from the plane of a face within which viewers count as between its sides.
+// Distances in metres from a face's plane within which viewers count as between its sides.
 struct Clearance {
   double near_distance, side_margin;
 
@@ -110,7 +113,8 @@ struct Clearance {
   }
 };
 
-// Of a face whose plane passes just outside: as if it lay where viewers begin to be before it.
+// Measures a face. If its plane passes just outside the cell, the face is measured where viewers begin to be
+// in front of it.
 FaceInCell measured(const CellBox& cell, const DividingFace& face, const Clearance& clearance) {
   const Vec3d& normal = face.plane.normal;
   FaceInCell found{&face, 0.0, 0.0};
@@ -134,7 +138,7 @@ bool inOnePlane(const DividingFace& a, const DividingFace& b) {
          std::abs(levelOf(a) - levelOf(b)) <= 4.0 * (a.margin + b.margin);
 }
 
-// How much of its plane's cross-section with the cell a face covers together with all others in its plane.
+// The fraction of the plane's cross-section with the cell that is covered by all faces in the face's plane.
 double coverage(const FaceInCell& face, std::span<const FaceInCell> faces) {
   double area = 0.0;
   for (const FaceInCell& other : faces) {
@@ -143,8 +147,8 @@ double coverage(const FaceInCell& face, std::span<const FaceInCell> faces) {
   return area / face.section;
 }
 
-// Metres along its normal from the origin, of the back of the solid before which it lies: the next face
-// behind it that looks the other way. Its own level where there is none.
+// The level, in metres along the front's normal from the origin, of the back of the solid behind the face:
+// that of the next face behind it that faces the other way. Its own level if there is none.
 double backLevel(const DividingFace& front, std::span<const DividingFace* const> covering) {
   double back_level = levelOf(front);
   bool looks_back = front.double_sided;
@@ -168,7 +172,7 @@ double CellBox::smallestFace() const {
 
 std::vector<Vec3d> cornersOf(const CellBox& cell) {
   std::vector<Vec3d> corners;
-  // Opposite ones first: what an occluder hides from both is little, if anything.
+  // Opposite corners come first, because an occluder hides little from both.
   for (const std::uint32_t i : {0, 7, 3, 4, 5, 2, 1, 6}) {
     corners.push_back(cell.corner(i));
   }
@@ -204,12 +208,13 @@ std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const Divi
       inside.push_back(found);
     }
   }
-  // Filled to the last corner or nearly so is the same; of such planes the one nearest to the centre.
+  // Planes that are filled to rounding count as equally filled; among those, take the one nearest to the
+  // centre.
   const Vec3d centre = cell.centre();
   const FaceInCell* best = nullptr;
   std::pair<double, double> best_rank;
   std::vector<const DividingFace*> covering;
-  // What covers half of a section has tiles among the largest.
+  // If faces cover half of a section, some of them are among the largest.
   const std::size_t tried = std::min(inside.size(), kMaxTried);
   std::partial_sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(tried), inside.end(),
                     [](const FaceInCell& a, const FaceInCell& b) {

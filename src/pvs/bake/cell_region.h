@@ -1,6 +1,6 @@
 #pragma once
 
-// The convex regions that viewers of a cell can be in, by their corners.
+// The convex regions of a cell in which viewers can be, given by their corners.
 
 #include <optional>
 #include <span>
@@ -20,11 +20,11 @@ struct CellBox {
   }
   Vec3d centre() const { return (min + max) * 0.5; }
   Vec3d extent() const { return max - min; }
-  // Of its smallest face, square metres.
+  // Area of the smallest face, square metres.
   double smallestFace() const;
 };
 
-// Borders included.
+// True if the closed boxes intersect.
 inline bool meet(const CellBox& a, const CellBox& b) {
   return a.min.x <= b.max.x && a.min.y <= b.max.y && a.min.z <= b.max.z && a.max.x >= b.min.x &&
          a.max.y >= b.min.y && a.max.z >= b.min.z;
@@ -37,29 +37,30 @@ inline bool meet(const CellBox& a, const Box& b) {
 std::vector<Vec3d> cornersOf(const CellBox& cell);
 
 // The corners of the part of the cell with dot(normal, x) >= least: corners of the cell and points on its
-// edges. What lies in the cell with dot(normal, x) >= least + sideMargin(cell) is within their hull, rounding
-// included. Empty: nothing is there.
+// edges. Every point of the cell with dot(normal, x) >= least + sideMargin(cell) is within their convex hull,
+// including rounding. Empty if there is no such part.
 std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double least);
-// Metres; above the rounding of dot(normal, x) for all x in the box, wherever it is computed. That of a root
-// serves for its cells.
+// A bound in metres on the rounding of dot(normal, x) for all x in the box, wherever it is computed. The
+// margin of a root is valid for its cells.
 double sideMargin(const CellBox& cell);
 
-// A face of an occluder that might divide cells.
+// A face of an occluder that may divide cells.
 struct DividingFace {
-  Plane plane;                        // unit normal to its front
+  Plane plane;                        // its outline, counter-clockwise seen from the front
   std::span<const ConvexEdge> edges;  // its outline, counter-clockwise from the front
-  double margin = 0.0;                // metres, of its occluder
+  double margin = 0.0;                // margin of its occluder, metres
   bool double_sided = false;
 };
 
-// The plane through the cell of which faces cover the most, half of its cross-section at least. Faces just
-// outside count too, if viewers could come too near to them: a floor that the cell stands on. Of planes that
-// are covered wholly, the one that passes nearest to the centre. Its back is that of the next faces behind it
-// that look the other way, if any. Viewers nearer than near_distance, and a few side_margin (that of the
-// root, so that neighbours find the same planes), count as between.
+// The plane through the cell whose faces cover the most of its cross-section, and at least half. Faces just
+// outside the cell count too if viewers could come too close to them, such as the floor that a cell stands
+// on. Of planes that are completely covered, the one nearest to the centre is taken. The back of the plane is
+// that of the next faces behind it that face the other way, if any. Viewers closer than near_distance plus a
+// few side_margin count as between the sides. side_margin: that of the root, so that neighbouring cells find
+// the same planes.
 //
-// The choice is free: whatever the plane, the two sides are convex, and their sets are found for themselves.
-// (The paper asks for a polygon that covers the whole cross-section, so floors of many tiles divide nothing.)
+// Any choice is safe: for every plane the two sides are convex, and their sets are computed separately. (The
+// paper requires a polygon that covers the whole cross-section, so that floors of many tiles divide nothing.)
 std::optional<CellPlane> dividingPlane(const CellBox& cell, std::span<const DividingFace> faces,
                                        double near_distance, double side_margin);
 

@@ -1,8 +1,8 @@
 // Based on: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999, section 3.2.
-// Differs from the paper in: the search box is the cell, grown on all sides, so that all of its corners look
-// at the same occluders; whether dividing helps is asked of points within the cell too, since what the
-// corners of a large cell see says little about what its parts will; occluders are closed to viewers that
-// come nearer than their near planes.
+// Differs from the paper in: the search box is the cell, grown on all sides, so that all of its corners test
+// the same occluders; whether dividing helps is tested at points within the cell too, because the sets of a
+// large cell's corners say little about what its parts will see; occluders do not count for viewers that come
+// closer to them than their near planes.
 
 #include "src/pvs/bake/cell_sets.h"
 
@@ -62,8 +62,8 @@ void ObjectMask::complement(Runs& out) const {
   }
 }
 
-// How far from a cell an occluder is near it, in its edges. Where it is farther away it is small, seen from
-// there, unless it is as large as the cell.
+// An occluder is near a cell within this distance, in edge lengths of the cell. Farther away it looks small,
+// unless it is as large as the cell.
 constexpr double kNearInEdges = 0.5;
 
 CellBaker::CellBaker(const BakeScene& scene)
@@ -134,11 +134,11 @@ void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
   }
 }
 
-// An occluder whose object is hidden by one of those before it hides nothing more: its shadow lies within
-// that one's, from every viewpoint.
+// Skips an occluder whose object is already hidden: it hides nothing more, because its shadow lies within
+// that of the hiding occluder, from every viewpoint.
 void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen) {
   if (corners.empty()) {
-    seen.clear();  // nobody is there
+    seen.clear();  // there are no viewers
     return;
   }
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
@@ -157,9 +157,10 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen) {
   hidden_.complement(seen);
 }
 
-// Fills common_ with what this one occluder hides from all corners: the intersection is taken for each
-// occluder, the union of all occluders comes after. (The other way round would be wrong: from between the
-// corners one may see past what hides from each.) false: nothing.
+// Fills common_ with the runs that this one occluder hides from all corners. The intersection over the
+// corners must be taken per occluder, and only then the union over all occluders: two occluders that hide an
+// object from some corners each may leave it visible from a point in between. Returns false if common_ is
+// empty.
 bool CellBaker::intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners) {
   const std::span<const ObjectRun> first = samples_.hidden(*corners[0], occluder);
   common_.assign(first.begin(), first.end());

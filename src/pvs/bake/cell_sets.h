@@ -1,6 +1,6 @@
 #pragma once
 
-// What may be seen from one cell.
+// Computes what may be seen from one cell.
 
 #include <cstdint>
 #include <optional>
@@ -16,22 +16,23 @@ namespace sightline::pvs {
 struct CellSets {
   Runs whole;  // seen from anywhere in the cell
   std::optional<CellPlane> plane;
-  Runs front, back;  // with a plane: seen from before it, from behind it
+  Runs front, back;  // with a plane only: seen from its front, from its back
 };
 
-// That count for the budget: of the side that sees more. Who is between the sides is not there for long.
+// Triangles compared with the budget: those of the side that sees more. Viewers between the sides do not
+// count, as they are there only briefly.
 std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets);
 
-// Objects as a bit each, for uniting many runs.
+// One bit per object, to unite many runs fast.
 class ObjectMask {
  public:
-  // Of so many objects; to begin with none.
+  // Resizes to `count` objects, none of them set.
   void reset(std::uint32_t count);
-  // The same; to begin with all but those of the runs.
+  // Resizes to `count` objects, all set except those of the runs.
   void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
   void add(std::span<const ObjectRun> runs);
   bool contains(std::uint32_t position) const { return (words_[position / 64] >> position % 64 & 1) != 0; }
-  // out: what is not in it.
+  // out: the objects that are not set.
   void complement(Runs& out) const;
 
  private:
@@ -45,28 +46,29 @@ class CellBaker {
  public:
   explicit CellBaker(const BakeScene& scene);
 
-  // search_distance: occluders that meet the cell, grown by so much on all sides, count.
+  // Sets of the cell. Occluders count that intersect the cell grown by search_distance metres on all sides.
   CellSets seenFrom(const OctreeCell& cell, double search_distance);
-  // The same with a greater distance, from sets with a smaller one.
+  // Updates the sets, computed with the smaller distance `searched`, to the greater search_distance.
   void lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets);
-  // Whether cells within this one are likely to see clearly less: a corner or centre of it, or a centre of
-  // its children, does, with all occluders that are of use to the smallest cells.
+  // True if cells within this one are likely to see clearly less: if a corner or the centre of the cell, or a
+  // centre of one of its children, does, with all occluders that are useful to the smallest cells.
   bool dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets);
-  // Whether the cell is larger than occluders near it are of use to: then points within are no fair sample of
-  // what smaller cells see.
+  // True if the cell is larger than what occluders near it are useful to. Points in it are then no fair
+  // sample of what smaller cells see.
   bool tooLargeForItsOccluders(const OctreeCell& cell) const;
-  // Whether a larger search box holds nothing new.
+  // True if a larger search box would contain no further occluders.
   bool searchedAll(const OctreeCell& cell, double search_distance) const;
 
-  // Between cells: keeps memory within its limit.
+  // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
   const BakeStats& stats() const { return samples_.stats(); }
 
  private:
   CellBox searchBox(const OctreeCell& cell, double search_distance) const;
-  // Those in the search box that are of use to cells of this level; what seems largest from the cell first.
+  // Fills chosen_ with the occluders in the search box that are useful to cells of this level, those that
+  // look largest from the cell first.
   void chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level);
-  // Takes from each set what the chosen occluders hide from its region: the cell, or a side of its plane.
+  // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen);
   bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
@@ -74,7 +76,7 @@ class CellBaker {
 
   const BakeScene& scene_;
   SampleStore samples_;
-  // Of the cell at hand.
+  // Scratch for the current cell.
   std::vector<std::uint32_t> chosen_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;

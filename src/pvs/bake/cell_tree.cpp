@@ -1,5 +1,5 @@
 // Based on: Saona-Vazquez, Navazo, Brunet. The Visibility Octree. Computers & Graphics 1999, section 3.2.
-// Differs from the paper in: cells at the maximum depth enlarge their search boxes too before they give up.
+// Differs from the paper in: cells at the maximum depth also enlarge their search boxes before they give up.
 
 #include "src/pvs/bake/cell_tree.h"
 
@@ -76,7 +76,7 @@ void add(const Runs& more, Runs& runs) {
   runs.swap(both);
 }
 
-// What is seen from all of these together. Nothing: they are not all leaves, or have different planes.
+// The union of the cells' sets, or nothing if they are not all leaves or have different planes.
 std::optional<CellSets> togetherOf(std::span<const BakedCell> cells) {
   CellSets all;
   for (const BakedCell& cell : cells) {
@@ -119,7 +119,7 @@ void mergeChildren(const BakeScene& scene, BakedCell& cell) {
 
 namespace {
 
-// First byte of a cell.
+// First byte of an encoded cell.
 constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2;
 
 void write(const Runs& runs, base::ByteWriter& bytes) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The octree while it is made: cells divided until they need not be, siblings merged, and all of it as bytes.
+// The octree during the bake: dividing cells, merging siblings, and encoding cells as bytes.
 
 #include <optional>
 #include <vector>
@@ -11,8 +11,8 @@
 namespace sightline::pvs {
 
 struct BakedCell {
-  std::vector<BakedCell> children;  // eight, or none: a leaf
-  // Of a leaf.
+  std::vector<BakedCell> children;  // eight; none in a leaf
+  // Leaves only.
   CellSets sets;
   StopReason reason = StopReason::kBudgetMet;
   std::uint8_t level = 0;
@@ -20,25 +20,25 @@ struct BakedCell {
   bool leaf() const { return children.empty(); }
 };
 
-// A cell to be looked at, and how far occluders were looked for above it.
+// A cell to be decided, and the search distance used for its parent.
 struct CellTask {
   OctreeCell cell;
   double search_distance = 0.0;  // metres
 };
 
-// What became of it: a leaf, or the search distance for its children.
+// The result for a cell: a leaf, or the search distance for its children.
 struct CellOutcome {
   bool divide = false;
   double search_distance = 0.0;
   BakedCell leaf;
 };
-// The four cases of the paper, section 3.2.
+// Decides the cell by the four cases of the paper, section 3.2.
 CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task);
 
-// All below the task's cell, merged.
+// The task's cell with everything below it, merged.
 BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& task);
 
-// Makes a cell whose children are leaves with like sets a leaf.
+// Turns a cell whose children are leaves with similar sets into a leaf.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
 void write(const BakedCell& cell, base::ByteWriter& bytes);

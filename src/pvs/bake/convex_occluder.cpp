@@ -10,20 +10,21 @@
 namespace sightline::pvs {
 namespace {
 
-// Of the coordinates' size: in a margin, above all rounding of corners that are drawn in (2^-49).
+// In units of the coordinates' magnitude: the part of a margin that covers all rounding of inset corners
+// (2^-49).
 constexpr double kMarginRounding = 0x1p-44;
-// Of the coordinates' size: the rounding of a height above a plane, and of a drawn-in corner.
+// In units of the coordinates' magnitude: the rounding of a height above a plane, and of an inset corner.
 constexpr double kHeightRounding = 0x1p-47;
-// What shrinks by more than this part is not used.
+// An occluder that shrinks by more than this fraction is not used.
 constexpr double kMaxShrinking = 0.25;
 constexpr double kRoundUp = 1.0 + 0x1p-30, kRoundDown = 1.0 - 0x1p-30;
 
-// The lesser one; not a number where either is none.
+// The smaller of two numbers; NaN if either is NaN.
 double lesser(double a, double b) {
   return b < a || std::isnan(b) ? b : a;
 }
 
-// At least |x| + |y| + |z| of all these points.
+// At least |x| + |y| + |z| of each of these points.
 double sizeOf(std::span<const Vec3f> points) {
   Vec3d most;
   for (const Vec3f& point : points) {
@@ -40,12 +41,12 @@ Vec3d meanOf(std::span<const Vec3f> points) {
   return sum / static_cast<double>(points.size());
 }
 
-// The part by which a shape must shrink to lose `margin` where its centre is `depth` deep.
+// The fraction by which a shape must shrink to lose `margin` if its centre is `depth` deep.
 double shrinking(double margin, double depth) {
   return margin / depth * kRoundUp;
 }
 
-// Least distance of the centre, which is on the plane, from the lines of a convex polygon's edges.
+// Minimum distance from the centre, which lies in the plane, to the lines of a convex polygon's edges.
 double depthIn(std::span<const Vec3d> corners, const Vec3d& normal, const Vec3d& centre) {
   double least = INFINITY;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -55,10 +56,10 @@ double depthIn(std::span<const Vec3d> corners, const Vec3d& normal, const Vec3d&
   return least;
 }
 
-// Of a body, metres.
+// Depths of a body, metres.
 struct BodyDepth {
-  double centre = INFINITY;  // least depth of the centre behind the planes of the faces
-  double outside = 0.0;      // greatest height of a corner before one of them
+  double centre = INFINITY;  // minimum depth of the centre behind the planes of the faces
+  double outside = 0.0;      // maximum height of a corner above one of them
 };
 
 BodyDepth depthIn(std::span<const BodyFace> faces, std::span<const Vec3f> vertices, const Vec3d& centre) {
@@ -88,7 +89,7 @@ bool ConvexOccluders::addPolygon(const OccluderSet& set, OccluderId id) {
   const Vec3d normal = polygon.plane.normal, mean = meanOf(vertices);
   const Vec3d centre = mean - normal * polygon.plane.evaluate(mean);
   const double size = sizeOf(vertices);
-  std::array<Vec3d, 64> flat;  // the corners, moved onto the plane
+  std::array<Vec3d, 64> flat;  // the corners, projected onto the plane
   if (vertices.size() < 3 || vertices.size() > flat.size()) {
     return false;
   }
@@ -157,7 +158,7 @@ bool ConvexOccluders::addBody(const OccluderSet& set, const OccluderBody& body) 
     occluder.volume -= area * face.plane.evaluate(centre) / 3.0;
     faces_.push_back({face.plane, drawn(face.vertex)});
   }
-  // Every corner of a face is the start or the end of an edge of it.
+  // Every corner of a face is an end point of one of its edges.
   const std::span<DrawnFace> drawn_faces = std::span(faces_).subspan(occluder.first_face);
   for (const BodyEdge& edge : set.edgesOf(body)) {
     edges_.push_back({drawn(edge.from), drawn(edge.to) - drawn(edge.from), edge.left, edge.right});
@@ -195,7 +196,7 @@ ConvexOccluders::ConvexOccluders(const OccluderSet& set) {
   std::sort(occluders_.begin(), occluders_.end(), [](const ConvexOccluder& a, const ConvexOccluder& b) {
     return std::tuple(-a.area, a.id.value) < std::tuple(-b.area, b.id.value);
   });
-  // In the same order, so that neighbours are near each other in memory.
+  // Keep their order, so that neighbours are close in memory.
   std::vector<DrawnEdge> edges;
   std::vector<DrawnFace> faces;
   edges.reserve(edges_.size());
@@ -214,7 +215,7 @@ ConvexOccluders::ConvexOccluders(const OccluderSet& set) {
 
 namespace {
 
-// Least height of the points above a plane, less its rounding.
+// Minimum height of the points above a plane, less its rounding.
 double minHeight(const Plane& plane, double size, std::span<const Vec3d> points) {
   double least = INFINITY;
   for (const Vec3d& point : points) {
@@ -223,7 +224,7 @@ double minHeight(const Plane& plane, double size, std::span<const Vec3d> points)
   return least;
 }
 
-// How far the points are from a box along each axis; negative where they overlap.
+// Distance of the points from a box along each axis; negative where they overlap.
 Vec3d gapsBetween(const Box& box, std::span<const Vec3d> points) {
   Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
   for (const Vec3d& point : points) {
@@ -251,7 +252,7 @@ bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::
   if (occluder.body) {
     gap = std::max(gap, maxComponent(gaps) * kRoundDown);
   }
-  // The margin is more than what triangles lie off the planes, and out of the bounds.
+  // The margin exceeds the distance of the triangles from the planes and from the bounds.
   const double apart = std::max(gap, length(max(gaps, Vec3d())) * kRoundDown);
   return gap > occluder.margin && apart - occluder.margin > near_distance;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-// Potential occluders of the bake: convex bodies, and convex polygons that are no faces of bodies.
+// Potential occluders of the bake: convex bodies, and convex polygons that are not faces of bodies.
 //
-// What one convex set C hides from all corners of a convex region, it hides from every point of the region
-// (Saona-Vazquez, Navazo, Brunet 1999, theorem 1). C must be the same for all viewpoints. Polygons and
-// triangles lie apart by up to Occluder::slack, so the sets used here are drawn in by
+// If one convex set C hides something from all corners of a convex region, it hides it from every point of
+// the region (Saona-Vazquez, Navazo, Brunet 1999, theorem 1). C must be the same for all viewpoints. Polygons
+// and triangles differ by up to Occluder::slack, so the sets used here are inset by
 //
 //   margin = 2 slack + how far corners lie off their planes + 2^-44 of the coordinates' size.
 //
@@ -15,7 +15,7 @@
 //   A body       is shrunk about its centre until each corner is behind every face by the margin. A line that
 //                comes from outside to any point there crosses the closed surface of the triangles.
 //
-// Shrinking is a homothety: corners, edges and faces stay as they are, whatever meets in a corner.
+// Shrinking is a homothety, so it keeps corners, edges and faces, whatever joins in a corner.
 
 #include <cstdint>
 #include <span>
@@ -30,38 +30,39 @@ struct ConvexEdge {
   Vec3d from, to;  // scene space
 };
 
-// An edge of the set drawn in; of a polygon, not yet moved across its plane. Counter-clockwise around its
+// An edge of the inset set; of a polygon, before it is moved across its plane. Counter-clockwise around its
 // left face as seen from outside, clockwise around its right one.
 struct DrawnEdge {
-  Vec3d from, along;                 // scene space; `along` leads to the other end
-  std::uint8_t left = 0, right = 0;  // body: numbers of faces within the body
+  Vec3d from, along;                 // scene space; `along` points to the other end
+  std::uint8_t left = 0, right = 0;  // body: indices of faces within the body
 };
 
 // A face of a body, or the polygon.
 struct DrawnFace {
-  Plane plane;  // not drawn in; unit normal, outwards (polygon: to its front); scene space
-  // All corners x of the face drawn in have least <= dot(plane.normal, x - base) <= most, rounding included.
+  Plane plane;  // not inset; unit normal, outwards (polygon: to its front); scene space
+  // All corners x of the inset face have least <= dot(plane.normal, x - base) <= most, including rounding.
   Vec3d base;
   double least = 0.0, most = 0.0;
 };
 
 struct ConvexOccluder {
-  std::uint32_t first_edge = 0, first_face = 0;  // into ConvexOccluders
+  std::uint32_t first_edge = 0, first_face = 0;  // indices into ConvexOccluders
   std::uint16_t edge_count = 0, face_count = 0;  // polygon: one face
   bool body = false;
   bool double_sided = false;  // polygon
-  OccluderId id;              // of the polygon; of the body's first face
+  OccluderId id;              // of the polygon, or of the body's first face
   ObjectId object;
-  Box bounds;           // of the corners, not drawn in
+  Box bounds;           // of the corners, not inset
   double margin = 0.0;  // metres
   double area = 0.0;    // of its largest face, square metres
-  double volume = 0.0;  // cubic metres; polygon: 0
-  double size = 0.0;    // bounds |x| + |y| + |z| of all its points, and the margin
+  double volume = 0.0;  // cubic metres; 0 for a polygon
+  double size = 0.0;    // upper bound of |x| + |y| + |z| over all its points, including the margin
 };
 
 class ConvexOccluders {
  public:
-  // Leaves out what is not clearly larger than its margin. A body that is too thin leaves its faces.
+  // Omits occluders that are not clearly larger than their margin. Of a body that is too thin, the faces are
+  // kept.
   explicit ConvexOccluders(const OccluderSet& set);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(occluders_.size()); }
@@ -77,14 +78,14 @@ class ConvexOccluders {
   bool addPolygon(const OccluderSet& set, OccluderId id);
   bool addBody(const OccluderSet& set, const OccluderBody& body);
 
-  std::vector<ConvexOccluder> occluders_;  // by area, largest first; ties by id
+  std::vector<ConvexOccluder> occluders_;  // largest area first, ties by id
   std::vector<DrawnEdge> edges_;
   std::vector<DrawnFace> faces_;
 };
 
-// Whether an occluder may be used for a convex region, given by all its corners (scene space): a plane
-// separates them, all viewpoints are before one and the same side of a polygon that hides, and all of the
-// occluder lies farther than near_distance from all of the region.
+// True if an occluder may be used for a convex region, given by all its corners in scene space: a plane
+// separates them, all viewpoints are on the one side of a polygon from which it hides, and the whole occluder
+// is farther than near_distance from the whole region.
 bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::span<const Vec3d> corners,
                double near_distance);
 

@@ -14,7 +14,7 @@ namespace {
 
 using namespace pvs;
 
-// Both decompress at the same speed. Sets are compressed hard: they are most of a file.
+// Both levels decompress equally fast. Sets are compressed hardest because they make up most of a file.
 constexpr int kSetLevel = 19;
 constexpr int kDatabaseLevel = 9;
 
@@ -22,14 +22,15 @@ class Compressor {
  public:
   explicit Compressor(EncodedChunks& encoded) : encoded_(encoded), context_(ZSTD_createCCtx()) {}
 
-  // Appends a chunk. A frame compressed in one call says its size.
+  // Appends a chunk. A zstd frame compressed in one call stores its size.
   void append(std::span<const std::byte> raw, int level) {
     std::vector<std::byte>& payload = encoded_.payload;
     const std::size_t offset = payload.size();
     payload.resize(offset + ZSTD_compressBound(raw.size()));
     const std::size_t written = ZSTD_compressCCtx(context_.get(), payload.data() + offset,
                                                   payload.size() - offset, raw.data(), raw.size(), level);
-    // With room for the bound it fails for want of memory alone; an empty chunk is found by the check.
+    // With room for the bound, compression fails only if memory runs out; the check finds the resulting empty
+    // chunk.
     payload.resize(offset + (ZSTD_isError(written) != 0 ? 0 : written));
     encoded_.chunks.push_back({0, offset, static_cast<std::uint32_t>(payload.size() - offset),
                                static_cast<std::uint32_t>(raw.size())});
@@ -44,7 +45,7 @@ class Compressor {
   std::unique_ptr<ZSTD_CCtx, Free> context_;
 };
 
-// Sets follow each other into a chunk until the next one would make it too long.
+// Packs sets into a chunk until the next one would make it too long.
 void encodeSets(const NodeSets& sets, std::span<const BoxNode> tree, Compressor& compressor,
                 EncodedChunks& encoded) {
   std::vector<std::byte> raw, set_bytes;
@@ -124,7 +125,7 @@ SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded) {
 }
 
 Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked) {
-  // In this order: sets are looked at by way of the hierarchy.
+  // The order matters: sets are checked by means of the hierarchy.
   Status sound = checkBoxTree(baked.boxes.view());
   if (sound) {
     sound = checkSetsOf(baked);

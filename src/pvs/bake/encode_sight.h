@@ -1,6 +1,6 @@
 #pragma once
 
-// From baked data to the bytes of a .sight file.
+// Encodes baked data as the bytes of a .sight file.
 
 #include <cstddef>
 #include <vector>
@@ -11,22 +11,23 @@
 
 namespace sightline::pvs {
 
-// The chunks of sets and databases, compressed.
+// The compressed chunks of sets and databases.
 struct EncodedChunks {
-  std::vector<pvs::Chunk> chunks;  // without checksums: sightBytes fills them in
-  std::uint32_t set_chunks = 0;    // the first of them
+  std::vector<pvs::Chunk> chunks;  // without checksums; sightBytes fills them in
+  std::uint32_t set_chunks = 0;    // number of chunks of sets, which come first
   std::vector<pvs::SetPlace> sets;
-  std::vector<pvs::DatabaseEntry> databases;  // names are those of the baked data
+  std::vector<pvs::DatabaseEntry> databases;  // names point into the baked data
   std::vector<std::byte> payload;
 };
 
-// Checks nothing.
+// Compresses without any checks.
 EncodedChunks encodeChunks(const BakedVisibility& baked);
 
-// What sightBytes makes a file of; both must outlive it.
+// The input of sightBytes; both arguments must outlive it.
 pvs::SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded);
 
-// The bytes of the whole file. An error where the data is not sound (no reader would take it) or too large.
+// The bytes of the whole file. Returns an error if the data is invalid (a reader would reject it) or too
+// large.
 Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked);
 
 }  // namespace sightline::pvs

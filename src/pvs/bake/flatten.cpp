@@ -15,7 +15,7 @@ class Flattener {
   Flattener(const BoxTreeView& boxes, VisibilityOctree& octree, NodeSets& sets)
       : boxes_(boxes), octree_(octree), sets_(sets) {}
 
-  // The cell goes to octree.nodes[node], which is there.
+  // Writes the cell to octree.nodes[node], which must exist.
   void add(const BakedCell& cell, std::uint32_t node) {
     if (cell.leaf()) {
       octree_.nodes[node] = kOctreeLeaf | static_cast<std::uint32_t>(octree_.leaves.size());

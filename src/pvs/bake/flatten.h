@@ -5,7 +5,8 @@
 
 namespace sightline::pvs {
 
-// The tree of cells as the file has it: nodes and leaves in one order, equal sets and planes once.
+// Converts the tree of cells to the layout of the file: nodes and leaves in one order, equal sets and planes
+// once.
 void flatten(const BakedCell& root, const BoxTreeView& boxes, VisibilityOctree& octree, NodeSets& sets);
 
 }  // namespace sightline::pvs

@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets of objects as runs of BoxTree::objects: ascending, neither empty nor touching each other. Objects that
-// are near each other in space are near each other there, so that sets are few runs.
+// Sets of objects as runs of BoxTree::objects: ascending, not empty, and not touching each other. Objects
+// that are close in space are close in that order, so a set has few runs.
 
 #include <cstdint>
 #include <span>
@@ -19,15 +19,15 @@ struct ObjectRun {
 };
 using Runs = std::vector<ObjectRun>;
 
-// out: what is in both. out is neither a nor b.
+// out: the intersection. It must not alias a or b.
 void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
-// out: what is in either. out is neither a nor b.
+// out: the union. It must not alias a or b.
 void unite(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
 
-// Appends the nodes whose objects are all in the set and whose parents' are not: ascending.
+// Appends, in ascending order, the nodes whose objects are all in the set while their parent's are not.
 void appendNodes(const BoxTreeView& tree, std::span<const ObjectRun> runs, std::vector<std::uint32_t>& nodes);
 
-// How many triangles a set has.
+// Counts the triangles of a set.
 class TriangleCounts {
  public:
   explicit TriangleCounts(const BoxTreeView& tree);
@@ -40,7 +40,7 @@ class TriangleCounts {
   }
 
  private:
-  std::vector<std::uint64_t> before_;  // by position: triangles of all objects before it
+  std::vector<std::uint64_t> before_;  // triangles of all objects before a position
 };
 
 }  // namespace sightline::pvs

@@ -47,7 +47,7 @@ std::size_t SampleStore::KeyHash::operator()(const Key& k) const {
 }
 
 SampleStore::Key SampleStore::keyOf(const Vec3d& eye) {
-  // + 0.0: the two zeros are one place.
+  // Adding 0.0 maps both zeros to one key.
   return {std::bit_cast<std::uint64_t>(eye.x + 0.0), std::bit_cast<std::uint64_t>(eye.y + 0.0),
           std::bit_cast<std::uint64_t>(eye.z + 0.0)};
 }

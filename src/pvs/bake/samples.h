@@ -1,7 +1,7 @@
 #pragma once
 
-// What is hidden from single viewpoints, occluder by occluder: computed when it is asked for, shared by all
-// cells that have the viewpoint as a corner, forgotten when memory runs out. (The paper's list of samples.)
+// What each occluder hides from single viewpoints. Samples are computed on demand, shared by all cells that
+// have the viewpoint as a corner, and discarded when memory runs out. (The paper's list of samples.)
 
 #include <cstddef>
 #include <cstdint>
@@ -16,13 +16,13 @@
 
 namespace sightline::pvs {
 
-// One viewpoint's answers, by occluder.
+// The runs hidden from one viewpoint, by occluder.
 class Sample {
  public:
   explicit Sample(const Vec3d& eye) : eye_(eye) {}
 
   const Vec3d& eye() const { return eye_; }
-  // Nothing: not computed yet. Valid until the next add().
+  // Returns nothing if it is not computed yet. Valid until the next add().
   std::optional<std::span<const ObjectRun>> find(std::uint32_t occluder) const;
   void add(std::uint32_t occluder, std::span<const ObjectRun> runs);
   std::size_t bytes() const {
@@ -34,28 +34,28 @@ class Sample {
   struct Slot {
     std::uint32_t occluder = kFree, first = 0, count = 0;  // runs_[first, first + count)
   };
-  // Where the occluder is, or the free slot where it goes.
+  // Index of the occluder's slot, or of the free slot where it goes.
   std::size_t slotOf(std::uint32_t occluder) const;
   void grow();
 
   Vec3d eye_;
-  std::vector<Slot> slots_;  // open addressing, a power of two
+  std::vector<Slot> slots_;  // open addressing; the size is a power of two
   std::uint32_t used_ = 0;
   Runs runs_;
 };
 
 class SampleStore {
  public:
-  // Occluders and tree outlive this. reach: of makeShadow.
+  // Occluders and tree must outlive this. reach: see makeShadow.
   SampleStore(const ConvexOccluders& occluders, const ShadowTree& tree, double reach, std::size_t max_bytes)
       : occluders_(occluders), tree_(tree), reach_(reach), max_bytes_(max_bytes) {}
 
-  // The sample of a viewpoint; of equal viewpoints it is one. Stays until forgetOldest().
+  // The sample of a viewpoint, the same for equal viewpoints. Stays valid until forgetOldest().
   Sample& at(const Vec3d& eye);
-  // What the occluder hides from there. Valid until the next call for this sample.
+  // The runs that the occluder hides from there. Valid until the next call for this sample.
   std::span<const ObjectRun> hidden(Sample& sample, std::uint32_t occluder);
 
-  // Drops the least recently used ones while they take more than the limit.
+  // Discards the least recently used samples until they fit the limit.
   void forgetOldest();
   const BakeStats& stats() const { return stats_; }
 

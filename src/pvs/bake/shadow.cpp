@@ -2,21 +2,22 @@
 
 #include "sightline/geometry/tolerance.h"
 
-// Why what is behind all planes is hidden. Take any faces F of a convex set, each with the eye before all its
-// corners, and the closed loops of edges that bound F. Let x be strictly inside the planes through the eye
-// and each edge of these loops. Seen along the line from the eye to x, each edge turns round it the same way,
-// so the loops wind round the line, and the surface of F meets it: in a point y of some face, that is, of the
-// convex set. If x is behind each face of F, y is between the eye and x. So x is hidden, whatever faces F was
-// made of, and no face needs to be exactly flat: faces that the eye sees at a grazing angle are left out.
+// Why what is behind all planes is hidden. Take any faces F of a convex set, each with the eye in front of
+// all its corners, and the closed loops of edges that bound F. Let x be strictly inside the planes through
+// the eye and each edge of these loops. Seen along the line from the eye to x, each edge turns round the line
+// the same way, so the loops wind round it, and the surface of F intersects it in a point y of some face,
+// that is, of the convex set. If x is behind each face of F, y is between the eye and x, so x is hidden. This
+// holds for any choice of F, and no face needs to be exactly flat: faces that the eye sees at a grazing angle
+// are omitted.
 //
-// Of a polygon, both sets drawn in must hide x. Where the eye is over the inner side of an edge, the plane
-// through the edge of the farther set has that of the nearer one behind it, for all x behind the farther
-// set, and otherwise the other way round. In doubt both are taken.
+// Both inset sets of a polygon must hide x. If the eye is over the inner side of an edge, the plane through
+// the edge of the farther set is the stricter one, for all x behind the farther set; otherwise the plane of
+// the nearer set is. If in doubt, both are used.
 //
-// Rounding, u = 2^-53. A = edge - eye is known up to u |A| + 16 u size (corners drawn in are rounded), its
-// direction D up to u |D| + 32 u size. So D x A is off by at most
+// Rounding, with u = 2^-53. A = edge - eye is known up to u |A| + 16 u size (inset corners are rounded), and
+// its direction D up to u |D| + 32 u size. So D x A has an error of at most
 //     16 u |A| |D| + 32 u size (|A| + |D|),
-// which counts times |x - eye| <= reach, and the value of the plane at x by 16 u |D x A| reach.
+// This counts times |x - eye| <= reach, and the value of the plane at x adds 16 u |D x A| reach.
 
 namespace sightline::pvs {
 namespace {
@@ -32,20 +33,20 @@ class ShadowMaker {
   }
 
   Vec3d fromEye(const Vec3d& point) const { return point - eye_; }
-  // Of a height of something at this place over a plane with a unit normal.
+  // Rounding of the height of a point here above a plane with a unit normal.
   double heightRounding(const Vec3d& from_eye) const { return kRounding * (l1Norm(from_eye) + size_); }
 
-  // Through the eye and an edge; what is hidden lies on its left, seen from the eye.
+  // Adds the plane through the eye and an edge; hidden points lie on its left as seen from the eye.
   void addEdge(const Vec3d& from_eye, const Vec3d& along) {
     const Vec3d normal = cross(along, from_eye);
     const double from_size = l1Norm(from_eye), along_size = l1Norm(along);
     const double rounding = l1Norm(normal) + from_size * along_size + size_ * (from_size + along_size);
     add(normal, kRounding * rounding * reach_);
   }
-  // x must be deeper than this along a unit normal.
+  // Requires x to be deeper than this along a unit normal.
   void addDepth(const Vec3d& normal, double depth) { add(normal, depth + kRounding * reach_); }
 
-  // Whether there were few enough planes, and all can be trusted.
+  // True if the planes fit and all of them are well-conditioned.
   bool done() const { return usable_ && shadow_.count > 0; }
 
  private:
@@ -74,14 +75,14 @@ bool shadowOfPolygon(const ConvexOccluders& all, const ConvexOccluder& occluder,
   if (!(depth < -least || (occluder.double_sided && depth > least))) {
     return false;
   }
-  // Of the side that the eye is on, where edges run counter-clockwise.
+  // The side that the eye is on, where edges run counter-clockwise.
   const double side = depth < 0.0 ? 1.0 : -1.0;
   const Vec3d outwards = face.plane.normal * side;
   maker.addDepth(-outwards, std::abs(depth) + occluder.margin + face.most + rounding);
   const Vec3d across = outwards * occluder.margin;
   for (const DrawnEdge& edge : all.edgesOf(occluder)) {
     const Vec3d from = maker.fromEye(edge.from), along = edge.along * side;
-    const double over = -dot(cross(outwards, along), from);  // positive: the eye is over the inner side
+    const double over = -dot(cross(outwards, along), from);  // positive if the eye is over the inner side
     const double doubt = maker.heightRounding(from) * l1Norm(along);
     if (!(over < -doubt)) {
       maker.addEdge(from - across, along);
@@ -94,7 +95,7 @@ bool shadowOfPolygon(const ConvexOccluders& all, const ConvexOccluder& occluder,
 }
 
 bool shadowOfBody(const ConvexOccluders& all, const ConvexOccluder& occluder, ShadowMaker& maker) {
-  std::uint32_t front = 0;  // bit i: the eye is clearly before face i
+  std::uint32_t front = 0;  // bit i: the eye is clearly in front of face i
   const std::span<const DrawnFace> faces = all.facesOf(occluder);
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const DrawnFace& face = faces[i];

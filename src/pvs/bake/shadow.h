@@ -1,6 +1,6 @@
 #pragma once
 
-// What one convex occluder hides from one point, as planes.
+// The region that one convex occluder hides from one point, as planes.
 
 #include <cstdint>
 
@@ -10,17 +10,18 @@ namespace sightline::pvs {
 
 inline constexpr std::uint32_t kMaxShadowPlanes = 96;
 
-// What an occluder hides from one point: all that lies behind every plane by its tolerance.
+// Hides every point that is behind all planes by their tolerance.
 struct Shadow {
   Vec3d eye;  // scene space
   std::uint32_t count = 0;
-  // dot(normal, x - eye) >= offset: x is behind this plane, for all x that `reach` admits; tolerances are in
-  // the offset. Normals have any length.
+  // x is behind this plane if dot(normal, x - eye) >= offset, for all x within makeShadow's `reach`.
+  // Tolerances are included in the offset. Normals have any length.
   double nx[kMaxShadowPlanes], ny[kMaxShadowPlanes], nz[kMaxShadowPlanes], offset[kMaxShadowPlanes];
 };
 
-// false: nothing is hidden from there, or it cannot be told. reach: no box that will be asked about, nodes'
-// boxes included, has a point farther from the eye, metres. The occluder and the eye must be `separated`.
+// Returns false if nothing is hidden from there or the occluder cannot be decided. reach: upper bound in
+// metres of the distance from the eye to any point of any box that will be tested, including boxes of nodes.
+// The occluder and the eye must be `separated`.
 bool makeShadow(const ConvexOccluders& all, const ConvexOccluder& occluder, const Vec3d& eye, double reach,
                 Shadow& shadow);
 

@@ -16,14 +16,14 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// No fused operations: they would round differently from one instruction set to another. A box's least and
-// greatest value over a plane are known up to 2^-50 of the reach, for which the shadow's offset has room.
+// No fused operations: they would round differently on different instruction sets. A box's minimum and
+// maximum over a plane have an error of at most 2^-50 of the reach, which the shadow's offset allows for.
 class Walk {
  public:
   Walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs)
       : tree_(tree), shadow_(shadow), runs_(runs), first_run_(runs.size()) {}
 
-  // Nodes first ... first + count - 1, whose parent is behind all planes but these.
+  // Visits the nodes first ... first + count - 1, whose parent is behind all planes except these.
   void visit(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
              std::uint32_t plane_count) {
     const auto lanes = static_cast<std::uint32_t>(hn::Lanes(kLanes));
@@ -35,7 +35,7 @@ class Walk {
  private:
   void visitLanes(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
                   std::uint32_t plane_count) {
-    std::array<std::uint8_t, kMaxShadowPlanes> behind;  // by plane: the lanes that are behind it
+    std::array<std::uint8_t, kMaxShadowPlanes> behind;  // by plane: bits of the lanes that are behind it
     const std::uint32_t lit = classify(first, count, planes, plane_count, behind.data());
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       if (((lit >> lane) & 1u) != 0) {
@@ -56,7 +56,8 @@ class Walk {
     }
   }
 
-  // The lanes with nothing below that is behind all planes: for some plane, no leaf reaches far enough.
+  // Bits of the lanes with nothing below that is behind all planes: for some plane, no leaf reaches far
+  // enough.
   std::uint32_t classify(std::uint32_t first, std::uint32_t count, const std::uint8_t* planes,
                          std::uint32_t plane_count, std::uint8_t* behind) const {
     const auto x = hn::Sub(hn::LoadU(kLanes, tree_.cx.data() + first), hn::Set(kLanes, shadow_.eye.x));
@@ -128,11 +129,12 @@ namespace {
 
 HWY_EXPORT(walk);
 
-constexpr std::size_t kFewestChildren = 8;  // inner nodes are dissolved until there are about so many
-constexpr std::uint32_t kMaxDepth = 64;  // below, a node's children are all its leaves: bounds the recursion
-constexpr std::size_t kPadding = 8;      // lanes
+constexpr std::size_t kFewestChildren = 8;  // inner nodes are dissolved until there are about this many
+// At this depth, a node's children are all its leaves, which bounds the recursion.
+constexpr std::uint32_t kMaxDepth = 64;
+constexpr std::size_t kPadding = 8;  // lanes
 
-// Not well formed itself, or something below it.
+// True for nodes that are malformed or have a malformed node below them.
 std::vector<bool> brokenNodes(const BoxTreeView& tree) {
   std::vector<bool> broken(tree.nodes.size());
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
@@ -154,7 +156,7 @@ std::vector<std::uint32_t> childrenOf(const BoxTreeView& tree, std::uint32_t nod
   return children;
 }
 
-// Dissolves the largest inner nodes among them in their children, while there are few. Stays in order.
+// Replaces the largest inner nodes by their children while there are few children. Keeps their order.
 void widen(const BoxTreeView& tree, std::vector<std::uint32_t>& children) {
   while (children.size() < kFewestChildren) {
     double largest = -1.0;
@@ -188,18 +190,19 @@ std::vector<std::uint32_t> leavesBelow(const BoxTreeView& tree, std::uint32_t no
   return leaves;
 }
 
-// What of a node's box the shadow tree holds.
+// The data of a node's box in the shadow tree.
 struct NodeBox {
   Vec3d centre, half, room;
 };
 
-// By node. Nodes that are not well formed, or have such a node below them, count as boxes without bounds.
+// Boxes by node. A malformed node, or one with a malformed node below it, counts as an unbounded box.
 std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Vec3d infinite(kInfinity, kInfinity, kInfinity);
   const std::vector<bool> broken = brokenNodes(tree);
   std::vector<NodeBox> boxes(tree.nodes.size(), NodeBox{{}, infinite, infinite});
-  std::vector<Vec3d> least(tree.nodes.size(), infinite);  // half extents of leaves below that may be hidden
+  // Minimum half extents of the leaves below that may be hidden.
+  std::vector<Vec3d> least(tree.nodes.size(), infinite);
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
     const auto node = static_cast<std::uint32_t>(i);
     NodeBox& box = boxes[i];
@@ -226,7 +229,7 @@ ShadowTree::ShadowTree(const BoxTreeView& tree) {
     return;
   }
   const std::vector<NodeBox> boxes = nodeBoxes(tree);
-  std::vector<std::uint32_t> from{0}, depth{0};  // by new number: the old one, and the depth
+  std::vector<std::uint32_t> from{0}, depth{0};  // by new index: the old index and the depth
   for (std::size_t i = 0; i < from.size(); ++i) {
     const BoxNode& old = tree.nodes[from[i]];
     std::vector<std::uint32_t> children;

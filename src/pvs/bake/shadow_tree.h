@@ -1,6 +1,6 @@
 #pragma once
 
-// Which objects of a scene lie in a shadow: a tree of boxes, laid out to be asked several boxes at a time.
+// Finds the objects in a shadow with a tree of boxes, laid out to test several boxes at a time.
 
 #include <cstdint>
 #include <vector>
@@ -11,29 +11,30 @@
 
 namespace sightline::pvs {
 
-// The boxes of a tree, the children of a node side by side. Nodes of few children are dissolved in their
-// parent, so that vector lanes are filled; leaves are those of the tree. Does not change once made.
+// The boxes of a tree, with the children of a node side by side. Nodes with few children are dissolved into
+// their parent to fill vector lanes; leaves are those of the tree. Immutable.
 class ShadowTree {
  public:
   explicit ShadowTree(const BoxTreeView& tree);
 
-  // Appends the objects that the shadow hides: runs ascending, neither empty nor touching each other. An
-  // object is hidden where its leaf's box is, closed. Boxes that are empty or not finite are never hidden.
-  // Every instruction set gives the same runs.
+  // Appends the objects that the shadow hides, as ascending runs that are not empty and do not touch each
+  // other. An object is hidden if its leaf's closed box is. Boxes that are empty or not finite are never
+  // hidden. Every instruction set gives the same runs.
   void hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const;
 
   struct Node {
-    std::uint32_t first_child = 0, child_count = 0;  // numbers of nodes
+    std::uint32_t first_child = 0, child_count = 0;  // indices of nodes
     ObjectRun objects;
   };
-  // Read by the vector code. Node 0 is the root. Padded, so that a whole vector may be read from any node on.
+  // Read by the vector code. Node 0 is the root. Padded, so that a whole vector can be read starting at any
+  // node.
   struct Arrays {
     std::vector<Node> nodes;
-    // A node's box: its centre and half extents, rounded up.
+    // A node's box: its centre, and its half extents rounded up.
     std::vector<double> cx, cy, cz, hx, hy, hz;
-    // Half extents of where the inmost points of its leaves' boxes may be: of the box, less twice the least
-    // half extents of leaves below; a leaf's own, negated. Beyond a plane that all of this does not reach,
-    // no leaf is behind it.
+    // Half extents of the region in which the innermost points of its leaves' boxes may lie: those of the
+    // box, less twice the minimum half extents of the leaves below; for a leaf, its own, negated. If no point
+    // of this region is behind a plane, no leaf is.
     std::vector<double> rx, ry, rz;
   };
 

@@ -18,11 +18,12 @@ Error failed(const std::string& file, int reason) {
   return Error{file + " cannot be written: " + std::strerror(reason)};
 }
 
-// A new file beside the one that is to be, gone with this object unless it got the other's name.
+// A temporary file beside the target. The destructor deletes it unless it was renamed to the target.
 class Unfinished {
  public:
   explicit Unfinished(const std::string& file) {
-    // A number, since another program may be writing the same, and programs that were ended leave theirs.
+    // The name has a number, because another program may be writing the same file, and interrupted ones leave
+    // theirs.
     for (int i = 0; i < 100 && number_ < 0; ++i) {
       name_ = file + "." + std::to_string(::getpid()) + "." + std::to_string(i) + ".unfinished";
       number_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -41,7 +42,7 @@ class Unfinished {
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
 
-  // All of the following: 0 or an errno. Nothing is done after an error.
+  // The functions below return 0 or an errno, and do nothing after an error.
   int write(std::span<const std::byte> bytes) {
     while (error_ == 0 && !bytes.empty()) {
       constexpr std::size_t kMaxAtOnce = 1u << 30;
@@ -54,7 +55,8 @@ class Unfinished {
     }
     return error_;
   }
-  // Its bytes are on the disk before its name is: else a crash could leave a whole name and half a file.
+  // The bytes are flushed to disk before the rename; otherwise a crash could leave a truncated file with the
+  // final name.
   int finishAs(const std::string& file) {
     if (error_ == 0) {
       check(::fsync(number_));
@@ -81,7 +83,7 @@ class Unfinished {
   int error_ = 0;
 };
 
-// The name survives a crash. An error here is none of the file's: it is there.
+// Flushes the folder, so that the name survives a crash. Errors are ignored because the file already exists.
 void flushFolderOf(const std::string& file) {
   const std::string folder = std::filesystem::path(file).parent_path().string();
   const int number = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
