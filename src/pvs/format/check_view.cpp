@@ -8,7 +8,7 @@
 namespace sightline::pvs {
 namespace {
 
-// Chunks follow each other and make up the payload.
+// Checks that the chunks are consecutive and make up the payload.
 Status checkChunks(const SightView& view) {
   std::uint64_t at = 0;
   for (const Chunk& chunk : view.chunks) {
@@ -21,7 +21,8 @@ Status checkChunks(const SightView& view) {
                                    : Status(Error{"its chunks do not make up its payload"});
 }
 
-// All chunks of sets are named, in order, from their first byte on, and none is longer than its sets may be.
+// Checks that all chunks of sets are referenced, in order, from their first byte on, and that none is longer
+// than its sets may be.
 Status checkSets(const SightView& view) {
   if (view.set_chunks > view.chunks.size()) {
     return Error{"chunks of sets are missing"};

@@ -1,7 +1,7 @@
 #pragma once
 
-// XXH3, the checksum of .sight files and the hash of scenes: the same on every machine. XXH_INLINE_ALL is
-// defined where this is compiled: the header is all that is needed then.
+// XXH3, the checksum of .sight files and the hash of scenes; the same on every machine. With XXH_INLINE_ALL,
+// which is defined where this is compiled, the header alone is enough.
 
 #include <xxhash.h>
 
@@ -16,7 +16,7 @@ inline std::uint64_t checksumOf(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-// The same of bytes that come one after the other.
+// The same checksum, of bytes that are added piece by piece.
 class Checksum {
  public:
   Checksum() { XXH3_64bits_reset(&state_); }
@@ -26,7 +26,7 @@ class Checksum {
       XXH3_64bits_update(&state_, bytes.data(), bytes.size());
     }
   }
-  // Of a number without padding, or of an array of them.
+  // Adds a number, or an array of numbers, of a type without padding.
   template <typename T>
   void addValue(const T& value) {
     static_assert(std::has_unique_object_representations_v<T>);

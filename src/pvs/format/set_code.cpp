@@ -12,7 +12,7 @@ void appendNumber(std::vector<std::byte>& bytes, std::uint32_t value) {
   bytes.push_back(static_cast<std::byte>(value));
 }
 
-// Moves `at` past the number. false: it does not end, or has more than 32 bits.
+// Reads a number and moves `at` past it. Returns false if the number does not end or has more than 32 bits.
 bool readLongNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value) {
   std::uint64_t number = 0;
   for (std::uint32_t shift = 0; shift < 35 && at != end; shift += 7) {
@@ -26,7 +26,7 @@ bool readLongNumber(const std::byte*& at, const std::byte* end, std::uint32_t& v
   return false;
 }
 
-// Most numbers are of one byte.
+// Fast path: most numbers take one byte.
 bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value) {
   if (at != end && static_cast<std::uint8_t>(*at) < 0x80) {
     value = static_cast<std::uint8_t>(*at++);
@@ -35,10 +35,11 @@ bool readNumber(const std::byte*& at, const std::byte* end, std::uint32_t& value
   return readLongNumber(at, end, value);
 }
 
-// The nodes, from their distances: each from where the one before ends, so that none is below another.
+// Reads nodes from their distances. Each distance counts from the end of the node before, so no node can be
+// below another.
 bool readNodes(const std::byte* at, const std::byte* end, std::span<const std::uint32_t> ends,
                std::span<std::uint32_t> nodes) {
-  std::uint64_t next = 0;  // the least that the next node may be
+  std::uint64_t next = 0;  // minimum of the next node's index
   for (std::uint32_t& node : nodes) {
     std::uint32_t distance = 0;
     if (!readNumber(at, end, distance)) {
@@ -88,7 +89,7 @@ bool decodeSet(std::span<const std::byte> bytes, std::span<const std::uint32_t> 
   const std::byte* at = bytes.data();
   const std::byte* end = at + bytes.size();
   std::uint32_t count = 0;
-  // Each node takes a byte at least, so that no count asks for more memory than the bytes are worth.
+  // Each node takes at least one byte, so no count can request more memory than the bytes justify.
   if (!readNumber(at, end, count) || count > static_cast<std::size_t>(end - at)) {
     return false;
   }

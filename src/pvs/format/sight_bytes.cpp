@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, ".sight files are read in place");
 
-// A struct of the schema and ours that have the same bytes.
+// A struct of the schema and our struct with the same bytes.
 template <typename Stored, typename Ours>
 constexpr bool kSameLayout =
     sizeof(Stored) == sizeof(Ours) &&
@@ -36,7 +36,7 @@ auto writeArray(flatbuffers::FlatBufferBuilder& builder, std::span<const Ours> v
   }
 }
 
-// false: it does not lie where its elements may lie. An empty one may lie anywhere.
+// Returns false if the vector is not aligned for its elements. An empty one may be anywhere.
 template <typename Ours, typename Vector>
 bool readArray(const Vector* stored, std::span<const Ours>& values) {
   const auto* data = reinterpret_cast<const Ours*>(stored->Data());
@@ -69,7 +69,7 @@ auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   return builder.CreateVector(tables);
 }
 
-// What is created first comes last in the file.
+// FlatBuffers puts what is created first at the end of the file.
 void writeFile(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
   const auto payload = writeArray<std::uint8_t>(builder, view.payload);
   const auto chunks = writeArray<sight::Chunk>(builder, view.chunks);
@@ -105,12 +105,12 @@ const Table* verified(std::span<const std::byte> bytes) {
   return sound ? flatbuffers::GetRoot<Table>(bytes.data()) : nullptr;
 }
 
-// Where a part of the file starts; the part lies in it.
+// Offset of a part of the file, which must lie in the bytes.
 std::size_t offsetIn(std::span<const std::byte> bytes, const void* part) {
   return static_cast<std::size_t>(static_cast<const std::byte*>(part) - bytes.data());
 }
 
-// Of all that is read in place: not of its own eight bytes, nor of the payload's.
+// Checksum of everything that is read in place: all bytes except its own eight and the payload.
 std::uint64_t sealOf(std::span<const std::byte> bytes, const sight::File& file) {
   struct Gap {
     std::size_t begin, end;
@@ -124,14 +124,14 @@ std::uint64_t sealOf(std::span<const std::byte> bytes, const sight::File& file) 
   Checksum checksum;
   std::size_t at = 0;
   for (const Gap& gap : gaps) {
-    checksum.add(bytes.subspan(at, std::max(gap.begin, at) - at));  // gaps may overlap in made-up files
+    checksum.add(bytes.subspan(at, std::max(gap.begin, at) - at));  // gaps may overlap in forged files
     at = std::max(gap.end, at);
   }
   checksum.add(bytes.subspan(at));
   return checksum.value();
 }
 
-// Chunks that do not lie in the payload keep their checksums.
+// Fills in the checksums of the chunks that lie in the payload; others keep theirs.
 void sealChunks(std::span<std::byte> bytes, const sight::File& file) {
   const std::span<std::byte> payload =
       bytes.subspan(offsetIn(bytes, file.payload()->Data()), file.payload()->size());
@@ -147,7 +147,7 @@ void sealChunks(std::span<std::byte> bytes, const sight::File& file) {
   }
 }
 
-// Whether these may be the bytes of a file of this version, and all of them.
+// Checks that these may be the complete bytes of a file of this version.
 Status checkVersion(std::span<const std::byte> bytes) {
   if (bytes.empty()) {
     return Error{"is empty: bake it again"};
@@ -155,7 +155,7 @@ Status checkVersion(std::span<const std::byte> bytes) {
   if (bytes.size() > kMaxFileBytes) {
     return Error{"is not a .sight file: it is larger than 2 GiB"};
   }
-  constexpr std::size_t kHead = 8;  // the place of the root, and the identifier
+  constexpr std::size_t kHead = 8;  // root offset and identifier
   if (bytes.size() < kHead || !flatbuffers::BufferHasIdentifier(bytes.data(), sight::FileIdentifier())) {
     return Error{"is not a .sight file"};
   }
@@ -187,7 +187,7 @@ bool readArrays(const sight::File& file, SightView& view) {
          readArray(file.chunks(), view.chunks) && readArray(file.payload(), view.payload);
 }
 
-// false: something does not lie where it may lie.
+// Returns false if a part is not aligned for its elements.
 bool readView(const sight::File& file, SightView& view) {
   view.scene = {file.scene()->hash(), file.scene()->objects(), file.scene()->triangles()};
   view.near_distance = file.record()->near_distance();
@@ -218,7 +218,8 @@ Result<std::vector<std::byte>> sightBytes(const SightView& view) {
 }
 
 void seal(std::span<std::byte> bytes) {
-  // In made-up bytes what is written may be part of something else: they are verified again after each step.
+  // In forged bytes, the field that is written may be part of something else, so the bytes are verified again
+  // after each step.
   if (const auto* file = verified<sight::File>(bytes); file != nullptr) {
     const std::uint64_t size = bytes.size();
     std::memcpy(bytes.data() + offsetIn(bytes, file->seal()), &size, sizeof size);

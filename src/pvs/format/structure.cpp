@@ -26,7 +26,7 @@ Status checkObjects(std::span<const ObjectId> objects) {
 // An inner node whose children are being read.
 struct OpenNode {
   std::uint32_t node;
-  std::uint32_t next_object;  // the first that its next child must hold
+  std::uint32_t next_object;  // the first object of its next child
 
   std::uint64_t objectEnd(std::span<const BoxNode> nodes) const {
     return std::uint64_t{nodes[node].first_object} + nodes[node].object_count;
@@ -39,7 +39,7 @@ Status checkChild(std::span<const BoxNode> nodes, std::uint32_t child, OpenNode&
   if (node.end <= child || node.end > above.end) {
     return inNode("subtrees of the hierarchy do not nest", child);
   }
-  // The comparisons fail for what is not a number, too.
+  // The comparisons also fail for NaN.
   if (node.bounds.empty() || !contains(above.bounds, node.bounds)) {
     return inNode("a box of the hierarchy does not lie in that of its parent", child);
   }
@@ -79,7 +79,7 @@ Status checkLeaf(const OctreeView& octree, const OctreeLeaf& leaf, std::uint64_t
   return Success{};
 }
 
-// That all nodes but the root, and all leaves, have one parent, and depths are as they are said to be.
+// Checks that each leaf and each node except the root has exactly one parent, and that the depths are right.
 Status checkLinks(const OctreeView& octree) {
   constexpr std::uint8_t kNone = 0xff;
   std::vector<std::uint8_t> depth(octree.nodes.size(), kNone);

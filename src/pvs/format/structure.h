@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether hierarchies and octrees that come from outside are sound. Errors say what is wrong, not where.
+// Validates hierarchies and octrees that come from outside. Errors say what is wrong, not where.
 
 #include <cstdint>
 
@@ -10,12 +10,12 @@
 
 namespace sightline::pvs {
 
-// At least one node; subtrees nest; boxes are not empty and enclose those below; the objects of children make
-// up their parent's; each object once.
+// Checks that there is at least one node; that subtrees nest; that boxes are not empty and enclose those
+// below; that the objects of children make up their parent's; and that each object occurs once.
 Status checkBoxTree(const BoxTreeView& tree);
 
-// At least one node; each but the root, and each leaf, belongs to exactly one parent; depths, sets and planes
-// are in range; the box of the root and all planes are finite.
+// Checks that there is at least one node; that each leaf, and each node except the root, has exactly one
+// parent; that depths, sets and planes are in range; and that the box of the root and all planes are finite.
 Status checkOctree(const OctreeView& octree, std::uint64_t set_count);
 
 }  // namespace sightline::pvs

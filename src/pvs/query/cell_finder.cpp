@@ -7,8 +7,8 @@
 namespace sightline::pvs {
 namespace {
 
-// The least number that is not in the root any more. The last grid line may lie before the box's border, by
-// rounding: no cell reaches farther than both.
+// The smallest number beyond the root. Rounding may put the last grid line inside the box's border; no cell
+// reaches farther than both.
 double endOf(double min, double max) {
   return std::nextafter(std::min(max, gridLine(min, max, 0, 1)), std::numeric_limits<double>::infinity());
 }
@@ -21,7 +21,7 @@ CellFinder::CellFinder(const OctreeView& octree) : octree_(octree) {
   path_[0] = {min, {endOf(min.x, max.x), endOf(min.y, max.y), endOf(min.z, max.z)}, 0, {}};
 }
 
-// From path_[level_] to the child that holds the viewpoint.
+// Steps from path_[level_] to the child that contains the viewpoint.
 void CellFinder::stepDown(OctreeLink first_child, const Vec3d& eye) {
   const Step& step = path_[level_];
   Step& child = path_[++level_];
@@ -31,7 +31,7 @@ void CellFinder::stepDown(OctreeLink first_child, const Vec3d& eye) {
     const std::uint32_t middle = step.at[a] * 2 + 1;
     const double line = gridLine(octree_.min[axis], octree_.max[axis], level_, middle);
     const std::uint32_t upper = eye[axis] >= line ? 1 : 0;
-    // Looked up, not chosen: nothing could foresee the jumps.
+    // A table look-up instead of a branch, which would be unpredictable.
     const double lines[3] = {step.min[axis], line, step.max[axis]};
     child.min[axis] = lines[upper];
     child.max[axis] = lines[upper + 1];
@@ -41,7 +41,7 @@ void CellFinder::stepDown(OctreeLink first_child, const Vec3d& eye) {
 }
 
 std::uint32_t CellFinder::search(const Vec3d& eye) {
-  // Up to a cell that holds the viewpoint, then down.
+  // Go up to a cell that contains the viewpoint, then down.
   for (; !path_[level_].holds(eye); --level_) {
     if (level_ == 0) {
       return leaf_ = kOutside;

@@ -7,32 +7,33 @@
 
 namespace sightline::pvs {
 
-// Finds the leaf of a viewpoint, from the leaf found before. Cells hold their lower borders; the last ones
-// along an axis hold the upper border of the root too.
+// Finds the leaf of a viewpoint, starting from the leaf found before. Cells include their lower borders; the
+// last cells along an axis also include the upper border of the root.
 //
-// The borders on the path from the root to the last leaf are kept as gridLine gives them, so that a viewpoint
-// is only ever compared with the very numbers that the baker used.
+// Stores the borders on the path from the root to the last leaf as gridLine returns them, so that a viewpoint
+// is compared with exactly the numbers that the baker used.
 class CellFinder {
  public:
   static constexpr std::uint32_t kOutside = 0xffffffffu;
 
-  // A checked octree, which must outlive it.
+  // octree: checked; it must outlive this.
   explicit CellFinder(const OctreeView& octree);
 
-  // The index of the leaf, or kOutside.
+  // Returns the index of the leaf, or kOutside.
   std::uint32_t find(const Vec3d& eye) {
     return leaf_ != kOutside && path_[level_].holds(eye) ? leaf_ : search(eye);
   }
-  // Of the leaf found last.
+  // The cell of the leaf found last.
   OctreeCell cell() const { return {level_, path_[level_].at}; }
 
  private:
   struct Step {
-    Vec3d min, max;  // the cell holds [min, max)
+    Vec3d min, max;  // the cell is [min, max)
     std::uint32_t node = 0;
     std::array<std::uint32_t, 3> at{};
 
-    // false for what is not a number. All six are compared: jumps between them would be hard to foresee.
+    // Returns false for NaN. Always compares all six coordinates, because branches between them would be
+    // unpredictable.
     bool holds(const Vec3d& eye) const {
       return (eye.x >= min.x) & (eye.x < max.x) & (eye.y >= min.y) & (eye.y < max.y) & (eye.z >= min.z) &
              (eye.z < max.z);

@@ -20,7 +20,7 @@ ChunkDecoder& ChunkDecoder::operator=(ChunkDecoder&&) noexcept = default;
 
 bool ChunkDecoder::decompress(const SightView& view, const Chunk& chunk, std::vector<std::byte>& raw) {
   const std::span<const std::byte> bytes = view.bytesOf(chunk);
-  // The size that the frame gives is compared first: a frame that claims more gets no memory.
+  // Check the size that the frame claims first, so that a forged size allocates no memory.
   if (context_ == nullptr || checksumOf(bytes) != chunk.checksum ||
       ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != chunk.raw_bytes) {
     return false;

@@ -11,8 +11,8 @@ struct ZSTD_DCtx_s;
 
 namespace sightline::pvs {
 
-// Decompresses the chunks of a checked view and remembers the last one of sets. For one thread at a time, and
-// always with one view.
+// Decompresses the chunks of a checked view and caches the last chunk of sets. For use by one thread at a
+// time, and always with the same view.
 class ChunkDecoder {
  public:
   ChunkDecoder();
@@ -20,11 +20,11 @@ class ChunkDecoder {
   ChunkDecoder(ChunkDecoder&&) noexcept;
   ChunkDecoder& operator=(ChunkDecoder&&) noexcept;
 
-  // Appends the nodes of a set, set < view.sets.size(). false, with nothing appended: its chunk is broken.
-  // Allocates nothing of its own once it has seen the longest chunk.
+  // Appends the nodes of a set; set < view.sets.size(). Returns false and appends nothing if its chunk is
+  // corrupt. Allocates nothing more once it has seen the longest chunk.
   bool readSet(const pvs::SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
 
-  // Appends what a chunk holds. false, with nothing appended: it is broken.
+  // Appends the contents of a chunk. Returns false and appends nothing if the chunk is corrupt.
   bool decompress(const pvs::SightView& view, const pvs::Chunk& chunk, std::vector<std::byte>& raw);
 
  private:
@@ -34,7 +34,7 @@ class ChunkDecoder {
     void operator()(ZSTD_DCtx_s* context) const;
   };
   std::unique_ptr<ZSTD_DCtx_s, Free> context_;
-  std::vector<std::byte> raw_;  // of the last chunk
+  std::vector<std::byte> raw_;  // contents of the last chunk
   std::uint32_t last_chunk_ = kNone;
 };
 

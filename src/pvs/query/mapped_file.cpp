@@ -12,7 +12,7 @@
 namespace sightline::pvs {
 namespace {
 
-// Closes the file.
+// Closes the file in its destructor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -52,7 +52,7 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
 }
 
 Result<MappedFile> MappedFile::open(const std::string& file) {
-  // Not waiting: a pipe that nobody writes to would hold it up for ever.
+  // Opens without blocking; otherwise a pipe without a writer would block forever.
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (descriptor.number() < 0 || ::fstat(descriptor.number(), &status) != 0) {

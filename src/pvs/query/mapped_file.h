@@ -8,7 +8,7 @@
 
 namespace sightline::pvs {
 
-// A whole file as memory, read as it is used.
+// A memory-mapped file; its pages are read on demand.
 class MappedFile {
  public:
   MappedFile() = default;
@@ -16,7 +16,7 @@ class MappedFile {
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&& other) noexcept;
 
-  // Errors do not name the file.
+  // Errors do not contain the file's name.
   static Result<MappedFile> open(const std::string& file);
 
   std::span<const std::byte> bytes() const { return {begin_, size_}; }

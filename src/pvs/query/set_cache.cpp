@@ -50,7 +50,7 @@ void SetCache::linkAsNewest(std::uint32_t slot) {
   newest_ = slot;
 }
 
-// Storage is used again where little of it would be idle.
+// Reuses the slot's storage unless much of it would be unused.
 void SetCache::setNodes(Slot& slot, std::span<const std::uint32_t> nodes) {
   bytes_ -= storageOf(slot.nodes);
   const std::size_t most = nodes.size() + nodes.size() / 4 + 16;
@@ -61,14 +61,14 @@ void SetCache::setNodes(Slot& slot, std::span<const std::uint32_t> nodes) {
   bytes_ += storageOf(slot.nodes);
 }
 
-// A slot for so many bytes, for which the oldest sets make room.
+// Returns a slot for this many bytes, evicting the least recently used sets to make room.
 std::uint32_t SetCache::freeSlot(std::size_t bytes) {
   while (oldest_ != kNoSlot && bytes_ + bytes > budget_) {
     const std::uint32_t slot = oldest_;
     unlink(slot);
     slot_of_[slots_[slot].set] = kNoSlot;
     if (bytes_ - storageOf(slots_[slot].nodes) + bytes <= budget_) {
-      return slot;  // with its storage
+      return slot;  // keeps its storage
     }
     bytes_ -= storageOf(slots_[slot].nodes);
     std::vector<std::uint32_t>().swap(slots_[slot].nodes);

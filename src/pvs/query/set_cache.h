@@ -7,8 +7,8 @@
 
 namespace sightline::pvs {
 
-// Decoded sets under a budget of bytes; those used least recently leave first. What it keeps beside them
-// takes four bytes for each set of the file.
+// An LRU cache of decoded sets with a budget in bytes. Its index takes another four bytes per set of the
+// file.
 class SetCache {
  public:
   SetCache(std::uint32_t set_count, std::size_t budget_bytes);
@@ -16,13 +16,14 @@ class SetCache {
   enum class State : std::uint8_t { kMissing, kCached, kBroken };
   State state(std::uint32_t set) const;
 
-  // state(set) is kCached. Valid until the next insert. It is the most recently used one now.
+  // Requires state(set) == kCached. Marks the set as most recently used. Valid until the next insert().
   std::span<const std::uint32_t> use(std::uint32_t set);
-  // state(set) is kMissing. Copies the nodes; the new set stays even if it alone is beyond the budget.
+  // Requires state(set) == kMissing. Copies the nodes. The new set is kept even if it alone exceeds the
+  // budget.
   std::span<const std::uint32_t> insert(std::uint32_t set, std::span<const std::uint32_t> nodes);
   void markBroken(std::uint32_t set) { slot_of_[set] = kBrokenSet; }
 
-  std::size_t bytes() const { return bytes_; }  // of the sets' storage, at most the budget or one set
+  std::size_t bytes() const { return bytes_; }  // storage of the sets: at most the budget, or one set
 
  private:
   static constexpr std::uint32_t kNoSlot = 0xffffffffu, kBrokenSet = 0xfffffffeu;
@@ -40,7 +41,7 @@ class SetCache {
 
   std::vector<std::uint32_t> slot_of_;  // by set
   std::vector<Slot> slots_;
-  std::vector<std::uint32_t> free_;  // slots without set and storage
+  std::vector<std::uint32_t> free_;  // slots without a set and without storage
   std::uint32_t newest_ = kNoSlot, oldest_ = kNoSlot;
   std::size_t budget_, bytes_ = 0;
 };

@@ -22,7 +22,7 @@ VisibleSet everything() {
   return {VisibleSet::kEverything, kRoot};
 }
 
-// The set of the side of the leaf's plane that the eye is on. See CellPlane about rounding.
+// The set of the side of the leaf's plane that the eye is on. CellPlane explains the rounding.
 std::uint32_t setOf(const OctreeView& octree, const OctreeLeaf& leaf, const Vec3d& eye) {
   if (leaf.plane == OctreeLeaf::kNoPlane) {
     return leaf.set;
@@ -41,7 +41,7 @@ struct SetQuery::Impl {
         finder(octree),
         cache(file.setCount(), settings.cache_bytes) {}
 
-  // Not the last set.
+  // Decodes or looks up a set other than the last one.
   VisibleSet fetch(const pvs::SightView& view, std::uint32_t set);
   VisibleSet remember(std::uint32_t set, std::span<const std::uint32_t> nodes) { return last = {set, nodes}; }
 
@@ -91,7 +91,7 @@ BoxTreeView SetQuery::boxes() const {
 VisibleSet SetQuery::find(const Vec3d& eye, double near_distance) {
   Impl& query = *impl_;
   ++query.stats.finds;
-  // Not "greater": so that what is not a number is beyond it, too.
+  // Negated so that NaN also counts as beyond.
   if (!(near_distance <= query.near_distance)) {
     ++query.stats.beyond_near;
     return everything();

@@ -12,12 +12,12 @@
 namespace sightline {
 
 struct SightFile::Data {
-  std::string name;  // for errors, one line
+  std::string name;  // for errors, a single line
   pvs::MappedFile mapped;
-  std::vector<std::uint64_t> copied;  // of bytes that came from elsewhere and were not aligned
-  std::span<const std::byte> bytes;   // in one of these, or the caller's
+  std::vector<std::uint64_t> copied;  // a copy of bytes from memory that were not aligned
+  std::span<const std::byte> bytes;   // of the mapped file, of `copied`, or the caller's
   BakeRecord record;
-  pvs::SightView view;  // of bytes
+  pvs::SightView view;  // view of `bytes`
 };
 
 }  // namespace sightline

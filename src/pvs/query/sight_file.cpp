@@ -13,7 +13,7 @@ using namespace pvs;
 using pvs::ChunkDecoder;
 using pvs::MappedFile;
 
-// Names may hold control characters; an error has one line.
+// Replaces control characters in a name, because an error is a single line.
 std::string oneLine(std::string text) {
   for (char& c : text) {
     const auto code = static_cast<unsigned char>(c);
@@ -47,7 +47,7 @@ const DatabaseEntry* findDatabase(const SightView& view, const std::string& name
 
 bool readDatabaseBytes(const SightView& view, const DatabaseEntry& entry, ChunkDecoder& decoder,
                        std::vector<std::byte>& bytes) {
-  // Up to where no chunk has shown yet that it is as long as it claims.
+  // Limit of memory reserved before any chunk has proved to be as long as it claims.
   constexpr std::uint64_t kUnseen = 64u << 20;
   bytes.reserve(std::min(entry.raw_bytes, kUnseen));
   const auto chunks = view.chunks.subspan(entry.first_chunk, entry.chunk_count);
