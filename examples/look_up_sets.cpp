@@ -1,5 +1,5 @@
-// Looks up in a baked file what may be seen from a place, and culls a frame with it.
-// Make a file with: sightline bake SCENE -o F.sight
+// Looks up what may be seen from a place in a baked file, and culls a frame with it.
+// Create a file with: sightline bake SCENE -o F.sight
 
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
     std::fputs("usage: look_up_sets F.sight X Y Z\n", stderr);
     return 2;
   }
-  // Once a scene. An engine checks that the file is of its scene: file->matches(sceneId(scene.view())).
+  // Once per scene. An engine also checks that the file is of its scene:
+  // file->matches(sceneId(scene.view())).
   const Result<SightFile> file = SightFile::open(argv[1]);
   if (!file) {
     std::fprintf(stderr, "%s\n", file.error().message.c_str());
@@ -23,7 +24,7 @@ int main(int argc, char** argv) {
   }
   SetQuery query(*file);
 
-  // Every frame. The near plane of this view cuts nothing away that is farther than nearDistance.
+  // Every frame. The near plane of this view clips nothing that is farther than nearDistance.
   View view;
   view.eye = {std::atof(argv[2]), std::atof(argv[3]), std::atof(argv[4])};
   setOrientation(view, /*forward=*/{0, 0, -1}, /*up_hint=*/{0, 1, 0});
@@ -35,7 +36,7 @@ int main(int argc, char** argv) {
   }
   std::printf("%zu of %zu objects may be seen from there\n", objects, boxes.objects.size());
 
-  // Or let a Culler ask, which needs the boxes of the objects: here those that were baked.
+  // Alternatively, let a Culler query the sets. It needs the boxes of the objects: here the baked ones.
   std::vector<Box> bounds(boxes.objects.size());
   for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
     if (boxes.leaf(node)) {

@@ -1,7 +1,7 @@
-// Feeds bytes to the glTF reader: it must return a sound scene or an error, whatever they are.
+// Feeds bytes to the glTF reader, which must return a valid scene or an error, whatever they are.
 //
-// Bytes that start with "glTF" or '{' and have no zero byte are taken as they are. Others are JSON, a zero
-// byte, and the binary chunk: a .glb is put together from them, so that a change of length does not end at
+// Bytes that start with "glTF" or '{' and have no zero byte are used unchanged. Others are JSON, a zero byte,
+// and the binary chunk, from which a .glb file is assembled; otherwise every change of length would fail at
 // the container's header.
 
 #include <cmath>

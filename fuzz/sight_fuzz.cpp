@@ -1,9 +1,9 @@
-// Feeds bytes to the reader of .sight files: it must open them or return an error, whatever they are, and all
-// that it then hands out must be sound.
+// Feeds bytes to the reader of .sight files, which must open them or return an error, whatever they are.
+// Everything that it then returns must be valid.
 //
-// Checksums keep altered bytes away from what they would break. So bytes that begin like a .sight file are
-// opened twice: as they are, and with their checksums put right, as a hostile file has them. All other bytes
-// are a decompressed set, which no fuzzer would reach through the compression.
+// Checksums would stop altered bytes before they reach most of the code. So bytes that begin like a .sight
+// file are opened twice: unchanged, and with correct checksums, as a hostile file has them. All other bytes
+// are used as a decompressed set, which no fuzzer would reach through the compression.
 
 #include <algorithm>
 #include <cstddef>
@@ -41,7 +41,7 @@ void checkNodes(std::span<const std::uint32_t> nodes, const BoxTreeView& tree) {
   }
 }
 
-// Every object is reached once through the leaves, and through the children of every node.
+// Checks that every object is reached once through the leaves, and through the children of every node.
 void checkTree(const BoxTreeView& tree) {
   std::size_t objects = 0;
   for (std::uint32_t node = 0; node < tree.nodes.size(); ++node) {
@@ -52,7 +52,7 @@ void checkTree(const BoxTreeView& tree) {
     for (std::uint32_t child = node + 1; child < tree.nodes[node].end; child = tree.nodes[child].end) {
       require(tree.nodes[child].end > child && tree.nodes[child].end <= tree.nodes[node].end);
     }
-    // Trees made of one long branch take the square of the time.
+    // Trees that consist of one long branch take quadratic time.
     if (node > 2000) {
       return;
     }
@@ -99,7 +99,7 @@ void checkQuery(const SightFile& file) {
       checkNodes(query.find(eye, file.record().near_distance).nodes, file.boxes());
     }
     const CellPlace place = query.locate(min);
-    // Cells may be too small for the numbers between their borders.
+    // Cells may be too small for a number to exist between their borders.
     require(min.x == max.x || min.y == max.y || min.z == max.z || place.leaf == leaf);
   });
 }
@@ -120,7 +120,7 @@ void open(std::span<const std::byte> bytes) {
   }
   checkTree(file->boxes());
   checkOctree(file->octree(), file->setCount());
-  // Few bytes may decompress to many: what takes long is no finding.
+  // A few bytes may decompress to many; a slow input is not a finding.
   std::uint64_t raw_bytes = 0;
   for (const SightFile::Section& section : file->sections()) {
     raw_bytes += section.raw_bytes;

@@ -1,4 +1,4 @@
-// Writes what fuzzing of .sight files starts from: small files of each kind, and sets.
+// Writes the seed corpus for fuzzing .sight files: small files of each kind, and sets.
 //
 //   sight_seeds FOLDER
 

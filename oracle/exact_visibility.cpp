@@ -20,8 +20,8 @@ FloatRay floatRay(const View& view, const ViewRay& ray) {
   return {Vec3f(ray.origin), Vec3f(ray.direction), static_cast<float>(view.far - view.near)};
 }
 
-// The pixel in the upper, the distance in the lower half: the least of them is the first pixel with its
-// nearest hit.
+// Packs the pixel into the upper and the distance into the lower half, so that the minimum is the first pixel
+// with its nearest hit.
 std::uint64_t packHit(std::uint32_t pixel, float t) {
   return (static_cast<std::uint64_t>(pixel) << 32) | std::bit_cast<std::uint32_t>(std::max(t, 0.0f));
 }
@@ -32,7 +32,7 @@ void storeMin(std::atomic<std::uint64_t>& least, std::uint64_t value) {
   }
 }
 
-// Whether the infinite line through `origin` may meet the box, widened by far more than rounding.
+// True if the infinite line through `origin` may intersect the box, enlarged by far more than rounding.
 bool mayMeet(const Vec3d& origin, const Vec3d& direction, const Box& box) {
   double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,20 +57,20 @@ bool mayMeet(const Vec3d& origin, const Vec3d& direction, const Box& box) {
 struct ExactVisibility::Impl {
   explicit Impl(const SceneView& scene_);
 
-  // Calls on_hits(first pixel, rays, hits) for every batch of pixels of rows [begin, end).
+  // Calls on_hits(first pixel, rays, hits) for every batch of pixels in rows [begin, end).
   template <typename OnHits>
   void traceRows(const View& view, std::uint32_t width, std::uint32_t height, std::uint32_t begin,
                  std::uint32_t end, OnHits&& on_hits) const;
   std::optional<Witness> aimAt(const View& view, ObjectId object, std::uint32_t samples,
                                std::vector<RayHit>& hits) const;
   void lookBeside(const View& view, ObjectId object, std::uint32_t samples, std::vector<Witness>& seen) const;
-  // Least parameter in [near, far] where the ray meets the object.
+  // The minimum parameter in [near, far] at which the ray hits the object.
   std::optional<Wide> meets(const WideRay& ray, ObjectId object, Wide near, Wide far) const;
 
   SceneView scene;
   RayScene rays;
   SamplePoints samples;
-  std::vector<Box> bounds;  // of the objects' triangles
+  std::vector<Box> bounds;  // by object, of its triangles
 };
 
 ExactVisibility::Impl::Impl(const SceneView& scene_) : scene(scene_), rays(scene_), samples(scene_) {
@@ -216,7 +216,7 @@ std::optional<Witness> ExactVisibility::Impl::aimAt(const View& view, ObjectId o
       ray = floatRay(view, rayTo(view, point));
       const double t = depthOf(view, point) - view.near;
       if (t > 1e-3 * view.near) {
-        ray.direction = Vec3f((point - Vec3d(ray.origin)) / t);  // from the rounded origin to the very point
+        ray.direction = Vec3f((point - Vec3d(ray.origin)) / t);  // from the rounded origin to the exact point
       }
     }
     if (count == RayScene::kBatch || (count > 0 && sample + 1 == sample_count)) {
@@ -279,10 +279,10 @@ std::optional<Wide> ExactVisibility::Impl::meets(const WideRay& ray, ObjectId id
 
 bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
   constexpr double kTie =
-      1e-25;  // relative; wide arithmetic on single-precision corners is a thousand times better
+      1e-25;  // relative; wide arithmetic on single-precision corners is a thousand times more precise
   const double depth = depthOf(view, witness.point);
   const Vec3d origin =
-      view.orthographic ? witness.point - view.forward * depth : view.eye;  // in the plane of the eye
+      view.orthographic ? witness.point - view.forward * depth : view.eye;  // in the plane through the eye
   const Vec3d direction = view.orthographic ? view.forward : witness.point - view.eye;
   const WideRay ray =
       view.orthographic ? WideRay(origin, direction) : WideRay::towards(view.eye, witness.point);

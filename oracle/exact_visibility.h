@@ -1,12 +1,11 @@
 #pragma once
 
-// Exact visibility by ray casting with Embree: the reference that `verify` and the tests compare a culler
-// with. Independent of the culler's geometry code: it reads the scene's triangles and the view's numbers,
-// nothing else.
+// Exact visibility by ray casting with Embree: the reference for `verify` and the tests. Independent of the
+// culler's geometry code: it reads only the scene's triangles and the view's numbers.
 //
-// Embree works in single precision: a ray may slip through the seam of two triangles, or take the wrong one
-// of two surfaces that lie closer together than its rounding. What is to be held against a culler is
-// confirmed first, by confirm(), which follows one ray through all triangles in 113-bit arithmetic.
+// Embree works in single precision: a ray may slip through the edge between two triangles, or hit the wrong
+// one of two surfaces that are closer together than its rounding. Evidence against a culler is therefore
+// confirmed first, by confirm(), which traces one ray through all triangles in 113-bit arithmetic.
 
 #include <cstdint>
 #include <memory>
@@ -31,41 +30,40 @@ struct Witness {
 // All const functions may be called from several threads at once. Results do not depend on the ParallelFor.
 class ExactVisibility {
  public:
-  // Builds the ray-casting structures. The scene's memory must outlive this.
+  // Builds the ray-casting structures. The scene's memory must outlive this object.
   explicit ExactVisibility(const SceneView& scene);
   ~ExactVisibility();
   ExactVisibility(ExactVisibility&&) noexcept;
   ExactVisibility& operator=(ExactVisibility&&) noexcept;
 
-  // Objects hit by a ray through the centre of any of width x height pixels, with a point each (of the first
-  // such pixel, rows from the top), ascending by id. See-through materials are seen but do not stop rays;
-  // backs of single-sided faces are not there at all; only what lies between the near and the far plane
-  // counts.
+  // Objects hit by a ray through the centre of any of width x height pixels, ascending by id, each with the
+  // point of the first such pixel (rows from the top). Transparent materials are hit but do not stop rays;
+  // back faces of single-sided materials are ignored; only hits between the near and the far plane count.
   std::vector<Witness> visibleThroughPixels(const View& view, std::uint32_t width, std::uint32_t height,
                                             const ParallelFor& parallel_for = serialFor) const;
 
-  // The points where the same rays reach one object, of all pixels that show it, in the order of the pixels.
+  // The points where the same rays hit one object, for all pixels that show it, in pixel order.
   std::vector<Witness> pixelsShowing(ObjectId object, const View& view, std::uint32_t width,
                                      std::uint32_t height, const ParallelFor& parallel_for = serialFor) const;
 
-  // Tries to see each of these objects by rays aimed at `samples` points of its triangles (vertices, edge and
-  // face points, spread over its triangles by area, by a seed fixed by object and eye). Returns a witness for
-  // each one that was reached, in the order of `objects`.
+  // Tries to reach each of these objects with rays aimed at `samples` points of its triangles: vertices, edge
+  // and face points, distributed by area, with a seed that depends only on object and eye. Returns a witness
+  // for each object that was reached, in the order of `objects`.
   std::vector<Witness> visibleByAimedRays(const View& view, std::span<const ObjectId> objects,
                                           std::uint32_t samples,
                                           const ParallelFor& parallel_for = serialFor) const;
 
-  // Objects that show close beside the edges of these: hit by one of `samples` rays for each that pass to the
-  // left or right of an edge of its triangles, by 1e-7 to 1e-2 of the distance (by a seed fixed by object and
-  // eye). So rays go along silhouettes and through narrow gaps, which pixels miss. A point each, ascending by
-  // id.
+  // Objects visible close beside the edges of these objects. For each object, `samples` rays pass to the left
+  // or right of edges of its triangles, by 1e-7 to 1e-2 of the distance, with a seed that depends only on
+  // object and eye. The rays run along silhouettes and through narrow gaps, which pixels miss. One point per
+  // object, ascending by id.
   std::vector<Witness> visibleBesideEdges(const View& view, std::span<const ObjectId> objects,
                                           std::uint32_t samples,
                                           const ParallelFor& parallel_for = serialFor) const;
 
-  // Whether the ray from the eye through the witness's point really reaches the object, beyond what rounding
-  // can explain: tested against every triangle in wide precision, edges belonging to triangles. A surface at
-  // exactly the same distance does not hide it (ties are visible).
+  // True if the ray from the eye through the witness's point really reaches the object, beyond what rounding
+  // can explain. Tests every triangle in wide precision; edges belong to triangles. A surface at exactly the
+  // same distance does not hide the object (ties are visible).
   bool confirm(const View& view, const Witness& witness) const;
 
  private:

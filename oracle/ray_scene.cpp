@@ -3,7 +3,7 @@
 namespace sightline {
 namespace {
 
-constexpr std::uint64_t kManyTriangles = 4'000'000;  // from here on memory matters more than speed
+constexpr std::uint64_t kManyTriangles = 4'000'000;  // above this count, prefer less memory to more speed
 
 Vec3d normalOf(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
@@ -38,14 +38,14 @@ void setRays(const RayScene::Batch& rays, std::uint32_t count, RTCRayHit16& pack
 
 }  // namespace
 
-// Embree hands it to the filter: where see-through hits go.
+// Passed to the filter by Embree; receives the hits of see-through triangles.
 struct RayScene::CollectContext {
   RTCIntersectContext base;
   std::vector<RayHit>* hits;
 };
 
 RayScene::RayScene(const SceneView& scene) {
-  // One thread: Embree's parallel builder may order triangles differently, and with them ties.
+  // One thread: Embree's parallel builder may order triangles differently, which would change ties.
   device_ = rtcNewDevice("threads=1");
   const bool compact = scene.indices.size() / 3 > kManyTriangles;
   opaque_ = newScene(device_, compact);
@@ -69,7 +69,7 @@ RayScene::~RayScene() {
   rtcReleaseDevice(device_);
 }
 
-// Copies what can be hit: triangles with finite corners and an area.
+// Copies all triangles that can be hit: those with finite corners and an area.
 void RayScene::gather(const SceneView& scene) {
   positions_.assign(scene.positions.begin(), scene.positions.end());
   positions_.push_back({});
@@ -117,7 +117,8 @@ bool RayScene::meetsBack(const Group& group, std::uint32_t prim, const Vec3d& di
   return dot(normalOf(positions_[index[0]], positions_[index[1]], positions_[index[2]]), direction) >= 0.0;
 }
 
-// Refuses backs of single-sided triangles; of see-through triangles, notes the hit and lets the ray go on.
+// Rejects back faces of single-sided triangles. For see-through triangles, records the hit and lets the ray
+// continue.
 void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
   const Group& group = *static_cast<const Group*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
@@ -162,7 +163,7 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
   }
   if (has_see_through_) {
-    rtcIntersect16(valid, see_through_, &context.base, &packet);  // up to the opaque hit: tfar
+    rtcIntersect16(valid, see_through_, &context.base, &packet);  // up to the opaque hit at tfar
   }
 }
 

@@ -14,7 +14,7 @@
 
 namespace sightline {
 
-// Single precision, as Embree traces it.
+// A ray in single precision, as Embree traces it.
 struct FloatRay {
   Vec3f origin, direction;
   float length = 0.0f;  // parameter of its end
@@ -23,7 +23,7 @@ struct FloatRay {
 };
 
 struct RayHit {
-  std::uint32_t ray = 0;  // of the batch
+  std::uint32_t ray = 0;  // index in the batch
   ObjectId object;
   float t = 0.0f;  // parameter along the ray
 };
@@ -38,18 +38,18 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // All surfaces that the first `count` rays show, in no fixed order, an object perhaps several times: the
-  // first opaque triangle of each and the see-through ones before it. Backs of single-sided triangles are not
-  // there.
+  // All surfaces that the first `count` rays show, unordered and with objects possibly repeated: the first
+  // opaque triangle of each ray, and the see-through ones in front of it. Back faces of single-sided
+  // triangles are ignored.
   void trace(const Batch& rays, std::uint32_t count, bool coherent, std::vector<RayHit>& hits) const;
 
  private:
-  // One Embree geometry: the triangles that are alike in opacity and sidedness.
+  // One Embree geometry: the triangles of equal opacity and sidedness.
   struct Group {
     const RayScene* owner = nullptr;
     bool opaque = false, double_sided = false;
-    std::vector<std::uint32_t> indices;         // three a triangle
-    std::vector<std::uint32_t> object_of_prim;  // one a triangle
+    std::vector<std::uint32_t> indices;         // three per triangle
+    std::vector<std::uint32_t> object_of_prim;  // one per triangle
     RTCGeometry geometry = nullptr;
     unsigned geometry_id = RTC_INVALID_GEOMETRY_ID;
   };
@@ -60,7 +60,7 @@ class RayScene {
   bool meetsBack(const Group& group, std::uint32_t prim, const Vec3d& direction) const;
   static void filter(const RTCFilterFunctionNArguments* arguments);
 
-  std::vector<Vec3f> positions_;  // padded by one: Embree reads 16 bytes each
+  std::vector<Vec3f> positions_;  // padded by one element, because Embree reads 16 bytes each
   std::array<Group, 4> groups_;
   RTCDevice device_ = nullptr;
   RTCScene opaque_ = nullptr, see_through_ = nullptr;

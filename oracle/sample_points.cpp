@@ -7,8 +7,8 @@
 namespace sightline {
 namespace {
 
-constexpr double kInside = 1e-3;  // how far corners and edges are pulled in, as a barycentric coordinate
-constexpr int kTries = 4;         // to find a triangle that shows its front
+constexpr double kInside = 1e-3;  // distance of samples from corners and edges, as a barycentric coordinate
+constexpr int kTries = 4;         // attempts to find a triangle that shows its front
 
 // Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014.
 struct SplitMix {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Points of objects that rays are aimed at.
+// Points on objects at which rays are aimed.
 
 #include <cstdint>
 #include <vector>
@@ -11,16 +11,16 @@ namespace sightline {
 
 class SamplePoints {
  public:
-  // The scene's memory must outlive this. 4 bytes a triangle.
+  // The scene's memory must outlive this object. Takes 4 bytes per triangle.
   explicit SamplePoints(const SceneView& scene);
 
-  // Point number `sample` of an object as seen by a view: its triangle chosen by area, one that shows its
-  // front if some tries find one; the place in turn any on its face, just inside a corner, just inside an
-  // edge. The same arguments give the same point. Precondition: the object has triangles.
+  // Sample number `sample` of an object as seen by a view. The triangle is chosen by area, and preferably
+  // shows its front. The samples alternate between points anywhere on the face, just inside a corner, and
+  // just inside an edge. The same arguments give the same point. The object must have triangles.
   Vec3d point(ObjectId object, std::uint32_t sample, const View& view) const;
-  // A point close beside an edge of one of its triangles, as the view sees it: to the left or the right of
-  // it, by 1e-7 to 1e-2 of the distance. What shows there shows at a silhouette or through a gap, if the edge
-  // is part of one.
+  // A point close beside an edge of one of the object's triangles as the view sees it: to the left or right,
+  // by 1e-7 to 1e-2 of the distance. If the edge is part of a silhouette or of a gap, a ray through this
+  // point passes it closely.
   Vec3d besideEdge(ObjectId object, std::uint32_t sample, const View& view) const;
 
  private:
@@ -31,7 +31,7 @@ class SamplePoints {
   std::uint32_t triangleAt(const Object& object, double share) const;
 
   SceneView scene_;
-  std::vector<float> area_share_;  // of the object's area, in its triangles up to this one
+  std::vector<float> area_share_;  // cumulative fraction of the object's area in its triangles up to this one
 };
 
 }  // namespace sightline

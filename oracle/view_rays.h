@@ -1,7 +1,7 @@
 #pragma once
 
-// Rays of a view, double precision. Written apart from the library's projection code, so that the two check
-// each other.
+// Rays of a view in double precision. Written independently of the library's projection code, so that the two
+// check each other.
 
 #include <cstdint>
 
@@ -9,18 +9,19 @@
 
 namespace sightline {
 
-// Starts on the near plane; dot(direction, view.forward) is 1, so that the ray's parameter is metres beyond
-// that plane.
+// A ray that starts on the near plane. dot(direction, view.forward) is 1, so the ray's parameter is the depth
+// in metres beyond that plane.
 struct ViewRay {
   Vec3d origin, direction;
 };
 
-// Metres along forward.
+// Depth along forward, metres.
 inline double depthOf(const View& view, const Vec3d& point) {
   return dot(point - view.eye, view.forward);
 }
 
-// x, y in [-1, 1]: from the left to the right, from the lower to the upper border.
+// The ray through a point of the picture. x, y are in [-1, 1], from the left to the right and from the lower
+// to the upper border.
 inline ViewRay rayThrough(const View& view, double x, double y) {
   if (view.orthographic) {
     const double half = 0.5 * view.ortho_height;
@@ -32,7 +33,7 @@ inline ViewRay rayThrough(const View& view, double x, double y) {
   return {view.eye + direction * view.near, direction};
 }
 
-// Through the centre of a pixel; rows count from the top.
+// The ray through the centre of a pixel; rows count from the top.
 inline ViewRay rayOfPixel(const View& view, std::uint32_t column, std::uint32_t row, std::uint32_t width,
                           std::uint32_t height) {
   const double x = (2.0 * column + 1.0) / width - 1.0;
@@ -40,7 +41,7 @@ inline ViewRay rayOfPixel(const View& view, std::uint32_t column, std::uint32_t 
   return rayThrough(view, x, y);
 }
 
-// Through a point in front of the eye.
+// The ray through a point in front of the eye.
 inline ViewRay rayTo(const View& view, const Vec3d& point) {
   const double depth = depthOf(view, point);
   if (view.orthographic) {
@@ -50,7 +51,8 @@ inline ViewRay rayTo(const View& view, const Vec3d& point) {
   return {view.eye + direction * view.near, direction};
 }
 
-// Inside the visible volume. slack: relative; negative: a little way inside.
+// True if the point is inside the view volume, enlarged by the relative slack; a negative slack shrinks the
+// volume.
 inline bool inVolume(const View& view, const Vec3d& point, double slack) {
   const Vec3d from_eye = point - view.eye;
   const double depth = dot(from_eye, view.forward);

@@ -3,7 +3,7 @@
 namespace sightline {
 namespace {
 
-// Rounding of a triple product, relative to the sum of its terms' magnitudes: some ten operations each.
+// Rounding of a triple product, relative to the sum of its terms' magnitudes: about ten operations each.
 constexpr double kDoubleError = 1e-14;
 constexpr double kWideError = 7.9e-31;  // 2^-100
 
@@ -30,7 +30,7 @@ Wide3 wide(const Vec3f& p) {
   return {Wide(p.x), Wide(p.y), Wide(p.z)};
 }
 
-// Sign of dot(d, cross(p, q)); 0 within rounding.
+// Sign of dot(d, cross(p, q)); 0 if it is within rounding.
 int signOfVolume(const Wide3& d, const Wide3& p, const Wide3& q) {
   const Wide volume = dot(d, cross(p, q));
   const Wide bound = Wide(kWideError) * 6 * maxNorm(d) * maxNorm(p) * maxNorm(q);
@@ -64,8 +64,8 @@ Wide WideRay::along(const Vec3d& axis) const {
   return direction_[0] * Wide(axis.x) + direction_[1] * Wide(axis.y) + direction_[2] * Wide(axis.z);
 }
 
-// Two edges with opposite signs, both beyond the rounding of double precision. The differences are rounded
-// correctly (their operands are exact), so that all errors are relative to the terms.
+// True if two edges have opposite signs, both beyond the rounding of double precision. The differences are
+// correctly rounded because their operands are exact, so all errors are relative to the terms.
 bool WideRay::surelyMisses(const Vec3f& a, const Vec3f& b, const Vec3f& c) const {
   const Vec3d p[3] = {Vec3d(a) - origin_double_, Vec3d(b) - origin_double_, Vec3d(c) - origin_double_};
   bool above = false, below = false;
@@ -95,7 +95,7 @@ std::optional<Wide> WideRay::intersect(const Vec3f& a, const Vec3f& b, const Vec
     return std::nullopt;
   }
   const Wide3 normal = cross(wide(b) - wide(a), wide(c) - wide(a));
-  const Wide slope = dot(normal, d);  // negative: the front is met
+  const Wide slope = dot(normal, d);  // negative: the ray hits the front
   if (l1Norm(slope) <= Wide(kWideError) * 3 * maxNorm(normal) * maxNorm(d) || (slope > 0 && !both_sides)) {
     return std::nullopt;
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// One ray against triangles in 113-bit arithmetic, for the few answers that must be beyond doubt.
+// One ray against triangles in 113-bit arithmetic, for the few results that must be beyond doubt.
 
 #include <optional>
 
@@ -8,7 +8,7 @@
 
 namespace sightline {
 
-// At least 113 bits of mantissa where the compiler has them.
+// At least 113 bits of mantissa if the compiler supports them.
 #if defined(__SIZEOF_FLOAT128__)
 using Wide = __float128;
 #else
@@ -17,14 +17,15 @@ using Wide = long double;
 
 class WideRay {
  public:
-  // The points origin + s * direction, s >= 0.
+  // The ray origin + s * direction, s >= 0.
   WideRay(const Vec3d& origin, const Vec3d& direction);
-  // From `origin` with the direction to - origin, without rounding of the difference.
+  // The ray from `origin` with direction to - origin, computed without rounding the difference.
   static WideRay towards(const Vec3d& origin, const Vec3d& to);
 
-  // The parameter where the line meets the closed triangle. What lies on an edge within the rounding of this
-  // arithmetic (2^-100, relative) belongs to the triangle. None: missed, degenerate, or parallel to it.
-  // Without both_sides, a triangle whose back is met (clockwise seen from the origin) is missed.
+  // The parameter where the line intersects the closed triangle. Points on an edge within the rounding of
+  // this arithmetic (2^-100, relative) belong to the triangle. Returns nothing if the line misses the
+  // triangle or is parallel to it, or if the triangle is degenerate. Without both_sides, a triangle hit on
+  // its back (clockwise as seen from the origin) is missed.
   std::optional<Wide> intersect(const Vec3f& a, const Vec3f& b, const Vec3f& c, bool both_sides) const;
 
   Wide along(const Vec3d& axis) const;  // dot(direction, axis)

@@ -17,7 +17,7 @@ FrustumSide classify(const Frustum& frustum, const Box& box, std::uint8_t& mask)
     const Plane& plane = frustum.planes[static_cast<std::size_t>(i)];
     const double distance = plane.evaluate(box_center);
     const double radius = dot(abs(plane.normal), half);
-    // Rounding of the sums above is below 2^-49 of the largest term; sixteen times that is given away.
+    // The rounding of the sums above is below 2^-49 of the largest term; the slack is sixteen times that.
     const double slack = 0x1p-45 * (reach.x + reach.y + reach.z + std::abs(plane.offset));
     if (distance + radius < -slack) {
       return FrustumSide::kOutside;

@@ -13,7 +13,7 @@ void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint) {
   view.forward = normalized(forward);
   Vec3d right = cross(view.forward, normalized(up_hint));
   if (length(right) < 1e-9) {
-    // Looking along the hint: any direction across will do.
+    // The view direction is parallel to the hint, so any perpendicular direction is used.
     const Vec3d other = std::abs(view.forward.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 0, 1);
     right = cross(view.forward, other);
   }
@@ -25,7 +25,7 @@ Mat4 clipFromScene(const View& view) {
   Mat4 camera_from_scene;
   Vec3d axes[3] = {view.right, view.up, -view.forward};
   for (Vec3d& axis : axes) {
-    makeUnit(axis);  // not makeUsable: the picture of a left-handed view is mirrored
+    makeUnit(axis);  // not makeUsable(): the picture of a left-handed view is mirrored
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -34,7 +34,7 @@ Mat4 clipFromScene(const View& view) {
     camera_from_scene(row, 3) = -dot(axes[row], view.eye);
   }
   Mat4 clip_from_camera;
-  // As far grows: (far + near) / (far - near) -> 1, far / (far - near) -> 1.
+  // Limits for far -> infinity: (far + near) / (far - near) -> 1, far / (far - near) -> 1.
   const bool endless = std::isinf(view.far);
   const double depth = view.far - view.near;
   const double middle = endless ? 1.0 : (view.far + view.near) / depth;
@@ -82,7 +82,7 @@ Frustum frustumOf(const View& given) {
     frustum.planes[3] = through(y - view.up, view.eye);
   }
   frustum.planes[4] = through(view.forward, view.eye + view.forward * view.near);
-  // An infinite one would make a plane that is not a number; this one is beyond all boxes.
+  // An infinite offset would make the plane NaN; this one is beyond all boxes.
   constexpr double kFarthest = 0x1p500;
   frustum.planes[5] = through(-view.forward, view.eye + view.forward * std::min(view.far, kFarthest));
   return frustum;
@@ -92,11 +92,11 @@ double nearDistance(const View& given) {
   View view = given;
   makeUsable(view);
   if (view.orthographic) {
-    // Its eyes are as far away as one likes.
+    // The rays of an orthographic view start at any distance.
     return std::numeric_limits<double>::infinity();
   }
-  // Corners lie at forward +- x right +- y up, times near. Axes that lack a little of being perpendicular
-  // move them apart. Rounded up.
+  // Corners are at forward +- x right +- y up, times near. Axes that are not quite perpendicular move the
+  // corners apart. Rounded up.
   const double y = view.tan_half_fovy;
   const double x = view.tan_half_fovy * view.aspect;
   double farthest = std::sqrt(1.0 + x * x + y * y);

@@ -1,11 +1,12 @@
 #pragma once
 
-// A view as a map of pixels has it: camera space, and where its points lie in the map.
+// A view as a pixel buffer uses it: camera space, and the position of its points in the buffer.
 //
-// Camera space: x to the right, y upwards, z the depth along the viewing direction, metres, relative to the
-// eye. Map space: pixels from the map's lower left corner, x to the right, y upwards; pixel (i, j) is the
-// square from (i, j) to (i + 1, j + 1). ReciprocalDepth is what a map stores of a depth: greater is nearer,
-// and over a plane's image it is linear. Perspective: 1 / depth; orthographic: -depth.
+// Camera space: x to the right, y upwards, z the depth along the viewing direction; metres, relative to the
+// eye. Map space: pixels from the buffer's lower left corner, x to the right, y upwards; pixel (i, j) is the
+// square from (i, j) to (i + 1, j + 1). ReciprocalDepth is what a depth buffer stores: 1 / depth in
+// perspective and -depth in orthographic views. Greater is nearer, and it is linear over the image of a
+// plane.
 
 #include <algorithm>
 #include <cstdint>
@@ -17,17 +18,17 @@ namespace sightline {
 struct PixelView {
   Vec3d eye;
   Vec3d right, up, forward;
-  // What camera space's unit vectors are in scene space: the same but for what the axes lack of being
-  // orthonormal, which a caller's single precision makes visible on a large map.
+  // The unit vectors of camera space in scene space: the view's axes, corrected for not being exactly
+  // orthonormal. A caller's single-precision axes are off by enough to matter in a large buffer.
   Vec3d unit_x, unit_y, unit_z;
   bool orthographic = false;
   double frustum_near = 0.0, far = 0.0;
-  // The near plane, or a depth beyond it that single precision can divide by: what reaches before it neither
-  // hides nor has a rectangle on the map.
+  // The near plane, or a depth beyond it that single precision can divide by. Geometry in front of it neither
+  // hides nor has a rectangle in the buffer.
   double near = 0.0;
   double scale_x = 0.0,
-         scale_y = 0.0;  // pixels for a unit of x / z (perspective), for a metre (orthographic)
-  double middle_x = 0.0, middle_y = 0.0;  // of the map, pixels
+         scale_y = 0.0;                   // pixels per unit of x / z (perspective), per metre (orthographic)
+  double middle_x = 0.0, middle_y = 0.0;  // centre of the buffer, pixels
 
   PixelView() = default;
   PixelView(const View& given, std::uint32_t width, std::uint32_t height) {
@@ -53,8 +54,8 @@ struct PixelView {
     unit_z = cross(right, up) / volume;
   }
 
-  // Finite, and of sizes that neither overflow nor leave nothing of single precision. With other views
-  // nothing can be said: maps stay empty, and boxes have no place in them.
+  // True if all values are finite, and of magnitudes that neither overflow nor underflow in single precision.
+  // With other views nothing can be decided: buffers stay empty, and boxes have no position in them.
   bool sane() const {
     constexpr double kLargestCoordinate = 0x1p60;
     const auto axis = [](const Vec3d& v) { return isFinite(v) && maxComponent(abs(v)) < 2.0; };
@@ -63,15 +64,15 @@ struct PixelView {
            axis(unit_z) && scale(scale_x) && scale(scale_y) && isFinite(eye) &&
            maxComponent(abs(eye)) < kLargestCoordinate && near < kLargestCoordinate && far > near;
   }
-  // Of a plane's normal.
+  // Transforms the normal of a plane.
   Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
-  // Of a direction, or of a point relative to the eye.
+  // Transforms a direction, or a point relative to the eye.
   Vec3d toCamera(const Vec3d& r) const { return {dot(right, r), dot(up, r), dot(forward, r)}; }
-  // What turns camera space's x and y into the map's: 1 / z, orthographic 1.
+  // Factor from x and y in camera space to map space: 1 / z in perspective, 1 in orthographic views.
   double inverseDepth(const Vec3d& c) const { return orthographic ? 1.0 : 1.0 / c.z; }
   double mapX(const Vec3d& c, double inverse_depth) const { return middle_x + scale_x * c.x * inverse_depth; }
   double mapY(const Vec3d& c, double inverse_depth) const { return middle_y + scale_y * c.y * inverse_depth; }
-  // Of a point in camera space; perspective: z > 0.
+  // Map coordinates of a point in camera space; in perspective views, z must be > 0.
   double mapX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
   double mapY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
   double reciprocal_depth(double depth) const { return orthographic ? -depth : 1.0 / depth; }

@@ -38,7 +38,8 @@ Box sceneBounds(const SceneView& scene) {
 }
 
 void weldPositions(Scene& scene) {
-  // Open-addressed table of kept positions, in order of first use by an index: deterministic, one pass.
+  // Open-addressing table of the kept positions, in order of first use by an index: deterministic, in one
+  // pass.
   constexpr std::uint32_t kFree = 0xffffffffu;
   const std::size_t capacity = std::bit_ceil(scene.positions.size() * 2 + 2);
   std::vector<std::uint32_t> table(capacity, kFree);

@@ -6,9 +6,9 @@
 namespace sightline {
 namespace {
 
-// Axes that are this close to unit length are taken as they are: single precision is four times better.
+// Axes this close to unit length are used unchanged; single precision is four times better.
 constexpr double kUnitSlack = 0x1p-20;
-// The cosine between two axes from which on they are not perpendicular.
+// Minimum cosine between two axes at which they no longer count as perpendicular.
 constexpr double kSkewCosine = 0x1p-20;
 
 bool isPositive(double value) {
@@ -66,7 +66,7 @@ const char* makeUsable(View& view) {
   if (const char* fault = projectionFault(usable)) {
     return fault;
   }
-  // The frustum is symmetric, so a mirrored picture shows the same objects.
+  // The frustum is symmetric, so a mirrored view shows the same objects.
   const bool left_handed = dot(cross(usable.right, usable.up), usable.forward) > 0.0;
   usable.right = left_handed ? -usable.right : usable.right;
   view = usable;

@@ -4,11 +4,11 @@
 
 namespace sightline {
 
-// Normalises an axis unless it is of unit length up to single precision. False: it has no direction.
+// Normalises an axis unless it has unit length up to single precision. Returns false if it has no direction.
 bool makeUnit(Vec3d& axis);
 
-// Prepares a caller's view for use, as validate() describes; allocates nothing, for every frame. Null, or
-// what is wrong with the view, a text without end of life; the view is then as it was.
+// Prepares a caller's view as validate() describes; allocates nothing, so it can run in every frame. Returns
+// null, or a static text that says what is wrong with the view, which is then unchanged.
 const char* makeUsable(View& view);
 
 }  // namespace sightline

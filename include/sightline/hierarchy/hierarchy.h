@@ -13,13 +13,13 @@
 
 namespace sightline {
 
-// Nodes lie in depth-first order: the left child follows its parent. 32 bytes.
+// Nodes are in depth-first order: the left child follows its parent. 32 bytes.
 struct HierarchyNode {
-  Box bounds{};  // encloses what its objects have in its region
-  // Leaf: its first entry in Hierarchy::objects; Hierarchy::objectsBelow() finds where they end. Inner node:
-  // one past the last node below it.
+  Box bounds{};  // encloses the parts of its objects that are in its region
+  // Leaf: index of its first entry in Hierarchy::objects; Hierarchy::objectsBelow() finds the end. Inner
+  // node: one past the last node below it.
   std::uint32_t link = 0;
-  std::uint32_t cost : 31 = 0;  // triangles below it, at most kMaxCost
+  std::uint32_t cost : 31 = 0;  // triangles below, at most kMaxCost
   std::uint32_t is_leaf : 1 = 0;
 
   static constexpr std::uint32_t kMaxCost = 0x7fffffff;
@@ -31,11 +31,11 @@ enum class HierarchyKind : std::uint8_t { kKdTree, kBvh };
 
 struct Hierarchy {
   HierarchyKind kind = HierarchyKind::kBvh;
-  std::vector<HierarchyNode> nodes{};  // [0] is the root; empty for a scene without objects
+  std::vector<HierarchyNode> nodes{};  // [0] is the root; empty if there are no objects
   std::vector<ObjectId>
-      objects{};  // of the leaves, leaf after leaf; a kd-tree may name an object several times
-  std::uint32_t object_count = 0;  // different objects
-  std::uint32_t depth = 0;         // levels
+      objects{};  // objects of the leaves, leaf after leaf; a kd-tree may list an object several times
+  std::uint32_t object_count = 0;  // number of distinct objects
+  std::uint32_t depth = 0;         // number of levels
 
   NodeIndex left(NodeIndex n) const { return NodeIndex(n.value + 1); }
   NodeIndex right(NodeIndex n) const { return NodeIndex(end(left(n))); }
@@ -44,24 +44,24 @@ struct Hierarchy {
     const HierarchyNode& node = nodes[n.value];
     return node.leaf() ? n.value + 1 : node.link;
   }
-  // Entries of `objects` that are named below n: one contiguous range, not empty. A leaf's end is where the
-  // next leaf begins, so this looks at the few inner nodes between them.
+  // The entries of `objects` below n: one contiguous range, never empty. A leaf ends where the next leaf
+  // begins, so this visits the few inner nodes between them.
   std::span<const ObjectId> objectsBelow(NodeIndex n) const;
   std::uint32_t duplicates() const { return static_cast<std::uint32_t>(objects.size()) - object_count; }
 };
 
 struct HierarchySettings {
   HierarchyKind kind = HierarchyKind::kBvh;
-  std::uint32_t max_leaf_objects = 2;  // split until so few are left ...
-  std::uint32_t max_depth = 0;  // ... or so many levels are reached; 0: chosen from the number of objects
-  double median_window = 0.25;  // kd-tree: split planes are looked for within this fraction of the extent
-                                // from the spatial median
+  std::uint32_t max_leaf_objects = 2;  // split until a node has at most this many ...
+  std::uint32_t max_depth = 0;  // ... or the tree this many levels; 0: chosen from the number of objects
+  // kd-tree: split planes are searched within this fraction of the extent around the spatial median.
+  double median_window = 0.25;
 };
 
-// Builds either kind. Objects with an empty or non-finite box lie in leaves with an infinite box, which no
-// test calls hidden or outside. object_cost: triangles of each object, as many as boxes, or empty for 1 each.
-// The kd-tree: Bittner et al. 1998, section 2.2; it stops also where a split would only copy objects. The
-// bounding-volume hierarchy: binned surface-area heuristic (Wald 2007), each object in one leaf.
+// Builds either kind. Objects with an empty or non-finite box are in leaves with an infinite box, which no
+// test calls hidden or outside. object_cost: triangles of each object, one per box, or empty for 1 each.
+// kd-tree: Bittner et al. 1998, section 2.2; it also stops where a split would only duplicate objects.
+// Bounding-volume hierarchy: binned surface-area heuristic (Wald 2007), with each object in one leaf.
 Hierarchy buildHierarchy(std::span<const Box> object_bounds, std::span<const std::uint32_t> object_cost,
                          const HierarchySettings& settings = {});
 

@@ -6,7 +6,7 @@
 
 namespace sightline {
 
-// Closed axis-aligned box, 24 bytes. The default one is empty (min > max) and grows by extend().
+// Closed axis-aligned box, 24 bytes. Default-constructed, it is empty (min > max) and grows by extend().
 struct Box {
   Vec3f min{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
             std::numeric_limits<float>::infinity()};
@@ -23,7 +23,7 @@ struct Box {
     max = sightline::max(max, b.max);
   }
   constexpr Vec3f extent() const { return max - min; }
-  // Finite and not empty: a box that a culling answer other than "visible" may be given for.
+  // True if the box is finite and not empty. Only such a box may be classified as other than visible.
   bool wellFormed() const { return isFinite(min) && isFinite(max) && !empty(); }
   friend constexpr bool operator==(const Box&, const Box&) = default;
 };

@@ -8,18 +8,17 @@
 
 namespace sightline {
 
-// The visible volume of a view: six planes with normals pointing inwards (left, right, bottom, top, near,
-// far).
+// The view frustum: six planes with normals pointing inwards (left, right, bottom, top, near, far).
 struct Frustum {
   std::array<Plane, 6> planes{};  // unit normals
 };
 
 enum class FrustumSide : std::uint8_t { kOutside, kIntersects, kInside };
 
-// Where a box lies; outside only when all of it is strictly outside one plane by more than the rounding of
-// the test (conservative; boxes near a corner of the frustum may be called intersecting though they are
-// outside). mask: bit i set: plane i must be tested; bits of planes that the box is inside of are cleared for
-// its children.
+// Classifies a box. It is outside only if it is strictly outside one plane by more than the rounding of the
+// test. This is conservative: boxes near a corner of the frustum may count as intersecting although they are
+// outside. mask: bit i is set if plane i must be tested. Bits of planes that the box is entirely inside of
+// are cleared, so that its children skip them.
 FrustumSide classify(const Frustum& frustum, const Box& box, std::uint8_t& mask);
 inline constexpr std::uint8_t kAllFrustumPlanes = 0x3f;
 

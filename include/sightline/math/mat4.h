@@ -6,8 +6,8 @@
 
 namespace sightline {
 
-// 4 x 4 matrix for column vectors, stored by columns: element(row, column) is m[4 * column + row].
-// Names are target-from-source: clip_from_world * point_world is in clip space.
+// 4 x 4 matrix for column vectors, column-major: element(row, column) is m[4 * column + row]. Names are
+// target-from-source: clip_from_world * point_world is in clip space.
 struct Mat4 {
   std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
@@ -31,7 +31,7 @@ constexpr Mat4 operator*(const Mat4& a, const Mat4& b) {
   return r;
 }
 
-// Of an affine matrix (last row 0 0 0 1).
+// m: affine (last row 0 0 0 1).
 constexpr Vec3d transformPoint(const Mat4& m, const Vec3d& p) {
   return {m(0, 0) * p.x + m(0, 1) * p.y + m(0, 2) * p.z + m(0, 3),
           m(1, 0) * p.x + m(1, 1) * p.y + m(1, 2) * p.z + m(1, 3),
@@ -41,7 +41,8 @@ constexpr Vec3d transformDirection(const Mat4& m, const Vec3d& d) {
   return {m(0, 0) * d.x + m(0, 1) * d.y + m(0, 2) * d.z, m(1, 0) * d.x + m(1, 1) * d.y + m(1, 2) * d.z,
           m(2, 0) * d.x + m(2, 1) * d.y + m(2, 2) * d.z};
 }
-// Of the upper left 3 x 3; negative: the matrix mirrors and turns triangles inside out.
+// Determinant of the upper left 3 x 3 matrix; if negative, the matrix mirrors and reverses the winding of
+// triangles.
 constexpr double determinant3(const Mat4& m) {
   return dot(Vec3d(m(0, 0), m(1, 0), m(2, 0)),
              cross(Vec3d(m(0, 1), m(1, 1), m(2, 1)), Vec3d(m(0, 2), m(1, 2), m(2, 2))));

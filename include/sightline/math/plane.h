@@ -4,12 +4,13 @@
 
 namespace sightline {
 
-// The plane dot(normal, p) + offset = 0. The normal need not be of unit length unless a user says so.
+// The plane dot(normal, p) + offset = 0. The normal need not have unit length unless a user of the plane says
+// so.
 struct Plane {
   Vec3d normal{};
   double offset = 0.0;
 
-  // Signed distance times the normal's length: positive in front, where the normal points.
+  // Signed distance times the normal's length; positive on the side to which the normal points.
   constexpr double evaluate(const Vec3d& point) const { return dot(normal, point) + offset; }
   constexpr Plane flipped() const { return {-normal, -offset}; }
 };

@@ -5,7 +5,7 @@
 
 namespace sightline {
 
-// Three numbers. Whether they are a point or a direction is said by the name of the variable.
+// Three coordinates. The variable's name says whether they are a point or a direction.
 template <typename T>
 struct Vec3 {
   T x{}, y{}, z{};
@@ -45,7 +45,7 @@ template <typename T>
 T length(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
 }
-// Unit vector; zero stays zero.
+// Unit vector; the zero vector stays zero.
 template <typename T>
 Vec3<T> normalized(const Vec3<T>& a) {
   const T l = length(a);

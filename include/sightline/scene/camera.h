@@ -11,58 +11,59 @@
 
 namespace sightline {
 
-// One viewpoint with its projection, scene space. The camera looks along forward. See validate().
+// A viewpoint with its projection, in scene space. The camera looks along `forward`. See validate().
 struct View {
   Vec3d eye{};
   Vec3d right{}, up{}, forward{};  // orthonormal, right-handed: forward = up x right
   bool orthographic = false;
   double tan_half_fovy = 0.5;  // perspective: tangent of half the vertical angle of view
-  double ortho_height = 10.0;  // orthographic: metres from the lower to the upper border
+  // Orthographic: height of the view in metres, from the lower to the upper border.
+  double ortho_height = 10.0;
   double aspect = 16.0 / 9.0;  // width / height
   double near = 0.1;           // metres along forward, >= 0
   double far = 1000.0;         // metres along forward, > near; may be infinite
 };
 
-// The view as the library takes it: axes of other lengths become unit vectors, and a left-handed basis is
-// mirrored (right becomes -right), which leaves what is visible as it is. An error names the member that
-// makes no view and what it must be: something is not finite, an axis is zero, axes are not perpendicular
-// (beyond what single precision does to them), the angle of view, height or aspect is not positive, near is
-// negative, or far is not beyond near. All that takes a view does this by itself, and with a view that is in
-// error calls everything visible; so this is for those who want to know.
+// Returns the view as the library uses it: axes of other lengths are normalised, and a left-handed basis is
+// mirrored (right becomes -right), which does not change what is visible. The error names the invalid member
+// and what it must be: a value is not finite, an axis is zero, axes are not perpendicular (beyond
+// single-precision rounding), the angle of view, height or aspect is not positive, near is negative, or far
+// is not beyond near. All functions that take a view validate it themselves and treat everything as visible
+// if it is invalid; call this to learn the reason.
 Result<View> validate(const View& view);
 
-// right and up from any forward and up hint, also when they are parallel.
+// Sets right and up from any forward and up hint, even if they are parallel.
 void setOrientation(View& view, const Vec3d& forward, const Vec3d& up_hint);
 
 // OpenGL's clip space: x, y, z in [-w, w], z = -w on the near plane. The view must be one that validate()
-// accepts. With far infinite, points at infinity have z = w; an orthographic depth buffer then, or any with
-// near = 0, tells no depths apart.
+// accepts. If far is infinite, points at infinity have z = w. A depth buffer then cannot distinguish depths
+// in an orthographic view; nor can it in any view with near = 0.
 Mat4 clipFromScene(const View& view);
 
-// The six planes of the view's visible volume, scene space. Of a view that validate() refuses: planes that
-// hold all of space.
+// The six frustum planes of the view, in scene space. For a view that validate() rejects: planes that contain
+// all of space.
 Frustum frustumOf(const View& view);
 
-// How far from the eye the farthest point lies that the near plane of a perspective view clips away: a corner
-// of it. Metres, rounded up. Of an orthographic view: infinite, since its rays start anywhere.
+// Maximum distance in metres from the eye to a point that the near plane of a perspective view clips (a
+// corner of the near plane), rounded up. Infinite for an orthographic view, whose rays start anywhere.
 double nearDistance(const View& view);
 
 struct CameraFrame {
   Vec3d eye{};      // world space
   Vec3d forward{};  // any length > 0
-  Vec3d up{};       // hint, any length
+  Vec3d up{};       // approximate up direction, any length > 0
 };
 
-// A camera with one viewpoint a frame; the JSON form "path". World space.
+// A camera with one viewpoint per frame, in world space; stored in JSON as a camera path.
 struct CameraPath {
   std::string name{};
-  double fovy_deg = 60.0;                    // perspective, when ortho_height is 0
+  double fovy_deg = 60.0;                    // perspective only; used if ortho_height is 0
   double ortho_height = 0.0;                 // metres; > 0 makes the camera orthographic
   std::uint32_t width = 1280, height = 720;  // pixels
   double near = 0.1, far = 2000.0;           // metres
   std::vector<CameraFrame> frames{};
 
-  // The view of one frame in the space of a scene with this origin.
+  // The view of one frame, in the scene space of a scene with this origin.
   View view(std::size_t frame, const Vec3d& scene_origin) const;
 };
 

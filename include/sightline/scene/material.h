@@ -7,16 +7,16 @@
 namespace sightline {
 
 enum class Opacity : std::uint8_t {
-  kOpaque,       // hides what is behind it
-  kBlended,      // glass, smoke: drawn, never hides
-  kAlphaTested,  // foliage, fences: drawn with holes, never hides
+  kOpaque,       // hides whatever is behind it
+  kBlended,      // glass, smoke: drawn, never hides anything
+  kAlphaTested,  // foliage, fences: drawn with holes, never hides anything
 };
 
 struct Material {
   std::string name{};
   Opacity opacity = Opacity::kOpaque;
-  bool double_sided = false;                                // backs are drawn too, and hide
-  std::array<float, 4> base_color{0.8f, 0.8f, 0.8f, 1.0f};  // linear RGBA, for pictures only
+  bool double_sided = false;                                // back faces are drawn and hide too
+  std::array<float, 4> base_color{0.8f, 0.8f, 0.8f, 1.0f};  // linear RGBA; used only for pictures
 
   bool opaque() const { return opacity == Opacity::kOpaque; }
 };

@@ -1,10 +1,10 @@
 #pragma once
 
-// A scene as every part of Sightline sees it: world-space triangles in objects with materials.
+// A scene as all parts of Sightline use it: triangles in objects with materials.
 //
-// Positions are single precision in "scene space": world space moved by Scene::origin (double precision), so
-// that a city in national grid coordinates keeps its millimetres. These stored floats are the truth that is
-// drawn, that occludes, and that rays are cast against.
+// Positions are single precision in scene space: world space moved by Scene::origin (double precision), so
+// that a city in national grid coordinates keeps its millimetres. These stored floats are exact by
+// definition: they are drawn, they occlude, and rays are cast against them.
 
 #include <cstdint>
 #include <span>
@@ -18,26 +18,26 @@
 
 namespace sightline {
 
-// What the author of a scene says about an object's use as an occluder.
+// The scene author's choice about an object's use as an occluder.
 enum class OccluderMark : std::uint8_t {
-  kAutomatic,  // nothing: Sightline judges by material and size
-  kOccluder,   // use it, however small (if its material is opaque)
+  kAutomatic,  // no choice: Sightline decides by material and size
+  kOccluder,   // use it, however small, if its material is opaque
   kNever,      // never use it
 };
 
-// One drawable unit, the occludee: one (node, primitive) pair of the scene file.
+// One drawable unit, the occludee: a (node, primitive) pair of the scene file.
 struct Object {
   std::uint32_t first_index = 0;  // into Scene::indices
-  std::uint32_t index_count = 0;  // three a triangle
+  std::uint32_t index_count = 0;  // three per triangle
   MaterialId material{};
   OccluderMark mark = OccluderMark::kAutomatic;
-  Box bounds{};  // of its vertices, exact, scene space
+  Box bounds{};  // exact bounds of its vertices, scene space
 
   std::uint32_t triangleCount() const { return index_count / 3; }
 };
 
-// Views of the caller's own memory, all in scene space; what the library's functions take.
-// Triangles are counter-clockwise seen from their front.
+// Views of the caller's own memory, all in scene space: the input of the library's functions. Triangles are
+// counter-clockwise as seen from their front.
 struct SceneView {
   std::span<const Vec3f> positions{};
   std::span<const std::uint32_t> indices{};  // into positions
@@ -50,24 +50,24 @@ struct SceneView {
   const Material& materialOf(const Object& object) const { return materials[object.material.value]; }
 };
 
-// A scene that owns its memory. Identical positions are stored once (see weldPositions).
+// A scene that owns its memory. Equal positions are stored once (see weldPositions).
 struct Scene {
   std::vector<Vec3f> positions{};
   std::vector<std::uint32_t> indices{};
   std::vector<Object> objects{};
   std::vector<Material> materials{};
-  std::vector<std::string> object_names{};  // one an object
-  std::vector<CameraPath> paths{};          // of the file's cameras or of the procedural scene; world space
-  Vec3d origin{};                           // world position of scene space's origin
+  std::vector<std::string> object_names{};  // one per object
+  std::vector<CameraPath> paths{};          // of the file's cameras or of the procedural scene, world space
+  Vec3d origin{};                           // position of the origin of scene space, world space
 
   SceneView view() const { return {positions, indices, objects, materials}; }
   std::uint64_t triangleCount() const { return indices.size() / 3; }
 };
 
-// Bounds of all objects, scene space; empty for a scene without triangles.
+// Bounds of all objects, in scene space; empty for a scene without triangles.
 Box sceneBounds(const SceneView& scene);
 
-// Stores positions that are equal (bit for bit, -0 taken as 0) once and renumbers the indices; drops unused
+// Stores positions that are bitwise equal (with -0 as 0) once and renumbers the indices. Removes unused
 // positions.
 void weldPositions(Scene& scene);
 

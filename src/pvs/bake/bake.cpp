@@ -29,7 +29,7 @@ struct Bake::Data {
 
 namespace {
 
-// Of the method: increase it whenever the same input would give other cells.
+// Version of the bake method; increase it whenever the same input would give other cells.
 constexpr std::uint32_t kVersion = 2;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 

@@ -42,7 +42,7 @@ BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
 void write(const BakedCell& cell, base::ByteWriter& bytes);
-// Nothing: the bytes are not of a cell of this level within a tree of so many objects.
+// Returns nothing if the bytes are not a cell of this level in a tree of object_count objects.
 std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, std::uint32_t object_count);
 
 }  // namespace sightline::pvs
