@@ -1,6 +1,6 @@
-// The city of plain boxes: blocks of buildings round a courtyard on a grid of streets, small boxes strewn
-// about, and the walks. Every building and every small box is an object and fills its bounds, so that what a
-// culler keeps too much is due to the culler alone.
+// The city of plain boxes: blocks of buildings around a courtyard on a grid of streets, scattered small
+// boxes, and the camera paths. Every building and every small box is an object and fills its bounds, so the
+// culler alone is responsible for superfluous objects.
 
 #include <algorithm>
 #include <array>
@@ -15,15 +15,15 @@ namespace sightline {
 namespace scenes {
 namespace {
 
-// Metres. A block's origin is its south-west corner; the streets south and west of it are its own.
+// Metres. A block's origin is its south-west corner; the streets south and west of it belong to it.
 constexpr double kBlockX = 66.0, kBlockY = 56.0;
 constexpr double kStreet = 16.0;  // from house front to house front
 constexpr double kPavement = 3.0;
-constexpr double kLaneHalf = 1.0;  // in the middle of a street, where nothing stands
+constexpr double kLaneHalf = 1.0;  // in the middle of a street, kept free
 constexpr double kPitchX = kBlockX + kStreet, kPitchY = kBlockY + kStreet;
 constexpr double kDeepest = 15.0, kShallowest = 11.0;  // buildings, from the street to the courtyard
 constexpr double kEyeHeight = 1.7;
-constexpr std::uint32_t kBuildings = 8;  // of a block
+constexpr std::uint32_t kBuildings = 8;  // per block
 
 enum Palette : std::uint32_t { kGround, kWalls, kMoreWalls, kSmallBoxes };
 
@@ -44,14 +44,14 @@ struct BoxGrid {
     rows = (blocks + columns - 1) / columns;
   }
   Point2 corner(std::uint32_t block) const { return {block % columns * kPitchX, block / columns * kPitchY}; }
-  // The middle of the crossing south-west of a block; parts of a block lie between two of them.
+  // The centre of the crossing south-west of a block. Fractional arguments lie between crossings.
   static Point2 crossing(double column, double row) {
     return {column * kPitchX - kStreet / 2, row * kPitchY - kStreet / 2};
   }
   double far() const { return length(Point2{columns * kPitchX, rows * kPitchY}) + 300.0; }
 };
 
-// The footprints of a row of buildings that fill [0, kBlockX], most of them wall to wall. Depths are from 0.
+// The footprints of a row of buildings that fill [0, kBlockX], most of them wall to wall. Depths start at 0.
 std::array<Rectangle, 3> planRow(Random& random) {
   std::array<double, 3> width{};
   double sum = 0.0;
@@ -70,8 +70,8 @@ std::array<Rectangle, 3> planRow(Random& random) {
   return row;
 }
 
-// Footprints of a block's buildings: a row in the south, one in the north, and one building each in the west
-// and in the east between them.
+// Footprints of a block's buildings: a row in the south, a row in the north, and between them one building
+// each in the west and in the east.
 std::array<Rectangle, kBuildings> planBlock(Random& random) {
   std::array<Rectangle, kBuildings> plan;
   const std::array<Rectangle, 3> south = planRow(random), north = planRow(random);
@@ -90,8 +90,8 @@ std::array<Rectangle, kBuildings> planBlock(Random& random) {
   return plan;
 }
 
-// Where the small boxes of a block may stand: on its pavements, on both lanes of its two streets, in its
-// courtyard.
+// The area in which a small box of a block may stand: on its pavements, on both lanes of its two streets, or
+// in its courtyard.
 Rectangle placeForSmallBox(Random& random) {
   constexpr double kKerb = -kPavement, kFarKerb = kPavement - kStreet;
   constexpr double kLane = -kStreet / 2 + kLaneHalf, kFarLane = -kStreet / 2 - kLaneHalf;
@@ -124,7 +124,7 @@ void addSmallBox(MeshBuilder& mesh, std::uint32_t number, Random& random) {
   mesh.box(low, low + size);
 }
 
-// Numbers below the first `block` of all `blocks` when `count` things are spread evenly.
+// Number of items in the blocks before `block` if `count` items are spread evenly over `blocks` blocks.
 std::uint32_t before(std::uint32_t block, std::uint32_t blocks, std::uint32_t count) {
   return static_cast<std::uint32_t>(std::uint64_t{count} * block / blocks);
 }
@@ -164,7 +164,7 @@ void addGround(MeshBuilder& mesh, const BoxGrid& grid) {
   mesh.quad({-kMargin, -kMargin, 0}, {x, -kMargin, 0}, {x, y, 0}, {-kMargin, y, 0});
 }
 
-// Two corners in the middle of the city.
+// A route around two corners in the centre of the city.
 CameraPath smoothWalk(const BoxGrid& grid) {
   const double column = grid.columns / 2, row = grid.rows / 2;
   std::vector<Vec3d> route;
@@ -177,7 +177,7 @@ CameraPath smoothWalk(const BoxGrid& grid) {
   return walkAlong(roundedRoute(route, 5.0), options);
 }
 
-// Five by four places all over the city, looking east, north, west and south in turn, a little to one side.
+// Five by four places all over the city, looking east, north, west and south in turn, slightly to one side.
 CameraPath views(const BoxGrid& grid, std::uint32_t seed) {
   constexpr std::uint32_t kAcross = 5, kUp = 4;
   CameraPath path;

@@ -1,4 +1,4 @@
-// The building: structure, stairs, furnished rooms, plants, and the walk.
+// The building: structure, stairs, furnished rooms, plants, and the camera path.
 
 #include "scenes/building_parts.h"
 #include "scenes/plant.h"
@@ -8,13 +8,13 @@ namespace sightline {
 namespace scenes {
 namespace {
 
-// Where a plant may stand: x and y in the placement.
+// A rectangle in which a plant may stand, in x and y of the placement.
 struct PlantSpot {
   Placement placement;
   Rectangle area;
 };
 
-// Along both sides of a corridor, beside the doors.
+// Adds spots along both sides of a corridor, beside the doors.
 void addCorridorSpots(const BuildingPlan& plan, std::uint32_t floor, std::uint32_t row,
                       std::vector<PlantSpot>& spots) {
   constexpr double kFromWall = kHalfWall + 0.3, kFromDoor = 1.1, kDeep = 0.05;
@@ -32,7 +32,7 @@ void addCorridorSpots(const BuildingPlan& plan, std::uint32_t floor, std::uint32
   }
 }
 
-// Furnishes the floors. Rooms count three times, so that most plants stand in them.
+// Furnishes the floors. Rooms count three times, so that most plants are in rooms.
 std::vector<PlantSpot> addRooms(MeshBuilder& mesh, const BuildingPlan& plan, std::uint32_t seed) {
   std::vector<PlantSpot> spots;
   for (std::uint32_t floor = 0; floor < plan.floors; ++floor) {

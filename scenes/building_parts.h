@@ -1,9 +1,9 @@
 #pragma once
 
-// The plan of the building, shared by the files that construct, furnish and walk it.
+// The plan of the building, shared by the files that construct it, furnish it and lead the camera through it.
 //
-// A floor: four rows of rooms along two corridors, joined by a hall across; one bay of the first row is the
-// stairwell. All structural dimensions are multiples of 1/16 m, so that walls, pillars and slabs meet
+// A floor has four rows of rooms along two corridors, joined by a hall across them; one bay of the first row
+// is the stairwell. All structural dimensions are multiples of 1/16 m, so that walls, pillars and slabs join
 // exactly.
 
 #include <array>
@@ -65,7 +65,7 @@ enum class SpaceKind : std::uint8_t { kRoom, kCorridor, kStairs };
 
 struct BuildingPlan {
   std::uint32_t floors = 1;
-  std::array<double, kBays + 1> xs{};  // middles of the walls between bays
+  std::array<double, kBays + 1> xs{};  // centre lines of the walls between bays
   std::array<double, kRows + 1> ys{};  // ... and between rows
 
   Rectangle cell(std::uint32_t bay, std::uint32_t row) const {
@@ -78,18 +78,18 @@ inline bool isRoom(std::uint32_t bay, std::uint32_t row) {
   return spaceAt(bay, row) == SpaceKind::kRoom;
 }
 
-// A room seen from its door: x along the door's wall, y into the room, z = 0 on the floor.
+// A room in coordinates of its door: x along the door's wall, y into the room, z = 0 on the floor.
 struct Room {
   std::uint32_t floor = 0, bay = 0, row = 0;
   Placement placement;
-  double width = 0.0, depth = 0.0;  // between the walls' faces
-  double door = 0.0;                // x of the door's middle
-  bool north = false;               // of its corridor
+  double width = 0.0, depth = 0.0;  // between the faces of the walls
+  double door = 0.0;                // x of the door's centre
+  bool north = false;               // the room is north of its corridor
   bool has_window = false;          // in the wall opposite the door
-  bool on_walk = false;             // the walk enters it
+  bool on_walk = false;             // the camera path enters the room
   std::string name;
 
-  // The place that the walk may use when it comes in.
+  // x of the place from which the camera path may go round the room.
   double loopStart() const { return 1.0; }
   double loopReach() const { return 0.7; }
 };
@@ -97,7 +97,7 @@ Room roomAt(const BuildingPlan& plan, std::uint32_t floor, std::uint32_t bay, st
 // x of a room's door in the plan.
 double doorOf(const BuildingPlan& plan, std::uint32_t bay, std::uint32_t row);
 
-// A room that the walk visits, in this order on each floor.
+// A room that the camera path visits, in this order on each floor.
 struct Visit {
   std::uint32_t floor, bay, row;
 };
@@ -105,7 +105,7 @@ const std::vector<Visit>& visits();
 
 void addStructure(MeshBuilder& mesh, const BuildingPlan& plan, Random random);
 void addStairs(MeshBuilder& mesh, const BuildingPlan& plan);
-// Furnishes the room and returns where a plant may stand on its floor (possibly an empty rectangle).
+// Furnishes the room. Returns the rectangle in which a plant may stand on its floor, possibly empty.
 Rectangle furnish(MeshBuilder& mesh, const Room& room, Random random);
 CameraPath buildingWalk(const BuildingPlan& plan);
 

@@ -28,7 +28,7 @@ SpaceKind spaceAt(std::uint32_t bay, std::uint32_t row) {
 }
 
 double doorOf(const BuildingPlan& plan, std::uint32_t bay, std::uint32_t row) {
-  // Neighbours' doors do not face each other: shifted by the row.
+  // Doors are shifted by the row, so that those of neighbours do not face each other.
   const double middle = (plan.xs[bay] + plan.xs[bay + 1]) * 0.5;
   return std::floor(middle * 8.0) / 8.0 + ((bay + row) % 2 ? 0.25 : -0.25);
 }

@@ -1,4 +1,4 @@
-// Which furniture stands where in a room: along the three walls that have no door, and in the middle of some.
+// Places the furniture of a room: along the three walls without a door, and in some rooms in the middle.
 
 #include "scenes/building_parts.h"
 #include "scenes/furniture.h"
@@ -15,10 +15,10 @@ struct Arrangement {
   void add(Piece piece, const Placement& at) {
     addPiece(mesh, piece, at, random, room.name + " " + std::to_string(count++));
   }
-  // Along the walls on the left and on the right of the door, y metres into the room.
+  // Places a piece along the wall on the left or right of the door, y metres into the room.
   void left(Piece piece, double y) { add(piece, room.placement.moved({0, y, 0}).turned(-0.25)); }
   void right(Piece piece, double y) { add(piece, room.placement.moved({room.width, y, 0}).turned(0.25)); }
-  // Along the wall opposite the door, at this part of its length.
+  // Places a piece along the wall opposite the door, at this fraction of the wall's length.
   void back(Piece piece, double part) {
     add(piece, room.placement.moved({room.width * part, room.depth, 0}).turned(0.5));
   }

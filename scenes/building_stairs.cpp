@@ -1,4 +1,4 @@
-// The stairs: two flights and a landing between them in each storey but the last.
+// The stairs: two flights with a landing between them in each storey except the last.
 
 #include "scenes/building_parts.h"
 #include "scenes/stairs.h"
@@ -6,12 +6,12 @@
 namespace sightline::scenes {
 namespace {
 
-constexpr std::uint32_t kRisers = 10;  // of one flight
+constexpr std::uint32_t kRisers = 10;  // per flight
 constexpr double kRise = kStorey / (2 * kRisers), kTread = 0.3;
 constexpr double kRun = kTread * (kRisers - 1);
 constexpr double kWidth = 2.0;
 
-// origin: at the foot; the flight rises along the placement's x, its width is along z.
+// The flight starts at the placement's origin and rises along its x axis; its width is along z.
 void addFlight(MeshBuilder& mesh, const Placement& at, double rail_z, const std::string& name) {
   mesh.place(at);
   mesh.startObject(name, id(BuildingMaterial::kStairs));

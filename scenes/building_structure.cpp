@@ -20,7 +20,7 @@ struct Context {
   std::uint32_t floor;
 };
 
-// A wall between two pillars, its outside (for outer walls) on the right of a -> b.
+// A wall between two pillars; the outside of an outer wall is on the right of a -> b.
 struct Wall {
   Point2 a, b;
   std::string name;
@@ -42,7 +42,7 @@ void addWall(const Context& at, const Wall& wall) {
   at.mesh.plate({{0.0, low}, {wall.length(), high}}, -kHalfWall, kHalfWall, openings);
 }
 
-// Frames and panes in the openings of an outer wall.
+// Adds frames and panes in the openings of an outer wall.
 void addWindows(const Context& at, const Wall& wall) {
   at.mesh.place(Placement{}.onWall(wall.a, wall.b, floorHeight(at.floor)));
   for (std::size_t i = 0; i < wall.openings.size(); ++i) {
@@ -67,7 +67,7 @@ void cutWindows(Wall& wall) {
   }
 }
 
-// Jambs and head, and a leaf that stands more or less open into the room.
+// Adds jambs, head, and a leaf that is open into the room by open_turns.
 void addDoor(const Context& at, Point2 middle, bool room_is_north, double open_turns,
              const std::string& name) {
   constexpr double kJamb = 0.04, kDepth = kHalfWall + 0.02, kHalf = kDoorWidth * 0.5;
@@ -86,7 +86,7 @@ void addDoor(const Context& at, Point2 middle, bool room_is_north, double open_t
   at.mesh.box({width - 0.12, -0.06, 1.0}, {width - 0.04, 0.06, 1.04});
 }
 
-// How far a door stands open: shut, half open or wide open.
+// The angle of a door: shut, half open or wide open.
 double doorOpening(Random& random, bool on_walk) {
   const double kind = random.uniform(), part = random.uniform();
   if (on_walk || kind > 0.6) {
@@ -104,7 +104,7 @@ Wall newWall(const Context& at, Point2 a, Point2 b, const std::string& what) {
   return wall;
 }
 
-// The wall between a room or the stairwell and its corridor.
+// Adds the wall between a room or the stairwell and its corridor.
 void addCorridorWall(const Context& at, std::uint32_t bay, std::uint32_t row, const std::string& what) {
   const Room room = roomAt(at.plan, at.floor, bay, row);
   const double y = room.north ? at.plan.ys[row] : at.plan.ys[row + 1];
@@ -120,7 +120,7 @@ void addCorridorWall(const Context& at, std::uint32_t bay, std::uint32_t row, co
   addDoor(at, {door, y}, room.north, doorOpening(at.random, room.on_walk), room.name + " door");
 }
 
-// Walls along x, on the line between row - 1 and row.
+// Adds a wall along x, on the line between row - 1 and row.
 void addLongWall(const Context& at, std::uint32_t bay, std::uint32_t row) {
   const double y = at.plan.ys[row];
   const Point2 west{at.plan.xs[bay], y}, east{at.plan.xs[bay + 1], y};
@@ -144,7 +144,7 @@ void addLongWall(const Context& at, std::uint32_t bay, std::uint32_t row) {
   addWall(at, newWall(at, west, east, what));
 }
 
-// Walls along y, on the line between bay - 1 and bay.
+// Adds a wall along y, on the line between bay - 1 and bay.
 void addCrossWall(const Context& at, std::uint32_t bay, std::uint32_t row) {
   const Point2 south{at.plan.xs[bay], at.plan.ys[row]}, north{at.plan.xs[bay], at.plan.ys[row + 1]};
   const std::string what = "across " + std::to_string(row) + "-" + std::to_string(bay);
@@ -171,7 +171,7 @@ void addCrossWall(const Context& at, std::uint32_t bay, std::uint32_t row) {
   }
 }
 
-// Walls meet at every node of the plan, so that each has its pillar.
+// Walls join at every node of the plan, so each node has a pillar.
 void addPillar(const Context& at, std::uint32_t bay, std::uint32_t row) {
   const Point2 p{at.plan.xs[bay], at.plan.ys[row]};
   const bool outer = bay == 0 || bay == kBays || row == 0 || row == kRows;
@@ -181,14 +181,14 @@ void addPillar(const Context& at, std::uint32_t bay, std::uint32_t row) {
               {p.x + kHalfWall, p.y + kHalfWall, ceilingHeight(at.floor)});
 }
 
-// A cell's piece of the slab under `floor` (the roof when it is one above the last).
+// Adds a cell's piece of the slab under `floor`; one above the last floor, it is the roof.
 void addSlab(const Context& at, std::uint32_t bay, std::uint32_t row) {
   Rectangle area = at.plan.cell(bay, row);
   std::vector<Rectangle> openings;
   if (spaceAt(bay, row) == SpaceKind::kStairs && at.floor > 0 && at.floor < at.plan.floors) {
     openings.push_back({area.min + Point2{0.25, 0.25}, {area.max.x - 0.25, area.max.y - 0.925}});
   }
-  // Outer slabs reach to the outer walls' faces.
+  // Outer slabs extend to the outer walls' faces.
   area.min = area.min - Point2{bay == 0 ? kHalfWall : 0.0, row == 0 ? kHalfWall : 0.0};
   area.max = area.max + Point2{bay + 1 == kBays ? kHalfWall : 0.0, row + 1 == kRows ? kHalfWall : 0.0};
   const BuildingMaterial material = at.floor == at.plan.floors ? BuildingMaterial::kRoof

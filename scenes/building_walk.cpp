@@ -1,4 +1,4 @@
-// The walk through the building: along the corridors, into rooms and out again, up the stairs.
+// The camera path through the building: along the corridors, into rooms and out again, up the stairs.
 
 #include "scenes/building_parts.h"
 #include "scenes/walk.h"
@@ -13,7 +13,7 @@ class Route {
   explicit Route(const BuildingPlan& plan) : plan_(plan) {}
 
   void to(double x, double y) { corners_.push_back({x, y, z_ + kEyeHeight}); }
-  // Along the room's corridor to its door, once around in the room, and back into the corridor.
+  // Goes along the room's corridor to its door, once around in the room, and back into the corridor.
   void visit(const Visit& visit) {
     const Room room = roomAt(plan_, visit.floor, visit.bay, visit.row);
     const double x = doorOf(plan_, visit.bay, visit.row),

@@ -1,9 +1,9 @@
-// Aircraft in a valley: the flight, and the scene's assembly.
+// Aircraft in a valley: their flight, and the assembly of the scene.
 //
 // Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
 // Microsoft Research MSR-TR-97-11, 1997, section 12.2.
-// Differs from the paper in: the shapes, which it shows in one picture; numbers of polygons are about its
-// own.
+// Differs from the paper in: the shapes, which the paper shows in a single picture. Numbers of polygons are
+// about the same.
 
 #include <algorithm>
 #include <cmath>
@@ -22,27 +22,27 @@ namespace {
 
 constexpr std::uint32_t kAircraftCount = 6;
 constexpr double kHullGrowth = 0.005;
-constexpr double kFirstX = -190.0, kLastX = 290.0;  // of the leader
-constexpr double kHeight = 34.0;                    // above the valley's floor, metres
+constexpr double kFirstX = -190.0, kLastX = 290.0;  // x of the leader
+constexpr double kHeight = 34.0;                    // metres above the valley's floor
 constexpr double kSkyRadius = 2000.0;
 
 struct Flight {
   std::uint32_t frames = 250;
-  std::array<double, kAircraftCount> phases{};  // of swaying, in turns
+  std::array<double, kAircraftCount> phases{};  // phase of swaying, in turns
 
   double leaderX(double frame) const { return kFirstX + (kLastX - kFirstX) * frame / (frames - 1); }
   Mat4 worldFromAircraft(std::uint32_t i, double frame) const;
   Mat4 aircraftFromHinge(std::uint32_t i, double frame) const;
 };
 
-// From the valley's middle line `across` to the left.
+// The point `across` metres to the left of the valley's centre line.
 Vec3d besideMiddle(double x, double across, double height) {
   const ValleyPoint valley = valleyAt(x);
   const double stretch = std::sqrt(1.0 + valley.slope * valley.slope);
   return {x - across * valley.slope / stretch, valley.middle + across / stretch, height};
 }
 
-// Two columns of three, the right one a little behind.
+// Two columns of three aircraft, the right one slightly behind.
 Mat4 Flight::worldFromAircraft(std::uint32_t i, double frame) const {
   const std::uint32_t row = i / 2;
   const double behind = 22.0 * row + (i % 2 == 0 ? 0.0 : 8.0), aside = i % 2 == 0 ? 11.0 : -11.0;
@@ -52,7 +52,7 @@ Mat4 Flight::worldFromAircraft(std::uint32_t i, double frame) const {
   const ValleyPoint valley = valleyAt(x);
   const Vec3d forward = normalized(Vec3d(1.0, valley.slope, 0.0));
   const double stretch = 1.0 + valley.slope * valley.slope;
-  // It leans into curves.
+  // The aircraft banks in curves.
   const double lean = 60.0 * valley.bend / (stretch * std::sqrt(stretch));
   const Vec3d left(-forward.y, forward.x, 0.0), up = normalized(Vec3d(0, 0, 1) + left * lean);
   return rigid(worldFromPlan(forward), worldFromPlan(up), worldFromPlan(cross(forward, up)),
@@ -112,7 +112,7 @@ Scene meshOf(const SplitPiece& piece) {
   Scene mesh;
   for (const SplitTriangle& triangle : piece.triangles) {
     const Vec3f a(triangle.positions[0]), b(triangle.positions[1]), c(triangle.positions[2]);
-    // In single precision slivers may have become lines.
+    // Slivers may have collapsed to lines in single precision.
     if (a == b || b == c || c == a) {
       continue;
     }
@@ -150,7 +150,7 @@ void addTerrain(MovingScene& scene, const CanyonOptions& options) {
   }
 }
 
-// 480 triangles, seen from inside.
+// A sky of 480 triangles, seen from inside.
 void addSky(MovingScene& scene) {
   std::vector<Point2> profile{{0.0, -kSkyRadius}};
   for (int i = 1; i < 13; ++i) {
@@ -168,7 +168,7 @@ void addSky(MovingScene& scene) {
   addMovingPart(scene, std::move(part), mesh, Mat4{}, MaterialId{kSky});
 }
 
-// Behind the formation, a little above it.
+// The camera flies behind the formation, slightly above it.
 CameraPath cameraPath(const Flight& flight) {
   CameraPath path;
   path.name = "chase";

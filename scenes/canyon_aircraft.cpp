@@ -1,6 +1,6 @@
-// An aircraft of six parts. Numbers of polygons, and of those of its parts' hulls, are about the paper's.
-// Parts that belong together are a millimetre apart, so that what rounds off their positions does not reach
-// through the planes between them; their hulls are a little larger and overlap.
+// An aircraft of six parts. The numbers of polygons of the parts and of their hulls are about the paper's.
+// Adjacent parts are a millimetre apart, so that rounding of their positions does not reach across the planes
+// between them; their hulls are slightly larger and overlap.
 
 #include <array>
 #include <cmath>
@@ -19,8 +19,9 @@ constexpr double kBehindTail = -5.001;  // forward of the aircraft's origin
 constexpr double kHingeRadius = 0.12, kHingeX = -5.122, kHingeHeight = 1.75;
 constexpr double kBehindHinge = -0.121;  // in the rudder's space
 
-// A lathe's profile with `between` rings between any two of its points, a little nearer to the axis than the
-// straight line, so that they do not count in the hull. The bands at both ends stay whole if they are poles.
+// A lathe's profile with `between` additional rings between any two of its points. The rings are slightly
+// closer to the axis than the straight line, so that the hull does not include them. The end bands are not
+// divided if they are poles.
 std::vector<Point2> grooved(std::span<const Point2> profile, std::uint32_t between) {
   std::vector<Point2> fine{profile.front()};
   for (std::size_t i = 1; i < profile.size(); ++i) {
@@ -34,14 +35,15 @@ std::vector<Point2> grooved(std::span<const Point2> profile, std::uint32_t betwe
   return fine;
 }
 
-// A lathe's axis along x, at this height.
+// The placement of a lathe whose axis is along x, at this height.
 Placement alongX(double height) {
   return {{0.0, 0.0, height}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
 }
 
 using Section = std::vector<Vec3d>;
 
-// What lies between sections of equally many corners, each convex and anticlockwise seen from the far end.
+// Adds the solid between consecutive sections with equal numbers of corners, each convex and
+// counter-clockwise as seen from the far end.
 void addLoft(MeshBuilder& mesh, std::span<const Section> sections) {
   const std::size_t corners = sections.front().size();
   for (std::size_t s = 1; s < sections.size(); ++s) {
@@ -65,7 +67,7 @@ void buildBody(MeshBuilder& mesh) {
 }
 
 void buildEngine(MeshBuilder& mesh) {
-  // From the inside of the nozzle round its rim to the front.
+  // From the inside of the nozzle around its rim to the front.
   constexpr Point2 kInside[] = {{0.0, -3.8}, {0.3, -4.0}, {0.42, -4.6}};
   constexpr Point2 kOutside[] = {{0.55, -4.8}, {0.68, -4.0}, {0.7, -2.5},
                                  {0.62, -1.0}, {0.4, -0.6},  {0.0, -0.4}};
@@ -95,7 +97,7 @@ void buildWing(MeshBuilder& mesh) {
   addLoft(mesh, sections);
 }
 
-// A lens along x, symmetric about y = 0, at a height.
+// A lens-shaped section along x, symmetric about y = 0, at a height.
 Section lens(double rear, double front, double half_width, double height, std::uint32_t corners) {
   Section section;
   for (std::uint32_t k = 0; k < corners; ++k) {

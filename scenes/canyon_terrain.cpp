@@ -13,8 +13,8 @@ namespace sightline::scenes::canyon {
 namespace {
 
 constexpr std::uint32_t kQuads = 36;  // along each side
-constexpr std::uint32_t kCut = 6;     // along each side, of the triangle that a corner lacks
-constexpr double kFloorHalf = 35.0, kRimHalf = 95.0, kDepth = 110.0;  // metres, of the valley
+constexpr std::uint32_t kCut = 6;     // quads per side of the triangle cut off at a corner
+constexpr double kFloorHalf = 35.0, kRimHalf = 95.0, kDepth = 110.0;  // metres
 
 // 0 on the valley's floor, 1 beyond its rims.
 double rise(Point2 p) {
@@ -24,7 +24,7 @@ double rise(Point2 p) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-// How many quads' sides a grid point is from the nearest corner, along both sides together.
+// Distance of a grid point from the nearest corner: the number of quads along both sides together.
 std::uint32_t fromCorner(std::uint32_t column, std::uint32_t row) {
   return std::min(column, kQuads - column) + std::min(row, kQuads - row);
 }
@@ -48,7 +48,7 @@ struct GridPoint {
   std::uint32_t column, row;
 };
 
-// Nothing where a corner of the square is cut off.
+// Adds the triangle unless it is in a corner of the square that is cut off.
 void addTriangle(MeshBuilder& mesh, std::span<const Vec3d> points, GridPoint a, GridPoint b, GridPoint c) {
   const auto isKept = [](GridPoint p) { return fromCorner(p.column, p.row) >= kCut; };
   const auto at = [&](GridPoint p) { return points[p.row * (kQuads + 1) + p.column]; };
@@ -72,7 +72,7 @@ Scene terrainMesh(std::uint32_t seed) {
     for (std::uint32_t row = 0; row < kQuads; ++row) {
       for (std::uint32_t column = 0; column < kQuads; ++column) {
         const GridPoint a{column, row}, b{column + 1, row}, c{column + 1, row + 1}, d{column, row + 1};
-        // The diagonal runs along the cut of the nearest corner.
+        // The diagonal is parallel to the cut of the nearest corner.
         if ((column < kQuads / 2) == (row < kQuads / 2)) {
           addTriangle(mesh, points, a, b, d);
           addTriangle(mesh, points, b, c, d);

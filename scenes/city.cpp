@@ -1,4 +1,4 @@
-// The city: quarters on a near-square grid, their surroundings, and the walks.
+// The city: quarters on a near-square grid, their surroundings, and the camera paths.
 
 #include <cmath>
 
@@ -27,7 +27,7 @@ CityPlan planCity(const CityOptions& options) {
   return plan;
 }
 
-// Meadows around the city, so that its streets end at a horizon.
+// Adds meadows around the city, so that its streets end at a horizon.
 void addSurroundings(MeshBuilder& mesh, const CityPlan& plan) {
   constexpr double kWidth = 100.0;
   const Rectangle city{{0, 0}, {plan.columns * kQuarter, plan.rows * kQuarter}};

@@ -1,11 +1,11 @@
-// Which buildings stand on a block of the city.
+// Plans the buildings of a block of the city.
 
 #include "scenes/city_parts.h"
 
 namespace sightline::scenes {
 namespace {
 
-constexpr double kGroundStorey = 4.0;  // of passages and arcades
+constexpr double kGroundStorey = 4.0;  // height of passages and arcades, metres
 
 CityMaterial anyWall(Random& random) {
   static constexpr CityMaterial kWalls[] = {CityMaterial::kBrick,     CityMaterial::kStucco,
@@ -79,7 +79,7 @@ std::vector<CityBuilding> planRows(const Placement& block, Random& random) {
     }
     buildings.push_back(house);
   }
-  // Seen from its own street, to the north: placed half a turn around.
+  // Faces its own street, to the north, so it is placed with a half turn.
   CityBuilding slab = newBuilding(block.moved({kBlock, kBlock, 0}).turned(0.5), WindowStyle::kPlain, random);
   Mass shop = box({{0, 3}, {kBlock, 12}}, 0.0, 1, RoofShape::kNone);
   shop.storey_height = kGroundStorey;
@@ -125,7 +125,7 @@ CityBuilding planGarage(const Placement& middle, Random& random) {
   }
   const std::vector<Point2> outline = corners(kArea);
   for (std::uint32_t i = 0; i < 4; ++i) {
-    // The short walls stand between the long ones.
+    // The short walls are between the long ones.
     const double inset = i % 2 ? 0.5 : 0.0;
     const Point2 a = outline[i], b = outline[(i + 1) % 4], d = (b - a) / length(b - a);
     garage.arcades.push_back({a + d * inset, b - d * inset, kDeck, i % 2 ? 1u : 4u, kDecks, 0.9});
@@ -133,7 +133,7 @@ CityBuilding planGarage(const Placement& middle, Random& random) {
   return garage;
 }
 
-// Two buildings, the first a T-shaped house, turned by any angle.
+// Two buildings, the first of them T-shaped, turned by any angle.
 std::vector<CityBuilding> planTurned(const Placement& block, bool with_garage, Random& random) {
   const Placement middle = block.moved({kBlock / 2, kBlock / 2, 0}).turned(random.uniform());
   CityBuilding first = newBuilding(middle, WindowStyle::kSill, random);

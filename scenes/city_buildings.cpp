@@ -1,5 +1,5 @@
-// Buildings of the city: shells, roofs, arcades, and the details on their fronts. Details stand on the wall
-// and never cut it, so that a shell's walls stay as large as they are.
+// Buildings of the city: shells, roofs, arcades, and the details on their fronts. Details are added on top of
+// a wall and never cut it, so that the shell's walls stay large.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ struct Detail {
   std::string name;
 };
 
-// Where the windows of one storey of a front are: the middle of each along it.
+// The windows of one storey of a front, by their centres along it.
 struct WindowRow {
   double bay = 0.0;
   std::uint32_t count = 0;
@@ -61,7 +61,7 @@ void addWindowFrame(MeshBuilder& mesh, WindowStyle style, const WindowRow& row, 
   }
 }
 
-// Frames and sills: one object a storey, on short fronts one for all storeys.
+// Adds frames and sills, as one object per storey; on short fronts as one for all storeys.
 void addFrames(const Detail& detail, const Front& front, std::uint32_t storey) {
   const Mass& mass = detail.mass;
   const bool ribbon = detail.building.style == WindowStyle::kRibbon;
@@ -81,7 +81,7 @@ void addFrames(const Detail& detail, const Front& front, std::uint32_t storey) {
   }
 }
 
-// Panes: one object for the whole front of the mass.
+// Adds panes, as one object for the whole front of the mass.
 void addPanes(const Detail& detail, const Front& front) {
   const Mass& mass = detail.mass;
   const WindowStyle style = detail.building.style;
@@ -216,7 +216,7 @@ double windowCost(const CityBuilding& building) {
 }
 
 double fixedCost(const CityBuilding& building) {
-  constexpr double kBand = 22.0;  // frame, sill, pane
+  constexpr double kBand = 22.0;  // triangles per window: frame, sill, pane
   double cost = 0.0;
   for (const Mass& mass : building.masses) {
     const double bands = static_cast<double>(mass.fronts.size()) * mass.storeys;

@@ -1,5 +1,5 @@
-// What stands in the streets and squares: trees, lamps, benches, bins, hydrants, cars, traffic lights,
-// hedges, kiosks.
+// The furniture of streets and squares: trees, lamps, benches, bins, hydrants, cars, traffic lights, hedges,
+// kiosks.
 
 #include <array>
 
@@ -51,7 +51,7 @@ void addCar(MeshBuilder& mesh, const Placement& at, Random& random, const std::s
   static constexpr CityMaterial kPaints[] = {CityMaterial::kRed, CityMaterial::kBlue, CityMaterial::kWhite,
                                              CityMaterial::kDarkTrim};
   const double cabin = random.range(1.35, 1.6);
-  // Side view, drawn out across the car's width. The figure's x is the car's length.
+  // Side view, extruded across the car's width. x is along the car's length.
   const std::array<Point2, 10> profile{{{-2.1, 0.3},
                                         {2.1, 0.3},
                                         {2.15, 0.7},

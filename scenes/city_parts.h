@@ -1,6 +1,7 @@
 #pragma once
 
-// What a city's quarter is planned from, shared by the files that plan it, build it and walk through it.
+// The elements of a quarter of the city, shared by the files that plan it, build it and lead the camera
+// through it.
 
 #include <cstdint>
 #include <string>
@@ -12,8 +13,8 @@
 
 namespace sightline::scenes {
 
-// One copy is a square quarter. Streets run along its borders (half of each is the neighbour's), lanes cross
-// in its middle; the four blocks between them are raised by a kerb.
+// One copy of the city is a square quarter. Streets run along its borders (half of each belongs to the
+// neighbour), and lanes cross in its centre; the four blocks between them are raised by a kerb.
 inline constexpr double kQuarter = 96.0;    // metres, side of a quarter
 inline constexpr double kRoadHalf = 5.5;    // from the middle of a street to the kerb
 inline constexpr double kBlockStart = 9.0;  // from the middle of a street to the house fronts
@@ -63,7 +64,7 @@ inline MaterialId id(CityMaterial material) {
   return MaterialId{static_cast<std::uint32_t>(material)};
 }
 
-// A stretch of wall that has windows, outside on the right of a -> b.
+// A stretch of wall that has windows; its outside is on the right of a -> b.
 struct Front {
   Point2 a, b;
 };
@@ -71,9 +72,9 @@ struct Front {
 enum class RoofShape : std::uint8_t { kNone, kFlat, kGable, kHip };
 enum class WindowStyle : std::uint8_t { kPlain, kSill, kFramed, kRibbon };
 
-// An upright body of a building: one shell with storeys of windows on its fronts.
+// An upright part of a building: one shell with storeys of windows on its fronts.
 struct Mass {
-  std::vector<Point2> footprint;  // anticlockwise
+  std::vector<Point2> footprint;  // counter-clockwise
   double base = 0.0;              // metres above the pavement
   std::uint32_t storeys = 1;
   double storey_height = 3.1;
@@ -84,14 +85,13 @@ struct Mass {
   double top() const { return base + storeys * storey_height; }
 };
 
-// A wall with openings, standing by itself: in front of a recessed ground floor, or around the decks of a
-// garage.
+// A free-standing wall with openings, in front of a recessed ground floor or around the decks of a garage.
 struct Arcade {
   Point2 a, b;
-  double height = 4.0;         // of one row of openings
-  std::uint32_t openings = 1;  // in a row
+  double height = 4.0;         // metres, of one row of openings
+  std::uint32_t openings = 1;  // number per row
   std::uint32_t rows = 1;
-  double parapet = 0.0;  // metres from each row's foot to its openings
+  double parapet = 0.0;  // metres from the foot of each row to its openings
 };
 
 struct CityBuilding {
@@ -104,14 +104,14 @@ struct CityBuilding {
   bool clear_glass = false;  // blended panes instead of dark ones
 };
 
-// Every edge of the footprint that is not left out, as fronts.
+// Every edge of the footprint as a front, except those in without_edges.
 std::vector<Front> frontsOf(const std::vector<Point2>& footprint, std::uint32_t without_edges = 0);
 
-// Triangles that a building's windows cost for each metre of storey when a window takes one metre.
+// Number of triangles that a building's windows take per metre of storey, at one window per metre.
 double windowCost(const CityBuilding& building);
-// Triangles of its bands of windows and arcades, whatever the spacing.
+// Number of triangles of its bands of windows and arcades, which does not depend on the spacing.
 double fixedCost(const CityBuilding& building);
-// spacing: metres of front for one window.
+// spacing: metres of front per window.
 void addBuilding(MeshBuilder& mesh, const CityBuilding& building, double spacing, Random random,
                  const std::string& name);
 
@@ -126,18 +126,19 @@ enum class Furniture : std::uint8_t {
   kHedge,
   kKiosk
 };
-// At the placement's origin, on its ground; what has a front looks along -y.
+// Adds a piece of street furniture at the placement's origin, on its ground. Pieces with a front look along
+// -y.
 void addFurniture(MeshBuilder& mesh, Furniture what, const Placement& placement, Random& random,
                   const std::string& name);
 
-// The buildings of a block whose south-west corner is the placement's origin, by the block's kind.
+// The buildings of a block, by the kind of block. The placement's origin is the block's south-west corner.
 enum class BlockKind : std::uint8_t { kCourtyard, kRows, kTower, kTurned, kGarage, kSquare };
 std::vector<CityBuilding> planBlock(BlockKind kind, const Placement& block, Random& random);
 
-// What walks through the city need to know.
+// The places of a city that its camera paths need.
 struct CityPlan {
   std::uint32_t columns = 1, rows = 1;
-  Point2 courtyard;  // middle of one, near the middle of the city
+  Point2 courtyard;  // centre of a courtyard near the centre of the city
   double far = 2000.0;
 };
 std::vector<CameraPath> cityWalks(const CityPlan& plan);

@@ -6,7 +6,7 @@
 namespace sightline::scenes {
 namespace {
 
-// Something of the street that may stand here.
+// A place for a piece of street furniture.
 struct Slot {
   Furniture what;
   Placement at;
@@ -51,7 +51,7 @@ void addMarkings(MeshBuilder& mesh, const QuarterPlan& plan) {
   }
 }
 
-// A block's own ground cover and what stands on it.
+// Plans a block's own ground cover and the furniture on it.
 void planBlockSlots(BlockKind kind, const Placement& block, Random& random, std::vector<Slot>& slots) {
   const auto put = [&](Furniture what, double x, double y, double turns) {
     slots.push_back({what, block.moved({x, y, 0}).turned(turns)});
@@ -98,11 +98,12 @@ void addBlockGround(MeshBuilder& mesh, BlockKind kind, const Placement& block, c
   }
 }
 
-// The two street sides of each block: a row of slots on the pavement, cars at the kerb, lights at the corner.
+// Plans the two street sides of each block: a row of slots on the pavement, cars at the kerb, lights at the
+// corner.
 void planStreetSlots(const QuarterPlan& plan, Random& random, std::vector<Slot>& needed,
                      std::vector<Slot>& spare) {
   for (std::uint32_t side = 0; side < 8; ++side) {
-    // Each side seen with its street to the south: x along it, the street's middle at y = 0.
+    // Coordinates of a side with its street to the south: x along it, y = 0 on the street's centre line.
     const std::uint32_t quarter_turns = side / 2;
     const Placement at =
         plan.corner.moved({kQuarter / 2, kQuarter / 2, 0}).turned(0.25 * quarter_turns).moved({-48, -48, 0});
@@ -126,7 +127,7 @@ void planStreetSlots(const QuarterPlan& plan, Random& random, std::vector<Slot>&
     for (double x = 4.0; x < 34.0; x += 5.6) {
       put(spare, Furniture::kCar, start + x + random.range(-0.3, 0.3), kRoadHalf - 1.15, 0.5);
     }
-    // Along the lane, on the block's other pavement.
+    // Along the lane, on the opposite pavement of the block.
     put(spare, Furniture::kLamp, 0.5 * kQuarter + (side % 2 ? 3.3 : -3.3), kBlockStart + 8.0,
         side % 2 ? 0.75 : 0.25);
   }
@@ -139,7 +140,8 @@ void shuffle(std::vector<Slot>& slots, Random& random) {
 }
 
 void addSlots(MeshBuilder& mesh, const QuarterPlan& plan, Random& random, std::uint64_t start_count) {
-  constexpr std::uint32_t kLargest = 120;  // triangles of the largest piece: where filling up stops
+  // Triangles of the largest piece; filling up stops this close to the budget.
+  constexpr std::uint32_t kLargest = 120;
   std::vector<Slot> needed, spare;
   planStreetSlots(plan, random, needed, spare);
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -193,7 +195,7 @@ QuarterPlan planQuarter(std::uint32_t seed, std::uint32_t number, std::uint32_t 
 }
 
 void addQuarter(MeshBuilder& mesh, QuarterPlan plan) {
-  constexpr double kFrontTriangles = 4700.0;  // what a quarter spends on windows and arcades
+  constexpr double kFrontTriangles = 4700.0;  // triangles per quarter for windows and arcades
   const std::uint64_t start_count = mesh.triangleCount();
   addGround(mesh, plan);
   addMarkings(mesh, plan);

@@ -1,4 +1,4 @@
-// The walks of the city.
+// The camera paths of the city.
 
 #include "scenes/city_parts.h"
 #include "scenes/walk.h"
@@ -7,11 +7,11 @@ namespace sightline::scenes {
 namespace {
 
 constexpr double kEyeHeight = 1.7;
-constexpr double kBesideMiddle = 2.0;  // metres from a street's middle, clear of parked cars
+constexpr double kBesideMiddle = 2.0;  // metres from a street's centre line, clear of parked cars
 constexpr double kStreet = kQuarter - kBesideMiddle;
 constexpr double kLane = kQuarter / 2;
 
-// Corners given within the middle quarter.
+// Converts corners relative to the central quarter.
 std::vector<Vec3d> inMiddleQuarter(const CityPlan& plan, std::vector<Vec3d> corners) {
   const Vec3d origin((plan.columns - 1) / 2 * kQuarter, (plan.rows - 1) / 2 * kQuarter, 0.0);
   for (Vec3d& corner : corners) {
@@ -31,7 +31,7 @@ CameraPath smoothWalk(const CityPlan& plan) {
   return walkAlong(roundedRoute(route, 5.0), options);
 }
 
-// Around the middle of a closed court.
+// Around the centre of a closed court.
 CameraPath bestWalk(const CityPlan& plan) {
   const auto at = [&](double x, double y) {
     return Vec3d(plan.courtyard.x + x, plan.courtyard.y + y, kEyeHeight + kKerb);
@@ -48,7 +48,7 @@ CameraPath averageWalk(const CityPlan& plan) {
   return walkAlong(route, options);
 }
 
-// High above all roofs, from the south-west corner towards the middle.
+// High above all roofs, from the south-west corner towards the centre.
 CameraPath worstWalk(const CityPlan& plan) {
   constexpr double kHeight = 60.0;
   const Vec3d corner(0.0, 0.0, kHeight);

@@ -1,8 +1,8 @@
 #pragma once
 
 // Pieces of furniture. Each stands with its back to a wall: the placement's origin is on the floor at the
-// wall, in the piece's middle, x along the wall and y into the room. Most are at most 1.25 m wide and 0.75 m
-// deep.
+// wall, in the middle of the piece, with x along the wall and y into the room. Most are at most 1.25 m wide
+// and 0.75 m deep.
 
 #include <string>
 
@@ -13,7 +13,7 @@ namespace sightline::scenes {
 
 enum class Piece : std::uint8_t {
   kDesk,   // with a screen and drawers
-  kChair,  // 0.35 to 0.95 m from the wall: at a desk
+  kChair,  // stands 0.35 to 0.95 m from the wall, at a desk
   kShelf,  // with books
   kCupboard,
   kBed,  // 2 m wide, 0.9 m deep
@@ -22,7 +22,7 @@ enum class Piece : std::uint8_t {
   kBasin,  // with a mirror
   kToilet,
   kRadiator,
-  kRack,   // of a store, with boxes
+  kRack,   // a storage rack with boxes
   kTable,  // 1.8 m by 1 m around the origin, with six chairs
   kFloorLamp,
   kCeilingLight,  // hangs from z = 0

@@ -11,15 +11,15 @@ namespace sightline {
 namespace scenes {
 namespace {
 
-constexpr double kAbove = 0.004;  // metres between what stands and what it stands on: they do not touch
+constexpr double kAbove = 0.004;  // gap below each object, metres, so that nothing touches
 constexpr double kPaneThickness = 0.03;
 constexpr std::uint32_t kGroveRows = 4;
-constexpr double kGroveCell = 1.5;                      // metres a side; one thing in each
-constexpr double kGroveWest = 7.5, kGroveSouth = -2.6;  // its corner
+constexpr double kGroveCell = 1.5;                      // side of a cell, metres; one object per cell
+constexpr double kGroveWest = 7.5, kGroveSouth = -2.6;  // its south-west corner
 constexpr double kHallWest = -10.5, kHallDepth = 5.0;   // the back wall is at y = kHallDepth
 constexpr std::uint32_t kTints = 6;
 
-// By number in Scene::materials.
+// Indices into Scene::materials.
 enum Surface : std::uint32_t { kFloor, kWall, kColumn, kFilm, kFirstTint };
 
 std::vector<Material> materials() {
@@ -57,7 +57,7 @@ class Hall {
 
  private:
   std::uint32_t groveThings() const { return options_.panes + options_.bottles; }
-  // One cell in five is a column's.
+  // One cell in five has a column.
   std::uint32_t groveColumns() const {
     const std::uint32_t cells = groveThings() + groveThings() / 4 + 1;
     return (cells + kGroveRows - 1) / kGroveRows;
@@ -110,8 +110,8 @@ class Hall {
     mesh_.lathe(profile, 24);
   }
 
-  // Six bars along the sides of a hexagon that stands upright. Each is tilted, so that its end lies before
-  // the start of the next; none touches another.
+  // Six bars along the sides of an upright hexagon. Each is tilted, so that its end is in front of the start
+  // of the next; none touches another.
   void ring() {
     constexpr std::uint32_t kBars = 6;
     constexpr double kInner = 1.0, kHalfLength = 1.0, kHalfWidth = 0.19, kTilt = 0.16;
@@ -143,8 +143,8 @@ class Hall {
     mesh_.box({-0.15, -0.15, 0.0}, {0.15, 0.15, 0.8});
   }
 
-  // What stands before the far half of the long pane is farther away than its middle, and what stands behind
-  // the near half is nearer.
+  // Bottles in front of the far half of the long pane are farther away than the pane's centre, and those
+  // behind its near half are nearer.
   void slantwise() {
     const Placement foot = Placement{{3.8, 0.4, kAbove}}.turned(0.09);
     pane("long pane", kFirstTint + 2, foot, 6.4, 2.0);
@@ -161,7 +161,7 @@ class Hall {
     }
   }
 
-  // Before it a balustrade all along: many things behind it are nearer than its middle.
+  // A balustrade runs along the front; many objects behind it are nearer than its centre.
   void grove() {
     const double length = kGroveCell * groveColumns();
     pane("balustrade", kFirstTint + 5, {{kGroveWest + 0.5 * length, kGroveSouth - 0.3, kAbove}}, length, 1.1);
@@ -204,7 +204,7 @@ class Hall {
   Random random_;
 };
 
-// Past everything from west to east, looking ahead and to the side, now from farther away, now from above.
+// Goes past everything from west to east, looking ahead and to the side, at varying distance and height.
 CameraPath walkAlongHall(double east) {
   constexpr std::uint32_t kFrames = 240;
   CameraPath path;

@@ -34,7 +34,7 @@ std::vector<double> cuts(double low, double high, std::span<const Rectangle> ope
   return at;
 }
 
-// Which cells of a plate's grid are solid. Cells outside the grid are not.
+// Tells which cells of a plate's grid are solid. Cells outside the grid are not.
 struct PlateGrid {
   std::vector<double> xs, ys;
   std::vector<bool> solid;
@@ -74,7 +74,7 @@ std::vector<Point2> outset(std::span<const Point2> outline, double distance) {
   for (std::size_t i = 0; i < n; ++i) {
     const Point2 before = outline[i] - outline[(i + n - 1) % n], after = outline[(i + 1) % n] - outline[i];
     const Point2 d0 = before / length(before), d1 = after / length(after);
-    // Both edges' outward normals are met: the corner moves along their sum.
+    // The corner moves along the sum of both edges' outward normals.
     const Point2 n0{d0.y, -d0.x}, n1{d1.y, -d1.x};
     moved[i] = outline[i] + (n0 + n1) * (distance / (1.0 + dot(n0, n1)));
   }
@@ -236,7 +236,7 @@ void MeshBuilder::plate(const Rectangle& area, double z0, double z1, std::span<c
       if (!grid.at(column, row)) {
         continue;
       }
-      // Neighbours below zero wrap around to a huge index, which is outside too.
+      // Indices below zero wrap around to a huge index, which is outside too.
       std::uint32_t cell = faces & (kBottom | kTop);
       cell |= grid.at(column - 1, row) ? 0u : faces & kWest;
       cell |= grid.at(column + 1, row) ? 0u : faces & kEast;
@@ -250,7 +250,7 @@ void MeshBuilder::plate(const Rectangle& area, double z0, double z1, std::span<c
 void MeshBuilder::ridgeRoof(const Rectangle& area, double z0, double rise, double ridge_inset) {
   const Point2 size = area.max - area.min;
   if (size.x < size.y) {
-    // Turned by a quarter, so that the longer side is along x.
+    // Turned by a quarter turn, so that the longer side is along x.
     const Placement before = placement_;
     placement_ = {before.point({area.max.x, area.min.y, 0}), before.y, before.x * -1.0, before.z};
     ridgeRoof({{0.0, 0.0}, {size.y, size.x}}, z0, rise, ridge_inset);

@@ -1,8 +1,7 @@
 #pragma once
 
-// The primitives that every procedural scene is made of. Coordinates are those of the current placement;
-// triangles come out counter-clockwise seen from outside. Within one call, faces that meet share their
-// vertices exactly.
+// The primitives of all procedural scenes. Coordinates are in the current placement; triangles are
+// counter-clockwise as seen from outside. Within one call, adjacent faces share their vertices exactly.
 
 #include <cstdint>
 #include <span>
@@ -14,7 +13,7 @@
 
 namespace sightline::scenes {
 
-// The faces of a box, or of an extruded figure: bottom and top are its two ends along z.
+// The faces of a box or of a prism: bottom and top are its two ends along z.
 enum Faces : std::uint32_t {
   kWest = 1,
   kEast = 2,
@@ -34,22 +33,23 @@ struct Rectangle {
   }
 };
 
-// Corners of a rectangle, anticlockwise.
+// Corners of a rectangle, counter-clockwise.
 std::vector<Point2> corners(const Rectangle& rectangle);
-// The figure with every edge moved outwards by distance (inwards when negative); anticlockwise, as given.
+// The polygon with every edge moved outwards by distance (inwards if negative); counter-clockwise, like the
+// input.
 std::vector<Point2> outset(std::span<const Point2> outline, double distance);
-// Triangles (indices into the outline) that fill a simple anticlockwise figure, by clipping ears.
+// Triangulates a simple counter-clockwise polygon by ear clipping. Returns indices into the outline.
 std::vector<std::uint32_t> triangulate(std::span<const Point2> outline);
 
 class MeshBuilder {
  public:
-  // Appends to the scene, which outlives the builder.
+  // Appends to the scene, which must outlive the builder.
   explicit MeshBuilder(Scene& scene) : scene_(scene) {}
   ~MeshBuilder() { finishObject(); }
   MeshBuilder(const MeshBuilder&) = delete;
   MeshBuilder& operator=(const MeshBuilder&) = delete;
 
-  // What follows belongs to a new object. An object without triangles is left out.
+  // Starts a new object for the triangles that follow. An object without triangles is dropped.
   void startObject(std::string name, MaterialId material);
   void finishObject();
   void place(const Placement& placement) { placement_ = placement; }
@@ -58,18 +58,20 @@ class MeshBuilder {
   void triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c);
   void quad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d);
   void box(const Vec3d& low, const Vec3d& high, std::uint32_t faces = kAllFaces);
-  // A simple anticlockwise figure in the xy plane, drawn out from z0 to z1 (all sides or none).
+  // A simple counter-clockwise polygon in the xy plane, extruded from z0 to z1 (with all sides or none).
   void prism(std::span<const Point2> outline, double z0, double z1, std::uint32_t faces = kAllFaces);
-  // What lies between two figures of equally many corners, the inner inside the outer.
+  // The region between two polygons with equal numbers of corners, the inner one inside the outer one,
+  // extruded.
   void ring(std::span<const Point2> outer, std::span<const Point2> inner, double z0, double z1,
             std::uint32_t faces = kAllFaces);
-  // A profile of (radius, z), outside on the right, turned about the z axis. Radius 0 makes a pole.
+  // A surface of revolution: a profile of (radius, z), its outside on the right, about the z axis. Radius 0
+  // makes a pole.
   void lathe(std::span<const Point2> profile, std::uint32_t segments);
-  // A rectangle with rectangular openings that do not overlap, from z0 to z1. Made of a grid of coplanar
-  // quads, cut at every edge of an opening, so that all vertices are shared.
+  // A rectangle with rectangular openings that do not overlap, from z0 to z1. Consists of a grid of coplanar
+  // quads cut at every edge of an opening, so that all vertices are shared.
   void plate(const Rectangle& area, double z0, double z1, std::span<const Rectangle> openings,
              std::uint32_t faces = kAllFaces);
-  // A roof over a rectangle: the ridge runs along the longer side, inset at both ends (0: gables). Closed.
+  // A closed roof over a rectangle. The ridge runs along the longer side, inset at both ends (0: gables).
   void ridgeRoof(const Rectangle& area, double z0, double rise, double ridge_inset);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// How the moving scenes are put together, part by part.
+// Assembles moving scenes part by part.
 
 #include <cstdint>
 #include <functional>
@@ -11,19 +11,19 @@
 
 namespace sightline::scenes {
 
-// What `build` makes, in one object: a part's mesh, in the part's own space (Y up; the builder's is plan
+// Builds a part's mesh with `build`, as one object in the part's own space (Y up; the builder's is plan
 // space).
 Scene buildPartMesh(const std::function<void(MeshBuilder&)>& build);
 
-// Of the mesh's vertices, moved away from the middle of their box by this part of their distance from it. The
-// mesh is finite and not empty.
+// The convex hull of the mesh's vertices, each moved away from the centre of their box by this fraction of
+// its distance from it. The mesh must be finite and not empty.
 ConvexHull hullOf(const Scene& mesh, double growth = 0.0);
 
-// Appends the part, which brings its hulls and its class, with the object that it is in frame 0.
+// Appends the part, with its hulls and class set, and its object as it is in frame 0.
 void addMovingPart(MovingScene& scene, MovingPart part, const Scene& mesh, const Mat4& world_from_part,
                    MaterialId material);
 
-// Columns x, y, z and then the origin.
+// The matrix with columns x, y, z and the origin.
 Mat4 rigid(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin);
 
 }  // namespace sightline::scenes

@@ -9,7 +9,7 @@ Vec3d column(const Mat4& m, int i) {
   return {m(0, i), m(1, i), m(2, i)};
 }
 
-// Of a rigid matrix: turned back, and what is left moved back.
+// The inverse of a rigid matrix: the transposed rotation, and the translation rotated back and negated.
 Mat4 inverseRigid(const Mat4& m) {
   Mat4 inverse;
   for (int row = 0; row < 3; ++row) {
@@ -21,7 +21,7 @@ Mat4 inverseRigid(const Mat4& m) {
   return inverse;
 }
 
-// The same motion for points that are told from `origin`.
+// The same motion for points whose coordinates are relative to `origin`.
 Mat4 aboutOrigin(const Mat4& motion, const Vec3d& origin) {
   Mat4 moved = motion;
   const Vec3d offset = transformPoint(motion, origin) - origin;
@@ -71,7 +71,7 @@ void placements(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>
   scene.pose(0, first);
   scene.pose(frame, now);
   for (std::size_t i = 0; i < scene_from_stored.size(); ++i) {
-    // What stands still stays so to the last bit.
+    // Parts that have not moved keep the exact identity.
     if (now[i].m != first[i].m) {
       scene_from_stored[i] = aboutOrigin(now[i] * inverseRigid(first[i]), scene.scene.origin);
     }
@@ -84,8 +84,7 @@ void posedScene(const MovingScene& scene, std::uint32_t frame, Scene& posed) {
   posed = scene.scene;
   posed.positions.clear();
   posed.indices.clear();
-  std::unordered_map<std::uint32_t, std::uint32_t>
-      number_of;  // of one object's positions, by the stored ones
+  std::unordered_map<std::uint32_t, std::uint32_t> number_of;  // of one object's positions, by stored index
   const SceneView stored = scene.scene.view();
   for (std::size_t i = 0; i < posed.objects.size(); ++i) {
     Object& object = posed.objects[i];

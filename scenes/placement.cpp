@@ -6,8 +6,8 @@
 namespace sightline::scenes {
 
 Point2 unitVector(double turns) {
-  // Whole quarters are turned exactly; the rest, at most an eighth of a turn, by Taylor series to the last
-  // bit or two.
+  // Whole quarter turns are exact. The rest, at most an eighth of a turn, is a Taylor series accurate to the
+  // last bit or two.
   const double quarters = std::floor(turns * 4.0 + 0.5);
   const double a = (turns - quarters * 0.25) * (2.0 * std::numbers::pi);
   const double a2 = a * a;

@@ -1,15 +1,15 @@
 #pragma once
 
-// Where a piece of a procedural scene stands.
+// The position and orientation of a piece of a procedural scene.
 //
-// The builders think in plan space: x east, y north, z up, metres, right-handed. Only MeshBuilder and the
-// walks turn plan space into the world's Y-up space, by worldFromPlan.
+// The builders use plan space: x east, y north, z up, metres, right-handed. Only MeshBuilder and the camera
+// paths convert plan space to the world's Y-up space, by worldFromPlan.
 
 #include "sightline/math/vec3.h"
 
 namespace sightline::scenes {
 
-// A point of a plan, or of any other flat figure.
+// A point of a plan, or of any other 2D figure.
 struct Point2 {
   double x = 0.0, y = 0.0;
   friend constexpr Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
@@ -32,8 +32,8 @@ constexpr Vec3d worldFromPlan(const Vec3d& p) {
   return {p.x, p.z, -p.y};
 }
 
-// Unit vector at this part of a full turn, anticlockwise from (1, 0). Only sums and products: the same bits
-// everywhere.
+// The unit vector at this fraction of a full turn, counter-clockwise from (1, 0). Uses only sums and
+// products, so it has the same bits everywhere.
 Point2 unitVector(double turns);
 
 // Orthonormal, right-handed.
@@ -44,13 +44,13 @@ struct Placement {
   constexpr Vec3d direction(const Vec3d& d) const { return x * d.x + y * d.y + z * d.z; }
   constexpr Vec3d point(const Vec3d& p) const { return origin + direction(p); }
   constexpr Placement moved(const Vec3d& by) const { return {point(by), x, y, z}; }
-  // Turned anticlockwise about its z axis.
+  // Turned counter-clockwise about its z axis.
   Placement turned(double turns) const {
     const Point2 c = unitVector(turns);
     return {origin, x * c.x + y * c.y, y * c.x - x * c.y, z};
   }
-  // Standing on a wall whose foot runs from a to b with the outside on the right: x along the wall, y up, z
-  // outwards.
+  // A placement on a wall whose foot runs from a to b with the outside on the right: x along the wall, y up,
+  // z outwards.
   Placement onWall(Point2 a, Point2 b, double height) const {
     const Point2 d = (b - a) / length(b - a);
     return {point({a.x, a.y, height}), direction({d.x, d.y, 0.0}), z, direction({d.y, -d.x, 0.0})};

@@ -26,7 +26,7 @@ Stem anyStem(std::uint32_t number, Random& random) {
           across(d, random.range(0.1, 0.17), kSoil + height)};
 }
 
-// Four sides up to the bend, four more to the tip: 12 triangles.
+// Four sides up to the bend, four more up to the tip: 12 triangles.
 void addStem(MeshBuilder& mesh, const Stem& stem) {
   constexpr double kRadius = 0.008;
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -39,7 +39,7 @@ void addStem(MeshBuilder& mesh, const Stem& stem) {
   }
 }
 
-// A sheet with a folded middle rib that droops towards its tip: 8 triangles.
+// A sheet with a folded midrib that droops towards its tip: 8 triangles.
 void addLeaf(MeshBuilder& mesh, const Vec3d& root, Point2 direction, double reach, double lift) {
   const Point2 side{-direction.y, direction.x};
   const double half = reach * 0.28;

@@ -6,10 +6,11 @@
 namespace sightline::scenes {
 
 inline constexpr std::uint32_t kPlantTriangles = 644;
-inline constexpr double kPlantRadius = 0.42;  // nothing of a plant is farther from its axis, metres
+// Maximum distance of any point of a plant from its axis, metres.
+inline constexpr double kPlantRadius = 0.42;
 
-// A potted plant at the current placement: pot, stems and leaves, kPlantTriangles in all. Leaves are single
-// sheets: the object's material is to be double-sided.
+// Adds a potted plant at the current placement: pot, stems and leaves, kPlantTriangles in all. Leaves are
+// single sheets, so the object's material should be double-sided.
 void addPlant(MeshBuilder& mesh, const Placement& placement, Random random);
 
 }  // namespace sightline::scenes

@@ -1,4 +1,4 @@
-// The URLs of the procedural scenes.
+// Parses the URLs of the procedural scenes.
 
 #include "scenes/procedural.h"
 
@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::string_view kPrefix = "demo:";
 
-// What a scene's URL may give: a number, or one of some words.
+// A key of a scene's URL: its value is a number, or one of several words.
 struct Key {
   std::string_view name;
   std::uint32_t min, max;
-  std::uint32_t* value;                          // the number, or which word
-  std::span<const std::string_view> words = {};  // if there are any, min and max are not looked at
+  std::uint32_t* value;                          // the number, or the index of the word
+  std::span<const std::string_view> words = {};  // if not empty, min and max are ignored
   bool given = false;
 };
 
@@ -42,7 +42,7 @@ std::string listOf(std::span<const Key> keys) {
   return list;
 }
 
-// The value that a text is for a key; false: none.
+// Parses the value of a key; returns false if it is invalid.
 bool readValue(std::string_view text, const Key& key) {
   if (!key.words.empty()) {
     const auto word = std::find(key.words.begin(), key.words.end(), text);
@@ -80,7 +80,7 @@ Status readPair(std::string_view pair, std::string_view scene, std::span<Key> ke
   return Error{where + "unknown key '" + std::string(name) + "'; keys: " + listOf(keys)};
 }
 
-// The part of a URL behind the '?'.
+// Parses the part of a URL after the '?'.
 Status readQuery(std::string_view query, std::string_view scene, std::span<Key> keys) {
   while (!query.empty()) {
     const std::size_t end = query.find('&');
@@ -171,7 +171,7 @@ constexpr Maker<Scene> kStillScenes[] = {{"city", makeDemoCity},
 constexpr Maker<MovingScene> kMovingScenes[] = {{"toothpicks", makeDemoToothpicks},
                                                 {"canyon", makeDemoCanyon}};
 
-// A URL without its prefix: the scene's name, and what stands behind the '?'.
+// Splits a URL without its prefix into the scene's name and the part after the '?'.
 std::pair<std::string_view, std::string_view> split(std::string_view url) {
   const std::string_view rest = url.substr(std::min(kPrefix.size(), url.size()));
   const std::size_t mark = rest.find('?');

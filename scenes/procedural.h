@@ -1,7 +1,7 @@
 #pragma once
 
-// Seeded procedural scenes, shared by the tool (demo:NAME?key=value&...), tests, benchmarks and examples.
-// The same options give the same bits everywhere. Each scene comes with walks in Scene::paths.
+// Seeded procedural scenes, shared by the tool (demo:NAME?key=value&...), tests, benchmarks and examples. The
+// same options give the same bits everywhere. Each scene has camera paths in Scene::paths.
 
 #include <cstdint>
 #include <string_view>
@@ -15,8 +15,8 @@ struct CityOptions {
   std::uint32_t copies = 30;  // about 10,000 polygons each
   std::uint32_t seed = 1;
 };
-// Streets and blocks, buildings with facade detail, trees, street furniture.
-// Walks: "smooth" (400 frames through the streets; the default, first), "best", "average", "worst" (by
+// Streets and blocks, buildings with detailed facades, trees, street furniture.
+// Camera paths: "smooth" (400 frames through the streets; the default, first), "best", "average", "worst" (by
 // occlusion).
 Scene makeCity(const CityOptions& options);
 
@@ -25,38 +25,40 @@ struct BuildingOptions {
   std::uint32_t plants = 0;  // detail objects of about 644 triangles spread over the rooms
   std::uint32_t seed = 1;
 };
-// Corridors, rooms, doors, windows, stairs, furniture. Walk: "smooth" (400 frames through corridors, rooms,
-// stairs).
+// Corridors, rooms, doors, windows, stairs, furniture.
+// Camera path: "smooth" (400 frames through corridors, rooms, stairs).
 Scene makeBuilding(const BuildingOptions& options);
 
 struct BoxCityOptions {
   std::uint32_t buildings = 10000;
-  std::uint32_t boxes = 50000;  // small ones
+  std::uint32_t boxes = 50000;  // number of small boxes
   std::uint32_t seed = 1;
 };
-// Streets between blocks of buildings, each building a closed box of 8 to 60 m height, and small boxes of 0.3
-// to 3 m a side on streets, on pavements and in courtyards, which may overlap each other. Objects: the
-// ground, then the buildings, then the small boxes. Walks: "smooth" (400 frames through the streets), "views"
-// (20 places all over the city, looking along streets in all four directions).
+// Streets between blocks of buildings, each a closed box of 8 to 60 m height, and small boxes with sides of
+// 0.3 to 3 m on streets, on pavements and in courtyards, which may overlap each other. Objects: the ground,
+// then the buildings, then the small boxes.
+// Camera paths: "smooth" (400 frames through the streets), "views" (20 places all over the city, looking
+// along streets in all four directions).
 Scene makeBoxCity(const BoxCityOptions& options);
 
 struct ShipOptions {
-  std::uint32_t decks = 6;       // with rooms, 3 or more: two in the hull, the others above the main deck
-  std::uint32_t rooms = 7;       // 4 or more, on each side of a deck's corridor
-  std::uint32_t machinery = 60;  // machines round the main engine, or as many as there are places for
+  std::uint32_t decks = 6;  // decks with rooms, at least 3: two in the hull, the others above the main deck
+  std::uint32_t rooms = 7;  // rooms on each side of a deck's corridor, at least 4
+  std::uint32_t machinery = 60;  // machines around the main engine; limited by the number of places
   std::uint32_t seed = 1;
 };
 // A tanker of 180 m: hull with double bottom and bulkheads, holds with tanks, pipes on deck, decks with a
-// corridor between furnished rooms, stairs, engine room. Every object is a closed solid, walls and slabs are
-// boxes. Walks: "walk" (400 frames: corridor, rooms, down the stairs to the engine room; the default, first),
-// "random" (200 places in rooms, in corridors and on deck, looking anywhere).
+// corridor between furnished rooms, stairs, engine room. Every object is a closed solid; walls and slabs are
+// boxes.
+// Camera paths: "walk" (400 frames: corridor, rooms, down the stairs to the engine room; the default, first),
+// "random" (200 places in rooms, in corridors and on deck, looking in any direction).
 Scene makeShip(const ShipOptions& options);
 
 // "demo:city?copies=30&seed=1", "demo:building?floors=4&plants=100",
 // "demo:boxes?buildings=10000&boxes=50000", "demo:ship?decks=6&rooms=7&machinery=60",
 // "demo:glass?panes=18&bottles=12" (scenes/glass.h), and frame 0 of the scenes with moving parts
 // (scenes/moving_scene.h): "demo:toothpicks?n=200&scaling=ud", "demo:canyon?grid=14". An unknown scene or
-// key, or a value out of range, is an error that lists what there is.
+// key, or a value out of range, is an error that lists the valid ones.
 bool isDemoUrl(std::string_view url);
 Result<Scene> makeDemoScene(std::string_view url);
 

@@ -7,11 +7,12 @@
 
 namespace sightline::scenes {
 
-// Of two calls in one function's arguments the order is the compiler's choice: name one of the values first.
+// If two calls are arguments of one function, the compiler chooses their order, so store one of the values
+// first.
 class Random {
  public:
   constexpr explicit Random(std::uint64_t seed) : state_(seed) {}
-  // A stream of its own for part number `part` of whatever `seed` stands for.
+  // A separate stream for part number `part` of the object that `seed` stands for.
   constexpr Random(std::uint64_t seed, std::uint64_t part) : state_(seed) {
     state_ = next() ^ (part * 0xd1342543de82ef95ull);
     state_ = next();
@@ -24,14 +25,14 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
     return z ^ (z >> 31);
   }
-  // In [0, 1).
+  // Uniform in [0, 1).
   constexpr double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   constexpr double range(double low, double high) { return low + (high - low) * uniform(); }
-  // In [0, count).
+  // Uniform in [0, count).
   constexpr std::uint32_t below(std::uint32_t count) {
     return static_cast<std::uint32_t>(((next() >> 32) * count) >> 32);
   }
-  // In [low, high].
+  // Uniform in [low, high].
   constexpr std::uint32_t between(std::uint32_t low, std::uint32_t high) {
     return low + below(high - low + 1);
   }

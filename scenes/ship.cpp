@@ -1,4 +1,4 @@
-// The ship: hull, holds, the block with its rooms and stairs, the engine room, and the paths.
+// The ship: hull, holds, the block with its rooms and stairs, the engine room, and the camera paths.
 
 #include "scenes/procedural.h"
 #include "scenes/ship_parts.h"

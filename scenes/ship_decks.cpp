@@ -1,4 +1,4 @@
-// Slabs, walls and doors of the block, and what stands on its roof.
+// Slabs, walls and doors of the block, and the equipment on its roof.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ std::string deckName(std::uint32_t deck) {
   return "deck " + std::to_string(deck);
 }
 
-// Boxes side by side; in the stairwell's bay there is none to port but under the walls and at the doors.
+// Adds boxes side by side. The stairwell's bay has none to port except under the walls and at the doors.
 void addSlabs(MeshBuilder& mesh, const Plan& plan, std::uint32_t deck) {
   constexpr double kOutside = kBlockHalf + kOuterWall;
   const double top = deckHeight(deck), low = top - kSlab;
@@ -38,7 +38,8 @@ void addSlabs(MeshBuilder& mesh, const Plan& plan, std::uint32_t deck) {
   }
 }
 
-// Across the block at its aft or fore end; on the main deck the corridor's fore end is open to the deck.
+// Adds a wall across the block at its aft or fore end. On the main deck, the corridor's fore end is open to
+// the deck.
 void addEndWall(MeshBuilder& mesh, const Plan& plan, std::uint32_t deck, bool fore) {
   Wall wall{.name = deckName(deck) + (fore ? " fore wall" : " aft wall"),
             .length = 2 * (kBlockHalf + kOuterWall),
@@ -53,7 +54,7 @@ void addEndWall(MeshBuilder& mesh, const Plan& plan, std::uint32_t deck, bool fo
   addWall(mesh, wall);
 }
 
-// A ring round a porthole on the outer wall's outside.
+// Adds a ring around a porthole on the outside of the outer wall.
 void addPortholeFrame(MeshBuilder& mesh, const Room& room, double x, double z) {
   mesh.place(standingAlong(room.placement, {x, room.depth + kOuterWall, z}, 1));
   mesh.startObject(room.name + " porthole", id(Paint::kFrame));
@@ -78,7 +79,7 @@ void addOuterWall(MeshBuilder& mesh, const Room& room) {
   }
 }
 
-// Shut in the wall, or open at a right angle to it.
+// The leaf is shut in the wall, or open at a right angle to it.
 void addDoor(MeshBuilder& mesh, const Room& room, bool open) {
   constexpr double kLeaf = 0.0625;
   mesh.place(room.placement);
@@ -110,7 +111,7 @@ void addCorridorWall(MeshBuilder& mesh, const Plan& plan, const Room& room) {
   addWall(mesh, wall);
 }
 
-// Between a room and the next one towards the bow.
+// Adds the wall between a room and the next one towards the bow.
 void addCrossWall(MeshBuilder& mesh, const Plan& plan, const Room& room) {
   if (room.bay + 1 == plan.bays()) {
     return;
@@ -121,7 +122,7 @@ void addCrossWall(MeshBuilder& mesh, const Plan& plan, const Room& room) {
   mesh.box({x, 0, 0}, {x + kInnerWall, room.depth, kWallHeight});
 }
 
-// The shaft from the engine room to the funnel, which has no door.
+// Adds the shaft from the engine room to the funnel, which has no door.
 void addCasing(MeshBuilder& mesh, const Room& room) {
   mesh.startObject(room.name + " uptake", id(Paint::kMetal));
   addCylinder(mesh, room.placement, {room.width * 0.5, 2.0, 0.0}, 2, 0.8, kWallHeight, 20);

@@ -8,9 +8,9 @@
 namespace sightline::scenes::ship {
 namespace {
 
-constexpr double kFrame = 5.0;  // metres between the frames, longest
+constexpr double kFrame = 5.0;  // maximum distance between frames, metres
 
-// A corner of half a cross-section: what part of the half breadth it has, and its height.
+// A corner of half a cross-section: its fraction of the half breadth, and its height.
 struct Row {
   double part, z;
 };
@@ -24,7 +24,7 @@ constexpr std::array<Row, 9> kRows = {{{0.0, 0.0},
                                        {1.0, 17.5},
                                        {1.0, kBulwarkTop}}};
 
-// y and z of a row's corner at x, so far inside the shell's outer side.
+// y and z of a row's corner at x, `inside` metres within the shell's outer side.
 Point2 corner(double x, std::size_t row, double inside) {
   const Row& r = kRows[row];
   const double y = r.part * halfBreadth(x, r.z), up = r.z < 0.1 ? 1.0 : r.z < 1.0 ? 0.6 : 0.0;
@@ -34,7 +34,8 @@ Point2 corner(double x, std::size_t row, double inside) {
 void addShellPlate(MeshBuilder& mesh, double x0, double x1, std::size_t row, bool port) {
   std::array<Vec3d, 8> c;
   for (std::size_t k = 0; k < 8; ++k) {
-    // East: the bow; north: outside; top: the upper row. To starboard north is inside.
+    // Bit 0 (east) is the bow, bit 1 (north) the outside, bit 2 (top) the upper row. To starboard, north is
+    // inside.
     const bool outside = ((k & 2) != 0) == port;
     const double x = k & 1 ? x1 : x0;
     const Point2 p = corner(x, k & 4 ? row + 1 : row, outside ? 0.0 : kShell);
@@ -57,7 +58,7 @@ void addShell(MeshBuilder& mesh) {
   }
 }
 
-// A level plate from shell to shell, without the part nearer than `inner` to the middle.
+// A level plate from shell to shell, without the part closer than `inner` to the centre line.
 struct Level {
   std::string name;
   double x0, x1, z0, z1, inner = 0.0;
@@ -85,7 +86,7 @@ void addLevel(MeshBuilder& mesh, const Level& level) {
   }
 }
 
-// A plate across the ship from the shell's middle up to `top`.
+// Adds a plate across the ship, out to the middle of the shell's thickness and up to `top`.
 void addBulkhead(MeshBuilder& mesh, const std::string& name, double x, double thickness, double top) {
   std::vector<Point2> outline;
   for (std::size_t row = 1; row < kRows.size() && kRows[row].z < top; ++row) {

@@ -7,10 +7,10 @@
 namespace sightline::scenes::ship {
 namespace {
 
-constexpr double kEngineY = -4.0;  // its middle; the aisle beside it runs along y = 0
+constexpr double kEngineY = -4.0;  // y of its centre; the aisle beside it runs along y = 0
 constexpr double kGalleryEdge = 2.0;
 
-// Convex and other parts of one machine, which stands on z = 0 within 1 m in x and 0.9 m in y.
+// Builds one machine of convex and other parts. It stands on z = 0, within 1 m in x and 0.9 m in y.
 class Machine {
  public:
   Machine(MeshBuilder& mesh, const Placement& at, std::string name)
@@ -124,7 +124,7 @@ void Machine::switchboard(Random& random) {
   }
 }
 
-// Where a machine may stand.
+// The places where a machine may stand.
 std::vector<Placement> places(const Plan& plan) {
   constexpr double kPitch = 2.5, kHalf = 1.1;
   const double bay = plan.bayStart(plan.stairBay());
@@ -228,7 +228,7 @@ void addGalleries(MeshBuilder& mesh, const Plan& plan) {
   }
 }
 
-// Along the engine room below its ceiling, each with a step down on its way.
+// Adds pipes along the engine room below its ceiling, each with a step down.
 void addOverheadPipes(MeshBuilder& mesh, const Plan& plan, Random random) {
   const double x0 = kBlockStart, x1 = plan.blockEnd(), z = deckHeight(0) - 1.0;
   mesh.place({});

@@ -1,12 +1,12 @@
 #pragma once
 
-// The plan of the ship, shared by the files that construct, furnish and walk it.
+// The plan of the ship, shared by the files that construct it, furnish it and lead the camera through it.
 //
-// x runs from the stern to the bow, y to port, z up from the keel. The block is the part that people live and
-// work in: decks of rooms along a corridor, two of them inside the hull, the others above the main deck. The
-// engine room lies under it, three storeys high; a stairwell joins all of it. Before the block come the
-// holds. Dimensions of the block are multiples of 1/16 m, so that walls and slabs meet exactly. Every object
-// is a closed solid.
+// x runs from the stern to the bow, y to port, z up from the keel. The block contains cabins and work rooms:
+// decks of rooms along a corridor, two of them inside the hull, the others above the main deck. The engine
+// room is below it, three storeys high; a stairwell connects them all. The holds are in front of the block.
+// Dimensions of the block are multiples of 1/16 m, so that walls and slabs join exactly. Every object is a
+// closed solid.
 
 #include <array>
 #include <cstdint>
@@ -30,7 +30,7 @@ inline constexpr double kCorridorHalf = 1.0, kRoomStart = kCorridorHalf + kInner
 inline constexpr double kBay = 4.0, kStairBay = 5.0;
 inline constexpr double kDoorWidth = 0.9375, kDoorHeight = 2.125, kDoorMiddle = 1.0;  // x in the room
 inline constexpr double kStairFoot = 2.5, kStairLanding = 5.1875;                     // y
-inline constexpr double kStairUp = 1.25, kStairOn = 3.75;  // x of the flights' middles in their bay
+inline constexpr double kStairUp = 1.25, kStairOn = 3.75;  // x of the flights' centre lines in their bay
 inline constexpr double kHoldsEnd = 152.0;
 inline constexpr std::uint32_t kEngineStoreys = 3, kMainDeckNumber = 2, kHolds = 5;
 inline constexpr double kEyeHeight = 1.7;
@@ -65,9 +65,9 @@ inline MaterialId id(Paint paint) {
   return MaterialId{static_cast<std::uint32_t>(paint)};
 }
 
-// Half the hull's breadth, on the outside of the shell and above the bilge.
+// Half the breadth of the hull at the outside of the shell, above the bilge.
 double halfBreadth(double x, double z);
-// The same at the middle of the shell's thickness, bilge included.
+// The same at the middle of the shell's thickness, including the bilge.
 double halfBreadthInShell(double x, double z);
 
 struct Plan {
@@ -88,37 +88,38 @@ inline constexpr double deckHeight(std::uint32_t deck) {
   return kTankTop + (kEngineStoreys + deck) * kStorey;
 }
 
-// A room seen from its door: x along the corridor, y from the corridor's wall to the outer one, z = 0 on the
-// floor.
+// A room in coordinates of its door: x along the corridor, y from the corridor's wall to the outer one, z = 0
+// on the floor.
 struct Room {
   std::uint32_t deck = 0, bay = 0;
   bool port = false;
   Placement placement;
-  double width = 0.0, depth = 0.0;  // between the walls' faces
+  double width = 0.0, depth = 0.0;  // between the faces of the walls
   std::string name;
 };
 Room roomAt(const Plan& plan, std::uint32_t deck, std::uint32_t bay, bool port);
-// Rooms that the walk enters: one to port, one to starboard.
+// Rooms that the camera path enters: one to port, one to starboard.
 std::array<Room, 2> roomsOnWalk(const Plan& plan);
 bool isOnWalk(const Plan& plan, const Room& room);
 
-// Solids beyond those of MeshBuilder. The first two keep to the placement of the mesh; the others set it.
+// Solids beyond those of MeshBuilder. The first two use the placement of the mesh; the others set it.
 
-// A convex body with six sides; corner k has bit 0 for east, bit 1 for north, bit 2 for top.
+// A convex solid with six faces. Bits of the corner index: bit 0 for east, bit 1 for north, bit 2 for top.
 void addHexahedron(MeshBuilder& mesh, const std::array<Vec3d, 8>& corners);
-// A round tube along straight legs with mitred corners, closed at both ends; at least two corners.
+// A round tube along straight legs with mitred corners, closed at both ends. Needs at least two corners.
 void addTube(MeshBuilder& mesh, std::span<const Vec3d> corners, double radius, std::uint32_t segments = 12);
-// A cylinder from `foot`, `length` metres along the axis of this number (0: x, 1: y, 2: z) of `at`.
+// A cylinder from `foot`, `length` metres along axis `axis` (0: x, 1: y, 2: z) of `at`.
 void addCylinder(MeshBuilder& mesh, const Placement& at, const Vec3d& foot, std::uint32_t axis, double radius,
                  double length, std::uint32_t segments = 12);
-// `at` moved to `foot` and turned so that its z axis runs along the axis of this number.
+// `at` moved to `foot` and turned so that its z axis runs along axis `axis` of `at`.
 Placement standingAlong(const Placement& at, const Vec3d& foot, std::uint32_t axis);
-// A half circle of so many legs from (0, -radius) up to (0, radius), moved up by z: the profile of a sphere.
+// A half circle of `legs` segments from (0, -radius) up to (0, radius), moved up by z: the profile of a
+// sphere.
 std::vector<Point2> halfCircle(double radius, double z, std::uint32_t legs);
 
-// A wall from (0, 0, 0) of `at` along its x axis, its thickness along y. Each of its convex pieces is an
-// object, named with a number behind `name`. Openings do not overlap in x and come in the order of x; y is
-// the height.
+// A wall from (0, 0, 0) of `at` along its x axis, with its thickness along y. Each convex piece is an object,
+// named `name` and a number. Openings must not overlap in x and are in ascending order of x; their y is the
+// height.
 struct Wall {
   std::string name;
   Placement at;
@@ -134,10 +135,10 @@ void addStairs(MeshBuilder& mesh, const Plan& plan);
 void furnish(MeshBuilder& mesh, const Plan& plan, const Room& room, Random random);
 void addHolds(MeshBuilder& mesh, const Plan& plan, Random random);
 void addDeckGear(MeshBuilder& mesh, const Plan& plan, Random random);
-// The main engine and so many machines around it, or as many as there are places for.
+// Adds the main engine and this many machines around it; limited by the number of places.
 void addMachinery(MeshBuilder& mesh, const Plan& plan, std::uint32_t machines, std::uint32_t seed);
 CameraPath walk(const Plan& plan);
-// Needs the bounds of the finished scene's objects.
+// Requires the bounds of the finished scene's objects.
 CameraPath randomViews(const Plan& plan, const Scene& scene, Random random);
 
 }  // namespace sightline::scenes::ship

@@ -1,4 +1,4 @@
-// Furniture. A room's x from 0.7 to 1.9 is kept free for whoever walks in.
+// Furniture. A room's x from 0.7 to 1.9 stays free as a passage.
 
 #include "scenes/ship_parts.h"
 
@@ -181,7 +181,7 @@ void Furnisher::workshop() {
   mesh_.startObject(room_.name + " drill", id(Paint::kMachine));
   addCylinder(mesh_, room_.placement, {0.4, 3.0, 0.0}, 2, 0.12, 1.7);
   piece("drill head", Paint::kMachine, {0.2, 2.8, 1.7}, {0.65, 3.2, 2.1});
-  // One board bent round a corner: not convex.
+  // One board bent around a corner, so it is not convex.
   mesh_.startObject(room_.name + " tool board", id(Paint::kWood));
   mesh_.place(room_.placement);
   mesh_.prism(

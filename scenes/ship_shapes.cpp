@@ -7,7 +7,7 @@
 namespace sightline::scenes::ship {
 namespace {
 
-// Points of a circle about `middle`, anticlockwise seen against the direction.
+// Points of a circle about `middle`, counter-clockwise as seen against `direction`.
 std::vector<Vec3d> circleAcross(const Vec3d& middle, const Vec3d& direction, double radius,
                                 std::uint32_t segments) {
   const bool steep = std::abs(direction.z) > 0.9;
@@ -21,7 +21,7 @@ std::vector<Vec3d> circleAcross(const Vec3d& middle, const Vec3d& direction, dou
   return circle;
 }
 
-// A fan over a tube's end.
+// Adds a fan over a tube's end.
 void addCap(MeshBuilder& mesh, std::span<const Vec3d> circle, bool reversed) {
   for (std::size_t i = 1; i + 1 < circle.size(); ++i) {
     mesh.triangle(circle[0], circle[reversed ? i + 1 : i], circle[reversed ? i : i + 1]);
@@ -46,7 +46,7 @@ void addTube(MeshBuilder& mesh, std::span<const Vec3d> corners, double radius, s
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const bool last = i + 1 == corners.size();
     const Vec3d next = last ? direction : normalized(corners[i + 1] - corners[i]);
-    const Vec3d mitre = direction + next;  // normal of the plane that both legs end in
+    const Vec3d mitre = direction + next;  // normal of the plane in which both legs end
     std::vector<Vec3d> circle;
     for (const Vec3d& p : before) {
       circle.push_back(p + direction * (dot(mitre, corners[i] - p) / dot(mitre, direction)));

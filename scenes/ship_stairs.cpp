@@ -6,13 +6,13 @@
 namespace sightline::scenes::ship {
 namespace {
 
-constexpr std::uint32_t kRisers = 10;  // of one flight
+constexpr std::uint32_t kRisers = 10;  // per flight
 constexpr double kRise = kStorey / (2 * kRisers);
 constexpr double kTread = (kStairLanding - kStairFoot) / (kRisers - 1);
 constexpr double kRun = kTread * (kRisers - 1);
 constexpr double kFlightWidth = 2.0, kHalfWidth = kFlightWidth * 0.5;
 
-// Rises along the placement's x from its origin; its width is along z, with a rail on both sides.
+// The flight rises along x from the placement's origin; its width is along z, with a rail on both sides.
 void addFlight(MeshBuilder& mesh, const Placement& at, const std::string& name) {
   const double top = kRise * (kRisers - 1);
   mesh.place(at);

@@ -1,4 +1,4 @@
-// What lies in the holds, and the pipes and gear on the main deck above them.
+// The contents of the holds, and the pipes and gear on the main deck above them.
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ void addSpheres(MeshBuilder& mesh, const Hold& hold) {
   }
 }
 
-// Six lying cylinders with round ends, in two layers.
+// Six horizontal cylinders with round ends, in two layers.
 void addCylinders(MeshBuilder& mesh, const Hold& hold) {
   constexpr double kRadius = 3.2;
   const double dome = 1.5, length = hold.x1 - hold.x0 - 2.0;
@@ -93,7 +93,7 @@ void addWalledTanks(MeshBuilder& mesh, const Hold& hold) {
   }
 }
 
-// A pipe along the deck with a bow to one side that lets it stretch, and the feet below it.
+// Adds a pipe along the deck with an expansion bend to one side, and the feet below it.
 void addDeckPipe(MeshBuilder& mesh, const Hold& hold, std::uint32_t number, Random& random) {
   const double y = -2.8 + 0.8 * number, z = kMainDeck + 0.8, radius = random.range(0.12, 0.2);
   const double bend = hold.x0 + 3.0 + 0.5 * (number % 3), up = 0.5 + 0.2 * number;
@@ -120,7 +120,7 @@ void addHatch(MeshBuilder& mesh, const Hold& hold, double y) {
   mesh.box({hold.x0 + 1, y - 0.6, kMainDeck}, {hold.x0 + 3, y + 0.6, kMainDeck + 1.1});
 }
 
-// Across the deck at the middle hold, where hoses are made fast.
+// Adds the manifold across the deck at the middle hold, where hoses are attached.
 void addManifold(MeshBuilder& mesh, const Hold& hold) {
   for (std::uint32_t i = 0; i < 6; ++i) {
     const double x = hold.middle() - 2.5 + i, z = kMainDeck + 0.35;

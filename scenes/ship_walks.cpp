@@ -1,4 +1,4 @@
-// Paths through the ship: a walk from a corridor down to the engine room, and views from anywhere.
+// Camera paths of the ship: from a corridor down to the engine room, and random views.
 
 #include <algorithm>
 
@@ -9,14 +9,15 @@ namespace sightline::scenes::ship {
 namespace {
 
 constexpr double kFar = 400.0;
-constexpr double kElbowRoom = 0.3;  // metres between a random eye and the bounds of any object
+// Minimum distance in metres between a random eye and the bounds of any object.
+constexpr double kElbowRoom = 0.3;
 
 class Route {
  public:
   explicit Route(double floor) : floor_(floor) {}
 
   void to(double x, double y) { corners_.push_back({x, y, floor_ + kEyeHeight}); }
-  // From the corridor into the room, once round in it, and back.
+  // Goes from the corridor into the room, once around in it, and back.
   void visit(const Room& room) {
     const auto inside = [&](double x, double y) {
       const Vec3d p = room.placement.point({x, y, 0.0});
@@ -31,7 +32,7 @@ class Route {
     inside(kDoorMiddle + 0.05, 1.0);
     inside(kDoorMiddle, corridor);
   }
-  // Down one storey of the stairwell that begins at x, from door to door.
+  // Goes down one storey of the stairwell that begins at x, from door to door.
   void descend(double x) {
     const double door = (kRoomStart + kStairFoot) * 0.5, landing = (kStairLanding + kBlockHalf) * 0.5;
     to(x + kStairOn, door);
@@ -52,7 +53,7 @@ class Route {
   std::vector<Vec3d> corners_;
 };
 
-// A point where somebody may stand: three in five in rooms, one in corridors, one on deck above the holds.
+// A random standing place: three in five are in rooms, one in corridors, one on deck above the holds.
 Vec3d randomEye(const Plan& plan, Random& random) {
   const std::uint32_t kind = random.below(5), deck = random.below(plan.decks);
   const std::uint32_t bay = random.below(plan.bays());

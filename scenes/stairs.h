@@ -1,6 +1,6 @@
 #pragma once
 
-// What the stairs of all scenes share.
+// The shape of a flight of stairs, shared by all scenes.
 
 #include <cstdint>
 #include <vector>

@@ -1,10 +1,10 @@
-// Ellipsoids that tumble with their centres in a cube of one metre a side. The frame stands around it, as far
-// away as a toothpick is long from its centre: they bounce off the frame's sides with their ends.
+// Ellipsoids that tumble with their centres in a cube with sides of one metre. The frame surrounds the cube
+// at the distance of a toothpick's half length, so that their ends bounce off the frame's sides.
 //
 // Based on: John Snyder, Jed Lengyel. Visibility Sorting and Compositing for Image-Based Rendering.
 // Microsoft Research MSR-TR-97-11, 1997, section 12.1.
-// Differs from the paper in: sizes, which it does not give. They are such that its shares of groups with more
-// than one part come out: of 200 toothpicks, of 1,600 at the same density, and of 1,600 at the same size.
+// Differs from the paper in: sizes, which it does not give. Ours reproduce its shares of groups with more
+// than one part, for 200 toothpicks, for 1,600 at the same density, and for 1,600 at the same size.
 
 #include <algorithm>
 #include <cmath>
@@ -23,13 +23,13 @@ namespace {
 constexpr double kHalfLength = 0.077, kHalfWidth = 0.0084;  // metres, at scale 1
 // 41 bands of 8: 312 quads and 16 triangles, 40 rings of 8 vertices and two poles: 322.
 constexpr std::uint32_t kBands = 41, kSegments = 8;
-constexpr double kEndMovement = 0.00269;  // metres a frame, mean of all ends
+constexpr double kEndMovement = 0.00269;  // metres per frame, mean over all ends
 constexpr double kSphereRadius = 0.05, kCylinderRadius = 0.004;
-// The hulls are this much larger than the meshes: more than what rounds off when a mesh is moved to where it
-// is and stored in single precision.
+// Relative enlargement of the hulls over the meshes. It exceeds the rounding when a mesh is moved to its pose
+// and stored in single precision.
 constexpr double kHullGrowth = 0x1p-14;
 
-// By Newton's method; of numbers > 0. Sums and quotients alone: the same bits everywhere.
+// Newton's method for numbers > 0. Uses only sums and quotients, so it has the same bits everywhere.
 double cubeRoot(double a) {
   double x = std::max(a, 1.0);
   for (int i = 0; i < 64; ++i) {
@@ -42,7 +42,8 @@ double scaleOf(const ToothpickOptions& options) {
   return options.uniform_density ? cubeRoot(200.0 / std::max(options.count, 1u)) : 1.0;
 }
 
-// From a position on a side of the cube and the way travelled to where a thing is that bounces at both ends.
+// The position of an object that bounces at both ends of a side of the cube, from its start position and the
+// distance travelled.
 double bounced(double start, double travelled) {
   const double turns = (start + travelled) / 2.0;
   const double at = (turns - std::floor(turns)) * 2.0;
@@ -51,10 +52,10 @@ double bounced(double start, double travelled) {
 
 struct Toothpick {
   Vec3d centre;    // in frame 0
-  Vec3d velocity;  // metres a frame, until it bounces
-  // The long axis turns in the plane of these two, from the first to the second.
+  Vec3d velocity;  // metres per frame, until it bounces
+  // The long axis turns in the plane of these two vectors, from the first to the second.
   Vec3d axis, aside;
-  double turns = 0.0;  // full turns a frame
+  double turns = 0.0;  // full turns per frame
 };
 
 struct Motion {
@@ -70,7 +71,7 @@ struct Motion {
     }
     const Point2 d = unitVector(t.turns * time);
     const Vec3d along = t.axis * d.x + t.aside * d.y, across = t.aside * d.x - t.axis * d.y;
-    // The part's y axis is the long one.
+    // The long axis is the part's y axis.
     return rigid(across, along, cross(across, along), centre);
   }
 };
@@ -86,7 +87,7 @@ Vec3d randomDirection(Random& random) {
   }
 }
 
-// Speeds are relative to each other: of the centre and, by the turning alone, of the ends.
+// Speeds are relative to each other: that of the centre, and that of the ends due to turning alone.
 Toothpick randomToothpick(Random random, double half_length) {
   Toothpick t;
   for (int a = 0; a < 3; ++a) {
@@ -100,7 +101,7 @@ Toothpick randomToothpick(Random random, double half_length) {
   return t;
 }
 
-// Mean speed of all ends over a whole turn, bounces left aside.
+// Mean speed of all ends over a whole turn, ignoring bounces.
 double meanEndSpeed(std::span<const Toothpick> toothpicks, double half_length) {
   constexpr int kSteps = 32;
   double sum = 0.0;
@@ -129,7 +130,7 @@ Motion makeMotion(const ToothpickOptions& options) {
   return motion;
 }
 
-// Turned about the builder's z axis, the part's y axis. From pole to pole.
+// An ellipsoid from pole to pole about the builder's z axis, which is the part's y axis.
 Scene ellipsoid(double half_length, double half_width, std::uint32_t bands, std::uint32_t segments) {
   return buildPartMesh([&](MeshBuilder& mesh) {
     std::vector<Point2> profile{{0.0, -half_length}};
@@ -148,7 +149,7 @@ Scene cylinder(double half_length, double radius) {
   return buildPartMesh([&](MeshBuilder& mesh) { mesh.lathe(profile, 16); });
 }
 
-// Of the circle in which a cylinder's end lies on a corner's sphere, above its centre.
+// Height above a sphere's centre of the circle in which a cylinder's end lies on that corner sphere.
 double rimHeight() {
   return std::sqrt(kSphereRadius * kSphereRadius - kCylinderRadius * kCylinderRadius);
 }
@@ -168,7 +169,8 @@ MovingPart partOf(Kind kind, std::string name) {
   return part;
 }
 
-// margin: from the cube. A frame part stands still: its poses, in the order of the parts.
+// margin: distance from the cube. The frame's parts do not move. Returns their poses in the order of the
+// parts.
 std::vector<Mat4> addFrame(MovingScene& scene, double margin, const Scene& sphere, const Scene& edge) {
   std::vector<Mat4> poses;
   const auto side = [margin](std::uint32_t upper) { return upper != 0 ? 1.0 + margin : -margin; };
@@ -197,7 +199,8 @@ std::vector<Mat4> addFrame(MovingScene& scene, double margin, const Scene& spher
   return poses;
 }
 
-// Round the frame at a distance from which all of it is in view, while going up and down. side: the frame's.
+// The camera circles the frame at a distance from which all of it is in view, while moving up and down. side:
+// length of the frame's sides.
 CameraPath cameraPath(double velocity, double side, std::uint32_t frames) {
   constexpr double kDistance = 2.7, kTurnsAFrame = 1.0 / 3000;
   CameraPath path;

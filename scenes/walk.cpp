@@ -5,7 +5,7 @@
 namespace sightline::scenes {
 namespace {
 
-// Points of a line by the distance walked on it.
+// Points of a polyline by the distance along it.
 class MeasuredLine {
  public:
   explicit MeasuredLine(std::span<const Vec3d> line) : line_(line), distance_(line.size(), 0.0) {
@@ -14,7 +14,7 @@ class MeasuredLine {
     }
   }
   double total() const { return distance_.back(); }
-  // Beyond either end the line goes straight on.
+  // Beyond either end, the line continues straight.
   Vec3d at(double distance) const {
     const auto after = std::upper_bound(distance_.begin() + 1, distance_.end() - 1, distance);
     const auto i = static_cast<std::size_t>(after - distance_.begin());
@@ -35,7 +35,7 @@ void appendCorner(std::vector<Vec3d>& line, const Vec3d& from, const Vec3d& corn
   }
 }
 
-// Each look becomes the mean of its neighbours'.
+// Replaces each viewing direction by the mean of its neighbours'.
 void calmLooks(std::vector<CameraFrame>& frames, std::size_t reach) {
   const std::vector<CameraFrame> before = frames;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -48,7 +48,7 @@ void calmLooks(std::vector<CameraFrame>& frames, std::size_t reach) {
   }
 }
 
-// Lets no look turn farther from the one before than so much of a full turn.
+// Limits the turn from each viewing direction to the next to max_turn, as a fraction of a full turn.
 void limitTurns(std::vector<CameraFrame>& frames, double max_turn) {
   const Point2 most = unitVector(max_turn);
   for (std::size_t i = 1; i < frames.size(); ++i) {
