@@ -47,7 +47,7 @@ Vec3d cornerOf(const Box& box, int i) {
           (i & 4) != 0 ? box.max.z : box.min.z};
 }
 
-// In clip space, by the matrix: written apart from the planes. w: the scale of the comparison.
+// Tests a point in clip space with the matrix, independently of the planes. w is the scale of the comparison.
 bool insideByMatrix(const View& view, const Vec3d& point, double slack) {
   const Mat4 m = clipFromScene(view);
   double clip[4];
@@ -179,7 +179,8 @@ TEST_P(FrustumOfView, ClearsAPlanesBitOnlyWhenEachPartOfTheBoxIsInsideOfIt) {
           }
         }
       }
-      // With the planes that the box left over, the answer about a part of it is what all planes say.
+      // For a part of the box, testing only the planes left in the mask gives the same result as testing all
+      // planes.
       const Box part{box.min, Vec3f(center(box))};
       std::uint8_t left_over = mask, all = kAllFrustumPlanes;
       const FrustumSide by_rest = classify(frustum, part, left_over), by_all = classify(frustum, part, all);

@@ -1,4 +1,4 @@
-// Embree's answers against a ray caster of twenty lines in double precision.
+// Compares Embree's results with a ray caster of twenty lines in double precision.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,8 @@ Scene randomScene(std::uint32_t seed) {
   return scene;
 }
 
-// How clearly the ray passes inside (positive) or outside (negative) the triangle, and where.
+// How clearly the ray passes inside (positive) or outside (negative) the triangle, and the position of the
+// hit.
 struct Crossing {
   double margin = -1.0, t = 0.0, slope = 0.0;
 };
@@ -52,7 +53,7 @@ Crossing cross(const ViewRay& ray, const Vec3d& a, const Vec3d& b, const Vec3d& 
   return {std::min({u, v, 1.0 - u - v}), dot(e2, q) / determinant, determinant};
 }
 
-// Objects that a ray shows; nothing when the answer hangs on rounding.
+// Objects that a ray shows, or nothing if rounding could change the result.
 std::optional<std::set<std::uint32_t>> seenAlong(const Scene& scene, const View& view, const ViewRay& ray) {
   constexpr double kClear = 1e-4;
   const double length = view.far - view.near;
@@ -126,7 +127,7 @@ TEST(ExactVisibility, AgreesWithABruteForceRayCasterOnRandomTriangles) {
   EXPECT_GT(objects, 1000u);
 }
 
-// What aimed rays claim is visible is so by the brute-force caster too.
+// Objects that aimed rays report as visible are visible to the brute-force caster too.
 TEST(ExactVisibility, AimedRaysClaimNothingThatBruteForceDenies) {
   std::size_t compared = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
@@ -153,7 +154,7 @@ TEST(ExactVisibility, AimedRaysClaimNothingThatBruteForceDenies) {
   EXPECT_GT(compared, 500u);
 }
 
-// Aimed rays find nearly everything that pixels see, and more.
+// Aimed rays find nearly every object that pixels show, and more.
 TEST(ExactVisibility, AimedRaysReachWhatPixelsSee) {
   const Scene scene = randomScene(99);
   const ExactVisibility oracle(scene.view());

@@ -108,7 +108,7 @@ TEST(ExactVisibility, WhatTheNearPlaneClipsAwayIsNotSeenAndHidesNothing) {
   EXPECT_EQ(f.reached(), Ids({kSecond}));
 }
 
-// Rays towards the border are longer than those in the middle: what counts is the distance along forward.
+// Rays towards the border are longer than those in the middle; the distance along `forward` must count.
 TEST(ExactVisibility, TheFarPlaneIsAPlaneNotASphere) {
   Fixture f;
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);
@@ -123,7 +123,7 @@ TEST(ExactVisibility, OrthographicRaysAreParallel) {
   Fixture f;
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);
   addWall(f.scene, opaque, -5, -1, 1, -1, 1);
-  addWall(f.scene, opaque, -50, -0.9f, 0.9f, -0.9f, 0.9f);  // hidden though a perspective would hide it too
+  addWall(f.scene, opaque, -50, -0.9f, 0.9f, -0.9f, 0.9f);  // hidden; it would be hidden in perspective too
   addWall(f.scene, opaque, -90, 1.5f, 1.9f, -0.5f, 0.5f);   // beside the shadow
   addWall(f.scene, opaque, -5, 2.1f, 3, -1, 1);             // outside the volume
   f.view.orthographic = true;
@@ -158,7 +158,8 @@ TEST(ExactVisibility, PixelsShowingAnObjectAreAllOfThem) {
   EXPECT_EQ(pixels.front(), oracle.visibleThroughPixels(f.view, 40, 40).front());
 }
 
-// A wall of two triangles: a point far behind, on the ray through the diagonal, is never called visible.
+// A wall of two triangles: a point far behind it, on the ray through the diagonal, must never be reported as
+// visible.
 TEST(ExactVisibility, ASeamBetweenTrianglesIsNoGapForConfirm) {
   Fixture f;
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);
@@ -187,7 +188,7 @@ TEST(ExactVisibility, ConfirmRefusesWhatIsHiddenByAHairAndAllowsTies) {
   EXPECT_FALSE(oracle.confirm(f.view, {kThird, {3.1, 0.2, -5.0}})) << "beside the object";
 }
 
-// A slit of a thousandth of a pixel: no pixel's ray passes, but it is a gap in truth.
+// A slit of a thousandth of a pixel: no pixel's ray passes through, but it is a real gap.
 TEST(ExactVisibility, ConfirmSeesThroughAGapThatPixelsMiss) {
   Fixture f;
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);

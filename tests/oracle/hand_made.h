@@ -1,6 +1,6 @@
 #pragma once
 
-// Small scenes for the oracle's tests, put together from quads.
+// Small scenes made of quads, for the oracle's tests.
 
 #include <array>
 #include <string>
@@ -29,7 +29,7 @@ inline ObjectId addTriangles(Scene& scene, MaterialId material, std::span<const 
   return ObjectId(scene.objects.size() - 1);
 }
 
-// A rectangle in the plane z, its front towards +z, or towards -z when turned.
+// A rectangle in the plane z, with its front towards +z, or towards -z if turned.
 inline ObjectId addWall(Scene& scene, MaterialId material, float z, float x0, float x1, float y0, float y1,
                         bool turned = false) {
   const Vec3f a(x0, y0, z), b(x1, y0, z), c(x1, y1, z), d(x0, y1, z);
@@ -37,7 +37,7 @@ inline ObjectId addWall(Scene& scene, MaterialId material, float z, float x0, fl
   return addTriangles(scene, material, turned ? back : front);
 }
 
-// At the origin, looking along -z, 90 degrees in both directions.
+// A view from the origin along -z, 90 degrees wide in both directions.
 inline View frontView() {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});

@@ -1,4 +1,5 @@
-// Embree and OpenGL know nothing of each other: what the one sees must be what the other draws.
+// Embree and OpenGL are independent of each other: the objects that one sees must be those that the other
+// draws.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,8 @@ namespace sightline {
 namespace {
 
 constexpr std::uint32_t kWidth = 320, kHeight = 180;
-constexpr std::uint64_t kFewPixels = kWidth * kHeight / 10'000;  // on edges, where the two round differently
+// Pixels on edges, where the two may round differently.
+constexpr std::uint64_t kFewPixels = kWidth * kHeight / 10'000;
 
 std::vector<ObjectId> objectsOf(const std::vector<Witness>& witnesses) {
   std::vector<ObjectId> objects;

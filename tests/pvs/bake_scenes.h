@@ -1,6 +1,6 @@
 #pragma once
 
-// Small scenes for the baker, and exact judgement of what it bakes.
+// Small scenes for the baker, and an exact check of the baked sets.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 
 namespace sightline::test {
 
-// Each solid is an object.
+// A scene with one object per solid.
 inline Scene sceneOf(const std::vector<Solid>& solids) {
   Scene scene;
   scene.materials.emplace_back();
@@ -52,7 +52,7 @@ inline BakedVisibility baked(const Scene& scene, const BakeSettings& settings) {
   return result ? std::move(*result) : BakedVisibility{};
 }
 
-// By ObjectId.
+// Indexed by ObjectId.
 inline std::vector<bool> membersOf(const BakedVisibility& baked, std::uint32_t set) {
   std::vector<bool> members(baked.boxes.objects.size(), false);
   for (const std::uint32_t node : baked.sets[set]) {
@@ -63,7 +63,7 @@ inline std::vector<bool> membersOf(const BakedVisibility& baked, std::uint32_t s
   return members;
 }
 
-// What the leaf says of viewers at this place, which is in its cell.
+// The set for viewers at this point, which must be in the leaf's cell.
 inline std::uint32_t setAt(const OctreeView& octree, std::uint32_t leaf, const Vec3d& eye) {
   const OctreeLeaf& l = octree.leaves[leaf];
   if (l.plane == OctreeLeaf::kNoPlane) {
@@ -74,8 +74,8 @@ inline std::uint32_t setAt(const OctreeView& octree, std::uint32_t leaf, const V
   return at >= plane.front ? l.front_set : at <= plane.back ? l.back_set : l.set;
 }
 
-// Viewers in every step-th cell: anywhere, at faces, edges and corners; all that rays reach must be in their
-// sets. near: of the views, metres along their axes.
+// Places viewers in every step-th cell: anywhere, and at faces, edges and corners. Every object that a ray
+// reaches must be in their sets. near: near distance of the views, metres along their viewing direction.
 class BakeJudge {
  public:
   BakeJudge(const Scene& scene, const BakedVisibility& baked) : exact_(scene.view()), baked_(baked) {}
@@ -97,10 +97,10 @@ class BakeJudge {
   }
 
   std::size_t seen = 0,
-              hidden = 0;  // objects that rays reached; pairs of a view and an object not in its set
+              hidden = 0;  // objects that rays reached; pairs of a view and an object that is not in its set
 
  private:
-  // One coordinate in four is on a border of the cell.
+  // Puts one coordinate in four on a border of the cell.
   Vec3d placeIn(const OctreeCell& cell, std::mt19937& random) const {
     const Vec3d low = cellMin(baked_.octree.min, baked_.octree.max, cell);
     const Vec3d high = cellMax(baked_.octree.min, baked_.octree.max, cell);

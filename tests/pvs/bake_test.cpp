@@ -35,7 +35,7 @@ std::map<StopReason, int> reasonsOf(const BakedVisibility& baked) {
   return reasons;
 }
 
-// Walls, pillars and crates at random; some touch, some stand on one plane.
+// Random walls, pillars and crates; some touch, some stand on one plane.
 Scene randomScene(std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto whole = [&](int low, int high) {
@@ -56,7 +56,7 @@ Scene randomScene(std::uint32_t seed) {
   return sceneOf(solids);
 }
 
-// Two rows of houses along a street, crates behind them, on a plate that goes on for so many metres.
+// Two rows of houses along a street with crates behind them, on a plate that extends `plate` metres.
 Scene streetScene(float plate) {
   std::vector<Solid> solids{block({-plate, -1, -plate}, {120 + plate, 0, plate})};
   for (int i = 0; i < 10; ++i) {
@@ -70,7 +70,7 @@ Scene streetScene(float plate) {
   return sceneOf(solids);
 }
 
-// The share of all objects that the set of a viewer there keeps.
+// The fraction of all objects that the set of a viewer at `eye` keeps.
 double keptAt(const BakedVisibility& baked, const Vec3d& eye) {
   double kept = 0.0;
   forEachLeaf(baked.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
@@ -86,7 +86,7 @@ double keptAt(const BakedVisibility& baked, const Vec3d& eye) {
   return kept;
 }
 
-// The mean of viewers at eye height in the street.
+// The mean over viewers at eye height in the street.
 double keptInTheStreet(const BakedVisibility& baked) {
   double kept = 0.0;
   constexpr int kEyes = 11;
@@ -137,8 +137,8 @@ TEST(Bake, LeavesOutNothingThatIsSeenInAStreet) {
   }
 }
 
-// A court between four walls hides nearly all that lies around, and none of the few points that a root of two
-// kilometres is asked about is in the court or behind much of it.
+// A court between four walls hides nearly everything around it. But of the few points tested for a root of
+// two kilometres, none is in the court or behind much of it.
 TEST(Bake, DividesCellsThatAreTooLargeForTheOccludersInThem) {
   std::vector<Solid> solids{block({290, -1, 160}, {310, 9, 161}), block({290, -1, 181}, {310, 9, 182}),
                             block({289, -1, 161}, {290, 9, 181}), block({310, -1, 161}, {311, 9, 181})};
@@ -170,7 +170,7 @@ TEST(Bake, ChoosesTheDepthByTheSceneAloneAndCountsItsOccluders) {
   EXPECT_EQ(bake->occluders().inner, 60u) << "all but the plate, beneath which is nothing";
   EXPECT_EQ(bake->occluders().of_use, 20u) << "the houses";
   EXPECT_EQ(bake->occluders().largest_area, 120.0);
-  // With the same depth asked for, all cells may be divided so far: that is another plan.
+  // If this depth is requested, all cells may be divided down to it, which is another plan.
   EXPECT_LT(bake->baseDepth(), bake->settings().max_depth);
   const Result<Bake> asked = Bake::plan(scene.view(), occluders, bake->settings());
   ASSERT_TRUE(asked);
@@ -183,7 +183,7 @@ TEST(Bake, ChoosesTheDepthByTheSceneAloneAndCountsItsOccluders) {
 }
 
 TEST(Bake, HidesWhatIsBehindAWallFromACellBeforeIt) {
-  // The wall is at x = 10; crates before and behind it.
+  // The wall is at x = 10, with crates in front of it and behind it.
   const Scene scene = sceneOf(
       {block({10, 0, 0}, {10.5f, 16, 16}), block({3, 1, 7}, {4, 2, 8}), block({14, 7, 7}, {15, 8, 8})});
   const BakedVisibility result = baked(
@@ -199,8 +199,8 @@ TEST(Bake, HidesWhatIsBehindAWallFromACellBeforeIt) {
 }
 
 TEST(Bake, DoesNotCombineWhatDifferentOccludersHideFromDifferentCorners) {
-  // Two screens with a gap between them. Every corner of the cell looks at the crate through neither, but its
-  // middle does: whatever corners see, the crate stays in the set.
+  // Two screens with a gap between them. No corner of the cell sees the crate through the gap, but the cell's
+  // centre does. So the crate must stay in the set.
   const Scene scene = sceneOf({block({10, 0, 0}, {10.25f, 16, 7.5f}), block({10, 0, 8.5f}, {10.25f, 16, 16}),
                                block({15, 7.5f, 7.75f}, {15.5f, 8.5f, 8.25f})});
   const BakedVisibility result =
@@ -265,7 +265,7 @@ TEST(Bake, StopsWhereTheBudgetIsMet) {
 }
 
 TEST(Bake, StopsInOpenAirAndMergesIt) {
-  // Nothing hides anything: one glance is enough.
+  // Nothing hides anything, so the first test decides.
   const Scene open = sceneOf({block({0, 0, 0}, {1, 1, 1}), block({60, 60, 60}, {61, 61, 61})});
   const BakedVisibility result = baked(open, {.max_depth = 5});
   EXPECT_LE(result.octree.leaves.size(), 64u);
@@ -323,7 +323,7 @@ TEST(Bake, CellsThatNoViewerIsInHoldEverything) {
   EXPECT_GT(outside, 0);
 }
 
-// Depth first, the last of those known first.
+// Depth first: the last known part is baked first.
 template <typename BakePart>
 BakedParts partsOf(const Bake& bake, BakePart&& bake_part) {
   BakedParts parts;

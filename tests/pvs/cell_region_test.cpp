@@ -15,7 +15,7 @@ Vec3d randomPoint(std::mt19937& random, const Vec3d& low, const Vec3d& high) {
   return p;
 }
 
-// The least of dot(direction, corner) over all directions bounds a convex hull.
+// A convex hull is bounded by the minimum of dot(direction, corner) over its corners, for all directions.
 bool insideHull(const Vec3d& point, const std::vector<Vec3d>& corners, std::mt19937& random) {
   for (int i = 0; i < 200; ++i) {
     const Vec3d d = randomPoint(random, {-1, -1, -1}, {1, 1, 1});
@@ -64,7 +64,7 @@ TEST(CellRegion, IsAllOrNothingWhereThePlanePassesBy) {
   EXPECT_EQ(cell.smallestFace(), 2.0);
 }
 
-// A rectangle in the plane y = height, from (x0, z0) to (x1, z1), its front upwards.
+// A rectangle in the plane y = height, from (x0, z0) to (x1, z1), with its front upwards.
 struct Floor {
   std::vector<ConvexEdge> edges;
   Plane plane;

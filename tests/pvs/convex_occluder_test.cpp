@@ -1,4 +1,4 @@
-// Convex occluders: which there are, how far they are drawn in, and when a region is separated from them.
+// Convex occluders: which ones are found, how far they are inset, and when a region is separated from them.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(ConvexOccluders, AreLargestFirst) {
   }
 }
 
-// Least distance of the drawn-in corners inwards from all planes; polygon: from the edges' lines.
+// Minimum depth of the inset corners behind all planes; for a polygon, behind the lines of its edges.
 long double depthOfDrawn(const ConvexOccluders& all, const ConvexOccluder& occluder, const Shape& shape,
                          const OccluderSet& set) {
   long double least = INFINITY;
@@ -128,7 +128,7 @@ TEST(ConvexOccluders, HaveTheFacesOfABodyThatIsTooThin) {
     occluder.slack = 0.02f;
   }
   const ConvexOccluders all(set);
-  ASSERT_EQ(all.size(), 2u);  // of the sides nothing is left
+  ASSERT_EQ(all.size(), 2u);  // nothing is left of the sides
   EXPECT_FALSE(all[0].body);
   EXPECT_NEAR(all[1].area, 100.0, 1e-4);
 }
@@ -160,7 +160,7 @@ TEST(Separated, NeedsToBeOutsideOfTheBody) {
   EXPECT_FALSE(at({0.5, 0.5, 0.5}, {9, 9, 9}));
   EXPECT_FALSE(at({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}));
   EXPECT_FALSE(at({-9, -9, -9}, {9, 9, 9}));
-  // Past the tip of an octahedron only a plane of the boxes separates.
+  // Beyond the tip of an octahedron, only a plane of the boxes separates.
   const ConvexOccluders tip(setOf(std::vector{Shape{octahedron(), false}}));
   EXPECT_TRUE(separated(tip, tip[0], cornersOf(boxOf({1.01, -3, -3}, {2, 3, 3})), 0.0));
   EXPECT_FALSE(separated(tip, tip[0], cornersOf(boxOf({0.9, -3, -3}, {2, 3, 3})), 0.0));
@@ -184,13 +184,13 @@ TEST(Separated, KeepsTheNearDistance) {
   const std::vector<Vec3d> before = cornersOf(boxOf({-9, -9, 0.5}, {9, 9, 5}));
   EXPECT_TRUE(separated(all, all[0], before, 0.499));
   EXPECT_FALSE(separated(all, all[0], before, 0.5));
-  // Near the plane, but 3 metres from the wall's end, and 4 above it: 5 from its corner.
+  // Near the plane, but 3 metres from the wall's end and 4 above it: 5 metres from its corner.
   const std::vector<Vec3d> aside = cornersOf(boxOf({5, 5, 0.5}, {9, 9, 5}));
   EXPECT_TRUE(separated(all, all[0], aside, 4.999));
   EXPECT_FALSE(separated(all, all[0], aside, 5.03));
 }
 
-// What is drawn may be nearer than the polygons, by the slack.
+// The real triangles may be closer than the polygons, by the slack.
 TEST(Separated, CountsTheSlack) {
   const std::vector<Shape> shapes{wallShape(), blockShape({-2, -1, -4}, {2, 1, 0})};
   for (const Shape& shape : shapes) {
@@ -210,12 +210,12 @@ TEST(Separated, CountsTheSlack) {
     EXPECT_TRUE(at({-9, -9, 0.15}, 0.0));
     EXPECT_FALSE(at({-9, -9, 0.55}, 0.5));
     EXPECT_TRUE(at({-9, -9, 0.65}, 0.5));
-    EXPECT_FALSE(at({5, 5, 0.15}, 4.99));  // 5 from the corner, by the boxes, and the slack is off it
+    EXPECT_FALSE(at({5, 5, 0.15}, 4.99));  // 5 metres from the corner, by the boxes, less the slack
     EXPECT_TRUE(at({5, 5, 0.15}, 4.89));
   }
 }
 
-// Random points of both are never nearer than what was asked for, and on no wrong side.
+// Random points of both are never closer than the requested distance, and never on a wrong side.
 TEST(Separated, HoldsForAllPointsOfBoth) {
   int yes = 0;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {

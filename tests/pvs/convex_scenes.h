@@ -1,6 +1,6 @@
 #pragma once
 
-// Convex occluders made at random, trees of boxes, and exact answers, for tests of what the bake hides.
+// Random convex occluders, trees of boxes and exact results, to test what the bake hides.
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,7 @@ inline OccluderSet setOf(std::span<const Shape> shapes) {
   return makeOccluders(polygons);
 }
 
-// Does the segment from the eye to x, both excluded, meet a front? In 113-bit arithmetic.
+// True if the open segment from the eye to x hits a front face. Computed in 113-bit arithmetic.
 inline bool blocks(const Shape& shape, const Vec3d& eye, const Vec3d& x) {
   const WideRay ray = WideRay::towards(eye, x);
   for (const std::vector<std::uint32_t>& face : shape.solid.faces) {
@@ -76,7 +76,7 @@ inline Vec3d randomDirection(Random& random) {
   }
 }
 
-// Two unit vectors at right angles.
+// Two perpendicular unit vectors.
 inline void randomAxes(Random& random, bool upright, Vec3d& x, Vec3d& y) {
   if (upright) {
     x = {1, 0, 0};
@@ -87,7 +87,7 @@ inline void randomAxes(Random& random, bool upright, Vec3d& x, Vec3d& y) {
   y = normalized(cross(x, randomDirection(random)));
 }
 
-// Within `scale` of a place, or somewhat beyond.
+// A polygon within `scale` of `origin`, or slightly beyond.
 inline Shape randomPolygon(Random& random, const Vec3d& origin, double scale, bool sliver = false) {
   Shape shape;
   shape.double_sided = random.below(3) == 0;
@@ -125,7 +125,7 @@ inline Shape randomBody(Random& random, const Vec3d& origin, double scale, bool 
   return {placed(solid, origin, x, y, Vec3d(1.0, random.in(0.4, 1.0), thin) * (0.6 * scale)), false};
 }
 
-// A convex combination of the corners; even: away from the border.
+// A convex combination of the corners; if even, away from the border.
 inline Vec3d pointWithin(const Shape& shape, Random& random, bool even = false) {
   Vec3d sum;
   double weights = 0.0;
@@ -158,7 +158,7 @@ inline Vec3d pointIn(const Box& box, Random& random) {
   return max(low, min(high, p));
 }
 
-// Of all finite boxes, and of boxes around them, from the eye.
+// Maximum distance from the eye to any finite box, and to the boxes around them.
 inline double reachOf(std::span<const Box> boxes, const Vec3d& eye) {
   Box all;
   for (const Box& box : boxes) {
@@ -173,7 +173,7 @@ inline double reachOf(std::span<const Box> boxes, const Vec3d& eye) {
   return reach * (1.0 + 1e-12);
 }
 
-// Halves the objects along an axis, over and over; at most `width` of them below a node of leaves.
+// Halves the objects along an axis repeatedly, until a node has at most `width` leaves.
 inline void appendHalves(std::span<const Box> boxes, std::vector<ObjectId> ids, std::uint32_t width,
                          BoxTree& tree) {
   const std::size_t node = tree.nodes.size();
@@ -227,7 +227,7 @@ inline std::set<std::uint32_t> idsOf(const BoxTree& tree, std::span<const Object
   return ids;
 }
 
-// The numbers of the boxes that the shadow of one occluder hides.
+// Indices of the boxes that the shadow of one occluder hides.
 inline std::set<std::uint32_t> hiddenBoxes(const ConvexOccluders& all, const ConvexOccluder& occluder,
                                            const Vec3d& eye, std::span<const Box> boxes) {
   Shadow shadow;

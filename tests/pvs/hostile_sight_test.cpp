@@ -1,4 +1,4 @@
-// Files whose checksums are right and whose contents are wrong.
+// Files with correct checksums and invalid contents.
 
 #include <gtest/gtest.h>
 #include <zstd.h>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace pvs;
 
-// A file in parts that may be altered before they are put together.
+// A file in parts, which tests alter before assembling them.
 struct Parts {
   BakedVisibility baked = made::visibility(
       {.objects = 400, .leaves = 30, .sets = 90, .set_nodes = 150, .database_bytes = {2'200'000, 10}});
@@ -24,7 +24,7 @@ struct Parts {
     EXPECT_TRUE(bytes);
     return bytes ? *bytes : Bytes{};
   }
-  // Replaces the frame of a chunk; chunks behind it move.
+  // Replaces the frame of a chunk and moves the chunks behind it.
   void setFrame(std::size_t chunk, const Bytes& frame) {
     Chunk& changed = encoded.chunks[chunk];
     const auto begin = encoded.payload.begin() + static_cast<std::ptrdiff_t>(changed.offset);
@@ -141,7 +141,7 @@ TEST(HostileSight, GivesAnErrorForADatabaseOfABrokenChunk) {
   Parts parts = soundParts();
   parts.setFrame(parts.encoded.databases[0].first_chunk + 1, frameOf(1u << 20, std::byte{0}));
   Bytes bytes = parts.bytes();
-  // Sound as a chunk: the content is nobody's business here.
+  // A valid chunk: nothing checks the contents of a database here.
   EXPECT_TRUE(opened(bytes)->readDatabase("database-0"));
   parts.setFrame(parts.encoded.databases[0].first_chunk + 1, frameOf(50'000'000, std::byte{0}));
   bytes = parts.bytes();

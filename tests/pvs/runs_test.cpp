@@ -24,7 +24,7 @@ Runs runsOf(const Bits& bits) {
   return runs;
 }
 
-// Long and short stretches.
+// Bits with long and short runs.
 Bits randomBits(std::uint32_t count, std::mt19937& random) {
   Bits bits(count);
   const auto change = static_cast<std::uint32_t>(1 + random() % 70);
@@ -87,7 +87,7 @@ TEST(Runs, BecomeTheHighestNodesThatTheyFill) {
       }
     }
     EXPECT_EQ(covered, bits);
-    // No node could be given for several.
+    // No single node could replace several of the set.
     for (std::uint32_t n = 0; n < tree.nodes.size(); ++n) {
       const auto inside =
           std::ranges::count_if(nodes, [&](std::uint32_t m) { return m > n && m < tree.nodes[n].end; });

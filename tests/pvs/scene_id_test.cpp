@@ -77,7 +77,7 @@ TEST(SceneId, StaysWithWhatIsOnlySeen) {
   }
 }
 
-// Positions and indices follow each other in the hash: what moves from one to the other must show.
+// Positions and indices are consecutive in the hash, so data that moves from one to the other must change it.
 TEST(SceneId, TellsEmptyScenesFromEachOther) {
   Scene points;
   points.positions.resize(3);

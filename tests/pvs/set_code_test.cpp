@@ -18,7 +18,7 @@ Bytes bytes(std::initializer_list<int> values) {
   return result;
 }
 
-// So many leaves below a root.
+// A root with this many leaves.
 std::vector<BoxNode> flatTree(std::uint32_t leaves) {
   std::vector<BoxNode> tree(leaves + 1);
   for (std::uint32_t i = 0; i <= leaves; ++i) {
@@ -38,7 +38,7 @@ bool decodes(const Bytes& code, std::span<const BoxNode> tree) {
 TEST(SetCode, IsWhatTheSchemaSays) {
   Bytes code;
   appendSet(code, Nodes{1, 2, 131, 1000}, flatTree(1000));
-  // Four nodes; 1; then from the end of one to the next: 0, 128, 868 = 6 * 128 + 100.
+  // Four nodes; 1; then the distances from the end of one to the next: 0, 128, 868 = 6 * 128 + 100.
   EXPECT_EQ(code, bytes({4, 1, 0, 0x80, 1, 0xe4, 6}));
 }
 

@@ -1,4 +1,4 @@
-// Counts what operator new hands out in this program: a look-up must not allocate once its sets are decoded.
+// Counts allocations by operator new in this program: a look-up must not allocate once its sets are decoded.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST(SetQueryAllocations, DoNotHappenOnceAllSetsAreDecoded) {
   EXPECT_EQ(query.stats().decoded, decoded);
 }
 
-// Sets of one size: what one leaves behind, the next one takes.
+// If all sets have the same size, each reuses the storage of an evicted one.
 TEST(SetQueryAllocations, DoNotHappenWhenSetsTakeEachOthersPlaces) {
   BakedVisibility baked = made::visibility({.objects = 2000, .leaves = 300, .sets = 100});
   std::vector<std::uint32_t> leaves;

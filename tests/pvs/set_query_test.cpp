@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A file in memory and what it was made of.
+// A file in memory and the data that it was made from.
 struct Made {
   explicit Made(const made::Visibility& settings)
       : baked(made::visibility(settings)), bytes(bytesOf(baked)) {}
@@ -38,7 +38,8 @@ std::vector<Made> someOctrees() {
   return all;
 }
 
-// Looks at all leaves: cells hold their lower borders, the last ones along an axis the upper ones too.
+// Searches all leaves. Cells include their lower borders; the last ones along an axis include the upper ones
+// too.
 CellPlace placeByLookingAtAll(const OctreeView& octree, const Vec3d& eye) {
   CellPlace place;
   forEachLeaf(octree, [&](std::uint32_t leaf, const OctreeCell& cell) {
@@ -74,7 +75,8 @@ Vec3d nudged(Vec3d point, made::Random& random) {
   return point;
 }
 
-// Anywhere near and in the octree; on corners of cells and one step beside them; planes of cells.
+// Points anywhere in and near the octree, on corners of cells and one rounding step beside them, and on
+// cells' planes.
 std::vector<Vec3d> trickyPoints(const OctreeView& octree, std::uint32_t seed) {
   made::Random random(seed);
   std::vector<Vec3d> points;
@@ -186,7 +188,7 @@ TEST(SetQuery, AnswersEverythingOutside) {
     }
     EXPECT_EQ(query.stats().outside, outside.size());
     EXPECT_EQ(query.stats().finds, outside.size());
-    // And finds its way back.
+    // It also finds its way back.
     const Vec3d inside = (made.baked.octree.min + made.baked.octree.max) * 0.5;
     EXPECT_NE(query.find(inside, 0.25).id, VisibleSet::kEverything);
   }
@@ -217,7 +219,7 @@ TEST(SetQuery, TakesTheSideThatThePlaneSays) {
   }
 }
 
-// Where min + (max - min) is not max by rounding, no cell reaches farther than the lesser of both.
+// Where min + (max - min) rounds to another value than max, no cell extends beyond the smaller of the two.
 TEST(SetQuery, IsOutsideBeyondTheLastGridLine) {
   made::Random random(21);
   int before = 0, beyond = 0;
@@ -256,7 +258,7 @@ TEST(SetQuery, KeepsTheBudgetAndTheSetsUsedLast) {
       if (seen.insert(set.id).second) {
         EXPECT_EQ(query.stats().decoded, decoded + 1);
       }
-      // Asked again at once: it is there.
+      // The second look-up finds the set in the cache.
       const std::uint64_t before = query.stats().decoded;
       EXPECT_EQ(query.find(eye, 0.25).id, set.id);
       EXPECT_EQ(query.stats().decoded, before);
@@ -270,12 +272,12 @@ TEST(SetQuery, KeepsTheBudgetAndTheSetsUsedLast) {
   }
 }
 
-// Room for two sets: A B A C drops B, not A.
+// With room for two sets, A B A C evicts B, not A.
 TEST(SetQuery, DropsTheSetUsedLeastRecently) {
   BakedVisibility baked = made::visibility({.leaves = 8, .depth = 1, .sets = 8, .plane_every = 0});
   baked.sets = {};
   for (std::uint32_t set = 0; set < 8; ++set) {
-    // One node each, so that they are of one size.
+    // Each set has one node, so that all have the same size.
     baked.sets.nodes.push_back(baked.boxes.nodes[0].end - 1);
     baked.sets.first.push_back(baked.sets.nodes.size());
   }
@@ -316,7 +318,7 @@ TEST(SetQuery, AnswersEverythingForABrokenChunkAndGoesOn) {
   const Made made({.objects = 3000, .leaves = 200, .sets = 200, .set_nodes = 80, .plane_every = 0});
   const pvs::EncodedChunks encoded = pvs::encodeChunks(made.baked);
   ASSERT_GT(encoded.set_chunks, 2u);
-  // A byte in the middle of the second chunk, wherever the payload lies in the file.
+  // A byte in the middle of the second chunk, wherever the payload is in the file.
   Bytes bytes = made.bytes;
   const auto payload =
       std::search(bytes.begin(), bytes.end(), encoded.payload.begin(), encoded.payload.end());

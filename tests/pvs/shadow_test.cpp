@@ -1,4 +1,4 @@
-// Shadows of convex occluders, from points and from convex regions, against exact segments.
+// Compares shadows of convex occluders, from points and from convex regions, with exact segments.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ constexpr Family kFamilies[] = {{"metres", 1.0, 0.0, false},         {"placed", 
                                 {"tiny, far off", 0.05, 1e4, false}, {"huge", 1e6, 1e6, false},
                                 {"huge and tiny", 10.0, 1e6, false}};
 
-// One occluder at random.
+// One random occluder.
 struct Single {
   Random random;
   Vec3d origin;
@@ -41,8 +41,8 @@ struct Single {
   Vec3d corner() { return Vec3d(points()[random.below(static_cast<std::uint32_t>(points().size()))]); }
 };
 
-// Somewhere around, or where it is hard: in a face's plane, on an edge's line, at a corner's coordinates,
-// close before the shape.
+// An eye anywhere around, or at a difficult place: in a face's plane, on an edge's line, at a corner's
+// coordinates, close in front of the shape.
 Vec3d eyeFor(Single& s, double scale) {
   const Vec3d a = s.corner(), b = s.corner(), c = s.corner();
   switch (s.random.below(8)) {
@@ -56,18 +56,18 @@ Vec3d eyeFor(Single& s, double scale) {
       return pointWithin(s.shape, s.random) + randomDirection(s.random) * (scale * 1e-3);
     case 4:
       return s.origin + randomDirection(s.random) * (scale * s.random.in(20.0, 500.0));
-    case 5:  // so far off that rounding is more than the margin
+    case 5:  // so far away that rounding exceeds the margin
       return s.origin + randomDirection(s.random) * (scale * std::pow(10.0, s.random.in(3.0, 10.0)));
     default:
       return s.origin + randomDirection(s.random) * (scale * s.random.in(1.2, 6.0));
   }
 }
 
-// Behind the shape as seen from there; beside shadow planes; touching the shape.
+// Boxes behind the shape as seen from the eye, beside shadow planes, and touching the shape.
 std::vector<Box> boxesFor(Single& s, const Vec3d& eye, double scale) {
   std::vector<Box> boxes;
   Random& random = s.random;
-  // From the eye past a point of the shape.
+  // A point on the ray from the eye through a point of the shape.
   const auto beyond = [&](const Vec3d& p, int i) {
     const double farther = i % 3 == 0 ? scale / length(p - eye) : 1.0;
     return eye + (p - eye) * (1.0 + random.in(0.0, 3.0) * farther);
@@ -76,11 +76,12 @@ std::vector<Box> boxesFor(Single& s, const Vec3d& eye, double scale) {
     const double size = scale * std::pow(10.0, random.in(-4.0, -0.5));
     return Vec3d(size, random.below(5) == 0 ? 0.0 : size * random.in(0.1, 1.0), size * random.in(0.1, 1.0));
   };
-  for (int i = 0; i < 12; ++i) {  // a point of the shape, seen, and beyond it
+  for (int i = 0; i < 12; ++i) {  // a box that contains a visible point of the shape and a point beyond it
     const Vec3d p = pointWithin(s.shape, random, i % 2 == 0);
     boxes.push_back(boxAround(beyond(p, i), half()));
   }
-  for (int i = 0; i < 12; ++i) {  // a box that has a point of a shadow plane as its corner, or as its all
+  // A box with a point of a shadow plane as its corner, or consisting of that point only.
+  for (int i = 0; i < 12; ++i) {
     const Vec3d a = s.corner(), b = s.corner();
     const Vec3d p = beyond(a + (b - a) * random.in(0.0, 1.0), i);
     const Vec3d h = half(), turn = random.point(1.0);
@@ -88,7 +89,7 @@ std::vector<Box> boxesFor(Single& s, const Vec3d& eye, double scale) {
     boxes.push_back(i % 4 == 0 ? boxOf(p, p)
                                : boxOf(p, p + Vec3d(h.x * signs.x, h.y * signs.y, h.z * signs.z)));
   }
-  for (int i = 0; i < 4; ++i) {  // at a corner, and some of the shape itself
+  for (int i = 0; i < 4; ++i) {  // a box at a corner, containing part of the shape
     const Vec3d a = s.corner(), b = s.corner();
     boxes.push_back(boxOf(a, a + randomDirection(random) * (0.3 * scale)));
     boxes.push_back(boxOf(a, b));
@@ -99,7 +100,7 @@ std::vector<Box> boxesFor(Single& s, const Vec3d& eye, double scale) {
   return boxes;
 }
 
-// All of a hidden box, as far as rays can tell.
+// Checks with rays that all of a hidden box is blocked.
 void expectBlocked(const Shape& shape, const Vec3d& eye, const Box& box, Random& random,
                    const std::string& what) {
   std::vector<Vec3d> points = cornersOf(box);
@@ -117,7 +118,7 @@ TEST(ConvexShadow, HidesNothingThatCanBeSeen) {
     for (std::uint64_t seed = 0; seed < 120; ++seed) {
       Single s(family, seed);
       if (s.all.size() != 1) {
-        continue;  // of what is thinner than rounding
+        continue;  // thinner than rounding
       }
       ++usable;
       for (int view = 0; view < 4; ++view) {
@@ -145,7 +146,7 @@ TEST(ConvexShadow, HidesWhatIsClearlyBehind) {
     ASSERT_EQ(s.all.size(), 1u) << "seed " << seed;
     const double scale = kFamilies[seed % 2].scale;
     const Vec3d eye = s.origin + randomDirection(s.random) * (scale * s.random.in(2.0, 8.0));
-    if (!s.shape.body()) {  // clearly before the polygon
+    if (!s.shape.body()) {  // clearly in front of the polygon
       const double height = s.set.occluders[0].plane.evaluate(eye) / length(eye - s.origin);
       if (!((s.shape.double_sided ? std::abs(height) : height) > 0.3)) {
         continue;
@@ -161,11 +162,11 @@ TEST(ConvexShadow, HidesWhatIsClearlyBehind) {
   EXPECT_GT(asked, 900);
 }
 
-// The shadow ends where it should: within a ten-thousandth of the edge's place.
+// The shadow ends where it should, to within a ten-thousandth of the edge's position.
 TEST(ConvexShadow, ReachesNearlyToItsEdges) {
   const Shape shape{block({-1, -2, -3}, {1, 2, 3}), false};
   const ConvexOccluders all(setOf(std::span(&shape, 1)));
-  const Vec3d eye(0, 0, 13);  // the image of the near face, z = 3, at z = -7 is twice as large
+  const Vec3d eye(0, 0, 13);  // from here, the near face at z = 3 projects to twice its size at z = -7
   const double x = 2.0, y = 4.0;
   const std::vector<Box> boxes{
       boxOf({-0.9999 * x, -0.9999 * y, -7}, {0.9999 * x, 0.9999 * y, -7}),
@@ -193,7 +194,7 @@ TEST(ConvexShadow, IsNoneFromBehindAPolygonFromItsPlaneAndFromWithinABody) {
   EXPECT_FALSE(makeShadow(body, body[0], {0, 0, nan}, 10.0, shadow));
 }
 
-// What is drawn lies off the polygons by up to the slack, everywhere else.
+// Each vertex of the real mesh is off the occluder by up to the slack, in a random direction.
 TEST(ConvexShadow, HidesNothingThatCanBeSeenPastAMeshThatIsOffBySlack) {
   std::size_t hidden_count = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -229,7 +230,7 @@ TEST(ConvexShadow, HidesNothingThatCanBeSeenPastAMeshThatIsOffBySlack) {
   EXPECT_GT(hidden_count, 3000u);
 }
 
-// The corners of a box, or of what is left of it before a plane.
+// The corners of a box, or of the part of it in front of a plane.
 std::vector<Vec3d> randomRegion(Random& random, const Box& box) {
   const std::vector<Vec3d> corners = cornersOf(box);
   if (random.below(2) == 0) {

@@ -1,4 +1,4 @@
-// The tree that is asked about shadows: the same answer as of each box alone, from every instruction set.
+// The shadow tree must give the same result as testing each box alone, with every instruction set.
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -10,14 +10,14 @@ namespace {
 
 using namespace test;
 
-// A shadow of random planes, not of any occluder.
+// A shadow of random planes that belong to no occluder.
 Shadow randomShadow(Random& random, std::uint32_t count) {
   Shadow shadow;
   shadow.eye = random.point(5.0);
   shadow.count = count;
   for (std::uint32_t i = 0; i < count; ++i) {
     Vec3d normal = randomDirection(random) * random.in(0.01, 10.0);
-    normal.x = std::abs(normal.x) * 3.0;  // so that something is behind all
+    normal.x = std::abs(normal.x) * 3.0;  // so that some boxes are behind all planes
     shadow.nx[i] = normal.x;
     shadow.ny[i] = normal.y;
     shadow.nz[i] = normal.z;
@@ -26,7 +26,7 @@ Shadow randomShadow(Random& random, std::uint32_t count) {
   return shadow;
 }
 
-// How far behind all planes the whole box is, for its farthest corner out; beyond double precision.
+// Depth of the box's outermost corner behind all planes, in extended precision.
 long double depthBehind(const Shadow& shadow, const Box& box) {
   using Vec3l = Vec3<long double>;
   long double least = INFINITY;
@@ -119,7 +119,7 @@ TEST(ShadowTree, NeverHidesBoxesThatAreEmptyOrNotFinite) {
   shadow.count = 2;
   for (std::uint32_t i = 0; i < 2; ++i) {
     shadow.nx[i] = i == 0 ? 1.0 : 0.5;
-    shadow.ny[i] = shadow.nz[i] = 0.0;  // zero times infinity
+    shadow.ny[i] = shadow.nz[i] = 0.0;  // zero times infinity is NaN
     shadow.offset[i] = 1.0;
   }
   const std::vector<Box> bad{{{2, -kInfinity, 0}, {3, kInfinity, 1}},
@@ -136,7 +136,7 @@ TEST(ShadowTree, NeverHidesBoxesThatAreEmptyOrNotFinite) {
     ShadowTree(tree.view()).hiddenBy(shadow, runs);
     EXPECT_EQ(idsOf(tree, runs).size(), 19u);
     EXPECT_FALSE(idsOf(tree, runs).contains(13));
-    // Nor if the tree says otherwise of the nodes above.
+    // The same must hold if the tree gives other boxes for the nodes above.
     for (BoxNode& node : tree.nodes) {
       const bool has_it =
           std::ranges::count(tree.view().objectsBelow(static_cast<std::uint32_t>(&node - tree.nodes.data())),
@@ -160,7 +160,7 @@ TEST(ShadowTree, IsEmptyWithoutObjectsAndHidesNothingWithoutPlanes) {
   EXPECT_TRUE(runs.empty());
 }
 
-// A node of one leaf and one inner node, a thousand times.
+// A chain of a thousand nodes, each with one leaf and one inner node.
 TEST(ShadowTree, HidesWhatIsDeepDown) {
   constexpr std::uint32_t kCount = 1000;
   Random random(4);
@@ -209,7 +209,7 @@ TEST(ShadowTree, GivesTheSameRunsFromEveryInstructionSet) {
   std::size_t run_count = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
-    // Coordinates in quarters, planes in halves: many ties.
+    // Box coordinates are multiples of a quarter and planes multiples of a half, which gives many ties.
     std::vector<Box> boxes = randomBoxes(random, 200);
     Shadow shadow = randomShadow(random, 1 + random.below(9));
     if (seed % 2 == 0) {

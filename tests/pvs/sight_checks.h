@@ -1,6 +1,6 @@
 #pragma once
 
-// What the tests of .sight files share.
+// Shared by the tests of .sight files.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ inline bool oneLine(const std::string& text) {
   return !text.empty() && text.find('\n') == std::string::npos;
 }
 
-// The answer, or what the error says.
+// The error's message; empty for success.
 inline std::string errorOf(const Status& status) {
   return status ? "" : status.error().message;
 }

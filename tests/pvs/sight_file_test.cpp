@@ -15,7 +15,7 @@ BakedVisibility smallBaked() {
       {.objects = 12, .leaves = 20, .sets = 9, .set_nodes = 4, .database_bytes = {90, 0}});
 }
 
-// All that a file says is as it was, or an error says that it cannot be read.
+// Checks that all contents of a file are unchanged, or that an error reports it as unreadable.
 void expectSameOrError(const Result<SightFile>& file, const BakedVisibility& baked,
                        const std::string& where) {
   if (!file) {
@@ -150,8 +150,8 @@ TEST(SightFile, GivesAnErrorOrTheSameAnswersForEveryAlteredByte) {
   }
 }
 
-// Altered bytes whose seal is right, as a hostile file has it: nothing is known of the answers, but reading
-// them is safe.
+// Altered bytes with a correct seal, as in a hostile file: the results may be anything, but reading them is
+// safe.
 TEST(SightFile, IsSafeToReadWhateverItsSealedBytesAre) {
   const Bytes bytes = bytesOf(smallBaked());
   made::Random random(3);

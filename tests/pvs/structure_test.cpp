@@ -24,7 +24,7 @@ BoxTree smallTree() {
   return tree;
 }
 
-// A root of eight cells, the third of which has eight.
+// A root with eight cells, the third of which has eight children.
 VisibilityOctree smallOctree() {
   VisibilityOctree octree;
   octree.min = {0, 0, 0};
@@ -102,7 +102,7 @@ TEST(BoxTreeCheck, RefusesEveryDamage) {
   }
 }
 
-// A chain as deep as it is long needs no recursion.
+// A chain as deep as it is long must not need recursion.
 TEST(BoxTreeCheck, TakesAVeryDeepTree) {
   constexpr std::uint32_t kDepth = 300'000;
   BoxTree tree;

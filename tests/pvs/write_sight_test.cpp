@@ -90,7 +90,7 @@ TEST(WriteSight, LeavesNothingInAFolderThatIsNotThere) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-// A folder of that name: all goes well until the new file is to be renamed.
+// The target is a folder, so writing succeeds until the rename.
 TEST(WriteSight, RemovesTheUnfinishedFileWhenItCannotBeRenamed) {
   const Folder folder;
   fs::create_directories(folder.file("a.sight/child"));
@@ -99,7 +99,7 @@ TEST(WriteSight, RemovesTheUnfinishedFileWhenItCannotBeRenamed) {
   EXPECT_EQ(folder.names(), Names{"a.sight"});
 }
 
-// No file may grow beyond a limit for a while, as on a full disk.
+// A limit on file sizes simulates a full disk.
 TEST(WriteSight, LeavesTheOldFileUntouchedWhenTheDiskIsFull) {
   const Folder folder;
   const std::string name = folder.file("a.sight");

@@ -119,7 +119,7 @@ TEST(Camera, CornersOfThePictureProjectToTheCornersOfClipSpace) {
   view.aspect = 2.0;
   view.near = 1.0;
   view.far = 9.0;
-  // 2 metres ahead the picture is 4 metres wide and 2 high.
+  // At 2 metres distance, the view is 4 metres wide and 2 metres high.
   Clip clip = project(clipFromScene(view), {12, 21, 28});
   EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-12);
   EXPECT_NEAR(clip.y / clip.w, 1.0, 1e-12);
@@ -142,7 +142,7 @@ TEST(Camera, NearDistanceReachesTheCornersOfTheNearPlane) {
     std::mt19937 random(seed);
     View view = randomView(random);
     view.orthographic = false;
-    // From clip space back: the corner (1, 1) of the near plane.
+    // Converts the corner (1, 1) of the near plane back from clip space.
     const Vec3d corner = view.forward * view.near +
                          view.right * (view.near * view.tan_half_fovy * view.aspect) +
                          view.up * (view.near * view.tan_half_fovy);

@@ -60,7 +60,7 @@ TEST(WeldPositions, ChangesNoCorner) {
     std::mt19937 random(seed);
     Scene scene;
     for (int i = 0; i < 300; ++i) {
-      // Few different values, so that many positions are equal.
+      // Few distinct coordinates, so that many positions are equal.
       scene.positions.emplace_back(static_cast<float>(random() % 4), static_cast<float>(random() % 4),
                                    static_cast<float>(random() % 4));
       scene.indices.push_back(static_cast<std::uint32_t>(random() % 300));

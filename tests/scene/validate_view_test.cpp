@@ -28,7 +28,7 @@ void expectSameAxes(const View& a, const View& b) {
   EXPECT_NEAR(length(a.forward - b.forward), 0.0, 1e-12);
 }
 
-// The view is in error, and the message names what is wrong.
+// Expects an error whose message names the invalid member.
 void expectError(const View& view, const std::string& member) {
   const Result<View> result = validate(view);
   ASSERT_FALSE(result) << member;
@@ -105,7 +105,7 @@ TEST(ValidateView, NamesTheMemberThatMakesNoView) {
     view.*vector = normalized(good.right + good.up * 0.3 - good.forward * 0.2);
     expectError(view, "perpendicular");
   }
-  View askew = good;  // by less than a tenth of a degree
+  View askew = good;  // the axes are off by less than a tenth of a degree
   askew.forward = normalized(good.forward + good.right * 0.0009);
   expectError(askew, "perpendicular");
   for (const bool orthographic : {false, true}) {
@@ -185,7 +185,7 @@ TEST(ClipFromScene, TakesAxesOfOtherLengthsAsTheFrustumDoes) {
   }
 }
 
-// Clip space's depth is what a very far plane makes it.
+// The clip-space depth equals that of a very far plane.
 TEST(ClipFromScene, WithAnInfiniteFarDistanceIsTheLimit) {
   for (const bool orthographic : {false, true}) {
     View view = viewAlong({1, 0.5, -2});

@@ -17,7 +17,7 @@ bool beginsWith(const std::string& name, const char* prefix) {
   return name.rfind(prefix, 0) == 0;
 }
 
-// Bounds of the objects whose names begin so.
+// Bounds of the objects whose names begin with the prefix.
 std::vector<Box> boundsOf(const Scene& scene, const char* prefix) {
   std::vector<Box> bounds;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
@@ -28,7 +28,7 @@ std::vector<Box> boundsOf(const Scene& scene, const char* prefix) {
   return bounds;
 }
 
-// Whether they share more than a face.
+// True if the boxes share more than a face.
 bool interpenetrate(const Box& a, const Box& b) {
   const Box common = intersection(a, b);
   return common.min.x < common.max.x && common.min.y < common.max.y && common.min.z < common.max.z;
@@ -132,7 +132,7 @@ TEST(BoxCity, WalksTouchNothing) {
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
       const Scene scene = makeBoxCity({.buildings = buildings, .boxes = 30 * buildings, .seed = seed});
       EXPECT_EQ(whatIsHit(scene, scene.paths[0], 0.5), "") << buildings << " buildings, seed " << seed;
-      // The views are no walk: nobody goes from one to the next.
+      // The views are not a continuous path, so no motion between them is checked.
       for (const CameraFrame& frame : scene.paths[1].frames) {
         CameraPath view;
         view.frames = {frame};

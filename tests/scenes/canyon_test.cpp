@@ -33,13 +33,13 @@ std::vector<Mat4> posesOf(const MovingScene& scene, std::uint32_t frame) {
   return poses;
 }
 
-// Within 15 %.
+// Expects a difference of at most 15 %.
 void expectAbout(double actual, double paper, const std::string& what) {
   EXPECT_NEAR(actual, paper, 0.15 * paper) << what;
 }
 
-// The terrain's height under a point, or -1e9 where there is none. From the triangles of a scene of one
-// piece.
+// The terrain's height under a point, or -1e9 if there is none. Uses the triangles of a scene whose terrain
+// is one piece.
 class Ground {
  public:
   explicit Ground(const Scene& scene, const Object& terrain) : scene_(scene), terrain_(terrain) {}
@@ -121,7 +121,7 @@ TEST(Canyon, TerrainSplitsIntoAboutThePapersPieces) {
     const auto count = static_cast<double>(pieces.size());
     const std::string grid = "grid " + std::to_string(row.grid);
     expectAbout(count, row.pieces, grid + " pieces");
-    // Between the papers "20 %" as the whole overlap, as here, and as that of each side lies a third more.
+    // The paper's "20 %" may be the whole overlap, as here, or that of each side, which is a third more.
     EXPECT_NEAR(polygons / count, row.polygons, 0.25 * row.polygons) << grid;
     expectAbout(hull_polygons / count, row.hull_polygons, grid + " hull polygons");
   }
@@ -167,7 +167,7 @@ TEST(Canyon, AircraftPartsKeepToTheirSidesOfTheirPlanesInAllFrames) {
 }
 
 TEST(Canyon, HullsOfPartsThatBelongTogetherReachThroughTheirPlanes) {
-  // Else the planes would not be needed.
+  // Otherwise the separating planes would not be needed.
   const MovingScene scene = makeCanyon({.grid = 1});
   const std::vector<Mat4> poses = posesOf(scene, 40);
   std::size_t reach_through = 0;
@@ -182,7 +182,7 @@ TEST(Canyon, HullsOfPartsThatBelongTogetherReachThroughTheirPlanes) {
     }
     reach_through += highest > lowest ? 1 : 0;
   }
-  // All but tail and rudder, which have the hinge between them.
+  // All parts except tail and rudder, which have the hinge between them.
   EXPECT_EQ(reach_through, 6u * 5u);
 }
 
@@ -203,7 +203,7 @@ TEST(Canyon, TerrainPiecesMeetOnlyTheirNeighboursAndEachHasAPlane) {
       neighbours += a < b && columns <= 1 && rows <= 1 ? 1 : 0;
     }
   }
-  // At the terrain's outline some neighbours' pieces do not reach each other.
+  // At the terrain's outline, the pieces of some neighbours do not reach each other.
   EXPECT_LE(planes, neighbours);
   EXPECT_GE(planes + 8, neighbours);
 }

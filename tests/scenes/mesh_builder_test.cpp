@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<Point2> kL = {{0, 0}, {5, 0}, {5, 2}, {2, 2}, {2, 6}, {0, 6}};  // area 18
 
-// One object made by `make`, at a placement turned about an odd angle.
+// Builds one object with `make`, at a placement turned by an odd angle.
 template <typename Make>
 Scene sceneOf(Make make) {
   Scene scene;

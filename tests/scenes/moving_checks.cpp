@@ -82,7 +82,7 @@ std::string whatSticksOut(const MovingScene& scene) {
     for (const std::uint32_t index : std::set<std::uint32_t>(indices.begin(), indices.end())) {
       const Vec3d local = partFromWorld(poses[i], Vec3d(scene.scene.positions[index]));
       for (const Plane& face : hull.faces) {
-        // What rounding in double precision leaves, of scenes of up to a kilometre.
+        // The tolerance covers rounding in double precision for scenes of up to a kilometre.
         if (face.evaluate(local) > hull.slack + 1e-11) {
           return scene.parts[i].name + " by " + std::to_string(face.evaluate(local) * 1e9) + " nm";
         }

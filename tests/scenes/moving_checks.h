@@ -1,6 +1,6 @@
 #pragma once
 
-// What the tests of the scenes with moving parts ask of any such scene.
+// Checks shared by the tests of the scenes with moving parts.
 
 #include <string>
 
@@ -8,19 +8,20 @@
 
 namespace sightline::scene_checks {
 
-// By the inverse of a rigid pose.
+// Uses the inverse of a rigid pose.
 Vec3d partFromWorld(const Mat4& world_from_part, const Vec3d& world);
 
-// Empty when everything is in order: an object, hulls, a class and a name for each part, planes between parts
-// that there are, poses that are rigid in all frames, the same again, and unchanged for static parts, a path
-// of as many frames as the scene has; otherwise what is wrong.
+// Returns an empty text if everything is valid: an object, hulls, a class and a name for each part; planes
+// between existing parts; poses that are rigid in all frames, reproducible, and constant for static parts;
+// and a path with as many frames as the scene. Otherwise returns what is wrong.
 std::string whatIsWrongWithParts(const MovingScene& scene);
 
-// Empty when in frame 0 each part's mesh lies within each of its faces' planes, for parts with one hull;
-// otherwise the part, and how far something sticks out.
+// Returns an empty text if, in frame 0, each part's mesh lies within the planes of its hull's faces, for
+// parts with one hull. Otherwise returns the part, and by how much it sticks out.
 std::string whatSticksOut(const MovingScene& scene);
 
-// Empty when all hulls' vertices, where they are in this frame, are within the view; otherwise the part.
+// Returns an empty text if the vertices of all hulls in this frame are within the view. Otherwise returns the
+// part.
 std::string whatIsOutOfView(const MovingScene& scene, std::uint32_t frame, const View& view);
 
 }  // namespace sightline::scene_checks

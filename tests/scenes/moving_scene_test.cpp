@@ -74,7 +74,7 @@ TEST(MovingScene, WhatHasNotMovedIsPlacedByTheIdentityToTheLastBit) {
   }
 }
 
-// Corner by corner, in the order of the indices.
+// Corner positions, in the order of the indices.
 std::vector<Vec3f> corners(const Scene& scene) {
   std::vector<Vec3f> all;
   for (const std::uint32_t index : scene.indices) {
@@ -126,7 +126,7 @@ TEST(MovingScene, ObjectsOfAPosedSceneShareNoPositionAndUseAll) {
   }
 }
 
-// As instances do.
+// Objects share indices when they are instances of one mesh.
 TEST(MovingScene, ObjectsThatShareTheirIndicesGoEachWhereItIs) {
   MovingScene scene = makeToothpicks({.count = 2});
   std::vector<Object>& objects = scene.scene.objects;

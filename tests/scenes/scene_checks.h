@@ -1,6 +1,6 @@
 #pragma once
 
-// What the tests of the procedural scenes ask of any scene.
+// Checks shared by the tests of the procedural scenes.
 
 #include <cstdint>
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace sightline::scene_checks {
 
-// FNV-1a over positions, indices, objects and the frames of the walks, bit by bit.
+// FNV-1a hash of all bits of positions, indices, objects and the frames of the camera paths.
 std::uint64_t hashOf(const Scene& scene);
 
-// Empty when everything is in order: indices in range, arrays of matching lengths, finite coordinates, bounds
-// exact, objects that follow each other without gaps and have at least one triangle each; otherwise what is
-// wrong.
+// Returns an empty text if everything is valid: indices in range, arrays of matching lengths, finite
+// coordinates, exact bounds, objects that follow each other without gaps and have at least one triangle each.
+// Otherwise returns what is wrong.
 std::string whatIsWrong(const Scene& scene);
 
-// Part of the triangles whose area is next to nothing.
+// Fraction of the triangles whose area is almost zero.
 double degenerateShare(const Scene& scene);
 
 struct SolidCounts {
@@ -26,17 +26,18 @@ struct SolidCounts {
 };
 SolidCounts countSolids(const Scene& scene);
 
-// Whether every edge of the object is shared by as many triangles in one direction as in the other.
+// True if every edge of the object is shared by as many triangles in one direction as in the other.
 bool isClosed(const Scene& scene, const Object& object);
-// By the divergence theorem; meaningful for closed objects. Cubic metres.
+// Volume by the divergence theorem, cubic metres; meaningful for closed objects.
 double volumeOf(const Scene& scene, const Object& object);
 
-// Empty when the camera nowhere goes through a triangle and never has one nearer than clearance metres
-// (transparent and alpha-tested ones count too); otherwise the frame and the object.
+// Returns an empty text if the camera never passes through a triangle and never comes closer to one than
+// clearance metres (including transparent and alpha-tested ones). Otherwise returns the frame and the object.
 std::string whatIsHit(const Scene& scene, const CameraPath& path, double clearance);
 
-// The largest angle between the looks of neighbouring frames, as its cosine; and the longest step, metres.
+// The cosine of the maximum angle between the viewing directions of consecutive frames.
 double smallestTurnCosine(const CameraPath& path);
+// The maximum distance between consecutive eyes, metres.
 double longestStep(const CameraPath& path);
 
 }  // namespace sightline::scene_checks

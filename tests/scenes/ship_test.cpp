@@ -28,7 +28,7 @@ struct Hit {
   std::size_t object = 0;
 };
 
-// Where along the ray it meets the triangle, and from which side; distance 1e30 when nowhere.
+// Where and from which side the ray hits the triangle; the distance is 1e30 if it does not.
 Hit meet(const Scene& scene, std::size_t first_index, const Vec3d& eye, const Vec3d& direction) {
   const auto at = [&](std::size_t k) { return Vec3d(scene.positions[scene.indices[first_index + k]]); };
   const Vec3d a = at(0), e1 = at(1) - a, e2 = at(2) - a, p = cross(direction, e2);
@@ -65,7 +65,8 @@ bool meetsBox(const Box& box, const Vec3d& eye, const Vec3d& direction) {
   return enter <= leave;
 }
 
-// Empty, or the frame and the closed object that the eye is in: there a ray leaves more often than it enters.
+// Returns an empty text, or the frame and the closed object that contains the eye: there a ray leaves the
+// object more often than it enters it.
 std::string whatHoldsTheEye(const Scene& scene, const CameraPath& path) {
   const Vec3d direction = normalized(Vec3d(0.36, 0.48, 0.81));
   for (std::size_t f = 0; f < path.frames.size(); ++f) {
@@ -85,7 +86,7 @@ std::string whatHoldsTheEye(const Scene& scene, const CameraPath& path) {
   return "";
 }
 
-// The object that is met first, by trying them all; the count of objects when there is none.
+// The object that the ray hits first, by trying all objects; the number of objects if there is none.
 std::size_t firstObject(const Scene& scene, const Vec3d& eye, const Vec3d& direction) {
   Hit nearest;
   nearest.object = scene.objects.size();
@@ -111,7 +112,7 @@ std::size_t objectsCalled(const Scene& scene, const std::string& part) {
                     [&](const std::string& name) { return name.find(part) != std::string::npos; }));
 }
 
-// Whether a face of one box covers part of a face of the other that looks the same way.
+// True if a face of one box covers part of a face of the other that faces the same way.
 bool shareAFace(const Box& a, const Box& b) {
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -190,7 +191,7 @@ TEST(Ship, WallsSlabsAndDoorsAreBoxes) {
   EXPECT_GT(count, 500u);
 }
 
-// Faces of two boxes in one plane, looking the same way and covering each other, would flicker.
+// Overlapping faces of two boxes in one plane that face the same way would flicker.
 TEST(Ship, NoFacesOfBoxesLieOnEachOther) {
   for (const std::uint32_t seed : {1u, 2u}) {
     const Scene scene = makeShip({.seed = seed});
@@ -274,7 +275,7 @@ TEST(Ship, RandomViewsTouchNothing) {
   }
 }
 
-// What is seen all round, not only in the picture: what a cell of viewpoints would keep, and more.
+// Counts the objects visible all around, not only in the picture, as the set of a cell does.
 TEST(Ship, InsideLittleOfItIsSeen) {
   constexpr std::size_t kRays = 6000;
   const Scene scene = makeShip({});

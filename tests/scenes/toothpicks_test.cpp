@@ -123,7 +123,7 @@ TEST(Toothpicks, StayInTheCubeAtAnyVelocity) {
         high = max(high, centre);
       }
     }
-    // They come close to the sides, and no farther than that.
+    // They come close to the sides but do not pass them.
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(low[axis], 0.005, 0.005);
       EXPECT_NEAR(high[axis], 0.995, 0.005);

@@ -1,10 +1,9 @@
 #pragma once
 
-// Counts what operator new hands out in this program. For one source file of a test binary.
+// Counts allocations by operator new in this program. Include it in one source file of a test binary.
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC takes the replaced operators below, which allocate by malloc, for a mismatch where it has inlined only
-// one.
+// If GCC inlines only one of the replaced operators below, which allocate by malloc, it reports a mismatch.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
 

@@ -1,12 +1,12 @@
 #pragma once
 
-// Whether convex hulls meet, and whether one occludes another, in exact arithmetic: what the tests of
-// visibility sorting compare with. Shares nothing with the library.
+// Exact tests of whether convex hulls intersect, and whether one occludes another: the reference for the
+// tests of visibility sorting. Shares no code with the library.
 //
-// Hulls of points a and b meet where sum l_i a_i = sum m_j b_j has a solution with l, m >= 0 and sums of 1:
-// a linear programme of five rows. Its first phase is solved by the simplex method with Bland's rule (which
-// ends), on whole numbers: all coordinates are multiples of one power of two, and a tableau's entries stay
-// whole if they are kept times the last pivot (Edmonds). Quick for a few dozen points.
+// Hulls of points a and b intersect if sum l_i a_i = sum m_j b_j has a solution with l, m >= 0 and sums of 1:
+// a linear program with five rows. Its first phase is solved by the simplex method with Bland's rule (which
+// terminates), in integers: all coordinates are multiples of one power of two, and the entries of a tableau
+// stay integers if they are multiplied by the last pivot (Edmonds). Fast enough for a few dozen points.
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ inline Exact exactDot(const Vec3d& a, const Vec3d& b) {
   return Exact(a.x) * Exact(b.x) + Exact(a.y) * Exact(b.y) + Exact(a.z) * Exact(b.z);
 }
 
-// Six times the volume of the tetrahedron: positive if d sees a, b, c clockwise, that is, lies behind them.
+// Six times the volume of the tetrahedron: positive if d sees a, b, c clockwise, that is, is behind them.
 inline Exact exactVolume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
   using Row = std::array<Exact, 3>;
   const auto less = [&d](const Vec3d& p) {
@@ -84,8 +84,8 @@ class Feasibility {
     return std::nullopt;
   }
 
-  // The row of least right side / entry among the positive entries; one exists, for the sum of artificial
-  // variables cannot fall without end.
+  // The row with the minimum of right side / entry among the positive entries. One exists, because the sum of
+  // the artificial variables is bounded below.
   std::size_t leaving(std::size_t column) const {
     std::size_t best = kRows;
     const Column& right = table_.back();
@@ -123,13 +123,13 @@ class Feasibility {
     basis_[pivot_row] = pivot_column;
   }
 
-  std::vector<Column> table_;  // entries times scale_; the last is the right side
-  std::vector<Whole> gain_;    // by how much the sum of artificial variables falls, times scale_
+  std::vector<Column> table_;  // entries times scale_; the last column is the right side
+  std::vector<Whole> gain_;    // decrease of the sum of artificial variables, times scale_
   std::array<std::size_t, kRows> basis_{};
   Whole scale_ = 1;
 };
 
-// Vectors times one power of two, so that all are whole.
+// Scales vectors by one power of two so that all coordinates are integers.
 class WholeVectors {
  public:
   void add(const Vec3d& v) {
@@ -157,7 +157,7 @@ class WholeVectors {
   int lowest_ = 0;
 };
 
-// Do the hull of a and the set of b's hull plus all t * ray, t >= 0, have a point in common?
+// True if the hull of a intersects the hull of b swept along all t * ray, t >= 0.
 inline bool hullMeetsSwept(std::span<const Vec3d> a, std::span<const Vec3d> b,
                            const std::optional<Vec3d>& ray) {
   WholeVectors whole;
@@ -189,14 +189,14 @@ inline bool inConvexHull(const Vec3d& point, std::span<const Vec3d> points) {
   return convexHullsIntersect(std::span(&point, 1), points);
 }
 
-// Does a ray from the eye meet the hull of `front` and then, or in the same place, that of `back`?
+// True if a ray from the eye hits the hull of `front` and then, or at the same point, that of `back`.
 inline bool occludesExactly(std::span<const Vec3d> front, std::span<const Vec3d> back, const Vec3d& eye) {
   std::vector<Vec3d> shadowed(back.begin(), back.end());
   shadowed.push_back(eye);
   return convexHullsIntersect(front, shadowed);
 }
 
-// The same for an eye without end far away in a direction (any length > 0).
+// The same for an eye infinitely far away in a direction (any length > 0).
 inline bool occludesExactlyTowards(std::span<const Vec3d> front, std::span<const Vec3d> back,
                                    const Vec3d& towards_eye) {
   return hullMeetsSwept(front, back, towards_eye);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Point sets whose convex hulls the tests of visibility sorting take for parts. All from a seed.
+// Point sets whose convex hulls serve as parts in the tests of visibility sorting. All are seeded.
 
 #include <cmath>
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace sightline::shapes {
 
-// Numbers that are the same with every standard library.
+// Random numbers that are the same with every standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
   std::uint64_t bits() { return engine_(); }
-  // In [0, count).
+  // Uniform in [0, count).
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>((engine_() >> 11) % count); }
-  // Both included.
+  // Uniform in [from, to].
   int whole(int from, int to) {
     return from + static_cast<int>(below(static_cast<std::uint32_t>(to - from) + 1));
   }
@@ -62,7 +62,7 @@ inline Points cube(const Vec3d& centre = {}, double half = 1.0) {
   return box(centre - Vec3d{half, half, half}, centre + Vec3d{half, half, half});
 }
 
-// Its corners are every second one of a cube's.
+// A tetrahedron whose corners are every second one of a cube.
 inline Points tetrahedron(const Vec3d& centre = {}, double half = 1.0) {
   return {centre + Vec3d{half, half, half}, centre + Vec3d{half, -half, -half},
           centre + Vec3d{-half, half, -half}, centre + Vec3d{-half, -half, half}};
@@ -87,7 +87,7 @@ inline Points flatPolygon(std::uint32_t sides, double radius = 1.0, double y = 0
   return points;
 }
 
-// The polygon at the heights -half_height and half_height.
+// A prism between -half_height and half_height.
 inline Points prism(std::uint32_t sides, double radius = 1.0, double half_height = 1.0) {
   Points points = flatPolygon(sides, radius, -half_height);
   const Points top = flatPolygon(sides, radius, half_height);
@@ -126,7 +126,7 @@ inline Points randomBall(Random& random, std::size_t count, const Vec3d& centre 
   return points;
 }
 
-// Whole numbers from -half to half: several in a plane, on a line, and the same ones again are common.
+// Random integers from -half to half. Coplanar, collinear and coincident points are common.
 inline Points randomGrid(Random& random, std::size_t count, int half) {
   Points points;
   for (std::size_t i = 0; i < count; ++i) {
@@ -138,7 +138,7 @@ inline Points randomGrid(Random& random, std::size_t count, int half) {
   return points;
 }
 
-// Whole numbers on a plane, on a line or in one place, whichever dimension says (2, 1, 0).
+// Random integers on a plane, on a line or at one point, for dimension 2, 1 or 0.
 inline Points randomFlatGrid(Random& random, std::size_t count, int half, int dimension) {
   const Points base = randomGrid(random, 3, half);
   Points points;

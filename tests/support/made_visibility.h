@@ -1,6 +1,7 @@
 #pragma once
 
-// Made-up baked data for tests, benchmarks and fuzzing: sound, from a seed, of any size, and about nothing.
+// Synthetic baked data for tests, benchmarks and fuzzing: valid, seeded, of any size, and not about any real
+// scene.
 
 #include <algorithm>
 #include <cmath>
@@ -17,11 +18,11 @@ namespace sightline::made {
 struct Visibility {
   std::uint32_t seed = 1;
   std::uint32_t objects = 40;
-  std::uint32_t leaves = 60;  // at least so many, of the octree
-  std::uint32_t depth = 4;    // at most, of the octree
+  std::uint32_t leaves = 60;  // minimum number of leaves of the octree
+  std::uint32_t depth = 4;    // maximum depth of the octree
   std::uint32_t sets = 30;
-  std::uint32_t set_nodes = 6;  // about so many a set
-  // One cell of so many has a plane; 0: none.
+  std::uint32_t set_nodes = 6;  // approximate number of nodes per set
+  // One cell in this many has a plane; 0: none.
   std::uint32_t plane_every = 3;
   std::vector<std::size_t> database_bytes{300, 0};
 };
@@ -46,7 +47,7 @@ inline Vec3d point(Random& random, const Vec3d& min, const Vec3d& max) {
   return {x, y, z};
 }
 
-// Appends the node of `count` objects and all below it.
+// Appends a node with `count` objects and everything below it.
 inline void appendNode(BoxTree& tree, std::uint32_t count, Random& random) {
   const auto node = static_cast<std::uint32_t>(tree.nodes.size());
   const auto first_object = static_cast<std::uint32_t>(tree.objects.size());
@@ -76,10 +77,10 @@ inline BoxTree boxTree(std::uint32_t objects, Random& random) {
   return tree;
 }
 
-// Adds nodes until the set has so many, or no more are found: not below nor above another.
+// Adds nodes to the set until it has `count`, or no more are found that are neither below nor above another.
 inline void fillSet(std::set<std::uint32_t>& set, std::size_t count, const BoxTree& tree, Random& random) {
   for (int tries = 0; tries < 1000 && set.size() < count;) {
-    // Some that lie near each other.
+    // Some nodes that are close to each other.
     const auto around = static_cast<std::uint32_t>(random() % tree.nodes.size());
     for (std::uint32_t i = 0; i < 10 && set.size() < count; ++i, ++tries) {
       const auto node = static_cast<std::uint32_t>((around + random() % 60) % tree.nodes.size());
@@ -93,7 +94,7 @@ inline void fillSet(std::set<std::uint32_t>& set, std::size_t count, const BoxTr
   }
 }
 
-// Each like the one before, but for every 64th. The second one is empty.
+// Each set is similar to the one before, except every 64th. The second one is empty.
 inline NodeSets nodeSets(const Visibility& settings, const BoxTree& tree, Random& random) {
   NodeSets sets;
   std::set<std::uint32_t> set;
@@ -111,7 +112,7 @@ inline NodeSets nodeSets(const Visibility& settings, const BoxTree& tree, Random
   return sets;
 }
 
-// Divides cells at random.
+// Divides random cells.
 inline void divideCells(VisibilityOctree& octree, const Visibility& settings, Random& random) {
   struct Cell {
     std::uint32_t node, depth;
@@ -134,7 +135,7 @@ inline void divideCells(VisibilityOctree& octree, const Visibility& settings, Ra
   }
 }
 
-// Gives the leaves below a node their numbers, depth first, and their depths.
+// Numbers the leaves below a node depth first, and sets their depths.
 inline void numberLeaves(VisibilityOctree& octree, std::uint32_t node, std::uint32_t depth) {
   if ((octree.nodes[node] & kOctreeLeaf) != 0) {
     octree.nodes[node] = kOctreeLeaf | static_cast<std::uint32_t>(octree.leaves.size());

@@ -1,12 +1,12 @@
 #pragma once
 
-// Numbers between two bounds, for tests with seeds.
+// Seeded random numbers between two bounds, for tests.
 
 #include <random>
 
 namespace sightline::test {
 
-// A function (low, high) of numbers as likely anywhere between; `random` outlives it.
+// Returns a function (low, high) of uniformly distributed numbers; `random` must outlive it.
 template <typename Real>
 auto numbersFrom(std::mt19937& random) {
   return [&random](Real low, Real high) { return std::uniform_real_distribution<Real>(low, high)(random); };

@@ -1,6 +1,6 @@
 #pragma once
 
-// The folder of real scenes, and how tests go without it.
+// The folder of real scenes, and skipping tests where it is missing.
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ inline std::filesystem::path folderOfScenes() {
 
 }  // namespace sightline::test
 
-// Ends a test where a file of that folder is missing. The scenes are other people's and too large for the
-// repository: these tests run where SIGHTLINE_SCENES names the folder, or it is in ../shared/scenes.
+// Ends a test if a file of that folder is missing. The scenes belong to others and are too large for the
+// repository, so these tests run only if SIGHTLINE_SCENES names the folder, or if it is in ../shared/scenes.
 #define SIGHTLINE_SKIP_WITHOUT_SCENE(file) \
   if (!std::filesystem::exists(file))      \
   GTEST_SKIP() << "no " << (file) << "; set SIGHTLINE_SCENES to run this test"

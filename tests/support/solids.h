@@ -1,6 +1,6 @@
 #pragma once
 
-// Closed solids for tests of convex bodies: corners, and sides as seen from outside.
+// Closed solids for tests of convex bodies: corners, and faces as seen from outside.
 
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace sightline::test {
 
 struct Solid {
   std::vector<Vec3f> points;
-  std::vector<std::vector<std::uint32_t>> faces;  // counter-clockwise from outside, flat
+  std::vector<std::vector<std::uint32_t>> faces;  // flat; counter-clockwise as seen from outside
 
   std::vector<Vec3f> polygon(std::size_t face) const {
     std::vector<Vec3f> corners;
@@ -26,7 +26,7 @@ struct Solid {
   }
 };
 
-// Corner i: bit 0 for x, bit 1 for y, bit 2 for z.
+// Bits of the corner index: bit 0 for x, bit 1 for y, bit 2 for z.
 inline Solid block(const Vec3f& low, const Vec3f& high) {
   Solid solid;
   for (int i = 0; i < 8; ++i) {
@@ -37,7 +37,7 @@ inline Solid block(const Vec3f& low, const Vec3f& high) {
   return solid;
 }
 
-// The same with each side cut into squares, `cuts` along each edge.
+// The same with each face cut into squares, `cuts` along each edge.
 inline Solid dicedBlock(const Vec3f& low, const Vec3f& high, int cuts) {
   const Solid whole = block(low, high);
   Solid solid;
@@ -74,7 +74,7 @@ inline Solid tetrahedron() {
   return {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
 }
 
-// Upright over a regular polygon, from z = -1 to 1.
+// An upright prism over a regular polygon, from z = -1 to 1.
 inline Solid prism(std::uint32_t sides) {
   Solid solid;
   std::vector<std::uint32_t> bottom, top;
@@ -93,7 +93,8 @@ inline Solid prism(std::uint32_t sides) {
   return solid;
 }
 
-// Over an L of three unit squares, with the notch at (1, 1); top and bottom of two quadrilaterals each.
+// A prism over an L of three unit squares with its notch at (1, 1); top and bottom consist of two
+// quadrilaterals each.
 inline Solid lShape() {
   Solid solid;
   constexpr std::array<std::array<float, 2>, 6> kOutline{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}};
@@ -112,14 +113,14 @@ inline Solid lShape() {
   return solid;
 }
 
-// No solid: an L with its outer corner cut off, notch at (0, 0), once with the front upwards and once
-// downwards, each of two convex halves that meet elsewhere.
+// Not a solid: an L with its outer corner cut off and its notch at (0, 0), once with its front upwards and
+// once downwards, each of two convex halves that are joined at different places.
 inline Solid notchedSheet() {
   return {{{0, 0, 0}, {0, 2, 0}, {-2, 2, 0}, {-2, -1, 0}, {-1, -2, 0}, {2, -2, 0}, {2, 0, 0}},
           {{0, 1, 2, 3}, {0, 3, 4, 5, 6}, {0, 4, 3, 2, 1}, {0, 6, 5, 4}}};
 }
 
-// Its x and y along these, which are orthonormal.
+// The solid with its x and y axes along these orthonormal vectors.
 inline Solid placed(Solid solid, const Vec3d& origin, const Vec3d& x, const Vec3d& y,
                     const Vec3d& scale = {1, 1, 1}) {
   const Vec3d z = cross(x, y);

@@ -1,8 +1,8 @@
 #pragma once
 
-// An independent, brute-force answer to "is some point of this box seen?" for scenes of a few polygons: rays
-// from the eye to points on the box against every polygon. A ray near an edge, or a point near a polygon, is
-// left undecided; only what is beyond doubt is used to accuse the code under test.
+// An independent brute-force test of whether some point of a box is visible, for scenes of a few polygons. It
+// casts rays from the eye to points on the box against every polygon. A ray near an edge, or a point near a
+// polygon, is left undecided; only results that are beyond doubt count against the code under test.
 
 #include <random>
 #include <span>
@@ -15,14 +15,14 @@
 namespace sightline::test {
 
 struct OraclePolygon {
-  std::vector<Vec3f> vertices;  // counter-clockwise from the front
+  std::vector<Vec3f> vertices;  // counter-clockwise as seen from the front
   bool double_sided = false;
 };
 
 enum class RayAnswer { kClear, kBlocked, kUndecided };
 
-// The segment from `from` to `to` against one polygon. margin: relative distance within which nothing is
-// decided.
+// Tests the segment from `from` to `to` against one polygon. margin: relative distance within which the
+// result is undecided.
 inline RayAnswer castAt(const OraclePolygon& polygon, const Vec3d& from, const Vec3d& to, double near_depth,
                         const Vec3d& forward, double margin = 1e-10) {
   const std::size_t n = polygon.vertices.size();
@@ -89,12 +89,12 @@ inline bool insideView(const View& view, const Vec3d& point) {
 }
 
 struct Sight {
-  bool seen = false;  // a point is surely seen
+  bool seen = false;  // true if a point is visible beyond doubt
   Vec3d point;
-  bool blocked = true;  // every sampled ray was surely blocked, or its point is out of view
+  bool blocked = true;  // true if every sampled ray was blocked beyond doubt, or its point is out of view
 };
 
-// Looks at `samples` random points of the box's surface, its corners and its edges' points included.
+// Tests `samples` random points of the box's surface, including its corners and points on its edges.
 inline Sight lookAt(const Box& box, const View& view, std::span<const OraclePolygon> polygons, int samples,
                     std::mt19937_64& random) {
   Sight sight;
