@@ -26,14 +26,14 @@ std::uint64_t packHit(std::uint32_t pixel, float t) {
   return (static_cast<std::uint64_t>(pixel) << 32) | std::bit_cast<std::uint32_t>(std::max(t, 0.0f));
 }
 
-void storeMin(std::atomic<std::uint64_t>& least, std::uint64_t value) {
-  std::uint64_t known = least.load(std::memory_order_relaxed);
-  while (value < known && !least.compare_exchange_weak(known, value, std::memory_order_relaxed)) {
+void storeMin(std::atomic<std::uint64_t>& min, std::uint64_t value) {
+  std::uint64_t known = min.load(std::memory_order_relaxed);
+  while (value < known && !min.compare_exchange_weak(known, value, std::memory_order_relaxed)) {
   }
 }
 
 // True if the infinite line through `origin` may intersect the box, enlarged by far more than rounding.
-bool mayMeet(const Vec3d& origin, const Vec3d& direction, const Box& box) {
+bool mayIntersect(const Vec3d& origin, const Vec3d& direction, const Box& box) {
   double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     const double slack = 1e-9 * (std::abs(origin[axis]) + std::abs(double(box.min[axis])) +
@@ -65,7 +65,7 @@ struct ExactVisibility::Impl {
                                std::vector<RayHit>& hits) const;
   void lookBeside(const View& view, ObjectId object, std::uint32_t samples, std::vector<Witness>& seen) const;
   // The minimum parameter in [near, far] at which the ray hits the object.
-  std::optional<Wide> meets(const WideRay& ray, ObjectId object, Wide near, Wide far) const;
+  std::optional<Wide> intersect(const WideRay& ray, ObjectId object, Wide near, Wide far) const;
 
   SceneView scene;
   RayScene rays;
@@ -258,11 +258,12 @@ std::vector<Witness> ExactVisibility::visibleByAimedRays(const View& view, std::
   return witnesses;
 }
 
-std::optional<Wide> ExactVisibility::Impl::meets(const WideRay& ray, ObjectId id, Wide near, Wide far) const {
+std::optional<Wide> ExactVisibility::Impl::intersect(const WideRay& ray, ObjectId id, Wide near,
+                                                     Wide far) const {
   const Object& object = scene.objects[id.value];
   const bool both_sides = scene.materialOf(object).double_sided;
   const std::span<const std::uint32_t> indices = scene.indicesOf(object);
-  std::optional<Wide> least;
+  std::optional<Wide> nearest;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     const Vec3f &a = scene.positions[indices[i]], &b = scene.positions[indices[i + 1]],
                 &c = scene.positions[indices[i + 2]];
@@ -270,11 +271,11 @@ std::optional<Wide> ExactVisibility::Impl::meets(const WideRay& ray, ObjectId id
       continue;
     }
     const std::optional<Wide> s = ray.intersect(a, b, c, both_sides);
-    if (s && *s >= near && *s <= far && (!least || *s < *least)) {
-      least = s;
+    if (s && *s >= near && *s <= far && (!nearest || *s < *nearest)) {
+      nearest = s;
     }
   }
-  return least;
+  return nearest;
 }
 
 bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
@@ -291,7 +292,7 @@ bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
     return false;
   }
   const Wide near = Wide(view.near) / depth_per_s, far = Wide(view.far) / depth_per_s;
-  const std::optional<Wide> target = impl_->meets(ray, witness.object, near, far);
+  const std::optional<Wide> target = impl_->intersect(ray, witness.object, near, far);
   if (!target) {
     return false;
   }
@@ -299,8 +300,8 @@ bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
   for (std::uint32_t o = 0; o < impl_->bounds.size(); ++o) {
     const Object& object = impl_->scene.objects[o];
     if (ObjectId(o) != witness.object && impl_->scene.materialOf(object).opaque() &&
-        mayMeet(origin, direction, impl_->bounds[o])) {
-      const std::optional<Wide> blocker = impl_->meets(ray, ObjectId(o), near, far);
+        mayIntersect(origin, direction, impl_->bounds[o])) {
+      const std::optional<Wide> blocker = impl_->intersect(ray, ObjectId(o), near, far);
       if (blocker && *blocker < before) {
         return false;
       }

@@ -49,7 +49,7 @@ OctreeCell cellOf(std::uint64_t id) {
 }
 
 std::string problemWith(const BakeSettings& s) {
-  const auto usable = [](double value, double least, double most) { return value >= least && value <= most; };
+  const auto usable = [](double value, double min, double max) { return value >= min && value <= max; };
   if (s.max_depth > kMaxOctreeDepth && s.max_depth != BakeSettings::kChooseDepth) {
     return "max_depth is " + std::to_string(s.max_depth) + "; at most " + std::to_string(kMaxOctreeDepth);
   }

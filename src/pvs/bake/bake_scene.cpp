@@ -24,10 +24,10 @@ std::vector<std::uint32_t> trianglesOf(const SceneView& scene) {
 
 // True if test(index of the box) holds for one of the boxes that intersect this one. Stops at the first.
 template <typename Test>
-bool anyMeeting(const BoxTree& tree, const CellBox& box, Test&& test) {
+bool anyIntersecting(const BoxTree& tree, const CellBox& box, Test&& test) {
   for (std::uint32_t n = 0; n < tree.nodes.size();) {
     const BoxNode& node = tree.nodes[n];
-    if (!meet(box, node.bounds)) {
+    if (!intersects(box, node.bounds)) {
       n = node.end;
       continue;
     }
@@ -41,8 +41,8 @@ bool anyMeeting(const BoxTree& tree, const CellBox& box, Test&& test) {
 
 // Calls visit(index of the box) for all boxes that intersect this one.
 template <typename Visit>
-void forEachMeeting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
-  anyMeeting(tree, box, [&](std::uint32_t i) {
+void forEachIntersecting(const BoxTree& tree, const CellBox& box, Visit&& visit) {
+  anyIntersecting(tree, box, [&](std::uint32_t i) {
     visit(i);
     return false;
   });
@@ -109,7 +109,7 @@ std::uint64_t cellsOfRegion(const CellBox& root, const CellBox& region, std::uin
 std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox& region,
                         const OctreeCell& cell, std::uint32_t level, std::uint64_t limit) {
   const CellBox box{cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
-  if (!meet(box, region) || !anyMeeting(boxes, box, [](std::uint32_t) { return true; })) {
+  if (!intersects(box, region) || !anyIntersecting(boxes, box, [](std::uint32_t) { return true; })) {
     return 0;
   }
   if (cell.level == level) {
@@ -221,7 +221,7 @@ void BakeScene::countOccluders() {
 bool BakeScene::mayDivide(const OctreeCell& cell) const {
   return cell.level < base_depth_ ||
          (cell.level < settings.max_depth &&
-          anyMeeting(reach_tree_, boxOf(cell), [](std::uint32_t) { return true; }));
+          anyIntersecting(reach_tree_, boxOf(cell), [](std::uint32_t) { return true; }));
 }
 
 bool BakeScene::ofUse(const ConvexOccluder& occluder, std::uint32_t level) const {
@@ -245,13 +245,13 @@ void BakeScene::findOccluders(const CellBox& box, std::uint32_t level,
                               std::vector<std::uint32_t>& found) const {
   const LevelOccluders& at_level = levels_[level];
   const auto before = static_cast<std::ptrdiff_t>(found.size());
-  forEachMeeting(at_level.tree, box, [&](std::uint32_t i) { found.push_back(at_level.occluders[i]); });
+  forEachIntersecting(at_level.tree, box, [&](std::uint32_t i) { found.push_back(at_level.occluders[i]); });
   std::sort(found.begin() + before, found.end());
 }
 
 void BakeScene::findFaces(const CellBox& box, std::vector<DividingFace>& found) const {
   std::vector<std::uint32_t> numbers;
-  forEachMeeting(face_tree_, box, [&](std::uint32_t i) { numbers.push_back(i); });
+  forEachIntersecting(face_tree_, box, [&](std::uint32_t i) { numbers.push_back(i); });
   std::sort(numbers.begin(), numbers.end());
   for (const std::uint32_t i : numbers) {
     found.push_back(faces_[i]);
@@ -260,8 +260,8 @@ void BakeScene::findFaces(const CellBox& box, std::vector<DividingFace>& found) 
 
 bool BakeScene::holdsSmallOccluders(const CellBox& box, std::uint32_t level) const {
   const LevelOccluders& of_any_use = levels_.back();
-  return anyMeeting(of_any_use.tree, box,
-                    [&](std::uint32_t i) { return !ofUse(occluders[of_any_use.occluders[i]], level); });
+  return anyIntersecting(of_any_use.tree, box,
+                         [&](std::uint32_t i) { return !ofUse(occluders[of_any_use.occluders[i]], level); });
 }
 
 bool BakeScene::holdsAllOccluders(const CellBox& box) const {

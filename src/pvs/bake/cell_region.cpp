@@ -179,15 +179,15 @@ std::vector<Vec3d> cornersOf(const CellBox& cell) {
   return corners;
 }
 
-std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double least) {
+std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double level) {
   std::vector<Vec3d> corners;
   for (std::uint32_t i = 0; i < 8; ++i) {
-    if (dot(normal, cell.corner(i)) >= least) {
+    if (dot(normal, cell.corner(i)) >= level) {
       corners.push_back(cell.corner(i));
     }
   }
   if (!corners.empty() && corners.size() < 8) {
-    const std::vector<Vec3d> cut = crossSection(cell, normal, least);
+    const std::vector<Vec3d> cut = crossSection(cell, normal, level);
     corners.insert(corners.end(), cut.begin(), cut.end());
   }
   return corners;

@@ -25,21 +25,21 @@ struct CellBox {
 };
 
 // True if the closed boxes intersect.
-inline bool meet(const CellBox& a, const CellBox& b) {
+inline bool intersects(const CellBox& a, const CellBox& b) {
   return a.min.x <= b.max.x && a.min.y <= b.max.y && a.min.z <= b.max.z && a.max.x >= b.min.x &&
          a.max.y >= b.min.y && a.max.z >= b.min.z;
 }
 
-inline bool meet(const CellBox& a, const Box& b) {
-  return meet(a, CellBox{Vec3d(b.min), Vec3d(b.max)});
+inline bool intersects(const CellBox& a, const Box& b) {
+  return intersects(a, CellBox{Vec3d(b.min), Vec3d(b.max)});
 }
 
 std::vector<Vec3d> cornersOf(const CellBox& cell);
 
-// The corners of the part of the cell with dot(normal, x) >= least: corners of the cell and points on its
-// edges. Every point of the cell with dot(normal, x) >= least + sideMargin(cell) is within their convex hull,
+// The corners of the part of the cell with dot(normal, x) >= level: corners of the cell and points on its
+// edges. Every point of the cell with dot(normal, x) >= level + sideMargin(cell) is within their convex hull,
 // including rounding. Empty if there is no such part.
-std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double least);
+std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double level);
 // A bound in metres on the rounding of dot(normal, x) for all x in the box, wherever it is computed. The
 // margin of a root is valid for its cells.
 double sideMargin(const CellBox& cell);

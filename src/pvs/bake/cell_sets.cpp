@@ -120,7 +120,7 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance) {
 void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
   chooseOccluders(cell, search_distance, cell.level);
   const CellBox known = searchBox(cell, searched);
-  std::erase_if(chosen_, [&](std::uint32_t i) { return meet(known, scene_.occluders[i].bounds); });
+  std::erase_if(chosen_, [&](std::uint32_t i) { return intersects(known, scene_.occluders[i].bounds); });
   removeHidden(scene_.boxOf(cell), sets);
 }
 

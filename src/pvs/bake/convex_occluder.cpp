@@ -20,17 +20,17 @@ constexpr double kMaxShrinking = 0.25;
 constexpr double kRoundUp = 1.0 + 0x1p-30, kRoundDown = 1.0 - 0x1p-30;
 
 // The smaller of two numbers; NaN if either is NaN.
-double lesser(double a, double b) {
+double smaller(double a, double b) {
   return b < a || std::isnan(b) ? b : a;
 }
 
 // At least |x| + |y| + |z| of each of these points.
 double sizeOf(std::span<const Vec3f> points) {
-  Vec3d most;
+  Vec3d largest;
   for (const Vec3f& point : points) {
-    most = max(most, abs(Vec3d(point)));
+    largest = max(largest, abs(Vec3d(point)));
   }
-  return l1Norm(most) * kRoundUp;
+  return l1Norm(largest) * kRoundUp;
 }
 
 Vec3d meanOf(std::span<const Vec3f> points) {
@@ -48,12 +48,12 @@ double shrinking(double margin, double depth) {
 
 // Minimum distance from the centre, which lies in the plane, to the lines of a convex polygon's edges.
 double depthIn(std::span<const Vec3d> corners, const Vec3d& normal, const Vec3d& centre) {
-  double least = INFINITY;
+  double minimum = INFINITY;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3d along = corners[(i + 1) % corners.size()] - corners[i];
-    least = lesser(least, dot(cross(normal, along), centre - corners[i]) / length(along));
+    minimum = smaller(minimum, dot(cross(normal, along), centre - corners[i]) / length(along));
   }
-  return least;
+  return minimum;
 }
 
 // Depths of a body, metres.
@@ -65,7 +65,7 @@ struct BodyDepth {
 BodyDepth depthIn(std::span<const BodyFace> faces, std::span<const Vec3f> vertices, const Vec3d& centre) {
   BodyDepth depth;
   for (const BodyFace& face : faces) {
-    depth.centre = lesser(depth.centre, -face.plane.evaluate(centre));
+    depth.centre = smaller(depth.centre, -face.plane.evaluate(centre));
     for (const Vec3f& vertex : vertices) {
       depth.outside = std::max(depth.outside, face.plane.evaluate(Vec3d(vertex)));
     }
@@ -166,14 +166,14 @@ bool ConvexOccluders::addBody(const OccluderSet& set, const OccluderBody& body) 
       DrawnFace& face = drawn_faces[side];
       for (const std::uint8_t vertex : {edge.from, edge.to}) {
         const double height = dot(face.plane.normal, drawn(vertex) - face.base);
-        face.least = std::min(face.least, height);
-        face.most = std::max(face.most, height);
+        face.min_height = std::min(face.min_height, height);
+        face.max_height = std::max(face.max_height, height);
       }
     }
   }
   for (DrawnFace& face : drawn_faces) {
-    face.least -= kHeightRounding * size;
-    face.most += kHeightRounding * size;
+    face.min_height -= kHeightRounding * size;
+    face.max_height += kHeightRounding * size;
   }
   occluders_.push_back(occluder);
   return true;
@@ -217,11 +217,11 @@ namespace {
 
 // Minimum height of the points above a plane, less its rounding.
 double minHeight(const Plane& plane, double size, std::span<const Vec3d> points) {
-  double least = INFINITY;
+  double minimum = INFINITY;
   for (const Vec3d& point : points) {
-    least = lesser(least, plane.evaluate(point) - kHeightRounding * (l1Norm(point) + size));
+    minimum = smaller(minimum, plane.evaluate(point) - kHeightRounding * (l1Norm(point) + size));
   }
-  return least;
+  return minimum;
 }
 
 // Distance of the points from a box along each axis; negative where they overlap.
@@ -253,8 +253,8 @@ bool separated(const ConvexOccluders& all, const ConvexOccluder& occluder, std::
     gap = std::max(gap, maxComponent(gaps) * kRoundDown);
   }
   // The margin exceeds the distance of the triangles from the planes and from the bounds.
-  const double apart = std::max(gap, length(max(gaps, Vec3d())) * kRoundDown);
-  return gap > occluder.margin && apart - occluder.margin > near_distance;
+  const double distance = std::max(gap, length(max(gaps, Vec3d())) * kRoundDown);
+  return gap > occluder.margin && distance - occluder.margin > near_distance;
 }
 
 }  // namespace sightline::pvs

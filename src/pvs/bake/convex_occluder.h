@@ -40,9 +40,10 @@ struct DrawnEdge {
 // A face of a body, or the polygon.
 struct DrawnFace {
   Plane plane;  // not inset; unit normal, outwards (polygon: to its front); scene space
-  // All corners x of the inset face have least <= dot(plane.normal, x - base) <= most, including rounding.
+  // All corners x of the inset face have min_height <= dot(plane.normal, x - base) <=
+  // max_height, including rounding.
   Vec3d base;
-  double least = 0.0, most = 0.0;
+  double min_height = 0.0, max_height = 0.0;
 };
 
 struct ConvexOccluder {

@@ -71,14 +71,14 @@ bool shadowOfPolygon(const ConvexOccluders& all, const ConvexOccluder& occluder,
   const DrawnFace& face = all.facesOf(occluder).front();
   const Vec3d base = maker.fromEye(face.base);
   const double depth = dot(face.plane.normal, base), rounding = maker.heightRounding(base);
-  const double least = occluder.margin + face.most + rounding;
-  if (!(depth < -least || (occluder.double_sided && depth > least))) {
+  const double min_depth = occluder.margin + face.max_height + rounding;
+  if (!(depth < -min_depth || (occluder.double_sided && depth > min_depth))) {
     return false;
   }
   // The side that the eye is on, where edges run counter-clockwise.
   const double side = depth < 0.0 ? 1.0 : -1.0;
   const Vec3d outwards = face.plane.normal * side;
-  maker.addDepth(-outwards, std::abs(depth) + occluder.margin + face.most + rounding);
+  maker.addDepth(-outwards, std::abs(depth) + occluder.margin + face.max_height + rounding);
   const Vec3d across = outwards * occluder.margin;
   for (const DrawnEdge& edge : all.edgesOf(occluder)) {
     const Vec3d from = maker.fromEye(edge.from), along = edge.along * side;
@@ -101,9 +101,9 @@ bool shadowOfBody(const ConvexOccluders& all, const ConvexOccluder& occluder, Sh
     const DrawnFace& face = faces[i];
     const Vec3d base = maker.fromEye(face.base);
     const double depth = -dot(face.plane.normal, base), rounding = maker.heightRounding(base);
-    if (depth - face.most > rounding) {
+    if (depth - face.max_height > rounding) {
       front |= 1u << i;
-      maker.addDepth(-face.plane.normal, depth - face.least + rounding);
+      maker.addDepth(-face.plane.normal, depth - face.min_height + rounding);
     }
   }
   for (const DrawnEdge& edge : all.edgesOf(occluder)) {

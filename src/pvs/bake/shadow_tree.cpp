@@ -202,7 +202,7 @@ std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
   const std::vector<bool> broken = brokenNodes(tree);
   std::vector<NodeBox> boxes(tree.nodes.size(), NodeBox{{}, infinite, infinite});
   // Minimum half extents of the leaves below that may be hidden.
-  std::vector<Vec3d> least(tree.nodes.size(), infinite);
+  std::vector<Vec3d> min_half(tree.nodes.size(), infinite);
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
     const auto node = static_cast<std::uint32_t>(i);
     NodeBox& box = boxes[i];
@@ -210,13 +210,13 @@ std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
       const Vec3d low(tree.nodes[i].bounds.min), high(tree.nodes[i].bounds.max);
       box.centre = center(tree.nodes[i].bounds);
       box.half = max(high - box.centre, box.centre - low) * (1.0 + 0x1p-50);
-      least[i] = tree.leaf(node) ? box.half : least[i];
+      min_half[i] = tree.leaf(node) ? box.half : min_half[i];
     }
     for (std::uint32_t child = node + 1; child < tree.nodes[i].end; child = tree.nodes[child].end) {
-      least[i] = min(least[i], least[child]);
+      min_half[i] = min(min_half[i], min_half[child]);
     }
     if (!broken[i]) {
-      box.room = box.half - least[i] * 2.0;
+      box.room = box.half - min_half[i] * 2.0;
     }
   }
   return boxes;

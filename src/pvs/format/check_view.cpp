@@ -38,10 +38,10 @@ Status checkSets(const SightView& view) {
     }
     chunks_begun += begins ? 1 : 0;
     sets_in_chunk = begins ? 1 : sets_in_chunk + 1;
-    const std::uint64_t most =
+    const std::uint64_t max_bytes =
         sets_in_chunk > 1 ? kMaxSetChunkBytes
                           : std::max<std::uint64_t>(kMaxSetChunkBytes, maxSetBytes(view.boxes.nodes.size()));
-    if (view.chunks[chunk].raw_bytes > most) {
+    if (view.chunks[chunk].raw_bytes > max_bytes) {
       return Error{"a chunk of sets claims more bytes than sets can have (set " + std::to_string(set) + ")"};
     }
   }

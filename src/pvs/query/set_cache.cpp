@@ -53,8 +53,8 @@ void SetCache::linkAsNewest(std::uint32_t slot) {
 // Reuses the slot's storage unless much of it would be unused.
 void SetCache::setNodes(Slot& slot, std::span<const std::uint32_t> nodes) {
   bytes_ -= storageOf(slot.nodes);
-  const std::size_t most = nodes.size() + nodes.size() / 4 + 16;
-  if (slot.nodes.capacity() < nodes.size() || slot.nodes.capacity() > most) {
+  const std::size_t max_capacity = nodes.size() + nodes.size() / 4 + 16;
+  if (slot.nodes.capacity() < nodes.size() || slot.nodes.capacity() > max_capacity) {
     std::vector<std::uint32_t>().swap(slot.nodes);
   }
   slot.nodes.assign(nodes.begin(), nodes.end());
