@@ -26,8 +26,8 @@ std::size_t allocationsIn(AnyCuller& culler, std::span<const View> views,
 std::vector<NamedSettings> allSettings() {
   std::vector<NamedSettings> all(std::begin(kStructures), std::end(kStructures));
   all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
-  all.push_back({"little room",
-                 {.method = AnyMethod::kKeptPlanes, .kept_planes = {.relation_bytes = 100'000}}});
+  all.push_back(
+      {"little room", {.method = AnyMethod::kKeptPlanes, .kept_planes = {.relation_bytes = 100'000}}});
   for (const NamedSettings& method : kMethods) {
     NamedSettings with_database = method;
     with_database.settings.use_lists = true;

@@ -123,8 +123,7 @@ INSTANTIATE_TEST_SUITE_P(All, MovingOccluders,
 TEST(MovingOccluders, LeaveNoRelationsBehind) {
   Crossing scene;
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {}, {.max_leaf_objects = 1});
-  const AnySettings settings{.method = AnyMethod::kKeptPlanes,
-                             .kept_planes = {.joint_occlusion = false}};
+  const AnySettings settings{.method = AnyMethod::kKeptPlanes, .kept_planes = {.joint_occlusion = false}};
   const OccluderSet none;
   AnyCuller culler(hierarchy, scene.bounds, none, settings);
   for (int frame = 0; frame < Crossing::kFrames; ++frame) {

@@ -61,8 +61,8 @@ int main() {
                  opacity.tolerance == 0 && tree.variant == OcclusionTreeVariant::kFSE &&
                  !planes.joint_occlusion && hierarchy.kind == HierarchyKind::kKdTree &&
                  occluders.max_vertices == 8 && choice.count == 8 && database.directions == 8 &&
-                 query.cache_bytes == 1024 && layers.all_arcs &&
-                 part.is_static && axis.kind == ExtentAxis::Kind::kAngular && plane.plane.offset > 0.0 &&
+                 query.cache_bytes == 1024 && layers.all_arcs && part.is_static &&
+                 axis.kind == ExtentAxis::Kind::kAngular && plane.plane.offset > 0.0 &&
                  joint.sphere_radius > 1.0 && split.count == 2 && cylinder.sectors == 6 &&
                  hexagons.width > 1.0 && view.near > 0.5 && frame.forward.z < 0.0 && path.near > 0.5 &&
                  object.index_count == 3 && material.double_sided && scene.objects.empty() &&

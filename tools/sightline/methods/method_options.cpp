@@ -111,8 +111,8 @@ Value resolution(Field<RasterSettings> field) {
     field(setting).height = *height;
     return true;
   };
-  return {": WIDTHxHEIGHT", fmt::format("a size in pixels like 320x180, each from 1 to {}", kMaxBufferSize), set,
-          [field](Setting setting) {
+  return {": WIDTHxHEIGHT", fmt::format("a size in pixels like 320x180, each from 1 to {}", kMaxBufferSize),
+          set, [field](Setting setting) {
             return Json(fmt::format("{}x{}", field(setting).width, field(setting).height));
           }};
 }
