@@ -1,11 +1,12 @@
 // Based on: Goldsmith, Salmon. Automatic Creation of Object Hierarchies for Ray Tracing. IEEE Computer
-// Graphics and Applications 1987. Objects are inserted one after the other, each where it adds least to the
-// cost of the tree,
+// Graphics and Applications 1987. Objects are inserted one after the other, each where it increases
+// the cost of the tree by the smallest amount,
 //
 //   cost = sum over inner nodes of area(node) * children(node),
 //
 // the boxes that a ray through the scene is expected to be compared with. An object becomes one more child of
-// an inner node, or makes a pair with a leaf. On the way down, the child whose area grows least is followed.
+// an inner node, or makes a pair with a leaf. On the way down, the child with the smallest growth of area is
+// followed.
 //
 // Differs from the paper in: a node has at most kMaxChildren children, or equal boxes would all be children
 // of one; the order of insertion is a fixed random one, not the best of several; below kCostLevels levels the
@@ -106,10 +107,11 @@ class Inserter {
     }
   }
 
-  // The inner child that grows least, of such the one with the fewest objects; kNone without inner children.
+  // The inner child with the smallest growth, of several the one with the fewest objects; kNone without inner
+  // children.
   std::uint32_t nextByCost(const Node& node, const Box& box, double above, Place& best) const {
     std::uint32_t next = kNone;
-    double least = 0.0;
+    double min_growth = 0.0;
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       const Node& child = nodes_[node.children[i]];
       const double grown = areaOf(both(child.bounds, box));
@@ -118,9 +120,10 @@ class Inserter {
         continue;
       }
       const double growth = grown - areaOf(child.bounds);
-      if (next == kNone || growth < least || (growth == least && child.objects < nodes_[next].objects)) {
+      if (next == kNone || growth < min_growth ||
+          (growth == min_growth && child.objects < nodes_[next].objects)) {
         next = node.children[i];
-        least = growth;
+        min_growth = growth;
       }
     }
     return next;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the two builders share: items, and the flat array that grows in depth-first order.
+// Shared by both builders: the items, and the flat array of nodes that grows in depth-first order.
 
 #include <span>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace sightline::hierarchy {
 
-// An object's box, or what of it lies in a kd-tree's region.
+// The box of an object, or of its part in a region of a kd-tree.
 struct Item {
   Box box;
   ObjectId object;

@@ -10,7 +10,7 @@
 
 namespace sightline::hierarchy {
 
-// Children that a node has at most, but for one made of a leaf with more objects.
+// The largest number of children of a node, except of one made from a leaf with more objects.
 inline constexpr std::uint32_t kWideChildren = 16;
 
 // Its children are a range of WideHierarchy::boxes: first the nodes, the ones with most triangles first, then

@@ -1,7 +1,7 @@
 #pragma once
 
-// Convex bodies among the polygons of an object: what encloses a convex solid hides as a whole, so that
-// structures in image space need its outline only.
+// Convex bodies among the polygons of an object. Polygons that enclose a convex solid hide as a whole, so
+// that structures in image space need only its outline.
 
 #include <cstdint>
 #include <span>

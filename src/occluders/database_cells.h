@@ -1,7 +1,7 @@
 #pragma once
 
-// The cells of the occluder database: regions of a kd-tree's nodes, as a small tree of split planes of their
-// own, because a Hierarchy keeps only tight boxes.
+// The cells of the occluder database are regions of a kd-tree's nodes. They are kept as a small tree of split
+// planes of their own, because a Hierarchy keeps only tight boxes.
 
 #include <cstdint>
 #include <vector>
@@ -13,8 +13,8 @@
 
 namespace sightline::occluders {
 
-// Inner: points with p[axis] < plane are in nodes[link], all others, NaN too, in nodes[link + 1].
-// A cell: axis is kCell and link its number.
+// An inner node: points with p[axis] < plane are in nodes[link], all others, also NaN, in nodes[link + 1].
+// A cell: axis is kCell, and link is the number of the cell.
 struct CellNode {
   static constexpr std::uint32_t kCell = 3;
   float plane = 0.0f;
@@ -24,7 +24,7 @@ struct CellNode {
 
 inline constexpr std::uint32_t kMaxCells = 1u << 30;
 
-// For each cell: a tree of n cells has 2 n - 1 nodes.
+// Memory for each cell: a tree of n cells has 2 n - 1 nodes.
 inline constexpr std::size_t kBytesPerCell = 2 * sizeof(CellNode) + sizeof(Box);
 
 struct CellTree {
@@ -32,12 +32,12 @@ struct CellTree {
   static constexpr std::uint32_t maxCount(std::uint32_t) { return kMaxCells; }
 
   std::vector<CellNode> nodes;  // [0] is the root
-  // By cell. Together they tile the box of the root, enlarged a little; beyond it the outermost cells go on
-  // to infinity, which their boxes here do not say.
+  // The box of each cell. Together they tile the slightly enlarged box of the root. The outermost cells go on
+  // to infinity beyond it, which their boxes here do not show.
   std::vector<Box> regions;
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(regions.size()); }
-  // Every point is in one cell. At most as many comparisons as the hierarchy has levels.
+  // The one cell that holds the point. Takes at most as many comparisons as the hierarchy has levels.
   std::uint32_t cellOf(const Vec3d& point) const;
   std::size_t bytes() const;  // beside the object itself
 

@@ -13,7 +13,7 @@
 
 namespace sightline::occluders {
 
-// What the score of an occluder depends on. Metres, square metres.
+// What the score of an occluder depends on, in metres and square metres.
 struct Candidate {
   Vec3d centroid;
   Plane plane;  // unit normal
@@ -23,17 +23,17 @@ struct Candidate {
   bool double_sided = false;
 };
 
-// The occluders of a set in a hierarchy over their centroids.
+// A hierarchy over the centroids of a set's occluders.
 class CandidateTree {
  public:
-  // Those without area or with coordinates that are not finite are left out. turned_away: with their backs
-  // for fronts.
+  // Leaves out occluders without area or with coordinates that are not finite. turned_away: swaps front and
+  // back of each occluder.
   explicit CandidateTree(const OccluderSet& set, bool turned_away = false);
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(candidates_.size()); }
   const Box& bounds() const { return bounds_; }  // of the centroids; empty without candidates
 
-  // Bounds what lies below a node.
+  // A node bounds the candidates below it.
   struct Node {
     Vec3d min, max;  // of the centroids
     double max_area = 0.0;
@@ -57,14 +57,15 @@ struct ListSettings {
   AreaAngleDirection direction = AreaAngleDirection::kOccluder;
 };
 
-// Keeps its storage from cell to cell. One for each thread.
+// Finds the lists of one cell after the other, and keeps its storage. Each thread has one of its own.
 class ListFinder {
  public:
   ListFinder(const CandidateTree& tree, const occluders::SphereDirections& directions,
              const ListSettings& settings);
 
-  // Exactly the k best by score for each direction, best first, ties by id: those of direction d are written
-  // to ids[d * k], ..., and their number to counts[d]. ids: directions * k entries; counts: directions.
+  // Finds exactly the k best occluders by score for each direction, best first, ties by id. Those of
+  // direction d are written from ids[d * k] on, their number to counts[d]. ids: directions * k entries;
+  // counts: one for each direction.
   void find(const Box& cell, std::span<OccluderId> ids, std::span<std::uint32_t> counts);
 
  private:
@@ -72,8 +73,8 @@ class ListFinder {
     Vec3d min, max, center;
     double radius = 0.0;  // of the sphere around the box
   };
-  // What is to be opened or taken next: the largest bound first; of equal ones nodes before occluders, these
-  // by id.
+  // A node to be opened, or an occluder to be taken. The largest bound comes first; of equal ones nodes come
+  // before occluders, and these by id.
   struct Entry {
     double bound = 0.0;
     std::uint32_t rank = 0;   // node: 0, occluder: id + 1

@@ -13,11 +13,11 @@
 
 namespace sightline::occluders {
 
-// Does not change once a ListPacker has made it, or load.
+// Made by a ListPacker or by load(); does not change afterwards.
 class PackedLists {
  public:
   std::size_t size() const { return lists_.size(); }
-  // In the order in which they were added. index < size().
+  // The list that was added as number `index` < size().
   std::span<const OccluderId> operator[](std::size_t index) const {
     return std::span(ids_).subspan(lists_[index].first, lists_[index].length);
   }
@@ -25,13 +25,13 @@ class PackedLists {
   // The different lists that are not empty, in the order in which they first occur: their number (64 bits)
   // and lengths (32); for each list 0 if it is empty, else which of those it is, from 1 (64); their ids (32).
   void save(base::ByteWriter& writer) const;
-  // So many lists of ids < occluder_count. Takes no more memory than some times the bytes.
+  // Reads so many lists of ids < occluder_count. Allocates at most a few times as much as the bytes take.
   static Result<PackedLists> load(base::ByteReader& reader, std::uint64_t lists,
                                   std::uint32_t occluder_count);
   static constexpr std::size_t savedBytesPerList() { return sizeof(std::uint64_t); }  // at least
 
   std::size_t bytes() const;  // beside the object itself
-  // That a list takes beside its entries.
+  // Memory that a list takes beside its entries.
   static constexpr std::size_t bytesPerList() { return sizeof(List); }
 
  private:
@@ -49,16 +49,15 @@ class PackedLists {
   std::vector<OccluderId> ids_;
 };
 
-// Lists of neighbouring cells, points and directions often agree: what is equal to an earlier list refers to
-// it.
+// Packs lists one after the other. Lists of neighbouring cells, points and directions are often equal: a list
+// that equals an earlier one refers to it.
 class ListPacker {
  public:
-  // Room for so many lists with so many entries together, none of them equal. With it nothing moves while
-  // they are added.
+  // Reserves room for so many lists with so many entries together, even if no two are equal.
   ListPacker(std::size_t lists, std::size_t entries);
 
   void add(std::span<const OccluderId> list);
-  // Takes no more than is needed, and leaves this empty.
+  // The packed lists, without unused memory; leaves this empty.
   PackedLists finish();
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// From the triangles of one object to convex polygons; used by findOccluders and makeOccluders.
+// Makes convex polygons of the triangles of one object, for findOccluders() and makeOccluders().
 
 #include <array>
 #include <cstdint>
@@ -28,8 +28,8 @@ struct FoundPolygon {
   std::uint32_t body_size = 0;   // polygons that it has
 };
 
-// Geometry is equal when it differs by no more than this: eight units in the last place of single-precision
-// coordinates of that size.
+// Places count as equal when they differ by no more than this: eight units in the last place of
+// single-precision coordinates of that size.
 double roundingTolerance(double largest_coordinate);
 
 // A coplanar, connected set of triangles, consistently wound.

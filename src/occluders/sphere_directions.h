@@ -20,13 +20,13 @@ class SphereDirections {
   std::uint32_t count() const { return static_cast<std::uint32_t>(directions_.size()); }
   const Vec3d& operator[](std::uint32_t index) const { return directions_[index]; }
 
-  // The one with the largest cosine, of several the lowest index: what trying all of them would find, up to
-  // the rounding of one scalar product. Any length; zero and what is not finite: 0. It tries the few
-  // directions listed for one texel of a cube, about three.
+  // The index of the direction with the largest cosine, of several the lowest: what trying all directions
+  // would find, up to the rounding of one scalar product. The argument may have any length; zero and what is
+  // not finite give 0. Tries only the directions listed for one texel of a cube, about three.
   std::uint32_t nearest(const Vec3d& direction) const;
 
-  // Bounds the angle between any direction and its nearest one, radians; at most 2% of 2 / sqrt(count) too
-  // large.
+  // Bounds the angle between any direction and its nearest one, in radians. The bound is too large by at most
+  // 2 % of 2 / sqrt(count).
   double coveringAngle() const { return covering_angle_; }
 
   std::size_t bytes() const;  // beside the object itself

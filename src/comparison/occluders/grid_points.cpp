@@ -21,7 +21,7 @@ double extentOf(const Vec3d& low, const Vec3d& high) {
   return length(high - low);
 }
 
-// Numbers of the layer of each viewpoint, and the height of each layer: that of its lowest viewpoint.
+// The layer of each viewpoint, and the height of each layer: that of its lowest viewpoint.
 struct Layers {
   std::vector<std::int64_t> layer_of;
   std::vector<double> height;
@@ -46,8 +46,8 @@ Layers layersOf(std::span<const Vec3d> viewpoints, double thickness) {
   return layers;
 }
 
-// In the order in which the viewpoints come to them. Ends early, with one point too many, when there are more
-// than max_points.
+// The grid points nearest to the viewpoints, in the order of these. Ends early, with one point too many, when
+// there are more than max_points.
 std::vector<Vec3d> pointsNear(std::span<const Vec3d> viewpoints, double spacing, std::uint32_t max_points) {
   const Layers layers = layersOf(viewpoints, spacing / kLayersPerSpacing);
   const Vec3d origin = viewpoints[0];

@@ -1,6 +1,6 @@
 #pragma once
 
-// The points of a grid that an occluder database is made for, and which of them is the nearest.
+// The grid points of a viewpoint database, and the search for the nearest of them.
 
 #include <cstdint>
 #include <span>
@@ -19,25 +19,26 @@ struct PointGrid {
   double spacing = 0.0;       // metres
 };
 
-// The grid points near viewpoints, or of a whole box, as ViewpointDatabase::build has it: at most max_points
-// (> 0). bounds: of the scene; empty or broken: a box without extent at the origin. spacing: not finite or
-// not positive: chosen.
+// The grid points near viewpoints, or of a whole box: see ViewpointDatabase::build. There are at most
+// max_points
+// (> 0). bounds: of the scene; empty or broken bounds count as a box without extent at the origin. spacing:
+// in metres; chosen where it is not finite or not positive.
 PointGrid makeGrid(const Box& bounds, std::span<const Vec3d> viewpoints, double spacing,
                    std::uint32_t max_points);
 
-// Finds the nearest of some points. Does not change once it is made.
+// A kd-tree that finds the nearest of some points. Does not change once it is made.
 class PointTree {
  public:
   PointTree() = default;
   explicit PointTree(std::span<const Vec3d> points);
 
-  // Of equally near ones the first; 0 for a place that is not finite, or so far away that all are equally
-  // near. At least one point.
+  // The index of the nearest point, of equally near ones the first. 0 for a place that is not finite, or so
+  // far away that all points are equally near. Precondition: there is a point.
   std::uint32_t nearest(const Vec3d& place) const;
   std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }  // beside the object itself
 
  private:
-  // The middle one of a range is its root: those with a smaller coordinate, or an equal one, lie before it.
+  // The middle node of a range is its root. Nodes with a smaller or equal coordinate lie before it.
   struct Node {
     Vec3d point;
     std::uint32_t index = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A picture with ids: which occluder is the nearest in each pixel.
+// A picture with ids: the nearest occluder of each pixel.
 
 #include <cstdint>
 #include <vector>
@@ -11,7 +11,8 @@ namespace sightline::comparison {
 
 inline constexpr std::uint32_t kNoOccluder = 0xffffffffu;
 
-// The nearest of the occluders that were drawn, by number in an OccluderPicture; of equal ones the first.
+// Holds, for each pixel, the nearest of the occluders that were drawn, by its number in an OccluderPicture;
+// of equally near ones the first.
 class IdBuffer {
  public:
   void clear(const OccluderPicture& picture);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Minimum occluder sets: the combination table of an occludee, and the search for the cheapest sets that hit
-// all of it. Occluders are numbers here, from 0, whatever they stand for.
+// all slots of the table. Occluders are numbers here, from 0.
 
 #include <cstdint>
 #include <span>
@@ -11,16 +11,17 @@
 
 namespace sightline::comparison {
 
-// For each pixel of an occludee's image, which occluders are in front of it there. Pixels with the same
-// occluders are one slot.
+// Holds, for each pixel of an occludee's image, the occluders in front of it. Pixels with the same occluders
+// form one slot.
 class CombinationTable {
  public:
   void clear();
-  // The occluders of a pixel, or of several, each named once, in any order. None: nothing hides the occludee.
+  // Adds the occluders of one or several pixels, each named once, in any order. If there are none, nothing
+  // hides the occludee.
   void add(std::span<const std::uint32_t> members);
-  // Call when all are added. Sorts the slots, those with the fewest occluders first, then by their members,
-  // and drops what is twice there. A slot that contains all members of one of the first 256 that are left is
-  // dropped too: whatever hits the smaller one hits both.
+  // Call when all slots are added. Sorts the slots by their number of occluders, then by their members, and
+  // drops duplicates. Also drops a slot that contains all members of one of the first 256 that are left:
+  // whatever hits the smaller slot hits both.
   void finish();
 
   std::uint32_t slotCount() const { return static_cast<std::uint32_t>(slots_.size()); }
@@ -53,13 +54,14 @@ struct SearchLimits {
   std::uint32_t steps = 256;  // occluders picked, in all branches together
 };
 
-// Keeps its storage from search to search.
+// Searches the minimum sets of one table after the other, and keeps its storage.
 class MinimumSetSearch {
  public:
-  // Sets of which every slot has a member and no member can be left out, cheapest first; of equal cost, the
-  // one that is found first. A set's cost is the sum of its members'. With enough steps they are the cheapest
-  // there are; with fewer, the best of what was found. A table without slots, or with an empty one: none.
-  // Sets of more than 4096 occluders are not looked for. cost_of: of each occluder by its number, >= 0.
+  // Finds sets that have a member in every slot and of which no member can be left out, cheapest first, of
+  // equal cost the one that was found first. The cost of a set is the sum of its members' costs. With enough
+  // steps these are the cheapest sets there are; with fewer, the cheapest that were found. A table without
+  // slots, or with an empty slot, has none. Sets of more than 4096 occluders are not looked for. cost_of: >=
+  // 0, by the number of the occluder.
   std::span<const MinimumSet> find(const CombinationTable& table, std::span<const double> cost_of,
                                    const SearchLimits& limits);
 
@@ -81,7 +83,7 @@ class MinimumSetSearch {
   base::Rows<std::uint32_t> members_of_;  // by slot, the most promising first
   base::Rows<std::uint32_t> slots_of_;    // by member, ascending
 
-  // Where the search stands.
+  // The state of the search.
   std::vector<std::uint32_t> picked_;     // members
   std::vector<std::uint32_t> hits_;       // by slot: how many of its members are picked
   std::vector<std::uint32_t> hitters_;    // by slot: those, combined by exclusive or

@@ -15,7 +15,7 @@ bool allFinite(const OccluderSet& set, const Occluder& occluder) {
          std::all_of(vertices.begin(), vertices.end(), [](const Vec3f& vertex) { return isFinite(vertex); });
 }
 
-// Of the eye over a side of the occluder that hides; 0: it sees none.
+// The height of the eye over a side of the occluder that hides; 0 when it sees none.
 double heightOver(const Occluder& occluder, const Vec3d& eye) {
   const double height = occluder.plane.evaluate(eye);
   return height > 0.0 ? height : occluder.double_sided ? -height : 0.0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which occluders are large enough from a point to be drawn.
+// Finds the occluders that are large enough, seen from a point, to be drawn.
 
 #include <vector>
 
@@ -17,12 +17,12 @@ struct NearOccluder {
 // The occluders of a set that are large from a point.
 class OccluderFilter {
  public:
-  // Leaves out what has coordinates that are not finite.
+  // Leaves out occluders with coordinates that are not finite.
   explicit OccluderFilter(const OccluderSet& set);
 
-  // Those that turn a side that hides to the eye, and that may have at least this solid angle (steradians),
-  // ascending: A h / r^3 bounds the solid angle, A being the area, h the eye's height over the plane, and r
-  // the distance of the nearest point.
+  // Finds the occluders of which the eye sees a side that hides, and that may have at least this solid angle
+  // (steradians), ascending by id. A h / r^3 bounds the solid angle, where A is the area, h the eye's height
+  // over the plane, and r the distance of the nearest point.
   void find(const Vec3d& eye, double min_solid_angle, std::vector<NearOccluder>& found) const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kFarthest = 1e12;  // metres; beyond it everything has the same reciprocal depth
 
-// Of the whole polygon in the picture, by the shoelace formula.
+// The area of a polygon in the picture, in pixels, by the shoelace formula.
 double areaOf(std::span<const PixelPoint> corners) {
   double twice = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -59,7 +59,7 @@ void OccluderPicture::draw(const OccluderSet& set, std::span<const NearOccluder>
   }
 }
 
-// Whether some of a sphere may be.
+// Whether a part of a sphere may be in the picture.
 bool OccluderPicture::inPicture(const Vec3d& center, double radius) const {
   const double reach = radius * side_length_;
   return center.z + radius > view_.near && center.z * tan_half_ - std::abs(center.x) > -reach &&

@@ -1,6 +1,7 @@
 #pragma once
 
-// Pictures of occluders at a low resolution, sampled at pixel centres: which pixels each occluder covers.
+// Pictures of occluders at a low resolution, sampled at pixel centres. They tell which pixels each occluder
+// covers.
 //
 // Pixels and reciprocal depth are those of scene/pixel_view.h; pixel (x, y) has the index y * resolution + x.
 
@@ -17,11 +18,11 @@ namespace sightline::comparison {
 
 inline constexpr std::uint32_t kMaxResolution = 512;
 
-// Square, perspective: the whole angle from border to border.
+// A square perspective picture.
 struct PictureShape {
   std::uint32_t resolution = 128;  // pixels along an edge
-  double view_angle_deg = 100.0;
-  double near = 0.1;  // metres
+  double view_angle_deg = 100.0;   // from border to border
+  double near = 0.1;               // metres
 };
 
 PixelView pictureView(const Vec3d& eye, const Vec3d& forward, const PictureShape& shape);
@@ -37,15 +38,15 @@ struct ShownOccluder {
   std::uint32_t first_span = 0, span_count = 0;
   std::uint32_t pixels = 0;  // whose centres it covers
   double area = 0.0;         // of its image, pixels
-  // ReciprocalDepth over its image: at_origin + along_x * x + along_y * y.
+  // The reciprocal depth (1/w) at pixel coordinates (x, y) is at_origin + along_x * x + along_y * y.
   double at_origin = 0.0, along_x = 0.0, along_y = 0.0;
 };
 
 // Keeps its storage from picture to picture.
 class OccluderPicture {
  public:
-  // Those of the candidates that cover at least one pixel's centre and at least min_area pixels, in the
-  // candidates' order. Each side that hides counts; what lies before the near plane is cut off.
+  // Draws the candidates that cover at least one pixel's centre and have an area of at least min_area pixels,
+  // in the candidates' order. Every side that hides counts; parts in front of the near plane are cut off.
   void draw(const OccluderSet& set, std::span<const NearOccluder> candidates, const Vec3d& eye,
             const Vec3d& forward, const PictureShape& shape, double min_area);
 

@@ -26,32 +26,31 @@ struct Occludee {
   float reciprocal_depth = 0.0f;  // an occluder in front of it is nearer than this
 };
 
-// The nodes that are occludees: with more than min_triangles, and the first ones on the way down with at most
-// max_triangles, or leaves. Without those whose box is broken. Ascending.
+// The nodes that are occludees, ascending: on each way down the first node with at most max_triangles, or the
+// leaf, if it has more than min_triangles and its box is sound.
 std::vector<NodeIndex> findOccludees(const Hierarchy& hierarchy, std::uint32_t min_triangles,
                                      std::uint32_t max_triangles);
 
-// Those of the nodes that are in the picture and wholly beyond its near plane, in the same order.
+// Finds the nodes that are in the picture and wholly beyond its near plane, in the order given.
 void occludeesInPicture(const Hierarchy& hierarchy, std::span<const NodeIndex> nodes, const PixelView& view,
                         std::uint32_t resolution, std::vector<Occludee>& found);
 
-// Whether each pixel of the occludee's rectangle has something in front of it. first_pixel: where to begin to
-// look; when the answer is no, a pixel that has nothing.
+// Whether each pixel of the occludee's rectangle has an occluder in front of it. The look begins at
+// first_pixel; if the answer is no, first_pixel becomes a pixel that has none.
 bool hides(const IdBuffer& buffer, std::uint32_t resolution, const Occludee& occludee,
            std::uint32_t& first_pixel);
 
-// The stacks of several occludees, of which those of all pixels are made at once: what is in front of an
-// occludee in a pixel are the first ones of all layers of that pixel (of which it has the 64 nearest). Keeps
-// its storage.
+// The stacks of several occludees, made at once: in each pixel, the occluders in front of an occludee are a
+// prefix of all layers of that pixel, of which the 64 nearest are kept. Keeps its storage.
 class OccluderStack {
  public:
-  // nearest: all occluders of the picture. Of the occludees only those that it hides have a table.
+  // nearest: of all occluders of the picture. Only occludees that it hides have a table.
   void build(const OccluderPicture& picture, const IdBuffer& nearest, std::span<const Occludee> occludees);
 
   // Numbers of the occludees that all occluders together hide, ascending.
   std::span<const std::uint32_t> hidden() const { return hidden_; }
 
-  // The occludee's slots: occluders by number in the picture. Only for hidden ones.
+  // Fills the table of a hidden occludee; its occluders are numbers in the picture.
   void tableOf(const Occludee& occludee, CombinationTable& table);
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
-// Which minimum occluder sets are used for a view: their gain, cost and score, and the picture with ids in
-// which they are put on top of each other.
+// Selects the minimum occluder sets for a picture by their gain, cost and score. The selected sets are drawn
+// on top of each other into a buffer with ids.
 
 #include <cstdint>
 #include <span>
@@ -15,27 +15,27 @@
 
 namespace sightline::comparison {
 
-// Of one occluder, with weights >= 0. A set's cost is the sum.
+// The cost of one occluder, with weights >= 0. The cost of a set is the sum over its occluders.
 double costOf(const ShownOccluder& occluder, std::uint32_t picture_pixels, const MinimumSetWeights& weights);
 
-// Of all occluders of a picture, by number.
+// The costs of all occluders of a picture, by number.
 void costsOf(const OccluderPicture& picture, const MinimumSetWeights& weights, std::vector<double>& costs);
 
-// The minimum sets of all occludees of a picture. Equal ones are one set; its gain is the number of occludees
-// that it hides, and what a subset of it hides it hides too. Keeps its storage.
+// The minimum sets of all occludees of a picture. Equal sets are one set. Its gain is the number of occludees
+// that it hides; it also hides what its subsets hide. Keeps its storage.
 class SetPool {
  public:
   void clear();
   // members: occluders by number in the picture, ascending; not empty.
   void add(std::span<const std::uint32_t> members, std::uint32_t occludee);
-  // Call when all are added. Sorts the sets by their members.
+  // Call when all sets are added. Sorts them by their members.
   void finish(std::uint32_t occluder_count, std::uint32_t occludee_count);
 
   std::uint32_t setCount() const { return static_cast<std::uint32_t>(sets_.size()); }
   std::span<const std::uint32_t> members(std::uint32_t set) const {
     return std::span(members_).subspan(sets_[set].first, sets_[set].count);
   }
-  // The occludees that it hides, each once.
+  // The occludees that the set hides, each once.
   std::span<const std::uint32_t> occludees(std::uint32_t set) const { return hidden_[set]; }
   std::uint32_t gain(std::uint32_t set) const { return static_cast<std::uint32_t>(hidden_[set].size()); }
 
@@ -59,20 +59,20 @@ class SetPool {
   std::vector<std::uint32_t> uses_, mark_of_occluder_, mark_of_occludee_;
 };
 
-// Keeps its storage from picture to picture.
+// Selects sets for one picture after the other, and keeps its storage.
 class SetSelection {
  public:
   // The occluders of the best sets, by number in the picture, best first, at most `limit`. occludees: those
-  // that the pool speaks of.
+  // of the pool, by number.
   //
-  // Sets are taken one after the other, that with the best score first; ties by their members. The score
+  // Sets are taken one after the other, the one with the best score first, ties by their members. The score
   // counts only occludees that the sets taken so far do not hide, and only the cost of occluders that are not
-  // taken yet. What is taken is drawn with ids, and what is not seen when no set gains anything any more
-  // goes; those that hide it take its place, so that the beginning of the list hides what the sets taken
-  // first hide.
+  // taken yet. Occluders that are taken are drawn with ids. When no set gains anything any more, occluders
+  // that are not seen are removed, and the occluders that hide them take their places, so that the beginning
+  // of the list still hides what the first sets hide.
   //
-  // The other sets follow by the score they had at first, with those of their occluders that are then seen.
-  // From the grid point they hide nothing more; beside it they may.
+  // The other sets follow by their first scores, with those of their occluders that are seen then. From the
+  // grid point they hide nothing more; beside it they may.
   std::span<const std::uint32_t> select(const OccluderPicture& picture, const SetPool& pool,
                                         std::span<const Occludee> occludees, const MinimumSetWeights& weights,
                                         std::uint32_t limit);

@@ -15,7 +15,7 @@
 
 namespace sightline::comparison {
 
-// What all pictures of a database have in common. The settings are in range.
+// What all pictures of a database have in common. Its settings are in range.
 struct PictureSource {
   const Hierarchy& hierarchy;
   const OccluderSet& set;
@@ -26,16 +26,17 @@ struct PictureSource {
 
   PictureSource(const Hierarchy& hierarchy_, const OccluderSet& set_,
                 const ViewpointDatabaseSettings& settings_);
-  // The filter's, below which no image has min_occluder_pixels, wherever it is in the picture.
+  // In steradians: an occluder with a smaller solid angle has fewer than min_occluder_pixels pixels anywhere
+  // in the picture.
   double minSolidAngle() const;
 };
 
-// Keeps its storage from picture to picture. One for each thread.
+// Makes the lists of one picture after the other, and keeps its storage. Each thread has one of its own.
 class ListMaker {
  public:
   explicit ListMaker(const PictureSource& source) : source_(source) {}
 
-  // Until the next call all pictures are from there.
+  // Sets the eye of the pictures that follow.
   void moveTo(const Vec3d& eye);
   // The list for a viewing direction, best first, ties by id.
   void make(const Vec3d& direction, std::vector<OccluderId>& list);
