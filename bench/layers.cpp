@@ -1,11 +1,11 @@
-// What does the order of a frame's parts cost? Tumbling toothpicks: 200, 1,600 and 10,000 of them, of the
-// same density or of the same size. In the same run, on the same frames:
+// Measures the time to sort a frame's parts: 200, 1,600 and 10,000 tumbling toothpicks of the same density or
+// the same size. One run compares on the same frames:
 //
-//   sorter     LayerSorter, depth-first and incremental
-//   all pairs  every ordered pair tested with libccd (does one hull meet what lies between the other and the
-//              eye?), then Boost's strongly connected components: what a program would do that has a
-//              collision library and a graph library. On a few frames only
-//   distance   parts sorted by the distance of their centres: how many of the arcs it gets wrong
+//   sorter     LayerSorter with the depth-first and the incremental sort
+// all pairs  a test of every ordered pair with libccd (does one hull intersect the set between the other and
+// the eye?), then Boost's strongly connected components, as a program with a collision library and
+//              a graph library would do; on a few frames only
+//   distance   a sort of the parts by the distance of their centres, and how many arcs it gets wrong
 //
 //   layers [COUNT...]
 
@@ -30,7 +30,7 @@ namespace {
 using namespace sightline;
 using namespace sightline::bench;
 
-// A placed hull for libccd, with the eye or without.
+// A placed hull for libccd, with or without the eye.
 struct Shape {
   const ConvexHull* hull = nullptr;
   const Mat4* world_from_hull = nullptr;
@@ -55,7 +55,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point)
   ccdVec3Set(point, farthest.x, farthest.y, farthest.z);
 }
 
-// All arcs by libccd and the number of components by Boost.
+// Finds all arcs with libccd and the number of components with Boost.
 std::size_t allPairs(const std::vector<Shape>& shapes, const Vec3d& eye,
                      std::vector<std::pair<std::uint32_t, std::uint32_t>>& arcs) {
   ccd_t ccd;

@@ -89,7 +89,7 @@ TEST(ExtentTree, DividesAlongTheAxesOfTheMaskAlone) {
 }
 
 TEST(ExtentTree, StopsWhereTheLongerChildGainsTooLittle) {
-  // Twenty intervals in a row, apart: the longer child has ten fewer. Nineteen: nine fewer.
+  // Of twenty disjoint intervals in a row, the longer child has ten fewer; of nineteen, nine fewer.
   for (const std::size_t parts : {std::size_t{19}, std::size_t{20}}) {
     ExtentTable table = makeTable(parts, kindsOf(1, 0));
     for (std::size_t part = 0; part < parts; ++part) {
@@ -109,7 +109,7 @@ TEST(ExtentTree, TakesZeroAndMinusZeroForTheSame) {
   }
   ExtentTree tree({});
   tree.update(table);
-  ASSERT_EQ(tree.nodes().nodes().size(), 3u);  // divided at -0
+  ASSERT_EQ(tree.nodes().nodes().size(), 3u);  // the root is divided at -0
   for (const float zero : {0.0f, -0.0f}) {
     Extent query;
     query[0] = {zero, 0.5f};
@@ -179,7 +179,7 @@ TEST(ExtentTree, HoldsIntervalsThatAreNotIntervals) {
 }
 
 TEST(ExtentTree, DoesNotCopyPartsWithoutEnd) {
-  // Nested and staggered intervals, which all overlap in the middle.
+  // Nested and staggered intervals, most of which overlap in the middle.
   ExtentTable table = makeTable(2000, kindsOf(3, 0));
   Random random(15);
   for (std::size_t part = 0; part < 2000; ++part) {

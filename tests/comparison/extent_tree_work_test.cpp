@@ -32,8 +32,8 @@ TEST(ExtentTree, DividesAnewOnlyTheNodesAlongWhoseAxisAPartMoved) {
   scatter(table, random, 0.02f);
   ExtentTree tree({});
   tree.update(table);
-  // By so little that no place in a list changes: nothing is handed down, nodes of other axes are skipped,
-  // children are not.
+  // The part moves so little that no list changes its order: no part is handed down, and only nodes of this
+  // axis are divided anew.
   std::uint64_t expected = 0;
   const std::uint32_t part = 123;
   const auto nodes = tree.nodes().nodes();
@@ -64,7 +64,7 @@ TEST(ExtentTree, HandsDownAlmostNothingWhenPartsMoveALittle) {
   const std::uint64_t before = tree.work().parts_moved;
   move(table, random, 0.0005f, 0.03f, 0);
   tree.update(table);
-  EXPECT_LT(tree.work().parts_moved - before, 1000u);  // of some 7000 entries in nodes
+  EXPECT_LT(tree.work().parts_moved - before, 1000u);  // the nodes have some 7000 entries
 }
 
 TEST(ExtentTree, IsReplacedByOneMadeInTheBackground) {
@@ -86,7 +86,7 @@ TEST(ExtentTree, IsReplacedByOneMadeInTheBackground) {
     move(table, random, one.step, one.width, 2);
   }
   EXPECT_GE(tree.work().takeovers, 2u);
-  EXPECT_GT(frames_making, 10u);  // several frames each, in which the old tree answered
+  EXPECT_GT(frames_making, 10u);  // each new tree takes several frames, in which the old one answers
 }
 
 TEST(ExtentTree, IsRebuiltWhenQueriesMeetManyMoreParts) {
@@ -94,7 +94,8 @@ TEST(ExtentTree, IsRebuiltWhenQueriesMeetManyMoreParts) {
   settings.rebuild_imbalance = 1.5;
   Random random(12);
   ExtentTable table = makeTable(600, kindsOf(2, 0));
-  // A row along the first axis; then, one along the second: values along the first axis divide nothing.
+  // A row of parts along the first axis, and later one along the second, which values along the first cannot
+  // divide.
   const auto place = [&](std::size_t axis) {
     for (std::size_t part = 0; part < 600; ++part) {
       const float low = static_cast<float>(part);

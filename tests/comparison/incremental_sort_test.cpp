@@ -15,7 +15,7 @@ namespace {
 
 using namespace layers;
 
-// A line of the paper's tables: the list and the output, parts named from A.
+// A line of the paper's tables: the list and the output, with parts named from A.
 struct Trace {
   std::vector<std::string> lines;
 
@@ -79,7 +79,7 @@ TEST(IncrementalSort, TakesTheStepsOfFigure8) {
             (Lines{"ABC | ", "BCA* | ", "CA*B* | ", "A*B*C* | ", "(ABC) | ", " | (ABC)"}));
 }
 
-// Followed by hand through Figures 4 and 5. The caption of Figure 5 names this graph and list.
+// The trace was made by hand from Figures 4 and 5. The caption of Figure 5 gives this graph and list.
 TEST(IncrementalSort, ACycleBehindAPartThatNothingOccludesIsGrouped) {
   GraphSource graph(3);
   graph.add(0, 1);
@@ -88,8 +88,8 @@ TEST(IncrementalSort, ACycleBehindAPartThatNothingOccludesIsGrouped) {
             (Lines{"CAB | ", "AB | C", "BA* | C", "A*B* | C", "(AB) | C", " | C(AB)"}));
 }
 
-// A is occluded by the circle of B and C. When it is first, the path leaves it and the circle found is not
-// its own: A must stay in the list, behind the group.
+// A is occluded by the cycle of B and C. When A is first, the path leaves it and finds a cycle without A, so
+// A must stay in the list behind the group.
 TEST(IncrementalSort, APartThatLeadsToACycleWithoutBeingInItStays) {
   GraphSource graph(3);
   graph.add(1, 2);
@@ -112,7 +112,7 @@ void expectSorts(IncrementalSort& sorter, GraphSource& graph, std::span<const st
   sorter.sort(previous, graph, order);
   EXPECT_EQ(faultOf(order, graph, componentsOf(graph)), "");
   EXPECT_EQ(faultOfMemberOrder(order, previous), "");
-  // One question for each output and each reinsertion; finding a circle asks about pairs.
+  // There is one query per output and reinsertion; the search for cycles asks about pairs.
   EXPECT_EQ(graph.queries, order.groups() + sorter.reinsertions());
   for (std::uint32_t part = 0; part < graph.parts(); ++part) {
     EXPECT_FALSE(graph.active(part));
@@ -148,7 +148,8 @@ TEST(IncrementalSort, HaltsOnAHundredThousandSmallGraphs) {
     GraphSource graph = randomGraph(parts, 50 + below(600, random), random);
     sorter.sort(shuffledOrder(parts, random), graph, order);
     ASSERT_EQ(order.parts.size(), parts) << "seed 7, graph " << i;
-    // Each arc is within a group or goes forwards: with the components' test above this is the whole check.
+    // Each arc must be within a group or go forwards; together with the test of components this checks the
+    // order.
     std::array<std::uint32_t, 8> group{};
     for (std::uint32_t g = 0; g < order.groups(); ++g) {
       for (const std::uint32_t part : order.group(g)) {
@@ -167,8 +168,8 @@ TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCyclesAreSortedFromAnyOr
   IncrementalSort sorter;
   const std::uint32_t parts = 40;
   GraphSource complete(parts);
-  GraphSource pairs(parts);   // circles of two, in a chain
-  GraphSource nested(parts);  // one large circle, with short ways back
+  GraphSource pairs(parts);   // a chain of cycles of two parts
+  GraphSource nested(parts);  // one large cycle with shortcuts back
   GraphSource apart(parts);
   for (std::uint32_t i = 0; i < parts; ++i) {
     for (std::uint32_t k = 0; k < parts; ++k) {
@@ -211,9 +212,9 @@ TEST(IncrementalSort, AValidOrderOfAGraphWithoutCyclesNeedsNoReinsertion) {
   }
 }
 
-// Checks each step that begins with a marked object against the caption of Figure 5: if an initial
-// subsequence of the marked objects at the front is such that each is occluded by another one of it, then the
-// step finds a cycle.
+// Checks each step that begins with a marked object against the caption of Figure 5: if each object of an
+// initial subsequence of the marked objects at the front is occluded by another object of it, the step finds
+// a cycle.
 struct CycleWatch {
   const GraphSource& graph;
   std::vector<IncrementalSort::Listed> before;
@@ -251,7 +252,7 @@ struct CycleWatch {
     const std::vector<IncrementalSort::Listed> now = sort.list();
     if (watch.cycleIsPromised()) {
       ++watch.promised;
-      // A marked object that is grouped with others is unmarked and stays at the front.
+      // An object that is grouped with others is unmarked and stays at the front.
       const bool found =
           !now.empty() && now.size() < watch.before.size() && !now[0].marked && now[0].members.size() > 1;
       watch.missed += found ? 0 : 1;
@@ -266,7 +267,7 @@ TEST(IncrementalSort, ACycleIsFoundWhereverFigure5PromisesOne) {
   for (std::uint32_t seed = 0; seed < 3000; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    // Large and thin enough for paths that lead out of the marked objects; small graphs never have them.
+    // Sparse graphs large enough for paths that leave the marked objects, which small graphs do not have.
     const std::size_t parts = 10 + below(30, random);
     GraphSource graph = variedGraph(1, parts, random);
     CycleWatch watch{.graph = graph, .before = {}};
@@ -278,7 +279,7 @@ TEST(IncrementalSort, ACycleIsFoundWhereverFigure5PromisesOne) {
   EXPECT_GT(promised, 1000u);
 }
 
-// Its answers about pairs have nothing to do with its answers about all occluders, and change.
+// A source whose answers about pairs contradict its answers about all occluders, and change.
 class ContradictingSource : public GraphSource {
  public:
   ContradictingSource(const GraphSource& graph, std::uint32_t seed) : GraphSource(graph), random_(seed) {}
@@ -315,7 +316,7 @@ TEST(IncrementalSort, HaltsInAValidOrderThoughTheAnswersContradictEachOther) {
   }
 }
 
-// The order by labels against a plain list, with insertions crowded into one place and spread over all.
+// Compares OrderLabels with a plain list, with insertions crowded into one place and spread over all places.
 TEST(OrderLabels, KeepTheOrderOfAPlainListUnderInsertionsAnywhere) {
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE(seed);
@@ -329,7 +330,7 @@ TEST(OrderLabels, KeepTheOrderOfAPlainListUnderInsertionsAnywhere) {
       const std::uint32_t item = plain[from];
       plain.erase(plain.begin() + static_cast<std::ptrdiff_t>(from));
       labels.remove(item);
-      // 0: first, 1: behind the first (over and over the same gap), 2: anywhere.
+      // 0: first; 1: behind the first, always into the same gap; 2: anywhere.
       const std::size_t to =
           seed % 3 == 2 ? below(plain.size() + 1, random) : std::min<std::size_t>(seed % 3, 1);
       if (to == 0) {

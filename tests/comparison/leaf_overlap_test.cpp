@@ -32,7 +32,7 @@ TEST(LeafOverlap, IsThatOfThePairsOnEveryInstructionSet) {
     const std::uint32_t count = 1 + pick(random, kRows);
     ExtentTable table = makeTable(count, kindsOf(1 + seed % 5, pick(random, 32)));
     scatter(table, random, 0.3f);
-    std::vector<float> bounds(2 * kRows * table.axes(), 0.0f);  // 0 to 0 beyond the count: must be left out
+    std::vector<float> bounds(2 * kRows * table.axes(), 0.0f);  // rows beyond the count must be ignored
     for (std::size_t axis = 0; axis < table.axes(); ++axis) {
       for (std::uint32_t part = 0; part < count; ++part) {
         bounds[2 * kRows * axis + part] = table.lows[axis][part];

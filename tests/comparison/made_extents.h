@@ -1,6 +1,6 @@
 #pragma once
 
-// Seeded tables of extents that move, and whether an ExtentTree answers as comparing all parts does.
+// Seeded tables of moving extents, and a check of an ExtentTree against comparing all parts.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ inline void set(ExtentTable& table, std::size_t axis, std::size_t part, const In
   table.highs[axis][part] = interval.high;
 }
 
-// Angles as a table has them: low in [-2, 2], high in [low, low + 4].
+// Returns an angular interval in the form of a table: low in [-2, 2], high in [low, low + 4].
 inline Interval angularInterval(float low, float width) {
   if (width >= 4.0f) {
     return {-2.0f, 2.0f};
@@ -55,7 +55,7 @@ inline Interval angularInterval(float low, float width) {
   return {low, low + width};
 }
 
-// A seeded interval with, now and then, what goes wrong most easily.
+// Returns a random interval, which now and then is a difficult case.
 inline Interval anyInterval(Random& random, ExtentAxis::Kind kind, float width) {
   const unsigned sort = pick(random, 16);
   if (kind == ExtentAxis::Kind::kAngular) {
@@ -95,8 +95,8 @@ inline void scatter(ExtentTable& table, Random& random, float width) {
   }
 }
 
-// Most parts move by at most `step`, some at one end alone; some stand still, and `jumps` of a hundred go
-// anywhere.
+// Moves the parts. Most move by at most `step`, some only at one end; some stand still, and `jumps` of a
+// hundred jump anywhere.
 inline void move(ExtentTable& table, Random& random, float step, float width, unsigned jumps) {
   for (std::size_t part = 0; part < table.parts; ++part) {
     const unsigned lot = pick(random, 100);
@@ -152,7 +152,7 @@ inline std::vector<ExtentAxis::Kind> kindsOf(std::size_t axes, unsigned angular)
   return kinds;
 }
 
-// Adds each node's parts to its list: by the rule, from the root. What the tree holds must be the same.
+// Divides the expected parts by the rule, from the root down, and expects the same parts in the tree's nodes.
 inline void expectSubtree(const ExtentTree& tree, std::uint32_t index,
                           const std::vector<std::uint32_t>& expected, const std::vector<bool>& active) {
   const ExtentNodes::Node& node = tree.nodes().nodes()[index];
@@ -192,7 +192,7 @@ inline void expectSubtree(const ExtentTree& tree, std::uint32_t index,
   expectSubtree(tree, node.left + 1, right, active);
 }
 
-// No part is lost or doubled: each is in exactly the nodes to which the rule leads.
+// Expects each part in exactly the nodes to which the rule leads.
 inline void expectSound(const ExtentTree& tree, const std::vector<bool>& active) {
   std::vector<std::uint32_t> all(active.size());
   for (std::uint32_t part = 0; part < all.size(); ++part) {
@@ -220,7 +220,7 @@ inline void expectAnswers(ExtentTree& tree, const ExtentTable& table, const Case
       tree.setActive(part, active[part]);
     }
     const Extent query = anyQuery(table, random, one.width);
-    parts.assign(1, 77);  // answers are appended
+    parts.assign(1, 77);  // query() must append
     tree.query(query, parts);
     ASSERT_EQ(parts.front(), 77u);
     parts.erase(parts.begin());

@@ -11,7 +11,8 @@
 namespace sightline::comparison {
 namespace {
 
-using Numbers = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // low, high of each part
+using Numbers =
+    std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // the low and the high bound of each part
 
 std::uint32_t pick(std::mt19937& random, std::uint32_t count) {
   return static_cast<std::uint32_t>(random()) % count;
@@ -51,7 +52,7 @@ auto rankOf(const Division& division) {
   return std::tuple(division.cost, division.shared, difference);
 }
 
-// By the rule itself, at each upper bound; nothing is passed over.
+// Computes the cost at each upper bound by the rule, without skipping any.
 Division bestByCounting(const Numbers& intervals) {
   std::vector<std::uint32_t> values;
   for (const auto& interval : intervals) {
@@ -73,7 +74,7 @@ TEST(MinCost, OfThePapersListIsFourAtTheUpperBoundOfB) {
   const Lists lists = listsOf({{1, 3}, {2, 4}, {5, 10}, {6, 7}, {8, 9}, {11, 12}});
   const Division division = minCost(lists.lows, lists.highs);
   EXPECT_EQ(division.cost, 4u);
-  EXPECT_EQ(division.place, 4u);  // A0, B0, A1 and B1 come before
+  EXPECT_EQ(division.place, 4u);  // after A0, B0, A1 and B1
   EXPECT_EQ(division.value, 4u);
   EXPECT_EQ(division.left, 2u);
   EXPECT_EQ(division.right, 4u);
@@ -97,7 +98,7 @@ TEST(MinCost, OfEqualIntervalsLeavesThemTogether) {
 }
 
 TEST(MinCost, PutsLowerBoundsBeforeEqualUpperOnes) {
-  // At 2, A ends and B begins: B is in both lists.
+  // A ends and B begins at 2, so B is in both lists.
   const Lists lists = listsOf({{0, 2}, {2, 4}, {3, 5}, {1, 1}});
   const Division division = minCost(lists.lows, lists.highs);
   const Division expected = bestByCounting({{0, 2}, {2, 4}, {3, 5}, {1, 1}});
@@ -115,8 +116,8 @@ TEST(MinCost, PutsIntervalsWithoutWidthOnOneSide) {
 }
 
 TEST(MinCost, OfEqualCostsTakesFewestSharedThenMostBalanced) {
-  // After 1: left 1, right 3, none shared, cost 3. After 4: left 3, right 1, none shared, cost 3; the other
-  // way round lopsided, so the first. After 3: left 3, right 2, one shared, cost 4.
+  // After 1: left 1, right 3, none shared, cost 3. After 4: left 3, right 1, none shared, cost 3; as lopsided
+  // as the first, which is therefore taken. After 3: left 3, right 2, one shared, cost 4.
   const Lists lists = listsOf({{0, 1}, {2, 3}, {2, 4}, {5, 6}});
   const Division division = minCost(lists.lows, lists.highs);
   EXPECT_EQ(division.cost, 3u);
@@ -124,7 +125,7 @@ TEST(MinCost, OfEqualCostsTakesFewestSharedThenMostBalanced) {
   EXPECT_EQ(division.value, 1u);
 }
 
-TEST(MinCost, IsTheLeastOfAllUpperBoundsOfRandomIntervals) {
+TEST(MinCost, IsTheMinimumOverAllUpperBoundsOfRandomIntervals) {
   for (unsigned seed = 0; seed < 3000; ++seed) {
     std::mt19937 random(seed);
     const std::uint32_t count = 1 + pick(random, 40), range = 1 + pick(random, 60),

@@ -129,8 +129,8 @@ TEST(Compositing, DoesNotAllocateAfterWarmUp) {
   EXPECT_EQ(allocations.load(), before);
 }
 
-// All frames three times: what is kept of pairs at the end of one round is there at the beginning of the
-// next, so only the third begins as the second did and finds everything at its greatest size.
+// Sorts all frames three times. The results of pairs kept at the end of one round are there at the beginning
+// of the next, so the third round starts like the second and all storage has reached its greatest size.
 void expectNoAllocations(const MovingScene& scene, LayerSettings settings) {
   MovingSorter moving(scene, settings);
   LayerMerger merger;

@@ -51,7 +51,7 @@ bool occludes(const std::set<std::uint32_t>& a, const std::set<std::uint32_t>& b
                      [&](const auto& arc) { return a.contains(arc.first) && b.contains(arc.second); });
 }
 
-// Merges any one pair of blocks that occlude each other, until there is none.
+// Merges one pair of blocks that occlude each other after the other, until there is none.
 Blocks mergedByBruteForce(const std::vector<std::uint32_t>& parts, const Arcs& arcs) {
   Blocks blocks;
   for (const std::uint32_t p : parts) {
@@ -97,7 +97,7 @@ TEST(LayerMerger, KeepsSinglePartsAsLayersInTheirOrder) {
   EXPECT_TRUE(frame.occlusions.empty());
 }
 
-TEST(LayerMerger, KeepsACycleOfThreeApart) {
+TEST(LayerMerger, KeepsACycleOfThreeAsThreeLayers) {
   OwnedOrder order;
   order.addGroup({4, 1, 9});
   order.addArcs({{4, 1}, {1, 9}, {9, 4}});
@@ -110,7 +110,7 @@ TEST(LayerMerger, KeepsACycleOfThreeApart) {
 }
 
 TEST(LayerMerger, MergesAgainWhereMergingMadeANewPair) {
-  // 0 and 2 occlude each other. Merged, they occlude 1 and are occluded by it; with 1, the same holds for 3.
+  // 0 and 2 occlude each other. Merged, they and 1 occlude each other; merged with 1, they and 3 do.
   OwnedOrder order;
   order.addGroup({3, 0, 1, 2});
   order.addArcs({{0, 2}, {2, 0}, {0, 1}, {1, 2}, {1, 3}, {3, 0}});

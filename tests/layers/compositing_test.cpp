@@ -20,7 +20,7 @@ namespace {
 using enum CompositingForm;
 constexpr CompositingForm kForms[] = {kSumOfOuts, kOverAtop, kCheapest};
 
-// Layers in groups, and who occludes whom in each.
+// Layers in groups, and the occlusions in each group.
 struct Scene {
   FrameLayers frame;
   std::vector<std::vector<bool>> occludes;  // [front][back]
@@ -75,7 +75,7 @@ Scene ring(std::uint32_t n) {
   return scene;
 }
 
-// Groups of up to ten layers: single ones, rings with chords, chains of rings within one group, or anything.
+// Returns groups of up to ten layers: single layers, rings with chords, chains of rings, or any graph.
 Scene randomScene(std::mt19937& random) {
   std::vector<std::uint32_t> sizes(1 + random() % 3);
   for (std::uint32_t& size : sizes) {
@@ -103,8 +103,8 @@ Scene randomScene(std::mt19937& random) {
   return scene;
 }
 
-// Layers that may cover one pixel, front to back: within a group, each two occlude one way, and not in a
-// cycle.
+// Returns layers that may cover one pixel, front to back: within a group, any two of them have an occlusion,
+// and there is no cycle.
 std::vector<std::size_t> randomCover(const Scene& scene, std::mt19937& random) {
   std::vector<std::size_t> candidates(scene.layers());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -142,7 +142,7 @@ std::vector<ShapedPixel> randomFragments(const std::vector<std::size_t>& cover, 
   return pixels;
 }
 
-// Front to back: what each adds is what those before it let through.
+// Composites front to back: each layer is attenuated by those in front of it.
 std::array<double, 4> composited(const std::vector<std::size_t>& front_to_back,
                                  const std::vector<ShapedPixel>& pixels) {
   std::array<double, 4> sum{};
@@ -194,7 +194,7 @@ TEST(CompositingProgram, OfAnyGraphWithoutPairsShowsWhatTheSortedFragmentsShow) 
     ASSERT_NO_FATAL_FAILURE(expectRightAtRandomPixels(scene, random, 20));
     deepest = std::max(deepest, randomCover(scene, random).size());
   }
-  EXPECT_GE(deepest, 6u);  // else the pixels test little
+  EXPECT_GE(deepest, 6u);  // pixels with few layers would test little
 }
 
 TEST(CompositingProgram, OfACycleWithinWhatIsLeftIsRight) {
@@ -223,7 +223,7 @@ TEST(CompositingProgram, OfFigure14IsTheSumOfOutsThatThePaperPrints) {
 }
 
 TEST(CompositingProgram, OfFigure14IsTheOverAtopThatThePaperPrints) {
-  // (C atop A) over B over C.
+  // Expected: (C atop A) over B over C.
   const Scene scene = ring(3);
   CompositingCompiler compiler;
   EXPECT_EQ(describe(compiler.compile(scene.frame, kOverAtop)),
@@ -267,7 +267,7 @@ TEST(CompositingProgram, OfNothingIsEmptyAndTransparent) {
 }
 
 TEST(CompositingProgram, TakesTheLayerWithTheFewestOccludersOutFirst) {
-  // 0 and 1 have two occluders; 2 to 4 have one, and of them 3 occludes most.
+  // 0 and 1 have two occluders each; 2 to 4 have one each, and 3 of these occludes most.
   Scene scene({5});
   scene.addRing(0, 5);
   scene.add(3, 0);
@@ -295,7 +295,7 @@ TEST(CompositingProgram, AtItsCheapestTakesNoMoreOperationsThanEitherForm) {
   EXPECT_GT(atop_wins, 0u);
 }
 
-// What the forms' descriptions say, by plain recursion.
+// The costs of the forms as their descriptions define them, by plain recursion.
 struct PlainCost {
   const Scene& scene;
   CompositingForm form;
@@ -336,7 +336,7 @@ struct PlainCost {
     }
     return cycles;
   }
-  // Operations, with one "over" for each cycle.
+  // Returns the number of operations, with one "over" for each cycle.
   std::size_t of(const Layers& layers) const {
     std::size_t total = 0;
     for (const Layers& cycle : cyclesOf(layers)) {
@@ -371,7 +371,7 @@ TEST(CompositingProgram, TakesAsManyOperationsAsThePlainRecursion) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     Scene scene = randomScene(random);
-    if (seed % 4 == 0) {  // larger ones, in which the cheapest is not one form throughout
+    if (seed % 4 == 0) {  // larger groups, whose cheapest program uses both forms
       scene = Scene({30});
       scene.addRing(0, 30);
       for (std::size_t more = random() % 300; more > 0; --more) {
@@ -382,7 +382,7 @@ TEST(CompositingProgram, TakesAsManyOperationsAsThePlainRecursion) {
     PlainCost::Layers all(scene.layers());
     std::iota(all.begin(), all.end(), std::size_t{0});
     for (const CompositingForm form : kForms) {
-      // Groups are apart from each other: cycles never reach over two. The first step is no "over".
+      // Groups are independent, since no cycle spans two of them. The first step is not an "over".
       const std::size_t expected = PlainCost{scene, form}.of(all) - 1;
       ASSERT_EQ(countSteps(compiler.compile(scene.frame, form).steps).operations(), expected);
     }

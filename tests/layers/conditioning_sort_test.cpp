@@ -46,7 +46,7 @@ std::size_t inversions(std::span<const double> keys) {
 TEST(ConditioningSort, GroupsThatDoNotOccludeEachOtherAreSortedByTheirKeysAndTiesStay) {
   GraphSource graph(6);
   GroupedOrder order = singles(std::vector<std::uint32_t>{5, 3, 0, 1, 4, 2});
-  const std::vector<double> keys{2, 1, 2, 3, 1, 3};  // by part
+  const std::vector<double> keys{2, 1, 2, 3, 1, 3};  // one per part
   const std::uint64_t moved =
       ConditioningSort().sort(std::vector<double>{3, 3, 2, 1, 1, 2}, keys, {ask, &graph}, {}, order);
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{1, 4, 0, 2, 5, 3}));
@@ -54,7 +54,7 @@ TEST(ConditioningSort, GroupsThatDoNotOccludeEachOtherAreSortedByTheirKeysAndTie
   EXPECT_EQ(moved, 4u);
 }
 
-// 0 occludes 2, 2 is the nearest: it stops behind 0, though 1 in between does not occlude it.
+// 0 occludes 2, and 2 is the nearest. It stops behind 0, although 1 between them does not occlude it.
 TEST(ConditioningSort, AGroupStopsBehindOneThatOccludesIt) {
   GraphSource graph(3);
   graph.add(0, 2);
@@ -64,7 +64,7 @@ TEST(ConditioningSort, AGroupStopsBehindOneThatOccludesIt) {
   EXPECT_EQ(order.parts, (std::vector<std::uint32_t>{1, 0, 2}));
 }
 
-// What moves may occlude what it passes: it is in front of it all the better.
+// A group may pass groups that it occludes, since it is then in front of them.
 TEST(ConditioningSort, AGroupMovesPastOneThatItOccludes) {
   GraphSource graph(2);
   graph.add(1, 0);

@@ -15,7 +15,7 @@
 namespace sightline::layers {
 
 std::ostream& operator<<(std::ostream& out, Intersection m) {
-  return out << std::array{"apart", "meet", "undecided"}[static_cast<std::size_t>(m)];
+  return out << std::array{"disjoint", "intersecting", "undecided"}[static_cast<std::size_t>(m)];
 }
 
 namespace {
@@ -43,7 +43,7 @@ Intersection ask(const Points& first, const Points& second) {
   return ask(ConvexSet{&a}, ConvexSet{&b});
 }
 
-// The set's points in the world, right to the bit where the placement's numbers are small and whole.
+// The set's points in the world, exact if the placement's numbers are small whole numbers.
 Points worldPoints(const ConvexSet& set, const Points& points) {
   Points world;
   for (const Vec3d& p : points) {
@@ -60,17 +60,17 @@ Points worldPoints(const ConvexSet& set, const Points& points) {
   return world;
 }
 
-// Both ways round, and again with what is known.
+// Tests the pair in both orders, and again with the witnesses of the first tests.
 void expectExact(const ConvexSet& first, const Points& first_points, const ConvexSet& second,
                  const Points& second_points) {
-  const bool meet =
+  const bool intersect =
       test::convexHullsIntersect(worldPoints(first, first_points), worldPoints(second, second_points));
   PairWitness there, back;
   PairCounts counts;
   for (int i = 0; i < 2; ++i) {
     for (const Intersection answer :
          {testIntersection(first, second, there, counts), testIntersection(second, first, back, counts)}) {
-      if (meet) {
+      if (intersect) {
         EXPECT_NE(answer, Intersection::kDisjoint);
       } else {
         EXPECT_EQ(answer, Intersection::kDisjoint);
@@ -79,7 +79,7 @@ void expectExact(const ConvexSet& first, const Points& first_points, const Conve
   }
 }
 
-// A point, segment, polygon or solid of whole numbers.
+// A random point, segment, polygon or solid with whole coordinates.
 Points randomWhole(Random& random) {
   const int dimension = random.whole(0, 3);
   const int half = random.whole(1, 5);
@@ -91,7 +91,7 @@ Vec3d randomWholePoint(Random& random, int half) {
   return shapes::randomGrid(random, 1, half)[0];
 }
 
-// Two sets of small whole numbers.
+// Two random sets with small whole coordinates.
 struct WholePair {
   WholePair(Random& random, ConvexSet::Kind kind)
       : a(randomWhole(random)),
@@ -122,7 +122,8 @@ TEST(ConvexPair, AgreesWithExactArithmeticAboutSmallWholeNumbers) {
   EXPECT_GT(seen[1], 400);
 }
 
-// Whole numbers: turned by a right angle or by that of 3, 4 and 5, mirrored, sheared, flattened to less.
+// A placement of whole numbers that turns by a right angle or an angle of the 3-4-5 triangle, mirrors, shears
+// or flattens.
 Placement randomWholePlacement(Random& random) {
   Placement placement;
   switch (random.below(4)) {
@@ -163,7 +164,7 @@ TEST(ConvexPair, AgreesWithExactArithmeticAboutPlacedHullsAtAnyScaleAndFarFromTh
   }
 }
 
-// Sets that touch as the name says, and the way by which the second is moved off the first.
+// Two sets that touch as the name says, and the vector by which the second is moved away from the first.
 struct Touch {
   const char* name;
   Points first, second;
@@ -224,7 +225,7 @@ double sizeOf(const Points& points) {
   return size;
 }
 
-TEST(ConvexPair, WhatTouchesIsNotApartAndWhatIsOffByATenBillionthOfTheSizeIs) {
+TEST(ConvexPair, WhatTouchesIsNotDisjointAndWhatIsOffByATenBillionthOfTheSizeIs) {
   Random random(11);
   for (const Touch& touch : touches()) {
     SCOPED_TRACE(touch.name);
@@ -245,8 +246,8 @@ TEST(ConvexPair, WhatTouchesIsNotApartAndWhatIsOffByATenBillionthOfTheSizeIs) {
   }
 }
 
-// A point set that touches the plane z = 0 with its first few points, whose mean is the origin, from the side
-// that `sign` says. shallow: other points come down to a billionth of the size to the plane.
+// Returns points on the side of the plane z = 0 that `sign` gives. The first few, whose mean is the origin,
+// lie in the plane. shallow: other points may be as near to the plane as a billionth of the size.
 Points touchingPlane(Random& random, double sign, const Vec3d& stretch, bool shallow) {
   Points points;
   Vec3d mean;
@@ -264,7 +265,7 @@ Points touchingPlane(Random& random, double sign, const Vec3d& stretch, bool sha
   return points;
 }
 
-TEST(ConvexPair, SetsAreFoundApartThatAreApartByATenBillionthOfTheirSize) {
+TEST(ConvexPair, SetsAreFoundDisjointAtADistanceOfATenBillionthOfTheirSize) {
   const std::array<Vec3d, 4> stretches{{{1, 1, 1}, {1, 1e-3, 1e-3}, {1, 1, 1e-3}, {1e-3, 1e-3, 1}}};
   int asked = 0;
   for (std::uint64_t seed = 0; seed < 4000; ++seed) {
@@ -277,9 +278,9 @@ TEST(ConvexPair, SetsAreFoundApartThatAreApartByATenBillionthOfTheirSize) {
     const Points a = shapes::turned(touchingPlane(random, -1.0, stretch, shallow), axes);
     const Points b = shapes::turned(shapes::moved(touchingPlane(random, 1.0, stretch, shallow), up), axes);
     const ConvexHull hull_a = hullOf(a), hull_b = hullOf(b);
-    // What farthest() may miss on hulls with slivers for faces; 3: the sum of the axes' components.
+    // Error of farthest() on hulls with sliver faces; 3 is the sum of the axes' components.
     const double missed = 2.0 * (supportError(hull_a, 3.0) + supportError(hull_b, 3.0));
-    // An eye or sweep on the second's side of the plane changes nothing.
+    // An eye or sweep on the second set's side of the plane does not change the result.
     const Vec3d beyond = random.point({-10, -10, seed % 2 == 0 ? 0.0 : 1.0}, {10, 10, 10});
     ConvexSet second{&hull_b, {}, kKinds[seed % 3], axes.turn(beyond)};
     second.eye_or_sweep += second.kind == Kind::kWithEye ? axes.turn(up) : Vec3d();
@@ -297,15 +298,16 @@ TEST(ConvexPair, DeepOverlapIsFoundToMeetNotLeftUndecided) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
     const ConvexHull& hull = seed % 2 == 0 ? needle : cube;
-    // Both hold a ball around their centres: of the least semi-axis, 0.01 and 1, less a bit.
-    const Vec3d apart = random.direction() * (seed % 2 == 0 ? 0.015 : 1.5) * random.number(0, 1);
+    // Both contain a ball around their centres with a radius slightly below the shortest semi-axis, 0.01 and
+    // 1.
+    const Vec3d offset = random.direction() * (seed % 2 == 0 ? 0.015 : 1.5) * random.number(0, 1);
     const shapes::Axes axes = shapes::randomAxes(random);
-    EXPECT_EQ(ask(ConvexSet{&hull}, ConvexSet{&hull, {axes.x, axes.y, axes.z, apart}}),
+    EXPECT_EQ(ask(ConvexSet{&hull}, ConvexSet{&hull, {axes.x, axes.y, axes.z, offset}}),
               Intersection::kIntersecting);
   }
 }
 
-// A hull on its way.
+// A moving hull.
 struct Mover {
   ConvexSet set;
   Vec3d velocity;
@@ -381,7 +383,7 @@ TEST(ConvexPair, StrangeWitnessesDoNoHarm) {
   }
 }
 
-TEST(ConvexPair, AskedAgainAPairCostsOneSupportIfApartAndNoneIfItMeets) {
+TEST(ConvexPair, AskedAgainAPairCostsOneSupportIfDisjointAndNoneIfItIntersects) {
   const ConvexHull hull = hullOf(shapes::toothpick());
   std::array<int, 2> seen{};
   for (std::uint64_t seed = 0; seed < 600; ++seed) {
@@ -414,7 +416,7 @@ TEST(ConvexPair, AnEyeInsideOrOnAHullMeetsIt) {
   }
 }
 
-TEST(ConvexPair, NumbersThatOverflowOrUnderflowDoNotMakeTheSameSetsApart) {
+TEST(ConvexPair, NumbersThatOverflowOrUnderflowDoNotMakeEqualSetsDisjoint) {
   const ConvexHull cube = hullOf(shapes::cube());
   for (const double scale : {1e-310, 1e-300, 1e-160, 1e160, 1e300, 1e308}) {
     const Placement placement{{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {scale, 0, scale}};

@@ -22,7 +22,7 @@ ConvexHull hullOf(const shapes::Points& points) {
   return hull ? *hull : ConvexHull();
 }
 
-// Of a point of the set above the local origin, without rounding.
+// The height of a point of the set above the local origin, without rounding.
 Exact exactHeight(const Placement& placement, const Vec3d& point, const Vec3d& direction,
                   const Vec3d& local_origin) {
   Exact height = 0;
@@ -34,7 +34,7 @@ Exact exactHeight(const Placement& placement, const Vec3d& point, const Vec3d& d
   return height;
 }
 
-// Of the whole set.
+// The greatest height of the whole set.
 Exact exactReach(const ConvexSet& set, const shapes::Points& points, const Vec3d& direction,
                  const Vec3d& local_origin) {
   Exact highest = exactHeight(set.placement, points[0], direction, local_origin);
@@ -79,7 +79,7 @@ TEST(ConvexSet, NoPointIsHigherThanItReachesAndTheBoundIsTight) {
     const ConvexSet set = randomSet(random, hull, scale, scale * (seed % 3 == 0 ? 1e6 : 2.0));
     const Vec3d local_origin = set.placement.origin + random.direction() * scale;
     const LocalSet local = localSet(set, local_origin);
-    // The axes' components add up to at most 3 sqrt(3) times the scale.
+    // The sum of the axes' components is at most 3 sqrt(3) times the scale.
     const double allowed = 2.0 * supportError(hull, 5.2 * scale);
     for (int i = 0; i < 4; ++i) {
       const Vec3d direction = random.direction();

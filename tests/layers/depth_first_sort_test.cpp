@@ -56,7 +56,7 @@ TEST(DepthFirstSort, AValidOrderOfAGraphWithoutCyclesStays) {
 }
 
 TEST(DepthFirstSort, AMoveOfOnePartLeavesTheOthersInTheirOrder) {
-  // 4 must come before 1; nothing else is known of 0, 1, 2, 3, 4, 5.
+  // The only arc is from 4 to 1, and the previous order is 0, 1, 2, 3, 4, 5.
   GraphSource graph(6);
   graph.add(4, 1);
   GroupedOrder order;

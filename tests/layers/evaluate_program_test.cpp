@@ -15,7 +15,7 @@ constexpr std::size_t kStride = 41;
 
 using Pixels = std::vector<ShapedPixel>;
 
-// A circle of four with a chord, a single layer, a circle of three.
+// A cycle of four layers with a chord, a single layer, and a cycle of three layers.
 FrameLayers someLayers() {
   FrameLayers frame;
   frame.first_layer = {0, 4, 5, 8};
@@ -94,7 +94,7 @@ TEST(Evaluate, GivesTheBitsOfASinglePixelWhateverTheScratch) {
   }
 }
 
-// Each operation by its definition, in the same precision and order.
+// Runs each operation by its definition, in the same precision and order.
 TEST(Evaluate, DoesEachOperationAsDefinedOnLayersAndRegisters) {
   using enum CompositingOp;
   const ShapedPixel a{0.3f, 0.1f, 0.2f, 0.5f}, b{0.25f, 0.5f, 0.0f, 0.75f}, c{0.125f, 0.0f, 0.25f, 0.25f};
@@ -123,7 +123,7 @@ TEST(Evaluate, TakesAnImageWithoutPixelsForATransparentOne) {
     for (std::size_t missing = 0; missing < 8; ++missing) {
       Fixture f(form);
       f.images[missing].pixels = nullptr;
-      f.images[missing].width = 3;  // does not matter
+      f.images[missing].width = 3;  // the size of an image without pixels is ignored
       const Pixels without = f.evaluated(kCompositingScratch);
       const Pixels empty(kStride * kHeight);
       f.images[missing] = {empty.data(), kWidth, kHeight, kStride};

@@ -14,8 +14,9 @@ using shapes::Points;
 using shapes::Random;
 using test::Exact;
 
-// Whether closed hulls of few points meet, by all the planes that could part them: through three of the
-// points, or through two with a side of a third's. Whole coordinates up to some thousands are exact.
+// Whether closed hulls of a few points intersect, by testing all candidates for separating planes: through
+// three of the points, or through two and parallel to a side. Whole coordinates up to some thousands are
+// exact.
 bool apartByAPlane(const Points& a, const Points& b, const Vec3d& normal) {
   double high_a = dot(normal, a[0]);
   double low_a = high_a;
@@ -32,9 +33,9 @@ bool apartByAPlane(const Points& a, const Points& b, const Vec3d& normal) {
   return high_a < low_b || high_b < low_a;
 }
 
-// Two polytopes are apart iff some normal among these parts them: of a plane through three points of the
-// difference set's generators. All cross products of differences of vertices of the same set, of two sets'
-// edges, and the differences themselves (for points and segments) are tried.
+// Two polytopes are disjoint if and only if one of these normals separates them: the normals of planes
+// through three points of the difference set's generators. The test tries all cross products of edges of one
+// set and of both sets, and the differences themselves (for points and segments).
 bool meetByAllPlanes(const Points& a, const Points& b) {
   std::vector<Vec3d> edges;
   for (const Points* set : {&a, &b}) {
@@ -67,20 +68,20 @@ bool meetByAllPlanes(const Points& a, const Points& b) {
 }
 
 TEST(ExactPairs, AgreesWithTryingAllPlanesOnWholePoints) {
-  int meeting = 0;
+  int intersecting = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const Points a = shapes::randomGrid(random, 1 + random.below(5), 3);
-    const Vec3d apart{static_cast<double>(random.whole(0, 5)), 0, 0};
-    const Points b = shapes::moved(shapes::randomGrid(random, 1 + random.below(5), 3), apart);
+    const Vec3d offset{static_cast<double>(random.whole(0, 5)), 0, 0};
+    const Points b = shapes::moved(shapes::randomGrid(random, 1 + random.below(5), 3), offset);
     const bool expected = meetByAllPlanes(a, b);
-    meeting += expected ? 1 : 0;
+    intersecting += expected ? 1 : 0;
     ASSERT_EQ(test::convexHullsIntersect(a, b), expected);
     ASSERT_EQ(test::convexHullsIntersect(b, a), expected);
   }
-  EXPECT_GT(meeting, 60);
-  EXPECT_LT(meeting, 540);
+  EXPECT_GT(intersecting, 60);
+  EXPECT_LT(intersecting, 540);
 }
 
 TEST(ExactPairs, TellsTouchingFromTheLeastGap) {
@@ -90,7 +91,7 @@ TEST(ExactPairs, TellsTouchingFromTheLeastGap) {
   EXPECT_TRUE(test::inConvexHull({1, 1, 1}, a));
   EXPECT_FALSE(test::inConvexHull({1, 1, std::nextafter(1.0, 2.0)}, a));
   EXPECT_FALSE(test::inConvexHull({0, 0x1p-1000, 1.5}, a));
-  // The middle of a segment whose ends are far apart in size.
+  // The middle of a segment whose ends differ much in magnitude.
   EXPECT_TRUE(test::inConvexHull({0.5, 0.5e-30, 0.5e30}, Points{{0, 0, 0}, {1, 1e-30, 1e30}}) ==
               (Exact(0.5e-30) * 2 == Exact(1e-30) && Exact(0.5e30) * 2 == Exact(1e30)));
 }
@@ -104,10 +105,10 @@ TEST(ExactPairs, OcclusionNeedsTheRayToMeetTheFrontFirst) {
   EXPECT_TRUE(test::occludesExactlyTowards(near_box, far_box, {0, 0, -1}));
   EXPECT_FALSE(test::occludesExactlyTowards(far_box, near_box, {0, 0, -1}));
   EXPECT_TRUE(test::occludesExactlyTowards(far_box, near_box, {0, 0, 1}));
-  // A ray that only grazes: the eye, the near box's edge and the far box's edge in one line.
+  // A grazing ray: the eye, the near box's edge and the far box's edge are in line.
   EXPECT_TRUE(test::occludesExactly(near_box, shapes::box({2, 0, 8}, {3, 1, 12}), {0, 0, 0}));
   EXPECT_FALSE(test::occludesExactly(near_box, shapes::box({2 + 0x1p-40, 0, 8}, {3, 1, 8}), {0, 0, 0}));
-  // The eye within the front occludes everything.
+  // A front part that contains the eye occludes everything.
   EXPECT_TRUE(test::occludesExactly(near_box, far_box, {0, 0, 5}));
   EXPECT_TRUE(test::occludesExactly(near_box, shapes::cube({0, 40, 5}), {0, 0, 5}));
 }
@@ -120,7 +121,8 @@ TEST(ExactPairs, AFarEyeSeesAsADirectionDoes) {
     const Points front = shapes::randomGrid(random, 4, 4);
     const Points back = shapes::moved(shapes::randomGrid(random, 4, 4), {0, 0, 6});
     const Vec3d towards{random.whole(-3, 3) + 0.5, random.whole(-3, 3) + 0.5, -7};
-    // Rays from farther than 2^40 away leave the parallels by less than whole points of this size tell.
+    // Rays from an eye farther than 2^40 differ from parallel rays by less than whole points of this size
+    // resolve.
     const bool expected = test::occludesExactlyTowards(front, back, towards);
     occluding += expected ? 1 : 0;
     ASSERT_EQ(test::occludesExactly(front, back, towards * 0x1p+40), expected);

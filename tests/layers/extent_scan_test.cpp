@@ -16,7 +16,7 @@ using shapes::Random;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Interval randomInterval(Random& random, bool angular) {
-  // Coarse numbers, so that intervals often just touch.
+  // Uses coarse numbers, so that intervals often just touch.
   const auto coarse = [&](double from, double to) {
     return static_cast<float>(std::round(random.number(from, to) * 4) / 4);
   };
@@ -91,7 +91,7 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsOnEveryInstructionSet) {
       found += expected.size() - 1;
       for (const std::int64_t target : targets) {
         hwy::SetSupportedTargetsForTest(target);
-        std::vector<std::uint32_t> parts{77};  // appends
+        std::vector<std::uint32_t> parts{77};  // query() must append
         scan.query(query, parts);
         hwy::SetSupportedTargetsForTest(0);
         EXPECT_EQ(parts, expected) << hwy::TargetName(target) << ", seed " << seed;
@@ -101,8 +101,8 @@ TEST(ExtentScan, FindsWhatComparingOneByOneFindsOnEveryInstructionSet) {
   EXPECT_GT(found, 1000u);
 }
 
-// Narrow intervals anywhere, of numbers of any size: near the least and the greatest that a float holds, all
-// the same, or close together and far from zero.
+// Returns narrow intervals of numbers of any magnitude: near the smallest and the greatest float, all equal,
+// or close together and far from zero.
 ExtentTable fineTable(Random& random, std::size_t parts) {
   ExtentTable table;
   table.parts = parts;
@@ -121,7 +121,7 @@ ExtentTable fineTable(Random& random, std::size_t parts) {
   return table;
 }
 
-// More than 64 * 64 parts: rows of rows of rows.
+// More than 64 * 64 parts, so that there are three levels of rows.
 TEST(ExtentScan, FindsWhatComparingOneByOneFindsThroughThreeLevels) {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   std::size_t found = 0;
@@ -166,7 +166,7 @@ TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
   scan.beginFrame(table, all);
   scan.setActive(63, false);
   Extent query{};
-  query[0] = {1.0f, 2.0f};  // touches
+  query[0] = {1.0f, 2.0f};  // touches the part
   std::vector<std::uint32_t> parts;
   scan.query(query, parts);
   EXPECT_EQ(parts.size(), 63u);
@@ -175,7 +175,7 @@ TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
   scan.query(query, parts);
   EXPECT_EQ(parts.size(), 64u);
   scan.beginFrame(table, std::vector<std::uint32_t>{40, 7, 12});
-  scan.setActive(50, true);  // not listed
+  scan.setActive(50, true);  // part 50 is not in the order
   parts.clear();
   scan.query(query, parts);
   EXPECT_EQ(parts, (std::vector<std::uint32_t>{7, 12, 40}));
@@ -183,7 +183,7 @@ TEST(ExtentScan, BeginsWithAllListedPartsActiveAndFindsNoOthers) {
 
 TEST(ExtentScan, ComparesOnlyBlocksWhoseUnionOverlapsAndThatHoldActiveParts) {
   constexpr std::size_t kFanOut = ScanRows::kFanOut;
-  // One behind the other along an axis.
+  // The parts lie one behind the other along an axis.
   ExtentTable table;
   table.parts = kFanOut * kFanOut;
   table.kinds = {ExtentAxis::Kind::kSpatial};
@@ -206,7 +206,8 @@ TEST(ExtentScan, ComparesOnlyBlocksWhoseUnionOverlapsAndThatHoldActiveParts) {
     EXPECT_EQ(found.size(), answers);
     return scan.blocksCompared() - before;
   };
-  // One block of unions, and the block of the answer, or two where the query's cell lies across a border.
+  // A query compares one block of united rows and the block of the answer, or two if its cell crosses a
+  // border.
   EXPECT_LE(blocksOf({1000.0f, 1000.4f}, 1), 3u);
   EXPECT_EQ(blocksOf({-kInfinity, kInfinity}, table.parts), 1 + kFanOut);
   for (std::uint32_t part = 0; part + kFanOut < table.parts; ++part) {

@@ -17,7 +17,7 @@ namespace sightline::layers::extent_tests {
 
 struct ExtentScene {
   PartStore store;
-  std::vector<shapes::Points> points;  // of each hull: what it was made of
+  std::vector<shapes::Points> points;  // input points of each hull
   std::vector<std::uint8_t> moved;
 
   std::uint32_t addHull(const shapes::Points& of) {
@@ -53,7 +53,8 @@ inline Exact exactPoint(const Placement& p, const Vec3d& v) {
          Exact(p.z) * static_cast<long double>(v.z) + Exact(p.origin);
 }
 
-// All that a part was made of, in the world less `from`; also points between those of one hull.
+// Returns all input points of a part in the world, relative to `from`, and random points between those of a
+// hull.
 inline std::vector<Exact> exactPoints(const ExtentScene& scene, std::uint32_t part, const Vec3d& from,
                                       shapes::Random* between = nullptr) {
   std::vector<Exact> all;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Who occludes whom as a graph, and what a sorted order of it must be, found independently.
+// An occlusion graph for tests of sorts, and an independent check of sorted orders.
 
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
@@ -21,7 +21,7 @@ class GraphSource : public OccluderSource {
  public:
   explicit GraphSource(std::size_t parts) : occluders_(parts), active_(parts, 1), member_(parts, 0) {}
 
-  // No loops; the same arc more than once counts once.
+  // Adds an arc; loops are ignored, and an arc that is there is not added again.
   void add(std::uint32_t front, std::uint32_t back) {
     std::vector<std::uint32_t>& list = occluders_[back];
     const auto at = std::lower_bound(list.begin(), list.end(), front);
@@ -36,7 +36,7 @@ class GraphSource : public OccluderSource {
   std::span<const std::uint32_t> occludersOf(std::uint32_t back) const { return occluders_[back]; }
   bool active(std::uint32_t part) const { return active_[part] != 0; }
 
-  // As before the first question: all active, nothing counted.
+  // Makes all parts active and sets all counts to 0.
   void reset() {
     std::fill(active_.begin(), active_.end(), std::uint8_t{1});
     queries = pair_questions = 0;
@@ -70,11 +70,11 @@ class GraphSource : public OccluderSource {
   std::uint64_t queries = 0, pair_questions = 0;
 
  private:
-  std::vector<std::vector<std::uint32_t>> occluders_;  // of a part, ascending
+  std::vector<std::vector<std::uint32_t>> occluders_;  // one list per part, ascending
   std::vector<std::uint8_t> active_, member_;
 };
 
-// The strongly connected component of each part, by Boost.
+// Returns the strongly connected component of each part, found by Boost.
 inline std::vector<std::uint32_t> componentsOf(const GraphSource& graph) {
   using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
   Graph boost_graph(graph.parts());
@@ -91,7 +91,8 @@ inline std::vector<std::uint32_t> componentsOf(const GraphSource& graph) {
   return component;
 }
 
-// What is wrong with an order of all parts of the graph; empty: nothing. component: componentsOf(graph).
+// Returns what is wrong with an order of all parts of the graph, or an empty text. component:
+// componentsOf(graph).
 inline std::string faultOf(const GroupedOrder& order, const GraphSource& graph,
                            std::span<const std::uint32_t> component) {
   const std::size_t n = graph.parts();
@@ -131,7 +132,7 @@ inline std::string faultOf(const GroupedOrder& order, const GraphSource& graph,
   return order.arcs == inside ? "" : "the arcs inside the groups are not those of the graph";
 }
 
-// Empty as well: every group's parts are in the order of `previous`.
+// Returns an empty text if the parts of every group are in the order of `previous`.
 inline std::string faultOfMemberOrder(const GroupedOrder& order, std::span<const std::uint32_t> previous) {
   std::vector<std::size_t> rank(previous.size());
   for (std::size_t i = 0; i < previous.size(); ++i) {
@@ -157,7 +158,7 @@ inline std::uint32_t below(std::size_t bound, std::mt19937& random) {
   return static_cast<std::uint32_t>(random() % bound);
 }
 
-// Fisher and Yates, the same everywhere.
+// Shuffles by the method of Fisher and Yates, with the same result on every platform.
 inline std::vector<std::uint32_t> shuffledOrder(std::size_t parts, std::mt19937& random) {
   std::vector<std::uint32_t> order = identityOrder(parts);
   for (std::size_t i = parts; i > 1; --i) {
@@ -166,7 +167,7 @@ inline std::vector<std::uint32_t> shuffledOrder(std::size_t parts, std::mt19937&
   return order;
 }
 
-// Each of the n (n - 1) arcs with a probability of per_mille / 1000.
+// Returns a graph that has each of the n (n - 1) arcs with a probability of per_mille / 1000.
 inline GraphSource randomGraph(std::size_t parts, std::uint32_t per_mille, std::mt19937& random) {
   GraphSource graph(parts);
   for (std::uint32_t back = 0; back < parts; ++back) {
@@ -179,7 +180,7 @@ inline GraphSource randomGraph(std::size_t parts, std::uint32_t per_mille, std::
   return graph;
 }
 
-// The same, without circles: the arcs of randomGraph() that go forwards in a shuffled order.
+// Returns a random graph without cycles: the arcs of randomGraph() that go forwards in a shuffled order.
 inline GraphSource randomAcyclicGraph(std::size_t parts, std::uint32_t per_mille, std::mt19937& random) {
   const std::vector<std::uint32_t> order = shuffledOrder(parts, random);
   GraphSource graph(parts);
@@ -193,7 +194,7 @@ inline GraphSource randomAcyclicGraph(std::size_t parts, std::uint32_t per_mille
   return graph;
 }
 
-// Bit k of the number says whether the k-th of the n (n - 1) ordered pairs is an arc.
+// Returns the graph in which the k-th of the n (n - 1) ordered pairs is an arc if bit k of the number is set.
 inline GraphSource numberedGraph(std::size_t parts, std::uint32_t number) {
   GraphSource graph(parts);
   for (std::uint32_t front = 0; front < parts; ++front) {
@@ -209,14 +210,16 @@ inline GraphSource numberedGraph(std::size_t parts, std::uint32_t number) {
   return graph;
 }
 
-// Arcs a part: from far below one to nearly all; most around one, where components are of all sizes.
+// Returns a random graph with from far below one to nearly all arcs per part, but mostly about one, where
+// components have all sizes.
 inline GraphSource variedGraph(std::uint32_t seed, std::size_t parts, std::mt19937& random) {
   const std::uint32_t per_mille =
       seed % 3 == 0 ? below(1001, random) : (500 + below(2000, random)) / static_cast<std::uint32_t>(parts);
   return randomGraph(parts, per_mille, random);
 }
 
-// Sorts every graph of up to four parts from every order; the first fault that an order has, or none.
+// Sorts every graph of up to four parts from every previous order and returns the first fault of a result, if
+// any.
 template <typename Sorter>
 std::string faultOfSmallGraphs(Sorter& sorter) {
   for (std::size_t parts = 0; parts <= 4; ++parts) {

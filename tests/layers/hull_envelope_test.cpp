@@ -20,7 +20,7 @@ ConvexHull hullOf(const std::vector<Vec3d>& points) {
   return std::move(*hull);
 }
 
-// Solid, flat, straight or a point; long or round; anywhere.
+// A random hull: solid, flat, a segment or a point; long or round; anywhere.
 std::vector<Vec3d> randomPoints(Random& random, std::uint64_t kind) {
   const double thin = kind % 4 == 0 ? 0.0 : kind % 4 == 1 ? 1e-3 : 1.0, thinner = kind % 8 < 4 ? thin : 0.0;
   const double size = std::pow(10.0, static_cast<double>(random.below(13)) - 6.0);
@@ -64,7 +64,7 @@ std::vector<Vec3d> boxAround(const Vec3d& middle, double half) {
   return corners;
 }
 
-// Of two that were apart along the x axis at the last question.
+// Tests two sets with a witness that they were disjoint along the x axis.
 Intersection askAgain(ConvexSet first, ConvexSet second) {
   const HullEnvelope around_first = envelopeOf(*first.hull), around_second = envelopeOf(*second.hull);
   first.around = &around_first;
@@ -87,7 +87,7 @@ TEST(HullEnvelope, SaysNothingOfAPoint) {
   }
 }
 
-TEST(HullEnvelope, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
+TEST(HullEnvelope, LetsNothingBeDisjointThatIsTooLargeOrTooSmallForNumbers) {
   const ConvexHull box = hullOf(boxAround({}, 1.0)), aside = hullOf(boxAround({10, -10, 0}, 1.0));
   ConvexSet huge{&aside};
   huge.placement.x = huge.placement.y = {1e308, 0.0, 0.0};
@@ -103,9 +103,9 @@ TEST(HullEnvelope, LetsNothingBeApartThatIsTooLargeOrTooSmallForNumbers) {
   EXPECT_NE(askAgain(tiny, neighbour), Intersection::kDisjoint);
 }
 
-// The shortcut for pairs that were apart never says what the whole test does not.
-TEST(HullEnvelope, LetsNoPairBeApartThatIsNot) {
-  std::size_t apart = 0, meets = 0;
+// The shortcut for pairs that were disjoint agrees with the whole test.
+TEST(HullEnvelope, LetsNoPairBeDisjointThatIsNot) {
+  std::size_t disjoint = 0, intersecting = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Random random(seed);
     const ConvexHull first = hullOf(randomPoints(random, 4 * seed + 2)),
@@ -115,7 +115,7 @@ TEST(HullEnvelope, LetsNoPairBeApartThatIsNot) {
     PairWitness witness;
     PairCounts counts;
     for (int i = 0; i < 30; ++i) {
-      // From far away to where they meet, and on.
+      // Moves one hull from far away to where the two intersect, and on.
       ConvexSet a{&first}, b{&second};
       a.placement.origin = -first.centre;
       b.placement.origin = Vec3d(reach * (1.5 - 0.1 * i), 0.02 * reach, 0.0) - second.centre;
@@ -128,11 +128,11 @@ TEST(HullEnvelope, LetsNoPairBeApartThatIsNot) {
       const Intersection quick = testIntersection(a, b, witness, counts);
       EXPECT_EQ(quick == Intersection::kDisjoint, exact == Intersection::kDisjoint)
           << "seed " << seed << ", step " << i;
-      ++(exact == Intersection::kDisjoint ? apart : meets);
+      ++(exact == Intersection::kDisjoint ? disjoint : intersecting);
     }
   }
-  EXPECT_GT(apart, 1000u);
-  EXPECT_GT(meets, 1000u);
+  EXPECT_GT(disjoint, 1000u);
+  EXPECT_GT(intersecting, 1000u);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
-// Which hulls of a moving scene a ray meets, and where: Embree finds them, in single precision; what they are
-// then asked for is so strict that rounding cannot add anything.
+// Finds the hulls of a moving scene that a ray hits, and where. Embree finds candidates in single precision,
+// which are then tested so strictly that rounding cannot add a hit.
 
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 
 namespace sightline::test {
 
-// What of a ray lies in a part: distances in lengths of the direction.
+// The stretch of a ray inside a part, as distances in lengths of the direction.
 struct RayStretch {
   std::uint32_t part = 0;
   double enter = 0.0, leave = 0.0;
@@ -29,7 +29,7 @@ struct RayStretch {
 
 class HullRays {
  public:
-  // The solid hulls of all parts but overlays and backdrops, where they are.
+  // Takes the placed solid hulls of all parts except overlays and backdrops.
   HullRays(const MovingScene& scene, std::span<const Mat4> world_from_part)
       : device_(rtcNewDevice(nullptr)), embree_(rtcNewScene(device_.get())) {
     EXPECT_TRUE(rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED));
@@ -45,7 +45,7 @@ class HullRays {
     rtcCommitScene(embree_.get());
   }
 
-  // Parts whose hulls, made smaller by a billionth, the ray meets, by number.
+  // Returns the parts whose hulls, shrunk by a billionth, the ray hits, by number.
   std::vector<RayStretch> hits(const Vec3d& from, const Vec3d& direction) const {
     Hits hits;
     rtcInitIntersectContext(&hits.context);
@@ -77,7 +77,7 @@ class HullRays {
     const ConvexHull* hull = nullptr;
   };
   struct Hits {
-    RTCIntersectContext context;  // first: the filter finds the rest by it
+    RTCIntersectContext context;  // must be the first member: the filter casts its address
     std::vector<std::uint32_t> geometries;
   };
   struct Release {
@@ -85,7 +85,7 @@ class HullRays {
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
   };
 
-  // Notes the geometry and lets the ray pass.
+  // Records the geometry and lets the ray pass.
   static void collect(const RTCFilterFunctionNArguments* arguments) {
     auto* hits = reinterpret_cast<Hits*>(arguments->context);
     hits->geometries.push_back(RTCHitN_geomID(arguments->hit, 1, 0));
@@ -132,7 +132,7 @@ class HullRays {
     instances_.push_back({part, &hull});
   }
 
-  // In double precision, in the hull's space.
+  // Clips the ray to the hull in double precision, in the hull's space.
   std::optional<RayStretch> inside(std::uint32_t geometry, const Vec3d& from, const Vec3d& direction) const {
     const Instance& instance = instances_[geometry];
     const Mat4& m = part_from_world_[instance.part];

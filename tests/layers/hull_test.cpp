@@ -35,7 +35,7 @@ std::set<Place> places(const Points& points) {
   return set;
 }
 
-// The different places of points that are not in the hull of the other places.
+// Returns the distinct positions that are not in the hull of the other positions.
 std::set<Place> extremePlaces(const Points& points) {
   const std::set<Place> all = places(points);
   std::set<Place> extreme;
@@ -76,7 +76,7 @@ void expectConvex(const ConvexHull& hull) {
   }
 }
 
-// Edges between triangles that do not lie in one plane, by exact volumes.
+// Returns the edges between triangles that do not lie in one plane, by exact volumes.
 void expectEdgesAreWhereTheSurfaceBends(const ConvexHull& hull) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> opposite;
   for (const auto& t : hull.triangles) {
@@ -119,11 +119,12 @@ void expectFacesHoldVertices(const ConvexHull& hull) {
   }
 }
 
-// A ball of radius `slack` lies in the box whose hull is tested.
+// Expects that no point is farther from the hull than its slack. A box around the point that contains the
+// ball of that radius must intersect the hull.
 void expectPointsWithinSlack(const ConvexHull& hull, const Points& points, std::size_t step = 1) {
   const double s = hull.slack;
   for (std::size_t i = 0; i < points.size(); i += step) {
-    // A corner of the box is rounded to the coordinates' last digit.
+    // The box's corners are rounded to the last digit of the coordinates.
     const double half = s * (1 + 1e-9) + 0x1p-52 * maxComponent(abs(points[i]));
     const Points box = s > 0.0 ? shapes::cube(points[i], half) : Points{points[i]};
     ASSERT_TRUE(test::convexHullsIntersect(box, hull.vertices))
@@ -161,7 +162,7 @@ void expectSound(const ConvexHull& hull, const Points& points, std::size_t step 
   }
 }
 
-// A cube with points all over its sides and edges.
+// Returns the points of a cube and more points all over its sides and edges.
 Points dicedCube(int cuts) {
   Points points;
   for (int i = 0; i <= cuts; ++i) {
@@ -186,8 +187,8 @@ TEST(Hull, ACubeHasSixFacesAndThreeEdgesACorner) {
     EXPECT_EQ(hull.first_neighbour[v + 1] - hull.first_neighbour[v], 3u);
   }
   EXPECT_EQ(hull.slack, 0.0);
-  // Along the sum of the three sides' normals an edge falls by 2 / sqrt(3) and the far corner by three times
-  // that; the mean of triangles' normals is a little off it.
+  // Along the sum of the three sides' normals, the other end of an edge is lower by 2 / sqrt(3) and the far
+  // corner by three times that. The mean of the triangles' normals differs a little from that sum.
   EXPECT_GE(hull.descent_factor, 3.0);
   EXPECT_LE(hull.descent_factor, 8.0);
 }

@@ -1,4 +1,5 @@
-// What a sort begins with: distances from the eye at first, the last frame's order from then on (section 4).
+// The order from which a sort starts: by distance from the eye at first, then that of the last frame (section
+// 4).
 
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ std::vector<std::uint32_t> partsOf(const LayerOrder& order) {
   return parts;
 }
 
-// Part numbers, nearest to the eye first.
+// Returns the part numbers, nearest to the eye first.
 std::vector<std::uint32_t> byDistance(const std::vector<Vec3d>& centres, const Vec3d& eye) {
   std::vector<std::uint32_t> parts(centres.size());
   for (std::uint32_t i = 0; i < parts.size(); ++i) {
@@ -57,7 +58,7 @@ std::vector<std::uint32_t> byDistance(const std::vector<Vec3d>& centres, const V
   return parts;
 }
 
-// No two of them are before each other, from either of the eyes below.
+// None of these parts occludes another, from either of the eyes below.
 const std::vector<Vec3d> kSideBySide{{20, 0, 0}, {0, 0, 0}, {40, 0, 0}, {10, 0, 0}, {30, 0, 0}};
 const Vec3d kLeft{-5, 0, 50}, kRight{45, 0, 50};
 
@@ -79,7 +80,7 @@ TEST(LayerSorterCoherence, TheFirstOrderTakesAPartByTheMeanOfItsHulls) {
   }
 }
 
-// Sorted by depth, what is behind the eye would come in reverse.
+// A sort by depth would put parts behind the eye in reverse order.
 TEST(LayerSorterCoherence, TheFirstOrderIsRightBehindTheEyeToo) {
   const std::vector<Vec3d> row{{0, 0, 15}, {0, 0, -30}, {0, 0, 5}, {0, 0, -10}, {0, 0, 25}, {0, 0, -20}};
   LayerSorter sorter = sorterOf(cubesAt(row, {}), unconditioned(SortChoice::kIncremental));
@@ -136,14 +137,14 @@ TEST(LayerSorterCoherence, ConditioningBringsTheNearestForwardWhateverTheLastOrd
     const LayerOrder& first = sorter.update(viewFrom(kLeft));
     EXPECT_EQ(partsOf(first), by_depth);
     EXPECT_GT(first.stats.conditioned, 0u);
-    // The conditioned order is what the next sort begins with.
+    // The next sort starts from the conditioned order.
     const LayerOrder& second = sorter.update(viewFrom(kRight));
     EXPECT_EQ(partsOf(second), by_depth);
     EXPECT_EQ(second.stats.conditioned, 0u);
   }
 }
 
-// Two parts that reach into each other, 23 and 35 m away; single ones at 26 m and at 32 m.
+// Two intersecting parts at 23 and 35 m, and single parts at 26 m and 32 m.
 TEST(LayerSorterCoherence, ConditioningTakesAGroupByTheMeanOfItsParts) {
   MadeScene scene;
   for (const auto& [x, near, far] : {std::array{80.0, -31.0, -33.0}, std::array{0.0, -25.0, -45.0},
@@ -163,8 +164,8 @@ TEST(LayerSorterCoherence, ConditioningTakesAGroupByTheMeanOfItsParts) {
   }
 }
 
-// A row of plates across the view's axis that reach far to one side: each occludes all behind it, and how far
-// its middle is says nothing about its place in the row.
+// A row of plates across the view's axis that reach far to one side. Each plate occludes all plates behind
+// it, and the distance of its middle does not tell its place in the row.
 struct Plates {
   static constexpr std::uint32_t kCount = 40;
   MadeScene scene;
@@ -180,7 +181,7 @@ struct Plates {
     }
     scene.view = viewFrom({});
   }
-  // Numbers say nothing about places either.
+  // Part numbers are not in the order of the row, either.
   static std::uint32_t place(std::uint32_t part) { return part * 17 % kCount; }
   static double depthOf(std::uint32_t part) { return -10.0 - 2.0 * place(part); }
   static std::vector<std::uint32_t> rightOrder() {
@@ -203,7 +204,7 @@ TEST(LayerSorterCoherence, AFrameInWhichNothingChangesFindsItsOrderConfirmed) {
     EXPECT_EQ(partsOf(warm), Plates::rightOrder());
     EXPECT_EQ(warm.stats.occluder_queries, Plates::kCount);
     EXPECT_EQ(warm.stats.reinsertions, 0u);
-    // Whatever is still active lies behind the part that is asked about.
+    // All active parts lie behind the part whose occluders are asked for.
     EXPECT_EQ(warm.stats.candidates, 0u);
     EXPECT_EQ(warm.stats.pair_queries, 0u);
     EXPECT_GT(cold_stats.candidates, Plates::kCount);
@@ -259,7 +260,7 @@ TEST(LayerSorterCoherence, SmallMotionsCostFewerExactTestsThanSortingAnew) {
   }
 }
 
-// What is kept of a pair lives as long as the settings say.
+// The result of a pair is kept for as long as the settings say.
 TEST(LayerSorterCoherence, WhatIsKnownOfPairsShortensTheNextFrameUnlessItExpires) {
   const MovingScene scene = makeToothpicks({.count = 200});
   for (const SortChoice sort : kSortChoices) {

@@ -1,4 +1,4 @@
-// Input that no careful program gives: no crash, and no arc is missed.
+// Invalid and extreme input must neither crash the sorter nor make it miss an arc.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ ConvexHull cube() {
   return *buildHull(corners);
 }
 
-// Two parts with a hull each, the second one `behind` farther along -z.
+// Makes two parts with one hull each, the second at a distance of `behind` along -z.
 LayerSorter two(const ConvexHull& hull, double behind, LayerSettings settings = {}) {
   settings.all_arcs = true;
   LayerSorter sorter(settings);
@@ -71,7 +71,7 @@ TEST(HostileSorter, AxesThatSpanNoPlaneRuleNothingOut) {
                         {ExtentAxis::Kind::kSpatial, ExtentAxis::Frame::kWorld, direction * 0.0}};
     LayerSorter sorter = two(cube(), 100.0, settings);
     View view;
-    view.eye = {0.3, 0.1, 0.2};  // in the first part
+    view.eye = {0.3, 0.1, 0.2};  // inside the first part
     const LayerOrder& order = sorter.update(view);
     EXPECT_EQ(std::vector<LayerArc>(order.arcs.begin(), order.arcs.end()), kFirstOccludes);
   }

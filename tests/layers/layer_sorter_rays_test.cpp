@@ -1,4 +1,4 @@
-// What rays meet first, against what the order says comes first.
+// Compares the parts that rays hit first with those that come first in the order.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ struct Ray {
   Vec3d from, direction;
 };
 
-// The ray of a view through a point.
+// Returns the view's ray through a point.
 Ray rayThrough(const View& view, const Vec3d& point) {
   if (!view.orthographic) {
     return {view.eye, point - view.eye};
@@ -32,7 +32,7 @@ Ray rayThrough(const View& view, const Vec3d& point) {
   return {point - view.forward * (dot(point - view.eye, view.forward) + 100.0), view.forward};
 }
 
-// A point of the part's hull, as near to its silhouette on the side of `towards` as vertices are.
+// Returns a point of the part's hull near its silhouette on the side of `towards`.
 Vec3d farSide(const MovingSorter& moving, std::uint32_t part, const Vec3d& towards) {
   const ConvexHull& hull = moving.scene().hulls[moving.scene().parts[part].hulls[0]];
   const Mat4& m = moving.poses()[part];
@@ -41,12 +41,12 @@ Vec3d farSide(const MovingSorter& moving, std::uint32_t part, const Vec3d& towar
     const Vec3d world = transformPoint(m, vertex);
     best = dot(world, towards) > dot(best, towards) ? world : best;
   }
-  // A little inside: rays through the vertex itself meet no inner point.
+  // The point is a little inside, since a ray through the vertex itself hits no inner point.
   return best + (transformPoint(m, hull.centre) - best) * 1e-5;
 }
 
-// Two for each two parts that lie near each other before the eye: through the side of each that is nearest to
-// the other. Where they hardly overlap, the rays pass there.
+// Returns two rays for each two parts that are near each other in the view: through the side of each part
+// that is nearest to the other. They hit both parts even if these hardly overlap.
 void addRaysAtPairs(const MovingSorter& moving, const View& view, std::vector<Ray>& rays) {
   struct Ball {
     Vec3d centre;
@@ -93,11 +93,11 @@ std::vector<Ray> manyRays(const MovingSorter& moving, const View& view, Random& 
 }
 
 struct Seen {
-  std::size_t pairs = 0;   // of parts that a ray hits one after the other
-  std::size_t images = 0;  // rays that hits several parts, all in groups of one
+  std::size_t pairs = 0;   // pairs of parts that a ray hits one after the other
+  std::size_t images = 0;  // rays that hit several parts, all in groups of one part
 };
 
-// Whoever is met before another has left must be its occluder.
+// A part that the ray enters before it leaves another must occlude that one.
 void expectArcs(const MovingSorter& moving, std::span<const RayStretch> hits, const LayerOrder& order,
                 Seen& seen) {
   for (const RayStretch& a : hits) {
@@ -113,7 +113,7 @@ void expectArcs(const MovingSorter& moving, std::span<const RayStretch> hits, co
   }
 }
 
-// The painter's image is the depth buffer's.
+// The part that is drawn last is the nearest one, so painting gives the same image as a depth buffer.
 void expectFirstIsNearest(const MovingSorter& moving, std::span<const RayStretch> hits,
                           std::span<const std::uint32_t> place, std::span<const std::uint32_t> group_size,
                           Seen& seen) {
@@ -174,7 +174,7 @@ Seen checkToothpicks(std::uint32_t count, const LayerSettings& settings) {
     moving.pose(frame * 40);
     View view = moving.view(frame * 40);
     if (frame == 2) {
-      view.eye = random.point({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8});  // amid them
+      view.eye = random.point({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8});  // among the toothpicks
     }
     view.orthographic = frame == 3;
     checkFrame(moving, view, random, 2000, seen);

@@ -1,4 +1,4 @@
-// What a program says about parts, and settings and inputs that make no sense.
+// Rules that a program sets for parts, and settings and input without meaning.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::vector<Group> groupsOf(const LayerOrder& order) {
   return Answer(order).in_order;
 }
 
-// Two cubes that reach a little into each other across the plane z = 0.
+// Two cubes that overlap a little across the plane z = 0.
 MadeScene overlapping() {
   return {{solid(shapes::box({-1, -1, -0.25}, {1, 1, 2})), solid(shapes::box({-1, -1, -2}, {1, 1, 0.25}))},
           viewFrom({0, 0, 9})};
@@ -130,7 +130,7 @@ TEST(LayerSorterRules, ContentIsBetweenTheFrontAndTheBackOfItsContainer) {
     LayerSorter sorter = glassOfMarbles(way.settings, shapes::cube({}, 0.5));
     EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, 20}))), (std::vector<Group>{{2}, {3}, {0}, {1}}));
     EXPECT_EQ(groupsOf(sorter.update(viewFrom({0, 0, -20}))), (std::vector<Group>{{2}, {0}, {3}, {1}}));
-    sorter.setTransform(PartId(0u), shifted({0, 4, 0}));  // through the side
+    sorter.setTransform(PartId(0u), shifted({0, 4, 0}));  // through the container's side
     const Answer through(sorter.update(viewFrom({0, 0, 20})));
     EXPECT_EQ(through.groupOf(0), through.groupOf(2));
     EXPECT_EQ(through.groupOf(0), through.groupOf(1));
@@ -201,7 +201,7 @@ TEST(LayerSorterRules, WhatIsNotFiniteIsOneGroupWithAllUntilItIsAgain) {
   }
 }
 
-// Finite, but what it makes of the hull is not, or not in squares: it holds all others.
+// A finite transform whose result, or its square, is not finite groups the part with all others.
 TEST(LayerSorterRules, WhatIsTooLargeIsOneGroupWithAll) {
   const Points cube = shapes::cube();
   const MadeScene scene{{solid(cube), solid(shapes::moved(cube, {20, 0, 0})), solid(shapes::cube({}, 4))},
@@ -219,7 +219,7 @@ TEST(LayerSorterRules, WhatIsTooLargeIsOneGroupWithAll) {
 }
 
 TEST(LayerSorterRules, FlattenedPartsAreStillSorted) {
-  // Singular transforms: a shadow on the floor, a line, a point.
+  // Singular transforms that flatten the part to a polygon, a line and a point.
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(seed);
     MadeScene scene = randomScene(random, 5, 4);

@@ -1,4 +1,4 @@
-// Whole scenes: all ways to sort them give the same.
+// Whole scenes, for which all sorts and searches must give the same result.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using made::Answer;
 using made::Way;
 
-// Every sorter in every `step`th frame, and whether a fresh one says the same in some.
+// Compares all sorters in every `step`th frame, and in some frames with a fresh sorter.
 void expectSameInAllFrames(const MovingScene& scene, const std::vector<ExtentAxis>& extents,
                            std::uint32_t step, bool all_arcs) {
   std::vector<MovingSorter> sorters;
@@ -81,7 +81,7 @@ TEST(LayerSorterScenes, ExtentsDoNotChangeTheArcs) {
   }
 }
 
-// A thousand metres may be a millionth of a unit, and the scene may lie far from the origin.
+// The unit of length may have any size, and the scene may lie far from the origin.
 TEST(LayerSorterScenes, ToothpicksOfAnySizeAnywhereAreGroupedTheSame) {
   const MovingScene scene = makeToothpicks({.count = 60});
   LayerSettings settings;

@@ -1,4 +1,4 @@
-// Scenes of a few parts, whose order is known exactly.
+// Scenes of a few parts whose order is known exactly.
 
 #include "sightline/layers/layer_sorter.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace made;
 
-// Every group is inside one of these.
+// Expects each group of `fine` to be within a group of `coarse`.
 void expectInside(const std::set<Group>& fine, const std::set<Group>& coarse) {
   for (const Group& group : fine) {
     EXPECT_TRUE(std::any_of(coarse.begin(), coarse.end(), [&](const Group& whole) {
@@ -24,7 +24,7 @@ void expectInside(const std::set<Group>& fine, const std::set<Group>& coarse) {
   }
 }
 
-// None of its parts meet.
+// Whether the group is a cycle of which no two parts intersect.
 bool isCycle(const Group& group, const Truth& truth) {
   return group.size() > 1 &&
          std::none_of(truth.collisions.begin(), truth.collisions.end(), [&](const Pair& pair) {
@@ -101,7 +101,7 @@ TEST(LayerSorter, ByExtentsAloneJoinsGroupsAndDropsNoArc) {
   EXPECT_GT(coarser, 0u);
 }
 
-// One scene that changes from frame to frame in every way the sorter allows.
+// Changes a scene and its sorter in all ways that the sorter allows.
 void changeSomething(MadeScene& scene, LayerSorter& sorter, Random& random) {
   for (std::uint32_t i = 0; i < scene.parts.size(); ++i) {
     MadePart& part = scene.parts[i];
@@ -203,7 +203,7 @@ TEST(LayerSorter, TheSameInputGivesTheSameOrder) {
   }
 }
 
-// Moved from its place and made larger or smaller, all by the same.
+// Moves and scales a whole scene.
 MadeScene mapped(MadeScene scene, double scale, double shift) {
   const Vec3d by{shift, -shift, shift};
   for (MadePart& part : scene.parts) {
@@ -237,8 +237,8 @@ TEST(LayerSorter, FindsTheSameFarFromTheOriginAndAtPowersOfTwo) {
   }
 }
 
-// Decimal scales round every coordinate: what touched may be apart by the last digit, and the other way
-// round.
+// Decimal scales round every coordinate, so parts that touched may become disjoint by the last digit, and
+// vice versa.
 TEST(LayerSorter, MissesNothingAtAnyScale) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(seed);
@@ -281,7 +281,7 @@ TEST(LayerSorter, WhatCoincidesOrTouchesIsOneGroup) {
 }
 
 TEST(LayerSorter, ThreeBarsThatOverlapInACycleAreOneGroup) {
-  // Each lies above the next where they cross.
+  // Each bar lies above the next one where they cross.
   MadeScene scene;
   scene.parts = {solid({{-4, -1, 0}, {4, -1, 2}, {-4, -2, 0}, {4, -2, 2}}),
                  solid({{3, -4, 0}, {-1, 4, 2}, {4, -4, 0}, {0, 4, 2}}),

@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes of a few parts with small whole coordinates, what is exactly true of them, and what a sorter says.
+// Scenes of a few parts with small whole coordinates, their exact occlusions, and the answer of a sorter.
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ namespace sightline::made {
 
 using shapes::Points;
 using shapes::Random;
-using Pair = std::pair<std::uint32_t, std::uint32_t>;  // of parts: front, back
-using Group = std::vector<std::uint32_t>;              // parts, ascending
+using Pair = std::pair<std::uint32_t, std::uint32_t>;  // two parts: front and back
+using Group = std::vector<std::uint32_t>;              // parts of a group, ascending
 
 struct MadePart {
   std::vector<Points> hulls;  // in the part's space
@@ -66,7 +66,7 @@ inline LayerSorter sorterOf(const MadeScene& scene, const LayerSettings& setting
   return sorter;
 }
 
-// What a sorter says, in a form that can be compared and printed.
+// The answer of a sorter in a form that can be compared and printed.
 struct Answer {
   std::vector<Group> in_order;
   std::set<Group> groups;
@@ -109,7 +109,7 @@ inline void expectSame(const Answer& a, const Answer& b) {
   EXPECT_EQ(a.collisions, b.collisions);
 }
 
-// What is exactly so, among the enabled parts that are sorted.
+// The exact arcs, collisions and groups of the enabled parts that are sorted.
 struct Truth {
   std::vector<Pair> arcs, collisions;  // ascending
   std::set<Group> groups;              // strongly connected components
@@ -173,14 +173,14 @@ inline Truth truthOf(const MadeScene& scene) {
       if (a >= b) {
         continue;
       }
-      const bool meet = anyHulls(hulls[a], hulls[b], test::convexHullsIntersect);
-      if (meet) {
+      const bool intersect = anyHulls(hulls[a], hulls[b], test::convexHullsIntersect);
+      if (intersect) {
         truth.collisions.emplace_back(a, b);
       }
-      if (meet || anyHulls(hulls[a], hulls[b], occludes)) {
+      if (intersect || anyHulls(hulls[a], hulls[b], occludes)) {
         truth.arcs.emplace_back(a, b);
       }
-      if (meet || anyHulls(hulls[b], hulls[a], occludes)) {
+      if (intersect || anyHulls(hulls[b], hulls[a], occludes)) {
         truth.arcs.emplace_back(b, a);
       }
     }
@@ -197,7 +197,7 @@ inline void expectOrdered(const Answer& answer, const std::vector<Pair>& arcs) {
   }
 }
 
-// Exactly the truth, with arcs between groups or without.
+// Expects exactly the truth, with or without arcs between groups.
 inline void expectTrue(const Answer& answer, const Truth& truth, bool all_arcs) {
   EXPECT_EQ(answer.groups, truth.groups);
   EXPECT_EQ(answer.collisions, truth.collisions);
@@ -209,7 +209,7 @@ inline void expectTrue(const Answer& answer, const Truth& truth, bool all_arcs) 
   expectOrdered(answer, truth.arcs);
 }
 
-// Nothing that is true is missing. The answer has all arcs.
+// Expects that nothing of the truth is missing; the answer must have all arcs.
 inline void expectNothingMissing(const Answer& answer, const Truth& truth) {
   expectOrdered(answer, truth.arcs);
   EXPECT_TRUE(std::includes(answer.arcs.begin(), answer.arcs.end(), truth.arcs.begin(), truth.arcs.end()));
@@ -217,7 +217,7 @@ inline void expectNothingMissing(const Answer& answer, const Truth& truth) {
                             truth.collisions.end()));
 }
 
-// A kind of sorter with a name to print.
+// Settings of a sorter with a name to print.
 struct Way {
   std::string name;
   LayerSettings settings;
@@ -262,7 +262,7 @@ inline Points randomHull(Random& random) {
       return shapes::randomFlatGrid(random, 4, 1, 2);
     case 3:
       return shapes::cube({}, random.whole(1, 2));
-    case 4:  // long things lie before each other in circles
+    case 4:  // long parts make cycles
       return shapes::randomGrid(random, 2 + random.below(3), 7);
     case 5: {
       Vec3d half{0.5, 0.5, 0.5};
@@ -282,7 +282,7 @@ inline Mat4 shifted(const Vec3d& by) {
   return m;
 }
 
-// Moves by whole numbers; one in three also turns, stretches or shears, still by whole numbers.
+// Returns a translation by whole numbers; one in three also turns, stretches or shears by whole numbers.
 inline Mat4 randomWholeTransform(Random& random, int reach) {
   Mat4 m;
   if (random.below(3) == 0) {
@@ -319,8 +319,8 @@ inline View viewFrom(const Vec3d& eye, const Vec3d& forward = {0, 0, -1}) {
   return view;
 }
 
-// From a whole place, a vertex, or halfway between two; looking anywhere. One in four orthographic, along an
-// axis.
+// Returns a view from a whole position, a vertex, or halfway between two vertices, in any direction. One in
+// four is orthographic along an axis.
 inline View randomView(Random& random, const MadeScene& scene, int reach) {
   if (random.below(4) == 0) {
     Vec3d forward;
@@ -349,7 +349,7 @@ inline MadeScene randomScene(Random& random, std::uint32_t parts, int reach) {
   return scene;
 }
 
-// Bars across each other in a layer, seen from above: few meet, but they lie before each other in circles.
+// Returns crossing bars in a layer, seen from above, of which few intersect but many form cycles.
 inline MadeScene randomBars(Random& random, std::uint32_t count) {
   MadeScene scene;
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A sorter with a moving scene's parts, frame after frame.
+// A sorter with the parts of a moving scene, which it places in each frame.
 
 #include <algorithm>
 #include <cstdint>

@@ -81,7 +81,7 @@ TEST(PairPlane, NonsenseLeavesBoth) {
   EXPECT_EQ(orderOf(PairPlane{{{0, 1e300, 0}, 5}}, viewFrom({1, 1e300, 3})), kBoth);
 }
 
-// Whole numbers: what the eye is in the part's space is known exactly.
+// Placements of whole numbers, so that the eye's position in the part's space is known exactly.
 TEST(PairPlane, GoesWithAPartThatIsPlacedAnyhow) {
   const layers::Placement sheared{{1, 2, 0}, {0, 1, 3}, {1, 0, 1}, {100, -50, 7}};
   const layers::Placement mirrored{{-2, 0, 0}, {0, 1, 0}, {0, 0, 4}, {1, 2, 3}};
@@ -155,7 +155,7 @@ TEST(SphereCylinderJoint, FromAfarTheConeIsThatOfItsDirections) {
 }
 
 TEST(SphereCylinderJoint, OfEqualRadiiTheConeIsACylinder) {
-  SphereCylinderJoint joint;  // both 1
+  SphereCylinderJoint joint;  // both radii are 1
   EXPECT_EQ(orderOf(joint, viewFrom({0.999, -30, 0})), kFirstOnly);
   EXPECT_EQ(orderOf(joint, viewFrom({1, -30, 0})), kBoth);
   EXPECT_EQ(orderOf(joint, viewFrom({1.001, -30, 0})), kBoth);
@@ -181,7 +181,7 @@ TEST(SphereCylinderJoint, LengthOfTheAxisDoesNotMatter) {
 }
 
 TEST(SphereCylinderJoint, NonsenseLeavesBoth) {
-  const View view = viewFrom({0, -10, 0});  // sees the sphere alone
+  const View view = viewFrom({0, -10, 0});  // the eye sees the sphere alone
   ASSERT_EQ(orderOf(threeFourFive(), view), kFirstOnly);
   const auto with = [](auto change) {
     SphereCylinderJoint joint = threeFourFive();
@@ -201,11 +201,11 @@ TEST(SphereCylinderJoint, NonsenseLeavesBoth) {
   EXPECT_EQ(orderOf(threeFourFive(), viewFrom({0, -kInfinity, 0})), kBoth);
 }
 
-// A joint at random, and what rays and the rim say about it. The cylinder reaches from the rim's plane to
-// `end`.
+// A random joint, and functions that test rays and points of the rim. The cylinder reaches from the rim's
+// plane to `end`.
 struct MadeJoint {
   SphereCylinderJoint joint;
-  shapes::Axes axes;  // y: the cylinder's
+  shapes::Axes axes;  // y is the cylinder's axis
   double rim = 0.0, end = 0.0;
 
   explicit MadeJoint(Random& random) : axes(shapes::randomAxes(random)) {
@@ -226,7 +226,7 @@ struct MadeJoint {
            (p.y >= rim && p.y <= end && std::hypot(p.x, p.z) <= joint.cylinder_radius);
   }
 
-  // Where the ray origin + t direction enters.
+  // Returns the t at which the ray origin + t direction enters.
   std::optional<double> hitSphere(const Vec3d& origin, const Vec3d& direction) const {
     const Vec3d o = origin - joint.centre;
     return firstRoot(dot(direction, direction), dot(o, direction),
@@ -256,7 +256,7 @@ struct MadeJoint {
     return joint.centre + axes.y * rim +
            (axes.x * std::cos(angle) + axes.z * std::sin(angle)) * joint.cylinder_radius;
   }
-  // A point near the sphere or the cylinder.
+  // Returns a point near the sphere or the cylinder.
   Vec3d target(Random& random) const {
     const double r = joint.sphere_radius;
     const Vec3d p = random.point({-r, -r, -r}, {r, std::max(r, end), r});
@@ -303,7 +303,7 @@ TEST(SphereCylinderJoint, NoRayContradictsTheOrder) {
   }
 }
 
-// Behind the rim's plane it takes a point of the rim that the eye sees for the two to occlude each other.
+// For an eye behind the rim's plane, the two occlude each other only if the eye sees a point of the rim.
 TEST(SphereCylinderJoint, BothOnlyWhereTheRimIsSeenFromBehind) {
   int both = 0;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
@@ -313,7 +313,8 @@ TEST(SphereCylinderJoint, BothOnlyWhereTheRimIsSeenFromBehind) {
     const Vec3d eye =
         made.joint.centre + random.direction() * (made.joint.sphere_radius * random.number(1.01, 8.0));
     const Vec3d e = made.local(eye - made.joint.centre);
-    double seen = -kInfinity;  // the most by which the eye is before the sphere at a point of the rim
+    double seen =
+        -kInfinity;  // greatest height of the eye above the sphere's tangent plane at a point of the rim
     for (int i = 0; i < 720; ++i) {
       const Vec3d p = made.rimPoint(i * (6.283185307179586 / 720));
       seen = std::max(seen, dot(eye - p, p - made.joint.centre));
@@ -325,15 +326,15 @@ TEST(SphereCylinderJoint, BothOnlyWhereTheRimIsSeenFromBehind) {
     } else if (seen > 1e-9) {
       EXPECT_EQ(order, kBoth);
       ++both;
-    } else if (seen < -1e-4 * scale) {  // the rim is sampled
+    } else if (seen < -1e-4 * scale) {  // the margin allows for sampling the rim
       EXPECT_EQ(order, kFirstOnly);
     }
   }
   EXPECT_GT(both, 100);
 }
 
-// Directions behind the plane and outside the cone are r / 2s of all: by the areas of caps of the sphere of
-// directions, 1 / 2 - (1 - r / s) / 2.
+// The share of directions behind the plane and outside the cone is r / 2s: by the areas of caps of the sphere
+// of directions it is 1 / 2 - (1 - r / s) / 2.
 TEST(SphereCylinderJoint, OneArcIsFoundFromAsManyDirectionsAsTheSphereOfDirectionsSays) {
   for (const double ratio : {0.1, 0.5, 0.9, 1.0}) {
     SphereCylinderJoint joint;

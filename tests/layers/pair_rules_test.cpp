@@ -113,7 +113,7 @@ TEST(PairRules, BehaveAsAMapUnderRandomUse) {
         ASSERT_EQ(std::get<PairPlane>(rules.rule(number).what).plane.offset, expected->second.second);
       }
     }
-    EXPECT_LE(rules.numbers(), 190u);  // one a pair at most, however often it was set
+    EXPECT_LE(rules.numbers(), 190u);  // at most one per pair, however often a rule is set
   }
 }
 

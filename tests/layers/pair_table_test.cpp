@@ -71,7 +71,7 @@ TEST(PairTable, ClearForgetsAll) {
   EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection)));
 }
 
-// What the table should hold, kept in the plainest way.
+// The expected content of the table, kept in a plain map.
 struct Model {
   using Key = std::tuple<std::uint32_t, std::uint32_t, Question>;
   struct Entry {

@@ -34,7 +34,7 @@ Exact unitExact(const Vec3d& d) {
   return e / length(e);
 }
 
-// In pseudo-angles, by the inverse tangent.
+// Returns a pseudo-angle computed with the inverse tangent.
 long double exactPseudoAngle(const Exact& p, const Exact& zero, const Exact& quarter) {
   const long double angle = std::atan2(dot(p, quarter), dot(p, zero));
   const long double s = std::sin(angle), c = std::cos(angle), side = s / (std::abs(s) + std::abs(c));
@@ -50,7 +50,7 @@ bool holdsAngle(const Interval& range, long double angle) {
   return false;
 }
 
-// The widest gap between neighbours on the circle.
+// Returns the widest gap between neighbouring angles on the circle.
 long double widestGap(std::vector<long double> angles) {
   std::sort(angles.begin(), angles.end());
   long double widest = angles.front() + 4 - angles.back();
@@ -95,7 +95,8 @@ void checkAngles(const Interval& own, const std::vector<Exact>& points, std::siz
   if (gap < 1.9999L) {
     EXPECT_EQ(own, (Interval{-2, 2})) << where;
   } else if (gap > 2.01L) {
-    // Within half a degree of half a turn the eye all but touches the image: extents may grow there.
+    // If a range is within half a degree of half a turn, the eye almost touches the image, and extents may
+    // grow.
     EXPECT_LE(own.high - own.low, 4 - gap + 2e-5L) << where;
   }
 }
@@ -198,14 +199,14 @@ TEST(PartExtents, FollowSmallSteps) {
   }
 }
 
-// The image of a hull on the eye's own axis: on both sides of the branch cut, behind the eye.
+// A hull on the eye's own axis behind the eye, whose image is on both sides of the branch cut.
 TEST(PartExtents, PassTheBranchCut) {
   ExtentScene scene;
   const std::uint32_t behind = scene.addPart(shapes::cube({0, 0, 5}, 1.0));
   const std::uint32_t front = scene.addPart(shapes::cube({0, 0, -5}, 1.0));
   PartExtents extents(cameraExtents());
   extents.update(straightView({}), scene.store, scene.moved);
-  // The near face's corners are at (1, 4): pseudo-angle 1 / 5 from the axis.
+  // The near face's corners are at (1, 4), at a pseudo-angle of 1 / 5 from the axis.
   const Interval back = extents.table().at(0, behind);
   EXPECT_NEAR(back.low, 1.8, 1e-5);
   EXPECT_NEAR(back.high, 2.2, 1e-5);
@@ -214,8 +215,8 @@ TEST(PartExtents, PassTheBranchCut) {
 }
 
 TEST(PartExtents, OverlapAcrossTheBranchCut) {
-  // A part from 170 to 280 degrees, seen from above; others at single angles. Zero is ahead (-z), a quarter
-  // turn is right.
+  // One part from 170 to 280 degrees, seen from above, and others at single angles. Angle 0 is ahead (-z),
+  // and a quarter turn is to the right.
   const auto at = [](double degrees) {
     const double angle = degrees * 3.14159265358979 / 180;
     return Vec3d{3 * std::sin(angle), 0, -3 * std::cos(angle)};
@@ -240,9 +241,9 @@ TEST(PartExtents, AreTheFullCycleAroundAnEyeInTheImage) {
   ExtentScene scene;
   scene.addPart(shapes::cube());
   scene.addPart(shapes::moved(shapes::toothpick(2.0), {5, 0, 0}));
-  scene.addPart(shapes::segment({-1, 0, 0}, {1, 0, 0}));  // the eye lies on it
-  scene.addPart(shapes::point({0, 0, 0}));                // is it
-  scene.addPart(shapes::point({7, 0, 0}));                // its image is the eye's, in the second plane
+  scene.addPart(shapes::segment({-1, 0, 0}, {1, 0, 0}));  // contains the eye
+  scene.addPart(shapes::point({0, 0, 0}));                // is at the eye
+  scene.addPart(shapes::point({7, 0, 0}));                // has the eye's image in the second plane
   PartExtents extents(cameraExtents());
   extents.update(straightView({}), scene.store, scene.moved);
   const Interval full{-2, 2};
@@ -332,7 +333,8 @@ TEST(PartExtents, AQueryReachesTheEye) {
   scene.addPart(shapes::cube({0, 0, -10}));
   scene.addPart(shapes::cube({0, 0, 20}));
   PartExtents extents(worldExtents());
-  extents.update(straightView({0, 0, 3}), scene.store, scene.moved);  // heights are above the first eye
+  extents.update(straightView({0, 0, 3}), scene.store,
+                 scene.moved);  // heights are measured above the first eye
   EXPECT_NEAR(extents.query(0u)[2].high, 0.0, 1e-6);
   EXPECT_NEAR(extents.query(1u)[2].low, 0.0, 1e-6);
   EXPECT_NEAR(extents.query(1u)[2].high, 18.0, 1e-4);
@@ -344,11 +346,11 @@ TEST(PartExtents, AQueryReachesTheEye) {
   extents.update(straightView({0, 0, 8}, true), scene.store, scene.moved);
   EXPECT_EQ(extents.query(0u)[2].high, kInfinity);
   EXPECT_NEAR(extents.query(0u)[2].low, -14.0, 1e-5);
-  EXPECT_EQ(extents.query(0u)[0], extents.table().at(0, 0));  // across the rays
+  EXPECT_EQ(extents.query(0u)[0], extents.table().at(0, 0));  // the axis is across the rays
   EXPECT_LT(extents.distanceAlong(2, 1), extents.distanceAlong(2, 0));
 }
 
-// A point of the back hull, the eye, and a point of the front hull between the two.
+// A point of the back hull, the eye, and a point of the front hull between them.
 class NeverMisses : public testing::TestWithParam<bool> {};
 
 TEST_P(NeverMisses, AnOccluder) {
@@ -376,7 +378,7 @@ TEST_P(NeverMisses, AnOccluder) {
     const std::vector<Exact> front_points = exactPoints(scene, front, {}, &random);
     const Vec3d far(back_points[random.below(static_cast<std::uint32_t>(back_points.size()))]);
     const Vec3d own(front_points[random.below(static_cast<std::uint32_t>(front_points.size()))]);
-    const double along = random.below(4) == 0 ? 1.0 : random.number(0, 1);  // touching
+    const double along = random.below(4) == 0 ? 1.0 : random.number(0, 1);  // 1.0: the hulls touch
     const Vec3d near =
         orthographic ? far - view.forward * (scale * (1 - along) * 50) : eye + (far - eye) * along;
     Placement placement = scene.store.placements[front];

@@ -70,7 +70,7 @@ void moveSome(Random& random, PartWorld& world) {
   }
 }
 
-// Small whole numbers: what does not touch is so far apart that rounding is no excuse.
+// Small whole coordinates, so that hulls that do not touch are separated by much more than rounding.
 TEST(PartOcclusion, AnswersAreTheExactOnes) {
   int arcs = 0, questions = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -95,14 +95,14 @@ TEST(PartOcclusion, AnswersAreTheExactOnes) {
   EXPECT_LT(arcs, questions / 2);
 }
 
-// Multiples of 2^-bits in [-size, size].
+// Returns a multiple of 2^-bits in [-size, size].
 Vec3d dyadic(Random& random, double size, int bits) {
   const double unit = std::ldexp(1.0, -bits);
   const Vec3d p = random.point({-size, -size, -size}, {size, size, size});
   return {std::round(p.x / unit) * unit, std::round(p.y / unit) * unit, std::round(p.z / unit) * unit};
 }
 
-// With so few bits points of the world come out exact.
+// Numbers with so few bits that points of the world are exact.
 Points dyadicBall(Random& random) {
   Points points;
   for (std::uint32_t i = random.below(30) + 1; i > 0; --i) {
@@ -111,8 +111,8 @@ Points dyadicBall(Random& random) {
   return points;
 }
 
-// All cases are ties, made exactly: turned and stretched parts, some far from the origin, of which a vertex
-// of the one in front lies between the eye and a vertex of the one behind, or on that.
+// Exact ties: turned and stretched parts, some far from the origin, of which a vertex of the front part lies
+// between the eye and a vertex of the back part, or on that vertex.
 TEST(PartOcclusion, AVertexOnTheWayFromAVertexToTheEyeIsAnArc) {
   for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
     SCOPED_TRACE(seed);
@@ -183,7 +183,7 @@ TEST(PartOcclusion, ListsTheCollisionsOfThePairsThatWereAskedAbout) {
 TEST(PartOcclusion, TouchingPartsOccludeEachOther) {
   PartWorld world;
   const std::uint32_t a = world.addPart({shapes::cube({0, 0, 0})});
-  const std::uint32_t b = world.addPart({shapes::cube({2, 2, 2})});  // a corner in common
+  const std::uint32_t b = world.addPart({shapes::cube({2, 2, 2})});  // has a corner in common with a
   for (const View& view : {viewFrom({-9, 3, 20}), viewFromAfar({1, 5, -2})}) {
     world.view = view;
     world.beginFrame();
@@ -198,11 +198,11 @@ TEST(PartOcclusion, ASilhouetteThatTouchesOccludes) {
   PartWorld world;
   const std::uint32_t near = world.addPart({shapes::box({0, 0, 9}, {1, 1, 10})});
   const std::uint32_t far = world.addPart({shapes::box({1, 0, -1}, {2, 1, 0})});
-  world.view = viewFromAfar({0, 0, 1});  // they have the line x = 1 in common
+  world.view = viewFromAfar({0, 0, 1});  // the images share the line x = 1
   world.beginFrame();
   EXPECT_TRUE(world.occlusion.occludes(near, far));
   EXPECT_FALSE(world.occlusion.occludes(far, near));
-  world.view = viewFrom({1, 0, 20});  // in the plane x = 1
+  world.view = viewFrom({1, 0, 20});  // the eye is in the plane x = 1
   world.beginFrame();
   EXPECT_TRUE(world.occlusion.occludes(near, far));
   EXPECT_FALSE(world.occlusion.occludes(far, near));
@@ -225,7 +225,7 @@ TEST(PartOcclusion, AroundTheEyeAllDirectionsCount) {
   const std::uint32_t behind_near = world.addPart({shapes::cube({0, 0, 5})});
   const std::uint32_t behind_far = world.addPart({shapes::cube({0, 0, 15})});
   const std::uint32_t ahead = world.addPart({shapes::cube({0, 0, -5})});
-  world.view = viewFrom({0, 0, 0});  // looks along -z
+  world.view = viewFrom({0, 0, 0});  // the view is along -z
   world.beginFrame();
   EXPECT_TRUE(world.occlusion.occludes(behind_near, behind_far));
   EXPECT_FALSE(world.occlusion.occludes(behind_far, behind_near));
@@ -277,8 +277,7 @@ TEST(PartOcclusion, OverflowOccludes) {
   }
 }
 
-// Two boxes that reach 1 into each other, on both sides of the plane x = 0; the eye is on the first one's
-// side.
+// Two boxes on both sides of the plane x = 0 that overlap by 1; the eye is on the first box's side.
 struct Overlapping : PartWorld {
   std::uint32_t left = addPart({shapes::box({-9, -1, -1}, {1, 1, 1})});
   std::uint32_t right = addPart({shapes::box({-1, -1, -1}, {9, 1, 1})});
@@ -296,7 +295,7 @@ TEST(PartOcclusion, APlaneRuleLeavesOneArcOfTwoPartsThatMeet) {
   EXPECT_TRUE(world.occlusion.occludes(world.left, world.right));
   EXPECT_FALSE(world.occlusion.occludes(world.right, world.left));
   EXPECT_TRUE(world.occlusion.collisions().empty()) << "pairs with a rule are not looked at";
-  world.rules.set(world.right, world.left, PairPlane{{-kLeft, 0}});  // the same, said the other way round
+  world.rules.set(world.right, world.left, PairPlane{{-kLeft, 0}});  // the same rule with the parts exchanged
   world.beginFrame();
   EXPECT_TRUE(world.occlusion.occludes(world.left, world.right));
   EXPECT_FALSE(world.occlusion.occludes(world.right, world.left));
@@ -319,7 +318,7 @@ TEST(PartOcclusion, APlaneMovesWithTheFirstPart) {
   world.beginFrame();
   EXPECT_TRUE(world.occlusion.occludes(world.left, world.right));
   EXPECT_FALSE(world.occlusion.occludes(world.right, world.left));
-  const Placement turned{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, to};  // half a turn: the left one is right now
+  const Placement turned{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, to};  // half a turn exchanges left and right
   world.place(world.left, turned);
   world.place(world.right, turned);
   world.beginFrame();
@@ -332,7 +331,7 @@ TEST(PartOcclusion, ARuleOnlyRemovesArcs) {
   const std::uint32_t left = world.addPart({shapes::cube({-5, 0, 0})});
   const std::uint32_t right = world.addPart({shapes::cube({5, 0, 0})});
   world.rules.set(left, right, PairPlane{{kLeft, 0}});
-  world.view = viewFrom({-5, 0, 50});  // sees them side by side
+  world.view = viewFrom({-5, 0, 50});  // the eye sees them side by side
   world.beginFrame();
   EXPECT_FALSE(world.occlusion.occludes(left, right));
   EXPECT_FALSE(world.occlusion.occludes(right, left));
@@ -364,7 +363,7 @@ TEST(PartOcclusion, ACallbackIsAskedOnceAFrameAndPair) {
   EXPECT_TRUE(world.occlusion.occludes(world.right, world.left));
 }
 
-// A sphere's box around 0 and a cylinder's along y, which meet.
+// The boxes of a sphere around 0 and of a cylinder along y, which intersect.
 TEST(PartOcclusion, AJointLeavesOneArcFromMostEyes) {
   PartWorld world;
   const std::uint32_t sphere = world.addPart({shapes::cube({0, 0, 0}, 5)});
@@ -387,7 +386,7 @@ TEST(PartOcclusion, AJointLeavesOneArcFromMostEyes) {
   EXPECT_TRUE(world.occlusion.occludes(sphere, cylinder));
 }
 
-// A shell of half size 8, as placed, with a front and a back.
+// A placed shell of half size 8 with a front and a back.
 struct Container : PartWorld {
   std::uint32_t front = 0, back = 0;
   explicit Container(const Placement& placement = {}, const Points& shape = shapes::cube({0, 0, 0}, 8)) {
@@ -396,7 +395,7 @@ struct Container : PartWorld {
     back = addPart(std::vector{hull}, placement);
     rules.setContainer(front, back);
   }
-  // What is said of all ordered pairs of the shell's parts and another one.
+  // Returns the answers for all ordered pairs of the shell's parts and another part.
   void expectBetween(std::uint32_t part) {
     EXPECT_TRUE(occlusion.occludes(front, part));
     EXPECT_FALSE(occlusion.occludes(part, front));
@@ -438,7 +437,7 @@ TEST(PartContainer, ContentLiesBetweenItsFrontAndBack) {
   }
 }
 
-// A cube looks the same with its faces turned inside out; a tetrahedron does not.
+// Unlike a cube, a tetrahedron changes when it is mirrored, which would turn its faces inside out.
 TEST(PartContainer, AMirroredShellHoldsWhatLiesInItsCorner) {
   for (const double side : {1.0, -1.0}) {
     const Placement placement{{side, 0, 0}, {0, 1, 0}, {0, 0, 1}, {}};

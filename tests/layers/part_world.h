@@ -1,6 +1,6 @@
 #pragma once
 
-// Parts of few points, placed by whole numbers, so that what they occlude is known exactly.
+// Parts of a few points, placed by whole numbers, so that their occlusions are known exactly.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ inline View viewFrom(const Vec3d& eye) {
   return view;
 }
 
-// towards_eye: any length; kept as it is, so that it is exact.
+// towards_eye: any length; it is not normalized, so that it is exact.
 inline View viewFromAfar(const Vec3d& towards_eye) {
   View view = viewFrom({0, 0, 0});
   view.orthographic = true;
@@ -39,7 +39,7 @@ struct PartWorld {
   PairRules rules;
   PartOcclusion occlusion;
   View view = viewFrom({0, 0, 0});
-  std::vector<std::vector<shapes::Points>> placed;  // of each part's hulls, world space
+  std::vector<std::vector<shapes::Points>> placed;  // points of each part's hulls in world space
 
   std::uint32_t addHull(const shapes::Points& points) {
     auto hull = buildHull(points);
@@ -75,7 +75,7 @@ struct PartWorld {
     }
   }
 
-  // Spatial extents along x, y and z, and angles that overlap nothing: those must not be looked at.
+  // Spatial extents along x, y and z, and angles that overlap nothing, since angles must not be used.
   void measure() {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     extents.kinds.assign(3, ExtentAxis::Kind::kSpatial);
@@ -99,7 +99,7 @@ struct PartWorld {
   }
   void beginFrame(std::uint32_t expiry = 1) { occlusion.beginFrame(view, store, extents, rules, expiry); }
 
-  // The truth.
+  // Returns the exact answer.
   bool occludesExactly(std::uint32_t front, std::uint32_t back) const {
     return anyPair(front, back, [&](const shapes::Points& f, const shapes::Points& b) {
       return view.orthographic ? test::occludesExactlyTowards(f, b, -view.forward)

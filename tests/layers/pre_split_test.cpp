@@ -48,7 +48,7 @@ Vec3d randomPoint(Random& random, double low, double high) {
   return {x, y, z};
 }
 
-// Triangles anywhere in the cube from -1 to 1, large and small.
+// Returns large and small triangles anywhere in the cube from -1 to 1.
 Mesh triangleSoup(std::uint32_t count) {
   Random random(kSeed);
   Mesh mesh;
@@ -63,7 +63,7 @@ Mesh triangleSoup(std::uint32_t count) {
   return mesh;
 }
 
-// The square from -1 to 1 at height 0, of n x n quads.
+// Returns the square from -1 to 1 at height 0, made of n x n quads.
 Mesh floorOf(std::uint32_t n) {
   Mesh mesh;
   for (std::uint32_t row = 0; row <= n; ++row) {
@@ -92,7 +92,7 @@ struct Case {
   bool fills_space = true;
 };
 
-// One of each kind, some askew.
+// Returns cells of each kind, some with oblique axes.
 std::vector<Case> everyKind() {
   const SplitAxis skew[] = {{{1, 0.2, 0}, -0.8, 0.9, 4}, {{0.3, 0, -2}, -1.0, 0.7, 3}};
   const SplitAxis three[] = {{{1, 0, 0}, -1, 1, 3}, {{0, 1, 0}, -1, 1, 2}, {{0, 0, 1}, -1, 1, 4}};
@@ -141,7 +141,7 @@ double areaOf(const SplitMesh& split) {
   return sum;
 }
 
-// How far within the cell, negative outside.
+// Returns the depth of a point inside the cell, negative outside.
 double depthIn(const SplitCells& cells, std::uint32_t cell, double inflation, const Vec3d& p) {
   double depth = 1e30;
   for (const Plane& plane : cellPlanes(cells, cell, inflation)) {
@@ -151,7 +151,7 @@ double depthIn(const SplitCells& cells, std::uint32_t cell, double inflation, co
   return depth;
 }
 
-// Twice the signed area of three weights, seen along (1, 1, 1): in the plane where they sum to one.
+// Returns twice the signed area of three weights in the plane where they sum to one, seen along (1, 1, 1).
 double turn(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return dot(cross(b - a, c - a), Vec3d(1, 1, 1));
 }
@@ -271,7 +271,7 @@ TEST(PreSplit, OverlapIsTheFractionOfTheCellsWidth) {
   const SplitCells cells = terrainCells(4, 5);
   const SplitMesh split = floorOf(20).split(cells, 0.2);
   ASSERT_EQ(split.pieces.size(), 20u);
-  // Cells are 0.5 by 0.4; an inner one reaches 10 % of that farther on each side.
+  // Cells are 0.5 by 0.4, and inner cells are larger by 10 % of that on each side.
   Vec3d low(9, 9, 9), high(-9, -9, -9);
   for (const SplitTriangle& triangle : pieceOf(split, 4 + 1)->triangles) {
     for (const Vec3d& p : triangle.positions) {
@@ -283,7 +283,7 @@ TEST(PreSplit, OverlapIsTheFractionOfTheCellsWidth) {
   EXPECT_NEAR(high.x, 0.0 + 0.05, 1e-12);
   EXPECT_NEAR(low.z, -0.6 - 0.04, 1e-12);
   EXPECT_NEAR(high.z, -0.2 + 0.04, 1e-12);
-  // 4 of 5 rows and 3 of 4 columns of seams, each counted twice in their overlap.
+  // There are 4 borders between rows and 3 between columns; the overlap at each is counted twice.
   EXPECT_NEAR(areaOf(split), (2.0 + 3 * 0.1) * (2.0 + 4 * 0.08), 1e-9);
 }
 
@@ -334,13 +334,13 @@ TEST(PreSplit, PiecesThatShareAPointOfTheMeshAreNeighboursWithTheirCellsPlane) {
     const auto pairs = neighbourCells(split);
     for (const SplitPiece& a : split.pieces) {
       for (const SplitPiece& b : split.pieces) {
-        const bool meet = a.cell < b.cell &&
-                          std::any_of(a.triangles.begin(), a.triangles.end(), [&](const SplitTriangle& t) {
-                            return std::any_of(t.positions.begin(), t.positions.end(), [&](const Vec3d& p) {
-                              return depthIn(c.cells, b.cell, 0.2, p) >= 0.0;
-                            });
-                          });
-        if (meet) {
+        const bool intersect =
+            a.cell < b.cell &&
+            std::any_of(a.triangles.begin(), a.triangles.end(), [&](const SplitTriangle& t) {
+              return std::any_of(t.positions.begin(), t.positions.end(),
+                                 [&](const Vec3d& p) { return depthIn(c.cells, b.cell, 0.2, p) >= 0.0; });
+            });
+        if (intersect) {
           EXPECT_EQ(pairs.count({a.cell, b.cell}), 1u) << c.name << " cells " << a.cell << " " << b.cell;
         }
       }
@@ -355,7 +355,7 @@ TEST(PreSplit, PiecesThatShareAPointOfTheMeshAreNeighboursWithTheirCellsPlane) {
 }
 
 TEST(PreSplit, AnyTwoSectorsOfACupAreParted) {
-  // A cup's bottom: all sectors meet at the axis.
+  // The bottom of a cup, at whose axis all sectors touch.
   const SplitCells cells = cylinderCells({.sectors = 7});
   EXPECT_EQ(floorOf(6).split(cells, 0.1).neighbours.size(), 7u * 6u / 2u);
   for (std::uint32_t s = 0; s < 7; ++s) {
@@ -391,7 +391,7 @@ TEST(PreSplit, NoPlanePartsHexagonsThoughOnePartsEachPair) {
 }
 
 TEST(PreSplit, WhatLiesExactlyBetweenTwoCellsIsInOneOfThem) {
-  // Upright triangles in the planes between cells of a grid, of hexagons, of sectors.
+  // Upright triangles in the planes between cells of a grid, of hexagons and of sectors.
   Mesh wall;
   wall.positions = {{0, 0, -0.9}, {0, 0, 0.9}, {0, 1, 0}, {0.1, -0.3, 0}, {0.9, -0.3, 0}, {0.5, 0.5, 0}};
   wall.triangles = {{0, 1, 2}, {3, 4, 5}, {2, 1, 0}};
@@ -405,7 +405,7 @@ TEST(PreSplit, WhatLiesExactlyBetweenTwoCellsIsInOneOfThem) {
 }
 
 TEST(PreSplit, CellsThatAreOnlyTouchedGetNothing) {
-  Mesh mesh;  // in x <= 0, touching x = 0 with a vertex, with an edge
+  Mesh mesh;  // lies in x <= 0 and touches x = 0 with a vertex and with an edge
   mesh.positions = {{-0.5, 0, 0.1}, {-0.5, 0, 0.5}, {0, 0, 0.2}, {0, 0.5, 0.3}, {-0.5, 0.5, 0.3}};
   mesh.triangles = {{0, 1, 2}, {2, 3, 4}};
   const SplitMesh split = mesh.split(terrainCells(2, 2), 0.0);

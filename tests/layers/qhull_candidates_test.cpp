@@ -25,7 +25,7 @@ std::vector<std::uint32_t> numbersBelow(std::uint32_t count) {
   return numbers;
 }
 
-// The corners of a cube and then points inside it.
+// Returns the corners of a cube and then points inside it.
 Points cubeWithPointsInside(std::uint64_t seed) {
   Random random(seed);
   Points points = shapes::cube();

@@ -22,7 +22,7 @@ ConvexHull built(const Points& points) {
   return hull ? *hull : ConvexHull{};
 }
 
-// Random ones, normals of triangles and faces (ties), and such as are square to edges.
+// Returns random directions, normals of triangles and faces (ties), and directions perpendicular to edges.
 std::vector<Vec3d> directionsFor(const ConvexHull& hull, Random& random, std::size_t count) {
   std::vector<Vec3d> directions{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   while (directions.size() < count) {
@@ -44,7 +44,7 @@ void expectNoPointHigher(const ConvexHull& hull, const Points& points, const Vec
                          const layers::Support& found) {
   ASSERT_LT(found.vertex, hull.vertices.size());
   ASSERT_EQ(found.height, dot(direction, hull.vertices[found.vertex]));
-  // The highest up to some last digits is the one to compare exactly, and all that come near it.
+  // Vertices whose rounded heights are near the greatest are compared exactly.
   const double bound = layers::supportError(hull, length(direction) * (1 + 0x1p-50));
   const Exact limit = Exact(found.height) + Exact(bound);
   for (const Vec3d& p : points) {

@@ -15,7 +15,7 @@ class CandidateSearch {
  public:
   virtual ~CandidateSearch() = default;
 
-  // Once a frame, before the first query. The table must stay unchanged until the next call.
+  // Call once a frame, before the first query. The table must stay unchanged until the next call.
   // active: parts of the table, each at most once; they alone are active afterwards.
   virtual void beginFrame(const layers::ExtentTable& table, std::span<const std::uint32_t> active) = 0;
 
