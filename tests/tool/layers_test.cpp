@@ -43,6 +43,12 @@ TEST(Layers, EveryPartIsInOneGroupAndInOneLayer) {
   }
 }
 
+TEST(Layers, AnUnknownSearchIsRefusedByTheNamesOfTheKnownOnes) {
+  const Outcome outcome = runTool({"layers", "demo:toothpicks?n=60", "--search", "automatic"});
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_NE(outcome.err.find("'automatic' is not one of: scan, tree"), std::string::npos) << outcome.err;
+}
+
 TEST(Layers, ArcsGoFromTheFrontToTheBack) {
   const json result = layered({"demo:toothpicks?n=60", "--frames", "0:30:10", "--arcs", "all"});
   for (const json& frame : result["frames"]) {
