@@ -119,12 +119,12 @@ double distance(const PagePoint& a, const PagePoint& b) {
   return std::hypot(b.x - a.x, b.y - a.y);
 }
 
-bool isShorter(const PagePath& path, double least) {
+bool isShorter(const PagePath& path, double length) {
   double sum = 0.0;
-  for (std::size_t i = 1; i < path.size() && sum < least; ++i) {
+  for (std::size_t i = 1; i < path.size() && sum < length; ++i) {
     sum += distance(path[i - 1], path[i]);
   }
-  return sum < least;
+  return sum < length;
 }
 
 // The directions from an anchor along which a line passes all points so far within the tolerance.

@@ -73,8 +73,8 @@ bool behindPlane(const HidingTriangle& triangle, const Vec3d& normal, const Hida
     return false;
   }
   if (place_from + place_to == 0) {
-    const double meets = from + (to - from) * (behind_from / (behind_from - behind_to));
-    (place_from > 0 ? to : from) = std::clamp(meets, from, to);
+    const double crossing = from + (to - from) * (behind_from / (behind_from - behind_to));
+    (place_from > 0 ? to : from) = std::clamp(crossing, from, to);
   }
   return true;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// The commands. Each adds itself to the command line; the one that the user names becomes `chosen`.
+// The commands. Each function adds a command to the command line; the one that the user names becomes
+// `chosen`.
 
 #include <functional>
 #include <string>
@@ -13,8 +14,8 @@ class App;
 
 namespace sightline::tool {
 
-// Exit codes of a command that ran: kOk or kCheckFailed; where it was told to end, interruptedExitCode(). An
-// Error is kBadUsage, with one line on stderr.
+// A command that ran exits with kOk or kCheckFailed, or with interruptedExitCode() if it was told to end. An
+// Error becomes kBadUsage and one line on stderr.
 enum ExitCode : int { kOk = 0, kCheckFailed = 1, kBadUsage = 2 };
 
 using Command = std::function<Result<ExitCode>()>;

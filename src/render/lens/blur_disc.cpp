@@ -7,7 +7,7 @@
 namespace sightline::render {
 namespace {
 
-// The integral of sqrt(r^2 - t^2) for t from 0 to min(y, r).
+// The integral of sqrt(r^2 - t^2) over t from 0 to y; beyond the disc the integrand is 0.
 double areaUpTo(double y, double r) {
   const double t = std::min(y, r);
   return 0.5 * (t * std::sqrt(std::max(r * r - t * t, 0.0)) + r * r * std::asin(t / r));

@@ -11,7 +11,7 @@ namespace sightline::render {
 
 SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
   SeenLayer seen;
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  double min_depth = std::numeric_limits<double>::infinity(), max_depth = 0.0;
   double weight = 0.0, x = 0.0, y = 0.0, inverse = 0.0, depths = 0.0;
   for (std::size_t i = 0; i < image.depths.size(); ++i) {
     const double alpha = static_cast<double>(image.pixels[i].alpha);
@@ -19,8 +19,8 @@ SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
     if (!(alpha > 0.0) || !std::isfinite(depth) || !std::isfinite(alpha)) {
       continue;
     }
-    least = seen.empty ? depth : std::min(least, depth);
-    most = seen.empty ? depth : std::max(most, depth);
+    min_depth = seen.empty ? depth : std::min(min_depth, depth);
+    max_depth = seen.empty ? depth : std::max(max_depth, depth);
     seen.empty = false;
     weight += alpha;
     const std::size_t row = i / image.width, column = i % image.width;
@@ -37,8 +37,8 @@ SeenLayer lookAt(const LayerImage& image, const View& view, const Lens& lens) {
   // The circle of confusion is linear in the depth (perspective: in 1 / depth), so its mean is that of the
   // mean depth.
   seen.depth = view.orthographic ? depths / weight : weight / inverse;
-  seen.min_circle = signedCircle(view, lens, least, image.height);
-  seen.max_circle = signedCircle(view, lens, most, image.height);
+  seen.min_circle = signedCircle(view, lens, min_depth, image.height);
+  seen.max_circle = signedCircle(view, lens, max_depth, image.height);
   seen.mean_circle = signedCircle(view, lens, seen.depth, image.height);
   return seen;
 }

@@ -64,8 +64,8 @@ struct FoundWarp {
 struct LayerReuse::Impl {
   Impl(const SceneView& scene, LayerRenderer& r, const ReuseSettings& s)
       : shapes(scene), renderer(&r), settings(s), transforms(scene.objects.size()) {
-    const std::uint32_t most = (std::min(r.width(), r.height()) - 1) / 2;
-    settings.guard_px = std::min(settings.guard_px, most);
+    const std::uint32_t max_guard = (std::min(r.width(), r.height()) - 1) / 2;
+    settings.guard_px = std::min(settings.guard_px, max_guard);
     width = r.width() - 2 * settings.guard_px;
     height = r.height() - 2 * settings.guard_px;
   }

@@ -222,8 +222,8 @@ double largestStretch(const Warp& warp, PicturePoint at) {
   const double c = (m[3] - p.y * m[6]) / w, d = (m[4] - p.y * m[7]) / w;
   // The sum and the difference of the singular values of (a b; c d).
   const double sum = std::hypot(a + d, c - b), difference = std::hypot(a - d, b + c);
-  const double largest = 0.5 * (sum + difference), least = 0.5 * std::abs(sum - difference);
-  const double stretch = std::max(largest, 1.0 / least);
+  const double largest = 0.5 * (sum + difference), smallest = 0.5 * std::abs(sum - difference);
+  const double stretch = std::max(largest, 1.0 / smallest);
   return std::isfinite(stretch) ? stretch : std::numeric_limits<double>::infinity();
 }
 

@@ -27,7 +27,7 @@
 namespace sightline::tool {
 namespace {
 
-// What a process bakes with.
+// The plan of a bake and what it was made from; every process of the bake makes its own.
 struct Planned {
   Scene scene;
   Bake bake;
@@ -40,13 +40,13 @@ CheckpointUse useOf(const BakeOptions& options) {
                            : CheckpointUse::kNew;
 }
 
-// Baked files, and empty ones, hold nothing that another bake would not make again.
+// Whether the file is baked or empty: another bake can make such a file again.
 bool mayBeReplaced(const std::string& file) {
   std::error_code error;
   return beginsAsSightFile(file) || (std::filesystem::file_size(file, error) == 0 && !error);
 }
 
-// Before the work, by the process that writes.
+// Opens the output files before the work starts. Called by the process that writes them.
 Result<Checkpoint> openOutputs(const BakeOptions& options) {
   if (options.output.empty() || options.output == "-") {
     return Error{"--output: give the name of a file, F.sight"};
@@ -90,7 +90,7 @@ Result<Planned> planBake(const BakeOptions& options) {
   return Planned{std::move(*scene), std::move(*bake), load_us, watch.lap()};
 }
 
-// From all parts to the file, and what is in it.
+// Assembles all parts, writes the file and reports what is in it.
 Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, BakeReport& report,
                         BakedParts parts, Checkpoint& checkpoint) {
   Result<BakedVisibility> baked = planned.bake.assemble(parts);
@@ -103,7 +103,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());
   report.times.databases = watch.lap();
-  const SignalGuard guard;  // from here on it is quicker to finish
+  const SignalGuard guard;  // from here on finishing is faster than stopping
   if (const Status ok = writeSight(options.output, *baked); !ok) {
     return ok.error();
   }
@@ -136,7 +136,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   return kOk;
 }
 
-// Every process; errors end all of them, and the first one says which.
+// Bakes with all processes. An error in one ends all of them, and the first process reports it.
 Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   std::optional<Checkpoint> checkpoint;
   Status own = checkOptions(options);
@@ -186,7 +186,7 @@ Result<ExitCode> runBake(const BakeOptions& options) {
   try {
     Result<ExitCode> result = bakeTogether(options, world);
     if (!result && !world.first()) {
-      return kOk;  // the first process says why and fails; mpirun ends the rest as soon as one has failed
+      return kOk;  // the first process reports the error and fails, upon which mpirun ends the others
     }
     return result;
   } catch (const std::exception& error) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Occluder databases in baked files.
+// The occluder databases that a baked file can hold.
 
 #include <array>
 #include <string>
@@ -13,12 +13,13 @@
 
 namespace sightline::tool {
 
-// As DatabaseBlob::name has them.
+// Their names in DatabaseBlob::name.
 inline constexpr std::array<std::string_view, 5> kBakedDatabases{"area-angle", "detail", "minimum-sets",
                                                                  "first-hit", "projected-size"};
 std::string listBakedDatabases();  // "a, b, c"
 
-// With the library's settings, for the occluders that commands cull with. names: of kBakedDatabases.
+// Builds the databases of these names (of kBakedDatabases) with the library's settings, for the occluders
+// that commands cull with.
 std::vector<DatabaseBlob> buildDatabases(const Scene& scene, const std::vector<std::string>& names,
                                          const ParallelFor& parallel_for);
 

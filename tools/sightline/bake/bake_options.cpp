@@ -15,26 +15,26 @@
 namespace sightline::tool {
 namespace {
 
-constexpr double kMax = 1e6;       // metres, or a factor
+constexpr double kMax = 1e6;       // largest distance in metres, largest factor
 constexpr double kMinNear = 1e-6;  // metres
 constexpr std::uint32_t kMaxMib = 1u << 20;
 constexpr std::uint64_t kMinBudget = 100, kBudgetShare = 50;
 
-// CLI::Range lets "nan" through.
-CLI::Validator decimal(double least, double most) {
+// Accepts finite numbers from min to max. CLI::Range would accept "nan".
+CLI::Validator decimal(double min, double max) {
   return CLI::Validator(
-      [least, most](const std::string& text) {
+      [min, max](const std::string& text) {
         const std::optional<double> value = parseDecimal(text);
-        return value && *value >= least && *value <= most
+        return value && *value >= min && *value <= max
                    ? std::string()
-                   : fmt::format("'{}' is not a number from {} to {}", text, least, most);
+                   : fmt::format("'{}' is not a number from {} to {}", text, min, max);
       },
-      fmt::format("[{} - {}]", least, most));
+      fmt::format("[{} - {}]", min, max));
 }
 
-void addDecimal(CLI::App& command, const std::string& name, double& value, double least, double most,
+void addDecimal(CLI::App& command, const std::string& name, double& value, double min, double max,
                 const std::string& help) {
-  command.add_option(name, value, help)->check(decimal(least, most))->capture_default_str();
+  command.add_option(name, value, help)->check(decimal(min, max))->capture_default_str();
 }
 
 Result<std::array<double, 6>> parseRegion(const std::string& text) {
@@ -56,7 +56,7 @@ Result<std::array<double, 6>> parseRegion(const std::string& text) {
   return numbers;
 }
 
-// Single precision that encloses the box.
+// The smallest box in single precision that encloses the box.
 Box enclosing(const Vec3d& min, const Vec3d& max) {
   Box box{Vec3f(min), Vec3f(max)};
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

@@ -1,6 +1,6 @@
 #pragma once
 
-// The options of `bake`, and what they mean for the library.
+// The options of `bake` and the library's settings that they stand for.
 
 #include <cstdint>
 #include <string>
@@ -16,28 +16,29 @@ namespace sightline::tool {
 struct BakeOptions {
   CommonOptions common;
   std::string output;
-  BakeSettings settings{};  // but for what depends on the scene or the threads:
+  BakeSettings settings{};  // complete except for what depends on the scene or the threads:
   std::string region;       // six numbers, world space; empty: the scene's bounds
   std::uint32_t sample_mib = 1024;
   std::string databases;  // names, separated by commas
   bool resume = false, restart = false;
-  bool force = false;  // to write over a file that is no baked one
+  bool force = false;  // overwrites a file even if it is not a baked one
 
   std::string partsFile() const { return output + ".parts"; }
 };
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 
-// Names of kBakedDatabases, in their order, each once.
+// The databases that the options ask for: names of kBakedDatabases, in their order, each once.
 Result<std::vector<std::string>> databaseNames(const BakeOptions& options);
 
-// What is wrong with the options whatever the scene is.
+// Errors that do not depend on the scene.
 Status checkOptions(const BakeOptions& options);
 
-// For a scene. Precondition: checkOptions.
+// The settings for a scene. Precondition: checkOptions() succeeded.
 BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene);
 
-// What BakeRecord::settings holds: what the parts depend on, the scene's origin, so that points in world
-// space can be asked for, and which occluders there were. Not the threads, nor what bounds their memory.
+// The text of BakeRecord::settings: everything that the parts depend on, the scene's origin (so that queries
+// can use world space), and facts about the occluders. It holds neither the threads nor the limit of their
+// memory.
 Json settingsJson(const Bake& bake, const Vec3d& origin);
 
 }  // namespace sightline::tool

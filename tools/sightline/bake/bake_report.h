@@ -1,6 +1,6 @@
 #pragma once
 
-// What a bake made, and what it took.
+// Reports the result of a bake and its cost.
 
 #include <string>
 #include <vector>
@@ -19,7 +19,7 @@ struct BakeReport {
   std::uint64_t plan = 0;  // Bake::hash
   std::uint64_t parts = 0;
   std::uint32_t occluders = 0;
-  bool budget_chosen = false;  // not given by the user
+  bool budget_chosen = false;  // the triangle budget was chosen, not given by the user
   bool depth_chosen = false;
   BakeTimes times{};
   BakeEffort effort{};

@@ -1,5 +1,5 @@
-// One main thread a process, which alone speaks to other processes and to the checkpoint, and its baking
-// threads, which know the queue only. The main thread sleeps between its looks, so that it costs no core.
+// Each process has one main thread, which alone communicates with other processes and the checkpoint, and
+// baking threads, which use the queue only. The main thread sleeps between polls, so that it costs no core.
 
 #include "tools/sightline/bake/bake_run.h"
 
@@ -21,22 +21,23 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{1};        // between looks for messages
-constexpr std::chrono::milliseconds kPatience{100};  // without other processes
+constexpr std::chrono::milliseconds kLook{1};        // between polls for messages
+constexpr std::chrono::milliseconds kPatience{100};  // between polls if there are no other processes
 constexpr std::chrono::seconds kSayHowToGoOn{2};
 
-// Messages between processes; from the first to the others: kGo, kParts.
+// The messages between processes. The first process sends kGo and kParts, the others send the rest.
 enum Tag : int {
-  kReady,   // number, error: how the process fares
-  kGo,      // number: 1, or 0 to give up
-  kWant,    // number: so many threads have nothing to do
-  kParts,   // their ids and search distances; none: there will be no more
-  kDone,    // id of the part, its bytes
-  kTotals,  // stats and peak memory, when all is done
-  kFailed,  // text: why
+  kReady,   // the number and error given to agree()
+  kGo,      // a number: 1 to go on, 0 to give up
+  kWant,    // a number: how many threads have nothing to do
+  kParts,   // the parts' ids and search distances; if there are none, no more will come
+  kDone,    // a part's id and its bytes
+  kTotals,  // stats and peak memory, sent at the end
+  kFailed,  // a text: the reason
 };
 
-// The baking threads of this process. divide: parts that a part was divided into go to the queue at once.
+// The baking threads of this process. With divide, the parts that a part was divided into go to the queue at
+// once.
 class BakeThreads {
  public:
   BakeThreads(const Bake& bake, PartQueue& queue, std::uint32_t count, bool divide)
@@ -45,7 +46,7 @@ class BakeThreads {
       threads_.emplace_back([this, &bake, i] { work(bake, i); });
     }
   }
-  // Parts that are being baked are finished.
+  // Waits until the parts that are being baked are finished.
   ~BakeThreads() {
     queue_.clear();
     join();
@@ -53,7 +54,7 @@ class BakeThreads {
   BakeThreads(const BakeThreads&) = delete;
   BakeThreads& operator=(const BakeThreads&) = delete;
 
-  // Once the queue is closed.
+  // Waits for the threads and returns their stats. Precondition: the queue is closed.
   BakeStats join() {
     BakeStats sum;
     for (std::thread& thread : threads_) {
@@ -73,7 +74,8 @@ class BakeThreads {
       while (const std::optional<PartTask> part = queue_.take(taker)) {
         BakedPart bytes = worker.bake(*part);
         const std::vector<PartTask> below = divide_ ? bake.partsBelow(bytes) : std::vector<PartTask>{};
-        queue_.finish({part->id, std::move(bytes)});  // before its parts can be finished
+        queue_.finish(
+            {part->id, std::move(bytes)});  // must precede the finish of the parts that it was divided into
         queue_.add(taker, below);
         stats_[taker] = worker.stats();
       }
@@ -91,7 +93,7 @@ class BakeThreads {
   std::vector<std::thread> threads_;
 };
 
-// The first process's.
+// The first process's side of a bake: hands out parts and collects them.
 class FirstBaker {
  public:
   FirstBaker(const Bake& bake, MpiWorld& world, std::uint32_t threads, Checkpoint& checkpoint,
@@ -130,7 +132,7 @@ class FirstBaker {
   }
 
  private:
-  // Goes through what is known; what is missing goes to the queue.
+  // Takes over the parts that are already baked and queues those that are missing.
   void begin(BakedParts known) {
     std::vector<PartTask> missing, next{bake_.firstPart()};
     open_ = 1;
@@ -153,7 +155,7 @@ class FirstBaker {
     queue_.add(0, missing);
   }
 
-  // At what threads and other processes have done meanwhile.
+  // Handles what threads and other processes have done since the last call.
   Status look() {
     for (FinishedPart& finished : queue_.finished(world_.size() > 1 ? kLook : kPatience)) {
       if (const Status ok = keep(std::move(finished)); !ok) {
@@ -172,7 +174,7 @@ class FirstBaker {
     return Success{};
   }
 
-  // To the other processes that have asked: what there is, or that there will be no more.
+  // Answers the processes that have asked for parts: with parts, or that no more will come.
   void handOut() {
     for (int other = 1; other < world_.size(); ++other) {
       std::uint64_t& wanted = wanted_[static_cast<std::size_t>(other)];
@@ -185,7 +187,7 @@ class FirstBaker {
       for (const PartTask& task : tasks) {
         message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
       }
-      // So short that MPI does not wait for the receiver, who may be sending as well.
+      // The message is so short that MPI does not wait for the receiver, which may be sending too.
       world_.send(other, kParts, message.bytes());
       wanted = 0;
     }
@@ -246,7 +248,7 @@ class FirstBaker {
                                       triangles_ / static_cast<double>(leaves_));
   }
 
-  // Other processes may be in the middle of a message: there is no other way to end them.
+  // Aborts, since other processes may be in the middle of a message and cannot be ended otherwise.
   void fail(const Error& error) {
     if (world_.size() > 1) {
       fmt::print(stderr, "sightline: {}\n", error.message);
@@ -263,7 +265,7 @@ class FirstBaker {
                     parts_.size(), parts_.size() + open_,
                     kept ? "kept" : "kept, as far as they could be written", 100.0 * std::min(share_, 1.0)));
     std::fflush(stderr);
-    std::_Exit(interruptedExitCode());  // threads are in the middle of parts
+    std::_Exit(interruptedExitCode());  // threads are in the middle of parts and cannot be joined
   }
 
   const Bake& bake_;
@@ -273,12 +275,12 @@ class FirstBaker {
   BakedParts parts_;
   BakeEffort& effort_;
   PartQueue queue_;
-  std::vector<std::uint64_t> wanted_;  // by process: so many threads of it have nothing to do
-  std::uint64_t open_ = 0;             // parts that are known and not baked
+  std::vector<std::uint64_t> wanted_;  // for each process the number of its threads that have nothing to do
+  std::uint64_t open_ = 0;             // parts that are known and not yet baked
   std::uint64_t leaves_ = 0;
-  double triangles_ = 0.0;  // of all sets
-  double share_ = 0.0;      // of the viewers' space that is baked
-  int totals_ = 0;          // processes that are through
+  double triangles_ = 0.0;  // sum over all sets
+  double share_ = 0.0;      // the share of the viewers' space that is baked
+  int totals_ = 0;          // processes that are done
   bool said_ = false;
 };
 
@@ -318,8 +320,8 @@ Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t 
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
   PartQueue queue(threads);
   BakeThreads bakers(bake, queue, threads, false);
-  std::uint32_t out = 0;    // parts that this process has and has not sent back
-  std::uint32_t asked = 0;  // for so many, not yet answered
+  std::uint32_t out = 0;    // parts that this process has received and not sent back
+  std::uint32_t asked = 0;  // parts that it has asked for and not received
   bool more = true;
   while (more || out > 0) {
     for (const FinishedPart& finished : queue.finished(kLook)) {
@@ -331,7 +333,7 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
     }
     if (const std::optional<std::string> failure = queue.failure()) {
       world.send(0, kFailed, MessageWriter().text(*failure).bytes());
-      world.wait();  // for the first to end all
+      world.wait();  // until the first process ends all
     }
     if (more && asked == 0 && out < threads) {
       asked = threads - out;

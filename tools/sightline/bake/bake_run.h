@@ -1,6 +1,6 @@
 #pragma once
 
-// Baking all parts of a plan: in the threads of one process, or of several.
+// Bakes all parts of a plan with the threads of one process or of several.
 
 #include <cstdint>
 
@@ -11,27 +11,28 @@
 
 namespace sightline::tool {
 
-// What it took, of all processes.
+// The cost of a bake, over all processes.
 struct BakeEffort {
-  std::uint32_t processes = 1, threads = 1;  // threads: of each process
-  std::uint32_t parts_before = 0;            // came from the checkpoint
-  BakeStats stats{};                         // max_sample_bytes: of all threads together
-  std::uint64_t peak_bytes = 0;              // of the process that had most
-  std::uint64_t all_peak_bytes = 0;          // of all processes together
+  std::uint32_t processes = 1, threads = 1;  // processes, and threads in each of them
+  std::uint32_t parts_before = 0;            // parts that came from the checkpoint
+  BakeStats stats{};                         // max_sample_bytes is the sum over all threads
+  std::uint64_t peak_bytes = 0;              // the largest of all processes
+  std::uint64_t all_peak_bytes = 0;          // the sum over all processes
 };
 
-// All processes call it, with how each one fares: the first learns an error of any, the others only that
-// there is one. number: has to be the same in all.
+// Called by all processes with their own status. The first process gets an error of any, the others learn
+// only that there is one. It is also an error if number differs between processes.
 Status agree(MpiWorld& world, const Status& own, std::uint64_t number);
 
-// The first process: hands parts out, keeps what is finished, and bakes as well. known: parts that were baked
-// before. Where the process is told to end (SIGINT, SIGTERM), it ends here, the checkpoint whole.
+// The first process's part of the work: hands out parts, keeps finished ones, and bakes too. known holds the
+// parts that were baked before. If the process is told to end (SIGINT, SIGTERM), it ends here with the
+// checkpoint whole.
 Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t threads,
                                Checkpoint& checkpoint, BakedParts known, BakeEffort& effort);
 
-// The others: bake what the first process gives them, until there is no more.
+// The other processes' part: they bake what the first process gives them until there is no more.
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads);
 
-std::uint64_t peakBytes();  // of this process so far
+std::uint64_t peakBytes();  // the peak memory of this process so far
 
 }  // namespace sightline::tool

@@ -9,7 +9,7 @@
 namespace sightline::tool {
 namespace {
 
-// Sets that keep so much of the scene's triangles are of no use, in the mean over space and over the cells.
+// Sets that keep this share of the scene's triangles, in the mean over space and over cells, are of no use.
 constexpr double kKeepsAll = 0.9;
 constexpr double kMaxOfSpace = 0.5;
 
@@ -17,7 +17,7 @@ double shareOf(const SightFacts& facts, StopReason reason) {
   return facts.reason_volumes[static_cast<std::size_t>(reason)];
 }
 
-// The least depth whose cells are small enough for the largest occluder; 0: none is.
+// The smallest depth whose cells are small enough for the largest occluder; 0 if there is none.
 std::uint32_t depthFor(const OccluderFacts& occluders, double root_edge, double occluder_size) {
   for (std::uint32_t depth = 0; depth <= kMaxOctreeDepth; ++depth) {
     const double edge = std::ldexp(root_edge, -static_cast<int>(depth));

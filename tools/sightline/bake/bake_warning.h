@@ -1,6 +1,6 @@
 #pragma once
 
-// Says when baked sets hide next to nothing, and why.
+// Warns if baked sets hide next to nothing, and says why.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace sightline::tool {
 
-// One line for whoever baked the file, without its name; empty where the sets are of use.
+// One line for the user, without the file's name; empty if the sets are of use.
 std::string bakeWarning(const SightFile& file, const SightFacts& facts);
 
 }  // namespace sightline::tool

@@ -33,7 +33,7 @@ static_assert(sizeof(Header) == 16);
 struct RecordHead {
   std::uint64_t part;
   std::uint64_t length;
-  std::uint64_t checksum;  // of part, length and the bytes
+  std::uint64_t checksum;  // of part, length and bytes
 };
 static_assert(sizeof(RecordHead) == 24);
 
@@ -41,7 +41,7 @@ std::uint64_t checksumOf(std::uint64_t part, const std::byte* bytes, std::uint64
   return XXH3_64bits_withSeed(bytes, length, XXH3_64bits_withSeed(&length, sizeof(length), part));
 }
 
-// The record at the beginning of `bytes`; its size, or 0 where it is torn.
+// Reads the record at the beginning of `bytes`. Returns its size, or 0 if it is incomplete or broken.
 std::size_t readRecord(std::string_view bytes, BakedParts& parts) {
   RecordHead head;
   if (bytes.size() < sizeof(head)) {
@@ -69,9 +69,10 @@ Result<Checkpoint> Checkpoint::open(const std::string& file, CheckpointUse use) 
   if (!S_ISREG(facts.st_mode)) {
     return Error{fmt::format("{}: is not a file; the parts of an unfinished bake go there", file)};
   }
-  // Where files cannot be locked, the user has to see to it himself.
+  // Where files cannot be locked, nothing prevents two bakes of one output.
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    ::close(std::exchange(checkpoint.descriptor_, -1));  // it is the other's, also where it is empty
+    ::close(std::exchange(checkpoint.descriptor_,
+                          -1));  // the file belongs to the other bake, even if it is empty
     return Error{fmt::format("{}: another bake to the same file is running; wait for it or end it", file)};
   }
   char magic[sizeof(kMagic)] = {};
@@ -79,7 +80,7 @@ Result<Checkpoint> Checkpoint::open(const std::string& file, CheckpointUse use) 
   if (read > 0 && std::memcmp(magic, kMagic, static_cast<std::size_t>(read)) != 0) {
     return Error{fmt::format("{}: is not what a bake leaves; remove it, or name another output", file)};
   }
-  // A header alone was left by a bake that had finished nothing yet.
+  // A file that is no more than a header was left by a bake that had finished nothing.
   if (use == CheckpointUse::kNew && facts.st_size > static_cast<off_t>(sizeof(Header))) {
     return Error{fmt::format(
         "{}: an unfinished bake left its parts here; go on with --resume, or begin anew with --restart",
@@ -116,7 +117,7 @@ Result<BakedParts> Checkpoint::begin(std::uint64_t plan) {
     if (!bytes) {
       return bytes.error();
     }
-    // A file that ends within the header was left by a bake that had baked nothing yet.
+    // A file that ends within the header was left by a bake that had finished nothing.
     const std::string_view start = std::string_view(*bytes).substr(0, sizeof(header));
     if (start.size() == sizeof(header)) {
       if (start != wanted) {

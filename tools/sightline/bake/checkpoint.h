@@ -1,7 +1,7 @@
 #pragma once
 
-// The parts that an unfinished bake has baked, in a file beside its output: each is there whole or not at
-// all, whenever the process ends.
+// Keeps the finished parts of a bake in a file beside its output. Whenever the process ends, each part is
+// there whole or not at all.
 
 #include <chrono>
 #include <cstdint>
@@ -13,34 +13,35 @@
 namespace sightline::tool {
 
 enum class CheckpointUse : std::uint8_t {
-  kNew,      // an error where there is one
-  kResume,   // goes on from it, if there is one
-  kRestart,  // begins anew
+  kNew,      // error if there is a checkpoint
+  kResume,   // continues from the checkpoint, if there is one
+  kRestart,  // discards the checkpoint
 };
 
 class Checkpoint {
  public:
-  // Opens or makes the file, and locks it as long as this lives: two bakes of one output are an error.
-  // Changes nothing in it yet.
+  // Opens or makes the file, and locks it as long as this object lives: two bakes of one output are an error.
+  // Does not change the file's content.
   static Result<Checkpoint> open(const std::string& file, CheckpointUse use);
   Checkpoint(Checkpoint&& other) noexcept;
   Checkpoint& operator=(Checkpoint&&) = delete;
   ~Checkpoint();  // an empty file is removed
 
-  // The parts that are in it. An error where it was made by another plan. What follows a broken record is
-  // dropped. To be called once, before append.
+  // Reads the parts in the file and drops everything from the first broken record on. Error if the file was
+  // made by another plan. Called once, before append().
   Result<BakedParts> begin(std::uint64_t plan);
 
-  // Survives the process at once, the machine after the next flush: one a second at most is made here.
+  // Appends a part. It survives the end of the process at once, and a crash of the machine after the next
+  // flush, of which this function makes at most one a second.
   Status append(std::uint64_t part, const BakedPart& bytes);
-  Status flush();   // on the disk
-  Status remove();  // the bake is complete
+  Status flush();   // writes everything to the disk
+  Status remove();  // called when the bake is complete
 
  private:
   Checkpoint(std::string file, int descriptor, CheckpointUse use)
       : file_(std::move(file)), descriptor_(descriptor), use_(use) {}
   Status writeAll(const void* bytes, std::size_t count);
-  Error failure(const std::string& what) const;  // with the reason in errno
+  Error failure(const std::string& what) const;  // adds the reason from errno
 
   std::string file_;
   int descriptor_ = -1;

@@ -12,11 +12,11 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::chrono::milliseconds kNap{1};  // between looks for a message
+constexpr std::chrono::milliseconds kNap{1};  // between polls for a message
 
-constexpr int kFarewell = 1000;  // a tag that no other message has
+constexpr int kFarewell = 1000;  // the tag of the last message; no other message has it
 
-// What Open MPI, MPICH and its kin, and PMIx tell the processes that they start.
+// The environment variables by which Open MPI, MPICH and its derivatives, and PMIx number their processes.
 constexpr const char* kRankVariables[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
 
 const char* rankOfLauncher() {
@@ -50,7 +50,7 @@ MpiWorld::~MpiWorld() {
   if (!started_) {
     return;
   }
-  // MPI_Finalize waits for all, and costs a core while it does.
+  // MPI_Finalize waits for all processes and occupies a core meanwhile, so it is called when all are ready.
   for (int other = 1; first() && other < size_; ++other) {
     send(other, kFarewell, {});
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The processes of one bake, started by mpirun or the like; one process alone where they were not.
+// The processes of one bake, started by mpirun or a similar launcher; without a launcher a single process.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace sightline::tool {
 
-// Whether this process is one that an MPI launcher started and that is not the first: it prints nothing.
+// Whether an MPI launcher started this process and it is not the first one. Such a process prints nothing.
 bool isOtherMpiProcess();
 
-// Messages between processes. By the main thread only; there is one MpiWorld at a time. Sending may wait for
-// the receiver; receiving never waits, so that waiting costs no core.
+// Sends messages between processes. For the main thread only; there is one MpiWorld at a time. Sending may
+// wait for the receiver. Receiving polls, so that waiting for a message costs no core.
 class MpiWorld {
  public:
   // Calls MPI only if a launcher started the process.
   MpiWorld();
-  ~MpiWorld();  // the others sleep here until the first gets here
+  ~MpiWorld();  // the other processes sleep here until the first one gets here
   MpiWorld(const MpiWorld&) = delete;
   MpiWorld& operator=(const MpiWorld&) = delete;
 
@@ -32,12 +32,12 @@ class MpiWorld {
     int from = 0, tag = 0;
     std::vector<std::byte> bytes;
   };
-  // False where there are more than 2^31 - 1 bytes, of which none are sent then.
+  // False, with nothing sent, if there are more than 2^31 - 1 bytes.
   bool send(int to, int tag, std::span<const std::byte> bytes);
-  std::optional<Message> receive();  // the next one that is here
-  Message wait();                    // the next one; sleeps until it is here
+  std::optional<Message> receive();  // the next message that has arrived, if any
+  Message wait();                    // the next message; sleeps until it arrives
 
-  // Ends all processes at once, without a word of its own.
+  // Ends all processes at once and prints nothing.
   [[noreturn]] void abort(int exit_code);
 
  private:
@@ -45,7 +45,8 @@ class MpiWorld {
   int rank_ = 0, size_ = 1;
 };
 
-// Plain numbers and texts one after the other, as messages hold them. Processes are of one kind of machine.
+// Writes numbers and texts one after another, in the byte order of the machine: all processes run on machines
+// of one kind.
 class MessageWriter {
  public:
   MessageWriter& number(std::uint64_t value);
@@ -59,7 +60,7 @@ class MessageWriter {
 class MessageReader {
  public:
   explicit MessageReader(std::span<const std::byte> bytes) : left_(bytes) {}
-  std::uint64_t number();  // beyond the end: 0
+  std::uint64_t number();  // 0 beyond the end
   std::string text();
   std::span<const std::byte> rest() const { return left_; }
 

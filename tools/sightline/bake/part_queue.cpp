@@ -8,7 +8,7 @@ namespace sightline::tool {
 void PartQueue::add(std::uint32_t taker, std::span<const PartTask> parts) {
   const std::lock_guard lock(mutex_);
   if (closed_) {
-    return;  // nobody wants the rest
+    return;  // after a failure nobody needs further parts
   }
   parts_[taker].insert(parts_[taker].end(), parts.rbegin(), parts.rend());
   more_parts_.notify_all();
@@ -29,7 +29,7 @@ void PartQueue::clear() {
   more_parts_.notify_all();
 }
 
-// Ids grow with the level, so the least is of the largest cell.
+// Ids grow with the level, so the smallest id belongs to the largest cell.
 std::optional<PartTask> PartQueue::next(std::uint32_t taker) {
   if (std::deque<PartTask>& own = parts_[taker]; !own.empty()) {
     const PartTask part = own.back();
@@ -54,10 +54,10 @@ std::optional<PartTask> PartQueue::take(std::uint32_t taker) {
   return part;
 }
 
-std::vector<PartTask> PartQueue::takeNow(std::uint32_t taker, std::uint64_t most) {
+std::vector<PartTask> PartQueue::takeNow(std::uint32_t taker, std::uint64_t max_parts) {
   const std::lock_guard lock(mutex_);
   std::vector<PartTask> taken;
-  while (taken.size() < most) {
+  while (taken.size() < max_parts) {
     const std::optional<PartTask> part = next(taker);
     if (!part) {
       break;

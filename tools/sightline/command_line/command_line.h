@@ -8,7 +8,7 @@ class App;
 
 namespace sightline::tool {
 
-// What was asked for, as it can be typed again: the words without a name, then the options that were given.
+// The command line that was given, as it can be typed again: positional words first, then the options.
 std::string commandLine(const CLI::App& command);
 
 }  // namespace sightline::tool

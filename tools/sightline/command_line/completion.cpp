@@ -12,7 +12,7 @@
 namespace sightline::tool {
 namespace {
 
-// In single quotes, for any shell here.
+// The text in single quotes, for any of the shells.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -27,7 +27,8 @@ const CLI::Option* firstPositional(const CLI::App& command) {
   return words.empty() ? nullptr : words.front();
 }
 
-// What bash is told of an option's value: "words=...", "kind=file", "kind=folder", or that nothing is known.
+// The bash statement that describes an option's value: "words=...", "kind=file", "kind=folder", or "return"
+// if nothing is known about it.
 std::string bashValue(const CLI::Option& option) {
   if (const OptionWords words = wordsOf(option); !words.words.empty()) {
     return fmt::format("words={}{}", quoted(fmt::format("{}", fmt::join(words.words, " "))),

@@ -11,8 +11,8 @@ namespace sightline::tool {
 
 std::vector<std::string> shellNames();
 
-// The script that completes commands, options, their words and files, from the declarations that --help
-// prints. shell: one of shellNames.
+// The script by which a shell (one of shellNames) completes commands, options, their words and files, made
+// from the declarations that --help prints.
 std::string completionScript(const CLI::App& app, const std::string& shell);
 
 }  // namespace sightline::tool

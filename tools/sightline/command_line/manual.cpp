@@ -11,7 +11,7 @@
 namespace sightline::tool {
 namespace {
 
-// Text as it is: no line of it begins a request, and hyphens can be copied to a terminal.
+// Escapes text so that no line of it begins a request and hyphens can be copied to a terminal.
 std::string escaped(const std::string& text) {
   std::string result;
   bool at_start = true;
@@ -37,7 +37,7 @@ std::string italic(const std::string& text) {
   return "\\fI" + escaped(text) + "\\fR";
 }
 
-// Paragraphs; lines that begin with spaces are printed as they are.
+// One paragraph for each line. Lines that begin with spaces are printed unchanged.
 std::string paragraphs(const std::string& text) {
   std::string result;
   bool as_is = false;

@@ -8,7 +8,7 @@ class App;
 
 namespace sightline::tool {
 
-// sightline.1, in the language of man(7), from the declarations that --help prints.
+// The manual page sightline.1 in the language of man(7), made from the declarations that --help prints.
 std::string manualPage(const CLI::App& app);
 
 }  // namespace sightline::tool

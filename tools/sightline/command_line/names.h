@@ -1,7 +1,6 @@
 #pragma once
 
-// The one table from names on the command line and in JSON to the library's values; parsing, help and output
-// use it.
+// The names of the library's values on the command line and in JSON, for parsing, help and output.
 
 #include <array>
 #include <span>
@@ -36,7 +35,7 @@ std::string nameOf(const std::array<Name<T>, N>& names, T value) {
   return "?";
 }
 
-// text: one of the names.
+// The value of a name. Precondition: text is one of the names.
 template <typename T, std::size_t N>
 T valueOf(const std::array<Name<T>, N>& names, std::string_view text) {
   for (const Name<T>& name : names) {

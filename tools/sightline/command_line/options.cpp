@@ -23,7 +23,7 @@ CLI::Validator isNotEmpty() {
 
 namespace {
 
-// By these names an option's validators are found again.
+// The names by which wordsOf() finds an option's validators.
 constexpr const char *kOneWord = "one word", *kListOfWords = "list of words";
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Options that commands share; for how to cull see method_options.h.
+// Options that several commands share, except those of culling methods (method_options.h).
 
 #include <cstdint>
 #include <string>
@@ -17,22 +17,22 @@ class Validator;
 
 namespace sightline::tool {
 
-// Refuses an empty word, as of a variable that a script has not set.
+// Refuses an empty word, such as an unset variable of a script.
 CLI::Validator isNotEmpty();
 
-// What an option takes, as --help, the manual and the shells' completion tell it.
+// The types of values, as --help, the manual and the completion name them.
 inline constexpr const char *kFileType = "FILE", *kFolderType = "DIR";
 
-// Refuses what is none of these words. list: several of them, separated by commas.
+// Refuses everything but these words; with list, but several of them separated by commas.
 CLI::Validator isOneOf(const std::vector<std::string>& words, bool list = false);
-// The words of the option's isOneOf; none where it has no such validator.
+// The words of the option's isOneOf validator; empty if it has none.
 struct OptionWords {
   std::vector<std::string> words{};
   bool list = false;
 };
 OptionWords wordsOf(const CLI::Option& option);
 
-// What every command takes.
+// Options of every command.
 struct OutputOptions {
   std::string json;  // a file, "-" for stdout, empty for none
 
@@ -40,7 +40,7 @@ struct OutputOptions {
 };
 void addOutputOptions(CLI::App& command, OutputOptions& options);
 
-// What commands take that work on one scene.
+// Options of commands that work on one scene.
 struct SceneOptions : OutputOptions {
   std::string scene;
 };
@@ -48,31 +48,31 @@ void addSceneOptions(CLI::App& command, SceneOptions& options);
 
 void addThreadsOption(CLI::App& command, std::uint32_t& threads);
 
-// What commands take that work on one scene with several threads.
+// Options of commands that work on one scene with several threads.
 struct CommonOptions : SceneOptions {
   std::uint32_t threads = 1;
 };
 void addCommonOptions(CLI::App& command, CommonOptions& options);
 
-// The path through all cells of a baked file, see cellPath.
+// The name of the camera path through all cells of a baked file (cellPath).
 inline constexpr const char* kCellsPath = "cells";
 
-// What commands take that walk a path.
+// Options of commands that follow a camera path.
 struct PathOptions {
   std::string path;    // a file, the name of one of the scene's walks, or kCellsPath; empty: the default
   std::string frames;  // A:B[:STEP]; empty: all
 };
 void addPathOptions(CLI::App& command, PathOptions& options);
 
-// Of the pictures that a command draws.
+// Options of commands that draw pictures.
 struct PictureOptions {
-  std::uint32_t width = 0, height = 0;  // pixels; 0: the path's
+  std::uint32_t width = 0, height = 0;  // pixels; 0: the camera path's
 };
 void addPictureOptions(CLI::App& command, PictureOptions& options);
-// With the path's size where none was given.
+// The options with the camera path's size in place of 0.
 PictureOptions pictureSize(const PictureOptions& options, const CameraPath& path);
 
-// The numbers of the frames that `text` (A:B[:STEP], or one number) chooses of `count`.
+// The frames, of `count`, that `text` (A:B[:STEP] or one number) chooses.
 Result<std::vector<std::uint32_t>> chooseFrames(const std::string& text, std::size_t count);
 
 }  // namespace sightline::tool

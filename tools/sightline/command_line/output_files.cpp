@@ -33,20 +33,21 @@ bool isFolder(const fs::path& name) {
   return fs::is_directory(name, ignored);
 }
 
-// The name without links and dots; of a file that is not there, as far as its folders are.
+// The name without links and dots. If the file does not exist, the folders that exist are resolved.
 fs::path canonical(const std::string& file) {
   std::error_code ignored;
   return fs::weakly_canonical(fs::absolute(file, ignored), ignored);
 }
 
-// The same for two names of one file: its device and inode; of a file that is not there, its name.
+// A text that is equal for two names of one file: its device and inode or, if the file does not exist, its
+// canonical name.
 std::string identityOf(const std::string& file) {
   struct stat facts {};
   return ::stat(file.c_str(), &facts) == 0 ? fmt::format("{}:{}", facts.st_dev, facts.st_ino)
                                            : canonical(file).string();
 }
 
-// Many options may name one device, such as /dev/null.
+// Whether the name is a device, such as /dev/null, which several options may name.
 bool isDevice(const std::string& name) {
   std::error_code ignored;
   const fs::file_status status = fs::status(name, ignored);
@@ -65,7 +66,7 @@ std::vector<NamedFile> allOutputs(const CommandFiles& files) {
   return outputs;
 }
 
-// side_files: scenes are searched for the files that they name, which takes time.
+// With side_files, scenes are searched for the files that they name, which takes time.
 std::vector<NamedFile> allInputs(const CommandFiles& files, bool side_files) {
   std::vector<NamedFile> inputs = files.inputs;
   for (const std::string& scene : files.scenes) {
@@ -83,7 +84,7 @@ std::vector<NamedFile> allInputs(const CommandFiles& files, bool side_files) {
   return inputs;
 }
 
-// Whether output can go there.
+// Checks the output's name and its folder.
 Status checkPlace(const NamedFile& output) {
   const auto& [option, file, extension] = output;
   const fs::path path(file);
@@ -125,7 +126,7 @@ Status checkFiles(const CommandFiles& files) {
     return ok;
   }
   const std::vector<NamedFile> outputs = allOutputs(files);
-  // An output that is not there yet is no input.
+  // An output that does not exist yet cannot be an input.
   const bool any_there = std::any_of(outputs.begin(), outputs.end(),
                                      [](const NamedFile& output) { return exists(output.file); });
   std::map<std::string, NamedFile> inputs, written;  // by identityOf

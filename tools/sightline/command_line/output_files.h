@@ -1,7 +1,7 @@
 #pragma once
 
-// Which files a command reads and which it writes, compared before the work: no output may be an input or
-// another output. And writing them, each whole or not at all.
+// Checks, before the work starts, that no output file of a command is one of its inputs or another output.
+// Writes files whole or not at all.
 
 #include <string>
 #include <string_view>
@@ -12,36 +12,37 @@
 
 namespace sightline::tool {
 
-// A file and the option that names it.
+// A file and the option that gives its name.
 struct NamedFile {
-  std::string option;  // as errors name it: "--json", or "SCENE"
+  std::string option;  // as errors name it, such as "--json" or "SCENE"
   std::string file;    // empty or "-": none
-  // The ending that an output's name must have (".png"); empty: any.
+  // The extension that an output's name must have, such as ".png"; empty: any.
   std::string extension{};
 };
 
-// A folder that a command makes, and the files that it always writes there.
+// A folder that a command makes and the files that it always writes there.
 struct NamedFolder {
   std::string option, folder;  // folder empty: none
   std::vector<std::string> files;
 };
 
 struct CommandFiles {
-  std::vector<std::string> scenes{};  // files or demo:NAME; the files beside them are inputs as well
-  std::vector<NamedFile> inputs{};    // what is no file (a walk's name, a point) is passed over
+  std::vector<std::string> scenes{};  // files or demo:NAME; the files that they name are inputs as well
+  std::vector<NamedFile> inputs{};    // texts that name no file (a walk's name, a point) are ignored
   std::vector<NamedFile> outputs{};
   NamedFolder folder{};
 };
 
-// An error where an output is the same file as an input or as another output, by whatever name or link it is
-// reached; where its name has the wrong ending; where it is a folder, or lies in none. Changes nothing.
+// Error if an output is the same file as an input or another output, by whatever name or link; if its name
+// has the wrong extension; or if it is a folder or its folder does not exist. Changes no file.
 Status checkFiles(const CommandFiles& files);
 
-// Makes the folder, and those above it, where there is none. Those that it made are removed again if the
+// Makes the folder and those above it if they do not exist. Folders that it made are removed again if the
 // process is told to end while they are empty.
 Status makeFolder(const std::string& folder);
 
-// As writeFile and writePng. Told to end meanwhile, the process ends when the file is whole.
+// writeFile and writePng, except that a process that is told to end meanwhile ends only when the file is
+// whole.
 Status saveFile(const std::string& file, std::string_view bytes);
 Status savePicture(const Image& image, const std::string& file);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Words and numbers of the command line.
+// Parses words and numbers of the command line.
 
 #include <cstdint>
 #include <optional>
@@ -9,11 +9,12 @@
 
 namespace sightline::tool {
 
-// "a,,b" -> a, nothing, b: one part more than separators.
+// Splits at each separator, so that there is one part more than separators: "a,,b" -> "a", "", "b".
 std::vector<std::string> splitAt(const std::string& text, char separator);
 
-// The whole text is a number, or there is none: no spaces, no sign but a decimal's minus, no overflow.
+// The number that the whole text is; none if it has spaces, a sign (other than a decimal's minus) or
+// overflows.
 std::optional<std::uint32_t> parseWhole(const std::string& text);
-std::optional<double> parseDecimal(const std::string& text);  // finite
+std::optional<double> parseDecimal(const std::string& text);  // finite numbers only
 
 }  // namespace sightline::tool

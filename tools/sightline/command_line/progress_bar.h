@@ -5,19 +5,19 @@
 
 namespace sightline::tool {
 
-// A line on stderr with the remaining time, for what takes over a second, on a terminal only. Gone when
-// destroyed.
+// A line on stderr with the remaining time. It appears after a second, on a terminal only, and is erased by
+// the destructor.
 class ProgressBar {
  public:
-  // begun: the fraction that was done before, which says nothing about the remaining time.
+  // begun is the fraction that was done before; it does not count for the estimate of the remaining time.
   explicit ProgressBar(std::string stage, double begun = 0.0);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // done: fraction in [0, 1]. note: behind the bar. Cheap: writes at most ten times a second.
+  // Shows the fraction in [0, 1] that is done, and a note behind the bar. Writes at most ten times a second.
   void update(double done, const std::string& note = "");
-  // A line on stderr that stays, whether or not this is a terminal.
+  // Prints a line on stderr that stays, on a terminal or not.
   void say(const std::string& line);
 
  private:

@@ -22,7 +22,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// "a%20b" -> "a b". What is no such number stays.
+// Decodes percent signs: "a%20b" -> "a b". A percent sign without two hexadecimal digits stays.
 std::string withoutPercents(const std::string& uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -35,7 +35,8 @@ std::string withoutPercents(const std::string& uri) {
   return text;
 }
 
-// The JSON of a .glb lies in its first chunk: 12 bytes of header, length and kind of the chunk, its bytes.
+// The JSON of a .glb, which is its first chunk: it follows 12 bytes of header and the chunk's length and
+// kind.
 std::string_view jsonOfGlb(std::string_view bytes) {
   constexpr std::size_t kLengthAt = 12, kJsonAt = 20;
   std::uint32_t length = 0;
@@ -66,7 +67,7 @@ std::vector<std::string> namesInGltf(const std::string& file, bool is_glb) {
   return names;
 }
 
-// Calls act(keyword, what follows it) for each line; neither has spaces at its ends.
+// Calls act(keyword, value) for each line of a keyword and a value, both without spaces at their ends.
 template <typename Act>
 void forEachLine(const std::string& file, Act&& act) {
   constexpr const char* kSpaces = " \t\r";
@@ -82,7 +83,8 @@ void forEachLine(const std::string& file, Act&& act) {
   }
 }
 
-// A name may hold spaces, or stand behind options or other names: the whole value, and its last word.
+// A name may contain spaces, or follow options or other names. So the whole value and each of its words are
+// taken.
 void addNames(const std::string& value, std::vector<std::string>& names) {
   names.push_back(value);
   for (std::size_t begin = 0; begin < value.size();) {

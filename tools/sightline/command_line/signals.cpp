@@ -1,4 +1,4 @@
-// The handler uses only what it may: memory that was filled before, write, rmdir and _exit.
+// The signal handler uses only what is allowed in one: memory that was filled before, write, rmdir and _exit.
 
 #include "tools/sightline/command_line/signals.h"
 
@@ -12,12 +12,12 @@
 namespace sightline::tool {
 namespace {
 
-constexpr const char* kClearLine = "\r\033[K";  // of a progress bar
+constexpr const char* kClearLine = "\r\033[K";  // erases a progress bar
 
-// What the handler needs. It is changed only while signals wait (SignalGuard).
+// What the handler reads. It is changed only while a SignalGuard defers signals.
 struct Ending {
   std::string command, text;
-  std::vector<std::string> folders;  // the innermost last
+  std::vector<std::string> folders;  // outer folders before inner ones
 };
 
 Ending& ending() {
@@ -32,7 +32,7 @@ static_assert(std::atomic<int>::is_always_lock_free);
 [[noreturn]] void endNow() {
   const std::string& text = ending().text;
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) {
-    // There is nobody to tell.
+    // Nothing can be done if stderr is closed.
   }
   for (auto folder = ending().folders.rbegin(); folder != ending().folders.rend(); ++folder) {
     ::rmdir(folder->c_str());
@@ -42,7 +42,7 @@ static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void noteSignal(int signal) {
   if (told != 0) {
-    ::_exit(128 + signal);  // told twice: whatever is being finished takes too long
+    ::_exit(128 + signal);  // told twice: finishing the protected work takes too long
   }
   told = signal;
   if (guards == 0) {

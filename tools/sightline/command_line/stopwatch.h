@@ -7,7 +7,7 @@ namespace sightline::tool {
 
 class Stopwatch {
  public:
-  // Microseconds since it was made, or since the last call.
+  // Microseconds since the last call, or since construction.
   double lap() {
     const Clock::time_point now = Clock::now();
     return std::chrono::duration<double, std::micro>(now - std::exchange(last_, now)).count();

@@ -10,8 +10,8 @@ bool sameLetter(char a, char b) {
   return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
 
-// How many letters must be added, removed, changed or swapped with their neighbour to turn one word into the
-// other. Row i of the table holds the distances of a's first i letters to the beginnings of b.
+// The number of letters that must be added, removed, changed or swapped with their neighbour to turn one word
+// into the other. Row i of the table holds the distances between a's first i letters and each prefix of b.
 std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -37,13 +37,13 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 std::string didYouMean(std::string_view word, std::span<const std::string> known) {
   constexpr std::size_t kLettersAnError = 3;
   const std::string* nearest = nullptr;
-  std::size_t least = 0;
+  std::size_t smallest_distance = 0;
   for (const std::string& candidate : known) {
     const std::size_t distance = editDistance(word, candidate);
     const bool near = distance * kLettersAnError <= std::max(word.size(), candidate.size());
-    if (near && (nearest == nullptr || distance < least)) {
+    if (near && (nearest == nullptr || distance < smallest_distance)) {
       nearest = &candidate;
-      least = distance;
+      smallest_distance = distance;
     }
   }
   return nearest == nullptr ? std::string() : "; did you mean '" + *nearest + "'?";

@@ -6,14 +6,14 @@
 
 namespace sightline::tool {
 
-// A table for the terminal; columns are as wide as they need.
+// A table for the terminal. Columns are as wide as their longest cell.
 struct TextTable {
   std::vector<std::string> head{};
-  std::vector<std::vector<std::string>> rows{};  // a cell a column
-  std::size_t left = 1;                          // so many columns are words, the others are numbers
+  std::vector<std::vector<std::string>> rows{};  // each with one cell for each column
+  std::size_t left = 1;                          // the number of columns of words; the others hold numbers
 };
 
-// One line a row, each ended.
+// The table as text, one line for each row.
 std::string toText(const TextTable& table);
 
 }  // namespace sightline::tool

@@ -1,4 +1,4 @@
-// sightline cull: the objects that may be seen in every frame of a walk.
+// sightline cull: lists the objects that may be visible in every frame of a walk.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -24,7 +24,7 @@ struct CullOptions {
   bool no_times = false;
 };
 
-// Over all frames.
+// Sums over all frames.
 struct Totals {
   double objects = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0, tested_share = 0.0,
          occluders = 0.0;

@@ -6,7 +6,7 @@
 
 namespace sightline::tool {
 
-// A culler on its way along a walk, with the time of its last frame as a caller sees it.
+// A culler along a walk, with the time of its last frame measured from outside.
 struct CullRun {
   Culler culler;
   double cull_us = 0.0;

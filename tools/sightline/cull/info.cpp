@@ -1,4 +1,4 @@
-// sightline info: what is in a scene, and what culling can make of it; what is in a baked file.
+// sightline info: describes a scene and its occluders and hierarchies, or a baked file.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -39,9 +39,9 @@ const char* opacityName(Opacity opacity) {
   return "?";
 }
 
-// Triangles by what their material does.
+// Triangles and objects by properties of their material.
 struct MaterialUse {
-  std::vector<std::uint64_t> triangles, objects;  // one a material
+  std::vector<std::uint64_t> triangles, objects;  // one for each material
 };
 
 MaterialUse useOf(const Scene& scene) {
@@ -54,7 +54,7 @@ MaterialUse useOf(const Scene& scene) {
   return use;
 }
 
-// Why triangles are or are not in an occluder: one table for text and JSON.
+// Why triangles are in an occluder or not; one table for text and JSON.
 struct Reason {
   const char* key;
   const char* text;
@@ -92,7 +92,7 @@ HierarchyFacts factsOf(const Hierarchy& hierarchy) {
   facts.depth = hierarchy.depth;
   facts.duplicates = hierarchy.duplicates();
   facts.bytes_per_node = sizeof(HierarchyNode);
-  // An object's box and its places in leaves; the nodes are counted apart.
+  // The bytes of objects' boxes and of leaves' entries; nodes are counted separately.
   const double entries = static_cast<double>(hierarchy.objects.size() * sizeof(ObjectId));
   facts.bytes_per_object = hierarchy.object_count > 0 ? sizeof(Box) + entries / hierarchy.object_count : 0.0;
   return facts;

@@ -40,7 +40,7 @@ Result<std::vector<SetSize>> sizesOfSets(const SightFile& file) {
   return sizes;
 }
 
-// The numbers behind a SetSizes.
+// The numbers of objects and triangles that a SetSizes summarises.
 struct Sizes {
   std::vector<double> objects{}, triangles{};
 
@@ -94,7 +94,7 @@ std::string levelsText(const SightFacts& facts) {
   return toText(table);
 }
 
-// An empty object where they are no JSON.
+// The recorded settings; an empty object if they are not JSON.
 Json recordedSettings(const BakeRecord& record) {
   Json settings = Json::parse(record.settings, nullptr, false);
   return settings.is_object() ? settings : Json::object();
@@ -169,7 +169,7 @@ Result<SightFacts> factsOf(const SightFile& file) {
   Sizes all;
   std::vector<Sizes> levels(kMaxOctreeDepth + 1);
   facts.level_cells.resize(levels.size());
-  double volume = 0.0;  // where viewers are, of the root's
+  double volume = 0.0;  // of cells where viewers are, as a share of the root's
   forEachLeaf(octree, [&](std::uint32_t index, const OctreeCell& cell) {
     facts.cells += 1;
     facts.level_cells[cell.level] += 1;
@@ -183,7 +183,7 @@ Result<SightFacts> factsOf(const SightFile& file) {
     std::vector<std::uint32_t> sides{leaf.set};
     if (divided) {
       sides = {leaf.front_set, leaf.back_set};
-      // From a side with an empty set nobody looks.
+      // A side with an empty set has no viewers.
       std::erase_if(sides, [&](std::uint32_t set) { return (*sets)[set].objects == 0.0; });
     }
     double triangles = 0.0;

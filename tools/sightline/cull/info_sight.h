@@ -1,6 +1,6 @@
 #pragma once
 
-// What is in a .sight file: for `info`, and for the report of `bake`.
+// Facts about a .sight file, for `info` and for the report of `bake`.
 
 #include <array>
 #include <cstdint>
@@ -21,10 +21,10 @@ struct Spread {
 };
 Spread spreadOf(const std::vector<double>& values);
 
-inline constexpr std::size_t kShares = 10;  // bars of a histogram, a tenth of the scene's triangles each
+inline constexpr std::size_t kShares = 10;  // bars of a histogram, each a tenth of the scene's triangles
 
-// Of cells where viewers are. Cells without a plane count once, those with one twice: in front of it and
-// behind it.
+// The sizes of the sets of cells where viewers are. A cell without a plane counts once, one with a plane
+// twice: in front of the plane and behind it.
 struct SetSizes {
   Spread objects, triangles;
   std::array<std::uint64_t, kShares> histogram{};  // by triangles
@@ -32,43 +32,43 @@ struct SetSizes {
 
 struct SightFacts {
   std::uint64_t cells = 0;
-  std::uint32_t deepest = 0;               // level
+  std::uint32_t deepest = 0;               // the deepest level
   std::vector<std::uint64_t> level_cells;  // by level
   std::vector<SetSizes> level_sizes;       // by level
   SetSizes sizes;                          // of all levels
-  double mean_triangles_by_volume = 0.0;   // of a viewer who is anywhere with equal chance
+  double mean_triangles_by_volume = 0.0;   // for a viewer whose place is uniformly distributed
   std::array<std::uint64_t, kStopReasons> reasons{};
-  std::array<double, kStopReasons> reason_volumes{};  // of the viewers' space, 0 to 1
+  std::array<double, kStopReasons> reason_volumes{};  // shares of the viewers' space, 0 to 1
   std::uint64_t cells_with_plane = 0;
-  std::uint64_t grid_cells = 0;  // of a uniform grid with the smallest cell
+  std::uint64_t grid_cells = 0;  // cells of a uniform grid of the smallest cell's size
 };
 
-// Reads all sets: an error where one is broken.
+// Reads all sets. Error if one is broken.
 Result<SightFacts> factsOf(const SightFile& file);
 
 Json factsJson(const SightFacts& facts);
 Json sightJson(const SightFile& file, const SightFacts& facts);
-std::string factsText(const SightFacts& facts);  // lines as `info` prints them
+std::string factsText(const SightFacts& facts);  // the lines that `info` prints
 
-// Where the baked scene's origin lies in world space. Files that do not say have it at zero.
+// The baked scene's origin in world space; zero if the file does not tell.
 Vec3d originOf(const BakeRecord& record);
 
-// What the record says about the convex occluders that were considered.
+// Facts about the convex occluders that the bake considered, from the record.
 struct OccluderFacts {
-  bool none = false;          // but for the floor, ceiling and outer walls of the viewers' region
-  bool none_of_use = false;   // none of the others is large enough for the smallest cells
-  double largest_area = 0.0;  // of the others, square metres
+  bool none = false;          // there is none but the floor, ceiling and outer walls of the viewers' region
+  bool none_of_use = false;   // no other is large enough for the smallest cells
+  double largest_area = 0.0;  // of the others, in square metres
   double size = 1.0;          // BakeSettings::occluder_size
 };
 std::optional<OccluderFacts> occludersOf(const BakeRecord& record);
 
-// Three finite numbers, or nothing.
+// The point, if the JSON is a list of three finite numbers.
 std::optional<Vec3d> pointOf(const Json& json);
 
 bool beginsAsSightFile(const std::string& name);  // by its first bytes
 bool isSightFile(const std::string& name);        // by its name or its first bytes
 
-// `info F.sight`.
+// Runs `info F.sight`.
 Status informOnSight(const std::string& name, const std::string& json_target);
 
 }  // namespace sightline::tool

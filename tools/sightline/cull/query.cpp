@@ -1,4 +1,4 @@
-// sightline query: what may be seen from points, from a baked file alone.
+// sightline query: lists what may be visible from points, by a baked file alone.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -21,18 +21,18 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kMaxRows = 50;  // on the terminal; JSON has all
+constexpr std::size_t kMaxRows = 50;  // rows on the terminal; JSON has all
 
 struct QueryOptions {
   std::string file, json;
-  std::vector<std::string> points;  // files and literals
+  std::vector<std::string> points;  // files and points written as text
 };
 
-// What is known of one point.
+// The answer for one point.
 struct PointAnswer {
   Vec3d point;  // world space
   CellPlace place;
-  const char* side = nullptr;  // of the cell's plane, if it has one
+  const char* side = nullptr;  // the side of the cell's plane, if the cell has one
   std::uint64_t triangles = 0;
   std::vector<std::uint32_t> visible;  // ascending
 
@@ -86,7 +86,7 @@ Result<std::vector<Vec3d>> allPoints(const std::vector<std::string>& texts) {
       points.push_back(*point);
       continue;
     }
-    // A file may be named with commas; what is not there is more likely meant as a point.
+    // A file's name may contain commas, but a text that names no file is more likely a point.
     const Result<std::vector<Vec3d>> more = pointsOfFile(text);
     if (!more && splitAt(text, ',').size() > 1) {
       return Error{fmt::format("--points {}: is neither a point X,Y,Z in metres nor a file", text)};

@@ -1,4 +1,4 @@
-// sightline verify: what a culler says against what rays see.
+// sightline verify: compares culling with exact visibility by ray casting.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -19,8 +19,8 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kMaxTries = 256;  // pixels that confirm one false cull
-constexpr std::size_t kMaxListed = 20;  // on the terminal; JSON has all of them
+constexpr std::size_t kMaxTries = 256;  // pixels that are tried to confirm one false cull
+constexpr std::size_t kMaxListed = 20;  // false culls listed on the terminal; JSON has all
 
 struct VerifyOptions {
   CommonOptions common;
@@ -30,11 +30,11 @@ struct VerifyOptions {
   std::uint32_t aimed_rays = 16, edge_rays = 16;
 };
 
-// An object that a ray reached; a false cull where a culler said it is hidden.
+// An object that a ray reached. It is a false cull if the culler said that it is hidden.
 struct Sighting {
   Witness witness;
   std::uint32_t frame = 0;
-  bool aimed = false;      // by a ray aimed at it; otherwise through a pixel
+  bool aimed = false;      // reached by a ray aimed at it, otherwise by a ray through a pixel
   bool confirmed = false;  // beyond what rounding of the rays explains
 };
 
@@ -59,7 +59,7 @@ struct VerifyRun {
   }
 };
 
-// Compares the runs with one exact answer a frame.
+// Compares all runs with one exact answer for each frame.
 class Verifier {
  public:
   Verifier(const VerifyOptions& options, const Scene& scene, const Walk& walk,
@@ -91,7 +91,7 @@ class Verifier {
   std::size_t exact_total = 0;
 
  private:
-  // Along the silhouettes of what pixels showed, and through the gaps between.
+  // Casts rays along the silhouettes of the objects that pixels showed, and through the gaps between them.
   void lookBesideSeen() {
     std::vector<ObjectId> objects;
     for (const auto& [object, sighting] : seen_) {
@@ -103,7 +103,7 @@ class Verifier {
     }
   }
 
-  // At what no ray has reached yet, whether it was culled or kept.
+  // Aims rays at the objects that no ray has reached yet, whether they were culled or kept.
   void aimAtUnseen() {
     std::vector<ObjectId> targets;
     for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
@@ -131,7 +131,8 @@ class Verifier {
     }
   }
 
-  // The sighting with a witness that stands, if one can be found; once a frame and object.
+  // The sighting with a witness that exact arithmetic confirms, if one can be found. Done once for each frame
+  // and object.
   const Sighting& confirmed(const Sighting& sighting) {
     const auto [entry, is_new] = judged_.emplace(sighting.witness.object, sighting);
     Sighting& judged = entry->second;
@@ -163,8 +164,8 @@ class Verifier {
   ExactVisibility oracle_;
   View view_;
   std::uint32_t frame_ = 0;
-  std::map<ObjectId, Sighting> seen_;    // by a ray, in this frame
-  std::map<ObjectId, Sighting> judged_;  // of them, those that some run culled
+  std::map<ObjectId, Sighting> seen_;    // objects that a ray reached in this frame
+  std::map<ObjectId, Sighting> judged_;  // those of them that some run culled
 };
 
 Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene) {

@@ -19,7 +19,7 @@ std::string describe(const UnknownKey& unknown) {
     where = fmt::format("frame {}{}: ", *unknown.frame,
                         unknown.frames > 1 ? fmt::format(" (and {} more)", unknown.frames - 1) : "");
   }
-  // A terminal obeys control characters.
+  // Control characters would affect the terminal.
   std::string key = unknown.key;
   std::replace_if(
       key.begin(), key.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');

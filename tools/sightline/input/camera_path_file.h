@@ -8,10 +8,10 @@
 
 namespace sightline::tool {
 
-// A camera path's file. Keys that the form does not have are named on stderr, with the keys that may be
-// meant; where the file cannot be read, in the error.
+// Reads the file of a camera path. Unknown keys are reported on stderr with the known keys that may be meant,
+// or in the error if the file cannot be read.
 Result<CameraPath> readCameraPathFile(const std::string& file);
-// The same of a text that was read already.
+// The same for a text that was read before; errors name `file`.
 Result<CameraPath> parseCameraPathFile(std::string_view text, const std::string& file);
 
 }  // namespace sightline::tool

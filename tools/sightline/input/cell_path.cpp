@@ -12,7 +12,7 @@ namespace sightline::tool {
 namespace {
 
 constexpr double kFovDeg = 90.0;
-constexpr int kTries = 32;  // points of a cell, to find one at its plane
+constexpr int kTries = 32;  // random points of a cell that are tried to find one at its plane
 
 class Random {
  public:
@@ -53,7 +53,7 @@ Vec3d anywhere(const CellBox& cell, Random& random) {
   return p;
 }
 
-// A point on so many faces at once (0: anywhere), or by some ulps within them.
+// A point on this number of faces at once (0: anywhere in the cell), or a few ulps inside them.
 Vec3d atBorder(const CellBox& cell, int faces, bool on_it, Random& random) {
   Vec3d p = anywhere(cell, random);
   const std::uint32_t first = random.below(3);
@@ -68,8 +68,8 @@ Vec3d atBorder(const CellBox& cell, int faces, bool on_it, Random& random) {
   return p;
 }
 
-// A point of the cell whose dot product with the normal is at_least `offset`, or at most, and as near to it
-// as rounding lets it be; none where the cell does not reach there.
+// A point of the cell whose dot product with the normal is at least `offset` (at_least) or at most, and as
+// near to it as rounding allows. None if the cell does not reach there.
 std::optional<Vec3d> atPlane(const CellBox& cell, const Vec3d& normal, double offset, bool at_least,
                              Random& random) {
   for (int i = 0; i < kTries; ++i) {
@@ -86,7 +86,7 @@ std::optional<Vec3d> atPlane(const CellBox& cell, const Vec3d& normal, double of
   return std::nullopt;
 }
 
-// Every seventh cell is looked at from anywhere in it, the others from borders.
+// Every seventh cell gets a viewpoint anywhere in it, the others one at a border.
 Vec3d viewpoint(std::uint32_t leaf, const CellBox& cell, Random& random) {
   const std::uint32_t turn = leaf % 7;
   return atBorder(cell, static_cast<int>((turn + 1) / 2), turn % 2 == 1, random);
@@ -95,7 +95,7 @@ Vec3d viewpoint(std::uint32_t leaf, const CellBox& cell, Random& random) {
 double nearOf(const CameraPath& path, double near_distance) {
   View view = path.view(0, {});
   view.near = 1.0;
-  // By a little less, for the rounding of nearDistance.
+  // A little less, because of the rounding of nearDistance.
   const double near = near_distance / nearDistance(view) * (1.0 - 1e-9);
   return near > 0.0 ? near : path.near;
 }

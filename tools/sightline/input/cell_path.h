@@ -1,6 +1,6 @@
 #pragma once
 
-// Views that try a baked file where it is most easily wrong: at the borders of its cells.
+// A camera path of views that test a baked file where errors are most likely: at the borders of its cells.
 
 #include <vector>
 
@@ -11,13 +11,13 @@ namespace sightline::tool {
 
 struct CellPath {
   CameraPath path;          // world space
-  std::vector<Vec3d> eyes;  // one a frame, scene space, to the last bit
+  std::vector<Vec3d> eyes;  // each frame's eye in scene space, exact to the last bit
 };
 
-// A view from each cell of the octree, in the order of the leaves' numbers: from anywhere in it, from a face,
-// an edge or a corner, on it or a few ulps inside, in turn, in any direction. Cells that a plane divides have
-// two more, from hard at its front and at its back, where the cell reaches so far. The near plane is as far
-// away as the bake allows. The same file gives the same path.
+// One view from each cell of the octree, in the order of the leaves, in a random direction. In turn it is
+// from a random point, or from a face, an edge or a corner, on it or a few ulps inside. A cell that a plane
+// divides adds a view from just in front of the plane and one from just behind it, if the cell reaches so
+// far. The near plane is as far away as the bake allows. The same file always gives the same camera path.
 CellPath cellPath(const SightFile& baked, const Scene& scene);
 
 }  // namespace sightline::tool

@@ -1,6 +1,6 @@
 #pragma once
 
-// What layers are sorted from: parts that may move, along a camera's path.
+// Loads what layers are sorted from: parts that may move, and a camera path.
 
 #include <span>
 #include <string>
@@ -13,17 +13,17 @@
 namespace sightline::tool {
 
 struct LayerInput {
-  MovingScene moving;  // of a scene that does not move: each object is a part, static, where it is
+  MovingScene moving;  // if the scene does not move, each object is a static part
   Walk walk;
 };
 
-// backdrops, overlays: parts by number.
+// The parts, by index, that are drawn behind or in front of all others.
 struct LayerPlaces {
   std::vector<std::uint32_t> backdrops, overlays;
 };
 
-// Where the scene moves, a frame of the walk is a frame of the motion; a path of the user's own may be
-// longer.
+// Loads a scene and a walk. If the scene moves, frame i of the walk shows frame i of the motion; a camera
+// path of the user's own may be longer than the motion.
 Result<LayerInput> loadLayerInput(const std::string& scene_name, const PathOptions& path,
                                   const LayerPlaces& places = {});
 

@@ -45,7 +45,7 @@ Result<CameraPath> namedCameraPath(const std::string& name, const Scene& scene) 
       name == kCellsPath ? "; the cells of a baked file are walked when it is given with --baked" : "")};
 }
 
-// The path's file beside the scene's file; empty where there is none.
+// The camera path's file beside the scene's file; empty if there is none.
 std::string cameraPathBeside(const std::string& scene_name) {
   const std::filesystem::path beside =
       std::filesystem::path(scene_name).parent_path() / kCameraPathBesideScene;
@@ -175,7 +175,7 @@ const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
 
 namespace {
 
-// build(progress): the database.
+// Builds a database by build(progress) and measures the time.
 template <typename Database, typename Build>
 std::unique_ptr<CullingData::Timed<Database>> buildTimed(const std::string& what, Build&& build) {
   ProgressBar progress(what);
@@ -219,7 +219,7 @@ std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const s
   return nullptr;
 }
 
-// All settings of one run have the same databases.
+// The database is built once: all settings of one run have the same options for it.
 const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool turned_away,
                                                  std::unique_ptr<TimedDatabase>& timed) {
   if (!timed) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// From what the user names to what commands work on.
+// Loads scenes, camera paths and baked files by the names that the user gives.
 
 #include <array>
 #include <memory>
@@ -19,16 +19,16 @@
 
 namespace sightline::tool {
 
-// A file or a demo:NAME?...
+// Loads a scene from a file, or makes a demo:NAME?... scene.
 Result<Scene> loadScene(const std::string& name);
 
-// A .sight file, which must have been baked from this scene. No name: none.
+// Opens a .sight file. Error if it was baked from another scene. None if `file` is empty.
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene);
 
 struct Walk {
   CameraPath path;
-  std::vector<std::uint32_t> frames{};  // chosen ones, ascending
-  std::vector<Vec3d> eyes{};            // by frame, scene space, where the path's are not exact; else none
+  std::vector<std::uint32_t> frames{};  // the chosen frames, ascending
+  std::vector<Vec3d> eyes{};  // exact eyes in scene space, one for each frame; empty: those of `path`
 
   View view(std::uint32_t frame, const Scene& scene) const {
     View view = path.view(frame, scene.origin);
@@ -36,22 +36,23 @@ struct Walk {
     return view;
   }
 };
-// baked: for kCellsPath. Says on stderr when it took a file that the user did not name.
+// Loads a camera path and chooses its frames. baked is needed for kCellsPath. Says on stderr if it used a
+// file that the user did not name.
 Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene,
                       const std::optional<SightFile>& baked = {});
 
-// The files of these options that a command along a walk reads, but for the scene: those of the options that
-// name none are passed over by checkFiles.
+// The files, besides the scene, that a command along a walk reads. checkFiles ignores entries that name no
+// file.
 std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptions& path,
                                   const std::string& baked = "");
 
-// What a command along a walk begins with.
+// The input of a command along a walk.
 struct SceneAndWalk {
   Scene scene;
   Walk walk;
   std::optional<SightFile> baked{};
 };
-// baked: a .sight file, or empty.
+// Loads all of it; baked is the name of a .sight file, or empty.
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
                                       const std::string& baked = "");
 // loadSceneAndWalk for a command that writes no file but --json: checks first that this is none of the
@@ -59,23 +60,24 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
                                   const std::string& baked);
 
-// What cullers of one scene share.
+// What all cullers of one scene share.
 class CullingData {
  public:
-  // walk: viewpoint databases are made for it. baked: sets of settings that use them, and databases.
+  // Viewpoint databases are built for the viewpoints of `walk`. `baked` provides visible sets for the
+  // settings that use them, and occluder databases.
   CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk = {},
               std::optional<SightFile> baked = {});
 
-  // Says on stderr where a database of the baked file is of no use.
+  // Says on stderr if a database of the baked file cannot be used.
   Culler makeCuller(const Setting& setting);
-  // Says on stderr how many look-ups in the baked file found nothing better than everything, and why.
+  // Says on stderr how many look-ups in the baked file returned all objects, and why.
   void noteUnknownSets() const;
-  const Hierarchy& hierarchy(HierarchyKind kind);  // built when asked for first
-  // The occluder databases of the first setting that uses them; null until a culler needed them.
+  const Hierarchy& hierarchy(HierarchyKind kind);  // built on first use
+  // The occluder databases of the first setting that uses them; null until a culler needs them.
   template <typename Database>
   struct Timed {
     Database database;
-    double build_us = 0.0;  // or to read it from the baked file
+    double build_us = 0.0;  // time to build it or to read it from the baked file
   };
   using TimedDatabase = Timed<OccluderDatabase>;
   using TimedViewpoints = Timed<ViewpointDatabase>;
@@ -86,19 +88,19 @@ class CullingData {
   }
   const OccluderSet& occluders() const { return occluders_; }
   std::span<const Box> bounds() const { return bounds_; }
-  std::span<const std::uint32_t> triangles() const { return triangles_; }  // of each object
+  std::span<const std::uint32_t> triangles() const { return triangles_; }  // one count for each object
   std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
 
  private:
   const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
                                       std::unique_ptr<TimedDatabase>& database);
   const ViewpointDatabase* viewpointsFor(const Setting& setting);
-  // That of the baked file; null where it has none for these occluders.
+  // The baked file's database; null if it has none for these occluders.
   template <typename Database>
   std::unique_ptr<Timed<Database>> bakedDatabase(const std::string& name) const;
 
   ParallelFor parallel_for_;
-  std::vector<Vec3d> walk_;  // its viewpoints, scene space
+  std::vector<Vec3d> walk_;  // the walk's viewpoints in scene space
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
   OccluderSet occluders_;
@@ -106,13 +108,14 @@ class CullingData {
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
   std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion
   std::optional<SightFile> baked_;
-  std::vector<std::unique_ptr<SetQuery>> queries_;  // one a culler that has sets
+  std::vector<std::unique_ptr<SetQuery>> queries_;  // one for each culler that uses visible sets
 };
 
 Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
-// Adds "database" and "detail_database", {"cells":n,"directions":n,"bytes":n,"build_us":t} each, and
-// "viewpoints", {"minimum-sets":{"points":n,"directions":n,"spacing":m,"bytes":n,"build_us":t},...}, as far
-// as they were built. times: else 0 for them.
+// Adds those that were built of "database" and "detail_database", each
+// {"cells":n,"directions":n,"bytes":n,"build_us":t}, and "viewpoints",
+// {"minimum-sets":{"points":n,"directions":n,"spacing":m,"bytes":n,"build_us":t},...}. Without `times` all
+// times are 0.
 void addDatabases(Json& json, const CullingData& data, bool times = true);
 
 }  // namespace sightline::tool

@@ -5,11 +5,11 @@
 
 namespace sightline::tool {
 
-// Untrusted text made safe inside elements and quoted attributes of HTML and SVG. Control characters go;
+// Escapes untrusted text for elements and quoted attributes of HTML and SVG. Control characters are dropped;
 // bytes that are not UTF-8 become U+FFFD.
 std::string escapeMarkup(std::string_view text);
 
-// A file name made safe as a relative link ("./" is put before it; anything unusual is percent-encoded).
+// Makes a relative link of a file's name: "./" is put before it and unusual characters are percent-encoded.
 std::string relativeLink(std::string_view file);
 
 // 1234567.0 -> "1,234,567" with the given number of decimals; "–" when not finite.

@@ -13,8 +13,8 @@
 namespace sightline::tool {
 namespace {
 
-// Of middle lightness, so that each stands out from white and from black; hues that colour-blind people tell
-// apart, and dashes besides.
+// A curve's colour and dashes. Colours have a middle lightness, which contrasts with white and black, and
+// hues that colour-blind readers can distinguish.
 struct Pen {
   const char* color;
   const char* dashes;
@@ -33,7 +33,7 @@ const Pen& penOf(const Plot& plot, std::size_t series) {
 
 constexpr double kLeft = 92.0, kRight = 18.0, kTop = 34.0, kBottom = 46.0, kLegendRow = 20.0;
 
-// The rectangle of the curves, in the SVG's units, and its two axes.
+// The rectangle that holds the curves, in the SVG's units, and its two axes.
 struct Canvas {
   double left, top, right, bottom;
   Axis x, y;
@@ -44,7 +44,7 @@ struct Canvas {
   bool shows(double value) const { return std::isfinite(value) && (!log_y || value > 0.0); }
 };
 
-// Where each name of the legend starts; rows are filled from the left.
+// The place of a name in the legend. Rows are filled from the left.
 struct LegendEntry {
   double x, y;
 };
@@ -126,7 +126,7 @@ void addAxes(std::string& out, const Plot& plot, const Canvas& c) {
                   (c.top + c.bottom) / 2, escapeMarkup(plot.y_label));
 }
 
-// One path a series; a gap starts a new stroke, a lone point becomes a dot by its round caps.
+// Adds a series as one path. A gap starts a new stroke; a point between gaps becomes a dot by its round caps.
 void addCurve(std::string& out, const Plot& plot, const Canvas& c, std::size_t index) {
   const PlotSeries& series = plot.series[index];
   std::string path;

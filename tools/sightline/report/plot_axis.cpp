@@ -10,7 +10,7 @@
 namespace sightline::tool {
 namespace {
 
-// 1, 2 or 5 times a power of ten, for about so many steps over the range.
+// A step of 1, 2 or 5 times a power of ten that divides the range into about `count` steps.
 double roundStep(double range, int count) {
   const double rough = range / count;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -18,7 +18,7 @@ double roundStep(double range, int count) {
   return power * (leading <= 1.0 ? 1.0 : leading <= 2.0 ? 2.0 : leading <= 5.0 ? 5.0 : 10.0);
 }
 
-// At the ends only where doubles are too coarse for steps.
+// Adds ticks at multiples of the step, or at the ends only if doubles are too coarse for the step.
 void addTicks(Axis& axis, double step) {
   if (!(std::abs(axis.low / step) < 1e15 && std::abs(axis.high / step) < 1e15)) {
     axis.ticks = {axis.low, axis.high};

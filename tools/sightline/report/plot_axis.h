@@ -11,18 +11,20 @@ struct Axis {
   bool logarithmic = false;
   std::vector<double> ticks{};
 
-  // 0 at low, 1 at high.
+  // The value's place on the axis: 0 at low, 1 at high.
   double fraction(double value) const;
 };
 
-// Covers [low, high] with about so many ticks; starts at 0 when low is not negative and with_zero.
+// An axis that covers [low, high] with about tick_count ticks. With with_zero it starts at 0 if low is not
+// negative.
 Axis linearAxis(double low, double high, int tick_count, bool with_zero);
-// Ends at the data itself, ticks inside: for frame numbers.
+// An axis that ends at low and high themselves, with ticks inside, for frame numbers.
 Axis tightAxis(double low, double high, int tick_count);
-// Whole powers of ten around [low, high], both positive; ticks at 1, 2 and 5 when there are few powers.
+// An axis of whole powers of ten around [low, high], both positive, with ticks at 1, 2 and 5 if there are few
+// powers.
 Axis logarithmicAxis(double low, double high);
 
-// As few digits as tell it from its neighbours: "0.5", "250,000", "1e-07".
+// The value with as few digits as distinguish it from its neighbours: "0.5", "250,000", "1e-07".
 std::string tickLabel(double value);
 
 }  // namespace sightline::tool

@@ -18,7 +18,7 @@ std::string percent(double share) {
   return groupedNumber(100.0 * share, share < 0.0995 ? 1 : 0) + " %";
 }
 
-// Three or four digits, whatever the size.
+// The time with three or four digits, whatever its size.
 std::string milliseconds(double ms) {
   return groupedNumber(ms, ms < 1.0 ? 3 : ms < 100.0 ? 2 : 0);
 }
@@ -31,7 +31,8 @@ std::string tile(const std::string& number, const std::string& text) {
   return "<div class=\"tile\"><b>" + number + "</b><span>" + escapeMarkup(text) + "</span></div>\n";
 }
 
-// The headline: what the fastest method gains over view-frustum culling, and whether all pictures are right.
+// Adds the headline: the fastest method's gain over view-frustum culling, and whether all pictures are
+// correct.
 void addTiles(std::string& out, const Report& report) {
   if (report.rows.size() < 2) {
     return;

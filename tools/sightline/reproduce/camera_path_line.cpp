@@ -9,7 +9,7 @@ Vec3d between(const Vec3d& a, const Vec3d& b, double t) {
   return a * (1.0 - t) + b * t;
 }
 
-// Between two directions; where they cancel out, the nearer one.
+// A direction between two; the nearer one of them if they cancel out.
 Vec3d directionBetween(const Vec3d& a, const Vec3d& b, double t) {
   const Vec3d sum = between(normalized(a), normalized(b), t);
   constexpr double kCancelled = 1e-6;

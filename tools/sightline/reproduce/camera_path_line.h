@@ -1,6 +1,6 @@
 #pragma once
 
-// The line through the eyes of a camera path, to be walked at any speed.
+// The polyline through the eyes of a camera path, along which an observer can move at any speed.
 
 #include <vector>
 
@@ -13,14 +13,15 @@ class CameraPathLine {
   explicit CameraPathLine(const CameraPath& path);
 
   double length() const { return distances_.back(); }  // metres
-  // The camera that far along the line; position and look between two frames are interpolated.
+  // The camera at this distance (metres) along the line; place and direction are interpolated between two
+  // frames.
   CameraFrame at(double distance) const;
   View view(double distance, const Vec3d& scene_origin) const;
 
  private:
   const CameraPath& path_;
-  CameraPath camera_;              // the path without its frames
-  std::vector<double> distances_;  // along the line, one a frame
+  CameraPath camera_;              // the camera path without its frames
+  std::vector<double> distances_;  // each frame's distance along the line, in metres
 };
 
 }  // namespace sightline::tool

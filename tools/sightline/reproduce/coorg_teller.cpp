@@ -1,8 +1,8 @@
 // The experiments of Coorg and Teller 1997, section 6.
 //
-// Differs from the paper in: scenes, machine and renderer are those of today; what the paper gives for a
-// whole walk is given beside view-frustum culling alone and beside occluders that are chosen anew in every
-// frame. The observer's speeds are tried on stretches of the walk, the same for each speed.
+// Differs from the paper in: scenes, machine and renderer are those of today. The paper's results for a whole
+// walk stand beside view-frustum culling alone and beside occluders that are chosen anew in every frame. The
+// observer's speeds are compared on the same stretches of the walk.
 
 #include <fmt/format.h>
 
@@ -20,11 +20,10 @@ namespace sightline::tool {
 namespace {
 
 constexpr std::uint32_t kStretchFrames = 800, kFewerStretchFrames = 160;
-constexpr std::size_t kBaseline = 0, kKeptPlanes = 1;  // the places of these among kCullings
+constexpr std::size_t kBaseline = 0, kKeptPlanes = 1;  // indices in kCullings
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-// What is compared: names in the tables, and what they stand for. The paper's own comes first after the
-// baseline.
+// The methods that are compared, with their names in the tables. The paper's own method follows the baseline.
 struct Culling {
   const char* name;
   const char* method = "supporting-planes";
@@ -60,7 +59,7 @@ struct Measured {
   const SceneAndWalk& input;
   CullingData data;
   WalkRecord record{};
-  double nodes_in_frustum = 0.0;  // of a mean frame
+  double nodes_in_frustum = 0.0;  // mean over all frames
   std::vector<SpeedResult> speeds{};
 
   bool drawn() const { return !record.device.empty(); }
@@ -75,7 +74,7 @@ std::size_t nodesInFrustum(const Hierarchy& hierarchy, const View& view) {
       }));
 }
 
-// renderer: null where there is none, and nothing is drawn.
+// Without a renderer (null) nothing is drawn.
 void walkThrough(Measured& measured, Renderer* renderer) {
   const Walk& walk = measured.input.walk;
   const Hierarchy& kd_tree = measured.data.hierarchy(HierarchyKind::kKdTree);
@@ -94,7 +93,7 @@ void walkThrough(Measured& measured, Renderer* renderer) {
   measured.nodes_in_frustum /= static_cast<double>(walk.frames.size());
 }
 
-// One row for each culling from `first` on.
+// Adds one row for each of kCullings from `first` on.
 template <typename RowOf>
 void addRows(Experiment& experiment, const Measured& measured, std::size_t first, RowOf&& row_of) {
   for (std::size_t c = first; c < measured.record.runs.size(); ++c) {

@@ -32,7 +32,7 @@ Result<LayerRenderer> figureRenderer(const Scene& scene, const LayerFigureOption
 }
 
 Image differenceStrength(const Image& a, const Image& b) {
-  constexpr int kGain = 4;  // a difference of 64 of 255 is black
+  constexpr int kGain = 4;  // makes a difference of 64 of 255 black
   Image result{a.width, a.height, std::vector<std::uint8_t>(a.rgba.size(), 255)};
   for (std::size_t pixel = 0; pixel < a.rgba.size(); pixel += 4) {
     int largest = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the figures are drawn from, and how their pictures are kept.
+// Sorted frames that figures are drawn from, and the collection of their pictures.
 
 #include <cstdint>
 #include <string>
@@ -17,19 +17,19 @@ namespace sightline::tool {
 struct FigureFrame {
   View view;
   FrameLayers layers;
-  std::vector<Mat4> scene_from_stored;  // one a part
+  std::vector<Mat4> scene_from_stored;  // one for each part
 };
-// aspect: of the picture.
+// Sorts one frame of the scene for a picture of this aspect.
 FigureFrame sortedFrame(const MovingScene& scene, const LayerSettings& settings, std::uint32_t frame,
                         double aspect);
 
-// Of pictures without tints by object: what figures colour differs by what they say.
+// A renderer without tints, so that colours in figures differ only where they mean something.
 Result<LayerRenderer> figureRenderer(const Scene& scene, const LayerFigureOptions& options, double aspect);
 
-// Where the two differ, the darker the more; white where they do not. Of equal sizes.
+// A picture that is white where the two are equal and darker the more they differ. Precondition: equal sizes.
 Image differenceStrength(const Image& a, const Image& b);
 
-// A figure's pictures, under its heading.
+// Collects the pictures of one figure under its heading.
 class FigurePictures {
  public:
   FigurePictures(std::uint32_t figure, std::string heading, LayerFigures& figures)
@@ -39,7 +39,7 @@ class FigurePictures {
     add(name, caption, toImage(picture));
   }
   void add(const std::string& name, const std::string& caption, Image picture);
-  // Where the two differ, and by how much: `what` begins the caption.
+  // Adds a picture of where the two differ. The caption begins with `what` and tells by how much.
   PictureDifference addDifference(const std::string& name, const std::string& what, const LayerImage& a,
                                   const LayerImage& b, int decimals = 3);
   void addSvg(const std::string& name, const std::string& caption, std::string svg);
@@ -52,7 +52,7 @@ class FigurePictures {
   LayerFigures& figures_;
 };
 
-// Figure 23, and saved rendering.
+// Adds figure 23 and the figure of saved rendering.
 Status canyonFigures(const LayerFigureOptions& options, LayerFigures& figures);
 
 }  // namespace sightline::tool

@@ -19,7 +19,7 @@ namespace sightline::tool {
 namespace {
 
 constexpr std::uint32_t kToothpickFrame = 100;
-constexpr double kNarrower = 0.83;  // than the walk's view, so that the cube fills the picture
+constexpr double kNarrower = 0.83;  // narrows the walk's view so that the cube fills the picture
 constexpr const char* kHeading17 = "Figure 17: toothpicks, drawn with hidden line elimination";
 
 // ---- Figure 16: something near and blurred before something that is in focus.
@@ -51,7 +51,7 @@ void addObject(MovingScene& scene, const std::string& name, const std::array<flo
   scene.hulls.push_back(*buildHull(points));
 }
 
-// Pyramids side by side: something to see in focus.
+// Adds pyramids side by side, on which focus can be seen.
 void addBoard(MovingScene& scene) {
   constexpr int kColumns = 16, kRows = 12;
   constexpr float kSide = 0.45f, kRise = 0.2f, kDepth = -8.0f;
@@ -75,7 +75,7 @@ void addBoard(MovingScene& scene) {
   addObject(scene, "board", {0.35f, 0.5f, 0.62f, 1.0f}, corners, triangles);
 }
 
-// A slanting bar before it: a flat one, whose circle of confusion is the same everywhere.
+// Adds a slanting bar before the board. It is flat, so its circle of confusion is the same everywhere.
 void addBar(MovingScene& scene) {
   addObject(scene, "bar", {0.75f, 0.22f, 0.08f, 1.0f},
             {{-0.75f, -0.62f, -2.0f}, {-0.4f, -0.72f, -2.0f}, {0.75f, 0.62f, -2.0f}, {0.4f, 0.72f, -2.0f}},
@@ -123,7 +123,7 @@ class LensFigure {
     return draw(file, name, settings, reference_);
   }
 
-  // With the picture of where it differs from the reference.
+  // Adds the method's picture and the picture of where it differs from the reference.
   Status method(const std::string& file, const std::string& name, const LensSettings& settings) {
     if (const Status ok = draw(file, name, settings, picture_); !ok) {
       return ok;
@@ -198,10 +198,10 @@ Status figure16(const LayerFigureOptions& options, Experiment& table, LayerFigur
 
 // ---- Figure 22.
 
-// Middle of the cube; the farthest and the nearest corners are blurred most.
+// Focused on the middle of the cube; the farthest and the nearest corners are blurred most.
 constexpr Lens kFigure22Lens{.focus = 2.9, .aperture = 0.12};
 
-// Parts of each layer of several parts in a colour of their own, all others white.
+// Gives each layer of several parts a colour of its own; all other parts become white.
 void colorByLayers(const FrameLayers& layers, Scene& scene) {
   constexpr std::array<std::array<float, 4>, 6> kColors{{{0.85f, 0.1f, 0.08f, 1.0f},
                                                          {0.1f, 0.45f, 0.9f, 1.0f},
@@ -223,14 +223,14 @@ void colorByLayers(const FrameLayers& layers, Scene& scene) {
   }
 }
 
-// One blur a layer; the frame's long edges, which reach through all depths, are accumulated.
+// Chooses one blur for each layer; the cube's long edges, which reach through all depths, are accumulated.
 std::vector<PartBlur> figure22Blurs(const MovingScene& scene) {
   std::vector<PartBlur> blurs, edges;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const bool is_edge = scene.classes[scene.parts[i].class_of] == "edge";
     (is_edge ? edges : blurs).push_back({PartId(i), is_edge ? LayerBlur::kAccumulate : LayerBlur::kEven});
   }
-  blurs.insert(blurs.end(), edges.begin(), edges.end());  // of one layer, the last entry holds
+  blurs.insert(blurs.end(), edges.begin(), edges.end());  // the last entry for a layer counts
   return blurs;
 }
 

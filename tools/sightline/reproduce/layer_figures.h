@@ -1,7 +1,7 @@
 #pragma once
 
-// The figures of Snyder and Lengyel 1997 that are pictures: 16 and 22 (depth of field), 17 (hidden lines), 23
-// (the canyon from layers), and one that the paper has no room for: saved rendering.
+// The figures of Snyder and Lengyel 1997 that are pictures: 16 and 22 (depth of field), 17 (hidden lines) and
+// 23 (the canyon from layers), and a figure of saved rendering, which the paper lacks.
 
 #include <cstdint>
 #include <vector>
@@ -11,14 +11,14 @@
 namespace sightline::tool {
 
 struct LayerFigureOptions {
-  std::uint32_t height = 400;  // of the pictures, pixels
+  std::uint32_t height = 400;  // of the pictures, in pixels
   std::uint32_t samples = 2;   // LayerRendererOptions::samples
-  std::uint32_t passes = 21;   // of the accumulation that pictures are compared with
+  std::uint32_t passes = 21;   // of the accumulated reference pictures
   std::uint32_t toothpicks = 800;
-  std::uint32_t reused_frames = 20;  // through which images of layers are kept, for the last one's picture
+  std::uint32_t reused_frames = 20;  // frames over which images of layers are reused; the last one is shown
 };
 
-// The options of `reproduce`: small pictures where it asks for few frames and no height.
+// The options for those of `reproduce`: small pictures if these ask for few frames and no height.
 LayerFigureOptions layerFigureOptions(const ReproduceOptions& options);
 
 struct LayerFigures {
@@ -27,11 +27,11 @@ struct LayerFigures {
   std::vector<ReportFile> files{};  // of the pictures
 };
 
-// Figure 17, as SVG: table "hidden_lines".
+// Figure 17 as SVG, with the table "hidden_lines".
 LayerFigures hiddenLineFigure(const LayerFigureOptions& options);
 
-// Figures 16, 17 (shaded), 22 and 23, and saved rendering: table "depth_of_field". Errors: pictures cannot be
-// made on this machine.
+// Figures 16, 17 (shaded), 22 and 23 and saved rendering, with the table "depth_of_field". Error if this
+// machine cannot draw pictures.
 Result<LayerFigures> layerFigures(const LayerFigureOptions& options);
 
 }  // namespace sightline::tool

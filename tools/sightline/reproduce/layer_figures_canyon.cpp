@@ -1,4 +1,4 @@
-// Figure 23 of Snyder and Lengyel 1997, and what reusing layers' images does to a picture of the canyon.
+// Figure 23 of Snyder and Lengyel 1997, and the effect of reusing layers' images on a picture of the canyon.
 
 #include <fmt/format.h>
 
@@ -20,15 +20,16 @@ namespace {
 
 constexpr double kAspect = 16.0 / 9.0;
 constexpr std::uint32_t kGrid = 14;
-constexpr std::uint32_t kScoutHeight = 72;  // of the pictures in which the best frame is looked for
-constexpr std::uint32_t kGuard = 24;        // pixels around the frame of images that are kept
-constexpr double kReuseTolerance = 1.0;     // pixels
+constexpr std::uint32_t kScoutHeight =
+    72;                                  // height in pixels of pictures in which the best frame is searched
+constexpr std::uint32_t kGuard = 24;     // guard band of reused images, in pixels
+constexpr double kReuseTolerance = 1.0;  // pixels
 
-// A terrain piece that is in a circle of occlusions with an aircraft's part.
+// A piece of terrain that is in a cycle of occlusions with a part of an aircraft.
 struct Highlight {
   std::uint32_t frame = 0;
   PartId piece, ship;
-  std::uint64_t pixels = 0;  // in which the piece is seen, in a small picture
+  std::uint64_t pixels = 0;  // pixels of a small picture that show the piece
 };
 
 std::vector<ObjectId> objectsOf(const MovingScene& scene) {
@@ -39,7 +40,7 @@ std::vector<ObjectId> objectsOf(const MovingScene& scene) {
   return objects;
 }
 
-// Looks through all frames for the piece that is seen best.
+// Searches all frames for the piece that most pixels show.
 class HighlightSearch {
  public:
   HighlightSearch(const MovingScene& scene, LayerRenderer& renderer)
@@ -82,7 +83,7 @@ class HighlightSearch {
     }
   }
 
-  // In which the part is the nearest, alone or with others that overlap it.
+  // The pixels in which the part is nearest, alone or together with others that overlap it.
   std::uint64_t pixelsOf(std::uint32_t frame, const View& view, PartId part) {
     if (drawn_frame_ != frame) {
       placements(scene_, frame, scene_from_stored_);
@@ -108,7 +109,8 @@ class HighlightSearch {
   std::optional<Highlight> best_;
 };
 
-// With the paper's grid; if there is none in it, with the next coarser ones.
+// The canyon with a piece to highlight: with the paper's grid or, if that has none, the next coarser one that
+// does.
 struct HighlightedCanyon {
   std::uint32_t grid = kGrid;
   MovingScene scene;
@@ -131,7 +133,7 @@ Result<HighlightedCanyon> findHighlight() {
   return HighlightedCanyon{kGrid, makeCanyon({.grid = kGrid}), {}};
 }
 
-// Colours the piece; what to say of it.
+// Colours the piece and returns the text about it.
 std::string paint(HighlightedCanyon& canyon) {
   if (!canyon.highlight) {
     return "no piece of terrain is in a circle with an aircraft in any frame";
@@ -146,7 +148,7 @@ std::string paint(HighlightedCanyon& canyon) {
       canyon.grid == kGrid ? "" : fmt::format(" (with {0} x {0} no frame has such a circle)", kGrid));
 }
 
-// Composited from layers; at_once, where it is asked for: all objects by depth buffer.
+// Draws the canyon from layers and, if at_once is given, all objects at once by a depth buffer.
 Status drawCanyon(const MovingScene& scene, std::uint32_t number, const LayerFigureOptions& options,
                   LayerImage& picture, LayerImage* at_once) {
   Result<LayerRenderer> renderer = figureRenderer(scene.scene, options, kAspect);
@@ -170,7 +172,8 @@ Status figure23(const LayerFigureOptions& options, LayerFigures& figures) {
     return canyon.error();
   }
   const std::uint32_t number = canyon->highlight ? canyon->highlight->frame : 0;
-  // Compared before the piece has its colour: which of two pieces shows where they overlap is chance.
+  // The pictures are compared before the piece is coloured, because chance decides which of two overlapping
+  // pieces shows.
   LayerImage plain, at_once, highlighted;
   if (const Status ok = drawCanyon(canyon->scene, number, options, plain, &at_once); !ok) {
     return ok;
@@ -188,7 +191,7 @@ Status figure23(const LayerFigureOptions& options, LayerFigures& figures) {
   return Success{};
 }
 
-// Frames drawn in full and with images of layers that are kept, up to the last one's pictures.
+// Draws frames both in full and with reused images of layers; keeps the last frame's two pictures.
 class ReusedFrames {
  public:
   ReusedFrames(const MovingScene& scene, LayerRenderer& plain, LayerRenderer& guarded)
@@ -197,7 +200,7 @@ class ReusedFrames {
         compositor_(scene.scene.view(), plain),
         reuse_(scene.scene.view(), guarded, {.tolerance_px = kReuseTolerance, .guard_px = kGuard}) {}
 
-  // Of the last frame, both pictures.
+  // Draws this number of frames.
   Status run(std::uint32_t frames) {
     LayerSorter sorter = makeSorter(scene_, canyonSorting());
     LayerMerger merger;
@@ -228,7 +231,7 @@ class ReusedFrames {
     return Success{};
   }
 
-  std::uint64_t layers() const { return reuse_.stats().layers - before_.layers; }  // of the last frame
+  std::uint64_t layers() const { return reuse_.stats().layers - before_.layers; }  // in the last frame
   std::uint64_t drawn() const { return reuse_.stats().drawn - before_.drawn; }
 
   LayerImage anew, reused;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kWalkingStep = 1.4 / 60.0;  // metres from frame to frame
 constexpr std::uint32_t kSpeeds[] = {1, 2, 4, 8, 16, 32};
-constexpr std::uint32_t kStretches = 4;      // spread over the path
-constexpr std::uint32_t kFewestCounted = 2;  // frames of a stretch, or the speed is left out
+constexpr std::uint32_t kStretches = 4;      // spread over the camera path
+constexpr std::uint32_t kFewestCounted = 2;  // a speed with fewer frames in a stretch is left out
 
-// Walks beside each other, so that whatever else the machine does meets them alike.
+// Cullers that move along together, so that other load on the machine affects them alike.
 struct Walkers {
   Culler frustum, coherent, incoherent, through_eye;
 
@@ -56,8 +56,8 @@ void add(const Walkers& walkers, SpeedResult& sum) {
 }
 
 struct Stretch {
-  double begin = 0.0;       // metres along the line
-  std::uint32_t steps = 0;  // at walking speed
+  double begin = 0.0;       // in metres along the line
+  std::uint32_t steps = 0;  // number of steps at walking speed
 };
 
 void walkStretch(Walkers& walkers, const CameraPathLine& line, const Vec3d& origin, const Stretch& stretch,
@@ -84,8 +84,8 @@ SpeedResult meanOf(SpeedResult sum) {
 std::vector<SpeedResult> measureSpeeds(const SceneAndWalk& input, CullingData& data, const Setting& setting,
                                        std::uint32_t stretch_frames) {
   const CameraPathLine line(input.walk.path);
-  const double apart = line.length() / kStretches;  // from one stretch's beginning to the next one's
-  const auto room = static_cast<std::uint32_t>(std::min(apart / kWalkingStep, 1e9));
+  const double spacing = line.length() / kStretches;  // from one stretch's beginning to the next one's
+  const auto room = static_cast<std::uint32_t>(std::min(spacing / kWalkingStep, 1e9));
   const std::uint32_t steps = std::min(stretch_frames, room);
   std::vector<SpeedResult> sums;
   for (const std::uint32_t speed : kSpeeds) {
@@ -97,7 +97,7 @@ std::vector<SpeedResult> measureSpeeds(const SceneAndWalk& input, CullingData& d
   ProgressBar progress("walking at several speeds");
   for (std::uint32_t stretch = 0; stretch < kStretches; ++stretch) {
     for (SpeedResult& sum : sums) {
-      walkStretch(walkers, line, input.scene.origin, {stretch * apart, steps}, sum);
+      walkStretch(walkers, line, input.scene.origin, {stretch * spacing, steps}, sum);
       // Half of a stretch's frames are walked at the slowest speed, a quarter at the next one, and so on.
       progress.update((stretch + 1.0 - 0.5 / sum.speed) / kStretches);
     }

@@ -7,7 +7,7 @@
 
 namespace sightline::tool {
 
-// inputs: one a scene that the paper is reproduced on.
+// inputs has one entry for each scene on which the paper is reproduced.
 
 // Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 6.
 Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,

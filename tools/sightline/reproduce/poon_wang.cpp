@@ -1,8 +1,8 @@
 // The experiments of Poon and Wang 1999, section 6: figures 6, 8, 9 and 10.
 //
-// Differs from the paper in: scenes, machine and renderer are those of today. Occluders cover whole pixels;
-// the paper's sampling at centres, which culls what can be seen, is beside it. The adaptive overlap test
-// follows measured times only in the rows that say so.
+// Differs from the paper in: scenes, machine and renderer are those of today. Occluders cover only pixels
+// that lie wholly inside them; the paper's sampling at pixel centres, which culls visible objects, stands
+// beside it. The adaptive overlap test follows measured times only in the rows that say so.
 
 #include <fmt/format.h>
 
@@ -25,12 +25,12 @@ constexpr const char* kRoutes[] = {"best", "average", "worst"};
 constexpr OccluderChoice kCriteria[] = {OccluderChoice::kProjectedSize, OccluderChoice::kMinimumSets,
                                         OccluderChoice::kFirstHit};
 constexpr std::uint32_t kCounts[] = {16, 32, 64, 96, 128, 192, 256, 384, 512};
-constexpr std::uint32_t kOccluders = 64;         // on the routes
-constexpr std::uint32_t kPicture = 512;          // pixels, both ways, unless the user says how many
-constexpr double kPictures[] = {1.0, 1.5, 2.0};  // of figure 10, times that
-constexpr std::uint32_t kMap = 128;              // pixels, both ways
-constexpr std::size_t kVisibleWanted = 400;      // of figure 6's viewpoint
-constexpr std::size_t kRepeats = 15;             // of its frame
+constexpr std::uint32_t kOccluders = 64;         // occluders in each frame of the routes
+constexpr std::uint32_t kPicture = 512;          // width and height of pictures, unless the user gives them
+constexpr double kPictures[] = {1.0, 1.5, 2.0};  // sizes of figure 10, relative to that
+constexpr std::uint32_t kMap = 128;              // width and height of the opacity map
+constexpr std::size_t kVisibleWanted = 400;      // visible objects at figure 6's viewpoint
+constexpr std::size_t kRepeats = 15;             // repetitions of that viewpoint's frame
 
 Setting frustumSetting() {
   Setting setting;
@@ -69,7 +69,7 @@ Walk inPictures(Walk walk, const PictureOptions& picture) {
   return walk;
 }
 
-// The scene's routes; the walk that was asked for where the user names it or the scene has no routes.
+// The scene's routes, or the chosen walk if the user names one or the scene has no routes.
 Result<std::vector<Walk>> routesOf(const SceneAndWalk& input, const ReproduceOptions& options) {
   Result<std::vector<Walk>> routes = namedWalks(input, options, kRoutes);
   if (routes) {
@@ -103,7 +103,7 @@ Viewpoint viewpointOf(const SceneAndWalk& input, const Walk& walk, const Paralle
   return best;
 }
 
-// One culling along one route, or at one viewpoint.
+// The results of one setting along one route or at one viewpoint.
 struct Measured {
   std::string name;
   double cull_ms = 0.0, draw_ms = 0.0;  // means of a frame
@@ -133,7 +133,7 @@ double medianOf(std::vector<double> values) {
 // All that is measured on one scene.
 class Experiments {
  public:
-  // routes: at least one.
+  // Precondition: there is at least one route.
   Experiments(const std::string& name, const SceneAndWalk& input, std::vector<Walk> routes,
               const ReproduceOptions& options, const ParallelFor& parallel_for)
       : name_(name),
@@ -175,7 +175,7 @@ class Experiments {
   }
 
  private:
-  // The viewpoint database's: all routes and the viewpoint of figure 6.
+  // The viewpoints for which the viewpoint database is built: all routes and the viewpoint of figure 6.
   Walk allViewpoints() const {
     Walk all = walk_;
     all.path.frames = {walk_.path.frames[viewpoint_.frame]};
@@ -201,7 +201,7 @@ class Experiments {
     }
   }
 
-  // Walks a route with all settings side by side; Nil, no culling at all, comes first where it is asked for.
+  // Walks a route with all settings side by side. "Nil", which culls nothing, comes first if it is asked for.
   std::vector<Measured> walkRoute(const Walk& route, const std::vector<std::string>& names,
                                   const std::vector<Setting>& settings, bool with_nil) {
     std::vector<WalkRun> runs = makeRuns(settings, data_);
@@ -230,7 +230,8 @@ class Experiments {
     return measured;
   }
 
-  // What the renderer takes for a triangle, from view-frustum culling on the route's first frames.
+  // The renderer's time for a triangle in microseconds, measured with view-frustum culling on the route's
+  // first frames.
   double triangleUs(const Walk& route) {
     Walk start = route;
     start.frames.resize(std::min<std::size_t>(route.frames.size(), 5));
@@ -377,7 +378,7 @@ class Experiments {
   const ReproduceOptions& options_;
   PictureOptions picture_;
   std::vector<Walk> routes_;
-  Walk walk_;  // the one that was asked for
+  Walk walk_;  // the walk that the user chose
   Viewpoint viewpoint_;
   CullingData data_;
   std::vector<ObjectId> everything_;
@@ -423,7 +424,7 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
   Reproduction result;
   result.experiments = emptyExperiments(pictureOf(options));
   std::vector<std::vector<Walk>> routes;
-  for (const SceneAndWalk& input : inputs) {  // all of them before the work
+  for (const SceneAndWalk& input : inputs) {  // check all inputs before the work starts
     Result<std::vector<Walk>> of_scene = routesOf(input, options);
     if (!of_scene) {
       return of_scene.error();

@@ -1,4 +1,4 @@
-// sightline reproduce: the experiments of a paper, on the scenes of today.
+// sightline reproduce: repeats the experiments of a paper on the scenes of today.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -21,18 +21,18 @@
 namespace sightline::tool {
 namespace {
 
-// In the folder.
+// Files in the output folder.
 constexpr const char *kTables = "tables.txt", *kJson = "reproduce.json";
 
 struct Paper {
   const char* title;
-  std::vector<std::string> scenes;  // unless the user names others; none: it makes its own
+  std::vector<std::string> scenes;  // unless the user names others; empty if the paper makes its own
   Result<Reproduction> (*reproduce)(const ReproduceOptions&, const std::vector<SceneAndWalk>&);
   bool bakes = false;
-  std::vector<std::string> short_scenes{};  // with --short; none: the same
+  std::vector<std::string> short_scenes{};  // the scenes with --short; empty: the same
 };
 
-// The papers, by the names they have on the command line.
+// The papers by their names on the command line. Each has its function in papers.h.
 const std::vector<std::pair<std::string, Paper>>& papers() {
   static const std::vector<std::pair<std::string, Paper>> kPapers{
       {"coorg-teller",
@@ -66,12 +66,12 @@ std::vector<std::string> paperNames() {
   return names;
 }
 
-// name: one of paperNames.
+// Precondition: name is one of paperNames().
 const Paper& findPaper(const std::string& name) {
   return std::ranges::find(papers(), name, &std::pair<std::string, Paper>::first)->second;
 }
 
-// All of them before the work, which takes longer.
+// Loads all scenes before the work starts, so that errors show early.
 Result<std::vector<SceneAndWalk>> loadAll(const ReproduceOptions& options) {
   std::vector<SceneAndWalk> inputs;
   for (const std::string& scene : options.scenes) {
@@ -108,7 +108,7 @@ std::string toText(const Paper& paper, const Reproduction& result) {
   return text;
 }
 
-// A name for a folder, from a scene's.
+// Makes a folder's name of a scene's name.
 std::string folderName(const std::string& scene) {
   std::string name;
   for (const char c : std::filesystem::path(scene).filename().string()) {
@@ -128,7 +128,7 @@ Status writeFiles(const std::vector<ReportFile>& files, const std::string& folde
   return Success{};
 }
 
-// The folder of the report of scene i; of the paper where it makes its own scenes.
+// The folder of the report for scene i, or for the paper if it makes its own scenes.
 std::string reportFolder(const ReproduceOptions& options, std::size_t i) {
   const std::string& name = options.scenes.empty() ? options.paper : options.scenes[i];
   return fmt::format("{}-{}", i + 1, folderName(name));
@@ -169,7 +169,7 @@ Status writeFolder(const ReproduceOptions& options, const std::string& text, con
 
 Result<ExitCode> writeResult(const ReproduceOptions& options, const Paper& paper,
                              const Reproduction& result) {
-  const SignalGuard guard;  // all of it or nothing
+  const SignalGuard guard;  // writes all files or none
   const std::string text = toText(paper, result), json = toJson(options, paper, result);
   if (const Status written = writeOutput(options.output.json, json); !written) {
     return written.error();

@@ -7,7 +7,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kFewerFrames = 10;  // one in so many, with --short
+constexpr std::size_t kFewerFrames = 10;  // --short takes one frame in so many
 
 std::string cellText(const Json& row, const Column& column) {
   if (!row.contains(column.key) || row[column.key].is_null()) {

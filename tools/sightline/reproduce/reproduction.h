@@ -1,6 +1,6 @@
 #pragma once
 
-// What reproducing a paper yields, whichever paper it is.
+// The options and the results of reproducing a paper, common to all papers.
 
 #include <cstdint>
 #include <span>
@@ -21,34 +21,35 @@ struct ReproduceOptions {
   PictureOptions picture;
   std::vector<std::string> scenes;
   bool fewer_frames = false;
-  std::string folder;  // of the reports; empty: none
-  // Of papers that bake; 0: chosen.
+  std::string folder;  // for the reports; empty: none are written
+  // For papers that bake; 0: chosen by the program.
   std::uint32_t depth = 0;
   std::uint64_t triangle_budget = 0;
   std::string command_line;
 };
 
-// One frame in ten where the options ask for few and do not say which; otherwise all.
+// One frame in ten if the options ask for few frames without naming them; otherwise all.
 std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
                                        const std::vector<std::uint32_t>& frames);
 
-// The scene's walks of these names, in this order; the walk that was asked for where the user names one or
-// the scene has none of them. At least one.
+// The scene's walks of these names, in this order, or the chosen walk if the user names one or the scene has
+// none of these names. Returns at least one.
 Result<std::vector<Walk>> namedWalks(const SceneAndWalk& input, const ReproduceOptions& options,
                                      std::span<const char* const> names);
 
-// How one value of the rows is printed.
+// How one value of the rows is printed in a table.
 struct Column {
   std::string key;
   std::string head;
-  int decimals = -1;  // -1: words
+  int decimals = -1;  // -1 if the values are words
 };
 
-// One table. Its rows are JSON objects, as they are written; a value that a row lacks is printed as "-".
+// One table. Its rows are JSON objects as they are written to the output; a value that a row lacks is printed
+// as "-".
 struct Experiment {
-  std::string key;  // in JSON
+  std::string key;  // the table's key in JSON
   std::string title;
-  std::string claim;  // what the paper says, in words: the digits of its tables did not come down to us
+  std::string claim;  // the paper's result in words
   std::vector<Column> columns;
   std::vector<Json> rows{};
 };
@@ -56,18 +57,18 @@ struct Experiment {
 std::string toText(const Experiment& experiment);
 Json toJson(const Experiment& experiment);
 
-// A file beside a report's page: a picture or, where that is empty, text.
+// A file beside a report's page: a picture or, if that is empty, a text.
 struct ReportFile {
   std::string name;
-  Image picture{};  // as .png
+  Image picture{};  // written as PNG
   std::string text{};
 };
 
 struct Reproduction {
   std::vector<Experiment> experiments{};
   std::vector<std::string> notes{};
-  std::vector<Report> reports{};    // one a scene; one in all where the paper makes its own
-  std::vector<ReportFile> files{};  // of the first report
+  std::vector<Report> reports{};    // one for each scene, or a single one if the paper makes its own scenes
+  std::vector<ReportFile> files{};  // belong to the first report
 };
 
 }  // namespace sightline::tool

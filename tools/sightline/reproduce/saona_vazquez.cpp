@@ -1,7 +1,7 @@
 // The experiments of Saona-Vazquez, Navazo and Brunet 1999, section 4: tables 2 to 5 and the histograms.
 //
 // Differs from the paper in: scenes, machine and renderer are those of today. Leaves where no viewer can be
-// count for the size of the octree only. A leaf that a plane divides has a set on either side; each counts.
+// count for the size of the octree only. A leaf that a plane divides has a set on each side; both count.
 
 #include "tools/sightline/reproduce/saona_vazquez.h"
 
@@ -30,9 +30,9 @@ namespace {
 
 constexpr const char* kNavigations[] = {"walk", "random"};
 constexpr std::uint32_t kShortDepth = 4;
-constexpr std::size_t kMinFinds = 100'000;  // for the time of one
+constexpr std::size_t kMinFinds = 100'000;  // look-ups that are timed, at least
 
-// Through a file that is gone afterwards: the memory map outlives its name.
+// Writes a file, opens it and removes it; the memory map outlives the file's name.
 Result<SightFile> written(const BakedVisibility& baked) {
   std::error_code error;
   std::string folder = (std::filesystem::temp_directory_path(error) / "sightline-XXXXXX").string();
@@ -48,7 +48,7 @@ Result<SightFile> written(const BakedVisibility& baked) {
   return file;
 }
 
-// Those of `sightline bake`, for viewers with these cameras.
+// The settings of `sightline bake` for viewers with these cameras.
 BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigations,
                          const ReproduceOptions& options) {
   BakeOptions bake;
@@ -60,7 +60,7 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
   bake.settings.near_distance = 0.0;
   for (const Walk& walk : navigations) {
     const double near = nearDistance(walk.view(walk.frames.front(), scene));
-    if (std::isfinite(near)) {  // an orthographic view gets everything, however it was baked
+    if (std::isfinite(near)) {  // orthographic views see everything, however the file was baked
       bake.settings.near_distance = std::max(bake.settings.near_distance, near);
     }
   }
@@ -106,7 +106,8 @@ Leaves leavesOf(const SightFile& file) {
   return leaves;
 }
 
-// Look-ups alone: the first time along the path, with sets that have to be decoded, and when all are.
+// Measures look-ups alone: first along the camera path, while sets must be decoded, then with all sets
+// decoded.
 void timeFinds(const SightFile& file, const Scene& scene, Navigation& navigation) {
   std::vector<View> views;
   for (const std::uint32_t frame : navigation.walk.frames) {
@@ -140,7 +141,7 @@ std::vector<Setting> settingsToCompare() {
   return settings;
 }
 
-// renderer: null where there is none, and nothing is drawn.
+// Without a renderer (null) nothing is drawn.
 void navigate(Measured& measured, Navigation& navigation, Renderer* renderer) {
   const Walk& walk = navigation.walk;
   navigation.record.runs = makeRuns(settingsToCompare(), measured.data);
@@ -159,7 +160,7 @@ void navigate(Measured& measured, Navigation& navigation, Renderer* renderer) {
   timeFinds(measured.baked.file, measured.scene, navigation);
 }
 
-// In the pictures that are asked for.
+// The navigations, with pictures of the size that the user asks for.
 Result<std::vector<Walk>> navigationsOf(const SceneAndWalk& input, const ReproduceOptions& options) {
   Result<std::vector<Walk>> walks = namedWalks(input, options, kNavigations);
   if (walks) {
@@ -205,7 +206,7 @@ Result<Reproduction> reproduceSaonaVazquez(const ReproduceOptions& options,
                                            const std::vector<SceneAndWalk>& inputs) {
   const Threads threads(options.threads);
   std::vector<std::vector<Walk>> walks;
-  for (const SceneAndWalk& input : inputs) {  // all of them before the work
+  for (const SceneAndWalk& input : inputs) {  // check all inputs before the work starts
     Result<std::vector<Walk>> of_scene = navigationsOf(input, options);
     if (!of_scene) {
       return of_scene.error();

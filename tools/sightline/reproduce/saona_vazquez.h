@@ -1,6 +1,6 @@
 #pragma once
 
-// What the experiments of Saona-Vazquez, Navazo and Brunet measure, and the tables and plots made of it.
+// The results of the experiments of Saona-Vazquez, Navazo and Brunet, and the tables and plots made of them.
 
 #include <array>
 #include <cstdint>
@@ -14,12 +14,12 @@
 
 namespace sightline::tool::saona_vazquez {
 
-// What it took to bake a scene.
+// The cost of baking a scene.
 struct Effort {
   std::uint32_t occluders = 0;
   double plan_s = 0.0, bake_s = 0.0;
-  BakeStats stats{};             // max_sample_bytes: of all threads together
-  std::uint64_t peak_bytes = 0;  // of the process so far
+  BakeStats stats{};             // max_sample_bytes is the sum over all threads
+  std::uint64_t peak_bytes = 0;  // the process's peak memory so far
 };
 
 struct Baked {
@@ -27,20 +27,20 @@ struct Baked {
   Effort effort;
 };
 
-// Of leaves where viewers are.
+// Facts about the leaves where viewers are.
 struct Leaves {
   std::vector<double> depths{};
   std::vector<std::array<std::uint64_t, kStopReasons>> reasons{};  // by level
 };
 
-// One of the navigations, with view-frustum culling and with the octree.
+// The results of one navigation, with view-frustum culling and with the octree.
 struct Navigation {
   Walk walk;
   WalkRecord record{};
-  double first_find_us = 0.0, find_ns = 0.0;  // means of a look-up
+  double first_find_us = 0.0, find_ns = 0.0;  // mean time of a look-up: while sets must be decoded, and later
 };
 
-// All of one scene.
+// All results of one scene.
 struct Measured {
   const std::string& name;
   const Scene& scene;
@@ -53,9 +53,9 @@ struct Measured {
   bool drawn() const { return !navigations.front().record.device.empty(); }
 };
 
-// All experiments, some rows for each scene.
+// The tables of all experiments, with some rows for each scene.
 std::vector<Experiment> tablesOf(const std::vector<Measured>& scenes);
-// experiments: for what the paper says about them.
+// The report of one scene. The paper's claims are taken from `experiments`.
 Report reportOf(const Measured& measured, const std::vector<Experiment>& experiments,
                 const ReproduceOptions& options);
 

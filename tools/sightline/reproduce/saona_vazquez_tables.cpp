@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kCullings[] = {"frustum", "octree"};  // the runs of a navigation
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-// Of a uniform grid over the scene's box whose voxels are the smallest cells.
+// The number of voxels of a uniform grid over the scene's box with voxels of the smallest cell's size.
 double voxelsInBox(const Scene& scene, const SightFile& file, std::uint32_t deepest) {
   const Box bounds = sceneBounds(scene.view());
   const Vec3d extent = Vec3d(bounds.max) - Vec3d(bounds.min);
@@ -45,7 +45,7 @@ void addSpread(Json& row, const Spread& spread) {
   row["max"] = spread.max;
 }
 
-// mean, deviation, min and max of a row.
+// Appends columns for the mean, deviation, min and max.
 std::vector<Column> withSpread(std::vector<Column> first, int decimals) {
   first.insert(first.end(), {{"mean", "mean", decimals},
                              {"deviation", "std. dev.", decimals},
@@ -159,7 +159,7 @@ Experiment gridTable(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
-// Calls add_to(scene, navigation, run, the row so far) for each culling on each navigation.
+// Calls add_to(scene, navigation, run, row) for each method on each navigation.
 template <typename AddTo>
 void forEachRun(const std::vector<Measured>& scenes, AddTo&& add_to) {
   for (const Measured& measured : scenes) {

@@ -1,9 +1,9 @@
 // Based on: Snyder, Lengyel. Visibility Sorting and Compositing for Image-Based Rendering. MSR-TR-97-11,
-// 1997, section 12.2. Differs from the paper in: it assumes the shares of frames in which parts are drawn;
-// here a tolerance is given and the shares come out.
+// 1997, section 12.2. Differs from the paper in: the paper assumes the share of frames in which each part is
+// redrawn; here a tolerance is given and the shares are measured.
 //
-// Drawn without tints: where pieces of the terrain that overlap are drawn as one layer, it is chance which of
-// them shows.
+// Pictures have no tints: where overlapping pieces of terrain are drawn as one layer, chance decides which
+// one shows.
 
 #include "tools/sightline/reproduce/saved_rendering.h"
 
@@ -28,13 +28,13 @@ namespace {
 
 constexpr std::uint32_t kShortFrames = 5, kShortHeight = 64;
 
-// Of the visible parts of all frames.
+// Counts of visible parts, summed over all frames.
 struct PartCounts {
   double parts = 0.0, drawn_parts = 0.0;
   double triangles = 0.0, drawn_triangles = 0.0;
 };
 
-// Of one tolerance, over all frames but the first, in which everything is drawn.
+// Sums for one tolerance over all frames except the first, in which everything is drawn.
 struct ReuseTotals {
   double tolerance_px = 0.0;
   ReuseStats stats;
@@ -45,7 +45,7 @@ struct ReuseTotals {
 
 struct SceneTotals {
   std::uint32_t frames = 0;
-  double images_us = 0.0;  // drawing all
+  double images_us = 0.0;  // time of drawing all layers
   std::vector<ReuseTotals> reuses;
 };
 
@@ -57,7 +57,7 @@ ReuseStats since(const ReuseStats& now, const ReuseStats& then) {
           .largest_error_px = now.largest_error_px};
 }
 
-// One way to make layers' images, with what it has come to.
+// One way to make layers' images, with its results so far.
 struct Way {
   explicit Way(double tolerance_px, std::size_t classes) {
     totals.tolerance_px = tolerance_px;
@@ -65,12 +65,12 @@ struct Way {
   }
 
   std::optional<LayerReuse> reuse;
-  ReuseStats at_start;  // after the first frame
+  ReuseStats at_start;  // the stats after the first frame
   LayerImage picture;
   ReuseTotals totals;
 };
 
-// The frames of one scene, drawn in full and with each tolerance.
+// Draws the frames of one scene in full and with each tolerance.
 class SceneRun {
  public:
   static Result<SceneTotals> run(const MovingScene& scene, const LayerSettings& sorting,
@@ -92,11 +92,11 @@ class SceneRun {
   LayerMerger merger_;
   SceneTotals totals_;
 
-  // This frame.
+  // The current frame.
   const FrameLayers* layers_ = nullptr;
   bool is_first_ = true;
   std::vector<Mat4> world_from_part_, scene_from_stored_;
-  std::vector<std::uint8_t> is_in_view_;  // by part
+  std::vector<std::uint8_t> is_in_view_;  // one for each part
   LayerImage complete_;
 };
 
@@ -173,7 +173,7 @@ void SceneRun::drawFrame(std::uint32_t frame, const LayerOrder& order, const Vie
   }
 }
 
-// Layers outside the view cost nothing here either.
+// Draws all layers. Layers outside the view are skipped, as with reuse.
 void SceneRun::drawAll(const View& view, LayerImage& picture) {
   plain_.setTransforms(scene_from_stored_);
   CompositeSettings settings{.peel = CompositeSettings::Peel::kNever};
@@ -261,8 +261,7 @@ void addRows(const std::string& name, const SceneTotals& totals, Experiment& tab
   }
 }
 
-// What the paper assumes, and what comes of that in its table: rates by part and by polygon, with the penalty
-// for aggregation.
+// The paper's rates by part and by polygon, which follow from its assumption and the penalty for aggregation.
 struct AssumedRates {
   std::uint32_t grid = 0;
   double unit = 0.0, poly = 0.0;
@@ -286,8 +285,8 @@ Experiment ratesTable() {
        {"poly", "poly agg", 1}}};
 }
 
-// expansion: the terrain's triangles for one that it had before it was split. Its rate counts so many times,
-// for the triangles that it had.
+// Adds the rows for one division of the canyon. expansion is the terrain's triangles after the split divided
+// by those before it; rates by polygon are relative to the triangles before the split.
 void addRates(const MovingScene& scene, std::uint32_t grid, double expansion, const SceneTotals& totals,
               Experiment& table) {
   Json assumed{{"grid", fmt::format("{0} x {0}", grid)},

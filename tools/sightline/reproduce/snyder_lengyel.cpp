@@ -1,8 +1,8 @@
 // The experiments and pictures of Snyder and Lengyel 1997, section 12: figures 16 to 23, the statistics of
-// components, and the canyon's tables with what saved rendering comes to.
+// components, and the canyon's tables with the results of saved rendering.
 //
-// Differs from the paper in: machine and, where the text does not describe it, scene. The published times, in
-// ms on one 300 MHz Pentium II, stand beside ours in us.
+// Differs from the paper in: the machine and, where the text does not describe it, the scene. The published
+// times, in ms on one 300 MHz Pentium II, stand beside ours in us.
 
 #include "tools/sightline/reproduce/snyder_lengyel.h"
 

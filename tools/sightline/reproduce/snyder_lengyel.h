@@ -14,13 +14,13 @@
 
 namespace sightline::tool {
 
-// Sorts a scene's frames one after another, only the first ones where `options` asks for few. visit: after
-// each, if there is one.
+// Sorts a scene's frames one after another; only the first ones if `options` ask for few. Calls visit, if
+// given, after each frame.
 LayerTotals sortFrames(
     const MovingScene& scene, const LayerSettings& settings, const ReproduceOptions& options,
     const std::function<void(std::uint32_t frame, const LayerOrder& order, const View& view)>& visit = {});
 
-// Three orthogonal extents of the world, as in the paper.
+// The paper's sorting of the canyon: three orthogonal extents of the world.
 inline LayerSettings canyonSorting() {
   return {.extents = worldExtents(), .conditioning_axis = -1};
 }

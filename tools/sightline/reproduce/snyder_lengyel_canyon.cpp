@@ -15,7 +15,7 @@ namespace {
 
 using Frame = LayerTotals::Frame;
 
-// What the paper's tables have of one division of the terrain.
+// The numbers of the paper's tables for one division of the terrain.
 struct CanyonRow {
   std::uint32_t grid = 0;
   double objects = 0, polygons = 0, hull_polygons = 0, cpu = 0, cpu_max = 0, expansion = 0, layers = 0,
@@ -28,7 +28,7 @@ constexpr std::array<CanyonRow, 5> kCanyon{
      {7, 49, 130.45, 57.51, 4.51, 9.68, 2.58, 5.2, 22.5, 51.9, 37.8, 42.4, 27.8},
      {5, 25, 225.32, 72.72, 5.37, 11.01, 2.28, 13.0, 53.1, 71.5, 32.3, 72.0, 26.1}}};
 
-// The share of frames in which a part is rendered anew, the others being interpolated (section 12.2).
+// The share of frames in which the paper assumes a part to be redrawn (section 12.2).
 double updateRate(const std::string& part_class) {
   return part_class == "aircraft" ? 0.2 : part_class == "terrain" ? 0.7 : 0.4;
 }
@@ -38,8 +38,8 @@ struct UpdateRates {
   double layers = 0, aggregated_layers = 0, parts = 0, aggregated_parts = 0;
   double unit = 0, unit_agg = 0, weight = 0, poly = 0, poly_agg = 0;
 
-  // expansion: a split terrain has so many times the polygons; rates count for the polygons that it has,
-  // relative to those that the scene had.
+  // expansion is the number of the terrain's polygons after the split divided by that before it. Rates count
+  // for the polygons after the split, relative to those of the scene before it.
   void add(double rate, bool aggregated, double polygons, double expansion) {
     const double with_penalty = aggregated ? 1.0 : rate;
     parts += 1.0;
@@ -112,7 +112,7 @@ Experiment emptyTable() {
            {"poly", "no agg", 1}}};
 }
 
-// unsplit: the terrain's polygons in one piece.
+// unsplit is the number of the terrain's polygons before the split.
 Json measuredRow(std::uint32_t grid, double unsplit, const ReproduceOptions& options) {
   const MovingScene scene = makeCanyon({.grid = grid});
   const TerrainCounts terrain = countTerrain(scene);

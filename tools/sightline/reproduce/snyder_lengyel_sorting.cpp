@@ -19,7 +19,7 @@ using Frame = LayerTotals::Frame;
 
 // A row of the paper's tables, its numbers in the order in which they are printed.
 struct PaperRow {
-  double at = 0.0;  // toothpicks, or velocity
+  double at = 0.0;  // number of toothpicks, or velocity
   std::array<double, 4> values{};
 };
 // Figures 18 and 19: mean and largest ms of ud and us.
@@ -57,7 +57,8 @@ constexpr std::array<PaperRow, 6> kDirections{{{50, {2.51, 2.65, 2.17, 2.28}},
                                                {400, {23.1, 38.0, 27.0, 47.2}},
                                                {800, {51.7, 124, 92.5, 215}},
                                                {1600, {122, 447, 849, 1780}}}};
-// Shares of groups with more than one part, of parts in them; their mean size; the mean of the largest.
+// The share of groups with more than one part, the share of parts in them, their mean size, and the mean of
+// the largest.
 constexpr std::array<PaperRow, 3> kComponents{{{200, {0.0454, 0.0907, 2.097, 2.64}},
                                                {1600, {0.04633, 0.0929, 2.107, 3.672}},
                                                {1600, {0.2542, 0.5642, 3.798, 45.588}}}};
@@ -191,20 +192,20 @@ class SortingExperiments {
     return table;
   }
 
-  // The least of some builds.
+  // The fastest of several builds.
   double buildTime(const ToothpickOptions& options) {
     const MovingScene scene = makeToothpicks(options);
     LayerSorter sorter = makeSorter(scene, {.search = extentTree()});
     std::vector<Mat4> poses;
     pose(scene, 0, poses, sorter);
     sorter.update(scene.scene.paths.front().view(0, scene.scene.origin));
-    double least = 1e300;
+    double fastest = 1e300;
     for (int i = 0; i < 5; ++i) {
       Stopwatch watch;
       sorter.rebuildSearch();
-      least = std::min(least, watch.lap());
+      fastest = std::min(fastest, watch.lap());
     }
-    return least;
+    return fastest;
   }
 
   Experiment velocities() {
@@ -239,7 +240,7 @@ class SortingExperiments {
     return table;
   }
 
-  // k = 1: the tree divides along the camera's depth alone; extents are tested along all three.
+  // With k = 1 the tree divides along the camera's depth alone; extents are still tested along all three.
   Experiment directions() {
     Experiment table{"directions",
                      "Figure 21: time of a frame with a tree over three directions and over depth alone, us "

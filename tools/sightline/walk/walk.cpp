@@ -30,12 +30,12 @@ namespace {
 constexpr std::size_t kEverythingEvery =
     10;  // frames: so often the baseline is compared with all objects drawn
 
-// In the folder of the report, beside pictures of frames.
+// Files in the report's folder, beside the pictures of frames.
 constexpr const char* kJsonFile = "walk.json";
 constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
                                                 "nodes_tested.svg"};
-// frames, runs: pictures of these frames are made, as far as they are known; one for each of so many runs
-// where they differ.
+// The names of the files in the report's folder. frames are those that get pictures, if they are known
+// already; each run may add one picture for each frame that differs.
 std::vector<std::string> filesOfFolder(std::span<const std::uint32_t> frames = {}, std::size_t runs = 0) {
   std::vector<std::string> files(kPlotFiles.begin(), kPlotFiles.end());
   files.insert(files.end(), {"index.html", kJsonFile});
@@ -59,7 +59,7 @@ struct WalkOptions {
   std::string command_line;
 };
 
-// View-frustum culling first, whatever was asked for: what the others are compared with.
+// The settings with view-frustum culling in front, with which the others are compared.
 std::vector<Setting> withBaseline(std::vector<Setting> settings) {
   const auto is_frustum = [](const Setting& setting) { return setting.method->name == "frustum"; };
   const auto frustum = std::find_if(settings.begin(), settings.end(), is_frustum);
@@ -84,7 +84,7 @@ class Walker {
     }
   }
 
-  // Told to end, it ends after the frame that it is at.
+  // Walks all frames. If the process is told to end, stops after the current frame.
   Result<WalkRecord> run() {
     record_.shown = record_.runs.size() > 1 ? 1 : 0;
     record_.device = renderer_.device();
@@ -124,7 +124,7 @@ class Walker {
     return Success{};
   }
 
-  // The picture of run r with what it must be, the picture of these objects.
+  // Compares the picture of run r with the reference, the picture of reference_objects.
   Status compare(const Image& reference, std::span<const ObjectId> reference_objects, std::size_t r,
                  const View& view) {
     const ImageDifference difference = compareImages(reference, images_[r]);
@@ -176,10 +176,11 @@ class Walker {
     kept.visible.assign(shown.visible().begin(), shown.visible().end());
     kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
     const DepthBufferView map = shown.depthBuffer();
-    kept.map.width = map.width;
-    kept.map.height = map.height;
+    kept.depth_buffer.width = map.width;
+    kept.depth_buffer.height = map.height;
     for (std::uint32_t y = 0; y < map.height; ++y) {
-      kept.map.reciprocal_depth.insert(kept.map.reciprocal_depth.end(), map.row(y).begin(), map.row(y).end());
+      kept.depth_buffer.reciprocal_depth.insert(kept.depth_buffer.reciprocal_depth.end(), map.row(y).begin(),
+                                                map.row(y).end());
     }
     kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
     kept.triangles_visible = data_.trianglesOf(kept.visible);
@@ -194,7 +195,7 @@ class Walker {
   std::vector<ObjectId> everything_;
   PictureChooser chooser_;
   WalkRecord record_;
-  std::vector<Image> images_;  // of this frame, one a run
+  std::vector<Image> images_;  // the current frame's picture of each run
 };
 
 Status writePlots(const Report& report, const std::string& folder) {
@@ -240,7 +241,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   const Threads threads(options.common.threads);
   CullingData data(scene, threads.parallelFor(), walk, baked);
   Walker walker(scene, walk, data, *renderer, options.folder, makeRuns(settings, data));
-  const SignalGuard guard;  // told to end, the walker ends early, and what it has done is written
+  const SignalGuard guard;  // if told to end, the walker stops early and its results are still written
   Result<WalkRecord> record = walker.run();
   if (!record) {
     return record.error();

@@ -12,10 +12,10 @@ namespace sightline::tool {
 namespace {
 
 constexpr std::size_t kSpread = 4;
-constexpr double kRoofAbove = 8.0;    // metres above the eye in which something overhead means indoors
-constexpr float kRoofWidth = 1.5f;    // metres, at least, in both directions
-constexpr double kCutAboveEye = 0.5;  // metres
-constexpr double kMinRadius = 8.0;    // metres
+constexpr double kRoofAbove = 8.0;    // a surface overhead within so many metres means indoors
+constexpr float kRoofWidth = 1.5f;    // its smallest size in metres, in both directions
+constexpr double kCutAboveEye = 0.5;  // metres between the eye and the cut of an indoor plan
+constexpr double kMinRadius = 8.0;    // of a plan, in metres
 
 double shareKept(const KeptFrame& frame) {
   return frame.triangles_in_frustum > 0
@@ -23,7 +23,7 @@ double shareKept(const KeptFrame& frame) {
              : 1.0;
 }
 
-// Something wide and opaque right overhead: a plan from above would show its roof only.
+// Whether something wide and opaque is right overhead, so that a plan from above would show a roof only.
 bool indoors(const Vec3d& eye, const Scene& scene) {
   for (const Object& object : scene.objects) {
     const Box& box = object.bounds;
@@ -37,7 +37,7 @@ bool indoors(const Vec3d& eye, const Scene& scene) {
   return false;
 }
 
-// Metres around the eye in which nine tenths of the objects in the frustum lie.
+// The radius in metres around the eye within which nine tenths of the objects in the frustum lie.
 double radiusAround(const KeptFrame& frame, const Scene& scene) {
   std::vector<double> distances;
   for (const ObjectId object : frame.in_frustum) {
@@ -74,32 +74,32 @@ Image drawPlanOf(const KeptFrame& frame, const Scene& scene, const OccluderSet& 
   return renderer.drawPlan(plan);
 }
 
-// Of a map, its top row first; shade(reciprocal depth): the grey of a pixel.
+// A picture of the depth buffer, top row first. shade(reciprocal depth) is the grey of a pixel.
 template <typename Shade>
-Image mapImage(const KeptMap& map, Shade&& shade) {
-  Image image{map.width, map.height, {}};
-  for (std::uint32_t y = map.height; y-- > 0;) {
-    for (std::uint32_t x = 0; x < map.width; ++x) {
-      const std::uint8_t grey = shade(map.reciprocal_depth[std::size_t{y} * map.width + x]);
+Image depthBufferImage(const KeptDepthBuffer& buffer, Shade&& shade) {
+  Image image{buffer.width, buffer.height, {}};
+  for (std::uint32_t y = buffer.height; y-- > 0;) {
+    for (std::uint32_t x = 0; x < buffer.width; ++x) {
+      const std::uint8_t grey = shade(buffer.reciprocal_depth[std::size_t{y} * buffer.width + x]);
       image.rgba.insert(image.rgba.end(), {grey, grey, grey, 255});
     }
   }
   return image;
 }
 
-Image coverageImage(const KeptMap& map) {
-  return mapImage(
-      map, [](float reciprocal_depth) -> std::uint8_t { return reciprocal_depth > kUncovered ? 255 : 0; });
+Image coverageImage(const KeptDepthBuffer& buffer) {
+  return depthBufferImage(
+      buffer, [](float reciprocal_depth) -> std::uint8_t { return reciprocal_depth > kUncovered ? 255 : 0; });
 }
 
-// From the farthest, dark, to the nearest, white, in equal steps of rank, so that all distances can be told
-// apart.
-Image depthImage(const KeptMap& map) {
+// Greys from the farthest (dark) to the nearest (white) in equal steps of rank, so that all distances can be
+// distinguished.
+Image depthImage(const KeptDepthBuffer& buffer) {
   std::vector<float> sorted;
-  std::copy_if(map.reciprocal_depth.begin(), map.reciprocal_depth.end(), std::back_inserter(sorted),
+  std::copy_if(buffer.reciprocal_depth.begin(), buffer.reciprocal_depth.end(), std::back_inserter(sorted),
                [](float reciprocal_depth) { return reciprocal_depth > kUncovered; });
   std::sort(sorted.begin(), sorted.end());
-  return mapImage(map, [&](float reciprocal_depth) -> std::uint8_t {
+  return depthBufferImage(buffer, [&](float reciprocal_depth) -> std::uint8_t {
     if (!(reciprocal_depth > kUncovered)) {
       return 0;
     }
@@ -108,10 +108,10 @@ Image depthImage(const KeptMap& map) {
   });
 }
 
-double coveredShare(const KeptMap& map) {
-  const auto covered = std::count_if(map.reciprocal_depth.begin(), map.reciprocal_depth.end(),
+double coveredShare(const KeptDepthBuffer& buffer) {
+  const auto covered = std::count_if(buffer.reciprocal_depth.begin(), buffer.reciprocal_depth.end(),
                                      [](float reciprocal_depth) { return reciprocal_depth > kUncovered; });
-  return static_cast<double>(covered) / static_cast<double>(map.reciprocal_depth.size());
+  return static_cast<double>(covered) / static_cast<double>(buffer.reciprocal_depth.size());
 }
 
 }  // namespace
@@ -164,14 +164,16 @@ Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const 
     if (!picture || !plan) {
       return picture ? plan.error() : picture.error();
     }
-    if (!frame.map.reciprocal_depth.empty()) {
-      const std::string size = fmt::format("{} x {} pixels", frame.map.width, frame.map.height);
-      const Status coverage = add(coverageImage(frame.map), fmt::format("coverage_{:04}.png", frame.frame),
-                                  fmt::format("coverage map, {}: {:.1f} % covered by occluders", size,
-                                              100.0 * coveredShare(frame.map)),
-                                  frame.frame, false);
+    if (!frame.depth_buffer.reciprocal_depth.empty()) {
+      const std::string size =
+          fmt::format("{} x {} pixels", frame.depth_buffer.width, frame.depth_buffer.height);
+      const Status coverage =
+          add(coverageImage(frame.depth_buffer), fmt::format("coverage_{:04}.png", frame.frame),
+              fmt::format("coverage map, {}: {:.1f} % covered by occluders", size,
+                          100.0 * coveredShare(frame.depth_buffer)),
+              frame.frame, false);
       const Status depth =
-          add(depthImage(frame.map), fmt::format("depth_{:04}.png", frame.frame),
+          add(depthImage(frame.depth_buffer), fmt::format("depth_{:04}.png", frame.frame),
               fmt::format("depth map, {}: white is near, black is not covered", size), frame.frame, false);
       if (!coverage || !depth) {
         return coverage ? depth.error() : coverage.error();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which frames of a walk are shown, and their pictures.
+// Chooses the frames of a walk that the report shows, and draws their pictures.
 
 #include "sightline/render/renderer.h"
 #include "tools/sightline/report/report.h"
@@ -8,7 +8,7 @@
 
 namespace sightline::tool {
 
-// Keeps what the pictures need, while the walk goes on: frames spread over it and the one with the best
+// Keeps what the pictures need during the walk, for frames spread over it and for the frame with the best
 // culling.
 class PictureChooser {
  public:

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `walk` measures: numbers of every frame for every setting, and what its pictures need.
+// The results of `walk`: numbers of every frame for every setting, and what the pictures need.
 
 #include <algorithm>
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace sightline::tool {
 
 struct FrameRecord {
   std::uint32_t frame = 0;
-  std::size_t objects = 0;      // drawn
-  std::uint64_t triangles = 0;  // drawn
+  std::size_t objects = 0;      // objects drawn
+  std::uint64_t triangles = 0;  // triangles drawn
   double cull_us = 0.0, draw_us = 0.0;
   CullStats stats;
   std::vector<std::uint64_t> statistics{};  // in the order of WalkRun::statistics
-  bool differs = false;  // the picture, from the one of view-frustum culling: something culled would show
-  bool tie = false;      // the picture differs, but by ties of the depth buffer only
+  bool differs = false;  // the picture differs from that of view-frustum culling: something culled would show
+  bool tie = false;      // the picture differs by ties of the depth buffer only
 
   double frameUs() const { return cull_us + draw_us; }
 };
@@ -71,23 +71,23 @@ struct WalkRun {
   }
 };
 
-// A map of occluders, see DepthBufferView, without what lies beyond its width.
-struct KeptMap {
+// A copy of the occluders' depth buffer (DepthBufferView) without the padding of its rows.
+struct KeptDepthBuffer {
   std::uint32_t width = 0, height = 0;
   std::vector<float> reciprocal_depth;
 };
 
-// One frame as it was culled, kept for its pictures.
+// The result of culling one frame, kept for its pictures.
 struct KeptFrame {
   std::uint32_t frame = 0;
   View view;
   std::vector<ObjectId> in_frustum, visible;
   std::vector<OccluderId> occluders;
   std::uint64_t triangles_in_frustum = 0, triangles_visible = 0;
-  KeptMap map;  // empty where the method has none
+  KeptDepthBuffer depth_buffer;  // empty if the method has none
 };
 
-// A picture that culling changed.
+// A picture that culling has changed.
 struct ChangedPicture {
   std::uint32_t frame = 0;
   std::string file, caption;
@@ -95,11 +95,11 @@ struct ChangedPicture {
 
 struct WalkRecord {
   std::vector<WalkRun> runs;        // [0] is the baseline: view-frustum culling
-  std::size_t shown = 0;            // the run of the pictures
+  std::size_t shown = 0;            // the index of the run whose pictures are shown
   std::vector<KeptFrame> pictures;  // ascending by frame
   std::vector<ChangedPicture> changed;
   std::uint32_t width = 0, height = 0;
-  std::string device;  // OpenGL's; empty: nothing was drawn
+  std::string device;  // the OpenGL implementation; empty if nothing was drawn
 
   const WalkRun& baseline() const { return runs.front(); }
   std::size_t differing() const {

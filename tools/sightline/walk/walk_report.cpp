@@ -49,7 +49,7 @@ double ratio(double a, double b) {
   return b > 0.0 ? a / b : 1.0;
 }
 
-// As short as it can be told from the others'.
+// The shortest name that distinguishes the run from the others.
 std::string seriesName(const WalkRun& run, const WalkRecord& record) {
   if (&run == &record.baseline()) {
     return methodName(run.setting);
@@ -128,7 +128,7 @@ std::string pathName(const Walk& walk) {
   return walk.path.name.empty() ? "unnamed" : walk.path.name;
 }
 
-// The fastest of those with occlusion culling: the one that the report's headline is about.
+// The fastest run with occlusion culling, which the report's headline is about.
 ReportRow bestRow(const WalkRecord& record) {
   ReportRow best = rowOf(record.runs[1], record);
   for (std::size_t r = 2; r < record.runs.size(); ++r) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A walk's numbers as JSON, as a table for the terminal, and as the report.
+// Writes a walk's results as JSON, as a table for the terminal, and as the report.
 
 #include <cstdint>
 #include <string>
@@ -20,13 +20,13 @@ struct WalkInput {
 // 1104233 -> "1,104,233"
 std::string grouped(std::uint64_t number);
 
-// The run's line of the table, means of a frame.
+// The run's row in the table; numbers are means over all frames.
 ReportRow rowOf(const WalkRun& run, const WalkRecord& record);
-// In a sentence: how much of the hierarchy is tested, and what statisticsOf the setting has.
+// A sentence with the share of the hierarchy that is tested and the setting's statistics (statisticsOf).
 std::string statisticsText(const WalkRun& run);
-// The curves of the runs, frame by frame.
+// Plots of the runs, with one value for each frame.
 std::vector<Plot> plotsOf(const WalkRecord& record, const Walk& walk);
-// Of the scene, the walk, and what was made for them.
+// Facts about the scene, the walk, and what was built for them.
 std::vector<ReportFact> walkFacts(const WalkInput& input, const WalkRecord& record);
 
 std::string walkJson(const WalkInput& input, const WalkRecord& record);

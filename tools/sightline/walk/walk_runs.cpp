@@ -13,7 +13,7 @@ std::vector<WalkRun> makeRuns(const std::vector<Setting>& settings, CullingData&
 }
 
 void cullFrame(std::vector<WalkRun>& runs, const CullingData& data, std::uint32_t frame, const View& view) {
-  // The order rotates from frame to frame, so that none profits from the others' warm caches.
+  // The order rotates from frame to frame, so that no run always profits from another's warm caches.
   const std::size_t first = runs.front().frames.size();
   for (std::size_t k = 0; k < runs.size(); ++k) {
     WalkRun& run = runs[(first + k) % runs.size()];
