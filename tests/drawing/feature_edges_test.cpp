@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <tuple>
@@ -21,7 +23,7 @@ namespace {
 
 using Triangle = std::array<Vec3f, 3>;
 using Triangles = std::vector<Triangle>;
-// A line by its ends, the lower first.
+// The ends of a line, the smaller one first.
 using Ends = std::pair<std::array<float, 3>, std::array<float, 3>>;
 using Lines = std::map<Ends, LineKind>;
 
@@ -32,7 +34,7 @@ Ends ends(const Vec3f& a, const Vec3f& b) {
   return std::minmax(key(a), key(b));
 }
 
-// One object; every triangle with corners of its own unless welded.
+// A scene of one object. Unless welded, every triangle has corners of its own.
 Scene sceneOf(const Triangles& triangles, bool double_sided, bool welded = false) {
   Scene scene;
   for (const Triangle& triangle : triangles) {
@@ -86,7 +88,7 @@ void addQuad(Triangles& triangles, const Vec3f& a, const Vec3f& b, const Vec3f& 
   triangles.push_back({a, c, d});
 }
 
-// From 0 to 1 in each axis, fronts outwards.
+// A cube from 0 to 1 in each axis with its fronts outwards.
 Triangles cube() {
   Triangles t;
   addQuad(t, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1});
@@ -371,68 +373,79 @@ TEST(FeatureEdges, FollowObjectsThatMove) {
   EXPECT_NE(still, moved);
 }
 
-// A landscape over whole numbers, some triangles missing, judged in whole numbers.
+// A landscape over a grid of integers, with some triangles missing.
+Triangles randomLandscape(const std::function<int(int)>& below) {
+  constexpr int kSize = 6;
+  int height[kSize + 1][kSize + 1];
+  for (auto& row : height) {
+    for (int& h : row) {
+      h = below(3);
+    }
+  }
+  const auto point = [&](int i, int j) {
+    return Vec3f(static_cast<float>(i), static_cast<float>(height[i][j]), static_cast<float>(j));
+  };
+  Triangles land;
+  for (int i = 0; i < kSize; ++i) {
+    for (int j = 0; j < kSize; ++j) {
+      addQuad(land, point(i, j), point(i, j + 1), point(i + 1, j + 1), point(i + 1, j));
+    }
+  }
+  std::erase_if(land, [&](const Triangle&) { return below(8) == 0; });
+  return land;
+}
+
+// The normal of a triangle of integers, exact in double precision.
+Vec3d exactNormal(const Triangle& t) {
+  return cross(Vec3d(t[1]) - Vec3d(t[0]), Vec3d(t[2]) - Vec3d(t[0]));
+}
+
+// The kind of the line between the faces of an edge, with creases from 40 degrees on; none if it is not a
+// line.
+std::optional<LineKind> exactKind(const Triangles& faces, const Vec3d& eye, bool double_sided) {
+  std::vector<int> side;
+  for (const Triangle& face : faces) {
+    const double value = dot(exactNormal(face), eye - Vec3d(face[0]));
+    side.push_back(value > 0 ? 1 : value < 0 ? -1 : 0);
+  }
+  const auto drawn = [&](int s) { return s > 0 || (s < 0 && double_sided); };
+  if (std::none_of(side.begin(), side.end(), drawn)) {
+    return std::nullopt;
+  }
+  if (faces.size() == 1) {
+    return LineKind::kBoundary;
+  }
+  const Vec3d n = exactNormal(faces[0]), m = exactNormal(faces[1]);
+  const double across = dot(cross(n, m), cross(n, m));
+  if (across == 0) {
+    return std::nullopt;
+  }
+  if (side[0] != side[1]) {
+    return LineKind::kSilhouette;
+  }
+  // The squared tangent of 40 degrees is 0.70409; normals of landscapes are less than 180 degrees apart.
+  const bool sharp = dot(n, m) <= 0 || across >= 0.70408778 * dot(n, m) * dot(n, m);
+  return sharp ? std::optional(LineKind::kCrease) : std::nullopt;
+}
+
 TEST(FeatureEdges, AgreeWithExactArithmeticOnLandscapes) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-    constexpr int kSize = 6;
-    int height[kSize + 1][kSize + 1];
-    for (auto& row : height) {
-      for (int& h : row) {
-        h = below(3);
-      }
-    }
-    const auto point = [&](int i, int j) {
-      return Vec3f(static_cast<float>(i), static_cast<float>(height[i][j]), static_cast<float>(j));
-    };
-    Triangles land;
-    for (int i = 0; i < kSize; ++i) {
-      for (int j = 0; j < kSize; ++j) {
-        addQuad(land, point(i, j), point(i, j + 1), point(i + 1, j + 1), point(i + 1, j));
-      }
-    }
-    std::erase_if(land, [&](const Triangle&) { return below(8) == 0; });
+    const Triangles land = randomLandscape(below);
     const bool double_sided = below(2) == 0;
     const Vec3d eye(below(13) - 3, below(7) - 2, below(13) - 3);
-    // Whole numbers in doubles are exact.
-    const auto normal = [](const Triangle& t) {
-      return cross(Vec3d(t[1]) - Vec3d(t[0]), Vec3d(t[2]) - Vec3d(t[0]));
-    };
-    std::map<Ends, std::vector<std::size_t>> faces;
-    for (std::size_t i = 0; i < land.size(); ++i) {
+    std::map<Ends, Triangles> faces;
+    for (const Triangle& face : land) {
       for (std::size_t k = 0; k < 3; ++k) {
-        faces[ends(land[i][k], land[i][(k + 1) % 3])].push_back(i);
+        faces[ends(face[k], face[(k + 1) % 3])].push_back(face);
       }
     }
     Lines expected;
     for (const auto& [line, of] : faces) {
-      std::vector<int> side;
-      for (const std::size_t i : of) {
-        const double value = dot(normal(land[i]), eye - Vec3d(land[i][0]));
-        side.push_back(value > 0 ? 1 : value < 0 ? -1 : 0);
-      }
-      const auto drawn = [&](int s) { return s > 0 || (s < 0 && double_sided); };
-      if (std::none_of(side.begin(), side.end(), drawn)) {
-        continue;
-      }
-      if (of.size() == 1) {
-        expected[line] = LineKind::kBoundary;
-        continue;
-      }
-      const Vec3d n = normal(land[of[0]]);
-      const Vec3d m = normal(land[of[1]]);
-      const double across = dot(cross(n, m), cross(n, m));
-      if (across == 0) {
-        continue;
-      }
-      // The tangent of 40 degrees, squared, is 0.70409; normals of landscapes are less than 180 apart.
-      const bool sharp = dot(n, m) <= 0 || across >= 0.70408778 * dot(n, m) * dot(n, m);
-      if (side[0] != side[1]) {
-        expected[line] = LineKind::kSilhouette;
-      } else if (sharp) {
-        expected[line] = LineKind::kCrease;
+      if (const std::optional<LineKind> kind = exactKind(of, eye, double_sided)) {
+        expected[line] = *kind;
       }
     }
     EXPECT_EQ(linesOf(sceneOf(land, double_sided, below(2) == 0), viewFrom(eye, {3.1, 0.2, 3.3}),
@@ -441,7 +454,7 @@ TEST(FeatureEdges, AgreeWithExactArithmeticOnLandscapes) {
   }
 }
 
-// Which way faces are wound says nothing of double-sided surfaces.
+// The winding of double-sided faces does not matter.
 TEST(FeatureEdges, OfDoubleSidedSurfacesDoNotDependOnTheWinding) {
   for (std::uint32_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);

@@ -24,7 +24,7 @@ using test::Solid;
 
 constexpr double kHeight = 400.0;
 
-// Solids as objects and as parts of a sorter.
+// Solids that are objects of a scene and parts of a sorter.
 struct Set {
   MovingScene moving;
 
@@ -75,7 +75,7 @@ View viewFromFront(bool orthographic = false) {
   return view;
 }
 
-// Three sides of a box in the middle are seen.
+// A view that shows three sides of a box in the middle.
 View viewOfACorner() {
   View view = viewFromFront();
   view.eye = {6, 5, 8};
@@ -107,7 +107,7 @@ double lengthOfAll(const std::vector<PagePath>& strokes) {
   return sum;
 }
 
-// Boxes, prisms and Ls in all directions, some of which meet.
+// Boxes, prisms and Ls in random orientations, some of which intersect.
 Set randomSet(std::uint64_t seed, int solids) {
   Random random(seed);
   Set set;
@@ -170,7 +170,7 @@ TEST(HiddenLineRenderer, ObjectsThatOccludeEachOtherAreOneGroupWithLinesCut) {
   EXPECT_LT(drawing.pairs, drawing.all_pairs);
 }
 
-// Where a painted drawing shows a stroke, the plot has it, and the other way round.
+// A stroke that shows in the painted drawing is in the plot, and the other way round.
 void expectPaintedIsPlotted(const Set& set, const View& view, std::uint64_t seed) {
   const Drawing painted = set.paint(view), plot = set.plot(view);
   constexpr double kNear = 0.05;
@@ -227,7 +227,7 @@ TEST(HiddenLineRenderer, PaintingShowsWhatThePlotDraws) {
   }
 }
 
-// HiddenLines alone, against everything.
+// The visible length of an object's lines by HiddenLines alone, with all objects as occluders.
 double visibleLengthAgainstAll(const Scene& scene, const View& view, ObjectId object) {
   const FeatureEdges edges(scene.view());
   HiddenLines hidden;

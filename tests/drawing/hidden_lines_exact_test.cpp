@@ -1,4 +1,4 @@
-// Hidden lines of small scenes of whole numbers, judged in whole numbers: every tie occurs.
+// Checks hidden lines of small scenes of integers in integer arithmetic. Every kind of tie occurs.
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ class IntWorld {
         const bool drawn = std::any_of(pieces.begin(), pieces.end(), [&](const LinePiece& p) {
           return p.from_share <= share && share <= p.to_share;
         });
-        // What is so at a single point only (where a line touches an edge) is no piece.
+        // A state that holds at a single point only, where a line touches an edge, makes no piece.
         const bool wrong =
             visible(a, b, k) != drawn && visible(a, b, k - 1) != drawn && visible(a, b, k + 1) != drawn;
         EXPECT_FALSE(wrong) << "share " << share << (drawn ? " is drawn" : " is not drawn") << ": (" << a.x
@@ -108,7 +108,8 @@ class IntWorld {
                         [&](const IntTriangle& t) { return hides(t, x); });
   }
 
-  // x times kUnit. The sight to x meets the closed triangle before x, at a depth of at least 1.
+  // Whether the ray from the eye to x / kUnit intersects the closed triangle before that point, at a depth of
+  // at least 1.
   bool hides(const IntTriangle& t, const IntPoint& x) const {
     const IntPoint normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
     const IntPoint sight = orthographic_ ? IntPoint{0, 0, kUnit} : x;
@@ -120,7 +121,8 @@ class IntWorld {
     if (slope == 0 || facing == 0 || (t.single_sided && facing < 0)) {
       return false;
     }
-    // Met at start + (height / slope) sight, before x, at depth 1 or more.
+    // The ray intersects the plane at start + (height / slope) sight, which must be before x and at depth 1
+    // or more.
     const Int sign = slope > 0 ? 1 : -1;
     const Int end = orthographic_ ? x.z : kUnit;  // x = start + (end / kUnit) sight
     if (sign * height * kUnit >= sign * slope * end || sign * height <= 0 ||

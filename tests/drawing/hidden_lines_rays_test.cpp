@@ -1,10 +1,10 @@
-// What is drawn and what is not, against rays of Embree.
+// Compares drawn and hidden points of lines with Embree's rays.
 //
-// Embree works in single precision, and lines lie on the borders of what they bound, where one ray says
-// little. So a point counts as visible or hidden within a tolerance: rays go to the point itself and to
-// points in two rings around it, across the sight, kBeside of its distance away and kRounding of it: rods
-// that are thinner than the one ring may pass between the rays, and the one in their middle may miss by its
-// rounding what hides the point by less than that. One of the rays must agree.
+// Embree works in single precision, and a line lies on the border of its surface, where a single ray proves
+// little. So a point counts as visible or hidden within a tolerance: rays go to the point itself and to two
+// rings of points around it, across the line of sight, at kBeside and at kRounding of its distance. Rods
+// thinner than the first ring may pass between its rays, and the ray in the middle may, by its rounding, miss
+// what hides the point; the second ring covers these cases. One of the rays must agree.
 
 #include <gtest/gtest.h>
 
@@ -42,8 +42,8 @@ class Rays {
  public:
   Rays(const SceneView& scene, const View& view) : scene_(scene), rays_(scene), view_(view) {}
 
-  // The least and the greatest depth, over the rays, of the first opaque surface before the point,
-  // relative to the point's; 1: none.
+  // The smallest and the largest depth, over the rays, of the first opaque surface before the point, relative
+  // to the point's depth; 1 if there is none.
   std::array<double, 2> nearest(const Vec3d& point) {
     const double distance = view_.orthographic ? view_.ortho_height : length(point - view_.eye);
     RayScene::Batch batch;
@@ -83,7 +83,7 @@ struct Tally {
   int wrongly_drawn = 0, wrongly_hidden = 0;
 };
 
-// The middles of the pieces; and places anywhere between them.
+// Checks the middle of each piece and random points between the pieces.
 void checkLine(const SceneView& scene, const View& view, const FeatureLine& line,
                std::span<const LinePiece> pieces, Rays& rays, std::mt19937& random, Tally& tally) {
   const Vec3d a(scene.positions[line.a]);
@@ -91,7 +91,7 @@ void checkLine(const SceneView& scene, const View& view, const FeatureLine& line
   const auto at = [&](double share) { return a + (b - a) * share; };
   const double page = (view.orthographic ? view.ortho_height : 2.0 * view.tan_half_fovy) / kPage;
   for (const LinePiece& piece : pieces) {
-    // A stroke of less than the tolerance says nothing.
+    // A stroke shorter than the tolerance is not checked.
     const double size = std::hypot(piece.to.x - piece.from.x, piece.to.y - piece.from.y) * page;
     if (size < 4.0 * kBeside) {
       continue;
@@ -101,7 +101,7 @@ void checkLine(const SceneView& scene, const View& view, const FeatureLine& line
     tally.wrongly_drawn += rays.nearest(point)[1] < 1.0 - kBefore ? 1 : 0;
     EXPECT_TRUE(inVolume(view, point, 1e-9));
   }
-  // Nor does a line of less; from afar all its places may lie within kBehind of what hides them.
+  // Nor is a shorter line: from afar all its points may lie within kBehind of what hides them.
   const Vec3d sight = view.orthographic ? view.forward * view.ortho_height : at(0.5) - view.eye;
   const bool large = length(cross(b - a, sight)) > 4.0 * kBeside * dot(sight, sight);
   for (int i = 0; i < 4 && large; ++i) {
@@ -116,7 +116,7 @@ void checkLine(const SceneView& scene, const View& view, const FeatureLine& line
   }
 }
 
-// Every n-th line of all objects against all objects.
+// Checks every n-th line of all objects, with all objects as occluders.
 Tally check(const Scene& scene, const View& view, std::size_t every, std::uint32_t seed) {
   const SceneView of = scene.view();
   const FeatureEdges edges(of);
@@ -151,7 +151,7 @@ Tally check(const Scene& scene, const View& view, std::size_t every, std::uint32
   return tally;
 }
 
-// From above the scene's corner.
+// A view from above a corner of the scene.
 View fromOutside(const Scene& scene, bool orthographic, double angle) {
   const Box bounds = sceneBounds(scene.view());
   const double size = length(Vec3d(bounds.extent()));

@@ -26,7 +26,7 @@ std::vector<Triangle> quad(const Vec3f& a, const Vec3f& b, const Vec3f& c, const
   return {{a, b, c}, {a, c, d}};
 }
 
-// Across the view at a depth, from x0 to x1.
+// A wall across the view at a depth, from x0 to x1.
 std::vector<Triangle> wall(float x0, float x1, float depth) {
   return quad({x0, -50, -depth}, {x1, -50, -depth}, {x1, 50, -depth}, {x0, 50, -depth});
 }
@@ -124,7 +124,7 @@ TEST(HiddenLines, InAFacesPlaneOrOnItsBordersAreNotHiddenByIt) {
   }
 }
 
-// The walls of other objects that go on in the plane, rounded to single precision, any way up.
+// Walls of other objects continue the plane, rounded to single precision, in any orientation.
 TEST(HiddenLines, AreNotHiddenByCoplanarNeighbours) {
   for (std::uint32_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);
@@ -233,7 +233,7 @@ TEST(HiddenLines, LeaveNoSpeckBehindTrianglesThatAdjoin) {
   }
 }
 
-// Two faces against one: their seam has a corner that the face on its other side does not have.
+// Two faces share an edge with one: the edge has a corner that the face on its other side lacks.
 TEST(HiddenLines, LeaveNoSpeckBehindTJunctions) {
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE(seed);
@@ -249,7 +249,7 @@ TEST(HiddenLines, LeaveNoSpeckBehindTJunctions) {
     const Vec3f high(number(3, 9), 9, -depth);
     sketch.add(
         {{Vec3f(x, -19, -depth), corner, low}, {corner, Vec3f(x, 17, -depth), high}, {corner, low, high}});
-    // Exactly behind the seam, and slightly turned.
+    // The line lies exactly behind the shared edge, and slightly turned.
     for (const float turn : {0.0f, 1e-7f, 1e-3f}) {
       for (View view : {squareView(), flatView(4)}) {
         setOrientation(view, {0, 0, -1}, {number(-1, 1), 1, 0});  // so that nothing is exact

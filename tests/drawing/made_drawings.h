@@ -1,6 +1,6 @@
 #pragma once
 
-// Drawings made by hand, to be written as files.
+// Drawings made by hand, for tests of the writers.
 
 #include <string>
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace sightline::test {
 
-// A square at ten times its number: its outline, its borders, and a line within.
+// An object with a square at ten times its number: the outline, the borders, and a line within.
 inline DrawingObject object(std::uint32_t id, const std::string& name) {
   const double x = 10.0 * id;
   return {.object = ObjectId(id),

@@ -48,7 +48,7 @@ struct OneObject {
       }
     }
   }
-  // A square across z, from its middle; seen from the front or from the back.
+  // Adds a square across z around its middle, with its front or its back towards the viewer.
   void addSquare(const Vec3f& at, float half, bool front = true) {
     const Vec3f a(at.x - half, at.y - half, at.z), b(at.x + half, at.y - half, at.z),
         c(at.x + half, at.y + half, at.z), d(at.x - half, at.y + half, at.z);
@@ -65,7 +65,7 @@ struct OneObject {
   }
 };
 
-// Whether the ray through a point of the page meets a drawn triangle between near and far.
+// Whether the ray through a point of the page intersects a drawn triangle between near and far.
 bool raySees(const SceneView& scene, const View& view, const PagePoint& p, double page_height) {
   const double half = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;
   const double x = (p.x / page_height * 2.0 - view.aspect) * half, y = (1.0 - p.y / page_height * 2.0) * half;
@@ -92,7 +92,7 @@ bool raySees(const SceneView& scene, const View& view, const PagePoint& p, doubl
   return false;
 }
 
-// Points nearer to the outline than rounding may move it say nothing.
+// Points nearer to the outline than rounding may move it are not checked.
 void expectCoversWhatRaysSee(const OneObject& object, const View& view, std::uint64_t seed,
                              int points = 400) {
   const std::vector<PagePath> rings = object.outline(view);
@@ -306,7 +306,7 @@ TEST(Outline, RefusesPagesAndViewsWithoutSize) {
   }
 }
 
-// The winding number of a point, by crossings to its right.
+// The winding number at a point, counted by crossings to its right.
 int windingOf(const std::vector<GridPath>& rings, double x, double y) {
   int winding = 0;
   for (const GridPath& ring : rings) {

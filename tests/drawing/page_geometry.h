@@ -11,7 +11,7 @@
 
 namespace sightline::test {
 
-// At z = 10, looking along -z at the origin; square pages, which show 10 m there.
+// A view from z = 10 along -z at the origin, for square pages, which show 10 m there.
 inline View viewFromFront(bool orthographic = false) {
   View view;
   view.eye = {0, 0, 10};
@@ -34,7 +34,7 @@ inline double areaOf(const PagePath& ring) {
   return area;
 }
 
-// Even-odd.
+// Whether the point is inside the rings by the even-odd rule.
 inline bool isInside(const std::vector<PagePath>& rings, const PagePoint& p) {
   bool inside = false;
   for (const PagePath& ring : rings) {
@@ -55,7 +55,7 @@ inline double distanceToEdge(const PagePoint& a, const PagePoint& b, const PageP
   return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
-// paths: rings, closed without a repeated point, or else polylines.
+// The distance of a point from paths, which are rings (closed, without a repeated point) or polylines.
 inline double distanceTo(const std::vector<PagePath>& paths, const PagePoint& p, bool rings) {
   double least = std::numeric_limits<double>::infinity();
   for (const PagePath& path : paths) {

@@ -60,7 +60,7 @@ int reference(const std::string& text, const std::string& key) {
 
 struct Read {
   std::map<int, std::string> objects;
-  std::string catalogue, page, contents;  // the contents inflated
+  std::string catalogue, page, contents;  // the contents are inflated
 };
 
 std::string inflated(const std::string& stream) {
@@ -86,7 +86,7 @@ Read read(const std::string& pdf) {
   return file;
 }
 
-// "L6 f*, L6 S, ...": which layers are painted how, in order.
+// The layers and the operators that paint them, in order: "L6 f*, L6 S, ...".
 std::vector<std::string> paintsOf(const Read& file) {
   std::vector<std::string> paints;
   std::istringstream lines(file.contents);

@@ -13,7 +13,7 @@ namespace sightline::test {
 using Triangle = std::array<Vec3f, 3>;
 inline constexpr double kPage = 100.0;
 
-// Looks along -z with the eye at zero, a square page, borders at 45 degrees.
+// A view along -z with the eye at zero and a square page whose borders are at 45 degrees.
 inline View squareView() {
   View view;
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
@@ -31,7 +31,7 @@ inline View flatView(double height) {
   return view;
 }
 
-// Objects of a few triangles, and lines between any points.
+// A scene of a few triangles, with lines between any points.
 struct Sketch {
   Scene scene;
 

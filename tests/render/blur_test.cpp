@@ -1,4 +1,4 @@
-// The blurs against convolution pixel by pixel with kernels made by sampling.
+// Compares the blurs with convolution, pixel by pixel, by kernels made by sampling.
 
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ Sums sumsOf(const LayerImage& image) {
   return sums;
 }
 
-// weight(dx, dy), gathered; beyond the borders the outermost pixels.
+// The weight of the pixel at the offset (dx, dy). Beyond the borders the outermost pixels count.
 using Kernel = std::function<double(int dx, int dy)>;
 LayerImage convolved(const LayerImage& image, int reach, const Kernel& weight) {
   LayerImage result = blank(image.width, image.height);
@@ -107,7 +107,7 @@ Kernel sampledDisc(double diameter) {
   };
 }
 
-// Kernels are asked for once a pixel: a table of them.
+// A table of the kernel's values, which are needed for every pixel.
 Kernel tableOf(const Kernel& kernel, int reach) {
   std::vector<double> table;
   for (int dy = -reach; dy <= reach; ++dy) {

@@ -31,7 +31,7 @@ Mesh box(const Vec3f& low, const Vec3f& high) {
   return {maker.scene.positions, maker.scene.indices};
 }
 
-// In the plane z = height, fronts towards +z.
+// Adds a rectangle in the plane z = height with its front towards +z.
 void addRectangle(Mesh& mesh, float x0, float y0, float x1, float y1, float height = 0.0f) {
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(),
@@ -168,7 +168,7 @@ TEST(CoversOnce, OddInputIsAnswered) {
   EXPECT_FALSE(large.once());
 }
 
-// What is said to cover once is not crossed twice by any ray.
+// No ray crosses a mesh twice of which coversOnce() is true.
 TEST(CoversOnce, RaysAgreeOnAFewTrianglesAnyhow) {
   std::size_t once = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {

@@ -14,7 +14,7 @@ const std::vector<Material> kSeeThrough{
     {.opacity = Opacity::kBlended, .double_sided = true, .base_color = {0.8f, 0.8f, 0.1f, 0.2f}},
 };
 
-// What each object shows alone, over each other as the rays meet them, nearest in front.
+// The pictures of the objects alone, composited in the order in which a ray intersects the objects.
 ShapedPixel sorted(const std::vector<LayerImage>& alone, const Fragments& fragments, std::size_t pixel) {
   double color[4] = {0, 0, 0, 0};
   for (const Fragment& fragment : fragments.list) {
@@ -31,8 +31,8 @@ ShapedPixel sorted(const std::vector<LayerImage>& alone, const Fragments& fragme
 
 struct PeelCheck {
   int sure = 0;             // pixels compared
-  std::size_t deepest = 0;  // most fragments in one of them
-  double largest = 0.0;     // difference of a channel
+  std::size_t deepest = 0;  // largest number of fragments in one of them
+  double largest = 0.0;     // largest difference of a channel
 };
 
 PeelCheck checkPeeling(const Scene& scene, LayerRenderer& layers, const View& view, const LensPoint& lens) {
@@ -94,7 +94,7 @@ TEST_F(DepthPeelingTest, WithoutPeelingTheOrderOfIdsIsBlended) {
   const LayerImage peeled = drawn(layers, testView(), allOf(maker.scene), {.peel = true});
   EXPECT_GT(largestDifference(in_order, peeled), 0.05);
 
-  // From the farthest to the nearest; what is repeated counts where it is first.
+  // The order is from the farthest to the nearest; a repeated object counts at its first place.
   const std::vector by_depth{ObjectId(1u), ObjectId(0u), ObjectId(1u), ObjectId(2u), ObjectId(0u)};
   EXPECT_LT(largestDifference(drawn(layers, testView(), by_depth, {.as_given = true}), peeled), 1e-6);
   EXPECT_EQ(drawn(layers, testView(), by_depth).pixels, in_order.pixels);

@@ -9,7 +9,8 @@
 
 namespace sightline {
 
-// Of any channel of two pictures of one size, opacity included; 1e9 where one is not a number.
+// The largest difference in any channel, opacity included, of two pictures of the same size; 1e9 if a value
+// is NaN.
 inline double largestDifference(const LayerImage& a, const LayerImage& b) {
   EXPECT_EQ(a.pixels.size(), b.pixels.size());
   double largest = 0.0;

@@ -12,12 +12,12 @@ namespace sightline {
 namespace {
 
 constexpr LayerRendererOptions kSmall{.width = 160, .height = 90};
-// Compositing rounds otherwise than blending in one picture: of 255.
+// Compositing and blending in one picture round differently, by up to 1 of 255.
 constexpr double kRounding = 1.0;
 
 using Peel = CompositeSettings::Peel;
 
-// Every object a part that stands still.
+// Makes every object a part that does not move.
 MovingScene still(Scene scene) {
   MovingScene moving;
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
@@ -36,7 +36,7 @@ MovingScene glass() {
   return still(makeGlass({.panes = 12, .bottles = 6}));
 }
 
-// A scene with what sorts, draws and composites it.
+// A scene with its sorter, renderer and compositor.
 class Studio {
  public:
   explicit Studio(MovingScene scene, const LayerRendererOptions& options = kSmall)
@@ -76,7 +76,7 @@ class Studio {
     }
     return picture;
   }
-  // What composite() must be: all enabled objects at once, those of some layers left away.
+  // The picture that composite() must make: all enabled objects drawn at once, without those of left_out.
   LayerImage atOnce(std::span<const LayerId> left_out = {}, bool sky = true) {
     std::set<std::uint32_t> away;
     for (const LayerId layer : left_out) {
@@ -160,7 +160,7 @@ TEST_F(LayerCompositorTest, LayersOfMovingScenesAreThePictureOfAllAtOnce) {
   }
 }
 
-// Pixels in which two of the objects, each alone, are as near as anything: a depth buffer takes either.
+// The pixels in which two objects are nearest at the same depth: a depth buffer shows either of them.
 std::vector<bool> ties(Studio& studio) {
   const std::vector<ObjectId> objects = allOf(studio.moving().scene);
   LayerImage together, alone;
@@ -222,7 +222,7 @@ TEST_F(LayerCompositorTest, SamplesChangeEdgesAlone) {
   EXPECT_LT(difference.mean, 0.2);
 }
 
-// The middles' distances are what most programs go by.
+// Most programs sort by the distances of centres.
 TEST_F(LayerCompositorTest, AnOrderByDistancesOfCentresGivesAnotherPicture) {
   Studio studio(glass());
   for (std::uint32_t part = 0; part < studio.moving().parts.size(); ++part) {
@@ -283,7 +283,8 @@ TEST_F(LayerCompositorTest, ARingOfGlassIsPeeledAsOneLayer) {
   EXPECT_EQ(peeled.unordered_groups, expressions.unordered_groups);
 }
 
-// With one sample a pixel no ray meets a whole circle, so that the expressions are right for glass too.
+// With one sample for each pixel no ray intersects a whole cycle, so the expressions are correct for glass
+// too.
 TEST_F(LayerCompositorTest, ARingOfGlassByExpressionsIsTheSame) {
   Studio studio(glass());
   for (std::uint32_t part = 0; part < studio.moving().parts.size(); ++part) {

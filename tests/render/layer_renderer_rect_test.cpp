@@ -19,7 +19,7 @@ struct Case {
   Mat4 scene_from_box;
 };
 
-// Boxes around, before and behind the eye, large and small.
+// A random view and box: around, before or behind the eye, large or small.
 Case randomCase(std::mt19937& random) {
   const auto between = test::numbersFrom<double>(random);
   Case c;

@@ -248,8 +248,8 @@ TEST_F(LayerRendererTest, HolesOfAlphaTestedObjectsAreWholePixels) {
   }
 }
 
-// `a` moved right and down by whole pixels is `b`, as far as both show it; but for a share of pixels at
-// edges.
+// The share of pixels in which `b` differs from `a` moved right and down by whole pixels, where both show the
+// place.
 double shareDiffering(const LayerImage& a, const LayerImage& b, int right, int down) {
   int compared = 0, differing = 0;
   for (int y = 0; y < static_cast<int>(kHeight); ++y) {

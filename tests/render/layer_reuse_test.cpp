@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kWidth = 96, kHeight = 72;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// Ten metres from the eye, where the picture is ten metres high.
+// The size of a pixel in metres, ten metres from the eye, where the picture is ten metres high.
 constexpr double kPixel = 10.0 / kHeight;
 
 Mat4 shifted(double x, double y, double z) {
@@ -27,7 +27,7 @@ Mat4 shifted(double x, double y, double z) {
   return m;
 }
 
-// About the y axis.
+// A rotation about the y axis.
 Mat4 turned(double angle) {
   Mat4 m;
   m(0, 0) = m(2, 2) = std::cos(angle);
@@ -46,7 +46,7 @@ std::vector<ObjectId> ids(std::initializer_list<std::uint32_t> numbers) {
   return std::vector<ObjectId>(numbers.begin(), numbers.end());
 }
 
-// Draws with reuse, and beside it everything.
+// Draws each frame with reuse and, for comparison, in full.
 class Reused {
  public:
   Reused(const Scene& scene, const ReuseSettings& settings)
@@ -59,7 +59,7 @@ class Reused {
     plain_->setTransforms(transforms);
     reuse.beginFrame(view, transforms);
   }
-  // Whether the layer was drawn anew.
+  // Returns whether the layer was redrawn.
   bool draw(const std::vector<ObjectId>& layer, const LayerDraw& how = {}) {
     const std::uint64_t before = reuse.stats().drawn;
     reuse.image(layer, how, image);
@@ -84,7 +84,7 @@ class Reused {
 
  public:
   LayerReuse reuse;
-  LayerImage image, expected;  // of the last draw(): with reuse, and drawn
+  LayerImage image, expected;  // of the last draw(): with reuse and in full
 };
 
 double covered(const LayerImage& image) {
@@ -100,8 +100,8 @@ bool isCovered(const LayerImage& image, int x, int y) {
          image.pixels[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)].alpha >= 0.5f;
 }
 
-// From any pixel that one picture covers to the nearest that the other covers, at most, in pixels; no more
-// than 9 are told.
+// The largest distance, in pixels, from a pixel that one picture covers to the nearest one that the other
+// covers; at most 9.
 double farthestCovered(const LayerImage& a, const LayerImage& b) {
   constexpr int kReach = 8;
   double farthest = 0.0;
@@ -239,7 +239,7 @@ TEST_F(LayerReuseTest, LayersOfOtherObjectsAreDrawnAnew) {
   EXPECT_TRUE(reused.drawFrame(testView(), {}, ids({1, 0})));
   EXPECT_FALSE(reused.drawFrame(testView(), {}, ids({0, 1})));
   EXPECT_EQ(largestDifference(reused.image, reused.expected), 0.0);
-  // What was not asked for a frame long is forgotten.
+  // An image that was not asked for in one frame is dropped.
   EXPECT_TRUE(reused.drawFrame(testView(), {}, ids({0})));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pictures of layers, scenes for them, and what rays through their pixels meet.
+// Pictures of layers, scenes for them, and the triangles that rays through their pixels intersect.
 
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ inline SceneMaker opaqueScene(std::uint32_t seed) {
   return maker;
 }
 
-// What a ray through the centre of a pixel meets is computed here, without OpenGL.
+// A ray through the centre of a pixel. Its intersections are computed here, without OpenGL.
 struct Ray {
   Vec3d origin, direction;  // direction is 1 along forward, so that the ray's parameter is the depth
 };
@@ -87,7 +87,7 @@ inline Ray rayThrough(const View& view, const LensPoint& lens, std::uint32_t x, 
 struct Hit {
   double depth = 0.0;
   bool front = true;
-  double margin = 0.0;  // smallest barycentric coordinate; below 0: beside the triangle
+  double margin = 0.0;  // smallest barycentric coordinate; below 0 the ray misses the triangle
 };
 
 inline std::optional<Hit> meet(const Ray& ray, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -108,8 +108,8 @@ struct Fragment {
 };
 
 struct Fragments {
-  std::vector<Fragment> list;  // of those that are drawn, nearest first
-  bool sure = true;            // no edge and no equal depths are near
+  std::vector<Fragment> list;  // those that are drawn, nearest first
+  bool sure = true;            // the ray is not near an edge or near equal depths
 };
 
 inline Fragments fragmentsOf(const Scene& scene, const View& view, const Ray& ray) {
@@ -142,7 +142,7 @@ inline Fragments fragmentsOf(const Scene& scene, const View& view, const Ray& ra
   return found;
 }
 
-// One triangle an object, any materials.
+// Random triangles, one for each object, with any of the materials.
 inline Scene triangles(std::uint32_t seed, int count, const std::vector<Material>& materials) {
   std::mt19937 random(seed);
   Scene scene;

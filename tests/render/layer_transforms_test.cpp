@@ -19,7 +19,7 @@ Mat4 placed(double angle, const Vec3d& offset, double scale = 1.0) {
   return m;
 }
 
-// The scene with its stored positions moved; no position is of two objects.
+// The scene with its stored positions transformed. Precondition: no position belongs to two objects.
 Scene movedScene(Scene scene, const std::vector<Mat4>& scene_from_stored) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     std::vector<std::uint32_t> own;

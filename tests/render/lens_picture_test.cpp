@@ -1,4 +1,4 @@
-// Depth of field and motion blur of small scenes, against the accumulation of whole pictures.
+// Compares depth of field and motion blur of small scenes with the accumulation of whole pictures.
 
 #include "sightline/render/lens_picture.h"
 
@@ -22,7 +22,7 @@ constexpr std::uint32_t kWidth = 128, kHeight = 96;
 constexpr std::array kMethods{LensMethod::kLayers, LensMethod::kSingleNormalised, LensMethod::kSingleSpread,
                               LensMethod::kAccumulation};
 
-// Each list a layer and a group of its own, front to back.
+// Makes each list a layer in a group of its own, front to back.
 FrameLayers layersOf(std::initializer_list<std::vector<ObjectId>> lists) {
   FrameLayers layers;
   layers.first_part.push_back(0);
@@ -45,7 +45,7 @@ Mat4 movedBy(const Vec3d& d) {
   return m;
 }
 
-// Of the colours of pixels that `counts` says yes to.
+// The difference of colours over the pixels for which `counts` is true.
 template <typename Counts>
 double rmsOf(const LayerImage& a, const LayerImage& b, Counts&& counts) {
   double sum = 0.0, count = 0.0;
@@ -65,7 +65,7 @@ double rmsOf(const LayerImage& a, const LayerImage& b) {
   return rmsOf(a, b, [](std::size_t) { return true; });
 }
 
-// Middle and mean square of the distance from it, of opacity; pixels.
+// The middle of a picture's opacity and the mean square distance from it, in pixels.
 struct Spot {
   double weight = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0;
 };
@@ -90,7 +90,7 @@ Spot spotOf(const LayerImage& image) {
 
 class LensPictureTest : public RenderTest {
  protected:
-  // After the scene is made.
+  // Called when the scene is complete.
   void prepare() {
     Result<LayerRenderer> made =
         LayerRenderer::create(maker_.scene.view(), {.width = kWidth, .height = kHeight});
@@ -157,7 +157,8 @@ class BlurredForeground : public LensPictureTest {
     draw(layers_, settings_, reference_);
   }
 
-  // Where the thing covers a part of the lens alone: within half its circle of its edge.
+  // Whether the thing covers only a part of the lens: the pixel is within half its circle of confusion from
+  // its edge.
   bool atEdge(std::size_t pixel) {
     if (edge_.pixels.empty()) {
       LayerImage alone;

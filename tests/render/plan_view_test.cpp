@@ -20,7 +20,7 @@ class PlanViewTest : public RenderTest {
     plan.states = tile_states;
   }
 
-  // Metres right of and before the eye.
+  // The pixel at this place, in metres right of and before the eye.
   static Pixel at(const Image& image, double right, double before) {
     return pixelOf(image, static_cast<std::uint32_t>(100 + 10 * right),
                    static_cast<std::uint32_t>(100 - 10 * before));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Small scenes made by hand, and a renderer for them where there is one.
+// Small scenes made by hand, and a renderer for them if this machine has OpenGL.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ class SceneMaker {
         {.name = "blue", .double_sided = true, .base_color = {0.05f, 0.05f, 0.8f, 1.0f}}};
   }
 
-  // A rectangle at z, its front towards +z (or -z when turned).
+  // Adds a rectangle at z whose front faces +z, or -z if turned.
   ObjectId wall(double z, double half, std::uint32_t material, bool turned = false) {
     const auto h = static_cast<float>(half);
     const auto d = static_cast<float>(z);
@@ -45,7 +45,7 @@ class SceneMaker {
     return end();
   }
 
-  // Fronts outwards.
+  // Adds a box with its fronts outwards.
   ObjectId box(const Vec3f& lo, const Vec3f& hi, std::uint32_t material) {
     begin(material);
     const auto base = static_cast<std::uint32_t>(scene.positions.size());
@@ -88,7 +88,7 @@ inline Scene closeWalls(const Vec3f& at = {}) {
   return std::move(maker.scene);
 }
 
-// At z = 10, looking along -z.
+// A view from z = 10 along -z.
 inline View testView(const Vec3d& eye = {0.0, 0.0, 10.0}) {
   View view;
   view.eye = eye;

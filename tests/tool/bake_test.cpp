@@ -1,4 +1,4 @@
-// `bake`: the same file however it is spread, and what it refuses.
+// Tests `bake`: the file is the same however the work is spread, and bad options are refused.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 const std::string kShip = "demo:ship?decks=3&rooms=4&machinery=0";
-// Two walls, one behind the other, far from zero.
+// A scene of two walls, one behind the other, far from the origin.
 const std::string kWalls =
     "v 500000 0 0\nv 500010 0 0\nv 500010 5 0\nv 500000 5 0\n"
     "v 500002 1 -8\nv 500006 1 -8\nv 500006 3 -8\nf 1 2 3\nf 1 3 4\no behind\nf 5 6 7\n";
@@ -43,7 +43,7 @@ std::ptrdiff_t ownLines(const std::string& text) {
   return lines;
 }
 
-// 16 hexadecimal digits.
+// The plan's hash, which the report gives as 16 hexadecimal digits.
 std::uint64_t planOf(const json& report) {
   return std::stoull(report["plan"].get<std::string>(), nullptr, 16);
 }
@@ -163,7 +163,7 @@ TEST(Bake, ChoosesABudgetAndSaysIt) {
   EXPECT_NE(outcome.out.find("100 triangles a cell (chosen"), std::string::npos) << outcome.out;
 }
 
-// A box with its lower corner there.
+// Appends a box with its lower corner at (x, 0, z).
 void addBox(std::string& obj, int& corners, double x, double z, double width, double height, double depth) {
   obj += fmt::format("o box{}\n", corners / 8);
   for (int i = 0; i < 8; ++i) {

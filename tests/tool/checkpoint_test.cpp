@@ -1,4 +1,5 @@
-// What an unfinished bake leaves: whatever happened to the file, whole parts are found again, and no others.
+// Tests what an unfinished bake leaves: whatever happened to the file, whole parts are found again, and no
+// others.
 
 #include "tools/sightline/bake/checkpoint.h"
 
@@ -17,7 +18,7 @@ BakedPart bytesOf(const std::string& text) {
   return {bytes.begin(), bytes.end()};
 }
 
-// In the order in which they are finished; one has no bytes.
+// Parts in the order in which they are finished; one has no bytes.
 const std::vector<std::pair<std::uint64_t, BakedPart>> kFinished = {
     {3, bytesOf("third")},
     {1, bytesOf("")},
@@ -40,7 +41,7 @@ Result<BakedParts> resume(const std::string& file, std::uint64_t plan = kPlan) {
   return checkpoint->begin(plan);
 }
 
-// How many of kFinished are there, if it is the first so many and nothing else; or -1.
+// The number n if `parts` holds exactly the first n of kFinished, otherwise -1.
 int firstOnes(const BakedParts& parts) {
   for (std::size_t n = 0; n <= kFinished.size(); ++n) {
     BakedParts expected;

@@ -16,7 +16,8 @@
 
 namespace sightline::tool_test {
 
-// What stands in `backticks` below a heading, down to the next heading of its level. Fails if there is none.
+// The words in `backticks` below a heading, down to the next heading of its level. Fails if there is no such
+// heading.
 inline std::set<std::string> wordsOfSection(const std::string& heading) {
   const std::string page = "\n" + contents(SIGHTLINE_SOURCE_DIR "/docs/formats.md") + "\n## ";
   const std::size_t begin = page.find("\n" + heading + "\n");
@@ -72,7 +73,8 @@ inline void expectDocumented(const nlohmann::json& json, const std::set<std::str
   }
 }
 
-// headings: of the sections that describe the form together, without "## ".
+// Expects that every key is described below these headings (given without "## "), which describe the form
+// together.
 inline void expectDocumented(const nlohmann::json& json, std::initializer_list<std::string> headings) {
   ASSERT_TRUE(json.is_object());
   std::set<std::string> words;

@@ -51,7 +51,7 @@ class KilledBake : public ::testing::Test {
     ASSERT_FALSE(reference_.empty());
   }
 
-  // When the checkpoint has a random part of its final size, or a random time after.
+  // Waits until the checkpoint has a random share of its final size, or for a random time.
   void waitForSomeMoment(Started& bake, const std::string& file) {
     const std::uintmax_t size = std::uniform_int_distribution<std::uintmax_t>(0, max_)(random_);
     const auto after = std::chrono::microseconds(std::uniform_int_distribution<int>(0, 20000)(random_));

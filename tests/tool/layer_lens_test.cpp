@@ -14,7 +14,7 @@ class LayerLens : public ::testing::Test {
  protected:
   void SetUp() override { SIGHTLINE_SKIP_WITHOUT_PICTURES(); }
 
-  // Of one frame of a small picture, unless `more` says otherwise.
+  // The JSON for one frame of a small picture, unless `more` says otherwise.
   json drawn(const std::vector<std::string>& more) const {
     const Outcome outcome = runTool(joined({"layers", "demo:toothpicks?n=40", "--width", "160", "--height",
                                             "120", "--samples", "2", "--json", "-"},

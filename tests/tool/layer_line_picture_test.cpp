@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using Pixels = std::set<std::pair<int, int>>;  // x, y
 
-// Upright rectangles about the z axis, one an object, numbered from 0.
+// An upright rectangle about the z axis as an object; rectangles are numbered from 0.
 std::string rectangle(int number, double half_width, double half_height, double z) {
   std::string text = fmt::format("o rectangle_{}\n", number);
   for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
@@ -25,7 +25,7 @@ std::string rectangle(int number, double half_width, double half_height, double 
   return text + fmt::format("f {} {} {} {}\n", first, first + 1, first + 2, first + 3);
 }
 
-// From z = 10; at z = 0 ten pixels of eighty are a metre, in both kinds of views.
+// A camera path at z = 10. At z = 0 a metre is ten of the picture's eighty pixels, in both kinds of views.
 std::string pathJson(bool orthographic) {
   json path = {{"near", 1.0},
                {"far", 50.0},

@@ -14,7 +14,7 @@ const std::string kPath =
 
 class OutputFiles : public ::testing::Test {
  protected:
-  // Refused, and each input is as it was.
+  // Expects that the command is refused and that no input has changed.
   void expectKept(const std::vector<std::string>& arguments, const std::string& about = "the input itself") {
     const std::size_t before = folder_.entries();
     expectRefused(arguments, about);

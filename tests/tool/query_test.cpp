@@ -58,7 +58,7 @@ class HandmadeSight : public ::testing::Test {
 
 struct Expected {
   const char* point;
-  int cell, level;  // -1: outside
+  int cell, level;  // -1 outside the octree
   const char* side;
   std::vector<int> visible;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Runs the built tool as a user does, and gives back what it did.
+// Runs the built tool as a user does and returns its output and its exit code.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -16,7 +16,7 @@
 
 namespace sightline::tool_test {
 
-// A new folder, gone with this.
+// A new folder that the destructor removes.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -58,12 +58,12 @@ inline std::vector<std::string> joined(std::vector<std::string> words, const std
   return words;
 }
 
-// arguments: one word each.
+// Runs the tool with these arguments, each of which is one word.
 inline Outcome runTool(const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
   std::string command = "'" SIGHTLINE_TOOL "'";
   for (const std::string& argument : arguments) {
-    command += " '" + argument + "'";  // no test has a quote in it
+    command += " '" + argument + "'";  // no test uses a quote
   }
   command += " > '" + folder.file("out") + "' 2> '" + folder.file("err") + "' < /dev/null";
   std::FILE* pipe = popen(command.c_str(), "r");
@@ -72,7 +72,7 @@ inline Outcome runTool(const std::vector<std::string>& arguments) {
           contents(folder.file("err"))};
 }
 
-// Bad usage or input: exit code 2, one line on stderr that mentions `about`, nothing on stdout.
+// Expects bad usage or input: exit code 2, one line on stderr that mentions `about`, nothing on stdout.
 inline void expectRefused(const std::vector<std::string>& arguments, const std::string& about) {
   const Outcome outcome = runTool(arguments);
   const std::string shown = ::testing::PrintToString(arguments) + ": " + outcome.err;

@@ -52,7 +52,7 @@ class Started {
       ::kill(pid_, signal);
     }
   }
-  // code -1: a signal ended it.
+  // Waits for the end. The code is -1 if a signal ended the program.
   Outcome wait() {
     if (!ended_) {
       waitpid(pid_, &status_, 0);
@@ -61,7 +61,7 @@ class Started {
     return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -1, contents(folder_.file("out")),
             contents(folder_.file("err"))};
   }
-  // Processes that it started itself.
+  // The processes that the program started.
   std::vector<pid_t> children() const {
     std::vector<pid_t> found;
     std::error_code ignored;
@@ -70,7 +70,7 @@ class Started {
       if (name.find_first_not_of("0123456789") != std::string::npos) {
         continue;
       }
-      // "pid (name) state parent ...": the name may hold anything.
+      // The line is "pid (name) state parent ...", where the name may contain anything.
       const std::string stat = contents(entry.path().string() + "/stat");
       const std::size_t after = stat.rfind(')');
       char state = 0;
@@ -90,16 +90,16 @@ class Started {
   bool ended_ = false;
 };
 
-// The tool's words in front of its arguments, for so many processes; 0: without mpirun.
+// The words that start the tool with this number of processes, followed by its arguments; 0: without mpirun.
 inline std::vector<std::string> toolWords(int processes, const std::vector<std::string>& arguments) {
   std::vector<std::string> words;
   if (processes > 0) {
-    // Also as root, on a machine with fewer cores, and where processes may not read each other's memory.
+    // mpirun must also work as root, with fewer cores, and where processes may not read each other's memory.
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
     setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
     setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 1);
-    setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // of the MPI library
+    setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // the MPI library leaks
     words = {"mpirun", "-n", std::to_string(processes), "--bind-to", "none"};
   }
   words.push_back(SIGHTLINE_TOOL);
