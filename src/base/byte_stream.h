@@ -18,8 +18,6 @@ template <typename T>
 concept ByteNumber =
     (std::integral<T> && !std::same_as<T, bool>) || std::same_as<T, float> || std::same_as<T, double>;
 
-namespace base {
-
 template <ByteNumber T>
 std::uint64_t bitsOf(T value) {
   if constexpr (std::same_as<T, float>) {
@@ -42,8 +40,6 @@ T numberOf(std::uint64_t bits) {
   }
 }
 
-}  // namespace base
-
 class ByteWriter {
  public:
   void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
@@ -51,7 +47,7 @@ class ByteWriter {
 
   template <ByteNumber T>
   void add(T value) {
-    const std::uint64_t bits = base::bitsOf(value);
+    const std::uint64_t bits = bitsOf(value);
     const std::size_t at = bytes_.size();
     bytes_.resize(at + sizeof(T));
     for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -144,7 +140,7 @@ class ByteReader {
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       bits |= static_cast<std::uint64_t>(bytes_[position + i]) << 8 * i;
     }
-    return base::numberOf<T>(bits);
+    return numberOf<T>(bits);
   }
 
   std::span<const std::byte> bytes_;

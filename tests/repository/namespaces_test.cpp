@@ -51,13 +51,12 @@ std::string folderAt(const std::string& path, std::size_t depth) {
   return depth + 1 < parts.size() ? parts[depth] : "";
 }
 
-// The namespace of what a file keeps private: of src/ROOM/ and include/sightline/ROOM/ it is sightline::ROOM,
-// with src/comparison/ROOM/ as src/ROOM/. Empty for files of other folders.
+// The namespace of what a file keeps private: of src/ROOM/ and include/sightline/ROOM/ it is sightline::ROOM.
+// Empty for files of other folders.
 std::string privateNamespace(const std::string& file) {
   const std::string top = folderAt(file, 0);
   if (top == "src") {
-    const bool comparison = folderAt(file, 1) == "comparison";
-    return "sightline::" + folderAt(file, comparison ? 2 : 1);
+    return "sightline::" + folderAt(file, 1);
   }
   if (top == "include") {
     return "sightline::" + folderAt(file, 2);

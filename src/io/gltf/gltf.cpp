@@ -33,8 +33,8 @@ Status checkParts(const Document& document) {
   const std::string& name = document.name;
   const GltfFile& file = document.file;
   for (const GltfFile::Accessor& accessor : file.accessors) {
-    if (accessor.type_of_component < component_type::kByte ||
-        accessor.type_of_component > component_type::kDouble) {
+    if (accessor.type_of_component < ComponentType::kByte ||
+        accessor.type_of_component > ComponentType::kDouble) {
       return failure("{}: is not valid glTF: Invalid `componentType` in accessor. Got {}", name,
                      accessor.type_of_component);
     }

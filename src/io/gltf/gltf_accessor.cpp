@@ -19,14 +19,14 @@ T readAs(const char* bytes) {
 // 0: not a component type of glTF 2.0.
 std::uint64_t componentSize(int component_type) {
   switch (component_type) {
-    case component_type::kByte:
-    case component_type::kUnsignedByte:
+    case ComponentType::kByte:
+    case ComponentType::kUnsignedByte:
       return 1;
-    case component_type::kShort:
-    case component_type::kUnsignedShort:
+    case ComponentType::kShort:
+    case ComponentType::kUnsignedShort:
       return 2;
-    case component_type::kUnsignedInt:
-    case component_type::kFloat:
+    case ComponentType::kUnsignedInt:
+    case ComponentType::kFloat:
       return 4;
     default:
       return 0;
@@ -116,23 +116,23 @@ double AccessorView::number(std::uint64_t element, int component) const {
     return 0.0;
   }
   switch (component_type_) {
-    case component_type::kByte: {
+    case ComponentType::kByte: {
       const double value = readAs<std::int8_t>(address + component);
       return normalized_ ? std::max(value / 127.0, -1.0) : value;
     }
-    case component_type::kUnsignedByte: {
+    case ComponentType::kUnsignedByte: {
       const double value = readAs<std::uint8_t>(address + component);
       return normalized_ ? value / 255.0 : value;
     }
-    case component_type::kShort: {
+    case ComponentType::kShort: {
       const double value = readAs<std::int16_t>(address + 2 * component);
       return normalized_ ? std::max(value / 32767.0, -1.0) : value;
     }
-    case component_type::kUnsignedShort: {
+    case ComponentType::kUnsignedShort: {
       const double value = readAs<std::uint16_t>(address + 2 * component);
       return normalized_ ? value / 65535.0 : value;
     }
-    case component_type::kUnsignedInt:
+    case ComponentType::kUnsignedInt:
       return readAs<std::uint32_t>(address + 4 * component);
     default:
       return static_cast<double>(readAs<float>(address + 4 * component));
@@ -145,9 +145,9 @@ std::uint32_t AccessorView::index(std::uint64_t element) const {
     return 0;
   }
   switch (component_type_) {
-    case component_type::kUnsignedByte:
+    case ComponentType::kUnsignedByte:
       return readAs<std::uint8_t>(address);
-    case component_type::kUnsignedShort:
+    case ComponentType::kUnsignedShort:
       return readAs<std::uint16_t>(address);
     default:
       return readAs<std::uint32_t>(address);
@@ -159,8 +159,8 @@ Status addSparse(const Document& document, int accessor, AccessorView& view) {
   const GltfFile::Sparse& sparse = *document.file.accessors[static_cast<std::size_t>(accessor)].sparse;
   const std::string where = fmt::format("accessor {} sparse", accessor);
   const int type = sparse.indices_type;
-  if (type != component_type::kUnsignedByte && type != component_type::kUnsignedShort &&
-      type != component_type::kUnsignedInt) {
+  if (type != ComponentType::kUnsignedByte && type != ComponentType::kUnsignedShort &&
+      type != ComponentType::kUnsignedInt) {
     return failure("{}: {}: component type {} is not an unsigned integer", document.name, where, type);
   }
   const std::uint64_t count = sparse.count;

@@ -122,7 +122,7 @@ Result<Track> openTrack(const Document& document, std::size_t animation, const G
   if (!values) {
     return values.error();
   }
-  if ((*times)->type() != ElementType::kScalar || (*times)->componentType() != component_type::kFloat ||
+  if ((*times)->type() != ElementType::kScalar || (*times)->componentType() != ComponentType::kFloat ||
       (*values)->type() != (track.rotation_ ? ElementType::kVec4 : ElementType::kVec3)) {
     return failure("{}: times must be SCALAR of floats, and values VEC4 for a rotation, else VEC3", where);
   }

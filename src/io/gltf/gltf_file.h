@@ -13,14 +13,14 @@
 
 namespace sightline::io {
 
-// Numbers in files; others may stand there too.
-namespace component_type {
-inline constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kInt = 5124,
-                     kUnsignedInt = 5125, kFloat = 5126, kDouble = 5130;
-}
-namespace primitive_mode {
-inline constexpr int kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
-}
+// Numbers in files; other numbers may stand there too.
+struct ComponentType {
+  static constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+                       kUnsignedInt = 5125, kFloat = 5126, kDouble = 5130;
+};
+struct PrimitiveMode {
+  static constexpr int kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;
+};
 
 enum class ElementType : std::uint8_t { kScalar, kVec2, kVec3, kVec4, kMat2, kMat3, kMat4 };
 
@@ -42,14 +42,14 @@ struct GltfFile {
     std::uint64_t count = 0;
     int indices_view = -1;
     std::uint64_t indices_offset = 0;
-    int indices_type = 0;  // component_type
+    int indices_type = 0;  // ComponentType
     int values_view = -1;
     std::uint64_t values_offset = 0;
   };
   struct Accessor {
     int buffer_view = -1;  // -1: all elements are zero
     std::uint64_t byte_offset = 0;
-    int type_of_component = 0;  // component_type
+    int type_of_component = 0;  // ComponentType
     std::uint64_t count = 0;
     ElementType type = ElementType::kScalar;
     bool normalized = false;
@@ -60,7 +60,7 @@ struct GltfFile {
     int positions = -1;  // accessor of the attribute POSITION
     int indices = -1;
     int material = -1;
-    int mode = primitive_mode::kTriangles;
+    int mode = PrimitiveMode::kTriangles;
   };
   struct Mesh {
     std::string name;

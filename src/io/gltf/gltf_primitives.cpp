@@ -6,21 +6,21 @@ namespace {
 bool isIndexType(const AccessorView& view) {
   const int type = view.componentType();
   return view.type() == ElementType::kScalar &&
-         (type == component_type::kUnsignedByte || type == component_type::kUnsignedShort ||
-          type == component_type::kUnsignedInt);
+         (type == ComponentType::kUnsignedByte || type == ComponentType::kUnsignedShort ||
+          type == ComponentType::kUnsignedInt);
 }
 
 bool isPositionType(const AccessorView& view) {
-  return view.type() == ElementType::kVec3 && view.componentType() != component_type::kUnsignedInt;
+  return view.type() == ElementType::kVec3 && view.componentType() != ComponentType::kUnsignedInt;
 }
 
 }  // namespace
 
 std::array<std::uint64_t, 3> PrimitiveSource::cornersOf(std::uint64_t triangle) const {
   switch (mode) {
-    case primitive_mode::kTriangleStrip:
+    case PrimitiveMode::kTriangleStrip:
       return {triangle, triangle + 1 + triangle % 2, triangle + 2 - triangle % 2};
-    case primitive_mode::kTriangleFan:
+    case PrimitiveMode::kTriangleFan:
       return {triangle + 1, triangle + 2, 0};
     default:
       return {3 * triangle, 3 * triangle + 1, 3 * triangle + 2};
@@ -54,10 +54,10 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
   source.number = number;
   source.mode = primitive.mode;
   source.material = primitive.material;
-  if (source.mode > primitive_mode::kTriangleFan) {
+  if (source.mode > PrimitiveMode::kTriangleFan) {
     return failure("{}: {}: mode {} does not exist", document_.name, source.where, source.mode);
   }
-  if (source.mode < primitive_mode::kTriangles) {
+  if (source.mode < PrimitiveMode::kTriangles) {
     return source;  // points and lines
   }
   const std::size_t materials = document_.file.materials.size();
@@ -70,11 +70,11 @@ Result<PrimitiveSource> MeshSources::openPrimitive(std::size_t mesh, std::size_t
     return status.error();
   }
   const std::uint64_t corners = (source.indices == nullptr ? source.positions : source.indices)->count();
-  if (source.mode == primitive_mode::kTriangles && corners % 3 != 0) {
+  if (source.mode == PrimitiveMode::kTriangles && corners % 3 != 0) {
     return failure("{}: {}: {} corners do not make whole triangles", document_.name, source.where, corners);
   }
   const std::uint64_t strung = corners < 3 ? 0 : corners - 2;  // of a strip or fan
-  source.triangles = source.mode == primitive_mode::kTriangles ? corners / 3 : strung;
+  source.triangles = source.mode == PrimitiveMode::kTriangles ? corners / 3 : strung;
   return source;
 }
 

@@ -14,7 +14,7 @@ struct PrimitiveSource {
   std::string where;  // "mesh 3 primitive 0", for errors
   std::size_t number = 0;
   int material = -1;
-  int mode = primitive_mode::kTriangles;
+  int mode = PrimitiveMode::kTriangles;
   int position_accessor = -1;
   const AccessorView* positions = nullptr;
   const AccessorView* indices = nullptr;  // nullptr: vertices in order
