@@ -110,7 +110,7 @@ struct Culler::Impl {
                        .filter_changed = another_set,
                        .min_node_cost = settings.min_node_cost,
                        .test_objects = settings.test_objects,
-                       .parallel_for = parallel_for};
+                       .parallel_for = &parallel_for};
     if (method->wantsOccluders()) {
       frame.occluders = inUse(
           choice->choose({view, frustum, jumped, last_view.step(), visible, set, method->drawsBodies()}),

@@ -82,17 +82,17 @@ struct CullStats {
 
 // A count that one method alone makes, of the last frame.
 struct MethodStatistic {
-  const char* group;    // "relations": statistics that belong together
-  const char* name;     // "reused": its name within the group, in snake_case
-  const char* caption;  // "relations reused": for people
+  const char* group = "";    // "relations": statistics that belong together
+  const char* name = "";     // "reused": its name within the group, in snake_case
+  const char* caption = "";  // "relations reused": for people
   std::uint64_t value = 0;
 };
 
 // What a method is told about a frame. All of it is valid until the frame ends.
 struct CullingFrame {
-  const View& view;        // validate() accepts it; never left-handed
-  const Frustum& frustum;  // of the view
-  bool jumped;             // the view has little to do with that of the last frame
+  View view{};          // validate() accepts it; never left-handed
+  Frustum frustum{};    // of the view
+  bool jumped = false;  // the view has little to do with that of the last frame
   // The chosen occluders of the scene's set and then, where there are any, all that move. Empty where the
   // method wants none.
   std::span<const ChosenOccluders> occluders{};
@@ -103,14 +103,14 @@ struct CullingFrame {
   bool filter_changed = false;      // since the last frame
   std::uint32_t min_node_cost = 0;  // see CullerSettings
   bool test_objects = true;
-  const ParallelFor& parallel_for;
+  const ParallelFor* parallel_for = nullptr;  // never null
 };
 
 // A box that moves, and the planes of the frustum that it may cross: bit i is clear where the box is inside
 // of plane i.
 struct MovingBox {
-  Box box;
-  std::uint8_t frustum_planes;
+  Box box{};
+  std::uint8_t frustum_planes = kAllFrustumPlanes;
 };
 
 // Made with its settings by a function of its own (occlusionTree(), depthPyramid(), ...), then owned by one

@@ -8,7 +8,9 @@
 #include "src/occlusion/raster_rows.h"
 
 namespace sightline {
-namespace occlusion {
+
+using namespace occlusion;
+
 namespace {
 
 class CentreCoverage final : public CoverageRule {
@@ -42,10 +44,9 @@ class CentreCoverage final : public CoverageRule {
 constexpr CentreCoverage kCentreCoverage;
 
 }  // namespace
-}  // namespace occlusion
 
 const CoverageRule* centreCoverage() {
-  return &occlusion::kCentreCoverage;
+  return &kCentreCoverage;
 }
 
 }  // namespace sightline

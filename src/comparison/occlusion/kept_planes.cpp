@@ -14,6 +14,7 @@
 
 namespace sightline {
 
+using namespace comparison;
 using namespace occlusion;
 
 struct KeptPlanes::Impl {

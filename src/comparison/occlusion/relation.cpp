@@ -6,7 +6,9 @@
 
 #include "src/geometry/box_tangents.h"
 
-namespace sightline::occlusion {
+namespace sightline::comparison {
+
+using namespace occlusion;
 namespace {
 
 using geometry::BoxTangents;
@@ -124,4 +126,4 @@ void evaluate(const Eye& eye, const ActiveOccluder& occluder, std::span<const Pl
       path + clearance * (1.0 - 0x1p-20) - 0x1p-40 * (eye.orthographic ? 1.0 : occluder.seen.reach);
 }
 
-}  // namespace sightline::occlusion
+}  // namespace sightline::comparison

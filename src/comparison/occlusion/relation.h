@@ -19,7 +19,11 @@
 #include "sightline/comparison/kept_planes.h"
 #include "src/occlusion/active_occluders.h"
 
-namespace sightline::occlusion {
+namespace sightline::comparison {
+
+using occlusion::ActiveOccluder;
+using occlusion::Eye;
+using occlusion::InsetEdge;
 
 // The planes of four edges, two for each edge. The occluder lies in front of them.
 struct PlaneQuad {
@@ -62,4 +66,4 @@ void makeRelation(const ActiveOccluder& occluder, std::span<const InsetEdge> edg
 void evaluate(const Eye& eye, const ActiveOccluder& occluder, std::span<const PlaneQuad> planes, double path,
               Relation& relation);
 
-}  // namespace sightline::occlusion
+}  // namespace sightline::comparison

@@ -7,7 +7,7 @@
 
 #include "src/base/hash_slots.h"
 
-namespace sightline::occlusion {
+namespace sightline::comparison {
 
 RelationStore::RelationStore(std::size_t max_bytes)
     : max_(static_cast<std::uint32_t>(
@@ -211,4 +211,4 @@ std::size_t RelationStore::bytes() const {
          items_.capacity() * sizeof(Index);
 }
 
-}  // namespace sightline::occlusion
+}  // namespace sightline::comparison

@@ -9,7 +9,7 @@
 
 #include "src/comparison/occlusion/relation.h"
 
-namespace sightline::occlusion {
+namespace sightline::comparison {
 
 // A hash table of (item, occluder), items being numbers from 0. Room is made between frames, for a quarter of
 // the budget at once, by the frame of last use. What finds no room within a frame is not kept.
@@ -79,4 +79,4 @@ class RelationStore {
   std::uint32_t frame_ = 0, next_sweep_ = 0, evicted_ = 0;
 };
 
-}  // namespace sightline::occlusion
+}  // namespace sightline::comparison

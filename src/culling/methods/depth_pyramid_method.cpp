@@ -42,8 +42,8 @@ class DepthPyramidMethod final : public CullingMethod {
     if (frame.jumped) {
       traversal_->forget();
     }
-    own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, frame.parallel_for);
-    pyramid_->finish(frame.parallel_for);
+    own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, *frame.parallel_for);
+    pyramid_->finish(*frame.parallel_for);
     focused_ = false;
     if (window_) {
       window_->begin(frame.view, !frame.jumped && frame.max_occluders > 0);
@@ -58,7 +58,7 @@ class DepthPyramidMethod final : public CullingMethod {
     const culling::TraversalMaps maps{*pyramid_, window_ ? &*window_ : nullptr,
                                       focused_ ? &*fine_pyramid_ : nullptr};
     traversal_->run(maps, culling::optionsOf(frame, settings_.temporal_coherence), stats, visible,
-                    frame.parallel_for);
+                    *frame.parallel_for);
   }
 
   void finish(CullStats& stats) override {
@@ -107,8 +107,8 @@ class DepthPyramidMethod final : public CullingMethod {
       sets[1] = frame.occluders[1];
     }
     culling::drawOccluders(*fine_pyramid_, window_->view(), std::span(sets).first(moving ? 2 : 1),
-                           frame.parallel_for);
-    fine_pyramid_->finish(frame.parallel_for);
+                           *frame.parallel_for);
+    fine_pyramid_->finish(*frame.parallel_for);
   }
 
   DepthPyramidMethodSettings settings_;

@@ -35,7 +35,7 @@ class OpacityMapMethod final : public CullingMethod {
     map_->setCoverageRatio(coverage_->ratio());
     suspended_ = coverage_->suspended();
     if (!suspended_) {
-      own_occluders_ = culling::drawOccluders(*map_, frame.view, frame.occluders, frame.parallel_for);
+      own_occluders_ = culling::drawOccluders(*map_, frame.view, frame.occluders, *frame.parallel_for);
       map_->finish();
     }
   }
