@@ -1,6 +1,7 @@
 #include "tools/sightline/methods/statistics.h"
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 
 namespace sightline::tool {
@@ -25,7 +26,8 @@ std::vector<Statistic> statisticsOf(const Setting& setting) {
               {kSets.data(), "look_up_ns", "look-up, ns", true}};
   }
   const std::vector<std::string_view>& hidden = setting.method->hidden_statistics;
-  for (const MethodStatistic& statistic : makeMethod(setting)->statistics()) {
+  const std::unique_ptr<CullingMethod> method = makeMethod(setting);
+  for (const MethodStatistic& statistic : method->statistics()) {
     if (std::find(hidden.begin(), hidden.end(), statistic.group) == hidden.end()) {
       chosen.push_back({statistic.group, statistic.name, statistic.caption});
     }
