@@ -10,8 +10,7 @@ install(TARGETS sightline_runtime EXPORT sightlineTargets COMPONENT runtime
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)
 foreach(room base math geometry scene hierarchy occluders occlusion culling)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline/${room}
-    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT runtime FILES_MATCHING PATTERN "*.h"
-    PATTERN layer_sorting.h EXCLUDE)  # belongs to sightline::comparison, which is not installed
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT runtime FILES_MATCHING PATTERN "*.h")
 endforeach()
 install(EXPORT sightlineTargets NAMESPACE sightline:: DESTINATION ${package_dir} COMPONENT runtime)
 

@@ -50,12 +50,13 @@ bool fitsTogether(const CullingScene& scene, const MethodTraits& traits) {
 }  // namespace
 
 struct Culler::Impl {
-  Impl(const CullingScene& g, std::unique_ptr<CullingMethod> m, const CullerSettings& s)
+  // The method goes into `owned` once this has succeeded.
+  Impl(const CullingScene& g, CullingMethod& m, const CullerSettings& s)
       : given(g),
         scene(withoutNulls(g)),
         settings(s),
-        method(std::move(m)),
-        traits(method->traits()),
+        method(&m),
+        traits(m.traits()),
         fitted(fitsTogether(given, traits)),
         sizes(SceneSizes::of(*scene.hierarchy, *scene.occluders)) {
     // Nothing looks into a hierarchy of other boxes.
@@ -66,12 +67,25 @@ struct Culler::Impl {
     }
     method->prepare(checked);
     if (usesSets(traits.sets, settings)) {
+      // Marks are for those who descend the hierarchy.
       const SetFilter::Marks marks =
-          traits.sets == SetUse::kAlways ? SetFilter::Marks::kNone : SetFilter::Marks::kAll;
+          traits.hierarchy || traits.occluders ? SetFilter::Marks::kAll : SetFilter::Marks::kNone;
       filter.emplace(*checked.hierarchy, checked.object_bounds, checked.sets, marks);
     }
     if (traits.occluders) {
       choice.emplace(checked, settings.occluders);
+    }
+    takeStatistics();
+    clearStatistics();
+  }
+
+  void takeStatistics() {
+    const std::span<const MethodStatistic> of_method = method->statistics();
+    statistics.assign(of_method.begin(), of_method.end());
+  }
+  void clearStatistics() {
+    for (MethodStatistic& statistic : statistics) {
+      statistic.value = 0;
     }
   }
 
@@ -84,6 +98,7 @@ struct Culler::Impl {
     visible.clear();
     culling::appendAll(*scene.hierarchy, scene.object_bounds.size(), visible);
     last_view.forget();
+    clearStatistics();
   }
 
   // Finds the set of the eye's cell. Returns whether it is another one than in the last frame.
@@ -123,7 +138,6 @@ struct Culler::Impl {
     frame.last_visible = {};
     method->traverse(frame, stats, visible);
     stats.traverse_us = laps.lap() - stats.detail_us;
-    method->finish(stats);
   }
 
   // The chosen occluders of the scene's set, and then all that move. Valid until the next call.
@@ -140,7 +154,8 @@ struct Culler::Impl {
     return in_use;
   }
 
-  void classifyMoving(const Frustum& frustum, std::span<const Box> boxes) {
+  // Returns the time that it took, microseconds.
+  double classifyMoving(const Frustum& frustum, std::span<const Box> boxes) {
     Laps laps;
     dynamic_states.assign(boxes.size(), Visibility::kVisible);
     asked.clear();
@@ -161,13 +176,14 @@ struct Culler::Impl {
     for (std::size_t i = 0; i < asked.size(); ++i) {
       dynamic_states[asked[i]] = asked_states[i];
     }
-    stats.traverse_us += laps.lap();
+    return laps.lap();
   }
 
   CullingScene given;  // by the caller
   CullingScene scene;  // without nulls
   CullerSettings settings;
-  std::unique_ptr<CullingMethod> method;
+  std::unique_ptr<CullingMethod> owned;
+  CullingMethod* method;  // owned, or about to be
   MethodTraits traits;
   bool fitted;                                    // the scene's parts belong together
   SceneSizes sizes;                               // as the constructor saw them
@@ -184,11 +200,14 @@ struct Culler::Impl {
   std::vector<MovingBox> asked_boxes;
   std::vector<Visibility> asked_states;
   CullStats stats;
+  std::vector<MethodStatistic> statistics;  // of the method in the last frame
 };
 
 Culler::Culler(const CullingScene& scene, std::unique_ptr<CullingMethod> method,
                const CullerSettings& settings)
-    : impl_(std::make_unique<Impl>(scene, std::move(method), settings)) {}
+    : impl_(std::make_unique<Impl>(scene, *method, settings)) {
+  impl_->owned = std::move(method);
+}
 Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
@@ -202,10 +221,14 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
   impl_->stats.unfit = !impl_->fits();
   if (impl_->keepsEverything()) {
     impl_->keepEverything();
-  } else {
-    impl_->cullObjects(view, frustum, moving);
+    impl_->stats.traverse_us = impl_->classifyMoving(frustum, dynamic_boxes);
+    return;
   }
-  impl_->classifyMoving(frustum, dynamic_boxes);
+  impl_->cullObjects(view, frustum, moving);
+  const double moving_us = impl_->classifyMoving(frustum, dynamic_boxes);
+  impl_->method->finish(impl_->stats);
+  impl_->takeStatistics();
+  impl_->stats.traverse_us += moving_us;
 }
 
 std::span<const ObjectId> Culler::visible() const {
@@ -221,7 +244,7 @@ const CullStats& Culler::stats() const {
   return impl_->stats;
 }
 std::span<const MethodStatistic> Culler::statistics() const {
-  return impl_->method->statistics();
+  return impl_->statistics;
 }
 std::uint64_t Culler::statistic(std::string_view group, std::string_view name) const {
   for (const MethodStatistic& statistic : statistics()) {
@@ -244,7 +267,10 @@ void Culler::reset() {
 }
 
 void Culler::reset(const CullingScene& scene) {
-  auto anew = std::make_unique<Impl>(scene, std::move(impl_->method), impl_->settings);
+  // Should the new one throw for want of memory, the method is of neither scene, and this keeps everything.
+  impl_->fitted = false;
+  auto anew = std::make_unique<Impl>(scene, *impl_->method, impl_->settings);
+  anew->owned = std::move(impl_->owned);
   anew->parallel_for = std::move(impl_->parallel_for);
   impl_ = std::move(anew);
 }

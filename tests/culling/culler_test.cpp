@@ -326,8 +326,7 @@ bool sameWork(const AnyCuller& one, const AnyCuller& other) {
   };
   return a.nodes_visited == b.nodes_visited && a.nodes_tested == b.nodes_tested &&
          a.objects_tested == b.objects_tested && a.nodes_skipped == b.nodes_skipped &&
-         a.occluders == b.occluders && a.detail_tested == b.detail_tested &&
-         a.detail_culled == b.detail_culled &&
+         a.occluders == b.occluders &&
          std::equal(one.statistics().begin(), one.statistics().end(), other.statistics().begin(),
                     other.statistics().end(), sameValue);
 }

@@ -459,7 +459,7 @@ TEST_P(DatabaseChoice, IsByAreaAngleWithoutADatabase) {
       by_area_angle.cull(view);
       without.cull(view);
       EXPECT_TRUE(sameVisible(without, by_area_angle)) << method.name;
-      EXPECT_EQ(without.stats().detail_tested, 0u);
+      EXPECT_EQ(without.statistic("detail", "tested"), 0u);
     }
   }
 }
@@ -480,11 +480,11 @@ TEST_P(DetailObjects, ShrinkTheAnswerByThoseThatTheSecondTestHides) {
         with.cull(view);
         const CullStats& stats = with.stats();
         EXPECT_TRUE(keepsNoMore(with, without));
-        EXPECT_EQ(stats.detail_tested, without.visible().size());
-        EXPECT_EQ(with.visible().size() + stats.detail_culled, without.visible().size());
+        EXPECT_EQ(with.statistic("detail", "tested"), without.visible().size());
+        EXPECT_EQ(with.visible().size() + with.statistic("detail", "culled"), without.visible().size());
         EXPECT_EQ(stats.nodes_tested, without.stats().nodes_tested);
-        EXPECT_EQ(without.stats().detail_tested + without.stats().detail_culled, 0u);
-        culled += stats.detail_culled;
+        EXPECT_EQ(without.statistic("detail", "tested") + without.statistic("detail", "culled"), 0u);
+        culled += with.statistic("detail", "culled");
       }
       EXPECT_GT(culled, 0u) << nameOf(kind) << " " << method.name;
     }
@@ -499,8 +499,8 @@ TEST_P(DetailObjects, WithoutOccludersNearThemAreNotHidden) {
     AnyCuller culler = demo().culler(HierarchyKind::kBvh, settings);
     for (const View& view : walk(100, 5)) {
       culler.cull(view);
-      EXPECT_GT(culler.stats().detail_tested, 0u);
-      EXPECT_EQ(culler.stats().detail_culled, 0u);
+      EXPECT_GT(culler.statistic("detail", "tested"), 0u);
+      EXPECT_EQ(culler.statistic("detail", "culled"), 0u);
     }
   }
 }

@@ -43,7 +43,7 @@ struct AnySettings {
   std::uint32_t min_node_cost = 0;
   bool visible_sets = false;
   bool test_objects = true;
-  bool use_lists = false;  // occluders come from AnyScene::from_eye
+  bool use_lists = false;  // occluders come from AnyLists::from_eye
   bool detail_objects = false;
   std::uint32_t detail_occluder_count = 8;
 

@@ -26,7 +26,7 @@ struct OccluderChoiceSettings {
   double lambda_steps = 0.0;
 };
 
-// What holds for any method.
+// What holds for any method, as far as it has occluders or uses sets (MethodTraits).
 struct CullerSettings {
   OccluderChoiceSettings occluders{};
   std::uint32_t min_node_cost = 0;  // a node with fewer triangles is taken as visible without a test
@@ -63,7 +63,8 @@ class Culler {
   // The scene's occluders that this frame's structure was built from; without those that move.
   std::span<const OccluderId> occludersUsed() const;
   const CullStats& stats() const;
-  // What the method alone counted: the same statistics in the same order in every frame.
+  // What the method alone counted in the last cull(): the same statistics in the same order in every frame, 0
+  // where everything was kept and before the first frame.
   std::span<const MethodStatistic> statistics() const;
   // The value of the statistic of this group and name; 0 where the method has none.
   std::uint64_t statistic(std::string_view group, std::string_view name) const;

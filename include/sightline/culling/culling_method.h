@@ -24,6 +24,7 @@ namespace sightline {
 namespace culling {
 class SetFilter;
 }
+class SupportingPlanes;
 
 // The scene that is culled: views of the caller's memory, which outlives the culler and changes only together
 // with a call of Culler::reset(). Whatever a method does not use may be null.
@@ -71,8 +72,6 @@ struct CullStats {
                                        // the depth pyramid
   std::uint32_t set_nodes = 0;    // nodes of the potentially visible set, 1 where that is everything; else 0
   std::uint32_t set_objects = 0;  // objects below them
-  std::uint32_t detail_tested = 0;  // objects that detailObjects() tested
-  std::uint32_t detail_culled = 0;  // objects that it found hidden
   // Microseconds: finding the set, choosing occluders, building the structure, traversing the hierarchy with
   // the boxes that move, and detailObjects().
   double look_up_us = 0.0, choose_us = 0.0, build_us = 0.0, traverse_us = 0.0, detail_us = 0.0;
@@ -97,7 +96,7 @@ struct CullingFrame {
   // method wants none.
   std::span<const ChosenOccluders> occluders{};
   std::uint32_t max_occluders = 0;           // so many were asked for
-  std::span<const ObjectId> last_visible{};  // what the last frame kept; until traverse()
+  std::span<const ObjectId> last_visible{};  // what the last frame kept; only if not jumped
   const culling::SetFilter* filter =
       nullptr;                      // what is not in it is neither tested nor kept; null: no filter
   bool filter_changed = false;      // since the last frame
@@ -115,7 +114,7 @@ struct MovingBox {
 
 // Made with its settings by a function of its own (occlusionTree(), depthPyramid(), ...), then owned by one
 // Culler, which calls, in this order: prepare() once a scene; in each frame wantsOccluders(), build(),
-// traverse(), finish() and classify(). A method never hides what can be seen, allocates nothing once its
+// traverse(), classify() and finish(). A method never hides what can be seen, allocates nothing once its
 // storage has grown to what a few frames need, and is used by one thread at a time.
 //
 // To add a method, see "Adding a method" in docs/architecture.md.
@@ -140,17 +139,20 @@ class CullingMethod {
   virtual void build(const CullingFrame&) {}
   // Appends the objects that may be seen to visible, ascending, and adds to the counts of stats.
   virtual void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) = 0;
-  // The frame's times are known: completes stats and the method's own statistics.
-  virtual void finish(CullStats&) {}
   // States of boxes in the frustum that are no part of the scene, one for each box.
   virtual void classify(std::span<const MovingBox> boxes, std::span<Visibility> states);
+  // The frame ends: completes stats and the method's own statistics. stats has the frame's times, but for
+  // classify().
+  virtual void finish(CullStats&) {}
 
   // Occluders of the scene's set that the structure of the last frame was built from.
   virtual std::span<const OccluderId> occludersUsed() const { return {}; }
   // The depth buffer of the last frame; empty with methods that have none.
   virtual DepthBufferView depthBuffer() const { return {}; }
-  // The same ones, in the same order, after every frame and before the first.
+  // The same ones, in the same order, after every frame and before the first; of the last frame that ended.
   virtual std::span<const MethodStatistic> statistics() const { return {}; }
+  // Planes of the frame's occluders, which detailObjects() asks too; null where the method has none.
+  virtual SupportingPlanes* supportingPlanesOfFrame() { return nullptr; }
 };
 
 }  // namespace sightline

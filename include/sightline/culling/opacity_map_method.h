@@ -19,7 +19,8 @@ inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};
 
 // Culling by an OpacityMap of the chosen occluders (Poon, Wang 1999).
 // Statistics: "map" with occluders_hidden, overlap_tests, overlap_failed, given_up, depth_tests,
-// depths_compared, and, where triangle_us is set, suspended.
+// depths_compared, and, where triangle_us is set, suspended;
+// then also "coverage" with per_mille, the coverage ratio of the frame.
 std::unique_ptr<CullingMethod> opacityMap(const OpacityMapMethodSettings& settings = {});
 
 }  // namespace sightline

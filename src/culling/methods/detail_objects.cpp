@@ -30,9 +30,10 @@ class DetailObjects final : public CullingMethod {
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
     method_->traverse(frame, stats, visible);
+    tested_ = culled_ = 0;
     if (scene_.near_objects != nullptr) {
       const auto start = std::chrono::steady_clock::now();
-      test(frame.view, stats, visible);
+      test(frame.view, visible);
       stats.detail_us =
           std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     }
@@ -41,8 +42,6 @@ class DetailObjects final : public CullingMethod {
   void finish(CullStats& stats) override {
     method_->finish(stats);
     collectStatistics();
-    statistics_[statistics_.size() - 2].value = stats.detail_tested;
-    statistics_[statistics_.size() - 1].value = stats.detail_culled;
   }
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
     method_->classify(boxes, states);
@@ -55,13 +54,19 @@ class DetailObjects final : public CullingMethod {
   void collectStatistics() {
     const std::span<const MethodStatistic> of_method = method_->statistics();
     statistics_.assign(of_method.begin(), of_method.end());
-    statistics_.push_back({"detail", "tested", "detail tested"});
-    statistics_.push_back({"detail", "culled", "detail culled"});
+    statistics_.push_back({"detail", "tested", "detail tested", tested_});
+    statistics_.push_back({"detail", "culled", "detail culled", culled_});
   }
 
   // Is the eye hidden from the object by occluders near the object?
-  void test(const View& view, CullStats& stats, std::vector<ObjectId>& visible) {
-    planes_->build(view, *scene_.occluders, {});
+  void test(const View& view, std::vector<ObjectId>& visible) {
+    SupportingPlanes* planes = method_->supportingPlanesOfFrame();
+    if (planes == nullptr) {
+      planes_->build(view, *scene_.occluders, {});
+      planes = &*planes_;
+    }
+    const std::size_t nodes = scene_.hierarchy->nodes.size() + scene_.hierarchy->objects.size();
+    const auto first_item = static_cast<SupportingPlanes::Item>(nodes);
     std::span<const OccluderId> last_near;
     OccluderList list;
     std::erase_if(visible, [&](ObjectId object) {
@@ -72,12 +77,13 @@ class DetailObjects final : public CullingMethod {
       const std::span<const OccluderId> near = occludersNear(box, view);
       if (near.data() != last_near.data() || near.size() != last_near.size()) {
         last_near = near;
-        list = planes_->add(near);
+        list = planes->add(near);
       }
       OccluderList touching;
-      const bool hidden = planes_->classify(box, object.value, list, touching) == Visibility::kHidden;
-      stats.detail_tested += 1;
-      stats.detail_culled += hidden ? 1 : 0;
+      const bool hidden =
+          planes->classify(box, first_item + object.value, list, touching) == Visibility::kHidden;
+      tested_ += 1;
+      culled_ += hidden ? 1 : 0;
       return hidden;
     });
   }
@@ -93,7 +99,8 @@ class DetailObjects final : public CullingMethod {
   std::unique_ptr<CullingMethod> method_;
   DetailObjectsSettings settings_;
   CullingScene scene_;
-  std::optional<SupportingPlanes> planes_;
+  std::optional<SupportingPlanes> planes_;  // where the method has none
+  std::uint64_t tested_ = 0, culled_ = 0;   // objects of this frame
   std::vector<MethodStatistic> statistics_;
 };
 

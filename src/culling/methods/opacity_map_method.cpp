@@ -17,6 +17,7 @@ class OpacityMapMethod final : public CullingMethod {
   explicit OpacityMapMethod(const OpacityMapMethodSettings& settings) : settings_(settings) {
     if (adapts()) {
       statistics_.push_back({"map", "suspended", "frames without occlusion culling"});
+      statistics_.push_back({"coverage", "per_mille", "coverage ratio, per mille"});
     }
   }
 
@@ -29,6 +30,7 @@ class OpacityMapMethod final : public CullingMethod {
     map_.emplace(settings_.map);
     coverage_.emplace(settings_.map.coverage_ratio);
     own_occluders_ = 0;
+    suspended_ = false;
   }
 
   void build(const CullingFrame& frame) override {
@@ -61,6 +63,7 @@ class OpacityMapMethod final : public CullingMethod {
     statistics_[5].value = counts.depths_compared;
     if (adapts()) {
       statistics_[6].value = suspended_ ? 1 : 0;
+      statistics_[7].value = static_cast<std::uint64_t>(1000.0 * coverage_->ratio() + 0.5);
       coverage_->frame(stats.choose_us + stats.build_us + stats.traverse_us,
                        static_cast<double>(stats.hidden_triangles) * settings_.triangle_us);
     }

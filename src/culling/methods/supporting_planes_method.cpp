@@ -48,6 +48,7 @@ class SupportingPlanesMethod final : public CullingMethod {
   }
 
   std::span<const OccluderId> occludersUsed() const override { return planes_->occluders(); }
+  SupportingPlanes* supportingPlanesOfFrame() override { return &*planes_; }
 
  private:
   SupportingPlanesSettings settings_;

@@ -146,6 +146,9 @@ Result<ChannelMap> channelsOf(const Document& document) {
     const auto& list = file.animations[animation].channels;
     for (std::size_t i = 0; i < list.size(); ++i) {
       const GltfFile::Channel& channel = list[i];
+      if (channel.node < 0) {
+        continue;  // it moves something of an extension
+      }
       if (!isIndexInto(channel.node, file.nodes.size())) {
         return failure("{}: animation {} channel {}: node {} does not exist (the file has {})", document.name,
                        animation, i, channel.node, file.nodes.size());

@@ -195,8 +195,6 @@ GltfFile::Sampler sampler(const json& source) {
 GltfFile::Animation animation(const json& source) {
   GltfFile::Animation animation;
   takeAll(source, "channels", animation.channels, channel);
-  // Those without a node move something of an extension.
-  std::erase_if(animation.channels, [](const GltfFile::Channel& channel) { return channel.node < 0; });
   takeAll(source, "samplers", animation.samplers, sampler);
   return animation;
 }

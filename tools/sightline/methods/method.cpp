@@ -44,7 +44,8 @@ const std::vector<Method>& methods() {
          settings.map.raster = s.raster;
          return opacityMap(settings);
        },
-       {"resolution", "coverage", "tolerance", "coverage-ratio", "depth-comparison", "triangle-us"}},
+       {"resolution", "coverage", "tolerance", "coverage-ratio", "depth-comparison", "triangle-us"},
+       {"coverage"}},
       {"depth-pyramid",
        kDepthPyramidTraits,
        [](const Setting& s) {

@@ -16,8 +16,8 @@ struct Statistic {
   bool time = false;    // differs from run to run
 };
 
-// Those that mean something for the setting: of its sets, and those of its method that the method's row
-// names.
+// Those that mean something for the setting: of its sets, and those of its method but for the groups that the
+// method's row hides.
 std::vector<Statistic> statisticsOf(const Setting& setting);
 
 // Their values in the culler's last frame, in the same order.
