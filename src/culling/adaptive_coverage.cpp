@@ -6,9 +6,10 @@
 namespace sightline::culling {
 namespace {
 
-// Culling pays clearly where it saves so many times what it takes; in between nothing is changed.
+// Culling has a clear gain if it saves more than this many times what it takes. With a smaller gain the ratio
+// stays as it is.
 constexpr double kClearGain = 1.5;
-// Where it takes so many times what it saves it is suspended at once.
+// Culling is suspended at once if it takes more than this many times what it saves.
 constexpr double kHopeless = 4.0;
 
 }  // namespace
@@ -22,7 +23,7 @@ double AdaptiveCoverage::ratio() const {
 
 void AdaptiveCoverage::frame(double culling_us, double saved_us) {
   if (suspended()) {
-    if (--rest_ == 0) {
+    if (--retest_delay_ == 0) {
       trial_ = kTrial;
       step_ = 0;
     }
@@ -72,7 +73,7 @@ void AdaptiveCoverage::endWindow() {
 }
 
 void AdaptiveCoverage::raise() {
-  wait_ = lowered_ ? std::min(2 * wait_, kLongestWait) : wait_;
+  wait_ = lowered_ ? std::min(2 * wait_, kMaxWait) : wait_;
   lowered_ = false;
   good_ = 0;
   if (step_ == kSteps) {
@@ -89,7 +90,7 @@ void AdaptiveCoverage::lower() {
 }
 
 void AdaptiveCoverage::suspend() {
-  rest_ = kRest;
+  retest_delay_ = kRetestDelay;
   step_ = kSteps;
   lowered_ = false;
   good_ = 0;

@@ -1,36 +1,39 @@
 #pragma once
 
-// How much occlusion culling is worth its time, learned from what it took and saved.
+// Measures whether occlusion culling saves more time than it takes, and adjusts it accordingly.
 
 #include <cstdint>
 
 namespace sightline::culling {
 
-// The coverage ratio below which an opacity map gives up a node, adjusted by measured times (Poon and Wang
-// 1999, section 5.2, who leave open how). From the configured ratio it rises in steps to 1 while culling
-// takes longer than it saves; after that occlusion culling is suspended, and tried again now and then. Where
-// it pays, the ratio falls back. The same times give the same ratios.
+// Adjusts, by measured times, the coverage ratio below which an opacity map does not subdivide a node (Poon
+// and Wang 1999, section 5.2; the paper does not say how to adjust it). While culling takes longer than it
+// saves, the ratio rises in steps from the configured value to 1. If that does not help, occlusion culling is
+// suspended and tried again after a delay. When culling saves more than it takes, the ratio falls again.
+// Equal times give equal ratios.
 //
-// Decisions are made over windows of frames, and to lower the ratio takes a clear gain, so that it stays
-// where both are about equal. A step down that had to be taken back makes the next one wait longer.
+// Each decision is based on a window of several frames. The ratio is lowered only after a clear gain, so that
+// it does not oscillate where gain and cost are about equal. If a step down had to be undone, the next one
+// waits for more windows.
 class AdaptiveCoverage {
  public:
-  static constexpr std::uint32_t kWindow = 8;        // frames of a decision
-  static constexpr std::uint32_t kRest = 16;         // frames from suspending to the next trial
-  static constexpr std::uint32_t kTrial = 2;         // frames of a trial; only the last counts
-  static constexpr std::uint32_t kLongestWait = 32;  // windows before a step down, at most
+  static constexpr std::uint32_t kWindow = 8;        // frames per decision
+  static constexpr std::uint32_t kRetestDelay = 16;  // frames from suspending to the next trial
+  static constexpr std::uint32_t kTrial = 2;         // frames per trial; only the last one is measured
+  static constexpr std::uint32_t kMaxWait = 32;      // maximum number of windows before a step down
 
-  // The configured ratio, the least that is used: 0 to 1, what lies outside is clamped, and NaN is 0.
+  // ratio: the minimum coverage ratio. It is clamped to [0, 1], and NaN counts as 0.
   explicit AdaptiveCoverage(double ratio);
 
-  // For the next frame.
+  // The coverage ratio to use in the next frame.
   double ratio() const;
-  bool suspended() const { return rest_ > 0; }
+  // True if the next frame should do without occlusion culling.
+  bool suspended() const { return retest_delay_ > 0; }
 
-  // What a frame with these settings took and saved. culling_us: microseconds of the whole culling, its
-  // frustum tests included. saved_us: microseconds that drawing what it removed beyond frustum
-  // culling would have taken. Of frames while suspended both are ignored. Frames with times that are not
-  // finite count as not measured.
+  // Reports the times of a frame that used these settings. culling_us: microseconds that culling took,
+  // including its frustum tests. saved_us: microseconds that it would have taken to draw the objects that
+  // occlusion culling removed in addition to frustum culling. Both are ignored while culling is suspended,
+  // and so are frames whose times are not finite.
   void frame(double culling_us, double saved_us);
 
  private:
@@ -44,12 +47,15 @@ class AdaptiveCoverage {
   void startWindow();
 
   double min_ratio_ = 0.0;
-  std::uint32_t step_ = 0;                    // 0: the configured ratio; kSteps: 1
-  std::uint32_t rest_ = 0, trial_ = 0;        // frames left of each
-  std::uint32_t frames_ = 0;                  // in this window
-  double culling_us_ = 0.0, saved_us_ = 0.0;  // in this window
-  std::uint32_t wait_ = 1, good_ = 0;         // windows with a clear gain: wanted before a step down, seen
-  bool lowered_ = false;                      // the window before ended with a step down
+  std::uint32_t step_ = 0;          // 0: the configured ratio; kSteps: a ratio of 1
+  std::uint32_t retest_delay_ = 0;  // frames until suspended culling is tried again
+  std::uint32_t trial_ = 0;         // frames left of the current trial
+  // Frames measured in the current window, and the sums of their times, microseconds.
+  std::uint32_t frames_ = 0;
+  double culling_us_ = 0.0, saved_us_ = 0.0;
+  // Consecutive windows with a clear gain: the number needed before a step down, and the number seen so far.
+  std::uint32_t wait_ = 1, good_ = 0;
+  bool lowered_ = false;  // the last window ended with a step down
 };
 
 }  // namespace sightline::culling

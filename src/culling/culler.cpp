@@ -17,7 +17,7 @@ namespace {
 using culling::SceneSizes;
 using culling::SetFilter;
 
-// Microseconds since it was made, or since the last lap.
+// Measures the time, in microseconds, since its construction or the last lap().
 class Laps {
  public:
   double lap() {
@@ -29,7 +29,7 @@ class Laps {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// What the caller left out is empty.
+// Replaces null pointers by an empty hierarchy and an empty set of occluders.
 CullingScene withoutNulls(CullingScene scene) {
   static const Hierarchy kNoHierarchy;
   static const OccluderSet kNoOccluders;
@@ -59,7 +59,7 @@ struct Culler::Impl {
         traits(m.traits()),
         fitted(fitsTogether(given, traits)),
         sizes(SceneSizes::of(*scene.hierarchy, *scene.occluders)) {
-    // Nothing looks into a hierarchy of other boxes.
+    // A hierarchy that does not fit is never read.
     CullingScene checked = scene;
     if (!fitted) {
       checked.hierarchy = nullptr;
@@ -89,10 +89,10 @@ struct Culler::Impl {
     }
   }
 
-  // Whether the scene is what the constructor saw, as far as that can be told in constant time.
+  // Whether the scene is the one given to the constructor, as far as constant time allows to tell.
   bool fits() const { return fitted && sizes == SceneSizes::of(*scene.hierarchy, *scene.occluders); }
 
-  // Nothing is known of this frame's scene, or of its view.
+  // True if the scene does not fit together or the view is invalid, so that nothing may be culled.
   bool keepsEverything() const { return stats.unfit || stats.view_fault != nullptr; }
   void keepEverything() {
     visible.clear();
@@ -101,7 +101,7 @@ struct Culler::Impl {
     clearStatistics();
   }
 
-  // Finds the set of the eye's cell. Returns whether it is another one than in the last frame.
+  // Finds the set of the eye's cell. Returns true if it differs from that of the last frame.
   bool lookUp(const View& view) {
     Laps laps;
     const bool another = filter->find(view);
@@ -140,7 +140,7 @@ struct Culler::Impl {
     stats.traverse_us = laps.lap() - stats.detail_us;
   }
 
-  // The chosen occluders of the scene's set, and then all that move. Valid until the next call.
+  // Returns the chosen occluders of the scene, followed by all moving ones. Valid until the next call.
   std::span<const ChosenOccluders> inUse(std::span<const OccluderId> chosen, const OccluderSet* moving) {
     in_use[0] = {scene.occluders, chosen};
     if (moving == nullptr) {
@@ -179,23 +179,23 @@ struct Culler::Impl {
     return laps.lap();
   }
 
-  CullingScene given;  // by the caller
-  CullingScene scene;  // without nulls
+  CullingScene given;  // as the caller passed it
+  CullingScene scene;  // the same without null pointers
   CullerSettings settings;
   std::unique_ptr<CullingMethod> owned;
   CullingMethod* method;  // owned, or about to be
   MethodTraits traits;
-  bool fitted;                                    // the scene's parts belong together
-  SceneSizes sizes;                               // as the constructor saw them
-  std::optional<SetFilter> filter;                // where sets are used
-  std::optional<culling::OccluderChoice> choice;  // where the method has occluders
+  bool fitted;                                    // the parts of the scene belong together
+  SceneSizes sizes;                               // at construction
+  std::optional<SetFilter> filter;                // if sets are used
+  std::optional<culling::OccluderChoice> choice;  // if the method uses occluders
   culling::LastView last_view;
   ParallelFor parallel_for = serialFor;
   std::array<ChosenOccluders, 2> in_use;  // see inUse()
   std::vector<OccluderId> all_moving;
   std::vector<ObjectId> visible;
   std::vector<Visibility> dynamic_states;
-  // Those of the moving boxes that the method is asked about, by their index.
+  // The moving boxes that the method classifies: their indices, the boxes and the results.
   std::vector<std::size_t> asked;
   std::vector<MovingBox> asked_boxes;
   std::vector<Visibility> asked_states;

@@ -6,8 +6,8 @@
 namespace sightline::culling {
 namespace {
 
-constexpr std::uint32_t kMaxCells = 64;  // along a side of the map
-constexpr double kMinCosine = 0.1;       // of a window's corners, to the viewing direction
+constexpr std::uint32_t kMaxCells = 64;  // along a side of the depth buffer
+constexpr double kMinCosine = 0.1;       // between a window's corners and the viewing direction
 constexpr double kMinTangent = 1e-6;     // of half a window's angle
 constexpr double kNearMargin = 1.0 + 1e-6;
 
@@ -21,19 +21,19 @@ FocusWindow::FocusWindow(const FocusSettings& settings, std::uint32_t width, std
   const std::uint32_t cell = 1u << cell_shift_;
   columns_ = (width + cell - 1) / cell;
   rows_ = (height + cell - 1) / cell;
-  const auto cells = [&](std::uint32_t pixels, std::uint32_t most) {
+  const auto cells = [&](std::uint32_t pixels, std::uint32_t max) {
     const double wanted = pixels / settings.magnification / cell;
-    return std::clamp(static_cast<std::uint32_t>(std::min(wanted + 0.5, 1e6)), 1u, most);
+    return std::clamp(static_cast<std::uint32_t>(std::min(wanted + 0.5, 1e6)), 1u, max);
   };
   window_columns_ = cells(settings.raster.width, columns_);
   window_rows_ = cells(settings.raster.height, rows_);
-  heat_.assign((columns_ + 1) * (rows_ + 1), 0);
+  counts_.assign((columns_ + 1) * (rows_ + 1), 0);
 }
 
 void FocusWindow::begin(const View& view, bool after_last) {
   Vec3d direction;
   found_ = after_last && !view.orthographic && findDirection(direction) && setWindow(view, direction);
-  std::fill(heat_.begin(), heat_.end(), 0u);
+  std::fill(counts_.begin(), counts_.end(), 0u);
   last_ = PixelView(view, width_, height_);
 }
 
@@ -42,23 +42,23 @@ bool FocusWindow::findDirection(Vec3d& direction) {
   for (std::uint32_t y = 1; y <= rows_; ++y) {
     std::uint32_t in_row = 0;
     for (std::uint32_t x = 1; x <= columns_; ++x) {
-      in_row += heat_[y * stride + x];
-      heat_[y * stride + x] = heat_[(y - 1) * stride + x] + in_row;
+      in_row += counts_[y * stride + x];
+      counts_[y * stride + x] = counts_[(y - 1) * stride + x] + in_row;
     }
   }
-  std::uint32_t most = 0, best_x = 0, best_y = 0;
+  std::uint32_t max_sum = 0, best_x = 0, best_y = 0;
   for (std::uint32_t y = 0; y + window_rows_ <= rows_; ++y) {
-    const std::uint32_t *low = &heat_[y * stride], *high = low + window_rows_ * stride;
+    const std::uint32_t *low = &counts_[y * stride], *high = low + window_rows_ * stride;
     for (std::uint32_t x = 0; x + window_columns_ <= columns_; ++x) {
       const std::uint32_t sum = high[x + window_columns_] - high[x] - low[x + window_columns_] + low[x];
-      if (sum > most) {
-        most = sum;
+      if (sum > max_sum) {
+        max_sum = sum;
         best_x = x;
         best_y = y;
       }
     }
   }
-  if (most < settings_.min_objects) {
+  if (max_sum < settings_.min_objects) {
     return false;
   }
   const double cell = 1u << cell_shift_;
@@ -69,10 +69,10 @@ bool FocusWindow::findDirection(Vec3d& direction) {
 }
 
 bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
-  const PixelView map(view, width_, height_);
+  const PixelView buffer(view, width_, height_);
   const double half_width = 0.5 * settings_.raster.width / settings_.magnification;
   const double half_height = 0.5 * settings_.raster.height / settings_.magnification;
-  const double tan_x = half_width / map.scale_x, tan_y = half_height / map.scale_y;
+  const double tan_x = half_width / buffer.scale_x, tan_y = half_height / buffer.scale_y;
   if (!(tan_x > kMinTangent && tan_y > kMinTangent)) {
     return false;
   }
@@ -81,7 +81,8 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
   window_.tan_half_fovy = tan_y;
   window_.aspect = tan_x / tan_y;
   tan_half_diagonal_ = std::sqrt(tan_x * tan_x + tan_y * tan_y);
-  // No nearer to the view's own near plane: what lies before that is not drawn and hides nothing.
+  // Move the window's near plane beyond the view's own: geometry in front of that is not drawn and hides
+  // nothing.
   double cosine = 1.0;
   for (const double sx : {-1.0, 1.0}) {
     for (const double sy : {-1.0, 1.0}) {
@@ -93,8 +94,8 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
       cosine = std::min(cosine, of_corner);
     }
   }
-  const Vec3d c = map.toCamera(window_.forward);
-  if (!map.sane() || !(tan_half_diagonal_ < 1.0)) {
+  const Vec3d c = buffer.toCamera(window_.forward);
+  if (!buffer.sane() || !(tan_half_diagonal_ < 1.0)) {
     return false;
   }
   window_.near = view.near / cosine * kNearMargin;
@@ -102,10 +103,10 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
   const auto pixel = [](double at, std::uint32_t size) {
     return static_cast<std::uint16_t>(std::clamp(at, 0.0, size - 1.0));
   };
-  x0_ = pixel(map.mapX(c) - half_width, width_);
-  x1_ = pixel(map.mapX(c) + half_width, width_);
-  y0_ = pixel(map.mapY(c) - half_height, height_);
-  y1_ = pixel(map.mapY(c) + half_height, height_);
+  x0_ = pixel(buffer.pixelX(c) - half_width, width_);
+  x1_ = pixel(buffer.pixelX(c) + half_width, width_);
+  y0_ = pixel(buffer.pixelY(c) - half_height, height_);
+  y1_ = pixel(buffer.pixelY(c) + half_height, height_);
   return true;
 }
 

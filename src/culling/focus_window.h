@@ -1,7 +1,8 @@
 #pragma once
 
-// The part of a view where a map of occluders leaks most, for a second map that is finer there. Far down a
-// street everything is a few pixels wide, and no pixel is wholly covered.
+// Chooses the part of a view in which the depth buffer of the occluders hides fewest objects, for a second
+// depth buffer with a finer resolution there. At the far end of a street, for example, occluders are a few
+// pixels wide and hardly cover any pixel completely.
 
 #include <cstdint>
 #include <vector>
@@ -13,31 +14,34 @@ namespace sightline::culling {
 
 class FocusWindow {
  public:
-  // width, height: of the map that leaks.
+  // width, height: of the first depth buffer, pixels.
   FocusWindow(const FocusSettings& settings, std::uint32_t width, std::uint32_t height);
 
-  // So many objects, about this pixel of the map, are not hidden by it.
+  // Counts objects that the first depth buffer does not hide, around its pixel (x, y).
   void add(std::uint32_t x, std::uint32_t y, std::uint32_t objects) {
-    heat_[((y >> cell_shift_) + 1) * (columns_ + 1) + (x >> cell_shift_) + 1] += objects;
+    counts_[((y >> cell_shift_) + 1) * (columns_ + 1) + (x >> cell_shift_) + 1] += objects;
   }
-  // Begins a view. A window is looked for where most objects were added in the last one; without a last one,
-  // or where they are few, there is none. Orthographic views have none.
+  // Starts a view and places the window where the most objects were counted in the last view. There is no
+  // window if after_last is false, if the objects are fewer than FocusSettings::min_objects, or if the view
+  // is orthographic.
   void begin(const View& view, bool after_last);
 
   bool found() const { return found_; }
-  // Of the window: the same eye, turned, with a narrow angle. What it takes for hidden is hidden in the view
-  // that it was made for.
+  // The window as a view: it has the same eye as the main view, another direction and a narrower angle. What
+  // is hidden in it is hidden in the main view too.
   const View& view() const { return window_; }
-  // Whether a box about this pixel of the map may lie in the window.
-  bool about(std::uint32_t x, std::uint32_t y) const { return x >= x0_ && x <= x1_ && y >= y0_ && y <= y1_; }
-  // The window's pixels on the map, about.
-  void tell(BoxHints& hints) const {
+  // Whether a box around pixel (x, y) of the first depth buffer may lie in the window.
+  bool mayContain(std::uint32_t x, std::uint32_t y) const {
+    return x >= x0_ && x <= x1_ && y >= y0_ && y <= y1_;
+  }
+  // Writes the approximate rectangle of the window in the first depth buffer to the hints.
+  void writeTo(BoxHints& hints) const {
     hints.window_x0 = x0_;
     hints.window_y0 = y0_;
     hints.window_x1 = x1_;
     hints.window_y1 = y1_;
   }
-  // Whether some of the box may be seen in the window.
+  // Whether a part of the box may be in the window.
   bool mayShow(const Box& box) const;
 
  private:
@@ -47,16 +51,18 @@ class FocusWindow {
   bool setWindow(const View& view, const Vec3d& direction);
 
   FocusSettings settings_;
-  std::uint32_t width_, height_;                // of the map
-  std::uint32_t cell_shift_ = kMinCellShift;    // a cell's side is 1 << this, pixels
+  std::uint32_t width_, height_;                // of the first depth buffer, pixels
+  std::uint32_t cell_shift_ = kMinCellShift;    // the side of a cell is 1 << cell_shift_ pixels
   std::uint32_t columns_, rows_;                // cells
   std::uint32_t window_columns_, window_rows_;  // cells
-  std::vector<std::uint32_t> heat_;             // by cell; the first row and column are of zeros
-  PixelView last_;
+  // Objects counted per cell; the row and the column before the first cells are zeros. begin() turns the
+  // counts into a summed-area table.
+  std::vector<std::uint32_t> counts_;
+  PixelView last_;  // the view in which the objects were counted
   bool found_ = false;
   View window_;
   double tan_half_diagonal_ = 0.0;
-  std::uint16_t x0_ = 1, y0_ = 1, x1_ = 0, y1_ = 0;  // of the map, first and last pixels
+  std::uint16_t x0_ = 1, y0_ = 1, x1_ = 0, y1_ = 0;  // first and last pixels in the first depth buffer
 };
 
 }  // namespace sightline::culling

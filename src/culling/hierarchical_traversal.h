@@ -1,11 +1,11 @@
 #pragma once
 
-// The one walk through a hierarchy that every from-point method uses.
+// The traversal of a hierarchy that is common to the methods that test one box at a time.
 //
 // Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998,
 // sections 5.3, 5.4; Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997,
-// section 4. Differs from the papers in: objects of leaves that stay partly visible may be tested by their
-// own boxes.
+// section 4. Differs from the papers in: the objects in partly visible leaves may be tested by their own
+// boxes.
 
 #include <cstdint>
 #include <span>
@@ -20,22 +20,25 @@
 
 namespace sightline::culling {
 
-// A box that the walk asks about.
+// A box that the traversal tests.
 struct TraversalBox {
   const Box& box;
-  std::uint32_t item;  // a node's number, or the number of nodes plus an entry's in Hierarchy::objects
-  std::uint8_t frustum_planes;  // bit i is clear where it is inside of the frustum's plane i
+  // Index of the node, or the number of nodes plus an index into Hierarchy::objects.
+  std::uint32_t item;
+  std::uint8_t frustum_planes;  // bit i is clear if the box is inside of the frustum's plane i
 };
 
-// What the walk needs of an occlusion structure:
+// An occlusion structure that the traversal can use has these functions:
 //
 //   Visibility classify(const TraversalBox&, OccluderList among, OccluderList& touching)
-//     The box's state. among: what was touching the node above, or start() at the root.
+//     Returns the box's state. among: the occluders to test, which are those that touched the parent node, or
+//     start() at the root. touching: receives those that touch this box.
 //   OccluderList start()
+//     Returns the occluders to test at the root.
 //   void settled(NodeIndex)
-//     The node was found hidden or visible, so the walk ends here.
+//     Is called when a node was found hidden or visible, so that the traversal does not test below it.
 //
-// This one asks all occluders, whatever lies above.
+// This structure always tests against all occluders.
 template <typename Classify>
 struct AskAll {
   Classify classify_box;  // TraversalBox -> Visibility
@@ -51,7 +54,8 @@ struct TraversalOptions {
   std::uint32_t min_node_cost = 0;
   bool temporal_coherence = true;
   bool test_objects = true;
-  const SetFilter* filter = nullptr;  // with marks; what is not in it is left out. Null: no filter
+  // Objects that are not in the filter's set are left out. It needs SetFilter::Marks::kAll; null: no filter.
+  const SetFilter* filter = nullptr;
 };
 
 class HierarchicalTraversal {
@@ -63,7 +67,7 @@ class HierarchicalTraversal {
         decided_(object_bounds.size()),
         partial_(hierarchy.nodes.size(), false) {}
 
-  // Appends the objects that may be seen to out, ascending.
+  // Appends the objects that may be visible to out, in ascending order, and adds to the counts of stats.
   template <typename Structure>
   void run(const Frustum& frustum, const TraversalOptions& options, Structure&& structure, CullStats& stats,
            std::vector<ObjectId>& out) {
@@ -85,16 +89,16 @@ class HierarchicalTraversal {
 
   struct Entry {
     std::uint32_t node, parent;
-    OccluderList occluders;  // that may hide some of it
-    std::uint8_t planes;     // of the frustum that still cut it
-    bool surely_visible;     // with respect to the occluders
+    OccluderList occluders;  // the occluders that may hide a part of the node
+    std::uint8_t planes;     // bit i is set if the frustum's plane i may cut the node
+    bool surely_visible;     // no occluder hides any part of the node
   };
 
   template <typename Structure>
   void visit(const Entry& entry, const Frustum& frustum, const TraversalOptions& options,
              Structure&& structure, CullStats& stats) {
     if (options.filter != nullptr && !options.filter->hasNode(entry.node)) {
-      // That says nothing of what can be seen, now or then: neither of the node nor of its parent.
+      // The node is not in the set of this view. Nothing is learned about its visibility, nor its parent's.
       partial_[entry.node] = false;
       return;
     }
@@ -111,7 +115,7 @@ class HierarchicalTraversal {
     OccluderList occluders = entry.occluders;
     bool skipped = false;
     if (!entry.surely_visible && node.cost >= options.min_node_cost) {
-      // A node with a box that says nothing may still hold objects that are hidden.
+      // The box of such a node is not bounded, but objects below it may still be hidden.
       const bool unbounded = !node.leaf() && !node.bounds.wellFormed();
       skipped = unbounded || (options.temporal_coherence && !node.leaf() && partial_[entry.node]);
       if (skipped) {
@@ -150,7 +154,7 @@ class HierarchicalTraversal {
     }
   }
 
-  // A node's state became certain: it, and its parent, are tested again in the next frame.
+  // Records that the node's state is certain: the node and its parent are tested again in the next frame.
   void settle(const Entry& entry) {
     partial_[entry.node] = false;
     if (entry.parent != kNoParent) {
@@ -177,7 +181,7 @@ class HierarchicalTraversal {
       const Box& box = object_bounds_[object.value];
       const bool is_the_node = box == leaf.bounds;
       if (!is_the_node) {
-        // An object in several leaves is judged once: the answer is for the whole of it.
+        // An object in several leaves is tested once, because its own box gives the same answer in each.
         if (hierarchy_.kind == HierarchyKind::kKdTree && !decided_.insert(object)) {
           continue;
         }
@@ -202,7 +206,9 @@ class HierarchicalTraversal {
   const Hierarchy& hierarchy_;
   std::span<const Box> object_bounds_;
   ObjectBits visible_, decided_;
-  std::vector<bool> partial_;  // by node: found partly visible, and no child has become certain since
+  // By node: it was partly visible, and no child has been found hidden or visible since. It need not be
+  // tested.
+  std::vector<bool> partial_;
   std::vector<Entry> stack_;
 };
 

@@ -4,11 +4,11 @@
 
 namespace sightline::culling {
 
-// The view of the last frame: what changed since then.
+// Keeps the view of the last frame, to detect jumps of the camera.
 class LastView {
  public:
-  // Takes the next view. Returns whether it has little to do with the last one: there was none, the observer
-  // turned by more than 60 degrees, or the step is more than ten times the last one.
+  // Takes the next view. Returns true if the camera jumped: there was no last view, the camera turned by more
+  // than 60 degrees, or its step is more than ten times the last one.
   bool jumpsTo(const View& view) {
     const double step = known_ ? length(view.eye - eye_) : 0.0;
     const bool jump =
@@ -21,7 +21,7 @@ class LastView {
   }
   void forget() { known_ = false; }
 
-  // Metres of the last step that was neither a jump nor 0; 0 until there was one.
+  // Length of the last step that was neither a jump nor 0, metres; 0 if there was none yet.
   double step() const { return step_; }
 
  private:

@@ -8,14 +8,15 @@
 
 namespace sightline::culling {
 
-// A set of objects in which insertion, clearing and enumeration in ascending order cost what is in it, not
-// what could be: a bit an object, and a bit for each 64 of those.
+// A set of objects with one bit per object, and a summary with one bit per 64 objects. Insertion takes
+// constant time. Clearing and enumeration in ascending order take time in proportion to the objects in the
+// set, apart from one word of the summary per 4096 possible objects.
 class ObjectBits {
  public:
   explicit ObjectBits(std::size_t object_count)
       : words_((object_count + 63) / 64), summary_((words_.size() + 63) / 64) {}
 
-  // False when it was there already.
+  // Returns false if the object was already in the set.
   bool insert(ObjectId object) {
     const std::size_t word = object.value / 64;
     const std::uint64_t bit = std::uint64_t{1} << (object.value % 64);
@@ -27,7 +28,7 @@ class ObjectBits {
     return true;
   }
 
-  // Appends all members in ascending order and empties the set.
+  // Appends the objects of the set in ascending order and empties the set.
   void drainInto(std::vector<ObjectId>& out) {
     forEachWord([&](std::size_t word) {
       for (std::uint64_t bits = words_[word]; bits != 0; bits &= bits - 1) {
@@ -42,7 +43,7 @@ class ObjectBits {
   }
 
  private:
-  // Visits the words with members and empties the summary.
+  // Visits the words that are not zero and clears the summary.
   template <typename Visit>
   void forEachWord(Visit visit) {
     for (std::size_t s = 0; s < summary_.size(); ++s) {

@@ -5,7 +5,7 @@
 namespace sightline::culling {
 namespace {
 
-// A search that found little is not repeated for so many frames.
+// Number of frames for which a search that found few new occluders is not repeated.
 constexpr std::uint32_t kSearchPause = 16;
 
 }  // namespace
@@ -22,9 +22,8 @@ std::span<const OccluderId> OccluderChoice::choose(const ChoiceFrame& frame) {
                           : chooser_.choose(frame.view, *scene_.occluders, list, choice);
 }
 
-// Temporal coherence of the choice: what was seen in the last frame holds the occluders of this one. Without
-// a last frame that resembles this one, or when little of it is left in view, all objects in the frustum are
-// looked through.
+// Uses temporal coherence: the objects that were visible in the last frame provide the candidates of this
+// one. After a jump, or when too few of these occluders are in view, all objects in the frustum are searched.
 std::span<const OccluderId> OccluderChoice::chooseAmongSeen(const ChoiceFrame& frame, ChoiceSettings choice) {
   choice.max_distance = frame.jumped ? 0.0 : settings_.lambda_steps * frame.last_step;
   std::span<const OccluderId> chosen;

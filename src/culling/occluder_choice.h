@@ -1,7 +1,6 @@
 #pragma once
 
-// Chooses the occluders of a frame: from lists that were made ahead, or among the objects that the last frame
-// kept.
+// Chooses the occluders of a frame from precomputed lists, or from the objects that the last frame kept.
 
 #include <cstdint>
 #include <span>
@@ -14,15 +13,15 @@
 
 namespace sightline::culling {
 
-// What the choice needs to know of a frame.
+// The input of OccluderChoice for one frame.
 struct ChoiceFrame {
   const View& view;
   const Frustum& frustum;
-  bool jumped;       // the view has little to do with that of the last frame
-  double last_step;  // metres that the observer moved between the last two frames without a jump
+  bool jumped;       // the view is not coherent with that of the last frame, see LastView::jumpsTo
+  double last_step;  // metres, see LastView::step
   std::span<const ObjectId> last_visible;
   const SetFilter* filter;  // null: no filter
-  bool bodies;              // see CullingMethod::drawsBodies
+  bool bodies;              // choose convex bodies as a whole, see CullingMethod::drawsBodies
 };
 
 class OccluderChoice {
@@ -38,7 +37,7 @@ class OccluderChoice {
 
   CullingScene scene_;
   OccluderChoiceSettings settings_;
-  HierarchicalTraversal search_;  // for objects in the frustum, whose occluders are candidates
+  HierarchicalTraversal search_;  // finds the objects in the frustum, whose occluders are the candidates
   OccluderChooser chooser_;
   std::vector<ObjectId> candidates_;
   std::uint32_t frames_since_search_ = 0, frames_between_searches_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether the parts of a scene that a culler is given belong together, and what to keep where they do not.
+// Checks whether the parts of a scene that a culler is given belong together; if not, all objects are kept.
 
 #include <cstddef>
 #include <span>
@@ -14,15 +14,17 @@
 
 namespace sightline::culling {
 
-// Whether the hierarchy is of these boxes, by ObjectId: its leaves name every object and no other one, and
-// the box around the leaves that name an object holds the object's box. It takes time in proportion to both.
+// Whether the hierarchy was built from these boxes (one per ObjectId): its leaves name every object and no
+// other, and the box around the leaves that name an object contains the object's box. The time is linear in
+// the sizes of both.
 bool isOf(const Hierarchy& hierarchy, std::span<const Box> object_bounds);
 
-// Whether each leaf of the tree is one object with this very box (an infinite one where the object's is not
-// well formed), and each object is a leaf. A set of any other tree would hide what it does not know.
+// Whether each leaf of the tree is one object with exactly its box (an infinite box if the object's own is
+// not well formed), and each object is a leaf. Sets of any other tree could hide objects that they do not
+// know.
 bool isOf(const BoxTreeView& tree, std::span<const Box> object_bounds);
 
-// What a change of the scene in place nearly always changes; read in constant time.
+// Four sizes of a scene, read in constant time. Nearly every change of a scene in place changes one of them.
 struct SceneSizes {
   std::size_t nodes = 0, leaf_entries = 0, occluders = 0, corners = 0;
 

@@ -40,7 +40,7 @@ SetFilter::SetFilter(const Hierarchy& hierarchy, std::span<const Box> object_bou
 
 bool SetFilter::find(const View& view) {
   VisibleSet set;
-  // From an orthographic view's eye nothing is looked at.
+  // Sets hold for viewpoints, and the rays of an orthographic view do not start at its eye.
   if (sets_ != nullptr && !view.orthographic && treeIsTheSame()) {
     set = sets_->find(view.eye, nearDistance(view));
   }
@@ -60,7 +60,8 @@ bool SetFilter::find(const View& view) {
   return another;
 }
 
-// Sets that were replaced by others in the same place have their boxes elsewhere.
+// Whether boxes() still views the same memory. If the caller replaced the sets in place by others, it does
+// not.
 bool SetFilter::treeIsTheSame() const {
   const BoxTreeView now = sets_->boxes();
   return now.nodes.data() == tree_.nodes.data() && now.nodes.size() == tree_.nodes.size() &&

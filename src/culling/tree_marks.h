@@ -1,7 +1,7 @@
 #pragma once
 
-// Which parts of a tree hold something of a set of objects. Marking another set costs what is in the sets,
-// not what is in the tree.
+// Marks the items of a tree that contain an object of a set. Marking another set takes time in proportion to
+// the sizes of the two sets, not to the size of the tree.
 
 #include <cstdint>
 #include <span>
@@ -13,10 +13,10 @@
 
 namespace sightline::culling {
 
-// Objects in two forms.
+// A set of objects, as marks and as a list.
 struct ObjectSet {
-  std::span<const std::uint8_t> marks;  // by object, not 0: in the set; empty: all objects are
-  std::span<const ObjectId> list;       // those with a mark, each once
+  std::span<const std::uint8_t> marks;  // by object: not 0 if it is in the set; empty: all objects are
+  std::span<const ObjectId> list;       // the objects of the set, each once; empty if all objects are in it
 
   bool everything() const { return marks.empty(); }
   bool has(ObjectId object) const { return everything() || marks[object.value] != 0; }
@@ -26,13 +26,13 @@ class TreeMarks {
  public:
   static constexpr std::uint32_t kTop = 0xffffffffu;
 
-  // An item of the tree that names an object.
+  // An object and an item of the tree that names it.
   struct Place {
     ObjectId object;
     std::uint32_t item;
   };
 
-  // parents: by item; kTop for those that have none. places: any number an object.
+  // parents: one element per item, kTop for items without a parent. places: any number per object.
   TreeMarks(std::vector<std::uint32_t> parents, std::span<const Place> places, std::size_t object_count)
       : parents_(std::move(parents)), marks_(parents_.size(), 0) {
     items_of_.group(object_count, [&](auto&& body) {
@@ -43,7 +43,7 @@ class TreeMarks {
     marked_.reserve(parents_.size());
   }
 
-  // All items at or above these objects; the marks of the call before are gone.
+  // Marks all items that name these objects, and the items above them. Removes the marks of the last call.
   void mark(std::span<const ObjectId> objects) {
     for (const std::uint32_t item : marked_) {
       marks_[item] = 0;
@@ -59,7 +59,7 @@ class TreeMarks {
     }
   }
 
-  // By item: all bits set where it is marked, else 0.
+  // One element per item: 0xff if the item is marked, else 0.
   std::span<const std::uint8_t> marks() const { return marks_; }
 
  private:
@@ -68,7 +68,7 @@ class TreeMarks {
   std::vector<std::uint32_t> parents_;
   base::Rows<std::uint32_t> items_of_;  // by object
   std::vector<std::uint8_t> marks_;
-  std::vector<std::uint32_t> marked_;
+  std::vector<std::uint32_t> marked_;  // items
 };
 
 }  // namespace sightline::culling

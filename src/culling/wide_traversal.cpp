@@ -8,80 +8,86 @@ using hierarchy::kWideChildren;
 using hierarchy::WideNode;
 
 namespace {
-// Views that a box is kept without a question after it was found not hidden; up to three more.
-constexpr std::uint8_t kMinRest = 6;
+// Number of views for which a box is not tested again after it was found not hidden; up to 3 are added.
+constexpr std::uint8_t kMinRetestDelay = 6;
 }  // namespace
 
-class WideTraversal::Walker {
+class WideTraversal::Task {
  public:
-  Walker(WideTraversal& walk, const TraversalMaps& maps, const TraversalOptions& options, Found& found)
-      : hierarchy_(walk.hierarchy_),
-        wide_(walk.wide_),
-        rest_(walk.rest_),
-        in_set_(walk.in_set_),
-        child_marks_(walk.child_marks_ ? walk.child_marks_->marks() : std::span<const std::uint8_t>()),
-        maps_(maps),
+  Task(WideTraversal& traversal, const TraversalBuffers& buffers, const TraversalOptions& options,
+       Found& found)
+      : hierarchy_(traversal.hierarchy_),
+        wide_(traversal.wide_),
+        retest_delay_(traversal.retest_delay_),
+        in_set_(traversal.in_set_),
+        child_marks_(traversal.child_marks_ ? traversal.child_marks_->marks()
+                                            : std::span<const std::uint8_t>()),
+        buffers_(buffers),
         options_(options),
         found_(found) {}
 
-  // Nodes that are to be visited next go to found.stack.
+  // Tests the children of a node: appends the objects to keep to found.kept, and the nodes to visit to
+  // found.stack.
   void visit(const Entry& entry);
 
  private:
-  // Of children `begin` to before `end` of the node: how many are in the set.
-  std::uint32_t members(const WideNode& node, std::uint32_t begin, std::uint32_t end) const;
-  // Their answers: past the occluders, or for the view's volume alone. What is not in the set is hidden.
-  void ask(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
-  void askMembers(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
-  void askMap(std::span<const Box> boxes, std::span<const std::uint8_t> rest, std::size_t plain_from,
-              bool view_only, std::span<BoxAnswer> answers);
-  void askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end);
+  // The functions below are about the node's children `begin` (inclusive) to `end` (exclusive).
+  // Counts those that are in the set.
+  std::uint32_t countInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end) const;
+  // Writes their answers to found.answers: against the occluders, or with view_only against the view's volume
+  // alone. Children that are not in the set count as hidden.
+  void test(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
+  void testInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
+  void testBuffer(std::span<const Box> boxes, std::span<const std::uint8_t> retest_delay,
+                  std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers);
+  void testFineBuffer(const WideNode& node, std::uint32_t begin, std::uint32_t end);
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
   const Hierarchy& hierarchy_;
   const hierarchy::WideHierarchy& wide_;
-  std::span<std::uint8_t> rest_;
+  std::span<std::uint8_t> retest_delay_;
   ObjectSet in_set_;
-  std::span<const std::uint8_t> child_marks_;  // unless everything is in the set
-  const TraversalMaps& maps_;
+  std::span<const std::uint8_t> child_marks_;  // empty if all objects are in the set
+  const TraversalBuffers& buffers_;
   const TraversalOptions& options_;
   Found& found_;
 };
 
-void WideTraversal::run(const TraversalMaps& maps, const TraversalOptions& options, CullStats& stats,
+void WideTraversal::run(const TraversalBuffers& buffers, const TraversalOptions& options, CullStats& stats,
                         std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
   entries_.clear();
   if (!wide_.nodes.empty()) {
-    // Of the root only the children are asked about; so it must be cheap by its own count.
+    // The root itself is never tested, only its children. So its own cost decides here.
     entries_.push_back({0, wide_.nodes[0].cost < options.min_node_cost});
   }
-  // Level by level until there is enough to share.
+  // Descend level by level until there are enough entries to distribute to tasks.
   Found& first = found_[0];
   std::size_t next = 0;
   while (next < entries_.size() && entries_.size() - next < kMaxRanges - kWideChildren) {
-    Walker(*this, maps, options, first).visit(entries_[next++]);
+    Task(*this, buffers, options, first).visit(entries_[next++]);
     entries_.insert(entries_.end(), first.stack.begin(), first.stack.end());
     first.stack.clear();
   }
-  take(first, maps, stats);
+  take(first, buffers, stats);
   entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(next));
   const auto count = static_cast<std::uint32_t>(entries_.size());
-  // One reference is captured: more would be put on the heap.
-  const auto walk_range = [&](std::uint32_t begin, std::uint32_t end) {
+  // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
+  const auto traverseRange = [&](std::uint32_t begin, std::uint32_t end) {
     Found& found = found_[begin];
-    Walker walker(*this, maps, options, found);
+    Task task(*this, buffers, options, found);
     for (std::uint32_t i = begin; i < end; ++i) {
       found.stack.push_back(entries_[i]);
       while (!found.stack.empty()) {
         const Entry entry = found.stack.back();
         found.stack.pop_back();
-        walker.visit(entry);
+        task.visit(entry);
       }
     }
   };
-  parallel_for(count, [&walk_range](std::uint32_t begin, std::uint32_t end) { walk_range(begin, end); });
+  parallel_for(count,
+               [&traverseRange](std::uint32_t begin, std::uint32_t end) { traverseRange(begin, end); });
   for (std::uint32_t i = 0; i < count; ++i) {
-    take(found_[i], maps, stats);
+    take(found_[i], buffers, stats);
   }
   visible_.drainInto(out);
 }
@@ -112,18 +118,18 @@ void WideTraversal::restrictTo(const ObjectSet& objects) {
     child_marks_.emplace(marksOfChildren());
   }
   child_marks_->mark(objects.list);
-  // What was found of a child before it left the set says nothing of when it comes back.
-  for (std::size_t child = 0; child < rest_.size(); ++child) {
-    rest_[child] &= child_marks_->marks()[child];
+  // Reset the delay of children outside the set: it is out of date when they come back.
+  for (std::size_t child = 0; child < retest_delay_.size(); ++child) {
+    retest_delay_[child] &= child_marks_->marks()[child];
   }
 }
 
-void WideTraversal::take(Found& found, const TraversalMaps& maps, CullStats& stats) {
+void WideTraversal::take(Found& found, const TraversalBuffers& buffers, CullStats& stats) {
   for (const ObjectId object : found.kept) {
     visible_.insert(object);
   }
   for (const Shown& shown : found.shown) {
-    maps.window->add(shown.x, shown.y, shown.objects);
+    buffers.window->add(shown.x, shown.y, shown.objects);
   }
   stats.nodes_visited += found.nodes_visited;
   stats.nodes_tested += found.nodes_tested;
@@ -133,29 +139,29 @@ void WideTraversal::take(Found& found, const TraversalMaps& maps, CullStats& sta
   found.nodes_visited = found.nodes_tested = found.objects_tested = 0;
 }
 
-void WideTraversal::Walker::visit(const Entry& entry) {
+void WideTraversal::Task::visit(const Entry& entry) {
   const WideNode& node = wide_.nodes[entry.node];
   const std::uint32_t children = node.child_end - node.first_child;
-  // Children that are nodes lie in the order of their cost: first those to be asked about.
-  std::uint32_t asked = entry.surely_visible ? 0 : node.node_count;
-  while (asked > 0 && wide_.nodes[node.first_node + asked - 1].cost < options_.min_node_cost) {
-    --asked;
+  // Child nodes are sorted by descending cost, so those to be tested are the first ones.
+  std::uint32_t tested = entry.surely_visible ? 0 : node.node_count;
+  while (tested > 0 && wide_.nodes[node.first_node + tested - 1].cost < options_.min_node_cost) {
+    --tested;
   }
   const bool test_objects = !entry.surely_visible && options_.test_objects;
   found_.answers.resize(std::max<std::size_t>(found_.answers.size(), children));
-  if (asked == node.node_count && test_objects) {
-    ask(node, 0, children, false);
+  if (tested == node.node_count && test_objects) {
+    test(node, 0, children, false);
   } else {
-    ask(node, 0, asked, false);
-    ask(node, asked, node.node_count, true);
-    ask(node, node.node_count, children, !test_objects);
+    test(node, 0, tested, false);
+    test(node, tested, node.node_count, true);
+    test(node, node.node_count, children, !test_objects);
   }
-  found_.nodes_visited += members(node, 0, node.node_count);
-  found_.nodes_tested += members(node, 0, asked);
-  found_.objects_tested += test_objects ? members(node, node.node_count, children) : 0;
+  found_.nodes_visited += countInSet(node, 0, node.node_count);
+  found_.nodes_tested += countInSet(node, 0, tested);
+  found_.objects_tested += test_objects ? countInSet(node, node.node_count, children) : 0;
 
   for (std::uint32_t i = 0; i < node.node_count; ++i) {
-    keepNode(node.first_node + i, found_.answers[i], i >= asked);
+    keepNode(node.first_node + i, found_.answers[i], i >= tested);
   }
   for (std::uint32_t i = node.node_count; i < children; ++i) {
     if (found_.answers[i].visibility != Visibility::kHidden) {
@@ -164,51 +170,52 @@ void WideTraversal::Walker::visit(const Entry& entry) {
   }
 }
 
-void WideTraversal::Walker::ask(const WideNode& node, std::uint32_t begin, std::uint32_t end,
-                                bool view_only) {
+void WideTraversal::Task::test(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only) {
   if (begin == end) {
     return;
   }
   const std::span<BoxAnswer> answers = std::span(found_.answers).subspan(begin, end - begin);
-  const std::span<std::uint8_t> rest = rest_.subspan(node.first_child + begin, end - begin);
-  if (members(node, begin, end) == end - begin) {
+  const std::span<std::uint8_t> retest_delay = retest_delay_.subspan(node.first_child + begin, end - begin);
+  if (countInSet(node, begin, end) == end - begin) {
     const std::span<const Box> boxes = std::span(wide_.boxes).subspan(node.first_child + begin, end - begin);
-    askMap(boxes, rest, node.node_count > begin ? node.node_count - begin : 0, view_only, answers);
+    testBuffer(boxes, retest_delay, node.node_count > begin ? node.node_count - begin : 0, view_only,
+               answers);
   } else {
-    askMembers(node, begin, end, view_only);
+    testInSet(node, begin, end, view_only);
   }
   if (view_only) {
     return;
   }
-  if (maps_.window != nullptr) {
-    askFineMap(node, begin, end);
+  if (buffers_.window != nullptr) {
+    testFineBuffer(node, begin, end);
   }
-  for (std::size_t i = 0; options_.temporal_coherence && i < rest.size(); ++i) {
+  for (std::size_t i = 0; options_.temporal_coherence && i < retest_delay.size(); ++i) {
     const bool hidden = answers[i].visibility == Visibility::kHidden;
-    // Of many that come into view together not all are asked about again in the same view.
-    rest[i] = static_cast<std::uint8_t>(hidden ? 0u : rest[i] != 0 ? rest[i] - 1u : kMinRest + (i & 3));
+    // The delays differ so that children that come into view together are not all tested again in one view.
+    std::uint8_t& delay = retest_delay[i];
+    delay = static_cast<std::uint8_t>(hidden ? 0u : delay != 0 ? delay - 1u : kMinRetestDelay + (i & 3));
   }
 }
 
-void WideTraversal::Walker::askMap(std::span<const Box> boxes, std::span<const std::uint8_t> rest,
-                                   std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
+void WideTraversal::Task::testBuffer(std::span<const Box> boxes, std::span<const std::uint8_t> retest_delay,
+                                     std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
   if (view_only) {
-    maps_.map.classifyInView(boxes, answers);
+    buffers_.view.classifyInView(boxes, answers);
     return;
   }
   BoxHints hints;
   if (options_.temporal_coherence) {
-    hints.seen = rest;
+    hints.seen = retest_delay;
   }
   hints.plain_from = plain_from;
-  if (maps_.fine != nullptr) {
-    maps_.window->tell(hints);
+  if (buffers_.fine != nullptr) {
+    buffers_.window->writeTo(hints);
   }
-  maps_.map.classify(boxes, answers, hints);
+  buffers_.view.classify(boxes, answers, hints);
 }
 
-std::uint32_t WideTraversal::Walker::members(const WideNode& node, std::uint32_t begin,
-                                             std::uint32_t end) const {
+std::uint32_t WideTraversal::Task::countInSet(const WideNode& node, std::uint32_t begin,
+                                              std::uint32_t end) const {
   if (in_set_.everything()) {
     return end - begin;
   }
@@ -219,35 +226,36 @@ std::uint32_t WideTraversal::Walker::members(const WideNode& node, std::uint32_t
   return count;
 }
 
-void WideTraversal::Walker::askMembers(const WideNode& node, std::uint32_t begin, std::uint32_t end,
-                                       bool view_only) {
-  found_.members.clear();
-  found_.member_rest.clear();
+void WideTraversal::Task::testInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end,
+                                    bool view_only) {
+  found_.set_boxes.clear();
+  found_.set_retest_delay.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
     const std::uint32_t child = node.first_child + i;
     if (child_marks_[child] != 0) {
-      found_.members.push_back(wide_.boxes[child]);
-      found_.member_rest.push_back(rest_[child]);
+      found_.set_boxes.push_back(wide_.boxes[child]);
+      found_.set_retest_delay.push_back(retest_delay_[child]);
     }
   }
-  const std::size_t count = found_.members.size();
-  found_.member_answers.resize(std::max(found_.member_answers.size(), count));
-  const std::span<BoxAnswer> answers = std::span(found_.member_answers).first(count);
+  const std::size_t count = found_.set_boxes.size();
+  found_.set_answers.resize(std::max(found_.set_answers.size(), count));
+  const std::span<BoxAnswer> answers = std::span(found_.set_answers).first(count);
   if (count > 0) {
     const std::uint32_t nodes_end = std::clamp<std::uint32_t>(node.node_count, begin, end);
-    askMap(found_.members, found_.member_rest, members(node, begin, nodes_end), view_only, answers);
+    testBuffer(found_.set_boxes, found_.set_retest_delay, countInSet(node, begin, nodes_end), view_only,
+               answers);
   }
   std::size_t next = 0;
   for (std::uint32_t i = begin; i < end; ++i) {
-    const bool member = child_marks_[node.first_child + i] != 0;
-    found_.answers[i] = member ? answers[next++] : BoxAnswer{.visibility = Visibility::kHidden};
+    const bool in_set = child_marks_[node.first_child + i] != 0;
+    found_.answers[i] = in_set ? answers[next++] : BoxAnswer{.visibility = Visibility::kHidden};
   }
 }
 
-// Of children that the map does not hide, those that the window's may.
-void WideTraversal::Walker::askFineMap(const WideNode& node, std::uint32_t begin, std::uint32_t end) {
-  found_.asked_again.clear();
-  found_.asked_child.clear();
+// Tests the children that the view's depth buffer does not hide against that of the window.
+void WideTraversal::Task::testFineBuffer(const WideNode& node, std::uint32_t begin, std::uint32_t end) {
+  found_.fine_boxes.clear();
+  found_.fine_child.clear();
   for (std::uint32_t i = begin; i < end; ++i) {
     const BoxAnswer& answer = found_.answers[i];
     if (answer.visibility == Visibility::kHidden || !answer.on_buffer) {
@@ -256,23 +264,23 @@ void WideTraversal::Walker::askFineMap(const WideNode& node, std::uint32_t begin
     if (i >= node.node_count) {
       found_.shown.push_back({answer.x, answer.y, 1});
     }
-    const bool rests = rest_[node.first_child + i] != 0;
-    if (maps_.fine != nullptr && !rests && maps_.window->about(answer.x, answer.y)) {
-      found_.asked_again.push_back(wide_.boxes[node.first_child + i]);
-      found_.asked_child.push_back(i);
+    const bool delayed = retest_delay_[node.first_child + i] != 0;
+    if (buffers_.fine != nullptr && !delayed && buffers_.window->mayContain(answer.x, answer.y)) {
+      found_.fine_boxes.push_back(wide_.boxes[node.first_child + i]);
+      found_.fine_child.push_back(i);
     }
   }
-  if (found_.asked_again.empty()) {
+  if (found_.fine_boxes.empty()) {
     return;
   }
-  found_.second_answers.resize(std::max(found_.second_answers.size(), found_.asked_again.size()));
-  maps_.fine->classify(found_.asked_again, std::span(found_.second_answers).first(found_.asked_again.size()),
-                       {.plain_from = 0});
-  for (std::size_t i = 0; i < found_.asked_again.size(); ++i) {
-    const BoxAnswer& second = found_.second_answers[i];
-    if (second.within_view && second.visibility == Visibility::kHidden) {
-      found_.answers[found_.asked_child[i]].visibility = Visibility::kHidden;
-      const std::uint32_t child = found_.asked_child[i];
+  found_.fine_answers.resize(std::max(found_.fine_answers.size(), found_.fine_boxes.size()));
+  buffers_.fine->classify(found_.fine_boxes, std::span(found_.fine_answers).first(found_.fine_boxes.size()),
+                          {.plain_from = 0});
+  for (std::size_t i = 0; i < found_.fine_boxes.size(); ++i) {
+    const BoxAnswer& fine = found_.fine_answers[i];
+    if (fine.within_view && fine.visibility == Visibility::kHidden) {
+      found_.answers[found_.fine_child[i]].visibility = Visibility::kHidden;
+      const std::uint32_t child = found_.fine_child[i];
       if (child < node.node_count) {
         const WideNode& hidden = wide_.nodes[node.first_node + child];
         const BoxAnswer& answer = found_.answers[child];
@@ -282,7 +290,7 @@ void WideTraversal::Walker::askFineMap(const WideNode& node, std::uint32_t begin
   }
 }
 
-void WideTraversal::Walker::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {
+void WideTraversal::Task::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {
   if (answer.visibility == Visibility::kHidden) {
     return;
   }

@@ -1,7 +1,6 @@
 #pragma once
 
-// The walk through a hierarchy of many children a node, for a structure that is asked about many boxes at
-// once.
+// Traverses a hierarchy with many children per node, for a depth pyramid that tests many boxes in one call.
 
 #include <cstdint>
 #include <optional>
@@ -20,11 +19,12 @@
 
 namespace sightline::culling {
 
-// What the walk asks: the map of the view, and the finer one of a window of it where there is one.
-struct TraversalMaps {
-  const DepthPyramid& map;
-  FocusWindow* window = nullptr;       // is told what the map does not hide
-  const DepthPyramid* fine = nullptr;  // of the window, when it is found
+// The depth buffers that a traversal tests boxes against: one of the whole view and, if there is a focus
+// window, a finer one of the window.
+struct TraversalBuffers {
+  const DepthPyramid& view;
+  FocusWindow* window = nullptr;       // counts the objects that `view` does not hide
+  const DepthPyramid* fine = nullptr;  // the depth buffer of the window; null if there is no window
 };
 
 class WideTraversal {
@@ -35,21 +35,21 @@ class WideTraversal {
         wide_(hierarchy::collapse(hierarchy, object_bounds)),
         object_count_(object_bounds.size()),
         visible_(object_bounds.size()),
-        rest_(wide_.boxes.size(), 0),
+        retest_delay_(wide_.boxes.size(), 0),
         found_(kMaxRanges) {}
 
-  // Appends the objects that may be seen to out, ascending, and adds to the counts of stats. With
-  // options.temporal_coherence what was not hidden is not asked about again for a few views (it is kept
-  // unless it leaves the view). Nothing depends on parallel_for.
-  void run(const TraversalMaps& maps, const TraversalOptions& options, CullStats& stats,
+  // Appends the objects that may be visible to out, in ascending order, and adds to the counts of stats. With
+  // options.temporal_coherence a box that was not hidden is not tested for occlusion again for a few views;
+  // it is kept while it is in the view. The result does not depend on parallel_for.
+  void run(const TraversalBuffers& buffers, const TraversalOptions& options, CullStats& stats,
            std::vector<ObjectId>& out, const ParallelFor& parallel_for = serialFor);
 
-  // From now on only objects of the set are kept, and only they are asked about. To be called again whenever
-  // what it views changes.
+  // From now on only objects of the set are tested and kept. The set's memory is not copied: call this again
+  // whenever it changes.
   void restrictTo(const ObjectSet& objects);
 
-  // The next view has nothing to do with the last one.
-  void forget() { std::fill(rest_.begin(), rest_.end(), std::uint8_t{0}); }
+  // Drops the knowledge of earlier views; call this when the camera jumps.
+  void forget() { std::fill(retest_delay_.begin(), retest_delay_.end(), std::uint8_t{0}); }
 
  private:
   static constexpr std::uint32_t kMaxRanges = 64;
@@ -59,39 +59,46 @@ class WideTraversal {
     bool surely_visible;  // with respect to the occluders
   };
 
-  // Objects about a pixel that the map does not hide, see FocusWindow::add.
+  // Objects around a pixel that the depth buffer of the view does not hide, see FocusWindow::add.
   struct Shown {
     std::uint16_t x, y;
     std::uint32_t objects;
   };
-  // One of several that walk at the same time, with what it needs and what it finds.
-  class Walker;
+  // Traverses a part of the hierarchy; several may work at the same time.
+  class Task;
+  // Scratch and results of one task.
   struct Found {
     std::vector<Entry> stack;        // nodes to be visited
-    std::vector<BoxAnswer> answers;  // of the children of one node
-    std::vector<Box> members;        // of children: those in the set, where some are not
-    std::vector<std::uint8_t> member_rest;
-    std::vector<BoxAnswer> member_answers;
-    std::vector<Box> asked_again;  // of the finer map
-    std::vector<std::uint32_t> asked_child;
-    std::vector<BoxAnswer> second_answers;
+    std::vector<BoxAnswer> answers;  // by child of the current node
+    // The children of the current node that are in the set, used if some are not: their boxes, the views
+    // before they are tested again, and their answers.
+    std::vector<Box> set_boxes;
+    std::vector<std::uint8_t> set_retest_delay;
+    std::vector<BoxAnswer> set_answers;
+    // The children that are also tested against the finer depth buffer: their boxes, their numbers within the
+    // node, and their answers.
+    std::vector<Box> fine_boxes;
+    std::vector<std::uint32_t> fine_child;
+    std::vector<BoxAnswer> fine_answers;
     std::vector<ObjectId> kept;
     std::vector<Shown> shown;
     std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
   };
 
-  void take(Found& found, const TraversalMaps& maps, CullStats& stats);
+  // Adds the results of a task to those of the view, and clears them.
+  void take(Found& found, const TraversalBuffers& buffers, CullStats& stats);
   TreeMarks marksOfChildren() const;
 
   const Hierarchy& hierarchy_;
   hierarchy::WideHierarchy wide_;
   std::size_t object_count_;
   ObjectBits visible_;
-  std::vector<std::uint8_t> rest_;  // by child: so many views it is not asked about
+  std::vector<std::uint8_t> retest_delay_;  // by child: views before it is tested for occlusion again
   ObjectSet in_set_;
-  std::optional<TreeMarks> child_marks_;  // by child: some of it is in the set; after the first one
-  std::vector<Entry> entries_;            // below which several may walk
-  std::vector<Found> found_;              // by the first entry of a range
+  // By child: an object below it is in the set. Empty until restrictTo() gets a set without some object.
+  std::optional<TreeMarks> child_marks_;
+  std::vector<Entry> entries_;  // the nodes at which the tasks start
+  std::vector<Found> found_;    // by the first entry of a task
 };
 
 }  // namespace sightline::culling

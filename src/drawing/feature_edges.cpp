@@ -48,7 +48,7 @@ class Fan {
   }
 
   std::optional<LineKind> kind(const FeatureSettings& settings) const {
-    if (!drawn_ || flatSeam()) {
+    if (!drawn_ || flatSharedEdge()) {
       return std::nullopt;
     }
     if (count_ != 2 && settings.boundaries) {
@@ -67,7 +67,7 @@ class Fan {
  private:
   static constexpr int kMax = 8;  // more directions than these add nothing to the answer
 
-  bool flatSeam() const {
+  bool flatSharedEdge() const {
     return count_ == 2 &&
            angleBetween(wings_[0].normal, -wings_[1].normal) <= wings_[0].tilt_rad + wings_[1].tilt_rad;
   }

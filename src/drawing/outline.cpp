@@ -10,13 +10,13 @@ namespace sightline::drawing {
 namespace {
 
 constexpr std::uint32_t kBorders = 6;    // near, far, left, right, lower, upper
-constexpr double kFewestLines = 1024.0;  // lines of the grid for each unit, at least
+constexpr double kMinLines = 1024.0;     // lines of the grid for each unit, at least
 constexpr double kLinesAcross = 0x1p20;  // lines of the grid across the page, at least
 
 // Grid lines for each unit. A power of two, so that the corners of pages of round sizes lie on the grid. The
 // largest pages need 2^60 lines, which is below Clipper's limit.
 double gridScaleOf(double extent) {
-  return std::max(kFewestLines, std::exp2(std::ceil(std::log2(kLinesAcross / extent))));
+  return std::max(kMinLines, std::exp2(std::ceil(std::log2(kLinesAcross / extent))));
 }
 
 }  // namespace

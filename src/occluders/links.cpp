@@ -16,12 +16,15 @@
 namespace sightline::occluders {
 namespace {
 
-// One mesh edge in the chain of one occluder edge.
+// One mesh edge on one occluder edge.
 struct Use {
   std::uint32_t low, high;  // vertex ids
   std::uint32_t edge;       // into OccluderSet::edges
-  std::uint32_t element;    // of the chain
+  std::uint32_t mesh_edge;  // number within the occluder edge, from 0
 };
+
+// Edges of more mesh edges are never watertight: the open ones are told by 64 bits.
+constexpr std::uint32_t kMaxMeshEdges = 64;
 
 double distanceToLine(const Vec3d& point, const Vec3d& p, const Vec3d& q) {
   const Vec3d d = q - p;
@@ -38,7 +41,7 @@ class Linker {
     collectUses();
     uniteSharedEdges();
     chooseLines();
-    writeCovers();
+    writeNeighbours();
     shareSlack();
   }
 
@@ -50,25 +53,25 @@ class Linker {
       for (std::size_t e = 0; e < c; ++e) {
         const std::uint32_t edge = set_.occluders[o].first_vertex + static_cast<std::uint32_t>(e);
         owner_.push_back(static_cast<std::uint32_t>(o));
-        std::uint32_t element = 0;
+        std::uint32_t count = 0;
         std::size_t i = polygon.corners[e];
         do {
           const std::uint32_t a = polygon.loop[i], b = polygon.loop[(i + 1) % n];
-          uses_.push_back({std::min(a, b), std::max(a, b), edge, element++});
+          uses_.push_back({std::min(a, b), std::max(a, b), edge, count++});
           i = (i + 1) % n;
         } while (i != polygon.corners[(e + 1) % c]);
-        set_.edges[edge].chain = static_cast<std::uint16_t>(element <= 64 ? element : 0);
-        set_.edges[edge].first_joint = static_cast<std::uint32_t>(set_.joints.size());
-        for (std::uint32_t k = 1; k < element && element <= 64; ++k) {
-          set_.joints.push_back(positions_[polygon.loop[(polygon.corners[e] + k) % n]]);
+        set_.edges[edge].mesh_edge_count = static_cast<std::uint16_t>(count <= kMaxMeshEdges ? count : 0);
+        set_.edges[edge].first_edge_vertex = static_cast<std::uint32_t>(set_.edge_vertices.size());
+        for (std::uint32_t k = 1; k < count && count <= kMaxMeshEdges; ++k) {
+          set_.edge_vertices.push_back(positions_[polygon.loop[(polygon.corners[e] + k) % n]]);
         }
-        chain_start_.push_back(static_cast<std::uint32_t>(uses_.size()) - element);
-        chain_length_.push_back(element);
+        first_use_.push_back(static_cast<std::uint32_t>(uses_.size()) - count);
+        mesh_edge_count_.push_back(count);
       }
     }
     by_edge_ = uses_;
     std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
-      return std::tie(a.low, a.high, a.edge, a.element) < std::tie(b.low, b.high, b.edge, b.element);
+      return std::tie(a.low, a.high, a.edge, a.mesh_edge) < std::tie(b.low, b.high, b.edge, b.mesh_edge);
     });
   }
 
@@ -94,11 +97,11 @@ class Linker {
     });
   }
 
-  // All mesh vertices of the chain of an edge.
+  // Visits the ends of each mesh edge of an occluder edge.
   template <typename Visit>
   void forEachVertex(std::uint32_t edge, Visit visit) const {
-    for (std::uint32_t k = 0; k < chain_length_[edge]; ++k) {
-      const Use& use = by_edge_[chain_start_[edge] + k];
+    for (std::uint32_t k = 0; k < mesh_edge_count_[edge]; ++k) {
+      const Use& use = by_edge_[first_use_[edge] + k];
       visit(positions_[use.low]);
       visit(positions_[use.high]);
     }
@@ -172,7 +175,7 @@ class Linker {
       return;
     }
     for (const std::uint32_t edge : shared) {
-      set_.edges[edge].chain = 0;
+      set_.edges[edge].mesh_edge_count = 0;
       assign(std::span(&edge, 1), ownLine(edge), 0.0);
     }
   }
@@ -186,35 +189,35 @@ class Linker {
     set_.lines.push_back(line);
   }
 
-  void writeCovers() {
+  void writeNeighbours() {
     struct Found {
       std::uint32_t edge;
-      EdgeCover cover;
+      EdgeNeighbour neighbour;
     };
     std::vector<Found> found;
     forEachSharedMeshEdge([&](std::span<const Use> users) {
       for (const Use& a : users) {
         for (const Use& b : users) {
-          if (owner_[a.edge] != owner_[b.edge] && set_.edges[a.edge].chain != 0 &&
-              set_.occluders[owner_[b.edge]].seals) {
-            found.push_back({a.edge, {OccluderId(owner_[b.edge]), a.element}});
+          if (owner_[a.edge] != owner_[b.edge] && set_.edges[a.edge].mesh_edge_count != 0 &&
+              set_.occluders[owner_[b.edge]].watertight_edges) {
+            found.push_back({a.edge, {OccluderId(owner_[b.edge]), a.mesh_edge}});
           }
         }
       }
     });
     std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-      return std::tie(a.edge, a.cover.element, a.cover.occluder) <
-             std::tie(b.edge, b.cover.element, b.cover.occluder);
+      return std::tie(a.edge, a.neighbour.mesh_edge, a.neighbour.occluder) <
+             std::tie(b.edge, b.neighbour.mesh_edge, b.neighbour.occluder);
     });
     for (std::size_t i = 0; i < found.size();) {
       std::size_t end = i;
       OccluderEdge& edge = set_.edges[found[i].edge];
-      edge.first_cover = static_cast<std::uint32_t>(set_.covers.size());
+      edge.first_neighbour = static_cast<std::uint32_t>(set_.neighbours.size());
       while (end < found.size() && found[end].edge == found[i].edge) {
-        set_.covers.push_back(found[end++].cover);
+        set_.neighbours.push_back(found[end++].neighbour);
       }
       const std::size_t count = end - i;
-      edge.cover_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
+      edge.neighbour_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
       i = end;
     }
   }
@@ -228,8 +231,8 @@ class Linker {
     }
     for (Occluder& occluder : set_.occluders) {
       for (const OccluderEdge& edge : set_.edgesOf(occluder)) {
-        for (const EdgeCover& cover : set_.coversOf(edge)) {
-          occluder.slack = std::max(occluder.slack, slack[cover.occluder.value]);
+        for (const EdgeNeighbour& neighbour : set_.neighboursOf(edge)) {
+          occluder.slack = std::max(occluder.slack, slack[neighbour.occluder.value]);
         }
       }
     }
@@ -240,7 +243,7 @@ class Linker {
   OccluderSet& set_;
   base::UnionFind classes_;          // of occluder edges along one shared edge
   std::vector<Use> uses_, by_edge_;  // sorted by mesh edge; in the order of edges
-  std::vector<std::uint32_t> owner_, chain_start_, chain_length_;  // by edge
+  std::vector<std::uint32_t> owner_, first_use_, mesh_edge_count_;  // by edge
 };
 
 // False where a corner is sharper than three degrees: near it, a neighbour's own boundary would be too close
@@ -292,7 +295,7 @@ void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon
     for (const std::uint32_t corner : polygon.corners) {
       set.vertices.push_back(positions[polygon.loop[corner]]);
     }
-    occluder.seals = hasNoSharpCorner(std::span(set.vertices).subspan(occluder.first_vertex));
+    occluder.watertight_edges = hasNoSharpCorner(std::span(set.vertices).subspan(occluder.first_vertex));
     set.area += polygon.area;
     set.report.used += polygon.triangle_count;
     set.occluders.push_back(occluder);

@@ -14,8 +14,8 @@ struct RankedPolygon {
   ObjectId object;
 };
 
-// Fills vertices, edges, lines, covers and the per-object lists of a set from its polygons, in their order.
-// set.objects is there already, and has all valid objects of the polygons.
+// Fills vertices, edges, lines, neighbours and the per-object lists of a set from its polygons, in their
+// order. set.objects is there already, and has all valid objects of the polygons.
 void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set);
 
 }  // namespace sightline::occluders

@@ -176,7 +176,7 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const PixelView& view, co
                              const PixelBox& image) {
   const Vec3d centre = view.toCamera(center(box) - view.eye);
   const double inverse = view.inverseDepth(centre);
-  const double x = view.mapX(centre, inverse), y = view.mapY(centre, inverse);
+  const double x = view.pixelX(centre, inverse), y = view.pixelY(centre, inverse);
   if (!(x >= image.x0 && y >= image.y0 && x < image.x1 + 1.0 && y < image.y1 + 1.0)) {
     return false;
   }

@@ -114,7 +114,7 @@ std::optional<EyeOccluder> seeOccluder(const Eye& eye, const OccluderSet& set, O
 std::optional<SharedEdge> sharedEdgeOf(const Eye& eye, const OccluderSet& set, const EyeOccluder& seen,
                                        const Outline& outline) {
   const OccluderEdge& edge = set.edges[outline.edge];
-  if (edge.cover_count == 0 || edge.chain == 0 || !set[seen.id].seals) {
+  if (edge.neighbour_count == 0 || edge.mesh_edge_count == 0 || !set[seen.id].watertight_edges) {
     return std::nullopt;
   }
   const auto& line = set.lines[edge.line];

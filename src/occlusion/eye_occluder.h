@@ -92,21 +92,21 @@ std::optional<SharedEdge> sharedEdgeOf(const Eye& eye, const OccluderSet& set, c
                                        const Outline& outline);
 
 // Returns the mesh edges of an edge, a bit each from bit 0 on.
-inline std::uint64_t allElements(const OccluderEdge& edge) {
-  return edge.chain >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge.chain) - 1;
+inline std::uint64_t allMeshEdges(const OccluderEdge& edge) {
+  return edge.mesh_edge_count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edge.mesh_edge_count) - 1;
 }
 
 // Returns those mesh edges beyond which no active occluder goes on; at all others the edge is watertight.
 // oriented: SharedEdge::oriented() of the edge. centroid_of(id): the centroid of an active occluder relative
 // to the eye; null for all others.
 template <typename CentroidOf>
-std::uint64_t openElements(const OccluderSet& set, const OccluderEdge& edge, const Plane& oriented,
-                           CentroidOf&& centroid_of) {
-  std::uint64_t open = allElements(edge);
-  for (const EdgeCover& cover : set.coversOf(edge)) {
-    const Vec3d* centroid = centroid_of(cover.occluder);
+std::uint64_t openMeshEdges(const OccluderSet& set, const OccluderEdge& edge, const Plane& oriented,
+                            CentroidOf&& centroid_of) {
+  std::uint64_t open = allMeshEdges(edge);
+  for (const EdgeNeighbour& neighbour : set.neighboursOf(edge)) {
+    const Vec3d* centroid = centroid_of(neighbour.occluder);
     if (centroid != nullptr && oriented.evaluate(*centroid) > 0.0) {
-      open &= ~(std::uint64_t{1} << cover.element);
+      open &= ~(std::uint64_t{1} << neighbour.mesh_edge);
     }
   }
   return open;

@@ -65,11 +65,11 @@ bool ListClassifier::staysKept(const Candidate& candidate, const Box& box) {
     }
     const OccluderEdge& edge = set.edges[occluder.first_vertex + e];
     const Plane plane = edge_planes_[shared_edges_[candidate.number].first_plane + e];
-    std::uint64_t open = openElements(set, edge, plane, centroidOf);
-    for (std::uint32_t c = 0; c < edge.cover_count && open != 0; ++c) {
-      const EdgeCover& cover = set.covers[edge.first_cover + c];
-      if ((open >> cover.element & 1) != 0 && recruit(active.set, cover.occluder, box)) {
-        open = openElements(set, edge, plane, centroidOf);
+    std::uint64_t open = openMeshEdges(set, edge, plane, centroidOf);
+    for (std::uint32_t c = 0; c < edge.neighbour_count && open != 0; ++c) {
+      const EdgeNeighbour& neighbour = set.neighbours[edge.first_neighbour + c];
+      if ((open >> neighbour.mesh_edge & 1) != 0 && recruit(active.set, neighbour.occluder, box)) {
+        open = openMeshEdges(set, edge, plane, centroidOf);
       }
     }
     if (open != 0) {

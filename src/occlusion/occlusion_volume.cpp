@@ -36,12 +36,13 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
                             std::uint64_t open, PlaneRef on_line) {
   constexpr std::uint32_t kMaxCorners = 96;
   const OccluderEdge& edge = set.edges[outline.edge];
-  const std::uint32_t n = edge.chain;
+  const std::uint32_t n = edge.mesh_edge_count;
   const Vec3d along = normalized(outline.to - outline.from);
   // k counts in the direction of the outline: the mesh edges' own or, seen from the back, the opposite.
   const auto isOpen = [&](std::uint32_t k) { return (open >> (candidate.flipped ? n - 1 - k : k) & 1) != 0; };
   const auto pointBefore = [&](std::uint32_t k) {  // before part k, k > 0
-    return Vec3d(set.joints[edge.first_joint + (candidate.flipped ? n - 1 - k : k - 1)]) - eye.position;
+    return Vec3d(set.edge_vertices[edge.first_edge_vertex + (candidate.flipped ? n - 1 - k : k - 1)]) -
+           eye.position;
   };
   double at = dot(along, outline.from);
   const double end = dot(along, outline.to);
@@ -80,8 +81,8 @@ void VolumeBuilder::addEdge(const OccluderSet& set, const EyeOccluder& candidate
       const std::uint32_t other = candidate_of_[id.value];
       return other != kNone ? &candidates_[other].centroid : nullptr;
     };
-    const std::uint64_t open = openElements(set, edge, shared->oriented(), centroidOf);
-    if (open != allElements(edge)) {
+    const std::uint64_t open = openMeshEdges(set, edge, shared->oriented(), centroidOf);
+    if (open != allMeshEdges(edge)) {
       std::uint32_t& plane = plane_of_line_[edge.line];
       if (plane == kNone) {
         plane = addPlane(shared->plane).plane();

@@ -63,7 +63,7 @@ void PolygonBuilder::appendPolygon(const PolygonProjection& projection, const Ey
     EdgeKind kind = EdgeKind::kOpen;
     if (projection.form() == PolygonForm::kConservative) {
       const std::uint64_t open = active_.joinAcross(set, eye, number, outline);
-      if (open != allElements(set.edges[outline.edge])) {
+      if (open != allMeshEdges(set.edges[outline.edge])) {
         kind = EdgeKind::kShared;
         appendOpenParts(set, projection.view(), active.seen, outline.edge, open, open_parts_);
       }

@@ -136,7 +136,7 @@ float PolygonProjection::marginAt(double inset, double inverse_depth) const {
 
 BufferEdge PolygonProjection::openEdge(const CameraSegment& segment, double inset) const {
   const Vec3d &a = segment.from, &b = segment.to;
-  return edgeBetween({view_.mapX(a), view_.mapY(a)}, {view_.mapX(b), view_.mapY(b)}, EdgeKind::kOpen,
+  return edgeBetween({view_.pixelX(a), view_.pixelY(a)}, {view_.pixelX(b), view_.pixelY(b)}, EdgeKind::kOpen,
                      marginAt(inset, 1.0 / std::min(a.z, b.z)));
 }
 
@@ -151,7 +151,8 @@ BufferPolygon PolygonProjection::appendOutline(OccluderId occluder, std::span<co
   polygon.high = polygon.right = -std::numeric_limits<float>::max();
   for (const OutlineCorner& corner : corners) {
     const double inverse = view_.inverseDepth(corner.position);
-    polygons.points.push_back({view_.mapX(corner.position, inverse), view_.mapY(corner.position, inverse)});
+    polygons.points.push_back(
+        {view_.pixelX(corner.position, inverse), view_.pixelY(corner.position, inverse)});
   }
   const std::span<const PixelPoint> points = polygons.corners(polygon);
   for (std::size_t i = 0; i < corners.size(); ++i) {

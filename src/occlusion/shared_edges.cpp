@@ -44,8 +44,9 @@ std::uint32_t ActivePolygons::groupOf(std::uint32_t number) {
 std::uint64_t ActivePolygons::joinAcross(const OccluderSet& set, const Eye& eye, std::uint32_t number,
                                          const Outline& outline) {
   const OccluderEdge& edge = set.edges[outline.edge];
-  const std::uint64_t all = allElements(edge);
-  if (edge.cover_count == 0 || edge.chain == 0 || !set[polygons_[number].seen.id].seals) {
+  const std::uint64_t all = allMeshEdges(edge);
+  if (edge.neighbour_count == 0 || edge.mesh_edge_count == 0 ||
+      !set[polygons_[number].seen.id].watertight_edges) {
     return all;
   }
   // The plane through the eye and the edge, the polygon behind it. The length of its normal does not matter.
@@ -56,9 +57,9 @@ std::uint64_t ActivePolygons::joinAcross(const OccluderSet& set, const Eye& eye,
   if (!(plane.evaluate(polygons_[number].seen.centroid) < 0.0)) {
     return all;
   }
-  return openElements(set, edge, plane, [&](OccluderId id) -> const Vec3d* {
+  return openMeshEdges(set, edge, plane, [&](OccluderId id) -> const Vec3d* {
     const std::uint32_t other = number_of_[id.value];
-    if (other == kNone || !set[id].seals) {
+    if (other == kNone || !set[id].watertight_edges) {
       return nullptr;
     }
     const Vec3d& centroid = polygons_[other].seen.centroid;
@@ -76,15 +77,15 @@ void appendOpenParts(const OccluderSet& set, const PixelView& view, const EyeOcc
   const std::uint32_t next =
       edge_index + 1 < occluder.first_vertex + occluder.vertex_count ? edge_index + 1 : occluder.first_vertex;
   const auto point = [&](std::uint32_t k) {
-    const Vec3f& p = k == 0           ? set.vertices[edge_index]
-                     : k < edge.chain ? set.joints[edge.first_joint + k - 1]
-                                      : set.vertices[next];
+    const Vec3f& p = k == 0                     ? set.vertices[edge_index]
+                     : k < edge.mesh_edge_count ? set.edge_vertices[edge.first_edge_vertex + k - 1]
+                                                : set.vertices[next];
     return view.toCamera(Vec3d(p) - view.eye);
   };
-  for (std::uint32_t k = 0; k < edge.chain; ++k) {
+  for (std::uint32_t k = 0; k < edge.mesh_edge_count; ++k) {
     if ((open >> k & 1) != 0) {
       const std::uint32_t first = k;
-      while (k + 1 < edge.chain && (open >> (k + 1) & 1) != 0) {
+      while (k + 1 < edge.mesh_edge_count && (open >> (k + 1) & 1) != 0) {
         ++k;
       }
       parts.push_back({point(first), point(k + 1)});

@@ -95,8 +95,8 @@ double nearDistance(const View& given) {
     // The rays of an orthographic view start at any distance.
     return std::numeric_limits<double>::infinity();
   }
-  // Corners are at forward +- x right +- y up, times near. Axes that are not quite perpendicular move the
-  // corners apart. Rounded up.
+  // The corners of the near plane are at near * (forward +- x right +- y up). All four are measured, because
+  // axes that are not quite perpendicular make their distances differ. The result is rounded up.
   const double y = view.tan_half_fovy;
   const double x = view.tan_half_fovy * view.aspect;
   double farthest = std::sqrt(1.0 + x * x + y * y);

@@ -1,12 +1,12 @@
 #pragma once
 
-// A view as a pixel buffer uses it: camera space, and the position of its points in the buffer.
+// A view as a pixel buffer uses it: camera space, and where points of camera space lie in the buffer.
 //
 // Camera space: x to the right, y upwards, z the depth along the viewing direction; metres, relative to the
-// eye. Map space: pixels from the buffer's lower left corner, x to the right, y upwards; pixel (i, j) is the
-// square from (i, j) to (i + 1, j + 1). ReciprocalDepth is what a depth buffer stores: 1 / depth in
-// perspective and -depth in orthographic views. Greater is nearer, and it is linear over the image of a
-// plane.
+// eye. Buffer space: pixels from the buffer's lower left corner, x to the right, y upwards; pixel (i, j) is
+// the square from (i, j) to (i + 1, j + 1). A depth buffer stores reciprocal depth: 1 / depth in perspective
+// and -depth in orthographic views. The greater value is the nearer one, and reciprocal depth is linear over
+// the image of a plane.
 
 #include <algorithm>
 #include <cstdint>
@@ -68,18 +68,22 @@ struct PixelView {
   Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
   // Transforms a direction, or a point relative to the eye.
   Vec3d toCamera(const Vec3d& r) const { return {dot(right, r), dot(up, r), dot(forward, r)}; }
-  // Factor from x and y in camera space to map space: 1 / z in perspective, 1 in orthographic views.
+  // Factor from x and y in camera space to buffer space: 1 / z in perspective, 1 in orthographic views.
   double inverseDepth(const Vec3d& c) const { return orthographic ? 1.0 : 1.0 / c.z; }
-  double mapX(const Vec3d& c, double inverse_depth) const { return middle_x + scale_x * c.x * inverse_depth; }
-  double mapY(const Vec3d& c, double inverse_depth) const { return middle_y + scale_y * c.y * inverse_depth; }
-  // Map coordinates of a point in camera space; in perspective views, z must be > 0.
-  double mapX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
-  double mapY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
-  double reciprocal_depth(double depth) const { return orthographic ? -depth : 1.0 / depth; }
+  double pixelX(const Vec3d& c, double inverse_depth) const {
+    return middle_x + scale_x * c.x * inverse_depth;
+  }
+  double pixelY(const Vec3d& c, double inverse_depth) const {
+    return middle_y + scale_y * c.y * inverse_depth;
+  }
+  // Position in the buffer, pixels, of a point in camera space; in perspective views, z must be > 0.
+  double pixelX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
+  double pixelY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
+  double reciprocalDepth(double depth) const { return orthographic ? -depth : 1.0 / depth; }
 
  private:
   static constexpr double kLargestScale = 0x1p40;
-  bool valid_ = false;  // see validate()
+  bool valid_ = false;  // makeUsable() found no fault in the view
 };
 
 }  // namespace sightline

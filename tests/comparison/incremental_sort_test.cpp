@@ -170,7 +170,7 @@ TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCyclesAreSortedFromAnyOr
   GraphSource complete(parts);
   GraphSource pairs(parts);   // a chain of cycles of two parts
   GraphSource nested(parts);  // one large cycle with shortcuts back
-  GraphSource apart(parts);
+  GraphSource no_arcs(parts);
   for (std::uint32_t i = 0; i < parts; ++i) {
     for (std::uint32_t k = 0; k < parts; ++k) {
       complete.add(i, k);
@@ -180,7 +180,7 @@ TEST(IncrementalSort, RingsChainsCompleteGraphsAndNestedCyclesAreSortedFromAnyOr
     nested.add(i, (i + 1) % parts);
     nested.add(i, i - i % 5);
   }
-  std::vector<GraphSource> graphs{chain(parts), ring(parts), complete, pairs, nested, apart};
+  std::vector<GraphSource> graphs{chain(parts), ring(parts), complete, pairs, nested, no_arcs};
   for (std::size_t g = 0; g < graphs.size(); ++g) {
     std::vector<std::uint32_t> reversed = identityOrder(parts);
     expectSorts(sorter, graphs[g], reversed);

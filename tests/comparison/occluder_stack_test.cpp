@@ -36,7 +36,7 @@ struct Pictured {
   }
 };
 
-// The depth at which a ray through a pixel's centre meets the polygon; 0: not at all. Sets `unsure` near an
+// The depth at which a ray through a pixel's centre hits the polygon; 0: not at all. Sets `unsure` near an
 // edge. In space, by point in polygon; only the ray comes from the picture.
 double depthAlong(const OccluderSet& set, const Occluder& occluder, const Vec3d& eye, const Vec3d& ray,
                   bool& unsure) {
@@ -92,7 +92,7 @@ std::set<std::uint32_t> frontOf(const Model& model, const PixelView& view, std::
   return front;
 }
 
-TEST(OccluderPicture, CoversThePixelsWhoseRaysMeetThePolygonAtItsDepth) {
+TEST(OccluderPicture, CoversThePixelsWhoseRaysHitThePolygonAtItsDepth) {
   std::size_t covered = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -122,7 +122,7 @@ TEST(OccluderPicture, CoversThePixelsWhoseRaysMeetThePolygonAtItsDepth) {
   EXPECT_GT(covered, 10000u);
 }
 
-TEST(OccluderStack, HasTheOccludersThatRaysMeetBeforeTheOccludee) {
+TEST(OccluderStack, HasTheOccludersThatRaysHitBeforeTheOccludee) {
   std::size_t hidden = 0, seen = 0, slots = 0;
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -206,7 +206,7 @@ TEST(OccluderStack, HasARectangleAroundTheImageThatEndsAtThePicturesBorder) {
           point[axis] = random.in(box.min[axis], box.max[axis]);
         }
         const Vec3d c = view.toCamera(point - eye);
-        const double x = view.mapX(c), y = view.mapY(c);
+        const double x = view.pixelX(c), y = view.pixelY(c);
         if (std::min(x, y) < 0.0 || std::max(x, y) >= kShape.resolution) {
           continue;
         }

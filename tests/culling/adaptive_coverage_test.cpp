@@ -10,7 +10,7 @@
 namespace sightline::culling {
 namespace {
 
-// What a frame would take and save with a ratio.
+// The times that culling takes and saves in a frame. A place is modelled by the times for each ratio.
 struct Times {
   double culling_us = 0.0, saved_us = 0.0;
 };
@@ -30,7 +30,7 @@ struct Setting {
   friend bool operator==(const Setting&, const Setting&) = default;
 };
 
-// The settings of so many frames in a place.
+// Spends this many frames in a place, and returns the settings of each.
 std::vector<Setting> walk(AdaptiveCoverage& adaptive, const Place& place, int frames) {
   std::vector<Setting> settings;
   for (int i = 0; i < frames; ++i) {
@@ -49,7 +49,8 @@ int suspendedFrames(const std::vector<Setting>& settings) {
   return count;
 }
 
-// Lengths of the stretches of equal settings, but the first and the last, which are cut.
+// Returns the lengths of stretches of equal settings, without the first and the last one, which are
+// incomplete.
 std::vector<int> stretches(const std::vector<Setting>& settings) {
   std::vector<int> lengths{1};
   for (std::size_t i = 1; i < settings.size(); ++i) {
@@ -165,11 +166,12 @@ TEST(AdaptiveCoverage, NoSettingLastsForASingleFrameWhateverTheTimes) {
     }
     int short_ones = 0;
     for (const int length : stretches(settings)) {
-      // A trial that fails, or a decision.
+      // The setting changes after a failed trial or a decision.
       EXPECT_GE(length, static_cast<int>(AdaptiveCoverage::kTrial)) << "seed " << seed;
       short_ones += length < static_cast<int>(AdaptiveCoverage::kWindow) ? 1 : 0;
     }
-    EXPECT_LE(short_ones, static_cast<int>(settings.size() / AdaptiveCoverage::kRest)) << "seed " << seed;
+    EXPECT_LE(short_ones, static_cast<int>(settings.size() / AdaptiveCoverage::kRetestDelay))
+        << "seed " << seed;
   }
 }
 

@@ -23,21 +23,22 @@ std::size_t countOf(const OccluderSet& set, ObjectId object) {
 bool sameSet(const OccluderSet& a, const OccluderSet& b) {
   const auto sameOccluder = [](const Occluder& p, const Occluder& q) {
     return p.first_vertex == q.first_vertex && p.vertex_count == q.vertex_count &&
-           p.double_sided == q.double_sided && p.seals == q.seals && p.object == q.object &&
-           p.area == q.area && p.slack == q.slack && p.centroid == q.centroid &&
+           p.double_sided == q.double_sided && p.watertight_edges == q.watertight_edges &&
+           p.object == q.object && p.area == q.area && p.slack == q.slack && p.centroid == q.centroid &&
            p.plane.normal == q.plane.normal && p.plane.offset == q.plane.offset;
   };
   const auto sameEdge = [](const OccluderEdge& p, const OccluderEdge& q) {
-    return p.line == q.line && p.first_cover == q.first_cover && p.cover_count == q.cover_count &&
-           p.chain == q.chain;
+    return p.line == q.line && p.first_neighbour == q.first_neighbour &&
+           p.neighbour_count == q.neighbour_count && p.mesh_edge_count == q.mesh_edge_count;
   };
-  const auto sameCover = [](const EdgeCover& p, const EdgeCover& q) {
-    return p.occluder == q.occluder && p.element == q.element;
+  const auto sameNeighbour = [](const EdgeNeighbour& p, const EdgeNeighbour& q) {
+    return p.occluder == q.occluder && p.mesh_edge == q.mesh_edge;
   };
   return std::equal(a.occluders.begin(), a.occluders.end(), b.occluders.begin(), b.occluders.end(),
                     sameOccluder) &&
          std::equal(a.edges.begin(), a.edges.end(), b.edges.begin(), b.edges.end(), sameEdge) &&
-         std::equal(a.covers.begin(), a.covers.end(), b.covers.begin(), b.covers.end(), sameCover) &&
+         std::equal(a.neighbours.begin(), a.neighbours.end(), b.neighbours.begin(), b.neighbours.end(),
+                    sameNeighbour) &&
          a.vertices == b.vertices && a.lines == b.lines && a.first_of_object == b.first_of_object &&
          a.of_object == b.of_object && a.area == b.area && reported(a.report) == reported(b.report) &&
          a.report.used == b.report.used;
@@ -246,7 +247,7 @@ TEST(FindOccluders, DoNotDependOnHowTheWorkIsCut) {
   EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, threads)));
 }
 
-// What each edge says of its neighbours.
+// Tests of the neighbours of edges.
 
 bool onLine(const std::array<Vec3f, 2>& line, const Vec3f& p, double tolerance) {
   const Vec3d a(line[0]), d = Vec3d(line[1]) - a;
@@ -254,8 +255,9 @@ bool onLine(const std::array<Vec3f, 2>& line, const Vec3f& p, double tolerance) 
   return length(across) <= tolerance * length(d);
 }
 
-// Corners lie on the lines of the edges that meet there; each cover names an occluder that names this one in
-// return, on the same line; elements are in the chain.
+// Describes each violation of these rules: corners lie on the lines of both edges that end there; each
+// neighbour of an edge is an occluder that names this one in return, on the same line; the number of its mesh
+// edge is below the edge's count.
 std::string whatIsWrongWithLinks(const OccluderSet& set) {
   std::string wrong;
   for (std::size_t o = 0; o < set.occluders.size(); ++o) {
@@ -269,23 +271,23 @@ std::string whatIsWrongWithLinks(const OccluderSet& set) {
           !onLine(line, corners[(e + 1) % corners.size()], occluder.slack + 1e-9)) {
         wrong += "corner beside its line; ";
       }
-      if (edge.chain == 0 && edge.cover_count != 0) {
-        wrong += "covers without a chain; ";
+      if (edge.mesh_edge_count == 0 && edge.neighbour_count != 0) {
+        wrong += "neighbours without mesh edges; ";
       }
-      for (const EdgeCover& cover : set.coversOf(edge)) {
-        if (cover.element >= edge.chain) {
-          wrong += "element beyond the chain; ";
+      for (const EdgeNeighbour& neighbour : set.neighboursOf(edge)) {
+        if (neighbour.mesh_edge >= edge.mesh_edge_count) {
+          wrong += "number beyond the mesh edges; ";
         }
-        if (cover.occluder == OccluderId(o)) {
+        if (neighbour.occluder == OccluderId(o)) {
           wrong += "names itself; ";
         }
-        const std::span<const OccluderEdge> others = set.edgesOf(set[cover.occluder]);
+        const std::span<const OccluderEdge> others = set.edgesOf(set[neighbour.occluder]);
         if (std::none_of(others.begin(), others.end(), [&](const OccluderEdge& other) {
-              const std::span<const EdgeCover> back = set.coversOf(other);
+              const std::span<const EdgeNeighbour> back = set.neighboursOf(other);
               return other.line == edge.line &&
-                     (!occluder.seals || std::any_of(back.begin(), back.end(), [&](const EdgeCover& c) {
-                       return c.occluder == OccluderId(o);
-                     }));
+                     (!occluder.watertight_edges ||
+                      std::any_of(back.begin(), back.end(),
+                                  [&](const EdgeNeighbour& c) { return c.occluder == OccluderId(o); }));
             })) {
           wrong += "is not named in return; ";
         }
@@ -329,13 +331,13 @@ TEST(OccluderEdges, OfACubeNameTheNeighbourForEachMeshEdge) {
     EXPECT_EQ(whatIsWrongWithLinks(set), "") << n;
     EXPECT_EQ(set.lines.size(), 12u) << n;
     for (const Occluder& occluder : set.occluders) {
-      EXPECT_TRUE(occluder.seals);
+      EXPECT_TRUE(occluder.watertight_edges);
       for (const OccluderEdge& edge : set.edgesOf(occluder)) {
-        EXPECT_EQ(edge.chain, n);
-        ASSERT_EQ(edge.cover_count, n);
+        EXPECT_EQ(edge.mesh_edge_count, n);
+        ASSERT_EQ(edge.neighbour_count, n);
         for (std::uint32_t k = 0; k < n; ++k) {
-          EXPECT_EQ(set.coversOf(edge)[k].element, k);
-          EXPECT_EQ(set.coversOf(edge)[k].occluder, set.coversOf(edge)[0].occluder);
+          EXPECT_EQ(set.neighboursOf(edge)[k].mesh_edge, k);
+          EXPECT_EQ(set.neighboursOf(edge)[k].occluder, set.neighboursOf(edge)[0].occluder);
         }
       }
     }
@@ -350,7 +352,7 @@ TEST(OccluderEdges, OfATurnedCubeShareLinesWithinTheSlack) {
   }
 }
 
-TEST(OccluderEdges, NameADifferentNeighbourForEachPartOfAChain) {
+TEST(OccluderEdges, NameADifferentNeighbourForEachPartOfAnEdge) {
   // A floor whose rear side is the foot of two walls of two objects, 0 to 1 and 1 to 2.
   FlatMesh floor;
   for (const Point2& p : {Point2{0, 0}, Point2{2, 0}, Point2{2, 3}, Point2{1, 3}, Point2{0, 3}}) {
@@ -367,19 +369,19 @@ TEST(OccluderEdges, NameADifferentNeighbourForEachPartOfAChain) {
   EXPECT_EQ(whatIsWrongWithLinks(set), "");
   const Occluder& ground = set[set.occludersOf(ObjectId(0u))[0]];
   ASSERT_EQ(ground.vertex_count, 4u);
-  int chains = 0;
+  int divided = 0;
   for (const OccluderEdge& edge : set.edgesOf(ground)) {
-    if (edge.chain != 2) {
-      EXPECT_EQ(edge.cover_count, 0u);
+    if (edge.mesh_edge_count != 2) {
+      EXPECT_EQ(edge.neighbour_count, 0u);
       continue;
     }
-    ++chains;
-    ASSERT_EQ(edge.cover_count, 2u);
+    ++divided;
+    ASSERT_EQ(edge.neighbour_count, 2u);
     // The side runs from x = 2 to x = 0.
-    EXPECT_EQ(set[set.coversOf(edge)[0].occluder].object, right);
-    EXPECT_EQ(set[set.coversOf(edge)[1].occluder].object, left);
+    EXPECT_EQ(set[set.neighboursOf(edge)[0].occluder].object, right);
+    EXPECT_EQ(set[set.neighboursOf(edge)[1].occluder].object, left);
   }
-  EXPECT_EQ(chains, 1);
+  EXPECT_EQ(divided, 1);
 }
 
 TEST(OccluderEdges, OfAWallCutIntoConvexPartsNameEachOther) {
@@ -391,7 +393,7 @@ TEST(OccluderEdges, OfAWallCutIntoConvexPartsNameEachOther) {
     const Placement place = anyPlacement(random, seed % 2 == 0 ? 1.0 : 200.0);
     const OccluderSet set = findOccluders(sceneOf(mesh, place).view(), kKeepAll);
     EXPECT_EQ(whatIsWrongWithLinks(set), "") << "seed " << seed;
-    EXPECT_FALSE(set.covers.empty()) << "seed " << seed;
+    EXPECT_FALSE(set.neighbours.empty()) << "seed " << seed;
   }
 }
 
@@ -402,7 +404,7 @@ TEST(OccluderEdges, WithoutACommonMeshEdgeNameNobody) {
   Scene scene = sceneOf(mesh);
   addObject(scene, upper, {}, MaterialId(0u));
   weldPositions(scene);
-  EXPECT_TRUE(findOccluders(scene.view(), kKeepAll).covers.empty());
+  EXPECT_TRUE(findOccluders(scene.view(), kKeepAll).neighbours.empty());
 }
 
 TEST(OccluderEdges, OfDemoScenesAreInOrder) {
@@ -410,7 +412,7 @@ TEST(OccluderEdges, OfDemoScenesAreInOrder) {
   EXPECT_EQ(whatIsWrongWithLinks(findOccluders(makeBuilding({.floors = 2}).view())), "");
 }
 
-// Polygons that a caller gives.
+// Occluders made from the caller's polygons.
 
 std::size_t madeOf(const std::vector<Vec3f>& polygon) {
   const OccluderPolygon input[] = {{polygon, false, ObjectId(0u)}};
@@ -489,15 +491,15 @@ TEST(MakeOccluders, TakesObjectsOfAnyNumberAndOfNone) {
   }
 }
 
-TEST(MakeOccluders, ClosesTheSeamOfEdgesWithEqualEnds) {
+TEST(MakeOccluders, MakesSharedEdgesOfEqualEndsWatertight) {
   const std::vector<Vec3f> left{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
-      right{{1, 0, 0}, {2, 0, 1}, {2, 1, 1}, {1, 1, 0}}, apart{{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {5, 1, 0}};
+      right{{1, 0, 0}, {2, 0, 1}, {2, 1, 1}, {1, 1, 0}}, disjoint{{5, 0, 0}, {6, 0, 0}, {6, 1, 0}, {5, 1, 0}};
   const OccluderPolygon input[] = {
-      {left, false, ObjectId(0u)}, {right, false, ObjectId(1u)}, {apart, false, ObjectId(2u)}};
+      {left, false, ObjectId(0u)}, {right, false, ObjectId(1u)}, {disjoint, false, ObjectId(2u)}};
   const OccluderSet set = makeOccluders(input);
   ASSERT_EQ(set.occluders.size(), 3u);
   EXPECT_EQ(whatIsWrongWithLinks(set), "");
-  EXPECT_EQ(set.covers.size(), 2u);
+  EXPECT_EQ(set.neighbours.size(), 2u);
 }
 
 TEST(MakeOccluders, NeverCoversMoreThanTheCallersPolygon) {

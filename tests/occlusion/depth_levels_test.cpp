@@ -17,7 +17,7 @@ namespace {
 
 using test::randomBox, test::randomView, test::ViewRandom;
 
-// A buffer of the test's own, with rubbish beyond its width.
+// A depth buffer with random values; pixels beyond its width are NaN.
 struct TestBuffer {
   std::uint32_t width, height, stride;
   std::vector<float> reciprocal_depth;
@@ -42,7 +42,7 @@ void forCutRanges(std::uint32_t count, const RangeBody& body) {
   }
 }
 
-TEST(DepthLevels, HoldTheLeastAndTheGreatestOfEachBlock) {
+TEST(DepthLevels, HoldTheMinimumAndTheMaximumOfEachBlock) {
   const std::uint32_t sizes[][3] = {{1, 1, 1},    {7, 3, 9},       {8, 8, 8},      {9, 9, 16},  {64, 65, 64},
                                     {65, 9, 100}, {320, 180, 320}, {513, 40, 520}, {3, 700, 24}};
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
@@ -91,7 +91,7 @@ struct Place {
   double x, y;
 };
 
-// A box's image in the plain way: its hull from the corners, its depth from rays and planes.
+// The image of a box by brute force: its hull from the corners, its depth from rays and planes.
 class PlainBox {
  public:
   PlainBox(const PixelView& view, const Box& box) : view_(view), box_(box) {
@@ -102,7 +102,7 @@ class PlainBox {
             static_cast<double>((corner >> axis & 1u) != 0 ? box.max[axis] : box.min[axis]) - view.eye[axis];
       }
       const Vec3d camera = view.toCamera(d);
-      corners_.push_back({view.mapX(camera), view.mapY(camera)});
+      corners_.push_back({view.pixelX(camera), view.pixelY(camera)});
     }
     makeHull();
   }
@@ -136,8 +136,8 @@ class PlainBox {
     return distance;
   }
 
-  // The least over the faces that are seen of the greatest reciprocal depth of its plane over the pixel's
-  // square.
+  // Returns the minimum, over the visible faces, of the maximum reciprocal depth of the face's plane in the
+  // pixel's square.
   double reciprocalDepthIn(std::uint32_t x, std::uint32_t y) const {
     double own = INFINITY;
     for (int axis = 0; axis < 3; ++axis) {
@@ -303,8 +303,8 @@ TEST(BoxDepthTest, AgreesWithEveryPixelTakenByItself) {
   EXPECT_GT(visible, 20);
 }
 
-// By the promise alone: a point of the box is hidden where the buffer is nearer than the point.
-TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
+// Checks the contract directly: a point of the box is hidden if the buffer is nearer than the point.
+TEST(BoxDepthTest, NeverHidesAPointThatTheBufferIsNotInFrontOf) {
   int hidden = 0, points = 0;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     Bed bed(seed);
@@ -324,8 +324,8 @@ TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
         p[axis] = bed.box.min[axis] * (1.0 - t) + bed.box.max[axis] * t;
       }
       const Vec3d camera = bed.view.toCamera(p - bed.view.eye);
-      const double x = camera.z > 0.0 || bed.view.orthographic ? bed.view.mapX(camera) : -1.0;
-      const double y = camera.z > 0.0 || bed.view.orthographic ? bed.view.mapY(camera) : -1.0;
+      const double x = camera.z > 0.0 || bed.view.orthographic ? bed.view.pixelX(camera) : -1.0;
+      const double y = camera.z > 0.0 || bed.view.orthographic ? bed.view.pixelY(camera) : -1.0;
       const double margin = 1e-9 * bed.buffer.width;
       if (camera.z < bed.view.near || camera.z > bed.view.far ||
           !(x > margin && x < bed.buffer.width - margin) || !(y > margin && y < bed.buffer.height - margin)) {
@@ -333,7 +333,7 @@ TEST(BoxDepthTest, NeverHidesAPointThatTheMapIsNotBefore) {
       }
       ++points;
       EXPECT_GT(bed.buffer.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
-                bed.view.reciprocal_depth(camera.z) - 1e-12)
+                bed.view.reciprocalDepth(camera.z) - 1e-12)
           << "seed " << seed;
     }
   }
@@ -349,7 +349,7 @@ TEST(BoxDepthTest, EveryInstructionSetAndEverySplitGiveTheSameAnswers) {
     if (bed.image.place == BoxPlace::kOnBuffer) {
       drawAround(bed, PlainBox(bed.view, bed.box), static_cast<int>(seed % 2));
     }
-    // The box itself, and parts of it, which are hidden more often.
+    // Tests the box itself and parts of it, which are hidden more often.
     std::vector<Box> boxes{bed.box};
     for (int i = 0; i < 30; ++i) {
       boxes.push_back(randomBox(bed.random, bed.eye_view));

@@ -183,10 +183,10 @@ TEST_P(DepthPyramidFamilies, NothingIsBeforeABoxThatIsVisible) {
       const DepthBufferView buffer = pyramid.depthBuffer();
       const PixelView view(scene.view, buffer.width, buffer.height);
       const Vec3d camera = view.toCamera(center(box) - view.eye);
-      const double x = std::clamp(view.mapX(camera), 0.0, buffer.width - 1.0);
-      const double y = std::clamp(view.mapY(camera), 0.0, buffer.height - 1.0);
+      const double x = std::clamp(view.pixelX(camera), 0.0, buffer.width - 1.0);
+      const double y = std::clamp(view.pixelY(camera), 0.0, buffer.height - 1.0);
       EXPECT_LE(buffer.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
-                view.reciprocal_depth(camera.z))
+                view.reciprocalDepth(camera.z))
           << GetParam().name << ", seed " << seed;
     }
   }

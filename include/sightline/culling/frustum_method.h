@@ -8,7 +8,7 @@ namespace sightline {
 
 inline constexpr MethodTraits kFrustumTraits{.occluders = false, .sets = SetUse::kNever};
 
-// View-frustum culling alone: what meets the frustum is kept.
+// View-frustum culling alone: objects whose boxes intersect the frustum are kept.
 std::unique_ptr<CullingMethod> frustumCulling();
 
 }  // namespace sightline

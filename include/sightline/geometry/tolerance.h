@@ -11,7 +11,7 @@
 //   kEdgeMargin  an occluder's outline is drawn in by at least this angle before its shadow planes are made;
 //                above kOnPlane, so that "on the plane" never reaches the true outline
 //   kDepthMargin a point must lie behind an occluder's plane by at least this times the distances involved;
-//                above what kOnPlane and kEdgeMargin can move along a ray that meets the plane at a grazing
+//                above what kOnPlane and kEdgeMargin can move along a ray that hits the plane at a grazing
 //                angle
 
 #include "sightline/math/vec3.h"

@@ -21,9 +21,11 @@ struct Occluder {
   std::uint32_t first_vertex = 0;  // into OccluderSet::vertices and OccluderSet::edges
   std::uint16_t vertex_count = 0;
   bool double_sided = false;
-  bool seals = false;  // no sharp corner: the edge to a neighbour may be watertight (docs/conservative.md)
-  ObjectId object{};   // the object of its triangles; not valid: none
-  float area = 0.0f;   // square metres
+  // No corner is sharper than 3 degrees: edges shared with neighbours may be watertight
+  // (docs/conservative.md).
+  bool watertight_edges = false;
+  ObjectId object{};  // the object of its triangles; not valid: none
+  float area = 0.0f;  // square metres
   // Metres: bounds the distance between the polygon and its triangles, in its plane and across it.
   float slack = 0.0f;
   Vec3f centroid{};  // of its area
@@ -32,17 +34,19 @@ struct Occluder {
 
 // The edge from one corner of an occluder to the next.
 struct OccluderEdge {
-  std::uint32_t line = 0;         // into OccluderSet::lines; edges along one shared edge have the same line
-  std::uint32_t first_cover = 0;  // into OccluderSet::covers
-  std::uint16_t cover_count = 0;
-  std::uint16_t chain = 0;        // mesh edges that it consists of; 0: it is never watertight
-  std::uint32_t first_joint = 0;  // into OccluderSet::joints: the chain - 1 mesh vertices between its corners
+  std::uint32_t line = 0;  // into OccluderSet::lines; edges along one shared edge have the same line
+  std::uint32_t first_neighbour = 0;  // into OccluderSet::neighbours
+  std::uint16_t neighbour_count = 0;
+  // Number of mesh edges along this edge, end to end; 0: the edge is never watertight.
+  std::uint16_t mesh_edge_count = 0;
+  // Into OccluderSet::edge_vertices: the mesh_edge_count - 1 mesh vertices between its corners.
+  std::uint32_t first_edge_vertex = 0;
 };
 
-// Another occluder that has one mesh edge of an edge's chain in its own boundary.
-struct EdgeCover {
+// Another occluder that has one of an edge's mesh edges in its own boundary.
+struct EdgeNeighbour {
   OccluderId occluder{};
-  std::uint32_t element = 0;  // which mesh edge of the chain, from 0
+  std::uint32_t mesh_edge = 0;  // number of the mesh edge within the edge, from 0
 };
 
 // A convex solid of one object that occluders enclose: seen from outside, everything behind its image is
@@ -89,8 +93,8 @@ struct OccluderSet {
   std::vector<Vec3f> vertices{};              // corners of all occluders, scene space
   std::vector<OccluderEdge> edges{};          // edge i starts at vertex i
   std::vector<std::array<Vec3f, 2>> lines{};  // two points on each line
-  std::vector<EdgeCover> covers{};
-  std::vector<Vec3f> joints{};  // mesh vertices along edges, between the corners
+  std::vector<EdgeNeighbour> neighbours{};    // by edge, then by mesh edge, then by occluder
+  std::vector<Vec3f> edge_vertices{};         // mesh vertices along edges, between the corners
   // Ascending: all objects of the scene in which occluders were found, or those that given polygons name.
   std::vector<ObjectId> objects{};
   std::vector<std::uint32_t> first_of_object{};  // by place in objects, and one more; into of_object
@@ -114,8 +118,8 @@ struct OccluderSet {
   std::span<const OccluderEdge> edgesOf(const Occluder& o) const {
     return std::span(edges).subspan(o.first_vertex, o.vertex_count);
   }
-  std::span<const EdgeCover> coversOf(const OccluderEdge& e) const {
-    return std::span(covers).subspan(e.first_cover, e.cover_count);
+  std::span<const EdgeNeighbour> neighboursOf(const OccluderEdge& e) const {
+    return std::span(neighbours).subspan(e.first_neighbour, e.neighbour_count);
   }
   const OccluderBody* bodyOf(OccluderId id) const {
     const std::uint32_t body = id.value < body_of.size() ? body_of[id.value] : kNoBody;

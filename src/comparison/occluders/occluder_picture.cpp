@@ -88,7 +88,7 @@ void OccluderPicture::drawOne(const OccluderSet& set, const NearOccluder& candid
   }
   corners_px_.clear();
   for (const Corner& corner : polygon_) {
-    corners_px_.push_back({view_.mapX(corner.position), view_.mapY(corner.position)});
+    corners_px_.push_back({view_.pixelX(corner.position), view_.pixelY(corner.position)});
   }
   ShownOccluder shown;
   shown.id = candidate.id;

@@ -30,10 +30,10 @@ bool project(const Box& box, const PixelView& view, std::uint32_t resolution, Oc
     if (!(c.z > view.near)) {
       return false;
     }
-    left = std::min(left, view.mapX(c));
-    right = std::max(right, view.mapX(c));
-    low = std::min(low, view.mapY(c));
-    high = std::max(high, view.mapY(c));
+    left = std::min(left, view.pixelX(c));
+    right = std::max(right, view.pixelX(c));
+    low = std::min(low, view.pixelY(c));
+    high = std::max(high, view.pixelY(c));
     nearest = std::min(nearest, c.z);
   }
   const double size = resolution;
@@ -46,7 +46,7 @@ bool project(const Box& box, const PixelView& view, std::uint32_t resolution, Oc
   // A flat box seen from its side has a row of pixels all the same.
   occludee.rect.right = std::max(occludee.rect.right, occludee.rect.left + 1);
   occludee.rect.high = std::max(occludee.rect.high, occludee.rect.low + 1);
-  occludee.reciprocal_depth = static_cast<float>(view.reciprocal_depth(nearest) * kInFront);
+  occludee.reciprocal_depth = static_cast<float>(view.reciprocalDepth(nearest) * kInFront);
   return true;
 }
 

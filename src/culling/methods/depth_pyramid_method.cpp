@@ -55,9 +55,9 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    const culling::TraversalMaps maps{*pyramid_, window_ ? &*window_ : nullptr,
-                                      focused_ ? &*fine_pyramid_ : nullptr};
-    traversal_->run(maps, culling::optionsOf(frame, settings_.temporal_coherence), stats, visible,
+    const culling::TraversalBuffers buffers{*pyramid_, window_ ? &*window_ : nullptr,
+                                            focused_ ? &*fine_pyramid_ : nullptr};
+    traversal_->run(buffers, culling::optionsOf(frame, settings_.temporal_coherence), stats, visible,
                     *frame.parallel_for);
   }
 
@@ -81,8 +81,8 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  // The finer depth buffer: the occluders of the first one, and the best of those that the last frame kept in
-  // the window.
+  // Draws the finer depth buffer: the chosen occluders in the window, and the best ones of the objects in the
+  // window that the last frame kept.
   void drawFocus(const CullingFrame& frame) {
     in_window_.clear();
     for (const ObjectId object : frame.last_visible) {
@@ -116,10 +116,10 @@ class DepthPyramidMethod final : public CullingMethod {
   std::optional<culling::WideTraversal> traversal_;
   std::optional<DepthPyramid> pyramid_;
   std::size_t own_occluders_ = 0;  // occluders in the pyramid that are of the scene's set
-  // The finer depth buffer of a window, with the settings.
+  // The focus window and its finer depth buffer; empty if the settings turn them off.
   std::optional<culling::FocusWindow> window_;
   std::optional<DepthPyramid> fine_pyramid_;
-  bool focused_ = false;  // in this frame
+  bool focused_ = false;  // this frame has a window
   OccluderChooser chooser_;
   std::vector<ObjectId> in_window_;
   std::vector<OccluderId> fine_chosen_;

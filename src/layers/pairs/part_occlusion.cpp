@@ -16,7 +16,7 @@ constexpr double kMargin = 1e-12;
 // The heights of a ball around a placed hull along a direction of the world.
 struct Heights {
   double middle = 0.0, half = 0.0;
-  double magnitude = 0.0;  // sum of the magnitudes from which the middle was computed
+  double magnitude = 0.0;  // sum of the absolute values from which the middle was computed
 };
 
 double reachOf(const ConvexSet& set) {

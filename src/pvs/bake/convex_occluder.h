@@ -11,7 +11,7 @@
 //   A polygon P  is shrunk about its centre until each edge has moved inwards by the margin. Of it two sets
 //                are made, one the margin before P's plane, one the margin behind; what both hide is hidden.
 //                A line that crosses both stays farther than slack from P's boundary, and its ends are
-//                farther than slack from P's plane, so it really meets P's triangles (docs/conservative.md).
+//                farther than slack from P's plane, so it really hits P's triangles (docs/conservative.md).
 //   A body       is shrunk about its centre until each corner is behind every face by the margin. A line that
 //                comes from outside to any point there crosses the closed surface of the triangles.
 //

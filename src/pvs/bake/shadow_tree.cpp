@@ -18,9 +18,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // No fused operations: they would round differently on different instruction sets. A box's minimum and
 // maximum over a plane have an error of at most 2^-50 of the reach, which the shadow's offset allows for.
-class Walk {
+class Traversal {
  public:
-  Walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs)
+  Traversal(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs)
       : tree_(tree), shadow_(shadow), runs_(runs), first_run_(runs.size()) {}
 
   // Visits the nodes first ... first + count - 1, whose parent is behind all planes except these.
@@ -109,13 +109,13 @@ class Walk {
   std::size_t first_run_;
 };
 
-void walk(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs) {
+void traverse(const ShadowTree::Arrays& tree, const Shadow& shadow, std::vector<ObjectRun>& runs) {
   std::array<std::uint8_t, kMaxShadowPlanes> planes;
   for (std::uint32_t p = 0; p < shadow.count; ++p) {
     planes[p] = static_cast<std::uint8_t>(p);
   }
   if (shadow.count > 0 && !tree.nodes.empty()) {
-    Walk(tree, shadow, runs).visit(0, 1, planes.data(), shadow.count);
+    Traversal(tree, shadow, runs).visit(0, 1, planes.data(), shadow.count);
   }
 }
 
@@ -127,9 +127,9 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::pvs {
 namespace {
 
-HWY_EXPORT(walk);
+HWY_EXPORT(traverse);
 
-constexpr std::size_t kFewestChildren = 8;  // inner nodes are dissolved until there are about this many
+constexpr std::size_t kMinChildren = 8;  // inner nodes are dissolved until there are about this many
 // At this depth, a node's children are all its leaves, which bounds the recursion.
 constexpr std::uint32_t kMaxDepth = 64;
 constexpr std::size_t kPadding = 8;  // lanes
@@ -158,7 +158,7 @@ std::vector<std::uint32_t> childrenOf(const BoxTreeView& tree, std::uint32_t nod
 
 // Replaces the largest inner nodes by their children while there are few children. Keeps their order.
 void widen(const BoxTreeView& tree, std::vector<std::uint32_t>& children) {
-  while (children.size() < kFewestChildren) {
+  while (children.size() < kMinChildren) {
     double largest = -1.0;
     std::size_t chosen = children.size();
     for (std::size_t i = 0; i < children.size(); ++i) {
@@ -172,7 +172,7 @@ void widen(const BoxTreeView& tree, std::vector<std::uint32_t>& children) {
       return;
     }
     const std::vector<std::uint32_t> below = childrenOf(tree, children[chosen]);
-    if (children.size() - 1 + below.size() > kFewestChildren) {
+    if (children.size() - 1 + below.size() > kMinChildren) {
       return;
     }
     const auto at = children.erase(children.begin() + static_cast<std::ptrdiff_t>(chosen));
@@ -264,7 +264,7 @@ ShadowTree::ShadowTree(const BoxTreeView& tree) {
 }
 
 void ShadowTree::hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const {
-  HWY_DYNAMIC_DISPATCH(walk)(arrays_, shadow, runs);
+  HWY_DYNAMIC_DISPATCH(traverse)(arrays_, shadow, runs);
 }
 
 }  // namespace sightline::pvs

@@ -1,4 +1,4 @@
-// sightline cull: lists the objects that may be visible in every frame of a walk.
+// sightline cull: lists the objects that may be visible in every frame of a camera path.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -6,7 +6,7 @@
 
 namespace sightline::tool {
 
-// A culler along a walk, with the time of its last frame measured from outside.
+// A culler along a camera path, with the time of its last frame measured from outside.
 struct CullRun {
   Culler culler;
   double cull_us = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The methods of culling, one row each: name, what makes it, and which options it has. What a method needs
-// (occluders, sets) is asked of the library.
+// A table of the culling methods: each row has the method's name, the function that makes it and the options
+// that it has. Whether it needs occluders or sets is told by the library's MethodTraits.
 
 #include <memory>
 #include <span>
@@ -18,16 +18,15 @@ struct Method {
   std::string_view name;  // on the command line and in JSON
   MethodTraits traits;
   std::unique_ptr<CullingMethod> (*make)(const Setting& setting);
-  // The options that this method has beyond those that all methods, and all methods with occluders, have:
-  // names in the table of method_options.cpp.
+  // Names, in the table of method_options.cpp, of the options that only some methods have, this one included.
   std::vector<std::string_view> options;
-  // Groups of its statistics that are for the library's users alone.
+  // Groups of statistics that the tool does not show.
   std::vector<std::string_view> hidden_statistics{};
 };
 
-// In the order in which they are listed.
+// Returns all methods in the order in which they are listed.
 std::span<const Method> allMethods();
-// One of their names.
+// Returns the method of this name. Precondition: there is one.
 const Method& methodNamed(std::string_view name);
 
 }  // namespace sightline::tool

@@ -24,13 +24,13 @@ constexpr std::uint32_t kMaxTriangles = 1'000'000'000;
 constexpr double kMaxMebibytes = 65536.0;
 constexpr double kMebibyte = 1024.0 * 1024.0;
 
-// What an option sets, from text and back.
+// Converts an option's value from text to the setting and back.
 struct Value {
   std::string help;                                                    // after the option's own
   std::string expected;                                                // "a whole number from 1 to 9"
   std::function<bool(const std::string& text, Setting& setting)> set;  // false: not what was expected
   std::function<Json(Setting setting)> get;
-  std::vector<std::string> words{};  // that it can be; none: it is a number
+  std::vector<std::string> words{};  // the allowed values; empty: it is a number
 };
 
 template <typename T>
@@ -65,23 +65,23 @@ Value methodName() {
   return {"", "one of: " + list, set, [](Setting setting) { return Json(setting.method->name); }, names};
 }
 
-Value whole(std::uint32_t least, std::uint32_t most, Field<std::uint32_t> field) {
+Value whole(std::uint32_t min, std::uint32_t max, Field<std::uint32_t> field) {
   const auto set = [=](const std::string& text, Setting& setting) {
     const std::optional<std::uint32_t> value = parseWhole(text);
-    if (!value || *value < least || *value > most) {
+    if (!value || *value < min || *value > max) {
       return false;
     }
     field(setting) = *value;
     return true;
   };
-  return {"", fmt::format("a whole number from {} to {}", least, most), set,
+  return {"", fmt::format("a whole number from {} to {}", min, max), set,
           [field](Setting setting) { return Json(field(setting)); }};
 }
 
-// 0 or more, at most `most`.
-bool parseUpTo(double most, const std::string& text, double& value) {
+// Parses a number from 0 to `max`. Returns false for any other text.
+bool parseUpTo(double max, const std::string& text, double& value) {
   const std::optional<double> parsed = parseDecimal(text);
-  if (!parsed || std::signbit(*parsed) || *parsed > most) {
+  if (!parsed || std::signbit(*parsed) || *parsed > max) {
     return false;
   }
   value = *parsed;
@@ -130,7 +130,7 @@ Value mebibytes(Field<std::size_t> bytes) {
           [bytes](Setting setting) { return Json(static_cast<double>(bytes(setting)) / kMebibyte); }};
 }
 
-// When an option means anything, beyond that its method has it.
+// Conditions under which an option has a meaning, in addition to its method having it.
 bool always(const Setting&) {
   return true;
 }
@@ -176,15 +176,15 @@ bool usesDatabase(const Setting& setting) {
 
 struct Option {
   std::string name;  // "occluder-count": --occluder-count, and occluder_count in JSON
-  bool of_methods;   // only the methods have it that name it in their rows
+  bool of_methods;   // only methods that name it in their rows have it
   bool (*when)(const Setting&);
-  bool list;      // takes several values, where the command does
-  bool headline;  // optionsText always tells it, in words of its own
+  bool list;      // takes several values, if the command does
+  bool headline;  // optionsText always includes it, in words of its own
   std::string help;
   Value value;
 
-  // Whether it means anything for a setting; asked when the options above it are set. Where it does not, it
-  // is neither set nor shown, and its list does not multiply the setting.
+  // Whether the option has a meaning for a setting in which the options above it are set. If not, it is
+  // neither set nor shown, and its list of values does not multiply the setting.
   bool belongs(const Setting& setting) const {
     const std::vector<std::string_view>& own = setting.method->options;
     return (!of_methods || std::find(own.begin(), own.end(), name) != own.end()) && when(setting);
@@ -194,7 +194,7 @@ struct Option {
 constexpr bool kAny = false, kOwn = true;
 constexpr bool kList = true, kOne = false, kHeadline = true, kWhenChanged = false;
 
-// An option comes after those that decide whether it means anything.
+// Each option comes after those that decide whether it has a meaning.
 const std::vector<Option>& allOptions() {
   static const std::vector<Option> kOptions{
       {"method", kAny, always, kList, kHeadline, "how to cull", methodName()},
@@ -324,7 +324,7 @@ const Option& optionNamed(std::string_view name) {
                        [&](const Option& option) { return option.name == name; });
 }
 
-// Of JSON: text without its quotes.
+// Returns a JSON value as text; strings have no quotes.
 std::string plainText(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -334,7 +334,7 @@ std::string jsonKey(std::string name) {
   return name;
 }
 
-// The values of one option, each of them known to be fine.
+// Returns the values of one option, or an error if one of them is not allowed.
 Result<std::vector<std::string>> valuesOf(const Option& option, const std::string& text) {
   std::vector<std::string> values = splitAt(text, ',');
   if (values.size() > 1 && !option.list) {
@@ -349,7 +349,7 @@ Result<std::vector<std::string>> valuesOf(const Option& option, const std::strin
   return values;
 }
 
-// Whether what needs a baked file has one.
+// Returns an error if a setting needs a baked file and none is given.
 Status checkBaked(const MethodOptions& options, const std::vector<Setting>& settings) {
   constexpr const char* kRemedy =
       "give the baked file with --baked F.sight; make one with: sightline bake SCENE -o F.sight";

@@ -1,6 +1,6 @@
 #pragma once
 
-// How to cull: the options of the command line, and what they mean for the library.
+// The command line's options of culling methods, and the library settings that they stand for.
 
 #include <cstdint>
 #include <memory>
@@ -39,11 +39,11 @@ struct Setting {
   ViewpointDatabaseSettings viewpoints{};
   bool detail_objects = false;
   DetailObjectsSettings detail{};
-  bool temporal_coherence = true;  // of each method that has it
+  bool temporal_coherence = true;  // for the methods that have it
   OcclusionTreeVariant variant = OcclusionTreeMethodSettings{}.variant;
   PlaneForm plane_form = PlaneForm::kThroughEye;
   KeptPlanesSettings kept_planes{};
-  RasterSettings raster{};  // of the opacity map and the depth pyramid
+  RasterSettings raster{};  // for the opacity map and the depth pyramid
   OpacityMapMethodSettings opacity_map{};
   FocusSettings focus{};
   bool baked = false;  // there is a baked file
@@ -51,15 +51,15 @@ struct Setting {
   bool usesDatabase() const;
   bool usesViewpoints() const;
   bool usesDepthBuffer() const;
-  bool approximate() const;  // may cull what can be seen
+  bool approximate() const;  // may cull visible objects
   bool testsDetailObjects() const;
   bool usesVisibleSets() const;
 };
 
-// The method of the setting, with the second test of detail objects where it is asked for.
+// Makes the method of the setting, with the second test of detail objects if the setting has it.
 std::unique_ptr<CullingMethod> makeMethod(const Setting& setting);
 
-// The options as text, one for each option that there is; several values are separated by commas.
+// The options as text, one element per option; several values are separated by commas.
 struct MethodOptions {
   MethodOptions();  // the library's defaults
 
@@ -68,16 +68,17 @@ struct MethodOptions {
 };
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 
-// All combinations, in the order of the lists; options that a method does not have do not multiply it. Says
-// on stderr which of the given ones no method has. An error where one of them needs a baked file and there is
-// none.
+// Returns all combinations of the options' values, in the order of the lists. A method is combined only with
+// the options that it has. Names on stderr the given options that no method has. Returns an error if a
+// combination needs a baked file and there is none.
 Result<std::vector<Setting>> settingsOf(const MethodOptions& options);
 
-// Of the choices that the viewpoint database serves.
+// The criterion of a choice that uses the viewpoint database.
 OccluderCriterion criterionOf(OccluderChoice choice);
 
 std::string methodName(const Setting& setting);
-// For people: "FME, 64 occluders, bvh, coherence on", then what is not as usual.
+// Returns a text for people: "FME, 64 occluders, bvh, coherence on", followed by what differs from the
+// defaults.
 std::string optionsText(const Setting& setting);
 Json optionsJson(const Setting& setting);
 

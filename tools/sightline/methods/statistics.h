@@ -16,7 +16,7 @@ struct Statistic {
   bool time = false;    // differs from run to run
 };
 
-// Those that mean something for the setting: of its sets, and those of its method but for the groups that the
+// Returns the statistics that apply to the setting: those of its sets, and those of its method but for the groups that the
 // method's row hides.
 std::vector<Statistic> statisticsOf(const Setting& setting);
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kWalkingStep = 1.4 / 60.0;  // metres from frame to frame
 constexpr std::uint32_t kSpeeds[] = {1, 2, 4, 8, 16, 32};
-constexpr std::uint32_t kStretches = 4;      // spread over the camera path
-constexpr std::uint32_t kFewestCounted = 2;  // a speed with fewer frames in a stretch is left out
+constexpr std::uint32_t kStretches = 4;   // spread over the camera path
+constexpr std::uint32_t kMinCounted = 2;  // a speed with fewer frames in a stretch is left out
 
 // Cullers that move along together, so that other load on the machine affects them alike.
 struct Walkers {
@@ -89,7 +89,7 @@ std::vector<SpeedResult> measureSpeeds(const SceneAndWalk& input, CullingData& d
   const std::uint32_t steps = std::min(stretch_frames, room);
   std::vector<SpeedResult> sums;
   for (const std::uint32_t speed : kSpeeds) {
-    if (steps / speed >= kFewestCounted) {
+    if (steps / speed >= kMinCounted) {
       sums.push_back({speed});
     }
   }
