@@ -1,4 +1,4 @@
-// Counts what operator new hands out in this program: a frame must not allocate once its storage has grown.
+// Counts the calls of operator new in this program: a frame must not allocate once its storage has grown.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ std::size_t allocationsIn(AnyCuller& culler, std::span<const View> views,
   return allocations - before;
 }
 
-// Every structure, little room for relations, and all that uses the database.
+// Returns settings with every structure, with a small budget for relations, and with all uses of the
+// database.
 std::vector<NamedSettings> allSettings() {
   std::vector<NamedSettings> all(std::begin(kStructures), std::end(kStructures));
   all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
@@ -44,7 +45,7 @@ TEST(Allocations, AreCountedByThisTest) {
 
 TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
   for (const DemoScene* demo : {&smallCity(), &smallBuilding()}) {
-    // A walk and some jumps, so that the choice of the first frame is there as well.
+    // The views are a camera path with jumps, after which occluders are chosen as in a first frame.
     std::vector<View> views = demo->frames(demo->scene.paths[0], 80, 30);
     const std::vector<View> others = jumps(*demo, 21, 6);
     views.insert(views.end(), others.begin(), others.end());
@@ -63,7 +64,7 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
 TEST(Allocations, DoNotHappenWithOccludersThatMove) {
   const DemoScene& demo = smallCity();
   const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 20);
-  // A wall before the eye of each frame.
+  // In each frame a wall stands in front of the eye.
   std::vector<OccluderSet> moving;
   for (const View& view : views) {
     std::vector<Vec3f> corners;
@@ -107,7 +108,7 @@ TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
     for (int round = 0; round < 3; ++round) {
       counted = 0;
       for (std::size_t v = 0; v < views.size(); ++v) {
-        // Now and then the same as before, and everything.
+        // Some frames have the same set as the last one, some have none.
         if (v % 8 == 7) {
           sets.useEverything();
         } else if (v % 4 != 3) {

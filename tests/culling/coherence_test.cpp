@@ -1,4 +1,4 @@
-// What the walk takes over from the last frame: Bittner, Havran, Slavik, CGI 1998, section 5.4.
+// Temporal coherence of the traversal: Bittner, Havran, Slavik, CGI 1998, section 5.4.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ using culling::TraversalBox;
 
 using Nodes = std::vector<std::uint32_t>;
 
-// Four boxes in a row along x, each in a leaf of its own: the root, below it two inner nodes, below each of
-// them two leaves, numbered depth first.
+// Four boxes in a row along x. The root has two inner nodes, and each of these has two leaves with one box
+// each. Nodes are numbered depth first.
 constexpr std::uint32_t kRoot = 0, kLeft = 1, kLeftLeaf0 = 2, kLeftLeaf1 = 3, kRight = 4, kRightLeaf0 = 5,
                         kRightLeaf1 = 6;
 
@@ -40,8 +40,8 @@ class RowOfBoxes : public ::testing::Test {
     }
   }
 
-  // One frame; the nodes that the occlusion structure was asked about, ascending. Nodes are partly visible
-  // unless states_ says otherwise.
+  // Traverses one frame and returns the nodes that were tested for occlusion, in ascending order. A node is
+  // partly visible unless states_ says otherwise.
   Nodes frame() {
     Nodes asked;
     CullStats stats;
@@ -55,7 +55,7 @@ class RowOfBoxes : public ::testing::Test {
     std::sort(asked.begin(), asked.end());
     return asked;
   }
-  // There is no last frame.
+  // Makes the next frame a first one, without coherence.
   void startAnew() { walk_.emplace(hierarchy_, bounds_); }
   // Boxes with x below this are outside the frustum.
   void leaveOutBelow(double x) { view_.eye.x = x + 0.5 * view_.ortho_height * view_.aspect; }
@@ -89,7 +89,7 @@ TEST_F(TemporalCoherence, ALeafThatBecomesHiddenOrVisibleHasItsParentAskedInTheN
     EXPECT_EQ(frame(), kLeavesAlone);
     states_[kLeftLeaf0] = certain;
     EXPECT_EQ(frame(), kLeavesAlone);
-    // Its parent is found partial and marked once more, and the leaf takes the mark away again.
+    // The parent is found partly visible and marked again, and then the leaf clears the mark.
     const Nodes and_its_parent{kLeft, kLeftLeaf0, kLeftLeaf1, kRightLeaf0, kRightLeaf1};
     EXPECT_EQ(frame(), and_its_parent);
     EXPECT_EQ(frame(), and_its_parent);

@@ -28,7 +28,7 @@ bool includesAll(const Objects& large, const Objects& small) {
   return std::includes(large.begin(), large.end(), small.begin(), small.end());
 }
 
-// How many objects a culler keeps of those in the frustum.
+// The number of objects that a culler keeps, and the number of those in the frustum.
 struct Share {
   std::size_t kept = 0, in_frustum = 0;
   double value() const { return static_cast<double>(kept) / static_cast<double>(in_frustum); }
@@ -122,7 +122,7 @@ Objects notOutside(const DemoScene& demo, const View& view) {
   return objects;
 }
 
-// Looks at a lattice of points of the box.
+// Whether any point of a lattice in the box is inside of the frustum.
 bool hasAPointInside(const Frustum& frustum, const Box& box) {
   constexpr int kSteps = 12;
   const Vec3d extent = Vec3d(box.max) - Vec3d(box.min);
@@ -145,7 +145,8 @@ TEST(Culler, FrustumCullingKeepsTheObjectsWhoseBoxesAreNotOutside) {
   for (const View& view : jumps(smallCity(), 4, 60)) {
     const Objects expected = notOutside(smallCity(), view);
     EXPECT_EQ(visibleOf(bvh, view), expected);
-    // The parts of a box in several leaves are smaller and may all be outside, each of another plane.
+    // A leaf tests only its part of a box that is in several leaves. All parts may be outside, each beyond
+    // another plane, when the whole box is not.
     const Objects kept = visibleOf(kd_tree, view);
     EXPECT_TRUE(includesAll(expected, kept));
     Objects left_out;
@@ -175,7 +176,7 @@ TEST(Culler, TemporalCoherenceTestsFewerNodesAndCullsAsMuch) {
     }
     EXPECT_LT(coherent_tests, incoherent_tests);
     EXPECT_GT(skipped, 0u);
-    // A skipped node costs tests of its children, never tightness.
+    // Skipping a node leads to more tests of its children, but not to more visible objects.
     EXPECT_LE(coherent_kept, incoherent_kept + incoherent_kept / 20);
   }
 }
@@ -253,7 +254,7 @@ TEST(Culler, KeepsNoMoreWithMoreOccluders) {
 }
 
 TEST(Culler, TheModifiedTreeKeepsAsLittleAsTheStandardOne) {
-  // They differ by what is within rounding of a shadow plane.
+  // They may differ in boxes that touch a shadow plane within rounding.
   for (const std::uint32_t count : {32u, 128u, 256u}) {
     std::size_t standard_kept = 0, modified_kept = 0;
     for (const std::size_t place : kPlaces) {
@@ -331,7 +332,7 @@ bool sameWork(const AnyCuller& one, const AnyCuller& other) {
                     other.statistics().end(), sameValue);
 }
 
-// Both do the same, frame by frame.
+// Expects equal results of two cullers, frame by frame.
 void expectEqualRuns(AnyCuller& a, AnyCuller& b, std::span<const View> views) {
   for (const View& view : views) {
     a.cull(view);
@@ -478,7 +479,7 @@ TEST(Culler, DynamicBoxesAreHiddenBehindWallsAndOutsideTheFrustumOnly) {
       culler.cull(scene.view, boxes);
       ASSERT_EQ(culler.dynamicStates().size(), boxes.size());
       for (std::size_t i = 0; i < boxes.size(); ++i) {
-        // The opacity map does not tell that a box is before all that covers it.
+        // The opacity map does not detect that a box is in front of everything that covers its pixels.
         const bool before = settings.method == AnyMethod::kOpacityMap && i == 1;
         EXPECT_EQ(culler.dynamicStates()[i], before ? Visibility::kPartial : expected[i])
             << "box " << i << " " << name;
@@ -490,7 +491,7 @@ TEST(Culler, DynamicBoxesAreHiddenBehindWallsAndOutsideTheFrustumOnly) {
   }
 }
 
-// The occlusion structure that a culler with these settings uses, alone and new.
+// The occlusion structure that a culler with these settings uses.
 class Structure {
  public:
   Structure(const AnySettings& settings, const View& view, const OccluderSet& set,
@@ -531,7 +532,7 @@ class Structure {
   DepthPyramid pyramid_;
 };
 
-// Walls that move are used with the others, in their own frame only.
+// Moving walls hide objects together with the static ones, but only in their own frame.
 TEST(Culler, OccludersThatMoveHideInTheirFrame) {
   const WallScene scene;
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {});
@@ -603,8 +604,8 @@ TEST(Culler, NeedsAtMost64BytesAnObjectAnd32ANode) {
     const Hierarchy& hierarchy = city().hierarchy(kind);
     const std::size_t objects = city().bounds.size();
     EXPECT_LE(bytesOf(hierarchy.nodes), 32 * hierarchy.nodes.size());
-    // Boxes, the leaves' lists, the answer and the candidates, two sets of bits with their summaries, and a
-    // bit a node.
+    // The memory consists of the boxes, the lists of the leaves, the visible objects and the candidates, two
+    // sets of bits with summaries, and one bit per node.
     const std::size_t words = (objects + 63) / 64, bits = 2 * 8 * (words + (words + 63) / 64);
     const std::size_t answers = 2 * objects * sizeof(ObjectId);
     const std::size_t all = bytesOf(city().bounds) + bytesOf(hierarchy.objects) + answers + bits +

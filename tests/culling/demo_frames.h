@@ -20,7 +20,8 @@ struct NamedSettings {
   AnySettings settings;
 };
 
-// Every structure: the variants of the occlusion tree, the forms of the supporting planes, and maps.
+// Settings of every structure: the variants of the occlusion tree, the forms of the supporting planes, the
+// opacity map and the depth pyramid.
 constexpr NamedSettings kStructures[] = {
     {"FSE", {.variant = OcclusionTreeVariant::kFSE}},
     {"FSC", {.variant = OcclusionTreeVariant::kFSC}},
@@ -67,7 +68,7 @@ struct DemoScene {
   AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
     return AnyCuller(hierarchy(kind), bounds, occluders, settings, {&database, &detail_database});
   }
-  // Frames first, first + 1, ... of a walk, fewer at its end.
+  // Returns the views of frames first, first + 1, ... of a camera path; fewer at its end.
   std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {
     std::vector<View> views;
     for (std::size_t f = first; f < path.frames.size() && f < first + count; ++f) {
@@ -90,7 +91,8 @@ inline std::string nameOf(HierarchyKind kind) {
   return kind == HierarchyKind::kKdTree ? "kd-tree" : "bvh";
 }
 
-// Anywhere in and around the scene, in any direction, of both kinds of projection: each a jump.
+// Returns views of random places in and around the scene, in random directions and both projections. Each is
+// a jump.
 inline std::vector<View> jumps(const DemoScene& demo, std::uint64_t seed, std::size_t count) {
   std::mt19937_64 random(seed);
   const auto in = [&](double low, double high) {

@@ -1,4 +1,4 @@
-// Every setting of the culler against rays: what a ray reaches is never culled.
+// Compares every setting of the culler with rays: an object that a ray reaches must not be culled.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,7 @@ namespace {
 
 using namespace demo_frames;
 
-// A few frames one after the other, from several places of each walk: steady frames, and a jump to the next
-// place.
+// Takes a few consecutive frames at several places of each camera path, with a jump from place to place.
 void judgeWalks(const DemoScene& demo, std::size_t places, std::size_t steady) {
   Judge judge(demo);
   for (const CameraPath& path : demo.scene.paths) {

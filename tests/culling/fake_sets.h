@@ -1,6 +1,6 @@
 #pragma once
 
-// Potentially visible sets as a test wants them, without a bake.
+// Potentially visible sets that a test chooses itself, without a bake.
 
 #include <limits>
 #include <random>
@@ -15,7 +15,7 @@ class FakeSets final : public VisibleSets {
  public:
   explicit FakeSets(std::span<const Box> bounds) : tree_(buildBoxTree(bounds, {})) {}
 
-  // From now on the set is this one. members: by object.
+  // Sets what find() returns from now on. members: by object, true if it is in the set.
   void use(std::uint32_t id, const std::vector<bool>& members) {
     id_ = id;
     nodes_.clear();
@@ -56,7 +56,7 @@ class FakeSets final : public VisibleSets {
   std::vector<std::uint32_t> nodes_{0};
 };
 
-// Some of the objects, or none, or all, or what lies in a part of the tree.
+// Returns a random set: some of the objects, none, all, or those in a part of the tree.
 inline std::vector<bool> randomMembers(const BoxTreeView& tree, std::mt19937_64& random) {
   std::vector<bool> members(tree.objects.size(), random() % 8 == 0);
   switch (random() % 4) {

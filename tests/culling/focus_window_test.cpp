@@ -31,21 +31,21 @@ View anyView(Random& random) {
   return view;
 }
 
-// Turned to the left, degrees.
+// Returns the view turned to the left by an angle in degrees.
 View turned(View view, double degrees) {
   const double t = degrees * std::numbers::pi / 180.0;
   setOrientation(view, view.forward * std::cos(t) - view.right * std::sin(t), view.up);
   return view;
 }
 
-// Through a point of the map.
+// Returns the direction through a point of the depth buffer.
 Vec3d rayThrough(const View& view, double x, double y) {
-  const PixelView map(view, kWidth, kHeight);
-  return view.forward + view.right * ((x - map.middle_x) / map.scale_x) +
-         view.up * ((y - map.middle_y) / map.scale_y);
+  const PixelView buffer(view, kWidth, kHeight);
+  return view.forward + view.right * ((x - buffer.middle_x) / buffer.scale_x) +
+         view.up * ((y - buffer.middle_y) / buffer.scale_y);
 }
 
-// With a margin as a part of the window's half size.
+// Whether the direction is in the window. margin: a fraction of the window's half size.
 bool shows(const View& window, const Vec3d& ray, double margin) {
   const double depth = dot(window.forward, ray);
   const double x = dot(window.right, ray) / depth, y = dot(window.up, ray) / depth;
@@ -87,7 +87,7 @@ TEST(FocusWindow, StaysWithItsDirectionWhenTheViewTurns) {
   }
 }
 
-// What the view does not draw hides nothing in the window either.
+// Geometry in front of the view's near plane is not drawn, so it must hide nothing in the window either.
 TEST(FocusWindow, LiesBeyondTheViewsNearPlane) {
   Random random(3);
   int found = 0;
@@ -205,7 +205,8 @@ TEST(FocusWindow, MayShowEachBoxThatHasAPointInIt) {
   EXPECT_GT(none, 300);
 }
 
-// Blocks along a street, walls that cross the near plane, and small boxes at its end, as objects.
+// A street with blocks along it, walls that cross the near plane, and small boxes at its far end, all
+// objects.
 struct Street {
   std::vector<test::OraclePolygon> polygons;
   std::vector<Box> bounds;
@@ -257,7 +258,7 @@ struct Street {
     }
     bounds.push_back(box);
   }
-  // What is before the near plane is not there, and shows what is behind it.
+  // Geometry in front of the near plane is not drawn: objects behind it are visible.
   void addWallAcrossTheNearPlane(Random& random, std::vector<ObjectId>& owners) {
     const double x = random.in(-0.4, 0.4), y = random.in(-0.6, 0.0), high = y + random.in(0.1, 0.5);
     const double from = random.in(0.2, 0.9), to = random.in(1.5, 6.0), lean = random.in(-0.8, 0.8);
@@ -305,7 +306,7 @@ TEST(FocusedCuller, CullsNothingThatARayReachesThoughWallsCrossTheNearPlane) {
         ++judged;
         more += kept(without, i) ? 1 : 0;
         std::mt19937_64 random(i);
-        // Of an occluder its own polygons would be in the way.
+        // The polygons of an occluding object would block rays to itself.
         const std::span<const test::OraclePolygon> polygons(street.polygons);
         const test::Sight sight = i < street.first_small ? test::Sight{}
                                                          : test::lookAt(street.bounds[i], view, polygons,

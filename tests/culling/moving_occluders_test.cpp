@@ -1,4 +1,4 @@
-// Occluders that move: they hide in their frame, and nothing of them stays when they go.
+// Moving occluders hide objects in their own frame and have no effect on later frames.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace {
 using namespace demo_frames;
 using test::OraclePolygon;
 
-// A field of boxes behind three walls that stand still and one that goes past, frame by frame. The set of the
-// one that moves is always in the same memory and its occluder has always the same id.
+// A field of boxes behind three static walls, past which another wall moves. The set of the moving wall is
+// always in the same memory, and its occluder always has the same id.
 struct Crossing {
   static constexpr int kFrames = 24;
 
@@ -41,7 +41,7 @@ struct Crossing {
     }
   }
 
-  // The eye moves by a hand, the wall by a metre.
+  // Per frame, the eye moves by centimetres and the wall by a metre.
   View step(int frame) {
     const float x = -12.0f + static_cast<float>(frame);
     mover = test::wall(x, x + 4, -3, 3, -5);
@@ -80,7 +80,7 @@ TEST_P(MovingOccluders, HideNothingThatARayReachesAndNothingWhenTheyAreGone) {
     const bool there = frame % 6 != 5;  // now and then it is gone
     AnyCuller still(hierarchy, scene.bounds, scene.occluders, settings(), databases);
     still.cull(view);
-    // A box that moves, behind the wall that moves.
+    // A moving box is behind the moving wall.
     const float x = scene.mover.vertices[0].x;
     const Box follower{{2 * x + 3.5f, -0.5f, -11}, {2 * x + 4.5f, 0.5f, -10}};
     culler.cull(view, {&follower, 1}, there ? &scene.moving : nullptr);
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(All, MovingOccluders,
                          ::testing::Combine(::testing::Range(std::size_t{0}, std::size(kStructures)),
                                             ::testing::ValuesIn(kKinds), ::testing::Bool()));
 
-// Relations that are kept are those of the culler's own occluders, whatever moves.
+// Only relations of the culler's own occluders are kept from frame to frame, never those of moving ones.
 TEST(MovingOccluders, LeaveNoRelationsBehind) {
   Crossing scene;
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {}, {.max_leaf_objects = 1});

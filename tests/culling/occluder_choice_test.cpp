@@ -1,4 +1,4 @@
-// Which occluders a frame looks at: candidates, limits of distance, directions.
+// Tests the choice of a frame's occluders: candidates, limits of distance, directions.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Objects = std::vector<ObjectId>;
 
-// One object a polygon, numbered as given.
+// Polygons that are one object each, in the order of the objects' ids.
 class Polygons {
  public:
   using Quad = std::array<Vec3f, 4>;
@@ -52,16 +52,16 @@ class Polygons {
   std::vector<Quad> quads_;
 };
 
-// Faces +z.
+// Returns a wall that faces +z.
 Polygons::Quad wallAt(float z, float x0, float x1, float y0, float y1) {
   return {{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}};
 }
-// Faces -z.
+// Returns a wall that faces -z.
 Polygons::Quad backOfWallAt(float z, float x0, float x1, float y0, float y1) {
   return {{{x1, y0, z}, {x0, y0, z}, {x0, y1, z}, {x1, y1, z}}};
 }
 
-// Frame f of a walk along -z in steps of 0.1 m.
+// Returns frame f of a camera path along -z with steps of 0.1 m.
 View walkingAlongZ(int frame) {
   View view;
   view.eye = {0, 0, -0.1 * frame};
@@ -104,7 +104,7 @@ TEST(OccluderCandidates, AreLookedForInTheWholeFrustumNowAndThenWhereThereAreFew
   EXPECT_LE(searches, kFrames / 4);
 }
 
-// Bittner et al. 1998, section 3: within lambda steps of the observer.
+// Bittner et al. 1998, section 3: occluders are within lambda steps of the observer.
 TEST(OccluderCandidates, LieWithinLambdaStepsOfTheObserver) {
   const Polygons walls({wallAt(-5, -4, -1, -3, 3), wallAt(-30, 2, 9, -3, 3)});
   const auto usedWith = [&](double lambda_steps) {
@@ -141,7 +141,7 @@ TEST(DetailObjectsOfASmallScene, AreHiddenByOccludersTowardsTheViewer) {
     const Polygons walls(quads, {crate});
     const Hierarchy kd_tree =
         buildHierarchy(walls.bounds, {}, {.kind = HierarchyKind::kKdTree, .max_leaf_objects = 1});
-    // Narrow cones and small walls, so that no list holds what lies the other way.
+    // Cones are narrow and walls small, so that no list contains occluders of the opposite direction.
     const OccluderDatabase near = OccluderDatabase::build(
         kd_tree, walls.occluders, {.directions = 256, .view_angle_deg = 30.0, .turned_away = true});
     AnyCuller culler(walls.bvh, walls.bounds, walls.occluders,

@@ -1,5 +1,5 @@
-// Views as programs hand them over: with scaled or mirrored axes, without a near or a far plane, and no views
-// at all.
+// Unusual and invalid views that programs pass: scaled or mirrored axes, no near plane or no far plane, and
+// numbers that make no view.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@ using Objects = std::vector<ObjectId>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// A wall; behind it a crate, beside it another; a crate behind the viewer, and a speck before his eye.
+// A wall, a crate behind it, a crate beside it, a crate behind the viewer, and a tiny box right in front of
+// the eye.
 struct WallAndCrates {
   WallAndCrates() {
     const Vec3f corners[] = {{-4, -4, -10}, {4, -4, -10}, {4, 4, -10}, {-4, 4, -10}};
@@ -47,7 +48,7 @@ class OddViews : public ::testing::TestWithParam<bool> {  // orthographic?
  protected:
   OddViews() { scene_.view.orthographic = GetParam(); }
 
-  // In a second frame as well, with what the first one left behind.
+  // The second frame must give the same result despite the state that the first one left.
   void expectVisible(const View& view, const Objects& expected, const char* what) {
     for (const auto& [name, settings] : kStructures) {
       AnyCuller culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
@@ -133,7 +134,7 @@ TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
   }
 }
 
-// The structures alone hide nothing then.
+// For invalid views the structures themselves hide nothing.
 TEST_P(OddViews, StructuresHideNothingWhereTheyAreNone) {
   View none = scene_.view;
   none.up = normalized(Vec3d(1, 1, 0));

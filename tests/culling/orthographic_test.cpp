@@ -1,4 +1,4 @@
-// Parallel projections: they cull as well, and nothing that is seen.
+// Culling works in orthographic views too, and removes no visible object there.
 
 #include <gtest/gtest.h>
 

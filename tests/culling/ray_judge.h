@@ -1,6 +1,6 @@
 #pragma once
 
-// Every setting of the culler on the same views, judged by rays.
+// Culls the same views with every setting, and checks the results by casting rays.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ struct NamedCuller {
   AnyCuller culler;
 };
 
-// All structures and hierarchies, both settings of temporal coherence, few and many occluders; and those of
-// the database, with the second test.
+// Makes cullers with all structures and hierarchies, with and without temporal coherence, with few and many
+// occluders; and cullers with occluders from the database and the second test of detail objects.
 inline std::vector<NamedCuller> allCullers(const DemoScene& demo) {
   std::vector<NamedCuller> cullers;
   const auto add = [&](std::string name, HierarchyKind kind, const AnySettings& settings) {
@@ -51,7 +51,7 @@ inline bool kept(const AnyCuller& culler, ObjectId object) {
   return std::binary_search(culler.visible().begin(), culler.visible().end(), object);
 }
 
-// Objects that any of the cullers left out.
+// Returns the objects that at least one of the cullers left out.
 inline std::vector<ObjectId> culledByAny(const DemoScene& demo, const std::vector<NamedCuller>& cullers) {
   std::vector<std::size_t> keepers(demo.bounds.size(), 0);
   for (const NamedCuller& c : cullers) {

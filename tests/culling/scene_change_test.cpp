@@ -1,4 +1,4 @@
-// Scenes that grow, shrink and move under a culler, and parts of scenes that do not belong together.
+// Changes of a scene that a culler uses: it grows, shrinks or moves, or its parts do not belong together.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ Objects firstObjects(std::size_t count) {
   return objects;
 }
 
-// Every method.
+// Returns settings of every method.
 std::vector<NamedSettings> allMethods() {
   std::vector<NamedSettings> all(std::begin(kMethods), std::end(kMethods));
   all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
@@ -46,7 +46,7 @@ std::vector<NamedSettings> allMethods() {
   return all;
 }
 
-// The city with everything in it moved.
+// Makes the demo city with all coordinates moved.
 Scene movedCity(std::uint32_t copies, const Vec3f& by) {
   Scene scene = makeCity({.copies = copies});
   for (Vec3f& position : scene.positions) {
@@ -65,7 +65,7 @@ const DemoScene& oneCopyMoved() {
   return kScene;
 }
 
-// A scene that is replaced in place, with sets of every object.
+// A scene that is replaced in the same memory, with potentially visible sets that contain every object.
 struct LiveScene {
   DemoScene demo;
   std::unique_ptr<FakeSets> sets;
@@ -87,7 +87,8 @@ struct LiveScene {
   }
 };
 
-// The culler's next frames are those of a new one, and leave out nothing that a ray reaches.
+// Expects that the culler's next frames equal those of a new culler, and that no object that a ray reaches is
+// culled.
 void expectAsNew(AnyCuller& culler, const LiveScene& live, HierarchyKind kind, const AnySettings& settings,
                  const std::string& where) {
   AnyCuller fresh = live.culler(kind, settings);
@@ -122,7 +123,7 @@ TEST(ResetCuller, IsRightInASceneThatGrewShrankOrMoved) {
   }
 }
 
-// The sets that the culler holds stay those of the old place: they are not trusted any more.
+// The culler still holds the sets of the old scene, which it must not use any more.
 TEST(ResetCuller, IsRightInASceneThatMovedInTheSameMemory) {
   for (const HierarchyKind kind : kKinds) {
     for (const auto& [name, settings] : allMethods()) {
@@ -214,7 +215,7 @@ TEST(Culler, KeepsEverythingInViewWhereTheSetsAreOthersWithoutReset) {
   }
 }
 
-// Boxes before and behind a wall of object 0, seen from the origin along -z.
+// Boxes in front of and behind a wall, which is object 0; the view is from the origin along -z.
 struct Street {
   std::vector<Box> bounds{
       {{-4, -4, -5}, {4, 4, -5}}, {{-1, -1, -12}, {1, 1, -10}}, {{-1, -1, 10}, {1, 1, 12}}};
@@ -295,7 +296,7 @@ TEST(Culler, ADatabaseOfOtherOccludersHidesNothingWrongly) {
   }
 }
 
-// Walls and boxes at random, all of them elsewhere in each step; the same memory, the same counts.
+// Random walls and boxes that all change in each step, in the same memory and with the same counts.
 struct RestlessScene {
   test::Random random{5};
   std::vector<test::OraclePolygon> walls;

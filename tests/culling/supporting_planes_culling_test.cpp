@@ -1,5 +1,6 @@
-// Culling with supporting planes: kept relations change no answer and live as long as they should, the two
-// forms agree, joint occlusion only adds. The occluder database, and the second test of detail objects.
+// Culling with supporting planes: kept relations do not change results and live as long as they should, both
+// forms give the same results, and joint occlusion never keeps more objects. Also tests the occluder database
+// and the second test of detail objects.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +45,7 @@ bool sameVisible(const AnyCuller& a, const AnyCuller& b) {
   return std::equal(a.visible().begin(), a.visible().end(), b.visible().begin(), b.visible().end());
 }
 
-// Whether a keeps nothing that b leaves out.
+// Whether culler a keeps no object that culler b culls.
 bool keepsNoMore(const AnyCuller& a, const AnyCuller& b) {
   return std::includes(b.visible().begin(), b.visible().end(), a.visible().begin(), a.visible().end());
 }
@@ -54,7 +55,7 @@ std::size_t notKeptBy(const AnyCuller& a, const AnyCuller& b) {
                                                 [&](ObjectId object) { return !kept(a, object); }));
 }
 
-// To the left, about the vertical axis.
+// Turns a view to the left about the vertical axis.
 View turned(View view, double angle_deg) {
   const double angle = angle_deg * std::numbers::pi / 180.0;
   const Vec3d up(0, 0, 1), forward = view.forward;
@@ -62,7 +63,7 @@ View turned(View view, double angle_deg) {
   return view;
 }
 
-// Once around on the spot and back.
+// Turns a view once around on the spot, and back.
 std::vector<View> turnsOnTheSpot(const View& view, double step_deg) {
   std::vector<View> views;
   const int steps = static_cast<int>(360.0 / step_deg);
@@ -72,7 +73,7 @@ std::vector<View> turnsOnTheSpot(const View& view, double step_deg) {
   return views;
 }
 
-// Small steps and turns in any direction from a view, and now and then none.
+// Returns views with random small steps and turns, some of them with none.
 std::vector<View> randomWalk(View view, std::uint64_t seed, std::size_t count) {
   std::mt19937_64 random(seed);
   const auto in = [&](double low, double high) {
@@ -90,7 +91,7 @@ std::vector<View> randomWalk(View view, std::uint64_t seed, std::size_t count) {
   return views;
 }
 
-// The walk with both kinds of projection in turns, each for a few frames.
+// Returns the views with alternating projections, each for a few frames.
 std::vector<View> switchingProjection(std::vector<View> views) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     views[i].orthographic = i / 4 % 2 == 1;
@@ -99,7 +100,7 @@ std::vector<View> switchingProjection(std::vector<View> views) {
   return views;
 }
 
-// All of these one after the other.
+// Returns all of these sequences of views, one after another.
 std::vector<View> restlessViews(const DemoScene& demo, std::uint64_t seed) {
   const std::vector<View> walk = demo.frames(demo.scene.paths[0], 60, 24);
   std::vector<View> all = walk;
@@ -174,7 +175,7 @@ TEST_P(KeptRelations, ChangeNoAnswerWithTheDatabaseAndTheSecondTest) {
   }
 }
 
-// The table of items: two 4-byte entries for each node, entry of a leaf, and object.
+// Size of the table of items: two 4-byte entries per node, per leaf entry and per object.
 std::size_t itemTableBytes(const DemoScene& demo, HierarchyKind kind) {
   const Hierarchy& hierarchy = demo.hierarchy(kind);
   return 8 * (hierarchy.nodes.size() + hierarchy.objects.size() + demo.bounds.size());
@@ -213,7 +214,7 @@ TEST_P(KeptRelations, AreThoseThatWereMadeLessThoseThatWent) {
         dropped += relations.dropped;
         evicted += relations.evicted;
         EXPECT_LE(relations.unchanged, relations.reused);
-        // Fewer where one was made anew.
+        // The number is smaller if a relation was made again.
         EXPECT_LE(relations.kept + relations.dropped + relations.evicted, before + relations.rebuilt);
         before = relations.kept;
       }
@@ -279,7 +280,7 @@ TEST_P(KeptRelations, SaveLessTheFasterTheWalk) {
   }
 }
 
-// A wall of 8 x 8 metres at z = -5, and a row of boxes behind it that goes on to its right.
+// A wall of 8 x 8 metres at z = -5, and behind it a row of boxes that continues to the right of the wall.
 struct RowScene {
   std::vector<Box> bounds{{{-4, -4, -5}, {4, 4, -5}}};
   Hierarchy hierarchy;
@@ -308,7 +309,7 @@ struct RowScene {
   }
 };
 
-// What the culler did at a view, and then back at the scene's view.
+// The culler's work at another view, and then again at the scene's view.
 struct ThereAndBack {
   RelationStats first, there, back;
 
@@ -363,7 +364,7 @@ TEST(KeptRelationsOfARow, AreNeitherMadeNorKeptForPlanesThroughTheEye) {
   }
 }
 
-// Jumps, and places along the walk.
+// Returns random views, each a jump, and views along the camera path.
 std::vector<View> places(const DemoScene& demo, std::size_t step) {
   std::vector<View> views = jumps(demo, 34, 20);
   const CameraPath& path = demo.scene.paths[0];
@@ -464,7 +465,7 @@ TEST_P(DatabaseChoice, IsByAreaAngleWithoutADatabase) {
   }
 }
 
-// The database's choice does not depend on what was seen, so that both cullers use the same occluders.
+// The choice from the database does not depend on the last frame, so both cullers use the same occluders.
 TEST_P(DetailObjects, ShrinkTheAnswerByThoseThatTheSecondTestHides) {
   for (const HierarchyKind kind : kKinds) {
     for (const NamedSettings& method : kMethods) {

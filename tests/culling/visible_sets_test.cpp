@@ -1,4 +1,4 @@
-// Potentially visible sets as culling uses them: alone, and before other methods.
+// Culling with potentially visible sets, alone and as a filter for other methods.
 
 #include <gtest/gtest.h>
 
@@ -148,8 +148,8 @@ TEST(VisibilityOctreeCulling, WithoutASetIsFrustumCulling) {
   }
 }
 
-// Sets of another scene with as many objects and the same ids are not used: everything is in the set, as
-// without one.
+// Sets of another scene with the same number of objects and the same ids are not used. All objects pass the
+// filter, as without sets.
 TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
   const std::vector<Box>& own = smallCity().bounds;
   std::vector<Box> moved = own, one_off = own, exchanged = own;
@@ -182,7 +182,7 @@ TEST(VisibilityOctreeCulling, OrthographicViewsAskForNoSet) {
   AnyCuller culler =
       cullerWith(smallCity(), HierarchyKind::kBvh, {.method = AnyMethod::kVisibilityOctree}, &sets);
   AnyCuller frustum = smallCity().culler(HierarchyKind::kBvh, {.method = AnyMethod::kFrustum});
-  // From a perspective view to an orthographic one and back.
+  // The view changes from perspective to orthographic and back.
   for (const View& view : jumps(smallCity(), 9, 40)) {
     const Objects expected = view.orthographic ? visibleOf(frustum, view) : Objects{};
     EXPECT_EQ(visibleOf(culler, view), expected);
@@ -213,8 +213,8 @@ TEST(VisibleSets, FrustumCullingHasNone) {
   }
 }
 
-// No test of what came before depends on the set, so that the answers are the same object by object. The
-// finer map's place does: it follows what is kept.
+// The visibility tests of these methods do not depend on the set, so results are compared object by object.
+// Only the place of the focus window depends on the set, since it follows the objects that are kept.
 TEST(VisibleSets, AMethodsAnswerWithinTheSetIsTheSameAsWithoutIt) {
   std::uint32_t id = 0;
   std::mt19937_64 random(77);
@@ -296,7 +296,7 @@ TEST(VisibleSets, EqualIdsAreEqualSetsUntilReset) {
   }
 }
 
-// Sets that hold all that can be seen from one eye, found by the occlusion tree in six directions.
+// Sets of all objects that are visible from one eye, found by the occlusion tree in six directions.
 class TrueSets {
  public:
   explicit TrueSets(const DemoScene& demo)
@@ -365,8 +365,8 @@ std::vector<SetCuller> allSetCullers(const DemoScene& demo, VisibleSets* sets) {
   return cullers;
 }
 
-// On a walk the set of each eye, and now and then everything; so that what is skipped in one frame matters in
-// the next.
+// Along a camera path each frame has the set of its eye, and some frames have none, so that coherence with a
+// differently filtered frame is tested.
 void judgeWalk(const DemoScene& demo, const std::vector<View>& views, const std::string& where) {
   FakeSets sets(demo.bounds);
   TrueSets true_sets(demo);

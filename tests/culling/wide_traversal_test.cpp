@@ -20,14 +20,14 @@ struct Answer {
   CullStats stats;
 };
 
-Answer walked(WideTraversal& walk, const DepthPyramid& pyramid,
-              const TraversalOptions& options = {.temporal_coherence = false}) {
+Answer traversed(WideTraversal& traversal, const DepthPyramid& pyramid,
+                 const TraversalOptions& options = {.temporal_coherence = false}) {
   Answer answer;
-  walk.run({pyramid}, options, answer.stats, answer.kept);
+  traversal.run({pyramid}, options, answer.stats, answer.kept);
   return answer;
 }
 
-// Box by box.
+// Returns the objects that the pyramid does not hide, tested box by box.
 std::vector<ObjectId> notHidden(const DepthPyramid& pyramid, std::span<const Box> boxes) {
   std::vector<ObjectId> kept;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -71,9 +71,10 @@ TEST(WideTraversal, KeepsWhatAskingBoxByBoxKeeps) {
       const Bed bed(family, seed, 20 + 15 * seed);
       const std::vector<ObjectId> expected = notHidden(bed.pyramid, bed.boxes);
       const Hierarchy bvh = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
-      WideTraversal walk(bvh, bed.boxes);
-      EXPECT_EQ(walked(walk, bed.pyramid).kept, expected) << family.name << ", seed " << seed;
-      EXPECT_EQ(walked(walk, bed.pyramid).kept, expected) << "again: " << family.name << ", seed " << seed;
+      WideTraversal traversal(bvh, bed.boxes);
+      EXPECT_EQ(traversed(traversal, bed.pyramid).kept, expected) << family.name << ", seed " << seed;
+      EXPECT_EQ(traversed(traversal, bed.pyramid).kept, expected)
+          << "again: " << family.name << ", seed " << seed;
       kept += expected.size();
       hidden += inView(bed.pyramid, bed.boxes).size() - expected.size();
     }
@@ -91,8 +92,8 @@ TEST(WideTraversal, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
       const std::vector<ObjectId> alone = notHidden(bed.pyramid, bed.boxes);
       for (const HierarchyKind kind : demo_frames::kKinds) {
         const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = kind});
-        WideTraversal walk(hierarchy, bed.boxes);
-        const std::vector<ObjectId> kept = walked(walk, bed.pyramid).kept;
+        WideTraversal traversal(hierarchy, bed.boxes);
+        const std::vector<ObjectId> kept = traversed(traversal, bed.pyramid).kept;
         EXPECT_TRUE(std::ranges::is_sorted(kept));
         EXPECT_TRUE(std::ranges::includes(alone, kept)) << family.name << ", seed " << seed;
         for (const ObjectId object : in_view) {
@@ -111,30 +112,30 @@ TEST(WideTraversal, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
   EXPECT_GT(judged, 200);
 }
 
-// What was kept is not asked about for some views: it is kept on, for a few views and within the view.
+// Objects that were kept are not tested again for a few views: they are kept while they are in the view.
 TEST(WideTraversal, CoherenceKeepsALittleMoreForAWhile) {
   std::size_t lingering = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Bed bed(test::kFamilies[0], seed, 300);
     const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
-    WideTraversal walk(hierarchy, bed.boxes);
+    WideTraversal traversal(hierarchy, bed.boxes);
     const OccluderSet set = test::setOf(bed.scene.polygons);
     bed.pyramid.build(bed.scene.view, set, {});
-    EXPECT_EQ(walked(walk, bed.pyramid, {}).kept, inView(bed.pyramid, bed.boxes)) << "seed " << seed;
+    EXPECT_EQ(traversed(traversal, bed.pyramid, {}).kept, inView(bed.pyramid, bed.boxes)) << "seed " << seed;
     bed.pyramid.build(bed.scene.view, set, test::all(set));
     const std::vector<ObjectId> expected = notHidden(bed.pyramid, bed.boxes);
     for (int frame = 0; frame < 60; ++frame) {
-      const std::vector<ObjectId> kept = walked(walk, bed.pyramid, {}).kept;
+      const std::vector<ObjectId> kept = traversed(traversal, bed.pyramid, {}).kept;
       EXPECT_TRUE(std::ranges::includes(kept, expected)) << "seed " << seed;
       EXPECT_TRUE(std::ranges::includes(inView(bed.pyramid, bed.boxes), kept)) << "seed " << seed;
       lingering += frame < 2 ? kept.size() - expected.size() : 0;
     }
-    EXPECT_LE(walked(walk, bed.pyramid, {}).kept.size(), expected.size() + 3) << "seed " << seed;
+    EXPECT_LE(traversed(traversal, bed.pyramid, {}).kept.size(), expected.size() + 3) << "seed " << seed;
     bed.pyramid.build(bed.scene.view, set, {});
-    walked(walk, bed.pyramid, {});
+    traversed(traversal, bed.pyramid, {});
     bed.pyramid.build(bed.scene.view, set, test::all(set));
-    walk.forget();
-    EXPECT_EQ(walked(walk, bed.pyramid, {}).kept, expected) << "seed " << seed;
+    traversal.forget();
+    EXPECT_EQ(traversed(traversal, bed.pyramid, {}).kept, expected) << "seed " << seed;
   }
   EXPECT_GT(lingering, 0u);
 }
@@ -143,14 +144,14 @@ TEST(WideTraversal, OptionsKeepMoreAndNeverMoreThanTheView) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Bed bed(test::kFamilies[0], seed, 600);
     const Hierarchy hierarchy = buildHierarchy(bed.boxes, {}, {.kind = HierarchyKind::kBvh});
-    WideTraversal walk(hierarchy, bed.boxes);
-    const Answer plain = walked(walk, bed.pyramid);
+    WideTraversal traversal(hierarchy, bed.boxes);
+    const Answer plain = traversed(traversal, bed.pyramid);
     const std::vector<ObjectId> in_view = inView(bed.pyramid, bed.boxes);
     for (const std::uint32_t cost : {0u, 20u, 100u, 100000u}) {
       for (const bool test_objects : {false, true}) {
         const Answer some =
-            walked(walk, bed.pyramid,
-                   {.min_node_cost = cost, .temporal_coherence = false, .test_objects = test_objects});
+            traversed(traversal, bed.pyramid,
+                      {.min_node_cost = cost, .temporal_coherence = false, .test_objects = test_objects});
         EXPECT_TRUE(std::ranges::includes(some.kept, plain.kept)) << "seed " << seed;
         EXPECT_TRUE(std::ranges::includes(in_view, some.kept)) << "seed " << seed;
         EXPECT_LE(some.stats.nodes_tested, plain.stats.nodes_tested) << "seed " << seed;
@@ -169,7 +170,7 @@ TEST(WideTraversal, OptionsKeepMoreAndNeverMoreThanTheView) {
 
 TEST(WideTraversal, KeepsObjectsWhoseBoxesAreNotWellFormed) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  // A wall before everything.
+  // A wall hides all boxes.
   const OccluderSet set = test::setOf(std::vector<test::OraclePolygon>{test::wall(-90, 90, -90, 90, -2)});
   DepthPyramid pyramid;
   pyramid.build(test::kLookingBack, set, test::all(set));
@@ -179,23 +180,23 @@ TEST(WideTraversal, KeepsObjectsWhoseBoxesAreNotWellFormed) {
   boxes[150] = {{0, 0, -9}, {1, inf, -8}};
   for (const HierarchyKind kind : demo_frames::kKinds) {
     const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = kind});
-    WideTraversal walk(hierarchy, boxes);
-    EXPECT_EQ(walked(walk, pyramid).kept, (std::vector{ObjectId(3u), ObjectId(77u), ObjectId(150u)}))
+    WideTraversal traversal(hierarchy, boxes);
+    EXPECT_EQ(traversed(traversal, pyramid).kept, (std::vector{ObjectId(3u), ObjectId(77u), ObjectId(150u)}))
         << nameOf(kind);
   }
 }
 
 TEST(WideTraversal, OfNothingKeepsNothing) {
   const Hierarchy hierarchy = buildHierarchy({}, {});
-  WideTraversal walk(hierarchy, {});
-  EXPECT_TRUE(walked(walk, DepthPyramid()).kept.empty());
+  WideTraversal traversal(hierarchy, {});
+  EXPECT_TRUE(traversed(traversal, DepthPyramid()).kept.empty());
 }
 
-// Occluders of the scene itself, as the culler chooses them.
+// Uses occluders of the demo scene, chosen as in a culler.
 TEST(WideTraversal, OfDemoScenesKeepsWhatAskingBoxByBoxKeeps) {
   std::size_t hidden = 0, asked = 0, objects = 0;
   for (const demo_frames::DemoScene* demo : {&demo_frames::smallCity(), &demo_frames::smallBuilding()}) {
-    WideTraversal walk(demo->bvh, demo->bounds);
+    WideTraversal traversal(demo->bvh, demo->bounds);
     DepthPyramid pyramid;
     std::vector<OccluderId> occluders(demo->occluders.occluders.size());
     for (std::size_t i = 0; i < occluders.size(); ++i) {
@@ -205,7 +206,7 @@ TEST(WideTraversal, OfDemoScenesKeepsWhatAskingBoxByBoxKeeps) {
       for (std::size_t frame = 0; frame < path.frames.size(); frame += path.frames.size() / 5 + 1) {
         const View view = path.view(frame, demo->scene.origin);
         pyramid.build(view, demo->occluders, occluders);
-        const Answer answer = walked(walk, pyramid);
+        const Answer answer = traversed(traversal, pyramid);
         EXPECT_EQ(answer.kept, notHidden(pyramid, demo->bounds)) << path.name << " frame " << frame;
         asked += answer.stats.nodes_tested + answer.stats.objects_tested;
         objects += demo->bounds.size();

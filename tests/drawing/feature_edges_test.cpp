@@ -182,7 +182,7 @@ TEST(FeatureEdges, ABoundaryOfAFaceThatIsNotDrawnIsNoLine) {
   EXPECT_EQ(lines.count(ends({0, 0, 0}, {0, 0, 1})), 0u);
 }
 
-TEST(FeatureEdges, FlatSeamsAreNoLinesWithReversedFacesEither) {
+TEST(FeatureEdges, FlatSharedEdgesAreNoLinesWithReversedFacesEither) {
   for (const bool double_sided : {false, true}) {
     for (const double y : {0.0, 0.3, 3.0}) {  // also from within the wall's plane and nearly so
       Triangles quad;

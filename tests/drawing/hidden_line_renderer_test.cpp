@@ -261,9 +261,9 @@ TEST(HiddenLineRenderer, PlotsAsIfEachLineWereTestedAgainstAllObjects) {
 }
 
 TEST(HiddenLineRenderer, PlotsAnEdgeThatObjectsShareOnce) {
-  Set apart, together;
-  apart.add(test::block({-2, -1, -1}, {0, 1, 1}));
-  apart.add(test::block({0.5f, -1, -1}, {2.5f, 1, 1}));
+  Set disjoint, together;
+  disjoint.add(test::block({-2, -1, -1}, {0, 1, 1}));
+  disjoint.add(test::block({0.5f, -1, -1}, {2.5f, 1, 1}));
   together.add(test::block({-2, -1, -1}, {0, 1, 1}));
   together.add(test::block({0, -1, -1}, {2, 1, 1}));
   const auto lengthOfPlot = [](const Set& set) {
@@ -272,9 +272,9 @@ TEST(HiddenLineRenderer, PlotsAnEdgeThatObjectsShareOnce) {
   };
   // The page shows 12 metres: two squares of 2, and two that share a side.
   const double side = 2.0 * kHeight / 12.0;
-  EXPECT_NEAR(lengthOfPlot(apart), 8 * side, 1e-6);
+  EXPECT_NEAR(lengthOfPlot(disjoint), 8 * side, 1e-6);
   EXPECT_NEAR(lengthOfPlot(together), 7 * side, 1e-6);
-  // Designers move painted objects apart.
+  // Designers separate painted objects.
   EXPECT_NEAR(lengthOfAll(strokesOf(together.paint(viewFromFront(true)), 1)), 4 * side, 1e-6);
 }
 

@@ -183,7 +183,7 @@ TEST(BoxTree, OfTwoObjectsIsARootAndTwoLeaves) {
 }
 
 // Objects are not moved after they are inserted, so that the first ones may stay in bad company.
-TEST(BoxTree, HardlyAnyNodeMixesClustersThatLieApart) {
+TEST(BoxTree, HardlyAnyNodeMixesDistantClusters) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     // A hundred metres apart; objects of even numbers are in the one, the others in the other.
     Random random(seed);

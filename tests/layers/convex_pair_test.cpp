@@ -292,7 +292,7 @@ TEST(ConvexPair, SetsAreFoundDisjointAtADistanceOfATenBillionthOfTheirSize) {
   EXPECT_GT(asked, 3500);
 }
 
-TEST(ConvexPair, DeepOverlapIsFoundToMeetNotLeftUndecided) {
+TEST(ConvexPair, DeepOverlapIsFoundToIntersectNotLeftUndecided) {
   const ConvexHull needle = hullOf(shapes::toothpick()), cube = hullOf(shapes::cube());
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -407,7 +407,7 @@ TEST(ConvexPair, AskedAgainAPairCostsOneSupportIfDisjointAndNoneIfItIntersects) 
   EXPECT_GT(seen[1], 50);
 }
 
-TEST(ConvexPair, AnEyeInsideOrOnAHullMeetsIt) {
+TEST(ConvexPair, AnEyeInsideOrOnAHullIntersectsIt) {
   const ConvexHull occluder = hullOf(shapes::cube());
   const ConvexHull away = hullOf(shapes::cube({9, 9, 9}));
   for (const Vec3d& eye :

@@ -27,7 +27,7 @@ TEST(PairTable, RemembersWhatWasWrittenForAPair) {
   EXPECT_EQ(table.size(), 1u);
 }
 
-TEST(PairTable, MeetingIsTheSameBothWaysAndOcclusionIsNot) {
+TEST(PairTable, IntersectionIsTheSameBothWaysAndOcclusionIsNot) {
   PairTable table;
   table.beginFrame(1);
   table.use(3, 5, Question::kIntersection).first[0] = 1;

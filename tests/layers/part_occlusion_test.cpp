@@ -157,7 +157,7 @@ TEST(PartOcclusion, ListsTheCollisionsOfThePairsThatWereAskedAbout) {
       moveSome(random, world);
       world.beginFrame();
       EXPECT_TRUE(world.occlusion.collisions().empty());
-      std::vector<Arc> meet;
+      std::vector<Arc> intersecting;
       for (std::uint32_t a = 0; a < 6; ++a) {
         for (std::uint32_t b = a + 1; b < 6; ++b) {
           const std::uint32_t ways = random.below(4);  // bit 0: a before b, bit 1: b before a
@@ -168,13 +168,13 @@ TEST(PartOcclusion, ListsTheCollisionsOfThePairsThatWereAskedAbout) {
             world.occlusion.occludes(b, a);
           }
           if (ways != 0 && world.meetExactly(a, b)) {
-            meet.push_back({a, b});
+            intersecting.push_back({a, b});
           }
         }
       }
       const std::span<const Arc> found = world.occlusion.collisions();
-      EXPECT_EQ(std::vector<Arc>(found.begin(), found.end()), meet);
-      listed += meet.size();
+      EXPECT_EQ(std::vector<Arc>(found.begin(), found.end()), intersecting);
+      listed += intersecting.size();
     }
   }
   EXPECT_GT(listed, 150u);
@@ -285,7 +285,7 @@ struct Overlapping : PartWorld {
 };
 constexpr Vec3d kLeft{-1, 0, 0};
 
-TEST(PartOcclusion, APlaneRuleLeavesOneArcOfTwoPartsThatMeet) {
+TEST(PartOcclusion, APlaneRuleLeavesOneArcOfTwoPartsThatIntersect) {
   Overlapping world;
   world.beginFrame();
   EXPECT_TRUE(world.occlusion.occludes(world.left, world.right));

@@ -1,4 +1,4 @@
-// Convex bodies among the occluders: which solids are found, and how their faces, edges and vertices lie.
+// Convex bodies: which solids are found, and whether their faces, edges and vertices are consistent.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 using flat_mesh::kKeepAll;
 using test::Solid;
 
-// One object a group of solids.
+// Solids in groups; each group is one object.
 Scene sceneOf(const std::vector<std::vector<Solid>>& objects) {
   Scene scene;
   flat_mesh::addMaterial(scene);
@@ -79,7 +79,7 @@ bool hasEdge(const OccluderSet& set, const OccluderBody& body, std::uint32_t fac
   return false;
 }
 
-// All that a body promises of itself.
+// Checks the invariants of a body.
 void expectSound(const OccluderSet& set, const OccluderBody& body) {
   const std::span<const Vec3f> points = set.verticesOf(body);
   const std::span<const BodyFace> faces = set.facesOf(body);
@@ -119,7 +119,7 @@ Shape shapeOf(const OccluderBody& body) {
   return {body.face_count, body.edge_count, body.vertex_count};
 }
 
-// Of one solid that is one body.
+// Expects that the solid becomes exactly one body, of this shape.
 void expectBody(const Solid& solid, const Shape& shape) {
   for (const OccluderSet& set : {found({{solid}}), made({{solid}})}) {
     ASSERT_EQ(set.bodies.size(), 1u);
@@ -212,7 +212,7 @@ TEST(Bodies, ABoxWithAVertexOfOneSideAloneOnAnEdgeIsNone) {
     for (std::size_t i = 0; i < face.size(); ++i) {
       if (face[i] == 0 && face[(i + 1) % face.size()] == 1) {
         face.insert(face.begin() + static_cast<std::ptrdiff_t>(i) + 1, 8);
-        // So that no triangle of the fan has all its corners on the edge.
+        // The fan starts where no triangle has all its corners on the edge.
         std::ranges::rotate(face, face.begin() + static_cast<std::ptrdiff_t>((i + 3) % face.size()));
         expectNoBody(cracked, 6);
         return;
@@ -232,8 +232,8 @@ TEST(Bodies, AFlatSheetWithANotchIsNone) {
 }
 
 TEST(Bodies, TwoBoxesOfOneObjectAreTwo) {
-  const Solid apart = test::block({10, 0, 0}, {11, 1, 1});
-  for (const OccluderSet& set : {found({{kCube, apart}}), made({{kCube, apart}})}) {
+  const Solid disjoint = test::block({10, 0, 0}, {11, 1, 1});
+  for (const OccluderSet& set : {found({{kCube, disjoint}}), made({{kCube, disjoint}})}) {
     ASSERT_EQ(set.bodies.size(), 2u);
     for (const OccluderBody& body : set.bodies) {
       EXPECT_EQ(shapeOf(body), (Shape{6, 12, 8}));
@@ -243,7 +243,7 @@ TEST(Bodies, TwoBoxesOfOneObjectAreTwo) {
 }
 
 TEST(Bodies, BoxesThatShareAnEdgeOfTheMeshAreNone) {
-  // The edge has four sides.
+  // The edge belongs to four faces.
   const Solid beside = test::block({2, 3, 0}, {4, 6, 4});
   EXPECT_TRUE(found({{kCube, beside}}).bodies.empty());
   EXPECT_EQ(found({{kCube}, {beside}}).bodies.size(), 2u) << "of two objects each has edges of its own";
@@ -281,7 +281,7 @@ TEST(Bodies, SolidsOfManyFacesAreNoneAndKeepTheirOccluders) {
   expectNoBody(test::prism(17), 17);  // 34 vertices
 }
 
-// What a body is, whatever the numbers of its parts.
+// Describes a body independently of the order of its parts.
 using Corners = std::set<std::tuple<float, float, float>>;
 std::multiset<std::pair<Corners, Shape>> contents(const OccluderSet& set) {
   std::multiset<std::pair<Corners, Shape>> all;

@@ -285,7 +285,8 @@ TEST(ChooseOccluders, TiesGoToTheLowerId) {
 }
 
 TEST(ChooseOccluders, PassesOverWhatLiesOutsideTheFrustum) {
-  // Large and near, but behind, beside, before the near plane, beyond the far plane; and a small one in view.
+  // Large and near occluders that are behind the eye, beside the view, in front of the near plane or beyond
+  // the far plane, and a small one in view.
   const OccluderSet set = setOf({square({0, 0, 3}, 8), square({40, 0, -9}, 8), square({0, 0, -0.05}, 0.1),
                                  square({0, 0, -120}, 90), square({0, 0, -9}, 0.5)},
                                 true);

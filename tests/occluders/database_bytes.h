@@ -82,7 +82,7 @@ inline bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// Asks for all there is, and more: a sanitizer sees what is read beyond the end.
+// Queries everything in the database, and beyond it: a sanitizer detects reads beyond the end.
 template <typename Database>
 void askEverything(const Database& database, std::uint32_t occluders, Random& random) {
   const auto expectSound = [&](std::span<const OccluderId> list) {
@@ -105,7 +105,7 @@ void askEverything(const Database& database, std::uint32_t occluders, Random& ra
   }
 }
 
-// Pieces of three, the last one first.
+// Calls the body for ranges of three, the last one first.
 inline void backwards(std::uint32_t count, const RangeBody& body) {
   for (std::uint32_t piece = (count + 2) / 3; piece-- > 0;) {
     body(piece * 3, std::min(count, piece * 3 + 3));
@@ -169,7 +169,8 @@ void expectAllTruncationsRefused(const Database& database, const Model& model, c
   }
 }
 
-// One to four places: a bit, a byte, or a number of 32 or 64 bits that is likely to do harm.
+// Changes one to four places: a bit, a byte, or a 32-bit or 64-bit number, to a value that is likely to do
+// harm.
 inline void damage(Bytes& bytes, Random& random) {
   constexpr std::uint64_t kNumbers[] = {0,
                                         1,
@@ -201,7 +202,7 @@ inline void damage(Bytes& bytes, Random& random) {
   }
 }
 
-// Bytes that pass are all of them part of what is answered: they are saved again as they were.
+// If changed bytes are accepted, all of them are part of the database: saving it gives the same bytes.
 template <typename Database>
 void expectDamageDoesNoHarm(const Database& database, std::uint32_t occluders) {
   const Bytes sound = database.save();

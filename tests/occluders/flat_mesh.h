@@ -38,7 +38,7 @@ inline double leftOf(const Point2& a, const Point2& b, const Point2& p) {
   return crossAt(a, b, p) / std::hypot(b.x - a.x, b.y - a.y);
 }
 
-// Of a convex, counter-clockwise polygon: how far p lies inside of its nearest side line; negative: outside.
+// Returns the distance from p to the nearest side of a convex, counter-clockwise polygon; negative outside.
 inline double depthIn(std::span<const Point2> polygon, const Point2& p) {
   double depth = 1e300;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -68,7 +68,7 @@ struct FlatMesh {
   }
 };
 
-// Where a plane lies in space. x, y: orthonormal; the front is towards cross(x, y).
+// The placement of a plane in space. x and y are orthonormal; the front faces cross(x, y).
 struct Placement {
   Vec3d origin;
   Vec3d x{1, 0, 0}, y{0, 1, 0};
@@ -148,7 +148,7 @@ FlatMesh grid(const std::vector<double>& xs, const std::vector<double>& ys, Rand
   return mesh;
 }
 
-// Ascending, from 0, at unequal distances of at least 0.2.
+// Returns ascending numbers from 0 on, with random differences of at least 0.2.
 inline std::vector<double> steps(Random& random, std::size_t count) {
   std::vector<double> at{0.0};
   while (at.size() <= count) {

@@ -1,4 +1,4 @@
-// Merged polygons against the triangles that they were made of, in the plane, point by point.
+// Compares merged polygons with the triangles that they were made of, at points of their plane.
 
 #include <gtest/gtest.h>
 
@@ -139,7 +139,8 @@ Cover coverOf(const Scene& scene, const OccluderSet& set, const Placement& place
   return cover;
 }
 
-// Points that a polygon covers and no triangle, or the other way round, or two polygons at once.
+// The numbers of points covered by a polygon but no triangle, by a triangle but no polygon, or by two
+// polygons.
 struct Disagreement {
   int decided = 0, only_polygon = 0, only_triangle = 0, twice = 0;
 };
@@ -393,7 +394,7 @@ TEST(MergedPolygons, AFoldedSheetStaysTwo) {
   }
 }
 
-TEST(MergedPolygons, SingleSidedTrianglesOfOppositeWindingStayApart) {
+TEST(MergedPolygons, SingleSidedTrianglesOfOppositeWindingAreNotMerged) {
   FlatMesh mesh = rectangle(0, 0, 1, 1);
   std::swap(mesh.triangles[1][1], mesh.triangles[1][2]);
   const OccluderSet set = findOccluders(sceneOf(mesh).view(), kKeepAll);
@@ -430,7 +431,7 @@ TEST(MergedPolygons, DoubleSidedTrianglesMergeWhateverTheirWinding) {
   }
 }
 
-TEST(MergedPolygons, OfDifferentObjectsStayApart) {
+TEST(MergedPolygons, OfDifferentObjectsAreNotMerged) {
   Scene scene = sceneOf(rectangle(0, 0, 2, 1));
   addObject(scene, rectangle(2, 0, 4, 1), {}, MaterialId(0u));
   weldPositions(scene);

@@ -1,4 +1,4 @@
-// What an occluder database saves and loads, and that no bytes do harm.
+// Saving and loading an occluder database, with valid and with malformed bytes.
 
 #include <gtest/gtest.h>
 

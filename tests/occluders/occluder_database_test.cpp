@@ -40,7 +40,7 @@ Model modelOf(const Scene& scene) {
   return model;
 }
 
-// Rectangles of all sizes, one an object; some of them doubled, so that scores tie.
+// Makes rectangles of all sizes, one per object; some are duplicated, so that scores tie.
 Model crowd(Random& random, std::uint32_t count, double extent = 30.0) {
   std::vector<std::vector<Vec3f>> polygons;
   std::vector<OccluderPolygon> input;
@@ -100,7 +100,7 @@ Vec3d pointIn(const Box& box, Random& random) {
   return point;
 }
 
-// The score as the documentation has it, straight from the definition; 0: not in the cone, or not seen.
+// Computes the score from its definition in the documentation; 0: not in the cone, or not visible.
 double scoreOf(const OccluderSet& set, const Occluder& occluder, const OccluderDatabase& database,
                const Box& cell, const Vec3d& direction, const OccluderDatabaseSettings& settings) {
   const Vec3d centroid(occluder.centroid), middle = center(cell), to_polygon = centroid - middle;
@@ -142,8 +142,8 @@ bool closeTo(double a, double b) {
   return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
 
-// Against sorting all occluders; scores may differ by rounding, and with them the order of near ties. Those
-// with the largest possible score tie exactly: by id, the lowest must come first.
+// Compares a list with sorting all occluders. Scores may differ by rounding, and so may the order of near
+// ties. Occluders with the largest possible score tie exactly and must be in the order of their ids.
 ::testing::AssertionResult holdsTheBest(const Model& model, const OccluderDatabase& database,
                                         std::uint32_t cell, std::uint32_t direction,
                                         const OccluderDatabaseSettings& settings) {
@@ -259,7 +259,7 @@ TEST(OccluderDatabase, GivesListsToBeRanked) {
                                  database.list(database.cellOf(eye), database.nearestDirection(direction))));
 }
 
-// Whether some corner or the centroid is in the cone: a part of the polygon that surely is.
+// Whether a corner or the centroid of the polygon is in the cone.
 bool surelyInCone(const Model& model, const Occluder& occluder, const View& view, double half_angle) {
   const std::span<const Vec3f> corners = model.set.verticesOf(occluder);
   return angleBetween(Vec3d(occluder.centroid) - view.eye, view.forward) <= half_angle ||
@@ -330,7 +330,7 @@ TEST(OccluderDatabase, LeavesOutWhatIsSeenFromBehindOrNotInTheCone) {
   EXPECT_EQ(countOf(facing, true, {0, 0, 1}), 0u);
 }
 
-// Databases of nothing, for the directions' sake.
+// Databases without occluders, of which only the directions are tested.
 OccluderDatabase onlyDirections(std::uint32_t count) {
   return OccluderDatabase::build({}, {}, {.directions = count});
 }
@@ -427,7 +427,7 @@ TEST(OccluderDatabaseDirections, WhatIsNoneHasTheFirst) {
   EXPECT_EQ(onlyDirections(4'294'967'295u).directionCount(), 4096u);
 }
 
-// Its lower borders belong to a cell, its upper ones do not, save those of the whole.
+// A cell contains its lower borders but not its upper ones, except for those of the whole space.
 bool holds(const Box& region, const Box& whole, const Vec3d& point) {
   for (int axis = 0; axis < 3; ++axis) {
     const bool at_end = region.max[axis] == whole.max[axis] && point[axis] == whole.max[axis];

@@ -339,7 +339,7 @@ TEST(BodyPolygons, NothingIsCoveredThatSeveralBodiesDoNotHide) {
     BodyScene scene(Place::kBefore, seed);
     for (std::uint64_t more = 1; more < 5; ++more) {
       BodyScene other(more % 2 == 0 ? Place::kBefore : Place::kHalfOff, seed + 240 * more);
-      // As the other view sees its solid this one sees it, but for the projection.
+      // Apart from the projection, this view sees the solid as the other view sees its own.
       for (Vec3f& p : other.solids[0].points) {
         const Vec3d r = Vec3d(p) - other.view.eye;
         p = Vec3f(scene.view.eye + scene.view.right * sightline::dot(other.view.right, r) +
@@ -441,7 +441,7 @@ std::vector<std::uint32_t> bitsOf(const BodyScene& scene, const OccluderSet& set
   return bits;
 }
 
-// Uneven ranges, the last first.
+// Calls the body for uneven ranges, the last one first.
 void inPieces(std::uint32_t count, const RangeBody& body) {
   for (std::uint32_t end = count; end > 0;) {
     const std::uint32_t begin = end - std::min(end, 1 + end % 3);

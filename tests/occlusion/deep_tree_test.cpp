@@ -1,4 +1,4 @@
-// Trees as deep as they may be, built and asked on a thread with a small stack.
+// Builds and queries trees of the maximum depth on a thread with a small stack.
 
 #include <gtest/gtest.h>
 #include <pthread.h>

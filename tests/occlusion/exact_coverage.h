@@ -82,7 +82,7 @@ inline Wide dot(const Triple& p, const Triple& q) {
 inline Triple negated(const Triple& p) {
   return {-p.x, -p.y, -p.w};
 }
-// The same line by the smallest integers.
+// Returns the same line with the smallest integer coefficients.
 inline Triple reduced(const Triple& line) {
   const auto common = [](Wide a, Wide b) {
     a = a < 0 ? -a : a;
@@ -135,7 +135,7 @@ inline Part clipped(const Part& part, const Triple& line) {
   return result;
 }
 
-// Is all of the part in the union of the others (each closed)?
+// Returns whether the part lies in the union of the others, all of them closed.
 inline bool isCovered(const Part& part, std::span<const Part> others) {
   std::vector<Part> left{part};
   for (const Part& other : others) {
@@ -164,7 +164,7 @@ inline bool isCovered(const Part& part, std::span<const Part> others) {
   return left.empty();
 }
 
-// Is all of the part in this one other?
+// Returns whether the part lies in one other part.
 inline bool contains(const Part& other, const Part& part) {
   for (std::size_t i = 0; i < part.size(); ++i) {
     const Triple point = corner(part, i);
@@ -184,13 +184,13 @@ inline Part intersection(Part part, const Part& other) {
   return part;
 }
 
-// The closed pixel, or with all its sides moved outwards by 1 / grow of a pixel.
+// Returns the closed pixel; with grow, its sides are moved outwards by 1 / grow of a pixel.
 inline Part pixel(std::int64_t x, std::int64_t y, std::int64_t grow = 0) {
   const std::int64_t k = grow == 0 ? 1 : grow, d = grow == 0 ? 0 : 1;
   return {{k, 0, d - k * x}, {0, k, d - k * y}, {-k, 0, k * (x + 1) + d}, {0, -k, k * (y + 1) + d}};
 }
 
-// What a camera sees of a polygon's front, beyond the near plane.
+// The image of the part of a polygon's front beyond the near plane.
 struct Image {
   Part part;
   Triple reciprocal_depth;  // over the buffer, times denominator
@@ -201,7 +201,7 @@ struct Image {
     return static_cast<double>(dot(reciprocal_depth, point)) /
            static_cast<double>(times(denominator, point.w));
   }
-  // Of the farthest point within a part of the buffer.
+  // Returns the reciprocal depth of the farthest point within a part of the buffer.
   double minReciprocalDepth(const Part& where) const {
     double least = INFINITY;
     for (std::size_t i = 0; i < where.size(); ++i) {
@@ -220,7 +220,7 @@ inline Triple project(const Camera& c, const Point& p, std::int64_t q) {
   return {Wide{c.width} * (p.z + c.gx * p.x), Wide{c.height} * (p.z + c.gy * p.y), Wide{2} * p.z};
 }
 
-// ReciprocalDepth over the buffer, from the plane n . p = d.
+// Sets the reciprocal depth of the plane n . p = d as a linear function over the buffer.
 inline void setReciprocalDepth(const Camera& c, const Polygon& polygon, Image& image) {
   const Point &a = polygon.vertices[0], &b = polygon.vertices[1], &e = polygon.vertices[2];
   const Triple n = cross({b.x - a.x, b.y - a.y, b.z - a.z}, {e.x - a.x, e.y - a.y, e.z - a.z});
@@ -296,7 +296,7 @@ inline bool shareAnEdge(const Polygon& a, const Polygon& b) {
   return false;
 }
 
-// Do edges of the two images lie on each other, from opposite sides?
+// Returns whether edges of the two images overlap, with the images on opposite sides.
 inline bool touch(const Image& a, const Image& b) {
   const auto same = [](const Triple& p, const Triple& q) { return p.x == q.x && p.y == q.y && p.w == q.w; };
   // First and last point of an edge, measured along a direction.
@@ -369,7 +369,7 @@ inline bool covers(const Surface& surface, const Part& where) {
   return isCovered(where, parts);
 }
 
-// Of the farthest point that any of the surface's polygons has in this part of the buffer.
+// Returns the reciprocal depth of the farthest point of the surface's polygons in this part of the buffer.
 inline double minReciprocalDepth(const Surface& surface, const Part& where) {
   double least = INFINITY;
   for (const Image& image : surface.images) {

@@ -24,7 +24,7 @@ Vec3d direction(std::mt19937_64& random) {
   return normalized(Vec3d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)));
 }
 
-// Planes of any kind: only the arithmetic matters here.
+// Returns arbitrary planes: these tests are about the arithmetic only.
 Scene randomScene(std::mt19937_64& random) {
   Scene scene;
   for (std::uint32_t i = 0; i < 40; ++i) {
@@ -86,7 +86,7 @@ TEST(EyePlanes, EveryInstructionSetGivesTheSameAnswers) {
   }
 }
 
-// Corner by corner, in the plain way; what lies within 1e-9 of a plane may go either way.
+// Classifies by brute force, corner by corner. Corners within 1e-9 of a plane may give either result.
 TEST(EyePlanes, AgreeWithTheEightCorners) {
   std::mt19937_64 random(2);
   int failing_edges = 0, satisfied_edges = 0, touched = 0, behind = 0;

@@ -84,7 +84,7 @@ TEST(OcclusionTree, TouchingSilhouettesOfUnconnectedWallsCountAsAGap) {
   }
 }
 
-TEST(OcclusionTree, TheTipOfAGapThatEndsOnASeamIsSeen) {
+TEST(OcclusionTree, TheTipOfAGapThatEndsOnASharedEdgeIsSeen) {
   // The lower polygon's upper edge runs through v, which lies a little below the line of the shared edge.
   // Above it two polygons adjoin, one on each side of v, with a gap in the form of a V between them: its tip
   // is at v.
@@ -105,7 +105,7 @@ TEST(OcclusionTree, TheTipOfAGapThatEndsOnASeamIsSeen) {
   }
 }
 
-TEST(OcclusionTree, AnOpenEdgeInLineWithASealedSeamKeepsItsMargin) {
+TEST(OcclusionTree, AnOpenEdgeInLineWithAWatertightEdgeKeepsItsMargin) {
   // A wall and the ground share an edge. A second wall in line with the first does not adjoin the ground: the
   // middle of its lower edge is raised by 0.9 mm, which merging may ignore at such coordinates, and lets one
   // see through.

@@ -22,7 +22,7 @@ OpacityMapSettings sized(std::uint32_t width, std::uint32_t height) {
   return settings;
 }
 
-// By both comparisons of depth; where they don't agree the test fails.
+// Two maps that compare depths in different ways. The test fails if their answers differ.
 class BothMaps {
  public:
   explicit BothMaps(OpacityMapSettings settings) : sparse_(settings), pixelwise_(pixelwise(settings)) {}
@@ -62,7 +62,7 @@ TEST(OpacityMap, TellsHiddenPartialAndVisible) {
   EXPECT_EQ(ask(kLookingBack, walls, {{-0.3f, -0.3f, -4}, {0.3f, 0.3f, -3}}), Visibility::kPartial);
   EXPECT_EQ(ask(kLookingBack, walls, {{-3, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
   EXPECT_EQ(ask(kLookingBack, walls, {{5, -1, -12}, {6, 1, -10}}), Visibility::kVisible);
-  // Off the buffer.
+  // This box is outside of the buffer.
   EXPECT_EQ(ask(kLookingBack, walls, {{25, -1, -12}, {26, 1, -10}}), Visibility::kHidden);
 }
 
@@ -85,7 +85,7 @@ TEST(OpacityMap, ABoxBeforeASmallPartOfTheCoverIsNotHidden) {
   const Box between{{-8, -2, -8}, {8, 2, -7}}, behind{{-8, -2, -18}, {8, 2, -17}};
   EXPECT_NE(ask(kLookingBack, walls, between), Visibility::kHidden);
   EXPECT_EQ(ask(kLookingBack, walls, behind), Visibility::kHidden);
-  // Beside the gap.
+  // As seen from the eye, this box is beside the gap.
   EXPECT_EQ(ask(kLookingBack, walls, {{-8, -2, -8}, {1, 2, -7}}), Visibility::kHidden);
 }
 
@@ -244,7 +244,7 @@ TEST(OpacityMap, TheSparseDepthMapComparesFewerPixels) {
   EXPECT_LT(sparse.stats().depths_compared, pixelwise.stats().depths_compared / 5);
 }
 
-// The answer from the buffer's pixels, one by one, with the settings' defaults.
+// Computes the answer from the buffer pixel by pixel, for the default settings.
 Visibility byScanning(const OpacityMap& map, const View& view, const Box& box) {
   const DepthBufferView pixels = map.depthBuffer();
   PixelBox image;

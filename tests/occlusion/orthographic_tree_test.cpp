@@ -25,7 +25,7 @@ View parallelView(double height) {
   return view;
 }
 
-// A small wall draws its edges in by a part of its own size, whatever stands elsewhere in the view.
+// The edges of a small wall move inwards by a fraction of its own size, even with large objects in the view.
 TEST(OrthographicTree, AThingThatShowsPastASmallWallIsKeptWhateverElseThereIs) {
   for (const double scale : {30.0, 1e3, 1e6}) {
     const auto far_away = static_cast<float>(-scale);

@@ -19,7 +19,7 @@ constexpr std::uint32_t kWidth = 320, kHeight = 180;
 
 using Wide = long double;
 
-// In 64 bits of precision, corner by corner.
+// The extent of a box in the buffer, computed corner by corner with 64 bits of precision.
 struct Exact {
   Wide x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY,
        y1 = -INFINITY;                 // in the buffer; where all depths are > 0
@@ -87,7 +87,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     const Wide rounding = roundingOf(view, exact);
     if (image.place == BoxPlace::kUnbounded) {
       ++unbounded;
-      // It reaches the near plane, or nearly so for its size.
+      // The box reaches the near plane, or almost does in relation to its size.
       const bool near = exact.z0 <= view.near * (1 + 0x1p-20L) + rounding;
       EXPECT_TRUE(near || (!view.orthographic && exact.z0 < 200 * rounding)) << "seed " << seed;
       EXPECT_LT(exact.beyond_side,
@@ -103,7 +103,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     }
     ++on_buffer;
     ASSERT_GT(exact.z0, view.near) << "seed " << seed;
-    // What a position may be off, pixels.
+    // The allowed error of a position, pixels.
     const Wide ratio = view.orthographic ? 0 : rounding / exact.z0;
     const auto slack = [&](Wide at, double scale, double middle) {
       const Wide q = std::abs(at - middle) / scale;

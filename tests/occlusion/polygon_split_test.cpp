@@ -32,7 +32,7 @@ Piece push(PolygonStack& stack, std::span<const Vec3d> corners) {
   return piece;
 }
 
-// A regular polygon in any plane.
+// Returns a regular polygon in a random plane.
 std::vector<Vec3d> ring(Random& random, std::uint32_t n, double radius, double distance) {
   const Vec3d middle = random.point(distance), normal = normalized(random.point(1.0));
   const Vec3d u = normalized(cross(normal, random.point(1.0))), v = cross(normal, u);
@@ -171,7 +171,7 @@ TEST(PolygonSplit, NewEdgesAreNamedAndEmbedded) {
 }
 
 TEST(PolygonSplit, APartStaysOnTheSideOfThePlaneThatMadeItsEdge) {
-  // Whatever rounding says: with the name of the plane, a second split by it adds nothing.
+  // A second split by the same plane id changes nothing, whatever the rounding.
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     Random random(seed);
     std::vector<Plane> planes{{normalized(random.point(1.0)), random.in(-3.0, 3.0)}};
@@ -186,7 +186,7 @@ TEST(PolygonSplit, APartStaysOnTheSideOfThePlaneThatMadeItsEdge) {
     }
     EXPECT_EQ(stack.split(result.front, plane, ref, 0.0).side, Side::kFront) << "seed " << seed;
     EXPECT_EQ(stack.split(result.back, plane, ref, 0.0).side, Side::kBack) << "seed " << seed;
-    // Seen from the plane's other side the answer turns round.
+    // With the plane flipped, the result is the opposite one.
     EXPECT_EQ(stack.split(result.front, plane.flipped(), ref.other(), 0.0).side, Side::kBack)
         << "seed " << seed;
     EXPECT_EQ(stack.split(result.back, plane.flipped(), ref.other(), 0.0).side, Side::kFront)

@@ -16,7 +16,7 @@ class ViewRandom {
   double in(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
-  // Of any size between two, each magnitude alike.
+  // Returns a number between two limits; its logarithm is uniformly distributed.
   double sized(double low, double high) { return std::exp(in(std::log(low), std::log(high))); }
   Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
   std::uint64_t below(std::uint64_t n) { return engine_() % n; }
@@ -39,7 +39,7 @@ inline View randomView(ViewRandom& random) {
   return view;
 }
 
-// Before the view, mostly; some are points, flat, around the eye, across the near plane or huge.
+// Returns a box, in most cases in view; some are points, flat, huge, around the eye or across the near plane.
 inline Box randomBox(ViewRandom& random, const View& view) {
   const double depth =
       random.below(5) == 0 ? random.in(-1.0, 3.0) * view.near : random.sized(view.near, 300.0);

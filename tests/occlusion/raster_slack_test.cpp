@@ -85,7 +85,7 @@ void expectSeen(const Scene& scene, const View& view, const Box& box, std::uint3
 // A wall, and a second one that recedes steeply from its edge. The middle vertex of the edge is 10
 // micrometres off the straight line, at a distance where that is a part of a pixel: there the receding wall
 // is seen through the first one's polygon, deeper than it.
-TEST(MapSlack, DepthOfAWallBeyondASeamThatIsNotStraight) {
+TEST(MapSlack, DepthOfAWallBeyondASharedEdgeThatIsNotStraight) {
   constexpr float kKink = 1e-5f, kAside = 1.0f / 15, kY = 32;
   const Scene scene = sceneOf({{.5f, kY - .5f, 0},
                                {0, kY - .5f, 0},

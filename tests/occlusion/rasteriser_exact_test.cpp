@@ -48,7 +48,7 @@ Point operator*(const Point& a, std::int64_t s) {
   return {a.x * s, a.y * s, a.z * s};
 }
 
-// Turned towards the camera, mostly.
+// Returns a polygon that mostly faces the camera.
 Polygon facing(const exact::Camera& camera, Random& random, std::vector<Point> vertices) {
   Polygon polygon{std::move(vertices), random.once(3)};
   if (!exact::imageOf(camera, {polygon.vertices, false}) && !random.once(10)) {
@@ -107,7 +107,7 @@ void addTouching(Scene& scene, Random& random) {
 constexpr std::pair<int, int> kDirections[] = {{8, 0},  {6, 5},   {0, 8},  {-5, 6},
                                                {-8, 1}, {-6, -6}, {1, -8}, {5, -5}};
 
-// Triangles round a vertex, all of them or some.
+// Triangles around a vertex, all around it or with some left out.
 void addFan(Scene& scene, Random& random) {
   scene.kind = "fan";
   const Point middle{random.in(-5, 5), random.in(-5, 5), random.in(8, 20)};
@@ -124,7 +124,7 @@ void addFan(Scene& scene, Random& random) {
   }
 }
 
-// Upright walls in a row, which fold over where they come back.
+// A row of upright walls that overlap each other where the row turns back.
 void addStrip(Scene& scene, Random& random) {
   scene.kind = "strip";
   Point at{-20, -10, random.in(8, 20)};
@@ -157,7 +157,7 @@ void addGrid(Scene& scene, Random& random) {
   }
 }
 
-// A wall whose long upper edge two or three others adjoin, which lean towards each other or apart.
+// A wall with two or three other walls on its long upper edge, which lean towards or away from each other.
 void addTJunction(Scene& scene, Random& random) {
   scene.kind = "T-junction";
   scene.mesh = true;
@@ -230,7 +230,7 @@ std::string describe(const Scene& scene, std::uint64_t seed) {
   return text.str();
 }
 
-// An axis-aligned camera somewhere, and the scene before it.
+// An axis-aligned camera at a random place, with a scene in front of it.
 struct Placed {
   Placed(const Scene& scene, std::uint64_t seed) {
     constexpr int kForward[] = {-3, 1, -2};  // along -z, x, -y
@@ -376,7 +376,7 @@ bool isWellShaped(const exact::Camera& camera, const Polygon& polygon) {
   return true;
 }
 
-// As near as an exact buffer would have it, but for one hundredth.
+// Whether the stored depth is at most one hundredth farther than that of an exact buffer.
 bool isNear(float stored, double exact) {
   return stored > kUncovered && static_cast<double>(stored) >= exact - 0.01 * std::abs(exact);
 }
@@ -408,7 +408,7 @@ TEST(RasteriserExact, CoversPixelsThatLieWithinAPolygon) {
   EXPECT_GT(within, 20000);
 }
 
-// No leaks where polygons join.
+// There are no uncovered pixels along shared edges.
 TEST(RasteriserExact, CoversPixelsThatLieWithinSeveralPolygonsThatShareEdges) {
   int within = 0, failures = 0;
   for (std::uint64_t seed = 0; seed < kScenes && failures < 5; ++seed) {
@@ -466,7 +466,7 @@ TEST(RasteriserExact, CentresAreCoveredWhereAPolygonContainsThemWithItsDepthTher
         }
       }
       const bool is_covered = stored > kUncovered, should = nearest > -INFINITY;
-      // Polygons that are not well shaped may be left out, but nothing may be invented.
+      // Badly shaped polygons may be left out, but no pixel may be covered without one.
       const bool right_depth = std::abs(static_cast<double>(stored) - nearest) <= 1e-5 * std::abs(nearest);
       const bool wrong =
           well_shaped ? is_covered != should || (should && !right_depth) : is_covered && !should;

@@ -1,4 +1,4 @@
-// The same bits from every instruction set, however the work is cut, in any order.
+// Results are equal bit for bit for all instruction sets, divisions of the work and orders of execution.
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -61,14 +61,14 @@ void expectSame(const Look& a, const Look& b, const std::string& what) {
   EXPECT_EQ(a.ids, b.ids) << what;
 }
 
-// Ranges of one, the last first.
+// Calls the body for each index, the last one first.
 void backwards(std::uint32_t count, const RangeBody& body) {
   for (std::uint32_t i = count; i > 0; --i) {
     body(i - 1, i);
   }
 }
 
-// Uneven ranges: the odd ones first, then the even ones.
+// Calls the body for uneven ranges, the odd ones first and then the even ones.
 void uneven(std::uint32_t count, const RangeBody& body) {
   for (const std::uint32_t first : {1u, 0u}) {
     for (std::uint32_t begin = 3 * first; begin < count; begin += 6) {
@@ -193,12 +193,12 @@ TEST(RasteriserBits, DoNotChangeWhenTheSameIsDrawnAgain) {
     const std::vector<std::uint32_t> first = bitsOf(rasteriser.depthBuffer());
     rasteriser.draw(set, all(set));
     EXPECT_TRUE(bitsOf(rasteriser.depthBuffer()) == first) << what;
-    // One by one afterwards: fewer shared edges, so nothing new.
+    // Drawing the polygons one by one has fewer shared edges, so it must cover no other pixels.
     for (const OccluderId id : all(set)) {
       rasteriser.draw(set, std::span(&id, 1));
     }
     EXPECT_TRUE(bitsOf(rasteriser.depthBuffer()) == first) << what;
-    // After another view, of which nothing may stay.
+    // Another view is drawn first, which must not affect the result.
     View other = view;
     other.forward = -view.forward;
     other.right = -view.right;
@@ -210,7 +210,7 @@ TEST(RasteriserBits, DoNotChangeWhenTheSameIsDrawnAgain) {
   });
 }
 
-// What crosses the near plane is cut at one depth a call, which depends on all that cross it.
+// Polygons that cross the near plane are cut at one depth per call, which depends on all of them.
 bool crossesNearPlane(const View& view, const OraclePolygon& polygon) {
   bool before = false, beyond = false;
   for (const Vec3f& vertex : polygon.vertices) {

@@ -16,7 +16,7 @@ const CoverageRule* const kCoverageRules[] = {nullptr, centreCoverage()};
 
 using namespace test;
 
-// A buffer that is kept together with what it was drawn from.
+// A depth buffer together with the occluders that were drawn into it.
 struct Drawn {
   Drawn(const View& from, std::span<const OraclePolygon> polygons, const RasterSettings& settings)
       : Drawn(from, setOf(polygons), settings) {}
@@ -45,7 +45,8 @@ struct Drawn {
   DepthBufferView buffer;
 };
 
-// Size of half the picture, in metres at unit depth or anywhere.
+// Returns half the size of the picture, metres: at unit depth in perspective, at any depth in orthographic
+// views.
 std::array<double, 2> halfSize(const View& view) {
   const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   return {half_height * view.aspect, half_height};
@@ -59,7 +60,7 @@ Vec3d pointAt(const View& view, const DepthBufferView& buffer, double x, double 
          view.up * ((2.0 * y / buffer.height - 1.0) * half_y * spread);
 }
 
-// (x w, y w, w) of a point's place in the buffer.
+// Returns the homogeneous position (x w, y w, w) of a point in the buffer.
 Vec3d inBuffer(const View& view, const DepthBufferView& buffer, const Vec3d& point) {
   const auto [half_x, half_y] = halfSize(view);
   const Vec3d r = point - view.eye;
@@ -170,7 +171,8 @@ TEST(Rasteriser, AWallThatEndsOnAPixelsBorderDoesNotCoverThePixelBeyond) {
         }
       }
     }
-    // A hair less, and the pixels within are not covered either; a hair more, and they are.
+    // If the wall is slightly smaller, the pixels at its border are not covered; if slightly larger, they
+    // are.
     const float less = std::nextafter(2.0f, 0.0f);
     const Drawn smaller(view, std::vector{wall(-less, less, -1.5f, 1.5f, -4)}, {8, 8});
     EXPECT_FALSE(smaller.buffer.covered(2, 3));
@@ -332,7 +334,7 @@ Body tessellated(const Vec3d& origin, double scale) {
   return body;
 }
 
-// Is the pixel, with its sides moved outwards by so many pixels, wholly within the outline?
+// Returns whether the pixel, with its sides moved outwards by a margin in pixels, is inside of the outline.
 bool isWithin(const Body& body, const View& view, const DepthBufferView& buffer, std::uint32_t x,
               std::uint32_t y, double grow) {
   for (unsigned corner = 0; corner < 4; ++corner) {
@@ -396,7 +398,7 @@ TEST(Rasteriser, LeavesNoLeaksInATessellatedWall) {
   checkBody(tessellated, 1.0, 16384.0);
 }
 
-// The view from a covered pixel: nobody sees past the stored depth.
+// No ray through a covered pixel passes beyond the stored depth.
 void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, std::size_t& covered) {
   const DepthBufferView& buffer = drawn.buffer;
   const std::size_t total = drawn.covered();
@@ -412,7 +414,7 @@ void checkRays(RandomScene& scene, const Drawn& drawn, const std::string& what, 
       const double depth = scene.view.orthographic ? -reciprocal_depth : 1.0 / reciprocal_depth;
       for (int i = 0; i < 6; ++i) {
         const auto within = [&] {
-          // Often on a border.
+          // Many rays are on a border of the pixel.
           const double t = scene.random.in(-0.3, 1.3);
           return std::clamp(t, 0.0, 1.0);
         };
@@ -440,7 +442,7 @@ TEST(Rasteriser, WhatIsFartherThanTheStoredDepthCannotBeSeen) {
   }
 }
 
-// A wall whose upper edge other walls adjoin part by part, leaning apart from each other: gaps end on the
+// A wall whose upper edge other walls adjoin part by part, leaning away from each other: gaps end on the
 // middle of an edge. Turned at random, so that no corner lies where it should.
 void addTJunction(Random& random, const Family& family, const Vec3d& around,
                   std::vector<OraclePolygon>& triangles) {

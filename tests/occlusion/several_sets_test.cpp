@@ -1,4 +1,4 @@
-// Structures in object space that are built of several sets of occluders for one view.
+// Object-space structures built from several sets of occluders for one view.
 
 #include <gtest/gtest.h>
 
@@ -56,8 +56,8 @@ TEST(SeveralSets, EachHidesAsIfItWereAlone) {
   });
 }
 
-// Two walls with an edge in common: within one set they let nothing through.
-TEST(SeveralSets, NeverCloseASeamBetweenThem) {
+// Two walls that share an edge, which is watertight within one set.
+TEST(SeveralSets, HaveNoWatertightEdgeBetweenThem) {
   const OraclePolygon left = wall(-3, 0, -2, 2, -5), right = wall(0, 3, -2, 2, -5);
   const OccluderSet both = setOf(std::vector{left, right}), first = setOf(std::vector{left}),
                     second = setOf(std::vector{right});
@@ -105,7 +105,7 @@ TEST(SeveralSets, HideNothingThatARayReaches) {
   for (const test::Family& family : test::kFamilies) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
       test::RandomScene scene(family, seed);
-      // Dealt out at random: connected walls are torn apart.
+      // The polygons are distributed to the sets at random, so connected walls get into different sets.
       std::vector<OraclePolygon> parts[2];
       for (const OraclePolygon& polygon : scene.polygons) {
         parts[scene.random.engine() % 2].push_back(polygon);
@@ -141,7 +141,8 @@ TEST(SeveralSets, RelationsAreKeptOfTheFirstOneOnly) {
   KeptPlanes planes;
   const Box behind_own{{-1, -1, -12}, {1, 1, -10}}, behind_moving{{7.5f, -1, -12}, {9, 1, -11}};
   for (int frame = 0; frame < 4; ++frame) {
-    // In the same memory, with the same id and shape: before the box, then elsewhere.
+    // The second set is in the same memory and has the same id and shape: first in front of the box, then
+    // elsewhere.
     moving = setOf(std::vector{frame % 2 == 0 ? wall(3, 5, -1, 1, -5) : wall(-5, -3, -1, 1, -5)});
     planes.build(kLookingBack, sets);
     OccluderList touching;

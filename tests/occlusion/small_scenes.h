@@ -39,7 +39,7 @@ inline std::vector<OccluderId> all(const OccluderSet& set) {
   return ids;
 }
 
-// Facing +z, at depth z, from x0 to x1 and y0 to y1.
+// Returns a wall that faces +z, with corners at the given z, from x0 to x1 and from y0 to y1.
 inline OraclePolygon wall(float x0, float x1, float y0, float y1, float z) {
   return {{{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}, false};
 }
@@ -121,7 +121,7 @@ inline void addConnected(Random& random, const Family& family, const Vec3d& arou
   }
 }
 
-// The families that every structure is tried with.
+// Every structure is tested with these families.
 inline const Family kFamilies[] = {{"metres", 1.0, 0.0, false},
                                    {"slivers", 1.0, 0.0, true},
                                    {"micrometres", 1e-6, 0.0, false},

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-// Looks at all of a buffer so often that all of its rows are made.
+// Queries the whole buffer until the peaks of all its rows have been computed.
 void makeRows(SparseDepth& depth, const SyntheticMap& buffer) {
   const float nearest = -std::numeric_limits<float>::infinity();
   for (int i = 0; i < 20; ++i) {
@@ -22,7 +22,7 @@ void makeRows(SparseDepth& depth, const SyntheticMap& buffer) {
   }
 }
 
-// A depth of the buffer, or one just before or behind it.
+// Returns a depth of the buffer, or one slightly nearer or farther.
 float someDepth(std::mt19937_64& random, const SyntheticMap& buffer) {
   const float depth = buffer.view().at(static_cast<std::uint32_t>(random() % buffer.width),
                                        static_cast<std::uint32_t>(random() % buffer.height));
@@ -65,7 +65,7 @@ TEST(SparseDepth, AnswersAsScanningAllPixelsDoes) {
 }
 
 TEST(SparseDepth, EveryRectangleOfARowIsAnsweredRightAtEveryDepth) {
-  // All rectangles against all depths: peaks at, beside and beyond both ends.
+  // Tests all rectangles with all depths: peaks are at, next to and beyond both ends.
   for (const SyntheticMap& buffer : syntheticMaps(67, 1, 5)) {
     SparseDepth depth;
     depth.begin(buffer.view());
@@ -83,7 +83,7 @@ TEST(SparseDepth, EveryRectangleOfARowIsAnsweredRightAtEveryDepth) {
 }
 
 TEST(SparseDepth, TheLastPixelIsLookedAtWhereTheNextPeakLiesBeyondIt) {
-  // Farther and farther to the right up to pixel 90.
+  // Depth increases to the right up to pixel 90.
   const SyntheticMap buffer("valley", 100, 1, [](std::uint32_t x, std::uint32_t) {
     return -static_cast<float>(x <= 90 ? x : 180 - x);
   });

@@ -40,7 +40,7 @@ TEST(SupportingPlanes, TellHiddenPartialAndVisible) {
     EXPECT_EQ(ask(kLookingBack, walls, {{-1, -1, -4}, {1, 1, -3}}), Visibility::kVisible);
     EXPECT_EQ(ask(kLookingBack, walls, {{-9, -1, -12}, {1, 1, -10}}), Visibility::kPartial);
     EXPECT_EQ(ask(kLookingBack, walls, {{5, -1, -12}, {6, 1, -10}}), Visibility::kVisible);
-    // Crosses the wall's plane, beside the wall and across it.
+    // These boxes cross the wall's plane, next to the wall and through it.
     EXPECT_EQ(ask(kLookingBack, walls, {{3, -1, -7}, {4, 1, -4}}), Visibility::kVisible);
     EXPECT_EQ(ask(kLookingBack, walls, {{0, 0, -7}, {4, 1, -4}}), Visibility::kPartial);
   }
@@ -64,7 +64,7 @@ Vec3f toVec(const Point& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }
 
-// How a triangle stands to a point that the eye looks at: by exact signs.
+// Whether a triangle hides a point from the eye, computed with exact signs.
 struct ExactHiding {
   bool hidden = false;  // strictly within the triangle's shadow
   bool clear = false;   // hidden by more than rounding and margins: the ray passes a thousandth of the
@@ -87,7 +87,7 @@ ExactHiding hides(const std::array<Point, 3>& triangle, const Point& eye, const 
     result.hidden &= side[i] > 0;
     sum += side[i];
   }
-  // side / sum are the barycentric coordinates of where the ray meets the triangle's plane.
+  // side / sum are the barycentric coordinates of the point where the ray hits the triangle's plane.
   for (const std::int64_t s : side) {
     result.clear &= result.hidden && static_cast<double>(s) > 1e-3 * static_cast<double>(sum);
   }
@@ -236,9 +236,9 @@ TEST(SupportingPlanes, AHoleIsNeverClosed) {
   EXPECT_NE(ask(kLookingBack, ring, {{-4, -4, -12}, {4, 4, -10}}), Visibility::kHidden);
   EXPECT_NE(ask(kLookingBack, ring, {{-0.1f, -0.1f, -12}, {0.1f, 0.1f, -10}}), Visibility::kHidden);
   EXPECT_NE(ask(kLookingBack, ring, {{1.5f, 1.5f, -12}, {3, 3, -10}}), Visibility::kHidden);
-  // Behind the joint of two of them, off the hole: they hide it together, the others don't matter.
+  // A box behind the edge that two of them share is hidden by the two together.
   EXPECT_EQ(ask(kLookingBack, ring, {{4, 4, -12}, {5, 5, -10}}), Visibility::kHidden);
-  // With the hole filled all is hidden.
+  // With the hole filled, everything behind the walls is hidden.
   ring.push_back({{inner[0], inner[1], inner[2], inner[3]}, false});
   EXPECT_EQ(ask(kLookingBack, ring, {{-4, -4, -12}, {4, 4, -10}}), Visibility::kHidden);
 }
@@ -400,7 +400,7 @@ TEST(SupportingPlanes, AConvexBodysFacesHideWhatTheBodyHides) {
     const Vec3d c = -direction * random.in(2.5, 6.0) + random.point(1.0);
     const Vec3d h = abs(random.point(0.5));
     const Box box{Vec3f(c - h), Vec3f(c + h)};
-    // Hidden beyond doubt: from each corner the line to the eye comes well through the cube.
+    // The box is clearly hidden: the line from each corner to the eye passes well through the cube.
     bool blocked = true;
     for (unsigned corner = 0; corner < 8; ++corner) {
       const Vec3d x(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,

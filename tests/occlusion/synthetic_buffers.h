@@ -1,6 +1,6 @@
 #pragma once
 
-// Depth buffers made by rules and at random, without occluders, and counting and scanning them the plain way.
+// Depth buffers made from formulas and random numbers instead of occluders, and brute-force queries of them.
 
 #include <random>
 #include <string>
@@ -13,7 +13,7 @@ namespace sightline::test {
 
 using occlusion::PixelBox;
 
-// What lies beyond the width is covered and very far, or not covered, in turn: it must not matter.
+// Pixels beyond the width are alternately very far and uncovered; they must not affect results.
 struct SyntheticMap {
   std::string name;
   std::uint32_t width = 0, height = 0, stride = 0;
@@ -72,7 +72,7 @@ inline std::vector<SyntheticMap> syntheticMaps(std::uint32_t w, std::uint32_t h,
   return maps;
 }
 
-// Sizes with borders everywhere, and such that are wide enough to be worth looking at peaks only.
+// Sizes that do not fill vectors or blocks, and sizes wide enough for queries that use peaks only.
 inline constexpr std::uint32_t kMapSizes[][2] = {{1, 1}, {1, 9},  {9, 1},  {2, 2},
                                                  {5, 4}, {64, 3}, {67, 5}, {300, 2}};
 

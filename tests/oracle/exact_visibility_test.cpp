@@ -160,7 +160,7 @@ TEST(ExactVisibility, PixelsShowingAnObjectAreAllOfThem) {
 
 // A wall of two triangles: a point far behind it, on the ray through the diagonal, must never be reported as
 // visible.
-TEST(ExactVisibility, ASeamBetweenTrianglesIsNoGapForConfirm) {
+TEST(ExactVisibility, AnEdgeSharedByTrianglesIsNoGapForConfirm) {
   Fixture f;
   const MaterialId opaque = addMaterial(f.scene, Opacity::kOpaque, false);
   addWall(f.scene, opaque, -3, -1.1f, 1.3f, -1.7f, 1.9f);

@@ -217,7 +217,8 @@ TEST(IncludeDirections, TheOracleKnowsOnlyTheScene) {
   }
 }
 
-// What exists only to reproduce a paper's experiments lies apart: the rest of the tool does without it.
+// What exists only to reproduce a paper's experiments is in a folder of its own: the rest of the tool does
+// without it.
 TEST(IncludeDirections, NothingButItsTestsIncludesWhatReproducesPapers) {
   for (const std::string& file : projectFiles()) {
     const std::string extension = std::filesystem::path(file).extension();

@@ -28,7 +28,7 @@ std::vector<std::smatch> allMatches(const std::string& text, const std::regex& p
 }
 
 TEST(Repository, NoFileHoldsAMarkOfUnfinishedWork) {
-  // Written apart, so that this file holds none.
+  // The text is in two parts, so that this file does not contain it.
   const std::vector<std::string> marks{std::string("TO") + "DO", std::string("FIX") + "ME"};
   for (const std::string& file : projectFiles()) {
     const std::string text = contentOf(file);

@@ -186,7 +186,7 @@ TEST(Canyon, HullsOfPartsThatBelongTogetherReachThroughTheirPlanes) {
   EXPECT_EQ(reach_through, 6u * 5u);
 }
 
-TEST(Canyon, TerrainPiecesMeetOnlyTheirNeighboursAndEachHasAPlane) {
+TEST(Canyon, TerrainPiecesIntersectOnlyTheirNeighboursAndEachHasAPlane) {
   const MovingScene scene = makeCanyon({.grid = 14});
   const std::vector<std::size_t> pieces = partsOf(scene, "terrain");
   std::size_t planes = 0;

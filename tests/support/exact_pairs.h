@@ -180,7 +180,8 @@ inline bool hullMeetsSwept(std::span<const Vec3d> a, std::span<const Vec3d> b,
   return Programme(std::move(columns), {0, 0, 0, 1, 1}).solve();
 }
 
-// Closed sets: touching is meeting. An empty set meets nothing.
+// Returns whether two closed convex hulls have a point in common, which touching ones have and empty ones
+// have not.
 inline bool convexHullsIntersect(std::span<const Vec3d> a, std::span<const Vec3d> b) {
   return hullMeetsSwept(a, b, std::nullopt);
 }

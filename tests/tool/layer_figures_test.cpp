@@ -68,7 +68,7 @@ TEST_F(LayerFiguresDrawn, EachPictureOfTheReportIsAFileOfTheHeightAskedFor) {
   EXPECT_EQ(numbers, (std::set<std::uint32_t>{16, 17, 22, 23, 24}));
 }
 
-TEST_F(LayerFiguresDrawn, ThePieceInACircleIsSeenInItsOwnColour) {
+TEST_F(LayerFiguresDrawn, ThePieceInACycleIsSeenInItsOwnColour) {
   const ReportFile* canyon = fileOf(figures(), "figure23_canyon.png");
   ASSERT_NE(canyon, nullptr);
   std::size_t red = 0;
