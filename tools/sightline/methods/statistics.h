@@ -16,8 +16,8 @@ struct Statistic {
   bool time = false;    // differs from run to run
 };
 
-// Returns the statistics that apply to the setting: those of its sets, and those of its method but for the groups that the
-// method's row hides.
+// Returns the statistics that apply to the setting: those of its sets, and those of its method but for the
+// groups that the method's row hides.
 std::vector<Statistic> statisticsOf(const Setting& setting);
 
 // Their values in the culler's last frame, in the same order.
