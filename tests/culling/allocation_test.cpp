@@ -51,7 +51,7 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
     views.insert(views.end(), others.begin(), others.end());
     const std::vector<Box> dynamic_boxes(demo->bounds.begin(), demo->bounds.begin() + 20);
     for (const HierarchyKind kind : kKinds) {
-      for (const auto& [name, settings] : allSettings()) {
+      for (const auto& [name, settings, stands_for_method] : allSettings()) {
         AnyCuller culler = demo->culler(kind, settings);
         allocationsIn(culler, views, dynamic_boxes);
         allocationsIn(culler, views, dynamic_boxes);
@@ -75,7 +75,7 @@ TEST(Allocations, DoNotHappenWithOccludersThatMove) {
     moving.push_back(makeOccluders({&wall, 1}));
     ASSERT_EQ(moving.back().occluders.size(), 1u);
   }
-  for (const auto& [name, settings] : allSettings()) {
+  for (const auto& [name, settings, stands_for_method] : allSettings()) {
     AnyCuller culler = demo.culler(HierarchyKind::kBvh, settings);
     std::size_t counted = 0;
     for (int round = 0; round < 3; ++round) {
@@ -94,7 +94,7 @@ TEST(Allocations, DoNotHappenWhenTheVisibleSetIsAnotherInEachFrame) {
   const std::vector<View> views = demo.frames(demo.scene.paths[0], 80, 24);
   std::vector<NamedSettings> all = allSettings();
   all.push_back({"visibility octree", {.method = AnyMethod::kVisibilityOctree}});
-  for (auto& [name, settings] : all) {
+  for (auto& [name, settings, stands_for_method] : all) {
     settings.visible_sets = true;
     fake_sets::FakeSets sets(demo.bounds);
     std::mt19937_64 random(3);

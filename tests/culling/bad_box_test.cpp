@@ -22,7 +22,7 @@ TEST(Culler, OneBadBoxDoesNotStopTheCullingOfTheOthers) {
   const std::vector<ObjectId> expected{ObjectId(0u), ObjectId(2u)};
   for (const HierarchyKind kind : demo_frames::kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
-    for (const auto& [name, settings] : demo_frames::kStructures) {
+    for (const auto& [name, settings, stands_for_method] : demo_frames::kStructures) {
       AnyCuller culler(hierarchy, bounds, occluders, settings);
       for (int frame = 0; frame < 3; ++frame) {
         culler.cull(view);

@@ -88,7 +88,7 @@ TEST(Culler, CullsInTheFrameAfterAJump) {
 
 TEST(Culler, CullsOnASteadyWalk) {
   for (const HierarchyKind kind : kKinds) {
-    for (const auto& [name, settings] : kStructures) {
+    for (const auto& [name, settings, stands_for_method] : kStructures) {
       ShareMeter meter(city(), kind, settings);
       Share share;
       for (const View& view : city().frames(city().scene.paths[0], 100, 30)) {
@@ -101,7 +101,7 @@ TEST(Culler, CullsOnASteadyWalk) {
 
 TEST(Culler, KeepsNothingThatFrustumCullingLeavesOut) {
   for (const HierarchyKind kind : kKinds) {
-    for (const auto& [name, settings] : kStructures) {
+    for (const auto& [name, settings, stands_for_method] : kStructures) {
       AnyCuller culler = city().culler(kind, settings);
       AnyCuller frustum = city().culler(kind, {.method = AnyMethod::kFrustum});
       for (const View& view : jumps(city(), 3, 20)) {
@@ -216,7 +216,7 @@ TEST(Culler, NodesOfManyTrianglesAreTestedWithALargeMinimumCost) {
   view.near = 0.1;
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, triangles, {.kind = kind, .max_leaf_objects = 1});
-    for (auto [name, settings] : kStructures) {
+    for (auto [name, settings, stands_for_method] : kStructures) {
       for (const std::uint32_t cost : {0u, 65'535u, 65'536u, 100'000u}) {
         settings.min_node_cost = cost;
         AnyCuller culler(hierarchy, bounds, wall, settings);
@@ -346,7 +346,7 @@ void expectEqualRuns(AnyCuller& a, AnyCuller& b, std::span<const View> views) {
 
 TEST(Culler, GivesTheSameBitForBitWhenRunTwice) {
   for (const HierarchyKind kind : kKinds) {
-    for (const auto& [name, settings] : kStructures) {
+    for (const auto& [name, settings, stands_for_method] : kStructures) {
       SCOPED_TRACE(name);
       AnyCuller a = smallCity().culler(kind, settings), b = smallCity().culler(kind, settings);
       expectEqualRuns(a, b, smallCity().frames(smallCity().scene.paths[0], 50, 20));
@@ -372,7 +372,7 @@ TEST(Culler, IsAsNewAfterReset) {
 }
 
 TEST(Culler, CanBeMoved) {
-  for (const auto& [name, settings] : kMethods) {
+  for (const auto& [name, settings, stands_for_method] : kMethods) {
     SCOPED_TRACE(name);
     const std::vector<View> views = smallCity().frames(smallCity().scene.paths[0], 50, 6);
     AnyCuller first = smallCity().culler(HierarchyKind::kBvh, settings),
@@ -473,7 +473,7 @@ TEST(Culler, DynamicBoxesAreHiddenBehindWallsAndOutsideTheFrustumOnly) {
                                            Visibility::kHidden,  Visibility::kPartial, Visibility::kVisible,
                                            Visibility::kVisible, Visibility::kVisible};
   const Hierarchy hierarchy = buildHierarchy(scene.bounds, {});
-  for (const auto& [name, settings] : kStructures) {
+  for (const auto& [name, settings, stands_for_method] : kStructures) {
     AnyCuller culler(hierarchy, scene.bounds, scene.occluders, settings);
     for (int frame = 0; frame < 3; ++frame) {
       culler.cull(scene.view, boxes);
@@ -518,9 +518,13 @@ class Structure {
         return opacity_map_.classify(box);
       case AnyMethod::kDepthPyramid:
         return pyramid_.classify(box);
-      default:
+      case AnyMethod::kSupportingPlanes:
         return planes_.classify(box);
+      case AnyMethod::kFrustum:
+      case AnyMethod::kVisibilityOctree:
+        break;  // they have no structure
     }
+    return Visibility::kVisible;
   }
 
  private:
@@ -541,7 +545,7 @@ TEST(Culler, OccludersThatMoveHideInTheirFrame) {
   const OccluderPolygon wall{corners};
   const OccluderSet moving = makeOccluders({&wall, 1});
   ASSERT_EQ(moving.occluders.size(), 1u);
-  for (const auto& [name, settings] : kStructures) {
+  for (const auto& [name, settings, stands_for_method] : kStructures) {
     AnyCuller culler(hierarchy, scene.bounds, scene.occluders, settings);
     culler.cull(scene.view, {&box, 1});
     EXPECT_NE(culler.dynamicStates()[0], Visibility::kHidden) << name;
@@ -557,7 +561,7 @@ TEST(Culler, DynamicBoxesAreClassifiedAsTheStructureDoes) {
   const auto in = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  for (const auto& [name, settings] : kStructures) {
+  for (const auto& [name, settings, stands_for_method] : kStructures) {
     std::size_t hidden = 0, others = 0;
     AnyCuller culler = smallCity().culler(HierarchyKind::kBvh, settings);
     for (const View& view : smallCity().frames(smallCity().scene.paths[0], 30, 10)) {

@@ -50,7 +50,7 @@ class OddViews : public ::testing::TestWithParam<bool> {  // orthographic?
 
   // The second frame must give the same result despite the state that the first one left.
   void expectVisible(const View& view, const Objects& expected, const char* what) {
-    for (const auto& [name, settings] : kStructures) {
+    for (const auto& [name, settings, stands_for_method] : kStructures) {
       AnyCuller culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
       for (int frame = 0; frame < 2; ++frame) {
         culler.cull(view);
@@ -115,7 +115,7 @@ TEST_P(OddViews, KeepEverythingAndSayWhyWhereTheyAreNone) {
   views.back().up = normalized(Vec3d(1, 1, 0));
 
   const std::vector<Box> dynamic{Box{{-1, -1, -12}, {1, 1, -11}}, Box{{-1, -1, 3}, {1, 1, 4}}};
-  for (const auto& [name, settings] : kStructures) {
+  for (const auto& [name, settings, stands_for_method] : kStructures) {
     AnyCuller culler(scene_.hierarchy, scene_.bounds, scene_.occluders, settings);
     for (std::size_t v = 0; v < views.size(); ++v) {
       culler.cull(scene_.view, dynamic);

@@ -24,7 +24,7 @@ TEST(OrthographicCulling, HidesABoxBehindAWall) {
   const std::vector<ObjectId> expected{ObjectId(0u), ObjectId(2u)};
   for (const HierarchyKind kind : kKinds) {
     const Hierarchy hierarchy = buildHierarchy(bounds, {}, {.kind = kind, .max_leaf_objects = 1});
-    for (const auto& [name, settings] : kStructures) {
+    for (const auto& [name, settings, stands_for_method] : kStructures) {
       AnyCuller culler(hierarchy, bounds, occluders, settings);
       culler.cull(view);
       EXPECT_EQ(std::vector<ObjectId>(culler.visible().begin(), culler.visible().end()), expected) << name;

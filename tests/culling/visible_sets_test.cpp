@@ -161,7 +161,7 @@ TEST(VisibleSets, OfOtherBoxesAreNotTrusted) {
   ASSERT_NE(exchanged, own);
   std::vector<NamedSettings> all(std::begin(kMethods), std::end(kMethods));
   all.push_back({"visibility octree", {.method = AnyMethod::kVisibilityOctree}});
-  for (auto& [name, settings] : all) {
+  for (auto& [name, settings, stands_for_method] : all) {
     settings.visible_sets = true;
     settings.occluder_count = 0;  // nothing is hidden but by the set
     for (const std::vector<Box>& others : {moved, one_off, exchanged}) {
@@ -219,7 +219,7 @@ TEST(VisibleSets, AMethodsAnswerWithinTheSetIsTheSameAsWithoutIt) {
   std::uint32_t id = 0;
   std::mt19937_64 random(77);
   for (const HierarchyKind kind : kKinds) {
-    for (const auto& [name, plain] : kMethods) {
+    for (const auto& [name, plain, stands_for_method] : kMethods) {
       for (const bool detail : {false, true}) {
         for (const bool test_objects : {false, true}) {
           AnySettings settings = plain;
@@ -247,7 +247,7 @@ TEST(VisibleSets, AMethodsAnswerWithinTheSetIsTheSameAsWithoutIt) {
 
 TEST(VisibleSets, WithoutASetAMethodDoesWhatItDoesAlone) {
   for (const HierarchyKind kind : kKinds) {
-    for (const auto& [name, plain] : kMethods) {
+    for (const auto& [name, plain, stands_for_method] : kMethods) {
       AnySettings settings = plain;
       AnyCuller alone = cullerWith(smallCity(), kind, settings, nullptr);
       settings.visible_sets = true;
@@ -268,7 +268,7 @@ TEST(VisibleSets, WithoutASetAMethodDoesWhatItDoesAlone) {
 }
 
 TEST(VisibleSets, EqualIdsAreEqualSetsUntilReset) {
-  for (const auto& [name, plain] : kMethods) {
+  for (const auto& [name, plain, stands_for_method] : kMethods) {
     AnySettings settings = plain;
     settings.visible_sets = true;
     settings.occluder_count = 0;  // nothing is hidden but by the set

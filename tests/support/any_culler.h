@@ -1,7 +1,8 @@
 #pragma once
 
 // Cullers with any method, from one struct of settings: for tests and benchmarks that run over all methods.
-// A method that is added gets its row in makeMethod() here.
+// A method that is added gets a value of AnyMethod, a member of AnySettings if it has settings, and a case in
+// makeMethod().
 
 #include <cstdint>
 #include <memory>
@@ -46,10 +47,6 @@ struct AnySettings {
   bool use_lists = false;  // occluders come from AnyLists::from_eye
   bool detail_objects = false;
   std::uint32_t detail_occluder_count = 8;
-
-  bool hasOccluders() const {
-    return method != AnyMethod::kFrustum && method != AnyMethod::kVisibilityOctree;
-  }
 };
 
 inline std::unique_ptr<CullingMethod> makeMethod(const AnySettings& settings) {
@@ -112,7 +109,7 @@ class AnyCuller : public Culler {
   }
   static std::unique_ptr<CullingMethod> withDetail(std::unique_ptr<CullingMethod> method,
                                                    const AnySettings& settings) {
-    return settings.detail_objects && settings.hasOccluders()
+    return settings.detail_objects && method->traits().occluders
                ? detailObjects(std::move(method), {.occluder_count = settings.detail_occluder_count})
                : std::move(method);
   }

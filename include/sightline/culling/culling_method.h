@@ -81,6 +81,8 @@ struct CullStats {
 
 // A count that one method alone makes, of the last frame.
 struct MethodStatistic {
+  // Statistics that belong together, as "relations": the tool writes them as one object of that name, beside
+  // the frame's own keys, so no group is called "frame", "visible" or "occluders".
   const char* group = "";    // "relations": statistics that belong together
   const char* name = "";     // "reused": its name within the group, in snake_case
   const char* caption = "";  // "relations reused": for people
@@ -92,8 +94,9 @@ struct CullingFrame {
   View view{};          // validate() accepts it; never left-handed
   Frustum frustum{};    // of the view
   bool jumped = false;  // the view has little to do with that of the last frame
-  // The chosen occluders of the scene's set and then, where there are any, all that move. Empty where the
-  // method wants none.
+  // The chosen occluders of the scene's set and then, where there are any, a set of all that move. A method
+  // uses all of them, and counts them all in CullStats::occluders; occludersUsed() names those of the first
+  // set alone. Empty where the method wants none.
   std::span<const ChosenOccluders> occluders{};
   std::uint32_t max_occluders = 0;           // so many were asked for
   std::span<const ObjectId> last_visible{};  // what the last frame kept; only if not jumped

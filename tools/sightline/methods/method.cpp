@@ -36,7 +36,7 @@ const std::vector<Method>& methods() {
          return occlusionTree({.variant = s.variant, .temporal_coherence = s.temporal_coherence});
        },
        {"variant", "coherence"},
-       {"tree"}},
+       /*hidden_statistics=*/{"tree"}},
       {"opacity-map",
        kOpacityMapTraits,
        [](const Setting& s) {
@@ -45,7 +45,7 @@ const std::vector<Method>& methods() {
          return opacityMap(settings);
        },
        {"resolution", "coverage", "tolerance", "coverage-ratio", "depth-comparison", "triangle-us"},
-       {"coverage"}},
+       /*hidden_statistics=*/{"coverage"}},
       {"depth-pyramid",
        kDepthPyramidTraits,
        [](const Setting& s) {
