@@ -14,18 +14,18 @@
 namespace sightline::base {
 
 // Groups items by row, keeping their order within a row: afterwards row r has items[first[r]] up to, not
-// including, items[first[r + 1]]; `first` has rows + 1 entries. forEachPair(body) calls body(row, item) for
+// including, items[first[r + 1]]; `first` has rows + 1 entries. for_each_pair(body) calls body(row, item) for
 // every pair, row < rows; it is called twice and has to give the same pairs both times.
 template <typename Index, typename Item, typename ForEachPair>
 void groupIntoRows(std::size_t rows, std::vector<Index>& first, std::vector<Item>& items,
-                   ForEachPair&& forEachPair) {
+                   ForEachPair&& for_each_pair) {
   first.assign(rows + 1, 0);
-  forEachPair([&](auto row, const Item&) { ++first[row + 1]; });
+  for_each_pair([&](auto row, const Item&) { ++first[row + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
   items.resize(first.back());
   // While the rows fill, first[r] is where the next item of row r goes; in the end that is where row r + 1
   // begins.
-  forEachPair([&](auto row, const Item& item) { items[first[row]++] = item; });
+  for_each_pair([&](auto row, const Item& item) { items[first[row]++] = item; });
   std::copy_backward(first.begin(), first.end() - 1, first.end());
   first[0] = 0;
 }
@@ -53,8 +53,8 @@ class Rows {
   void endRow() { first_.push_back(static_cast<std::uint32_t>(items_.size())); }
   // Replaces everything: see groupIntoRows().
   template <typename ForEachPair>
-  void group(std::size_t rows, ForEachPair&& forEachPair) {
-    groupIntoRows(rows, first_, items_, forEachPair);
+  void group(std::size_t rows, ForEachPair&& for_each_pair) {
+    groupIntoRows(rows, first_, items_, for_each_pair);
   }
 
   void shrinkToFit() { items_.shrink_to_fit(); }
