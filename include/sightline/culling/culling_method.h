@@ -22,9 +22,9 @@
 namespace sightline {
 
 namespace culling {
+class DetailTest;
 class SetFilter;
-}
-class SupportingPlanes;
+}  // namespace culling
 
 // The scene that is culled: views of the caller's memory, which outlives the culler and changes only together
 // with a call of Culler::reset(). Whatever a method does not use may be null.
@@ -142,6 +142,9 @@ class CullingMethod {
   virtual void build(const CullingFrame&) {}
   // Appends the objects that may be seen to visible, ascending, and adds to the counts of stats.
   virtual void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) = 0;
+  // For detailObjects(): a method that has supporting planes of the frame's occluders runs the test with them
+  // and returns true; others leave it to detailObjects().
+  virtual bool testDetail(culling::DetailTest&, std::vector<ObjectId>&) { return false; }
   // States of boxes in the frustum that are no part of the scene, one for each box.
   virtual void classify(std::span<const MovingBox> boxes, std::span<Visibility> states);
   // The frame ends: completes stats and the method's own statistics. stats has the frame's times, but for
@@ -154,8 +157,6 @@ class CullingMethod {
   virtual DepthBufferView depthBuffer() const { return {}; }
   // The same ones, in the same order, after every frame and before the first; of the last frame that ended.
   virtual std::span<const MethodStatistic> statistics() const { return {}; }
-  // Planes of the frame's occluders, which detailObjects() asks too; null where the method has none.
-  virtual SupportingPlanes* supportingPlanesOfFrame() { return nullptr; }
 };
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/comparison/culling/kept_planes_traversal.h"
+#include "src/culling/methods/detail_test.h"
 #include "src/culling/methods/traversal_options.h"
 
 namespace sightline {
@@ -29,6 +30,11 @@ class KeptPlanesMethod final : public CullingMethod {
     // Relations are their own temporal coherence, which needs every node's lists.
     traversal_->run(frame.frustum, culling::optionsOf(frame, false),
                     comparison::KeptPlanesTraversal{*planes_, *hierarchy_, entered_}, stats, visible);
+  }
+
+  bool testDetail(culling::DetailTest& test, std::vector<ObjectId>& visible) override {
+    test.run(*planes_, visible);
+    return true;
   }
 
   void finish(CullStats& stats) override {

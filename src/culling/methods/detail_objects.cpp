@@ -1,11 +1,10 @@
-// Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 5.
-
 #include "sightline/culling/detail_objects.h"
 
-#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <utility>
+
+#include "src/culling/methods/detail_test.h"
 
 namespace sightline {
 namespace {
@@ -58,42 +57,14 @@ class DetailObjects final : public CullingMethod {
     statistics_.push_back({"detail", "culled", "detail culled", culled_});
   }
 
-  // Is the eye hidden from the object by occluders near the object?
   void test(const View& view, std::vector<ObjectId>& visible) {
-    SupportingPlanes* planes = method_->supportingPlanesOfFrame();
-    if (planes == nullptr) {
+    culling::DetailTest test(scene_, view, settings_.occluder_count);
+    if (!method_->testDetail(test, visible)) {
       planes_->build(view, *scene_.occluders, {});
-      planes = &*planes_;
+      test.run(*planes_, visible);
     }
-    const std::size_t nodes = scene_.hierarchy->nodes.size() + scene_.hierarchy->objects.size();
-    const auto first_item = static_cast<SupportingPlanes::Item>(nodes);
-    std::span<const OccluderId> last_near;
-    OccluderList list;
-    std::erase_if(visible, [&](ObjectId object) {
-      const Box& box = scene_.object_bounds[object.value];
-      if (!box.wellFormed()) {
-        return false;
-      }
-      const std::span<const OccluderId> near = occludersNear(box, view);
-      if (near.data() != last_near.data() || near.size() != last_near.size()) {
-        last_near = near;
-        list = planes->add(near);
-      }
-      OccluderList touching;
-      const bool hidden =
-          planes->classify(box, first_item + object.value, list, touching) == Visibility::kHidden;
-      tested_ += 1;
-      culled_ += hidden ? 1 : 0;
-      return hidden;
-    });
-  }
-
-  // Towards the eye: what stands in between faces the eye, and turns its back to the object.
-  std::span<const OccluderId> occludersNear(const Box& box, const View& view) const {
-    const Vec3d middle = center(box);
-    const Vec3d to_eye = view.orthographic ? -view.forward : view.eye - middle;
-    const std::span<const OccluderId> found = scene_.near_objects->find(middle, to_eye);
-    return found.first(std::min<std::size_t>(found.size(), settings_.occluder_count));
+    tested_ = test.tested;
+    culled_ = test.culled;
   }
 
   std::unique_ptr<CullingMethod> method_;

@@ -1,5 +1,6 @@
 #include "sightline/culling/opacity_map_method.h"
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -63,7 +64,7 @@ class OpacityMapMethod final : public CullingMethod {
     statistics_[5].value = counts.depths_compared;
     if (adapts()) {
       statistics_[6].value = suspended_ ? 1 : 0;
-      statistics_[7].value = static_cast<std::uint64_t>(1000.0 * coverage_->ratio() + 0.5);
+      statistics_[7].value = static_cast<std::uint64_t>(std::llround(1000.0 * coverage_->ratio()));
       coverage_->frame(stats.choose_us + stats.build_us + stats.traverse_us,
                        static_cast<double>(stats.hidden_triangles) * settings_.triangle_us);
     }

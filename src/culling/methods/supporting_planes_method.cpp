@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "src/culling/methods/detail_test.h"
 #include "src/culling/methods/traversal_options.h"
 
 namespace sightline {
@@ -39,6 +40,11 @@ class SupportingPlanesMethod final : public CullingMethod {
                     visible);
   }
 
+  bool testDetail(culling::DetailTest& test, std::vector<ObjectId>& visible) override {
+    test.run(*planes_, visible);
+    return true;
+  }
+
   void finish(CullStats& stats) override { stats.occluders = planes_->stats().occluders; }
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
@@ -48,7 +54,6 @@ class SupportingPlanesMethod final : public CullingMethod {
   }
 
   std::span<const OccluderId> occludersUsed() const override { return planes_->occluders(); }
-  SupportingPlanes* supportingPlanesOfFrame() override { return &*planes_; }
 
  private:
   SupportingPlanesSettings settings_;
