@@ -153,7 +153,7 @@ Result<Scene> importGltf(std::string_view bytes, const std::string& base_dir,
 
 Result<Scene> importGltf(std::string_view bytes, const std::string& base_dir,
                          const std::string& name_in_errors) {
-  return io::importGltf(bytes, base_dir, name_in_errors, ImportLimits{});
+  return io::importGltf(bytes, base_dir, name_in_errors, io::ImportLimits{});
 }
 
 }  // namespace sightline
