@@ -89,7 +89,8 @@ TEST(ExtentTree, DividesAlongTheAxesOfTheMaskAlone) {
 }
 
 TEST(ExtentTree, StopsWhereTheLongerChildGainsTooLittle) {
-  // Of twenty disjoint intervals in a row, the longer child has ten fewer; of nineteen, nine fewer.
+  // Divided in two, twenty disjoint intervals in a row leave a longer child with ten fewer; nineteen leave
+  // one with nine fewer.
   for (const std::size_t parts : {std::size_t{19}, std::size_t{20}}) {
     ExtentTable table = makeTable(parts, kindsOf(1, 0));
     for (std::size_t part = 0; part < parts; ++part) {

@@ -238,7 +238,7 @@ struct Layout {
   std::string letters;
   std::uint32_t version = 1, directions = 2, occluders = 10;
   std::uint32_t places = 0;
-  // Of an occluder database.
+  // An occluder database has a box and nodes.
   std::vector<float> box;
   struct Node {
     std::uint8_t axis = 3;
@@ -246,7 +246,7 @@ struct Layout {
     std::uint32_t link = 0;
   };
   std::vector<Node> nodes;
-  // Of a viewpoint database: the spacing and the points.
+  // A viewpoint database has a grid: the spacing and the points.
   std::vector<double> grid;
   SavedLists lists;
   std::string rest;

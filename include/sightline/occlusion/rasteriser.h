@@ -64,7 +64,7 @@ struct RasterStats {
   std::uint32_t occluders = 0;  // occluders that were drawn, or are behind what was drawn
   // Chosen, but seen from behind, edge-on, wholly before the near plane, or outside the buffer.
   std::uint32_t unusable = 0;
-  // Of the occluders: behind what was drawn before, or without a whole pixel of their own.
+  // Those of `occluders` that lie behind what was drawn before, or that cover no whole pixel.
   std::uint32_t hidden = 0;
 };
 

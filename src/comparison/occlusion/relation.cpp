@@ -82,7 +82,7 @@ void makeRelation(const ActiveOccluder& occluder, std::span<const InsetEdge> edg
       first = occluder.seen.flipped ? b.flipped() : a;
       second = occluder.seen.flipped ? a.flipped() : b;
     } else if (touched.exist) {
-      // Of the two, those that have the occluder on the other side than the box.
+      // A plane separates only if it has the occluder on the other side than the box.
       first = dot(front, at_a) > 0.0 ? a.flipped() : none;
       second = dot(front, at_b) < 0.0 ? b : none;
     }

@@ -111,8 +111,8 @@ void HullMesh::assign(std::uint32_t point, std::uint32_t first_facet) {
   }
 }
 
-// Of points of about the same height, takes the one farthest from the middle: a corner, not a point of an
-// edge.
+// Where points have about the same height, the one farthest from the middle is taken: it is a corner, not a
+// point of an edge.
 std::uint32_t HullMesh::farthestOutside(const Facet& facet) const {
   const Vec3d first = at(facet.corner[0]);
   double max_height = 0.0;

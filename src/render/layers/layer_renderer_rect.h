@@ -28,7 +28,7 @@ class RectCollector {
 
   void add(const Box& box, const Mat4& scene_from_box);
   bool full() const { return rect_ == PixelRect{0, 0, width_, height_}; }
-  // Of width and height 0 if no box that was added is in view.
+  // The rectangle that the boxes can cover; its width and height are 0 if none of them is in view.
   const PixelRect& rect() const { return rect_; }
 
  private:

@@ -64,8 +64,8 @@ struct OctreeLeaf {
 };
 static_assert(sizeof(OctreeLeaf) == 16);
 
-// Of an inner node: the index of the first of its eight children, which are consecutive. Child i is in the
-// upper half in x, y, z if bit 0, 1, 2 of i is set. Of a leaf: kOctreeLeaf plus the index of the leaf.
+// An inner node has the index of the first of its eight children, which are consecutive. Child i is in the
+// upper half in x, y, z if bit 0, 1, 2 of i is set. A leaf has kOctreeLeaf plus the index of the leaf.
 using OctreeLink = std::uint32_t;
 inline constexpr OctreeLink kOctreeLeaf = 0x80000000u;
 
