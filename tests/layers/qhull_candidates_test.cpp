@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#if defined(__unix__) || defined(__APPLE__)
-#include <sys/resource.h>
-#endif
-
-#include <fstream>
 #include <future>
 #include <numeric>
 #include <vector>
@@ -42,31 +37,6 @@ TEST(QhullCandidates, AreTheCornersOfACubeWithPointsInside) {
 TEST(QhullCandidates, PointsInAPlaneHaveNone) {
   EXPECT_EQ(qhullCandidates(shapes::flatPolygon(8), {}), std::vector<std::uint32_t>());
 }
-
-#if defined(__unix__) || defined(__APPLE__)
-// A server may have no descriptor left, and a changed root directory has no devices.
-TEST(QhullCandidates, NoFileNeedBeOpened) {
-  rlimit limit{};
-  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
-  rlimit none = limit;
-  none.rlim_cur = 0;
-  // Skipped where it cannot be tested: some containers forbid a process to change its limit.
-  if (setrlimit(RLIMIT_NOFILE, &none) != 0) {
-    GTEST_SKIP() << "the system does not let a process limit its open files";
-  }
-  const bool opens = std::ifstream("/").is_open();
-  const std::vector<std::uint32_t> solid = qhullCandidates(cubeWithPointsInside(2), {});
-  const std::vector<std::uint32_t> flat = qhullCandidates(shapes::flatPolygon(8), {});
-  const bool restored = setrlimit(RLIMIT_NOFILE, &limit) == 0;
-  EXPECT_EQ(solid, numbersBelow(8));
-  EXPECT_TRUE(flat.empty());
-  // The answers are right either way, but prove nothing where the limit is accepted and not held: some
-  // containers do that.
-  if (opens || !restored) {
-    GTEST_SKIP() << "the system does not hold the limit of open files that a process sets";
-  }
-}
-#endif
 
 TEST(QhullCandidates, AreTheSameInSeveralThreadsAtOnce) {
   const auto work = [](std::uint64_t seed) {
