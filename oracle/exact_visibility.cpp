@@ -9,7 +9,7 @@
 #include "oracle/ray_scene.h"
 #include "oracle/sample_points.h"
 #include "oracle/view_rays.h"
-#include "oracle/wide_ray.h"
+#include "oracle/visibility_proof.h"
 
 namespace sightline {
 namespace {
@@ -32,30 +32,10 @@ void storeMin(std::atomic<std::uint64_t>& min, std::uint64_t value) {
   }
 }
 
-// True if the infinite line through `origin` may intersect the box, enlarged by far more than rounding.
-bool mayIntersect(const Vec3d& origin, const Vec3d& direction, const Box& box) {
-  double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double slack = 1e-9 * (std::abs(origin[axis]) + std::abs(double(box.min[axis])) +
-                                 std::abs(double(box.max[axis])) + 1e-30);
-    const double low = box.min[axis] - slack - origin[axis], high = box.max[axis] + slack - origin[axis];
-    if (std::abs(direction[axis]) < 1e-300) {
-      if (low > 0.0 || high < 0.0) {
-        return false;
-      }
-      continue;
-    }
-    const double a = low / direction[axis], b = high / direction[axis];
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter <= leave * (1.0 + 1e-12) + 1e-300 && leave >= 0.0;
-}
-
 }  // namespace
 
 struct ExactVisibility::Impl {
-  explicit Impl(const SceneView& scene_);
+  explicit Impl(const SceneView& scene_) : scene(scene_), rays(scene_), samples(scene_), proofs(scene_) {}
 
   // Calls on_hits(first pixel, rays, hits) for every batch of pixels in rows [begin, end).
   template <typename OnHits>
@@ -64,23 +44,12 @@ struct ExactVisibility::Impl {
   std::optional<Witness> aimAt(const View& view, ObjectId object, std::uint32_t samples,
                                std::vector<RayHit>& hits) const;
   void lookBeside(const View& view, ObjectId object, std::uint32_t samples, std::vector<Witness>& seen) const;
-  // The minimum parameter in [near, far] at which the ray hits the object.
-  std::optional<Wide> intersect(const WideRay& ray, ObjectId object, Wide near, Wide far) const;
 
   SceneView scene;
   RayScene rays;
   SamplePoints samples;
-  std::vector<Box> bounds;  // by object, of its triangles
+  ProofScene proofs;
 };
-
-ExactVisibility::Impl::Impl(const SceneView& scene_) : scene(scene_), rays(scene_), samples(scene_) {
-  bounds.resize(scene.objects.size());
-  for (std::size_t o = 0; o < bounds.size(); ++o) {
-    for (const std::uint32_t index : scene.indicesOf(scene.objects[o])) {
-      bounds[o].extend(scene.positions[index]);
-    }
-  }
-}
 
 ExactVisibility::ExactVisibility(const SceneView& scene) : impl_(std::make_unique<Impl>(scene)) {}
 ExactVisibility::~ExactVisibility() = default;
@@ -258,56 +227,21 @@ std::vector<Witness> ExactVisibility::visibleByAimedRays(const View& view, std::
   return witnesses;
 }
 
-std::optional<Wide> ExactVisibility::Impl::intersect(const WideRay& ray, ObjectId id, Wide near,
-                                                     Wide far) const {
-  const Object& object = scene.objects[id.value];
-  const bool both_sides = scene.materialOf(object).double_sided;
-  const std::span<const std::uint32_t> indices = scene.indicesOf(object);
-  std::optional<Wide> nearest;
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const Vec3f &a = scene.positions[indices[i]], &b = scene.positions[indices[i + 1]],
-                &c = scene.positions[indices[i + 2]];
-    if (!isFinite(a) || !isFinite(b) || !isFinite(c)) {
-      continue;
-    }
-    const std::optional<Wide> s = ray.intersect(a, b, c, both_sides);
-    if (s && *s >= near && *s <= far && (!nearest || *s < *nearest)) {
-      nearest = s;
-    }
-  }
-  return nearest;
+bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
+  return VisibilityProof(impl_->proofs, impl_->rays, view).reaches(witness.point, witness.object);
 }
 
-bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
-  constexpr double kTie =
-      1e-25;  // relative; wide arithmetic on single-precision corners is a thousand times more precise
-  const double depth = depthOf(view, witness.point);
-  const Vec3d origin =
-      view.orthographic ? witness.point - view.forward * depth : view.eye;  // in the plane through the eye
-  const Vec3d direction = view.orthographic ? view.forward : witness.point - view.eye;
-  const WideRay ray =
-      view.orthographic ? WideRay(origin, direction) : WideRay::towards(view.eye, witness.point);
-  const Wide depth_per_s = ray.along(view.forward);
-  if (!(depth_per_s > 0) || !inVolume(view, witness.point, 1e-6)) {
-    return false;
-  }
-  const Wide near = Wide(view.near) / depth_per_s, far = Wide(view.far) / depth_per_s;
-  const std::optional<Wide> target = impl_->intersect(ray, witness.object, near, far);
-  if (!target) {
-    return false;
-  }
-  const Wide before = *target * (1 - Wide(kTie));
-  for (std::uint32_t o = 0; o < impl_->bounds.size(); ++o) {
-    const Object& object = impl_->scene.objects[o];
-    if (ObjectId(o) != witness.object && impl_->scene.materialOf(object).opaque() &&
-        mayIntersect(origin, direction, impl_->bounds[o])) {
-      const std::optional<Wide> blocker = impl_->intersect(ray, ObjectId(o), near, far);
-      if (blocker && *blocker < before) {
-        return false;
-      }
+std::vector<Decision> ExactVisibility::decide(const View& view, std::span<const ObjectId> objects,
+                                              std::uint32_t max_steps,
+                                              const ParallelFor& parallel_for) const {
+  std::vector<Decision> decisions(objects.size());
+  parallel_for(static_cast<std::uint32_t>(objects.size()), [&](std::uint32_t begin, std::uint32_t end) {
+    VisibilityProof proof(impl_->proofs, impl_->rays, view);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      decisions[i] = proof.decide(objects[i], max_steps);
     }
-  }
-  return true;
+  });
+  return decisions;
 }
 
 }  // namespace sightline

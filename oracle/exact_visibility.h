@@ -5,7 +5,7 @@
 //
 // Embree works in single precision: a ray may slip through the edge between two triangles, or hit the wrong
 // one of two surfaces that are closer together than its rounding. Evidence against a culler is therefore
-// confirmed first, by confirm(), which traces one ray through all triangles in 113-bit arithmetic.
+// confirmed first, by confirm(), in exact arithmetic. decide() answers in exact arithmetic both ways.
 
 #include <cstdint>
 #include <memory>
@@ -25,6 +25,17 @@ struct Witness {
   Vec3d point;  // scene space
 
   friend bool operator==(const Witness&, const Witness&) = default;
+};
+
+enum class Verdict : std::uint8_t {
+  kHidden,     // proved: no point of the object is visible
+  kVisible,    // with a point that proves it
+  kUndecided,  // too little work was allowed
+};
+
+struct Decision {
+  Verdict verdict = Verdict::kUndecided;
+  Witness witness;  // if visible: its point is rounded to double precision
 };
 
 // All const functions may be called from several threads at once. Results do not depend on the ParallelFor.
@@ -61,10 +72,17 @@ class ExactVisibility {
                                           std::uint32_t samples,
                                           const ParallelFor& parallel_for = serialFor) const;
 
-  // True if the ray from the eye through the witness's point really reaches the object, beyond what rounding
-  // can explain. Tests every triangle in wide precision; edges belong to triangles. A surface at exactly the
-  // same distance does not hide the object (ties are visible).
+  // True if the ray from the eye through the witness's point reaches the object before any opaque surface, in
+  // the view. Decided in exact arithmetic on the coordinates as they stand; edges belong to triangles. A
+  // surface at the same distance does not hide the object (ties are visible).
   bool confirm(const View& view, const Witness& witness) const;
+
+  // Decides for each of these objects, in exact arithmetic, whether any of its points is visible. The images
+  // of nearer triangles are subtracted from the object's own until nothing is left or a ray through what is
+  // left reaches it. Each object may take `max_steps` steps of up to 16 rays each. Ties are visible;
+  // triangles that are seen edge on and triangles without area show and hide nothing.
+  std::vector<Decision> decide(const View& view, std::span<const ObjectId> objects, std::uint32_t max_steps,
+                               const ParallelFor& parallel_for = serialFor) const;
 
  private:
   struct Impl;

@@ -89,6 +89,7 @@ void RayScene::gather(const SceneView& scene) {
       if (isFinite(a) && isFinite(b) && isFinite(c) && normalOf(a, b, c) != Vec3d{}) {
         group.indices.insert(group.indices.end(), {indices[i], indices[i + 1], indices[i + 2]});
         group.object_of_prim.push_back(o);
+        group.first_index_of_prim.push_back(static_cast<std::uint32_t>(object.first_index + i));
       }
     }
   }
@@ -136,7 +137,7 @@ void RayScene::filter(const RTCFilterFunctionNArguments* arguments) {
     if (!back && !group.opaque) {
       auto* context = reinterpret_cast<CollectContext*>(arguments->context);
       context->hits->push_back({RTCRayN_id(arguments->ray, n, i), ObjectId(group.object_of_prim[prim]),
-                                RTCRayN_tfar(arguments->ray, n, i)});
+                                RTCRayN_tfar(arguments->ray, n, i), group.first_index_of_prim[prim], false});
     }
   }
 }
@@ -157,7 +158,9 @@ void RayScene::trace(const Batch& rays, std::uint32_t count, bool coherent, std:
     for (const Group& group : groups_) {
       if (packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID && group.opaque &&
           packet.hit.geomID[i] == group.geometry_id) {
-        hits.push_back({i, ObjectId(group.object_of_prim[packet.hit.primID[i]]), packet.ray.tfar[i]});
+        const std::uint32_t prim = packet.hit.primID[i];
+        hits.push_back({i, ObjectId(group.object_of_prim[prim]), packet.ray.tfar[i],
+                        group.first_index_of_prim[prim], true});
       }
     }
     packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;

@@ -25,7 +25,9 @@ struct FloatRay {
 struct RayHit {
   std::uint32_t ray = 0;  // index in the batch
   ObjectId object;
-  float t = 0.0f;  // parameter along the ray
+  float t = 0.0f;                 // parameter along the ray
+  std::uint32_t first_index = 0;  // of the triangle, in the scene
+  bool opaque = false;
 };
 
 class RayScene {
@@ -48,8 +50,9 @@ class RayScene {
   struct Group {
     const RayScene* owner = nullptr;
     bool opaque = false, double_sided = false;
-    std::vector<std::uint32_t> indices;         // three per triangle
-    std::vector<std::uint32_t> object_of_prim;  // one per triangle
+    std::vector<std::uint32_t> indices;              // three per triangle
+    std::vector<std::uint32_t> object_of_prim;       // one per triangle
+    std::vector<std::uint32_t> first_index_of_prim;  // in the scene
     RTCGeometry geometry = nullptr;
     unsigned geometry_id = RTC_INVALID_GEOMETRY_ID;
   };

@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "oracle/wide_ray.h"
 #include "sightline/hierarchy/box_tree.h"
 #include "src/pvs/bake/convex_occluder.h"
 #include "src/pvs/bake/shadow.h"
 #include "src/pvs/bake/shadow_tree.h"
 #include "tests/occluders/flat_mesh.h"
 #include "tests/support/solids.h"
+#include "tests/support/wide_ray.h"
 
 namespace sightline::test {
 

@@ -104,12 +104,15 @@ std::vector<std::string> withFewRays(std::vector<std::string> arguments) {
 
 TEST(Tool, VerifyOfOneSettingHasThePlainForm) {
   const json verify = jsonOf(withFewRays({"verify", kCity}));
-  expectKeys(verify, {"false_culls", "unconfirmed", "frames", "overestimate", "method", "options"});
+  expectKeys(verify, {"false_culls", "proved", "undecided", "frames", "overestimate", "overestimate_at_least",
+                      "method", "options"});
   EXPECT_EQ(verify["false_culls"], 0);
   const std::uint64_t objects = jsonOf({"info", kCity})["scene"]["objects"];
   double kept = 0.0, exact = 0.0;
   for (const json& frame : verify["frames"]) {
-    expectKeys(frame, {"culled", "kept", "exact"});
+    expectKeys(frame, {"culled", "kept", "exact", "exact_at_most", "proved", "undecided"});
+    EXPECT_EQ(frame["proved"].get<std::uint64_t>() + frame["undecided"].get<std::uint64_t>(),
+              frame["culled"].get<std::uint64_t>());
     EXPECT_EQ(frame["culled"].get<std::uint64_t>() + frame["kept"].get<std::uint64_t>(), objects);
     EXPECT_LE(frame["exact"], frame["kept"]);
     kept += frame["kept"].get<double>();

@@ -1,4 +1,4 @@
-// sightline verify: compares culling with exact visibility by ray casting.
+// sightline verify: compares culling with exact visibility, found by ray casting and by proofs.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -19,7 +19,6 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::size_t kMaxTries = 256;  // pixels that are tried to confirm one false cull
 constexpr std::size_t kMaxListed = 20;  // false culls listed on the terminal; JSON has all
 
 struct VerifyOptions {
@@ -28,35 +27,62 @@ struct VerifyOptions {
   MethodOptions method;
   std::uint32_t width = 1280, height = 720;
   std::uint32_t aimed_rays = 16, edge_rays = 16;
+  std::uint32_t gap_steps = 16, proof_steps = 20000;
+  bool proof = false;
+
+  // Steps in which one object that no ray has reached is to be found through a gap or proved hidden.
+  std::uint32_t steps() const { return proof ? proof_steps : gap_steps; }
 };
+
+enum class By : std::uint8_t { kPixel, kAimedRay, kGap };
+
+std::string nameOf(By by) {
+  return by == By::kPixel ? "pixel" : by == By::kAimedRay ? "aimed ray" : "gap";
+}
 
 // An object that a ray reached. It is a false cull if the culler said that it is hidden.
 struct Sighting {
   Witness witness;
   std::uint32_t frame = 0;
-  bool aimed = false;      // reached by a ray aimed at it, otherwise by a ray through a pixel
-  bool confirmed = false;  // beyond what rounding of the rays explains
+  By by = By::kPixel;
+};
+
+// What is known of each object in one frame, in exact arithmetic.
+struct ExactFrame {
+  std::map<ObjectId, Sighting> visible;
+  std::vector<ObjectId> undecided;  // ascending; all others are proved hidden
 };
 
 struct FrameCounts {
   std::uint32_t frame = 0;
   std::size_t culled = 0, kept = 0;
+  std::size_t proved = 0, undecided = 0;  // of the culled ones
 };
 
 struct VerifyRun {
   Setting setting;
   Culler culler;
   std::vector<FrameCounts> frames;
-  std::vector<Sighting> false_culls;  // confirmed ones
-  std::size_t unconfirmed = 0;
+  std::vector<Sighting> false_culls;
 
-  double overestimate(std::size_t exact) const {
-    double kept = 0.0;
+  FrameCounts total() const {
+    FrameCounts sum;
     for (const FrameCounts& frame : frames) {
-      kept += static_cast<double>(frame.kept);
+      sum.culled += frame.culled;
+      sum.kept += frame.kept;
+      sum.proved += frame.proved;
+      sum.undecided += frame.undecided;
     }
+    return sum;
+  }
+  double overestimate(std::size_t exact) const {
+    const auto kept = static_cast<double>(total().kept);
     return exact > 0 ? kept / static_cast<double>(exact) : kept > 0.0 ? std::nan("") : 1.0;
   }
+};
+
+struct ExactCounts {
+  std::size_t visible = 0, undecided = 0;
 };
 
 // Compares all runs with one exact answer for each frame.
@@ -72,89 +98,86 @@ class Verifier {
     for (VerifyRun& run : runs) {
       run.culler.cull(view_);
     }
-    seen_.clear();
-    for (const Witness& witness :
-         oracle_.visibleThroughPixels(view_, options_.width, options_.height, parallel_for_)) {
-      seen_.emplace(witness.object, Sighting{witness, frame, false, false});
-    }
-    lookBesideSeen();
-    aimAtUnseen();
-    exact_of_frame.push_back(seen_.size());
-    exact_total += seen_.size();
-    judged_.clear();
+    exact_ = {};
+    castRays();
+    decideTheRest();
+    of_frame.push_back({exact_.visible.size(), exact_.undecided.size()});
+    total.visible += exact_.visible.size();
+    total.undecided += exact_.undecided.size();
     for (VerifyRun& run : runs) {
       judge(run);
     }
   }
 
-  std::vector<std::size_t> exact_of_frame;
-  std::size_t exact_total = 0;
+  std::vector<ExactCounts> of_frame;
+  ExactCounts total;
 
  private:
-  // Casts rays along the silhouettes of the objects that pixels showed, and through the gaps between them.
-  void lookBesideSeen() {
-    std::vector<ObjectId> objects;
-    for (const auto& [object, sighting] : seen_) {
-      objects.push_back(object);
+  // Rays through pixels, along the silhouettes of what they show, and at all that they do not show.
+  void castRays() {
+    note(oracle_.visibleThroughPixels(view_, options_.width, options_.height, parallel_for_), By::kPixel);
+    std::vector<ObjectId> seen;
+    for (const auto& [object, sighting] : exact_.visible) {
+      seen.push_back(object);
     }
-    for (const Witness& witness :
-         oracle_.visibleBesideEdges(view_, objects, options_.edge_rays, parallel_for_)) {
-      seen_.emplace(witness.object, Sighting{witness, frame_, true, false});
+    note(oracle_.visibleBesideEdges(view_, seen, options_.edge_rays, parallel_for_), By::kAimedRay);
+    note(oracle_.visibleByAimedRays(view_, notSeen(), options_.aimed_rays, parallel_for_), By::kAimedRay);
+  }
+
+  // Notes what rays have reached, if exact arithmetic confirms it.
+  void note(const std::vector<Witness>& witnesses, By by) {
+    std::vector<std::uint8_t> confirmed(witnesses.size());
+    parallel_for_(static_cast<std::uint32_t>(witnesses.size()), [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        confirmed[i] = !exact_.visible.contains(witnesses[i].object) && oracle_.confirm(view_, witnesses[i]);
+      }
+    });
+    for (std::size_t i = 0; i < witnesses.size(); ++i) {
+      if (confirmed[i] != 0) {
+        exact_.visible.emplace(witnesses[i].object, Sighting{witnesses[i], frame_, by});
+      }
     }
   }
 
-  // Aims rays at the objects that no ray has reached yet, whether they were culled or kept.
-  void aimAtUnseen() {
-    std::vector<ObjectId> targets;
+  std::vector<ObjectId> notSeen() const {
+    std::vector<ObjectId> objects;
     for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
-      if (!seen_.contains(ObjectId(o))) {
-        targets.push_back(ObjectId(o));
+      if (!exact_.visible.contains(ObjectId(o))) {
+        objects.push_back(ObjectId(o));
       }
     }
-    for (const Witness& witness :
-         oracle_.visibleByAimedRays(view_, targets, options_.aimed_rays, parallel_for_)) {
-      seen_.emplace(witness.object, Sighting{witness, frame_, true, false});
+    return objects;
+  }
+
+  // Looks through the gaps that nearer surfaces leave, or proves that there is none.
+  void decideTheRest() {
+    const std::vector<ObjectId> objects = notSeen();
+    const std::vector<Decision> decisions = oracle_.decide(view_, objects, options_.steps(), parallel_for_);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (decisions[i].verdict == Verdict::kVisible) {
+        exact_.visible.emplace(objects[i], Sighting{decisions[i].witness, frame_, By::kGap});
+      } else if (decisions[i].verdict == Verdict::kUndecided) {
+        exact_.undecided.push_back(objects[i]);
+      }
     }
   }
 
   void judge(VerifyRun& run) {
-    const std::span<const ObjectId> visible = run.culler.visible();
-    run.frames.push_back({frame_, scene_.objects.size() - visible.size(), visible.size()});
-    for (const auto& [object, sighting] : seen_) {
-      if (!std::binary_search(visible.begin(), visible.end(), object)) {
-        const Sighting& judged = confirmed(sighting);
-        run.unconfirmed += judged.confirmed ? 0 : 1;
-        if (judged.confirmed) {
-          run.false_culls.push_back(judged);
-        }
+    const std::span<const ObjectId> kept = run.culler.visible();
+    const auto isCulled = [&](ObjectId object) {
+      return !std::binary_search(kept.begin(), kept.end(), object);
+    };
+    FrameCounts counts{frame_, scene_.objects.size() - kept.size(), kept.size(), 0, 0};
+    counts.undecided =
+        static_cast<std::size_t>(std::count_if(exact_.undecided.begin(), exact_.undecided.end(), isCulled));
+    counts.proved = counts.culled - counts.undecided;
+    for (const auto& [object, sighting] : exact_.visible) {
+      if (isCulled(object)) {
+        run.false_culls.push_back(sighting);
+        counts.proved -= 1;
       }
     }
-  }
-
-  // The sighting with a witness that exact arithmetic confirms, if one can be found. Done once for each frame
-  // and object.
-  const Sighting& confirmed(const Sighting& sighting) {
-    const auto [entry, is_new] = judged_.emplace(sighting.witness.object, sighting);
-    Sighting& judged = entry->second;
-    if (is_new) {
-      judged.confirmed = oracle_.confirm(view_, judged.witness);
-      if (!judged.confirmed && !judged.aimed) {
-        tryOtherPixels(judged);
-      }
-    }
-    return judged;
-  }
-
-  void tryOtherPixels(Sighting& judged) {
-    const std::vector<Witness> pixels =
-        oracle_.pixelsShowing(judged.witness.object, view_, options_.width, options_.height, parallel_for_);
-    const std::size_t step = pixels.size() / kMaxTries + 1;
-    for (std::size_t i = 0; i < pixels.size() && !judged.confirmed; i += step) {
-      if (oracle_.confirm(view_, pixels[i])) {
-        judged.witness = pixels[i];
-        judged.confirmed = true;
-      }
-    }
+    run.frames.push_back(counts);
   }
 
   const VerifyOptions& options_;
@@ -164,8 +187,7 @@ class Verifier {
   ExactVisibility oracle_;
   View view_;
   std::uint32_t frame_ = 0;
-  std::map<ObjectId, Sighting> seen_;    // objects that a ray reached in this frame
-  std::map<ObjectId, Sighting> judged_;  // those of them that some run culled
+  ExactFrame exact_;
 };
 
 Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene) {
@@ -174,7 +196,10 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
     frames.push_back({{"frame", run.frames[i].frame},
                       {"culled", run.frames[i].culled},
                       {"kept", run.frames[i].kept},
-                      {"exact", verifier.exact_of_frame[i]}});
+                      {"exact", verifier.of_frame[i].visible},
+                      {"exact_at_most", verifier.of_frame[i].visible + verifier.of_frame[i].undecided},
+                      {"proved", run.frames[i].proved},
+                      {"undecided", run.frames[i].undecided}});
   }
   for (const Sighting& wrong : run.false_culls) {
     const Vec3d point = wrong.witness.point + scene.origin;
@@ -182,14 +207,18 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
                          {"name", scene.object_names[wrong.witness.object.value]},
                          {"frame", wrong.frame},
                          {"point", {point.x, point.y, point.z}},
-                         {"by", wrong.aimed ? "aimed ray" : "pixel"}});
+                         {"by", nameOf(wrong.by)}});
   }
-  const double overestimate = run.overestimate(verifier.exact_total);
+  const double overestimate = run.overestimate(verifier.total.visible),
+               at_least = run.overestimate(verifier.total.visible + verifier.total.undecided);
+  const FrameCounts total = run.total();
   return {{"method", methodName(run.setting)},
           {"options", optionsJson(run.setting)},
           {"false_culls", run.false_culls.size()},
-          {"unconfirmed", run.unconfirmed},
+          {"proved", total.proved},
+          {"undecided", total.undecided},
           {"overestimate", std::isfinite(overestimate) ? Json(overestimate) : Json()},
+          {"overestimate_at_least", std::isfinite(at_least) ? Json(at_least) : Json()},
           {"frames", frames},
           {"witnesses", witnesses}};
 }
@@ -214,7 +243,7 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
         const Vec3d point = wrong.witness.point + scene.origin;
         fmt::print("false cull: object {} '{}' in frame {}, seen at {:.6f} {:.6f} {:.6f} ({}); {} ({})\n",
                    wrong.witness.object.value, scene.object_names[wrong.witness.object.value], wrong.frame,
-                   point.x, point.y, point.z, wrong.aimed ? "aimed ray" : "pixel", methodName(run.setting),
+                   point.x, point.y, point.z, nameOf(wrong.by), methodName(run.setting),
                    optionsText(run.setting));
         listed += 1;
       }
@@ -227,19 +256,21 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
 
 void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene) {
   printFalseCulls(runs, scene);
-  fmt::print("{} frames, {} objects, exactly visible {:.1f} a frame\n", verifier.exact_of_frame.size(),
-             scene.objects.size(),
-             static_cast<double>(verifier.exact_total) / static_cast<double>(verifier.exact_of_frame.size()));
-  TextTable table{{"method", "options", "kept", "overestimate", "unconfirmed", "false culls"}, {}, 2};
+  const auto a_frame = [&](std::size_t count) {
+    return static_cast<double>(count) / static_cast<double>(verifier.of_frame.size());
+  };
+  fmt::print("{} frames, {} objects, exactly visible {:.1f} to {:.1f} a frame\n", verifier.of_frame.size(),
+             scene.objects.size(), a_frame(verifier.total.visible),
+             a_frame(verifier.total.visible + verifier.total.undecided));
+  TextTable table{
+      {"method", "options", "kept", "overestimate", "culled", "proved", "undecided", "false culls"}, {}, 2};
   for (const VerifyRun& run : runs) {
-    double kept = 0.0;
-    for (const FrameCounts& frame : run.frames) {
-      kept += static_cast<double>(frame.kept);
-    }
+    const FrameCounts total = run.total();
     table.rows.push_back({methodName(run.setting), optionsText(run.setting),
-                          fmt::format("{:.1f}", kept / static_cast<double>(run.frames.size())),
-                          fmt::format("{:.3f}", run.overestimate(verifier.exact_total)),
-                          std::to_string(run.unconfirmed), std::to_string(run.false_culls.size())});
+                          fmt::format("{:.1f}", a_frame(total.kept)),
+                          fmt::format("{:.3f}", run.overestimate(verifier.total.visible)),
+                          std::to_string(total.culled), std::to_string(total.proved),
+                          std::to_string(total.undecided), std::to_string(run.false_culls.size())});
   }
   fmt::print("{}", toText(table));
 }
@@ -251,7 +282,7 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
   CullingData data(scene, threads.parallelFor(), walk, baked);
   std::vector<VerifyRun> runs;
   for (const Setting& setting : settings) {
-    runs.push_back({setting, data.makeCuller(setting), {}, {}, 0});
+    runs.push_back({setting, data.makeCuller(setting), {}, {}});
   }
   Verifier verifier(options, scene, walk, threads.parallelFor());
   {
@@ -290,8 +321,8 @@ Result<ExitCode> runVerify(const VerifyOptions& options) {
 }  // namespace
 
 void addVerify(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "verify", "compares culling with exact visibility by ray casting; exit code 1 on a false cull");
+  CLI::App* command =
+      app.add_subcommand("verify", "compares culling with exact visibility; exit code 1 on a false cull");
   const auto options = std::make_shared<VerifyOptions>();
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
@@ -312,12 +343,24 @@ void addVerify(CLI::App& app, Command& chosen) {
                    "rays close beside edges of each visible object: along silhouettes, through gaps")
       ->check(CLI::Range(0u, 4096u))
       ->capture_default_str();
+  command
+      ->add_option("--gap-steps", options->gap_steps,
+                   "steps of the search for a gap through which an object shows that no ray has reached")
+      ->check(CLI::Range(0u, 1000000u))
+      ->capture_default_str();
+  command->add_flag("--proof", options->proof, "goes on until each object that is not seen is proved hidden");
+  command
+      ->add_option("--proof-steps", options->proof_steps,
+                   "steps after which --proof leaves an object undecided")
+      ->check(CLI::Range(1u, 1000000000u))
+      ->capture_default_str();
   command->footer(
-      "A false cull counts when 113-bit arithmetic confirms its ray; 'unconfirmed' ones are rounding of the "
-      "rays.\n"
-      "overestimate is kept / exact objects over all frames; exact: reached by any ray.\n"
+      "Exact arithmetic confirms each ray, and proves objects hidden by subtracting the images of nearer\n"
+      "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden.\n"
+      "overestimate is kept / visible objects over all frames.\n"
       "Examples:\n"
       "  sightline verify city.glb --path walk.json\n"
+      "  sightline verify city.glb --path walk.json --frames 0:400:20 --proof\n"
       "  sightline verify demo:building --variant FSE,FSC,FME,FMC --hierarchy kd,bvh --coherence on,off\n"
       "  sightline verify demo:city --method supporting-planes --joint on,off --occluders "
       "area-angle,database\n"

@@ -1,0 +1,120 @@
+#include "oracle/image_space.h"
+
+namespace sightline {
+namespace {
+
+const Whole& component(const WholeVec& v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+}  // namespace
+
+ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int lowest_exponent)
+    : view_(view),
+      positions_(positions),
+      exponent_(std::min({lowest_exponent, lowestExponent(view.eye), 0})),
+      forward_exponent_(lowestExponent(view.forward)),
+      exact_eye_(wholeOf(view.eye, exponent_)),
+      exact_forward_(wholeOf(view.forward, forward_exponent_)),
+      right_(view.right),
+      up_(view.up),
+      forward_(view.forward) {
+  if (!view.orthographic) {
+    return;
+  }
+  const Vec3d along = abs(view.forward);
+  axis_ = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
+  last_ = view.forward[axis_] > 0.0 ? 1.0 : -1.0;
+  const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
+  right_ = Vec3d{view.right[i], view.right[j], 0.0} / view.forward[axis_];
+  up_ = Vec3d{view.up[i], view.up[j], 0.0} / view.forward[axis_];
+  forward_ = {0.0, 0.0, last_};
+}
+
+Vec3d ImageSpace::fromEye(std::uint32_t position) const {
+  return Vec3d(positions_[position]) - view_.eye;
+}
+
+// Projects along the viewing direction onto the plane across `axis_`, times forward[axis_].
+Vec3d ImageSpace::project(const Vec3d& from_eye, double last) const {
+  const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
+  const Vec3d& f = view_.forward;
+  return {from_eye[i] * f[axis_] - from_eye[axis_] * f[i], from_eye[j] * f[axis_] - from_eye[axis_] * f[j],
+          last};
+}
+
+// The same without rounding; all coordinates, the last one too, are times 2^-(exponent + forward_exponent_).
+WholeVec ImageSpace::exactProject(const WholeVec& from_eye, int exponent) const {
+  const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
+  const Whole &f = component(exact_forward_, axis_), &depth = component(from_eye, axis_);
+  const Whole last = wholeOf(last_, exponent + forward_exponent_);
+  return {component(from_eye, i) * f - depth * component(exact_forward_, i),
+          component(from_eye, j) * f - depth * component(exact_forward_, j), last};
+}
+
+RoundedVec ImageSpace::direction(std::uint32_t position) const {
+  const Vec3d from_eye = fromEye(position);
+  if (!view_.orthographic) {
+    return {from_eye, kRounding * maxNorm(from_eye)};
+  }
+  return {project(from_eye, last_), 8.0 * kRounding * maxNorm(from_eye)};
+}
+
+RoundedVec ImageSpace::difference(std::uint32_t from, std::uint32_t to) const {
+  const Vec3d d = Vec3d(positions_[to]) - Vec3d(positions_[from]);
+  if (!view_.orthographic) {
+    return {d, kRounding * maxNorm(d)};
+  }
+  return {project(d, 0.0), 8.0 * kRounding * maxNorm(d)};
+}
+
+WholeVec ImageSpace::exactDirection(std::uint32_t position) const {
+  return exactDirectionOf(Vec3d(positions_[position]));
+}
+
+double ImageSpace::weight(std::uint32_t position) const {
+  return view_.orthographic ? -dot(fromEye(position), view_.forward) : 1.0;
+}
+
+double ImageSpace::weightError(std::uint32_t position) const {
+  return view_.orthographic ? 16.0 * kRounding * maxNorm(fromEye(position)) : 0.0;
+}
+
+Whole ImageSpace::exactWeight(std::uint32_t position) const {
+  if (!view_.orthographic) {
+    return 1;
+  }
+  return -dot(wholeOf(Vec3d(positions_[position]), exponent_) - exact_eye_, exact_forward_);
+}
+
+ImageSpace::ExactNearness ImageSpace::exactNearnessAt(double depth) const {
+  const int exponent = std::min(lowestExponent(depth), 0);
+  if (view_.orthographic) {
+    // Minus the depth, times the last coordinate of the direction over that coordinate in `exactProject`.
+    // Both are in units of 2^(exponent_ + forward_exponent_), so the units cancel.
+    return {{0, 0, -wholeOf(depth * last_, exponent)}, wholeOf(1.0, exponent)};
+  }
+  // forward . d / depth. Directions are in units of 2^exponent_, and the viewing direction in units of
+  // 2^forward_exponent_; the depth is brought to the product of both.
+  const int unit = exponent_ + forward_exponent_;
+  const int common = std::min(exponent, unit);
+  return {exact_forward_ * (Whole(1) << static_cast<unsigned>(unit - common)), wholeOf(depth, common)};
+}
+
+WholeVec ImageSpace::exactDirectionOf(const Vec3d& point) const {
+  const int exponent = std::min(exponent_, lowestExponent(point));
+  WholeVec from_eye =
+      wholeOf(point, exponent) - exact_eye_ * (Whole(1) << static_cast<unsigned>(exponent_ - exponent));
+  return view_.orthographic ? exactProject(from_eye, exponent) : from_eye;
+}
+
+Vec3d ImageSpace::directionOf(const Vec3d& point) const {
+  return view_.orthographic ? project(point - view_.eye, last_) : point - view_.eye;
+}
+
+ViewRay ImageSpace::ray(const Vec3d& direction) const {
+  const Vec3d d = direction / dot(direction, forward_);
+  return rayThrough(view_, dot(d, right_) / halfWidth(), dot(d, up_) / halfHeight());
+}
+
+}  // namespace sightline

@@ -1,0 +1,89 @@
+#pragma once
+
+// The image of a view in homogeneous coordinates, both rounded and exact.
+//
+// A point of the image is a direction d, a vector of three coordinates whose length is of no meaning. In a
+// perspective view, d is the vector from the eye to a point in space. In an orthographic view, d consists of
+// the two coordinates that remain when space is projected along the viewing direction, and of 1 or -1. In
+// both, a straight line of the image is a plane n . d = 0, and the image of a triangle is the cone of its
+// corners' directions, also where some of them lie behind the eye.
+//
+// Whatever is nearer has a greater *nearness*: in a perspective view the reciprocal of the distance in
+// lengths of d, in an orthographic view minus the depth. In both, the nearness of a plane is linear in d.
+
+#include <cstdint>
+#include <vector>
+
+#include "oracle/exact_number.h"
+#include "oracle/view_rays.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+inline constexpr double kRounding = 0x1p-53;  // the largest relative error of one operation
+
+inline double maxNorm(const Vec3d& v) {
+  return maxComponent(abs(v));
+}
+
+// A vector with a bound on the error of each coordinate.
+struct RoundedVec {
+  Vec3d value{};
+  double error = 0.0;
+};
+
+class ImageSpace {
+ public:
+  // `lowest_exponent` is that of all finite positions. The positions' memory must outlive this object.
+  ImageSpace(const View& view, std::span<const Vec3f> positions, int lowest_exponent);
+
+  const View& view() const { return view_; }
+
+  // The direction of a position, whose coordinates are finite.
+  RoundedVec direction(std::uint32_t position) const;
+  WholeVec exactDirection(std::uint32_t position) const;
+  // The difference of the directions of two positions.
+  RoundedVec difference(std::uint32_t from, std::uint32_t to) const;
+
+  // What the nearness of a plane is interpolated from: 1 in a perspective view, minus the depth in an
+  // orthographic one.
+  double weight(std::uint32_t position) const;
+  double weightError(std::uint32_t position) const;
+  Whole exactWeight(std::uint32_t position) const;
+  // Nearness of all points at one depth, as n . d / c: a whole multiple of (n, c).
+  struct ExactNearness {
+    WholeVec n;
+    Whole c;
+  };
+  ExactNearness exactNearnessAt(double depth) const;
+
+  // A direction is at (right . d / forward . d, up . d / forward . d) of the picture, in tangents of the
+  // angle or in metres; forward . d > 0 for everything before the eye.
+  const Vec3d& right() const { return right_; }
+  const Vec3d& up() const { return up_; }
+  const Vec3d& forward() const { return forward_; }
+  double halfWidth() const { return halfHeight() * view_.aspect; }
+  double halfHeight() const { return view_.orthographic ? 0.5 * view_.ortho_height : view_.tan_half_fovy; }
+
+  // The ray through a direction before the eye, from the near plane.
+  ViewRay ray(const Vec3d& direction) const;
+  // The direction of a point in space given in double precision: rounded in an orthographic view.
+  Vec3d directionOf(const Vec3d& point) const;
+  WholeVec exactDirectionOf(const Vec3d& point) const;
+
+ private:
+  Vec3d fromEye(std::uint32_t position) const;
+  Vec3d project(const Vec3d& from_eye, double last) const;
+  WholeVec exactProject(const WholeVec& from_eye, int exponent) const;
+
+  View view_;
+  std::span<const Vec3f> positions_;
+  int exponent_ = 0;          // of exact coordinates in space
+  int forward_exponent_ = 0;  // of the exact viewing direction
+  WholeVec exact_eye_, exact_forward_;
+  int axis_ = 2;       // orthographic: the axis that the viewing direction is nearest to
+  double last_ = 1.0;  // orthographic: the last coordinate of every direction
+  Vec3d right_{}, up_{}, forward_{};
+};
+
+}  // namespace sightline

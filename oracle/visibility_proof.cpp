@@ -1,0 +1,456 @@
+#include "oracle/visibility_proof.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace sightline {
+namespace {
+
+constexpr double kMargin = 1e-12;  // relative; a thousand times the rounding of a box's extents in the image
+
+struct PositionHash {
+  std::size_t operator()(const Vec3f& p) const {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      hash = (hash ^ std::bit_cast<std::uint32_t>(p[axis] + 0.0f)) * 0x9e3779b97f4a7c15ull;
+      hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash);
+  }
+};
+
+}  // namespace
+
+ProofScene::ProofScene(const SceneView& scene_) : scene(scene_), tree(scene_) {
+  std::unordered_map<Vec3f, std::uint32_t, PositionHash> first;
+  same_position.resize(scene.positions.size());
+  for (std::uint32_t i = 0; i < same_position.size(); ++i) {
+    const Vec3f& p = scene.positions[i];
+    if (isFinite(p)) {
+      same_position[i] = first.emplace(p, i).first->second;
+      lowest_exponent = std::min(lowest_exponent, lowestExponent(Vec3d(p)));
+    }
+  }
+}
+
+ImageTriangle ProofScene::corners(std::uint32_t first_index) const {
+  const auto position = [&](std::uint32_t i) { return same_position[scene.indices[first_index + i]]; };
+  return {position(0), position(1), position(2)};
+}
+
+VisibilityProof::VisibilityProof(const ProofScene& scene, const RayScene& rays, const View& view)
+    : scene_(scene),
+      rays_(rays),
+      space_(view, scene.scene.positions, scene.lowest_exponent),
+      figures_(space_) {}
+
+void VisibilityProof::beginFigures() {
+  figures_.clear();
+  appearances_.clear();
+  pieces_.clear();
+  const double x = space_.halfWidth(), y = space_.halfHeight();
+  picture_ = rectangle(figures_, {-x, x, -y, y});
+  near_ = figures_.depthGiven(space_.view().near);
+  far_ = figures_.depthGiven(std::isfinite(space_.view().far) ? space_.view().far : 1.0);
+}
+
+const VisibilityProof::Appearance& VisibilityProof::appearance(std::uint32_t first_index, ObjectId object) {
+  const auto [entry, is_new] = appearances_.try_emplace(first_index);
+  Appearance& appearance = entry->second;
+  if (!is_new) {
+    return appearance;
+  }
+  const ImageTriangle t = scene_.corners(first_index);
+  const Material& material = scene_.scene.materialOf(scene_.scene.objects[object.value]);
+  const int orientation = figures_.orientation(t);
+  appearance.opaque = material.opaque();
+  appearance.shown = orientation < 0 || (orientation > 0 && material.double_sided);
+  if (!appearance.shown) {
+    return appearance;
+  }
+  const bool turned = orientation < 0;
+  appearance.region.lines = {figures_.lineThrough(t.a, t.b, turned), figures_.lineThrough(t.b, t.c, turned),
+                             figures_.lineThrough(t.c, t.a, turned)};
+  appearance.depth = figures_.depthOf(t);
+  if (space_.view().near > 0.0 || space_.view().orthographic) {
+    appearance.region.lines.push_back(figures_.lineWhereNearer(near_, appearance.depth));
+  }
+  return appearance;
+}
+
+// The line on whose positive side the blocker is nearer than the target.
+VisibilityProof::Line VisibilityProof::whereHides(const Appearance& blocker, const Target& target) {
+  return figures_.lineWhereNearer(blocker.depth, target.depth);
+}
+
+bool VisibilityProof::contains(const ImageRegion& region, Corner direction) {
+  return std::all_of(region.lines.begin(), region.lines.end(),
+                     [&](Line line) { return figures_.side(line, direction) >= 0; });
+}
+
+Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
+  steps_ = 0;
+  max_steps_ = max_steps;
+  witness_.reset();
+  std::vector<std::uint32_t> open;
+  if (const std::uint32_t root = scene_.tree.rootOf(object); root != TriangleTree::kNoNode) {
+    open.push_back(root);
+  }
+  bool undecided = false;
+  while (!open.empty()) {
+    const TriangleTree::Node& node = scene_.tree.node(open.back());
+    open.pop_back();
+    const Cover cover = node.isLeaf() ? coverTriangle(node.first_index, object) : coverBox(node, object);
+    if (cover == Cover::kSeen) {
+      return {Verdict::kVisible, *witness_};
+    }
+    if (cover == Cover::kOpen && !node.isLeaf() && steps_ < max_steps_) {
+      open.insert(open.end(), {node.left, node.right});
+    } else if (cover == Cover::kOpen) {
+      undecided = true;
+    }
+  }
+  return {undecided ? Verdict::kUndecided : Verdict::kHidden, {object, {}}};
+}
+
+// The box's extents in the picture and its depths, rounded outwards. Nothing if it reaches behind the eye.
+std::optional<ImageRectangle> VisibilityProof::extentsOf(const Box& box, double& nearest,
+                                                         double& farthest) const {
+  const View& view = space_.view();
+  ImageRectangle extents;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  extents.x_min = extents.y_min = nearest = kInfinity;
+  extents.x_max = extents.y_max = farthest = -kInfinity;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                  (corner & 4) != 0 ? box.max.z : box.min.z);
+    const Vec3d d = p - view.eye;
+    const double margin = kMargin * length(d), depth = dot(d, view.forward);
+    nearest = std::min(nearest, depth - margin);
+    farthest = std::max(farthest, depth + margin);
+    if (!view.orthographic && !(depth > 1e3 * margin)) {
+      continue;  // extents are of no use, but depths may be
+    }
+    const double scale = view.orthographic ? 1.0 : depth, widen = 4.0 * margin / scale;
+    const double x = dot(d, view.right) / scale, y = dot(d, view.up) / scale;
+    const double x_margin = widen * (1.0 + std::abs(x)), y_margin = widen * (1.0 + std::abs(y));
+    extents.x_min = std::min(extents.x_min, x - x_margin);
+    extents.x_max = std::max(extents.x_max, x + x_margin);
+    extents.y_min = std::min(extents.y_min, y - y_margin);
+    extents.y_max = std::max(extents.y_max, y + y_margin);
+  }
+  if (!view.orthographic && !(nearest > 1e-6 * farthest)) {
+    return std::nullopt;
+  }
+  return extents;
+}
+
+VisibilityProof::Cover VisibilityProof::coverBox(const TriangleTree::Node& node, ObjectId object) {
+  const View& view = space_.view();
+  double nearest = 0.0, farthest = 0.0;
+  const std::optional<ImageRectangle> extents = extentsOf(node.box, nearest, farthest);
+  if (farthest < view.near || nearest > view.far) {
+    return Cover::kHidden;
+  }
+  if (!extents || !(nearest > view.near)) {
+    return Cover::kOpen;
+  }
+  const double x = space_.halfWidth(), y = space_.halfHeight();
+  const ImageRectangle shown{std::max(extents->x_min, -x), std::min(extents->x_max, x),
+                             std::max(extents->y_min, -y), std::min(extents->y_max, y)};
+  if (!(shown.x_min < shown.x_max && shown.y_min < shown.y_max)) {
+    return Cover::kHidden;
+  }
+  beginFigures();
+  pieces_.push_back(rectangle(figures_, shown));
+  return coverPolygons({object, kNone, figures_.depthGiven(nearest), nearest});
+}
+
+VisibilityProof::Cover VisibilityProof::coverTriangle(std::uint32_t first_index, ObjectId object) {
+  beginFigures();
+  const Appearance& shown = appearance(first_index, object);
+  if (!shown.shown) {
+    return Cover::kHidden;
+  }
+  ImagePolygon image = clipped(figures_, picture_, shown.region);
+  if (!image.empty() && std::isfinite(space_.view().far)) {
+    image = clipped(figures_, image, {{figures_.lineWhereNearer(shown.depth, far_)}});
+  }
+  if (image.empty()) {
+    return Cover::kHidden;
+  }
+  pieces_.push_back(std::move(image));
+  return coverPolygons({object, first_index, shown.depth, 0.0});
+}
+
+VisibilityProof::Cover VisibilityProof::coverPolygons(const Target& target) {
+  while (!pieces_.empty()) {
+    if (++steps_ > max_steps_) {
+      return Cover::kOpen;
+    }
+    const ImagePolygon piece = std::move(pieces_.back());
+    pieces_.pop_back();
+    if (const Cover cover = coverPiece(target, piece); cover != Cover::kHidden) {
+      return cover;
+    }
+  }
+  return Cover::kHidden;
+}
+
+// Casts rays through the inside of the piece; hits_ are what they show.
+void VisibilityProof::castRays(const ImagePolygon& piece) {
+  const auto inPlane = [&](Corner corner) {
+    const Vec3d d = figures_.direction(corner);
+    return d / dot(d, space_.forward());
+  };
+  const std::size_t count = piece.corners.size();
+  Vec3d middle{};
+  for (const Corner corner : piece.corners) {
+    middle += inPlane(corner) / static_cast<double>(count);
+  }
+  directions_.assign(1, middle);
+  for (std::size_t i = 0; i < count && directions_.size() + 2 <= RayScene::kBatch; ++i) {
+    const Vec3d a = inPlane(piece.corners[i]), b = inPlane(piece.corners[(i + 1) % count]);
+    directions_.push_back(a * 0.9 + middle * 0.1);
+    directions_.push_back((a + b) * 0.4 + middle * 0.2);
+  }
+  RayScene::Batch batch;
+  const auto length = static_cast<float>(space_.view().far - space_.view().near);
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const ViewRay ray = space_.ray(directions_[i]);
+    batch[i] = {Vec3f(ray.origin), Vec3f(ray.direction), length};
+  }
+  hits_.clear();
+  rays_.trace(batch, static_cast<std::uint32_t>(directions_.size()), false, hits_);
+}
+
+// Splits off what the blockers hide and appends the rest to pieces_.
+VisibilityProof::Cover VisibilityProof::coverPiece(const Target& target, const ImagePolygon& piece) {
+  castRays(piece);
+  const bool is_box = target.first_index == kNone;
+  blockers_.clear();
+  std::array<bool, RayScene::kBatch> blocked{};
+  for (const RayHit& hit : hits_) {
+    const double depth = space_.view().near + static_cast<double>(hit.t);
+    if (hit.object == target.object) {
+      if (seen(target.object, figures_.cornerGiven(directions_[hit.ray]))) {
+        return Cover::kSeen;
+      }
+    }
+    if (hit.opaque && (is_box ? depth < target.nearest : hit.first_index != target.first_index)) {
+      blocked[hit.ray] = true;
+      const std::pair<std::uint32_t, ObjectId> blocker{hit.first_index, hit.object};
+      if (std::find(blockers_.begin(), blockers_.end(), blocker) == blockers_.end()) {
+        blockers_.push_back(blocker);
+      }
+    }
+  }
+  if (is_box &&
+      !std::all_of(blocked.begin(), blocked.begin() + static_cast<std::ptrdiff_t>(directions_.size()),
+                   [](bool b) { return b; })) {
+    return Cover::kOpen;
+  }
+  const std::size_t before = pieces_.size();
+  bool progress = false;
+  parts_.assign(1, piece);
+  for (const auto& [first_index, object] : blockers_) {
+    const Appearance blocker = appearance(first_index, object);
+    if (!blocker.shown) {
+      continue;
+    }
+    ImageRegion region = blocker.region;
+    const Line hides = whereHides(blocker, target);
+    region.lines.push_back(hides);
+    next_parts_.clear();
+    for (ImagePolygon& part : parts_) {
+      const ImagePolygon inside = subtract(figures_, part, region, next_parts_);
+      if (inside.empty()) {
+        next_parts_.push_back(std::move(part));
+        continue;
+      }
+      progress = true;
+      if (const Cover cover = is_box ? Cover::kHidden : coverTies(target, inside, hides);
+          cover != Cover::kHidden) {
+        return cover;
+      }
+    }
+    std::swap(parts_, next_parts_);
+  }
+  if (!progress) {
+    return is_box ? Cover::kOpen : coverOutOfRaysReach(target, piece);
+  }
+  pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(before),
+                 std::make_move_iterator(parts_.begin()), std::make_move_iterator(parts_.end()));
+  return Cover::kHidden;
+}
+
+// A direction strictly inside the piece, exactly.
+VisibilityProof::Corner VisibilityProof::inside(const ImagePolygon& piece) {
+  const Corner middle = figures_.cornerGiven(directions_.front());
+  const auto isInside = [&](Line edge) {
+    for (const Corner corner : piece.corners) {
+      if (const int side = figures_.side(edge, corner); side != 0) {
+        return side == figures_.side(edge, middle);
+      }
+    }
+    return false;
+  };
+  return std::all_of(piece.edges.begin(), piece.edges.end(), isInside)
+             ? middle
+             : figures_.cornerBetween(piece.corners);
+}
+
+// Rays in single precision found no triangle to subtract: searches without them.
+VisibilityProof::Cover VisibilityProof::coverOutOfRaysReach(const Target& target, const ImagePolygon& piece) {
+  const Corner direction = inside(piece);
+  const std::uint32_t found = blockerOf(target, direction);
+  if (found == kNone) {
+    witness_ = Witness{target.object, pointAt(target.first_index, direction)};
+    return Cover::kSeen;
+  }
+  const Appearance blocker = appearances_.at(found);
+  ImageRegion region = blocker.region;
+  const Line hides = whereHides(blocker, target);
+  region.lines.push_back(hides);
+  const ImagePolygon covered = subtract(figures_, piece, region, pieces_);
+  return covered.empty() ? Cover::kOpen : coverTies(target, covered, hides);
+}
+
+// Where the blocker touches the target, it does not hide it: another triangle must.
+VisibilityProof::Cover VisibilityProof::coverTies(const Target& target, const ImagePolygon& inside,
+                                                  Line tie) {
+  std::vector<Corner> touching;
+  for (const Corner corner : inside.corners) {
+    if (figures_.side(tie, corner) == 0) {
+      touching.push_back(corner);
+    }
+  }
+  for (const Corner corner : touching) {
+    if (++steps_ > max_steps_) {
+      return Cover::kOpen;
+    }
+    if (blockerOf(target, corner) == kNone) {
+      witness_ = Witness{target.object, pointAt(target.first_index, corner)};
+      return Cover::kSeen;
+    }
+  }
+  return touching.size() == 2 ? coverTie(target, touching[0], touching[1], tie) : Cover::kHidden;
+}
+
+// Covers the directions between two, of which both are hidden, along the line `tie`.
+VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner from, Corner to, Line tie) {
+  std::vector<std::pair<Corner, Corner>> open{{from, to}};
+  while (!open.empty()) {
+    const auto [begin, end] = open.back();
+    open.pop_back();
+    if (++steps_ > max_steps_) {
+      return Cover::kOpen;
+    }
+    const std::array<Corner, 2> ends{begin, end};
+    const Corner middle = figures_.cornerBetween(ends);
+    const std::uint32_t found = blockerOf(target, middle);
+    if (found == kNone) {
+      witness_ = Witness{target.object, pointAt(target.first_index, middle)};
+      return Cover::kSeen;
+    }
+    const Appearance blocker = appearances_.at(found);
+    ImageRegion region = blocker.region;
+    const Line hides = whereHides(blocker, target);
+    region.lines.push_back(hides);
+    Corner low = begin, high = end;  // of the part that the blocker hides
+    for (const Line line : region.lines) {
+      const int at_low = figures_.side(line, low), at_high = figures_.side(line, high);
+      if (at_low >= 0 && at_high >= 0) {
+        continue;
+      }
+      const Corner crossing = figures_.intersection(tie, line);
+      (at_low < 0 ? low : high) = crossing;
+      if (line == hides && blockerOf(target, crossing) == kNone) {
+        witness_ = Witness{target.object, pointAt(target.first_index, crossing)};
+        return Cover::kSeen;
+      }
+    }
+    if (low != begin) {
+      open.emplace_back(begin, low);
+    }
+    if (high != end) {
+      open.emplace_back(high, end);
+    }
+  }
+  return Cover::kHidden;
+}
+
+std::uint32_t VisibilityProof::blockerOf(const Target& target, Corner direction) {
+  std::uint32_t found = kNone;
+  const ViewRay ray = space_.ray(figures_.direction(direction));
+  scene_.tree.alongRay(ray.origin - ray.direction * space_.view().near, ray.direction,
+                       [&](const TriangleTree::Node& leaf) {
+                         if (found != kNone || leaf.first_index == target.first_index) {
+                           return;
+                         }
+                         const Appearance& blocker = appearance(leaf.first_index, leaf.object);
+                         if (blocker.shown && blocker.opaque && contains(blocker.region, direction) &&
+                             figures_.side(whereHides(blocker, target), direction) > 0) {
+                           found = leaf.first_index;
+                         }
+                       });
+  return found;
+}
+
+// True if a triangle of the object is reached before any opaque surface. Sets the witness.
+bool VisibilityProof::seen(ObjectId object, Corner direction) {
+  const bool in_picture = std::all_of(picture_.edges.begin(), picture_.edges.end(),
+                                      [&](Line edge) { return figures_.side(edge, direction) >= 0; });
+  if (!in_picture) {
+    return false;
+  }
+  const ViewRay ray = space_.ray(figures_.direction(direction));
+  const Vec3d origin =
+      space_.view().orthographic ? ray.origin - ray.direction * space_.view().near : space_.view().eye;
+  std::vector<std::uint32_t> own;
+  std::vector<Depth> opaque;
+  scene_.tree.alongRay(origin, ray.direction, [&](const TriangleTree::Node& leaf) {
+    const Appearance shown = appearance(leaf.first_index, leaf.object);
+    if (shown.shown && contains(shown.region, direction)) {
+      if (leaf.object == object) {
+        own.push_back(leaf.first_index);
+      }
+      if (shown.opaque) {
+        opaque.push_back(shown.depth);
+      }
+    }
+  });
+  const bool has_far = std::isfinite(space_.view().far);
+  for (const std::uint32_t first_index : own) {
+    const Depth depth = appearances_.at(first_index).depth;
+    const bool in_view = !has_far || figures_.side(figures_.lineWhereNearer(depth, far_), direction) >= 0;
+    const bool hidden = std::any_of(opaque.begin(), opaque.end(), [&](Depth blocker) {
+      return blocker != depth && figures_.side(figures_.lineWhereNearer(blocker, depth), direction) > 0;
+    });
+    if (in_view && !hidden) {
+      witness_ = Witness{object, pointAt(first_index, direction)};
+      return true;
+    }
+  }
+  return false;
+}
+
+bool VisibilityProof::reaches(const Vec3d& point, ObjectId object) {
+  beginFigures();
+  return depthOf(space_.view(), point) > 0.0 && seen(object, figures_.cornerOf(point));
+}
+
+// The triangle's point in this direction, rounded.
+Vec3d VisibilityProof::pointAt(std::uint32_t first_index, Corner direction) const {
+  const auto corner = [&](std::uint32_t i) {
+    return Vec3d(scene_.scene.positions[scene_.scene.indices[first_index + i]]);
+  };
+  const ViewRay ray = space_.ray(figures_.direction(direction));
+  const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
+  return ray.origin + ray.direction * (dot(corner(0) - ray.origin, normal) / dot(ray.direction, normal));
+}
+
+}  // namespace sightline

@@ -1,0 +1,105 @@
+#pragma once
+
+// Decides whether an object is visible from a point, in exact arithmetic.
+//
+// The images of nearer opaque triangles are subtracted from the image of a triangle of the object. If nothing
+// is left, the triangle is hidden; otherwise a ray through what is left reaches it. Embree proposes the
+// triangles to subtract and the rays to try; what they prove is decided without rounding. A box around many
+// triangles of the object is tried before each of them: if all directions to it are blocked before its
+// nearest point, they are all hidden.
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "oracle/exact_visibility.h"
+#include "oracle/image_polygon.h"
+#include "oracle/ray_scene.h"
+#include "oracle/triangle_tree.h"
+
+namespace sightline {
+
+// A scene prepared for proofs. May be used from several threads.
+struct ProofScene {
+  explicit ProofScene(const SceneView& scene);
+
+  ImageTriangle corners(std::uint32_t first_index) const;
+
+  SceneView scene;
+  TriangleTree tree;
+  std::vector<std::uint32_t> same_position;  // of each position, the first that is equal to it
+  int lowest_exponent = 0;                   // of all finite coordinates
+};
+
+// Proofs for one view. Not for several threads at once.
+class VisibilityProof {
+ public:
+  // All three must outlive this object. The view must be one that validate() accepts.
+  VisibilityProof(const ProofScene& scene, const RayScene& rays, const View& view);
+
+  // Gives up after about this many batches of rays.
+  Decision decide(ObjectId object, std::uint32_t max_steps);
+
+  // True if the direction reaches the object before any opaque surface, in the view; ties count as visible.
+  bool reaches(const Vec3d& point, ObjectId object);
+
+ private:
+  using Corner = ImageFigures::Corner;
+  using Line = ImageFigures::Line;
+  using Depth = ImageFigures::Depth;
+
+  // A triangle as it appears in the image: on its side of these lines, borders included.
+  struct Appearance {
+    bool shown = false;  // its image has an area, and it is not a back face that is not drawn
+    bool opaque = false;
+    ImageRegion region;  // the cone of the triangle, from the near plane on
+    Depth depth = 0;
+  };
+  // What of a triangle's or a box's image is not yet proved to be hidden.
+  struct Target {
+    ObjectId object;
+    std::uint32_t first_index = kNone;  // of the triangle; kNone for a box
+    Depth depth = 0;
+    double nearest = 0.0;  // of a box: depth of its nearest point, metres
+  };
+  enum class Cover : std::uint8_t { kHidden, kSeen, kOpen };
+
+  Cover coverBox(const TriangleTree::Node& node, ObjectId object);
+  Cover coverTriangle(std::uint32_t first_index, ObjectId object);
+  Cover coverPolygons(const Target& target);
+  Cover coverPiece(const Target& target, const ImagePolygon& piece);
+  Cover coverOutOfRaysReach(const Target& target, const ImagePolygon& piece);
+  Cover coverTies(const Target& target, const ImagePolygon& inside, Line tie);
+  Cover coverTie(const Target& target, Corner from, Corner to, Line tie);
+  void subtractBlockers(const Target& target, const ImagePolygon& piece);
+
+  void castRays(const ImagePolygon& piece);
+  std::optional<ImageRectangle> extentsOf(const Box& box, double& nearest, double& farthest) const;
+  void beginFigures();
+  const Appearance& appearance(std::uint32_t first_index, ObjectId object);
+  Line whereHides(const Appearance& blocker, const Target& target);
+  bool contains(const ImageRegion& region, Corner direction);
+  Corner inside(const ImagePolygon& piece);
+  // A triangle that hides the target's point in this direction; kNone if none does.
+  std::uint32_t blockerOf(const Target& target, Corner direction);
+  bool seen(ObjectId object, Corner direction);
+  Vec3d pointAt(std::uint32_t first_index, Corner direction) const;
+
+  const ProofScene& scene_;
+  const RayScene& rays_;
+  ImageSpace space_;
+  ImageFigures figures_;
+  ImagePolygon picture_;
+  Depth near_ = 0, far_ = 0;
+  std::unordered_map<std::uint32_t, Appearance> appearances_;  // by first index
+  std::vector<ImagePolygon> pieces_;                           // still to be covered
+  std::vector<ImagePolygon> parts_, next_parts_;               // of one piece
+  std::vector<RayHit> hits_;
+  std::vector<Vec3d> directions_;  // of the rays that were cast last
+  std::vector<std::pair<std::uint32_t, ObjectId>> blockers_;
+  std::optional<Witness> witness_;
+  std::uint32_t steps_ = 0, max_steps_ = 0;
+};
+
+}  // namespace sightline
