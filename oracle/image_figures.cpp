@@ -310,6 +310,20 @@ bool ImageFigures::isOn(const LineData& line, const CornerData& corner) const {
          (line.first == corner.position || line.second == corner.position);
 }
 
+bool ImageFigures::dividesNothing(Line line) {
+  if (maxNorm(lines_[line].n.value) > 1.001 * lines_[line].n.error) {
+    return false;
+  }
+  const WholeVec& n = exactNormal(line);
+  return n.x.is_zero() && n.y.is_zero() && n.z.is_zero();
+}
+
+bool ImageFigures::isBeforeTheEye(Corner corner) {
+  const int sign = signOf(dot({space_->forward(), 0.0}, corners_[corner].d));
+  return sign != kUnknown ? sign > 0
+                          : signOf(dot(wholeMultipleOf(space_->forward()), exactDirection(corner))) > 0;
+}
+
 int ImageFigures::side(Line line, Corner corner) {
   const LineData& l = lines_[line];
   const CornerData& c = corners_[corner];

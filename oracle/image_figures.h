@@ -59,6 +59,10 @@ class ImageFigures {
   // A direction strictly between these, which are at least two different ones.
   Corner cornerBetween(std::span<const Corner> corners);
 
+  // True if no direction is on either side: the two depths are the same everywhere.
+  bool dividesNothing(Line line);
+  // False for the intersection of lines that are the same or meet infinitely far away.
+  bool isBeforeTheEye(Corner corner);
   // The side of the line on which the corner lies: 1, -1, or 0 if it is on the line.
   int side(Line line, Corner corner);
   // Sign of the volume of the corners' directions: -1 if the front of the triangle is seen, 1 if its back is,

@@ -76,7 +76,10 @@ const VisibilityProof::Appearance& VisibilityProof::appearance(std::uint32_t fir
                              figures_.lineThrough(t.c, t.a, turned)};
   appearance.depth = figures_.depthOf(t);
   if (space_.view().near > 0.0 || space_.view().orthographic) {
-    appearance.region.lines.push_back(figures_.lineWhereNearer(near_, appearance.depth));
+    const Line beyond_near = figures_.lineWhereNearer(near_, appearance.depth);
+    if (!figures_.dividesNothing(beyond_near)) {
+      appearance.region.lines.push_back(beyond_near);
+    }
   }
   return appearance;
 }
@@ -175,15 +178,55 @@ VisibilityProof::Cover VisibilityProof::coverTriangle(std::uint32_t first_index,
   if (!shown.shown) {
     return Cover::kHidden;
   }
-  ImagePolygon image = clipped(figures_, picture_, shown.region);
-  if (!image.empty() && std::isfinite(space_.view().far)) {
-    image = clipped(figures_, image, {{figures_.lineWhereNearer(shown.depth, far_)}});
+  const Target target{object, first_index, shown.depth, 0.0};
+  ImageRegion region = shown.region;
+  if (std::isfinite(space_.view().far)) {
+    const Line before_far = figures_.lineWhereNearer(shown.depth, far_);
+    if (!figures_.dividesNothing(before_far)) {
+      region.lines.push_back(before_far);
+    }
   }
+  ImagePolygon image = clipped(figures_, picture_, region);
   if (image.empty()) {
-    return Cover::kHidden;
+    region.lines.insert(region.lines.end(), picture_.edges.begin(), picture_.edges.end());
+    return coverBorder(target, region);
   }
   pieces_.push_back(std::move(image));
-  return coverPolygons({object, first_index, shown.depth, 0.0});
+  return coverPolygons(target);
+}
+
+// Covers an image without area: that of a triangle that touches the view volume from outside. It is empty, a
+// point or a part of a line.
+VisibilityProof::Cover VisibilityProof::coverBorder(const Target& target, const ImageRegion& image) {
+  std::vector<Corner> ends;
+  for (std::size_t i = 0; i < image.lines.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Corner corner = figures_.intersection(image.lines[i], image.lines[j]);
+      if (figures_.isBeforeTheEye(corner) && contains(image, corner)) {
+        ends.push_back(corner);
+      }
+    }
+  }
+  for (const Corner end : ends) {
+    if (++steps_ > max_steps_) {
+      return Cover::kOpen;
+    }
+    if (blockerOf(target, end) == kNone) {
+      witness_ = Witness{target.object, pointAt(target.first_index, end)};
+      return Cover::kSeen;
+    }
+  }
+  const auto along = std::find_if(image.lines.begin(), image.lines.end(), [&](Line line) {
+    return std::all_of(ends.begin(), ends.end(), [&](Corner end) { return figures_.side(line, end) == 0; });
+  });
+  for (std::size_t i = 0; i < ends.size() && along != image.lines.end(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (const Cover cover = coverTie(target, ends[i], ends[j], *along); cover != Cover::kHidden) {
+        return cover;
+      }
+    }
+  }
+  return Cover::kHidden;
 }
 
 VisibilityProof::Cover VisibilityProof::coverPolygons(const Target& target) {
@@ -316,7 +359,19 @@ VisibilityProof::Cover VisibilityProof::coverOutOfRaysReach(const Target& target
   const Line hides = whereHides(blocker, target);
   region.lines.push_back(hides);
   const ImagePolygon covered = subtract(figures_, piece, region, pieces_);
-  return covered.empty() ? Cover::kOpen : coverTies(target, covered, hides);
+  if (!covered.empty()) {
+    return coverTies(target, covered, hides);
+  }
+  // The near plane leaves no area of this blocker. It is in the way no more if the piece ends there.
+  for (const Line line : region.lines) {
+    if (figures_.side(line, direction) == 0) {
+      DividedPolygon parts = divide(figures_, piece, line);
+      pieces_.push_back(std::move(parts.positive));
+      pieces_.push_back(std::move(parts.negative));
+      return Cover::kHidden;
+    }
+  }
+  return Cover::kOpen;
 }
 
 // Where the blocker touches the target, it does not hide it: another triangle must.
@@ -366,10 +421,12 @@ VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner fr
       if (at_low >= 0 && at_high >= 0) {
         continue;
       }
-      const Corner crossing = figures_.intersection(tie, line);
-      (at_low < 0 ? low : high) = crossing;
-      if (line == hides && blockerOf(target, crossing) == kNone) {
-        witness_ = Witness{target.object, pointAt(target.first_index, crossing)};
+      (at_low < 0 ? low : high) = figures_.intersection(tie, line);
+    }
+    for (const Corner border : {low, high}) {
+      if (border != begin && border != end && figures_.side(hides, border) == 0 &&
+          blockerOf(target, border) == kNone) {
+        witness_ = Witness{target.object, pointAt(target.first_index, border)};
         return Cover::kSeen;
       }
     }

@@ -68,6 +68,7 @@ class VisibilityProof {
   Cover coverBox(const TriangleTree::Node& node, ObjectId object);
   Cover coverTriangle(std::uint32_t first_index, ObjectId object);
   Cover coverPolygons(const Target& target);
+  Cover coverBorder(const Target& target, const ImageRegion& image);
   Cover coverPiece(const Target& target, const ImagePolygon& piece);
   Cover coverOutOfRaysReach(const Target& target, const ImagePolygon& piece);
   Cover coverTies(const Target& target, const ImagePolygon& inside, Line tie);

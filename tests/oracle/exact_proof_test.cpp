@@ -1,0 +1,254 @@
+// What the exact verifier proves, against brute force in whole numbers. The coordinates are small integers,
+// and many corners lie on common lines of sight, so that most cases are ties.
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <sstream>
+
+#include "oracle/exact_visibility.h"
+#include "tests/oracle/hand_made.h"
+#include "tests/support/exact_sight.h"
+
+namespace sightline {
+namespace {
+
+using namespace hand_made;
+
+constexpr std::uint32_t kPlentyOfSteps = 4000;
+
+struct Family {
+  const char* name;
+  int cases = 300;
+  int min_z = -6, max_z = -1;  // of the corners; the eye is near the origin and looks along -z
+  int half_extent = 3;
+  int max_objects = 5, max_triangles = 1;  // of each object
+  bool orthographic = false;
+  bool eye_on_grid = false;  // else at the origin
+  bool oblique = false;
+  bool odd_materials = false;
+  bool broken = false;  // triangles without area or with coordinates that are not finite
+  std::vector<double> near{0.5}, far{100.0};
+  std::vector<double> tangents{4.0}, aspects{1.0};
+};
+
+std::string described(const Scene& scene, const View& view) {
+  std::ostringstream text;
+  text.precision(17);
+  text << (view.orthographic ? "orthographic " : "perspective ") << "eye " << view.eye.x << ' ' << view.eye.y
+       << ' ' << view.eye.z << " forward " << view.forward.x << ' ' << view.forward.y << ' ' << view.forward.z
+       << " near " << view.near << " far " << view.far << " tan " << view.tan_half_fovy << " height "
+       << view.ortho_height << " aspect " << view.aspect;
+  for (const Object& object : scene.objects) {
+    const Material& material = scene.view().materialOf(object);
+    text << "\nobject" << (material.opaque() ? "" : " see-through")
+         << (material.double_sided ? " double" : "");
+    for (const std::uint32_t i : scene.view().indicesOf(object)) {
+      const Vec3f& p = scene.positions[i];
+      text << " (" << p.x << ' ' << p.y << ' ' << p.z << ')';
+    }
+  }
+  return text.str();
+}
+
+class Maker {
+ public:
+  Maker(const Family& family, std::uint32_t seed) : family_(family), random_(seed) {}
+
+  Scene scene() {
+    Scene made;
+    for (const Opacity opacity : {Opacity::kOpaque, Opacity::kBlended}) {
+      for (const bool double_sided : {false, true}) {
+        addMaterial(made, opacity, double_sided);
+      }
+    }
+    makePool();
+    const int objects = 2 + below(family_.max_objects - 1);
+    for (int o = 0; o < objects; ++o) {
+      std::vector<Vec3f> corners;
+      const int triangles = 1 + below(family_.max_triangles);
+      for (int t = 0; t < triangles; ++t) {
+        addTriangleTo(corners);
+      }
+      const int material = family_.odd_materials ? below(4) : 1;
+      addTriangles(made, MaterialId(static_cast<std::uint32_t>(material)), corners);
+    }
+    if (made.positions.size() > 3 && below(4) == 0) {
+      weldPositions(made);
+    }
+    return made;
+  }
+
+  View view() {
+    View view = frontView();
+    view.orthographic = family_.orthographic;
+    view.near = oneOf(family_.near);
+    view.far = oneOf(family_.far);
+    view.tan_half_fovy = oneOf(family_.tangents);
+    view.ortho_height = 2.0 * oneOf(family_.tangents);
+    view.aspect = oneOf(family_.aspects);
+    if (family_.eye_on_grid) {
+      view.eye = Vec3d(grid(family_.half_extent), grid(family_.half_extent), grid(2));
+    }
+    if (family_.oblique) {
+      setOrientation(view, {static_cast<double>(grid(2)), static_cast<double>(grid(2)), -4.0},
+                     {static_cast<double>(grid(1)), 1.0, 0.0});
+    }
+    return view;
+  }
+
+  int below(int count) { return static_cast<int>(random_() % static_cast<std::uint32_t>(count)); }
+  int grid(int extent) { return below(2 * extent + 1) - extent; }
+
+ private:
+  double oneOf(const std::vector<double>& values) {
+    return values[static_cast<std::size_t>(below(static_cast<int>(values.size())))];
+  }
+
+  // Points, others on their lines of sight from the origin, and points between them.
+  void makePool() {
+    pool_.clear();
+    const auto add = [&](int x, int y, int z) {
+      if (z >= family_.min_z && z <= family_.max_z) {
+        pool_.emplace_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+      }
+    };
+    const int count = 4 + below(5);
+    for (int i = 0; i < count; ++i) {
+      const int x = grid(family_.half_extent), y = grid(family_.half_extent),
+                z = family_.min_z + below(family_.max_z - family_.min_z + 1);
+      add(x, y, z);
+      if (family_.orthographic) {
+        add(x, y, z + grid(2));
+      } else {
+        add(2 * x, 2 * y, 2 * z);
+        add(3 * x, 3 * y, 3 * z);
+        if (x % 2 == 0 && y % 2 == 0 && z % 2 == 0) {
+          add(x / 2, y / 2, z / 2);
+        }
+      }
+    }
+  }
+
+  void addTriangleTo(std::vector<Vec3f>& corners) {
+    const auto from_pool = [&] {
+      return pool_[static_cast<std::size_t>(below(static_cast<int>(pool_.size())))];
+    };
+    Vec3f a = from_pool(), b = from_pool(), c = from_pool();
+    if (family_.broken && below(4) == 0) {
+      const int kind = below(4);
+      c = kind == 0 ? a : kind == 1 ? a + (b - a) * 2.0f : c;
+      b.y = kind == 2 ? std::nanf("") : b.y;
+      b.x = kind == 3 ? std::numeric_limits<float>::infinity() : b.x;
+    } else if (below(3) == 0) {
+      const auto half = [](float x, float y) { return std::floor((x + y) / 2.0f); };
+      c = {half(a.x, c.x), half(a.y, c.y), half(a.z, c.z)};
+    }
+    corners.insert(corners.end(), {a, b, c});
+    if (below(6) == 0) {
+      corners.insert(corners.end(), {a, c, b});
+    }
+  }
+
+  const Family& family_;
+  std::mt19937 random_;
+  std::vector<Vec3f> pool_;
+};
+
+std::vector<ObjectId> allObjects(const Scene& scene) {
+  std::vector<ObjectId> all;
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    all.emplace_back(o);
+  }
+  return all;
+}
+
+struct Counts {
+  int visible = 0, hidden = 0;
+};
+
+// Expects the same verdicts of both, and that both agree about witnesses and random points.
+void compare(const Scene& scene, const View& view, Maker& maker, Counts& counts, const std::string& where) {
+  const test::ExactSight sight(scene.view(), view);
+  const ExactVisibility oracle(scene.view());
+  const std::vector<ObjectId> all = allObjects(scene);
+  const std::vector<Decision> decisions = oracle.decide(view, all, kPlentyOfSteps);
+  for (const ObjectId object : all) {
+    const bool visible = sight.isVisible(object);
+    (visible ? counts.visible : counts.hidden) += 1;
+    const Decision& decision = decisions[object.value];
+    EXPECT_EQ(decision.verdict, visible ? Verdict::kVisible : Verdict::kHidden)
+        << where << " object " << object.value << '\n'
+        << described(scene, view);
+    if (decision.verdict == Verdict::kVisible) {
+      EXPECT_EQ(oracle.confirm(view, decision.witness), sight.reaches(decision.witness.point, object))
+          << where << " witness of object " << object.value << '\n'
+          << described(scene, view);
+    }
+    for (int i = 0; i < 4; ++i) {
+      const Vec3d point = view.eye + Vec3d(maker.grid(4), maker.grid(4), maker.grid(8)) * 0.5;
+      EXPECT_EQ(oracle.confirm(view, {object, point}), sight.reaches(point, object))
+          << where << " object " << object.value << " at " << point.x << ' ' << point.y << ' ' << point.z
+          << '\n'
+          << described(scene, view);
+    }
+  }
+}
+
+const Family kFamilies[] = {
+    {.name = "Mixed"},
+    {.name = "InTwoPlanes", .min_z = -3, .max_z = -2},
+    {.name = "ManyTriangles", .max_objects = 3, .max_triangles = 4},
+    {.name = "OddMaterials", .max_objects = 6, .odd_materials = true},
+    {.name = "EyeInPlanes", .eye_on_grid = true, .near = {0.0, 0.25}},
+    {.name = "BehindTheEye",
+     .min_z = -4,
+     .max_z = 3,
+     .max_triangles = 2,
+     .odd_materials = true,
+     .near = {0.0, 0.5, 1.0}},
+    {.name = "NearPlane", .max_triangles = 2, .near = {1.0, 2.0, 3.0}, .far = {6.0, 5.0}},
+    {.name = "FarPlane", .far = {2.0, 3.0, 4.0, std::numeric_limits<double>::infinity()}},
+    {.name = "Borders", .tangents = {0.5, 1.0, 0.25}, .aspects = {0.5, 1.0, 2.0}},
+    {.name = "Broken", .max_triangles = 3, .odd_materials = true, .broken = true},
+    {.name = "Oblique", .oblique = true},
+    {.name = "Orthographic", .orthographic = true},
+    {.name = "OrthographicPlanes",
+     .min_z = -3,
+     .max_z = 2,
+     .max_triangles = 2,
+     .orthographic = true,
+     .odd_materials = true,
+     .near = {0.0, 1.0, 2.0},
+     .far = {3.0, 2.5}},
+    {.name = "OrthographicBorders",
+     .orthographic = true,
+     .eye_on_grid = true,
+     .tangents = {1.0, 2.0},
+     .aspects = {0.5, 1.0}},
+    {.name = "OrthographicOblique", .orthographic = true, .oblique = true, .tangents = {16.0}},
+};
+
+class ExactProof : public ::testing::TestWithParam<Family> {};
+
+TEST_P(ExactProof, SaysWhatBruteForceSays) {
+  const Family& family = GetParam();
+  Counts counts;
+  const auto first =
+      static_cast<std::uint32_t>(GTEST_FLAG_GET(random_seed)) * 1'000'000u;
+  for (int i = 0; i < family.cases && !HasFailure(); ++i) {
+    const std::uint32_t seed = first + static_cast<std::uint32_t>(i);
+    Maker maker(family, seed);
+    const Scene scene = maker.scene();
+    compare(scene, maker.view(), maker, counts, family.name + (" seed " + std::to_string(seed)));
+  }
+  std::printf("%s: %d visible, %d hidden\n", family.name, counts.visible, counts.hidden);
+  EXPECT_GT(counts.visible, family.cases / 4);
+  EXPECT_GT(counts.hidden, family.cases / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, ExactProof, ::testing::ValuesIn(kFamilies),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+}  // namespace
+}  // namespace sightline
