@@ -24,11 +24,14 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
   }
   const Vec3d along = abs(view.forward);
   axis_ = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
-  last_ = view.forward[axis_] > 0.0 ? 1.0 : -1.0;
+  const int size = std::ilogb(0.5 * view.ortho_height * std::max(view.aspect, 1.0));
+  last_ = std::ldexp(view.forward[axis_] > 0.0 ? 1.0 : -1.0, size);
+  exponent_ = std::min(exponent_, size);
+  exact_eye_ = wholeOf(view.eye, exponent_);
   const int i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
   right_ = Vec3d{view.right[i], view.right[j], 0.0} / view.forward[axis_];
   up_ = Vec3d{view.up[i], view.up[j], 0.0} / view.forward[axis_];
-  forward_ = {0.0, 0.0, last_};
+  forward_ = {0.0, 0.0, 1.0 / last_};
 }
 
 Vec3d ImageSpace::fromEye(std::uint32_t position) const {
@@ -88,12 +91,13 @@ Whole ImageSpace::exactWeight(std::uint32_t position) const {
 }
 
 ImageSpace::ExactNearness ImageSpace::exactNearnessAt(double depth) const {
-  const int exponent = std::min(lowestExponent(depth), 0);
   if (view_.orthographic) {
     // Minus the depth, times the last coordinate of the direction over that coordinate in `exactProject`.
     // Both are in units of 2^(exponent_ + forward_exponent_), so the units cancel.
-    return {{0, 0, -wholeOf(depth * last_, exponent)}, wholeOf(1.0, exponent)};
+    const int exponent = std::min(lowestExponent(depth / last_), 0);
+    return {{0, 0, -wholeOf(depth / last_, exponent)}, wholeOf(1.0, exponent)};
   }
+  const int exponent = std::min(lowestExponent(depth), 0);
   // forward . d / depth. Directions are in units of 2^exponent_, and the viewing direction in units of
   // 2^forward_exponent_; the depth is brought to the product of both.
   const int unit = exponent_ + forward_exponent_;

@@ -4,7 +4,7 @@
 //
 // A point of the image is a direction d, a vector of three coordinates whose length is of no meaning. In a
 // perspective view, d is the vector from the eye to a point in space. In an orthographic view, d consists of
-// the two coordinates that remain when space is projected along the viewing direction, and of 1 or -1. In
+// the two coordinates that remain when space is projected along the viewing direction, and of a constant. In
 // both, a straight line of the image is a plane n . d = 0, and the image of a triangle is the cone of its
 // corners' directions, also where some of them lie behind the eye.
 //
@@ -81,8 +81,10 @@ class ImageSpace {
   int exponent_ = 0;          // of exact coordinates in space
   int forward_exponent_ = 0;  // of the exact viewing direction
   WholeVec exact_eye_, exact_forward_;
-  int axis_ = 2;       // orthographic: the axis that the viewing direction is nearest to
-  double last_ = 1.0;  // orthographic: the last coordinate of every direction
+  int axis_ = 2;  // orthographic: the axis that the viewing direction is nearest to
+  // Orthographic: the last coordinate of every direction. A power of two about as large as the picture,
+  // beside which no coordinate of a direction is lost.
+  double last_ = 1.0;
   Vec3d right_{}, up_{}, forward_{};
 };
 

@@ -440,20 +440,31 @@ VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner fr
   return Cover::kHidden;
 }
 
+// Calls visit(leaf) for all triangles that the line of sight may intersect.
+template <typename Visit>
+void VisibilityProof::alongDirection(Corner direction, Visit&& visit) const {
+  const Vec3d d = figures_.direction(direction);
+  const ViewRay ray = space_.ray(d);
+  if (space_.view().orthographic) {
+    const double rounding = 256.0 * kRounding * maxNorm(d) / dot(d, space_.forward());  // metres
+    scene_.tree.alongRay(ray.origin - ray.direction * space_.view().near, ray.direction, rounding, visit);
+  } else {
+    scene_.tree.alongRay(space_.view().eye, ray.direction, 0.0, visit);
+  }
+}
+
 std::uint32_t VisibilityProof::blockerOf(const Target& target, Corner direction) {
   std::uint32_t found = kNone;
-  const ViewRay ray = space_.ray(figures_.direction(direction));
-  scene_.tree.alongRay(ray.origin - ray.direction * space_.view().near, ray.direction,
-                       [&](const TriangleTree::Node& leaf) {
-                         if (found != kNone || leaf.first_index == target.first_index) {
-                           return;
-                         }
-                         const Appearance& blocker = appearance(leaf.first_index, leaf.object);
-                         if (blocker.shown && blocker.opaque && contains(blocker.region, direction) &&
-                             figures_.side(whereHides(blocker, target), direction) > 0) {
-                           found = leaf.first_index;
-                         }
-                       });
+  alongDirection(direction, [&](const TriangleTree::Node& leaf) {
+    if (found != kNone || leaf.first_index == target.first_index) {
+      return;
+    }
+    const Appearance& blocker = appearance(leaf.first_index, leaf.object);
+    if (blocker.shown && blocker.opaque && contains(blocker.region, direction) &&
+        figures_.side(whereHides(blocker, target), direction) > 0) {
+      found = leaf.first_index;
+    }
+  });
   return found;
 }
 
@@ -464,12 +475,9 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
   if (!in_picture) {
     return false;
   }
-  const ViewRay ray = space_.ray(figures_.direction(direction));
-  const Vec3d origin =
-      space_.view().orthographic ? ray.origin - ray.direction * space_.view().near : space_.view().eye;
   std::vector<std::uint32_t> own;
   std::vector<Depth> opaque;
-  scene_.tree.alongRay(origin, ray.direction, [&](const TriangleTree::Node& leaf) {
+  alongDirection(direction, [&](const TriangleTree::Node& leaf) {
     const Appearance shown = appearance(leaf.first_index, leaf.object);
     if (shown.shown && contains(shown.region, direction)) {
       if (leaf.object == object) {

@@ -85,6 +85,8 @@ class VisibilityProof {
   // A triangle that hides the target's point in this direction; kNone if none does.
   std::uint32_t blockerOf(const Target& target, Corner direction);
   bool seen(ObjectId object, Corner direction);
+  template <typename Visit>
+  void alongDirection(Corner direction, Visit&& visit) const;
   Vec3d pointAt(std::uint32_t first_index, Corner direction) const;
 
   const ProofScene& scene_;
