@@ -232,6 +232,9 @@ void compare(const Scene& scene, const View& view, Maker& maker, Counts& counts,
     }
     for (int i = 0; i < 4; ++i) {
       const Vec3d point = view.eye + Vec3d(maker.grid(4), maker.grid(4), maker.grid(8)) * 0.5;
+      if (std::abs(dot(point - view.eye, view.forward)) < 1e-9) {
+        continue;  // whether it is before the eye is rounded
+      }
       EXPECT_EQ(oracle.confirm(view, {object, point}), sight.reaches(point, object))
           << where << " object " << object.value << " at " << point.x << ' ' << point.y << ' ' << point.z
           << '\n'
