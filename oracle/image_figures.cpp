@@ -5,7 +5,8 @@
 namespace sightline {
 namespace {
 
-constexpr double kUnderflow = 1e-290;  // far more than what results below the normal numbers lose
+constexpr double kLargestError = 0x1p-40;  // relative, of a corner's direction
+constexpr double kUnderflow = 1e-290;      // far more than what results below the normal numbers lose
 
 // Each coordinate is the difference of two products: an error of each factor, and three roundings.
 RoundedVec cross(const RoundedVec& a, const RoundedVec& b) {
@@ -241,7 +242,6 @@ bool ImageFigures::sameLine(Line a, Line b) const {
          ((p.first == q.first && p.second == q.second) || (p.first == q.second && p.second == q.first));
 }
 
-// The position that is an end of both lines, if there is one.
 ImageFigures::Corner ImageFigures::intersection(Line a, Line b) {
   const LineData &p = lines_[a], &q = lines_[b];
   CornerData corner;
@@ -253,23 +253,25 @@ ImageFigures::Corner ImageFigures::intersection(Line a, Line b) {
                                                                     : kNone;
   }
   corner.d = corner.position != kNone ? space_->direction(corner.position) : cross(p.n, q.n);
-  turnBeforeTheEye(corner);
-  return addCorner(corner);
+  const Corner index = addCorner(corner);
+  turnBeforeTheEye(index);
+  // Where the lines are nearly parallel, their rounded cross product is worth nothing.
+  const RoundedVec& d = corners_[index].d;
+  if (!(d.error <= kLargestError * maxNorm(d.value))) {
+    exactDirection(index);
+  }
+  return index;
 }
 
-void ImageFigures::turnBeforeTheEye(CornerData& corner) {
-  int sign = signOf(dot({space_->forward(), 0.0}, corner.d));
+void ImageFigures::turnBeforeTheEye(Corner index) {
+  int sign = signOf(dot({space_->forward(), 0.0}, corners_[index].d));
   if (sign == kUnknown) {
-    const Corner index = addCorner(corner);
     sign = signOf(dot(wholeMultipleOf(space_->forward()), exactDirection(index)));
-    corner.exact = corners_[index].exact;
-    if (sign < 0) {
-      corner.exact = kNone;
-    }
   }
   if (sign < 0) {
-    corner.opposite = true;
-    corner.d = negated(corner.d);
+    corners_[index].opposite = true;
+    corners_[index].d = negated(corners_[index].d);
+    corners_[index].exact = kNone;
   }
 }
 

@@ -104,7 +104,7 @@ class ImageFigures {
   const WholeVec& exactNormal(Line line);
   const WholeVec& exactDirection(Corner corner);
   ImageSpace::ExactNearness exactNearness(const DepthData& depth) const;
-  void turnBeforeTheEye(CornerData& corner);
+  void turnBeforeTheEye(Corner corner);
   std::uint32_t keep(WholeVec value);
 
   const ImageSpace* space_;

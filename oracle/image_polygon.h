@@ -2,7 +2,6 @@
 
 // Convex polygons of an image, and what is left of one when others are subtracted from it.
 
-#include <span>
 #include <vector>
 
 #include "oracle/image_figures.h"

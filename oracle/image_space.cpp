@@ -116,6 +116,17 @@ Vec3d ImageSpace::directionOf(const Vec3d& point) const {
   return view_.orthographic ? project(point - view_.eye, last_) : point - view_.eye;
 }
 
+ViewRay ImageSpace::lineOfSight(const Vec3d& direction) const {
+  if (!view_.orthographic) {
+    return {view_.eye, direction};
+  }
+  const double scale = last_ / (direction.z * view_.forward[axis_]);
+  Vec3d across{};
+  across[(axis_ + 1) % 3] = direction.x * scale;
+  across[(axis_ + 2) % 3] = direction.y * scale;
+  return {view_.eye + across - view_.forward * dot(across, view_.forward), view_.forward};
+}
+
 ViewRay ImageSpace::ray(const Vec3d& direction) const {
   const Vec3d d = direction / dot(direction, forward_);
   return rayThrough(view_, dot(d, right_) / halfWidth(), dot(d, up_) / halfHeight());

@@ -12,7 +12,7 @@
 // lengths of d, in an orthographic view minus the depth. In both, the nearness of a plane is linear in d.
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "oracle/exact_number.h"
 #include "oracle/view_rays.h"
@@ -39,7 +39,7 @@ class ImageSpace {
 
   const View& view() const { return view_; }
 
-  // The direction of a position, whose coordinates are finite.
+  // The direction of a position with finite coordinates.
   RoundedVec direction(std::uint32_t position) const;
   WholeVec exactDirection(std::uint32_t position) const;
   // The difference of the directions of two positions.
@@ -65,7 +65,11 @@ class ImageSpace {
   double halfWidth() const { return halfHeight() * view_.aspect; }
   double halfHeight() const { return view_.orthographic ? 0.5 * view_.ortho_height : view_.tan_half_fovy; }
 
-  // The ray through a direction before the eye, from the near plane.
+  // The line of sight in a direction before the eye, from the plane through the eye on. It follows from the
+  // eye and the viewing direction alone, as the exact direction does: axes may be off by single-precision
+  // rounding.
+  ViewRay lineOfSight(const Vec3d& direction) const;
+  // About the same line from the near plane, by the view's axes.
   ViewRay ray(const Vec3d& direction) const;
   // The direction of a point in space given in double precision: rounded in an orthographic view.
   Vec3d directionOf(const Vec3d& point) const;

@@ -81,7 +81,7 @@ void RayScene::gather(const SceneView& scene) {
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
     const Object& object = scene.objects[o];
     const Material& material = scene.materialOf(object);
-    Group& group = groups_[(material.opaque() ? 1u : 0u) + (material.double_sided ? 2u : 0u)];
+    Group& group = groups_[(occludes(scene, object) ? 1u : 0u) + (material.double_sided ? 2u : 0u)];
     const std::span<const std::uint32_t> indices = scene.indicesOf(object);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
       const Vec3f &a = scene.positions[indices[i]], &b = scene.positions[indices[i + 1]],

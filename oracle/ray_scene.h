@@ -30,6 +30,11 @@ struct RayHit {
   bool opaque = false;
 };
 
+// True if the object's triangles hide what lies behind them: see "The contract" in docs/conservative.md.
+inline bool occludes(const SceneView& scene, const Object& object) {
+  return scene.materialOf(object).opaque() && object.mark != OccluderMark::kNever;
+}
+
 class RayScene {
  public:
   static constexpr std::uint32_t kBatch = 16;

@@ -31,10 +31,9 @@ class TriangleTree {
   std::uint32_t root() const { return root_; }
   std::uint32_t rootOf(ObjectId object) const { return object_roots_[object.value]; }
 
-  // Calls visit(leaf) for all triangles whose boxes the ray from `origin` may intersect, beyond rounding and
-  // `slack` metres.
+  // Calls visit(leaf) for all triangles whose boxes the ray from `origin` may intersect, beyond rounding.
   template <typename Visit>
-  void alongRay(const Vec3d& origin, const Vec3d& direction, double slack, Visit&& visit) const {
+  void alongRay(const Vec3d& origin, const Vec3d& direction, Visit&& visit) const {
     std::vector<std::uint32_t> open;
     if (root_ != kNoNode) {
       open.push_back(root_);
@@ -42,7 +41,7 @@ class TriangleTree {
     while (!open.empty()) {
       const Node& node = nodes_[open.back()];
       open.pop_back();
-      if (!mayIntersect(origin, direction, slack, node.box)) {
+      if (!mayIntersect(origin, direction, node.box)) {
         continue;
       }
       if (node.isLeaf()) {
@@ -54,7 +53,7 @@ class TriangleTree {
   }
 
  private:
-  static bool mayIntersect(const Vec3d& origin, const Vec3d& direction, double slack, const Box& box);
+  static bool mayIntersect(const Vec3d& origin, const Vec3d& direction, const Box& box);
   std::uint32_t join(std::vector<std::uint32_t>& parts);
 
   std::vector<Node> nodes_;

@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <utility>
 
 namespace sightline {
@@ -57,17 +59,17 @@ void VisibilityProof::beginFigures() {
   far_ = figures_.depthGiven(std::isfinite(space_.view().far) ? space_.view().far : 1.0);
 }
 
-const VisibilityProof::Appearance& VisibilityProof::appearance(std::uint32_t first_index, ObjectId object) {
-  const auto [entry, is_new] = appearances_.try_emplace(first_index);
+VisibilityProof::Appearance& VisibilityProof::appearance(const Triangle& triangle) {
+  const auto [entry, is_new] = appearances_.try_emplace(triangle.first_index);
   Appearance& appearance = entry->second;
   if (!is_new) {
     return appearance;
   }
-  const ImageTriangle t = scene_.corners(first_index);
-  const Material& material = scene_.scene.materialOf(scene_.scene.objects[object.value]);
+  const ImageTriangle t = scene_.corners(triangle.first_index);
+  const Object& of = scene_.scene.objects[triangle.object.value];
   const int orientation = figures_.orientation(t);
-  appearance.opaque = material.opaque();
-  appearance.shown = orientation < 0 || (orientation > 0 && material.double_sided);
+  appearance.occludes = occludes(scene_.scene, of);
+  appearance.shown = orientation < 0 || (orientation > 0 && scene_.scene.materialOf(of).double_sided);
   if (!appearance.shown) {
     return appearance;
   }
@@ -84,9 +86,15 @@ const VisibilityProof::Appearance& VisibilityProof::appearance(std::uint32_t fir
   return appearance;
 }
 
-// The line on whose positive side the blocker is nearer than the target.
-VisibilityProof::Line VisibilityProof::whereHides(const Appearance& blocker, const Target& target) {
-  return figures_.lineWhereNearer(blocker.depth, target.depth);
+// The directions in which a triangle is nearer than the target. On the last of the lines both are at the same
+// distance, and the triangle hides nothing. All figures are of one target.
+const ImageRegion& VisibilityProof::hiddenBy(const Triangle& blocker, const Target& target) {
+  Appearance& shown = appearance(blocker);
+  if (shown.hides.lines.empty()) {
+    shown.hides = shown.region;
+    shown.hides.lines.push_back(figures_.lineWhereNearer(shown.depth, target.depth));
+  }
+  return shown.hides;
 }
 
 bool VisibilityProof::contains(const ImageRegion& region, Corner direction) {
@@ -106,7 +114,8 @@ Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
   while (!open.empty()) {
     const TriangleTree::Node& node = scene_.tree.node(open.back());
     open.pop_back();
-    const Cover cover = node.isLeaf() ? coverTriangle(node.first_index, object) : coverBox(node, object);
+    const Cover cover =
+        node.isLeaf() ? coverTriangle({node.first_index, node.object}) : coverBox(node, object);
     if (cover == Cover::kSeen) {
       return {Verdict::kVisible, *witness_};
     }
@@ -119,66 +128,61 @@ Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
   return {undecided ? Verdict::kUndecided : Verdict::kHidden, {object, {}}};
 }
 
-// The box's extents in the picture and its depths, rounded outwards. Nothing if it reaches behind the eye.
-std::optional<ImageRectangle> VisibilityProof::extentsOf(const Box& box, double& nearest,
-                                                         double& farthest) const {
-  const View& view = space_.view();
-  ImageRectangle extents;
+// Rounded outwards.
+VisibilityProof::BoxImage VisibilityProof::imageOf(const Box& box) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  extents.x_min = extents.y_min = nearest = kInfinity;
-  extents.x_max = extents.y_max = farthest = -kInfinity;
+  BoxImage image{{kInfinity, -kInfinity, kInfinity, -kInfinity}, true, kInfinity, -kInfinity};
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3d p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
                   (corner & 4) != 0 ? box.max.z : box.min.z);
-    const Vec3d d = p - view.eye;
-    const double margin = kMargin * length(d), depth = dot(d, view.forward);
-    nearest = std::min(nearest, depth - margin);
-    farthest = std::max(farthest, depth + margin);
-    if (!view.orthographic && !(depth > 1e3 * margin)) {
-      continue;  // extents are of no use, but depths may be
+    const View& view = space_.view();
+    const double margin = kMargin * length(p - view.eye), depth = depthOf(view, p);
+    image.nearest = std::min(image.nearest, depth - margin);
+    image.farthest = std::max(image.farthest, depth + margin);
+    const Vec3d d = space_.directionOf(p);
+    const double scale = dot(d, space_.forward());
+    if (!(scale > 1e3 * margin)) {
+      image.before_the_eye = false;
+      continue;
     }
-    const double scale = view.orthographic ? 1.0 : depth, widen = 4.0 * margin / scale;
-    const double x = dot(d, view.right) / scale, y = dot(d, view.up) / scale;
+    const double x = dot(d, space_.right()) / scale, y = dot(d, space_.up()) / scale;
+    const double widen = 4.0 * margin / scale;
     const double x_margin = widen * (1.0 + std::abs(x)), y_margin = widen * (1.0 + std::abs(y));
-    extents.x_min = std::min(extents.x_min, x - x_margin);
-    extents.x_max = std::max(extents.x_max, x + x_margin);
-    extents.y_min = std::min(extents.y_min, y - y_margin);
-    extents.y_max = std::max(extents.y_max, y + y_margin);
+    image.extents = {std::min(image.extents.x_min, x - x_margin), std::max(image.extents.x_max, x + x_margin),
+                     std::min(image.extents.y_min, y - y_margin),
+                     std::max(image.extents.y_max, y + y_margin)};
   }
-  if (!view.orthographic && !(nearest > 1e-6 * farthest)) {
-    return std::nullopt;
-  }
-  return extents;
+  return image;
 }
 
 VisibilityProof::Cover VisibilityProof::coverBox(const TriangleTree::Node& node, ObjectId object) {
   const View& view = space_.view();
-  double nearest = 0.0, farthest = 0.0;
-  const std::optional<ImageRectangle> extents = extentsOf(node.box, nearest, farthest);
-  if (farthest < view.near || nearest > view.far) {
+  const BoxImage image = imageOf(node.box);
+  if (image.farthest < view.near || image.nearest > view.far) {
     return Cover::kHidden;
   }
-  if (!extents || !(nearest > view.near)) {
+  if (!image.before_the_eye || !(image.nearest > view.near)) {
     return Cover::kOpen;
   }
   const double x = space_.halfWidth(), y = space_.halfHeight();
-  const ImageRectangle shown{std::max(extents->x_min, -x), std::min(extents->x_max, x),
-                             std::max(extents->y_min, -y), std::min(extents->y_max, y)};
+  const ImageRectangle& extents = image.extents;
+  const ImageRectangle shown{std::max(extents.x_min, -x), std::min(extents.x_max, x),
+                             std::max(extents.y_min, -y), std::min(extents.y_max, y)};
   if (!(shown.x_min < shown.x_max && shown.y_min < shown.y_max)) {
     return Cover::kHidden;
   }
   beginFigures();
   pieces_.push_back(rectangle(figures_, shown));
-  return coverPolygons({object, kNone, figures_.depthGiven(nearest), nearest});
+  return coverPolygons({{kNone, object}, figures_.depthGiven(image.nearest), image.nearest});
 }
 
-VisibilityProof::Cover VisibilityProof::coverTriangle(std::uint32_t first_index, ObjectId object) {
+VisibilityProof::Cover VisibilityProof::coverTriangle(const Triangle& triangle) {
   beginFigures();
-  const Appearance& shown = appearance(first_index, object);
+  const Appearance& shown = appearance(triangle);
   if (!shown.shown) {
     return Cover::kHidden;
   }
-  const Target target{object, first_index, shown.depth, 0.0};
+  const Target target{triangle, shown.depth, 0.0};
   ImageRegion region = shown.region;
   if (std::isfinite(space_.view().far)) {
     const Line before_far = figures_.lineWhereNearer(shown.depth, far_);
@@ -211,9 +215,8 @@ VisibilityProof::Cover VisibilityProof::coverBorder(const Target& target, const 
     if (++steps_ > max_steps_) {
       return Cover::kOpen;
     }
-    if (blockerOf(target, end) == kNone) {
-      witness_ = Witness{target.object, pointAt(target.first_index, end)};
-      return Cover::kSeen;
+    if (!blockerOf(target, end)) {
+      return seenAt(target, end);
     }
   }
   const auto along = std::find_if(image.lines.begin(), image.lines.end(), [&](Line line) {
@@ -270,64 +273,63 @@ void VisibilityProof::castRays(const ImagePolygon& piece) {
   rays_.trace(batch, static_cast<std::uint32_t>(directions_.size()), false, hits_);
 }
 
-// Splits off what the blockers hide and appends the rest to pieces_.
+// Appends what nearer triangles leave of the piece to pieces_.
 VisibilityProof::Cover VisibilityProof::coverPiece(const Target& target, const ImagePolygon& piece) {
   castRays(piece);
-  const bool is_box = target.first_index == kNone;
-  blockers_.clear();
-  std::array<bool, RayScene::kBatch> blocked{};
-  for (const RayHit& hit : hits_) {
-    const double depth = space_.view().near + static_cast<double>(hit.t);
-    if (hit.object == target.object) {
-      if (seen(target.object, figures_.cornerGiven(directions_[hit.ray]))) {
-        return Cover::kSeen;
-      }
-    }
-    if (hit.opaque && (is_box ? depth < target.nearest : hit.first_index != target.first_index)) {
-      blocked[hit.ray] = true;
-      const std::pair<std::uint32_t, ObjectId> blocker{hit.first_index, hit.object};
-      if (std::find(blockers_.begin(), blockers_.end(), blocker) == blockers_.end()) {
-        blockers_.push_back(blocker);
-      }
-    }
+  if (const Cover cover = findBlockers(target); cover != Cover::kHidden) {
+    return cover;
   }
-  if (is_box &&
-      !std::all_of(blocked.begin(), blocked.begin() + static_cast<std::ptrdiff_t>(directions_.size()),
-                   [](bool b) { return b; })) {
-    return Cover::kOpen;
-  }
-  const std::size_t before = pieces_.size();
   bool progress = false;
   parts_.assign(1, piece);
-  for (const auto& [first_index, object] : blockers_) {
-    const Appearance blocker = appearance(first_index, object);
-    if (!blocker.shown) {
+  for (const Triangle& blocker : blockers_) {
+    if (!appearance(blocker).shown) {
       continue;
     }
-    ImageRegion region = blocker.region;
-    const Line hides = whereHides(blocker, target);
-    region.lines.push_back(hides);
+    const ImageRegion hidden = hiddenBy(blocker, target);
     next_parts_.clear();
     for (ImagePolygon& part : parts_) {
-      const ImagePolygon inside = subtract(figures_, part, region, next_parts_);
+      const ImagePolygon inside = subtract(figures_, part, hidden, next_parts_);
       if (inside.empty()) {
         next_parts_.push_back(std::move(part));
         continue;
       }
       progress = true;
-      if (const Cover cover = is_box ? Cover::kHidden : coverTies(target, inside, hides);
-          cover != Cover::kHidden) {
+      if (const Cover cover = coverTies(target, inside, hidden.lines.back()); cover != Cover::kHidden) {
         return cover;
       }
     }
     std::swap(parts_, next_parts_);
   }
   if (!progress) {
-    return is_box ? Cover::kOpen : coverOutOfRaysReach(target, piece);
+    return target.isBox() ? Cover::kOpen : coverOutOfRaysReach(target, piece);
   }
-  pieces_.insert(pieces_.begin() + static_cast<std::ptrdiff_t>(before),
-                 std::make_move_iterator(parts_.begin()), std::make_move_iterator(parts_.end()));
+  std::move(parts_.begin(), parts_.end(), std::back_inserter(pieces_));
   return Cover::kHidden;
+}
+
+// Sets blockers_ to the nearer triangles that the rays hit. A box is given up where a ray reaches it.
+VisibilityProof::Cover VisibilityProof::findBlockers(const Target& target) {
+  blockers_.clear();
+  std::array<bool, RayScene::kBatch> blocked{};
+  for (const RayHit& hit : hits_) {
+    if (hit.object == target.triangle.object &&
+        seen(hit.object, figures_.cornerGiven(directions_[hit.ray]))) {
+      return Cover::kSeen;
+    }
+    const double depth = space_.view().near + static_cast<double>(hit.t);
+    const bool nearer =
+        target.isBox() ? depth < target.nearest : hit.first_index != target.triangle.first_index;
+    if (hit.opaque && nearer) {
+      blocked[hit.ray] = true;
+      const auto same = [&](const Triangle& blocker) { return blocker.first_index == hit.first_index; };
+      if (std::none_of(blockers_.begin(), blockers_.end(), same)) {
+        blockers_.push_back({hit.first_index, hit.object});
+      }
+    }
+  }
+  const auto rays = static_cast<std::ptrdiff_t>(directions_.size());
+  const bool reached = std::count(blocked.begin(), blocked.begin() + rays, true) < rays;
+  return target.isBox() && reached ? Cover::kOpen : Cover::kHidden;
 }
 
 // A direction strictly inside the piece, exactly.
@@ -349,21 +351,17 @@ VisibilityProof::Corner VisibilityProof::inside(const ImagePolygon& piece) {
 // Rays in single precision found no triangle to subtract: searches without them.
 VisibilityProof::Cover VisibilityProof::coverOutOfRaysReach(const Target& target, const ImagePolygon& piece) {
   const Corner direction = inside(piece);
-  const std::uint32_t found = blockerOf(target, direction);
-  if (found == kNone) {
-    witness_ = Witness{target.object, pointAt(target.first_index, direction)};
-    return Cover::kSeen;
+  const std::optional<Triangle> blocker = blockerOf(target, direction);
+  if (!blocker) {
+    return seenAt(target, direction);
   }
-  const Appearance blocker = appearances_.at(found);
-  ImageRegion region = blocker.region;
-  const Line hides = whereHides(blocker, target);
-  region.lines.push_back(hides);
-  const ImagePolygon covered = subtract(figures_, piece, region, pieces_);
+  const ImageRegion hidden = hiddenBy(*blocker, target);
+  const ImagePolygon covered = subtract(figures_, piece, hidden, pieces_);
   if (!covered.empty()) {
-    return coverTies(target, covered, hides);
+    return coverTies(target, covered, hidden.lines.back());
   }
   // The near plane leaves no area of this blocker. It is in the way no more if the piece ends there.
-  for (const Line line : region.lines) {
+  for (const Line line : hidden.lines) {
     if (figures_.side(line, direction) == 0) {
       DividedPolygon parts = divide(figures_, piece, line);
       pieces_.push_back(std::move(parts.positive));
@@ -377,6 +375,9 @@ VisibilityProof::Cover VisibilityProof::coverOutOfRaysReach(const Target& target
 // Where the blocker touches the target, it does not hide it: another triangle must.
 VisibilityProof::Cover VisibilityProof::coverTies(const Target& target, const ImagePolygon& inside,
                                                   Line tie) {
+  if (target.isBox()) {
+    return Cover::kHidden;  // its nearest depth lies before all that is in it
+  }
   std::vector<Corner> touching;
   for (const Corner corner : inside.corners) {
     if (figures_.side(tie, corner) == 0) {
@@ -387,9 +388,8 @@ VisibilityProof::Cover VisibilityProof::coverTies(const Target& target, const Im
     if (++steps_ > max_steps_) {
       return Cover::kOpen;
     }
-    if (blockerOf(target, corner) == kNone) {
-      witness_ = Witness{target.object, pointAt(target.first_index, corner)};
-      return Cover::kSeen;
+    if (!blockerOf(target, corner)) {
+      return seenAt(target, corner);
     }
   }
   return touching.size() == 2 ? coverTie(target, touching[0], touching[1], tie) : Cover::kHidden;
@@ -406,17 +406,13 @@ VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner fr
     }
     const std::array<Corner, 2> ends{begin, end};
     const Corner middle = figures_.cornerBetween(ends);
-    const std::uint32_t found = blockerOf(target, middle);
-    if (found == kNone) {
-      witness_ = Witness{target.object, pointAt(target.first_index, middle)};
-      return Cover::kSeen;
+    const std::optional<Triangle> blocker = blockerOf(target, middle);
+    if (!blocker) {
+      return seenAt(target, middle);
     }
-    const Appearance blocker = appearances_.at(found);
-    ImageRegion region = blocker.region;
-    const Line hides = whereHides(blocker, target);
-    region.lines.push_back(hides);
+    const ImageRegion hidden = hiddenBy(*blocker, target);
     Corner low = begin, high = end;  // of the part that the blocker hides
-    for (const Line line : region.lines) {
+    for (const Line line : hidden.lines) {
       const int at_low = figures_.side(line, low), at_high = figures_.side(line, high);
       if (at_low >= 0 && at_high >= 0) {
         continue;
@@ -424,10 +420,9 @@ VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner fr
       (at_low < 0 ? low : high) = figures_.intersection(tie, line);
     }
     for (const Corner border : {low, high}) {
-      if (border != begin && border != end && figures_.side(hides, border) == 0 &&
-          blockerOf(target, border) == kNone) {
-        witness_ = Witness{target.object, pointAt(target.first_index, border)};
-        return Cover::kSeen;
+      if (border != begin && border != end && figures_.side(hidden.lines.back(), border) == 0 &&
+          !blockerOf(target, border)) {
+        return seenAt(target, border);
       }
     }
     if (low != begin) {
@@ -440,32 +435,26 @@ VisibilityProof::Cover VisibilityProof::coverTie(const Target& target, Corner fr
   return Cover::kHidden;
 }
 
-// Calls visit(leaf) for all triangles that the line of sight may intersect.
-template <typename Visit>
-void VisibilityProof::alongDirection(Corner direction, Visit&& visit) const {
-  const Vec3d d = figures_.direction(direction);
-  const ViewRay ray = space_.ray(d);
-  if (space_.view().orthographic) {
-    const double rounding = 256.0 * kRounding * maxNorm(d) / dot(d, space_.forward());  // metres
-    scene_.tree.alongRay(ray.origin - ray.direction * space_.view().near, ray.direction, rounding, visit);
-  } else {
-    scene_.tree.alongRay(space_.view().eye, ray.direction, 0.0, visit);
-  }
-}
-
-std::uint32_t VisibilityProof::blockerOf(const Target& target, Corner direction) {
-  std::uint32_t found = kNone;
-  alongDirection(direction, [&](const TriangleTree::Node& leaf) {
-    if (found != kNone || leaf.first_index == target.first_index) {
+// A triangle that hides the target's point in this direction.
+std::optional<VisibilityProof::Triangle> VisibilityProof::blockerOf(const Target& target, Corner direction) {
+  std::optional<Triangle> found;
+  const ViewRay line = space_.lineOfSight(figures_.direction(direction));
+  scene_.tree.alongRay(line.origin, line.direction, [&](const TriangleTree::Node& leaf) {
+    const Triangle blocker{leaf.first_index, leaf.object};
+    if (found || leaf.first_index == target.triangle.first_index || !appearance(blocker).shown ||
+        !appearance(blocker).occludes || !contains(appearance(blocker).region, direction)) {
       return;
     }
-    const Appearance& blocker = appearance(leaf.first_index, leaf.object);
-    if (blocker.shown && blocker.opaque && contains(blocker.region, direction) &&
-        figures_.side(whereHides(blocker, target), direction) > 0) {
-      found = leaf.first_index;
+    if (figures_.side(hiddenBy(blocker, target).lines.back(), direction) > 0) {
+      found = blocker;
     }
   });
   return found;
+}
+
+VisibilityProof::Cover VisibilityProof::seenAt(const Target& target, Corner direction) {
+  witness_ = Witness{target.triangle.object, pointAt(target.triangle.first_index, direction)};
+  return Cover::kSeen;
 }
 
 // True if a triangle of the object is reached before any opaque surface. Sets the witness.
@@ -477,13 +466,14 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
   }
   std::vector<std::uint32_t> own;
   std::vector<Depth> opaque;
-  alongDirection(direction, [&](const TriangleTree::Node& leaf) {
-    const Appearance shown = appearance(leaf.first_index, leaf.object);
+  const ViewRay line = space_.lineOfSight(figures_.direction(direction));
+  scene_.tree.alongRay(line.origin, line.direction, [&](const TriangleTree::Node& leaf) {
+    const Appearance& shown = appearance({leaf.first_index, leaf.object});
     if (shown.shown && contains(shown.region, direction)) {
       if (leaf.object == object) {
         own.push_back(leaf.first_index);
       }
-      if (shown.opaque) {
+      if (shown.occludes) {
         opaque.push_back(shown.depth);
       }
     }
@@ -505,7 +495,7 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
 
 bool VisibilityProof::reaches(const Vec3d& point, ObjectId object) {
   beginFigures();
-  return depthOf(space_.view(), point) > 0.0 && seen(object, figures_.cornerOf(point));
+  return isFinite(point) && depthOf(space_.view(), point) > 0.0 && seen(object, figures_.cornerOf(point));
 }
 
 // The triangle's point in this direction, rounded.
@@ -513,7 +503,7 @@ Vec3d VisibilityProof::pointAt(std::uint32_t first_index, Corner direction) cons
   const auto corner = [&](std::uint32_t i) {
     return Vec3d(scene_.scene.positions[scene_.scene.indices[first_index + i]]);
   };
-  const ViewRay ray = space_.ray(figures_.direction(direction));
+  const ViewRay ray = space_.lineOfSight(figures_.direction(direction));
   const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
   return ray.origin + ray.direction * (dot(corner(0) - ray.origin, normal) / dot(ray.direction, normal));
 }

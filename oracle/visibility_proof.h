@@ -49,44 +49,53 @@ class VisibilityProof {
   using Line = ImageFigures::Line;
   using Depth = ImageFigures::Depth;
 
+  struct Triangle {
+    std::uint32_t first_index = kNone;
+    ObjectId object;
+  };
   // A triangle as it appears in the image: on its side of these lines, borders included.
   struct Appearance {
     bool shown = false;  // its image has an area, and it is not a back face that is not drawn
-    bool opaque = false;
+    bool occludes = false;
     ImageRegion region;  // the cone of the triangle, from the near plane on
     Depth depth = 0;
+    ImageRegion hides;  // see hiddenBy(); no lines: not yet asked for
   };
-  // What of a triangle's or a box's image is not yet proved to be hidden.
+  // A triangle, or a box around triangles of an object, that is to be proved hidden.
   struct Target {
-    ObjectId object;
-    std::uint32_t first_index = kNone;  // of the triangle; kNone for a box
+    Triangle triangle;  // without first_index: a box
     Depth depth = 0;
     double nearest = 0.0;  // of a box: depth of its nearest point, metres
+
+    bool isBox() const { return triangle.first_index == kNone; }
+  };
+  struct BoxImage {
+    ImageRectangle extents;                // only if all corners lie before the eye
+    bool before_the_eye = false;           // beyond rounding
+    double nearest = 0.0, farthest = 0.0;  // depths, metres
   };
   enum class Cover : std::uint8_t { kHidden, kSeen, kOpen };
 
   Cover coverBox(const TriangleTree::Node& node, ObjectId object);
-  Cover coverTriangle(std::uint32_t first_index, ObjectId object);
-  Cover coverPolygons(const Target& target);
+  Cover coverTriangle(const Triangle& triangle);
   Cover coverBorder(const Target& target, const ImageRegion& image);
+  Cover coverPolygons(const Target& target);
   Cover coverPiece(const Target& target, const ImagePolygon& piece);
   Cover coverOutOfRaysReach(const Target& target, const ImagePolygon& piece);
   Cover coverTies(const Target& target, const ImagePolygon& inside, Line tie);
   Cover coverTie(const Target& target, Corner from, Corner to, Line tie);
-  void subtractBlockers(const Target& target, const ImagePolygon& piece);
 
-  void castRays(const ImagePolygon& piece);
-  std::optional<ImageRectangle> extentsOf(const Box& box, double& nearest, double& farthest) const;
   void beginFigures();
-  const Appearance& appearance(std::uint32_t first_index, ObjectId object);
-  Line whereHides(const Appearance& blocker, const Target& target);
+  void castRays(const ImagePolygon& piece);
+  Cover findBlockers(const Target& target);
+  BoxImage imageOf(const Box& box) const;
+  Appearance& appearance(const Triangle& triangle);
+  const ImageRegion& hiddenBy(const Triangle& blocker, const Target& target);
   bool contains(const ImageRegion& region, Corner direction);
   Corner inside(const ImagePolygon& piece);
-  // A triangle that hides the target's point in this direction; kNone if none does.
-  std::uint32_t blockerOf(const Target& target, Corner direction);
+  std::optional<Triangle> blockerOf(const Target& target, Corner direction);
+  Cover seenAt(const Target& target, Corner direction);
   bool seen(ObjectId object, Corner direction);
-  template <typename Visit>
-  void alongDirection(Corner direction, Visit&& visit) const;
   Vec3d pointAt(std::uint32_t first_index, Corner direction) const;
 
   const ProofScene& scene_;
@@ -100,7 +109,7 @@ class VisibilityProof {
   std::vector<ImagePolygon> parts_, next_parts_;               // of one piece
   std::vector<RayHit> hits_;
   std::vector<Vec3d> directions_;  // of the rays that were cast last
-  std::vector<std::pair<std::uint32_t, ObjectId>> blockers_;
+  std::vector<Triangle> blockers_;
   std::optional<Witness> witness_;
   std::uint32_t steps_ = 0, max_steps_ = 0;
 };

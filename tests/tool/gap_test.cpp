@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kEye = 0.00005;                                         // x, in the middle of the slit
-constexpr int kBehind = 198, kWalls = 2;                                 // objects
+constexpr int kBehind = 198, kSlitWalls = 2;                             // objects
 constexpr float kSlitLeft = 0.0f, kSlitRight = 0.0001f, kWallZ = -4.0f;  // metres
 
 // Triangles of objects, corner after corner.
@@ -134,7 +134,7 @@ TEST(Gap, TheProofFindsWhatRaysThroughTheSlitReach) {
   const std::vector<Decision> decisions = ExactVisibility(scene.view()).decide(slitView(), all, 20000);
   int seen = 0;
   for (const ObjectId object : all) {
-    const bool is_wall = object.value < kWalls;
+    const bool is_wall = object.value < kSlitWalls;
     EXPECT_EQ(decisions[object.value].verdict,
               is_wall || reached[object.value] ? Verdict::kVisible : Verdict::kHidden)
         << "object " << object.value;
@@ -163,12 +163,12 @@ TEST(Gap, VerifyReportsWhatSampledCoverageCullsBehindASlit) {
   for (const json& run : both["runs"]) {
     const bool is_sampled = run["options"]["coverage"] == "centre";
     const json& frame = run["frames"][0];
-    EXPECT_EQ(frame["exact"], kWalls + gap.seen) << run["method"];
+    EXPECT_EQ(frame["exact"], kSlitWalls + gap.seen) << run["method"];
     EXPECT_EQ(run["false_culls"].get<int>() > 0, is_sampled) << run["method"] << ' ' << run["options"];
-    EXPECT_EQ(frame["kept"].get<int>() >= kWalls + gap.seen, !is_sampled) << run["method"];
+    EXPECT_EQ(frame["kept"].get<int>() >= kSlitWalls + gap.seen, !is_sampled) << run["method"];
     if (is_sampled) {
       // Whatever was culled of the visible ones is a false cull, no more and no less.
-      EXPECT_GE(run["false_culls"].get<int>(), kWalls + gap.seen - frame["kept"].get<int>());
+      EXPECT_GE(run["false_culls"].get<int>(), kSlitWalls + gap.seen - frame["kept"].get<int>());
     }
   }
   EXPECT_EQ(verify("inner").first, 0);

@@ -356,7 +356,7 @@ void addVerify(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->footer(
       "Exact arithmetic confirms each ray, and proves objects hidden by subtracting the images of nearer\n"
-      "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden.\n"
+      "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden; they do not change the\nexit code.\n"
       "overestimate is kept / visible objects over all frames.\n"
       "Examples:\n"
       "  sightline verify city.glb --path walk.json\n"
