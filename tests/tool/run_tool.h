@@ -58,10 +58,10 @@ inline std::vector<std::string> joined(std::vector<std::string> words, const std
   return words;
 }
 
-// Runs the tool with these arguments, each of which is one word.
-inline Outcome runTool(const std::vector<std::string>& arguments) {
+// Runs a program with these arguments, each of which is one word.
+inline Outcome runProgram(const std::string& program, const std::vector<std::string>& arguments) {
   const TemporaryFolder folder;
-  std::string command = "'" SIGHTLINE_TOOL "'";
+  std::string command = "'" + program + "'";
   for (const std::string& argument : arguments) {
     command += " '" + argument + "'";  // no test uses a quote
   }
@@ -70,6 +70,11 @@ inline Outcome runTool(const std::vector<std::string>& arguments) {
   const int status = pclose(pipe);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(folder.file("out")),
           contents(folder.file("err"))};
+}
+
+// Runs the tool with these arguments, each of which is one word.
+inline Outcome runTool(const std::vector<std::string>& arguments) {
+  return runProgram(SIGHTLINE_TOOL, arguments);
 }
 
 // Expects bad usage or input: exit code 2, one line on stderr that mentions `about`, nothing on stdout.

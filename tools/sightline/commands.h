@@ -24,6 +24,7 @@ void addInfo(CLI::App& app, Command& chosen);
 void addWalk(CLI::App& app, Command& chosen);
 void addCull(CLI::App& app, Command& chosen);
 void addVerify(CLI::App& app, Command& chosen);
+void addBench(CLI::App& app, Command& chosen);
 void addReproduce(CLI::App& app, Command& chosen);
 void addBake(CLI::App& app, Command& chosen);
 void addQuery(CLI::App& app, Command& chosen);

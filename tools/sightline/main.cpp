@@ -11,6 +11,7 @@ void addAllCommands(CLI::App& app, Command& chosen) {
   addWalk(app, chosen);
   addCull(app, chosen);
   addVerify(app, chosen);
+  addBench(app, chosen);
   addReproduce(app, chosen);
   addBake(app, chosen);
   addQuery(app, chosen);

@@ -255,6 +255,19 @@ const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
   return &timed->database;
 }
 
+void CullingData::prepare(const Setting& setting) {
+  hierarchy(setting.hierarchy);
+  if (setting.usesDatabase()) {
+    databaseFor(setting, false, from_eye_);
+  }
+  if (setting.testsDetailObjects()) {
+    databaseFor(setting, true, from_objects_);
+  }
+  if (setting.usesViewpoints()) {
+    viewpointsFor(setting);
+  }
+}
+
 Culler CullingData::makeCuller(const Setting& setting) {
   CullingScene scene{
       .hierarchy = &hierarchy(setting.hierarchy), .object_bounds = bounds_, .occluders = &occluders_};

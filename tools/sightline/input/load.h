@@ -68,7 +68,10 @@ class CullingData {
   CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk = {},
               std::optional<SightFile> baked = {});
 
-  // Says on stderr if a database of the baked file cannot be used.
+  // Builds what cullers of the setting share with others, unless it is there: hierarchy and databases. Says
+  // on stderr if a database of the baked file cannot be used.
+  void prepare(const Setting& setting);
+  // Prepares what is missing and makes the culler.
   Culler makeCuller(const Setting& setting);
   // Says on stderr how many look-ups in the baked file returned all objects, and why.
   void noteUnknownSets() const;

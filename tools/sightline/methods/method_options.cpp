@@ -498,10 +498,9 @@ std::string methodName(const Setting& setting) {
 
 std::string optionsText(const Setting& setting) {
   std::string text = nameOf(kHierarchies, setting.hierarchy);
-  if (!usesOccluders(setting)) {
-    return text;
+  if (usesOccluders(setting)) {
+    text = fmt::format("{} occluders, {}", setting.culler.occluders.count, text);
   }
-  text = fmt::format("{} occluders, {}", setting.culler.occluders.count, text);
   const auto shows = [&](std::string_view name) { return optionNamed(name).belongs(setting); };
   if (shows("coherence")) {
     text += ", coherence " + nameOf(kSwitch, setting.temporal_coherence);

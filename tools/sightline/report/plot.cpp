@@ -3,30 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "tools/sightline/report/markup.h"
 #include "tools/sightline/report/plot_axis.h"
+#include "tools/sightline/report/plot_pens.h"
 
 namespace sightline::tool {
 namespace {
 
-// A curve's colour and dashes. Colours have a middle lightness, which contrasts with white and black, and
-// hues that colour-blind readers can distinguish.
-struct Pen {
-  const char* color;
-  const char* dashes;
-};
-constexpr std::array<Pen, 8> kPens{{{"#808790", "none"},
-                                    {"#2b7fd4", "none"},
-                                    {"#d9700a", "8 3"},
-                                    {"#1f9e77", "2 3"},
-                                    {"#c44fa5", "10 3 2 3"},
-                                    {"#9a7d0a", "5 5"},
-                                    {"#7c5cd6", "14 4"},
-                                    {"#d64545", "1 5"}}};
 const Pen& penOf(const Plot& plot, std::size_t series) {
   return kPens[plot.series[series].pen.value_or(series) % kPens.size()];
 }

@@ -185,13 +185,17 @@ void addNotes(std::string& out, const Report& report) {
 
 }  // namespace
 
+std::string htmlPage(const std::string& title, const std::string& body) {
+  const std::string escaped = escapeMarkup(title);
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+         escaped + " – Sightline</title>\n<style>" + kReportStyle +
+         "</style>\n</head>\n<body>\n<main>\n<h1>" + escaped + "</h1>\n" + body +
+         "</main>\n</body>\n</html>\n";
+}
+
 std::string toHtml(const Report& report) {
-  const std::string title = escapeMarkup(report.title);
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      title + " – Sightline</title>\n<style>" + kReportStyle + "</style>\n</head>\n<body>\n<main>\n<h1>" +
-      title + "</h1>\n";
+  std::string out;
   if (!report.summary.empty()) {
     out += "<p class=\"summary\">" + escapeMarkup(report.summary) + "</p>\n";
   }
@@ -201,7 +205,7 @@ std::string toHtml(const Report& report) {
   addPictures(out, report);
   addFacts(out, report);
   addNotes(out, report);
-  return out + "</main>\n</body>\n</html>\n";
+  return htmlPage(report.title, out);
 }
 
 Status writeReport(const Report& report, const std::string& directory) {

@@ -50,6 +50,9 @@ struct Report {
   std::vector<std::string> notes{};
 };
 
+// A page with the style of reports: the title, which is escaped, and below it `body`, which is HTML.
+std::string htmlPage(const std::string& title, const std::string& body);
+
 // The page as HTML. All text is treated as untrusted and escaped.
 std::string toHtml(const Report& report);
 

@@ -19,6 +19,7 @@
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/methods/baseline.h"
 #include "tools/sightline/report/plot.h"
 #include "tools/sightline/walk/walk_pictures.h"
 #include "tools/sightline/walk/walk_report.h"
@@ -58,20 +59,6 @@ struct WalkOptions {
   PictureOptions picture;
   std::string command_line;
 };
-
-// The settings with view-frustum culling in front, with which the others are compared.
-std::vector<Setting> withBaseline(std::vector<Setting> settings) {
-  const auto is_frustum = [](const Setting& setting) { return setting.method->name == "frustum"; };
-  const auto frustum = std::find_if(settings.begin(), settings.end(), is_frustum);
-  Setting baseline = settings.front();
-  baseline.method = &methodNamed("frustum");
-  if (frustum != settings.end()) {
-    baseline = *frustum;
-    settings.erase(frustum);
-  }
-  settings.insert(settings.begin(), baseline);
-  return settings;
-}
 
 class Walker {
  public:

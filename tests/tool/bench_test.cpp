@@ -1,0 +1,250 @@
+// sightline bench, end to end.
+
+#include <set>
+
+#include "tests/support/pictures.h"
+#include "tests/tool/bench_csv.h"
+#include "tests/tool/formats_page.h"
+#include "tests/tool/markup_check.h"
+#include "tests/tool/run_tool.h"
+
+namespace sightline::tool_test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kBenchCity = "demo:city?copies=1", kBenchBuilding = "demo:building?floors=1";
+
+// A short bench.
+std::vector<std::string> benchOf(const std::string& scene, const std::vector<std::string>& more,
+                                 const std::string& frames = "0:400:100") {
+  return joined({"bench", scene, "--frames", frames, "--width", "64", "--height", "36", "--repeats", "2"},
+                more);
+}
+
+std::vector<CsvRow> rowsOf(const std::vector<std::string>& arguments) {
+  const Outcome outcome = runTool(joined(arguments, {"--csv", "-"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  return csvRows(outcome.out);
+}
+
+double numberOf(const CsvRow& row, const std::string& column) {
+  return row.contains(column) && !row.at(column).empty() ? std::stod(row.at(column)) : -1.0;
+}
+
+// Which objects each setting keeps, as hashes. A change that makes a method tighter or looser changes them,
+// and then they are to be replaced by what this test prints.
+TEST(BenchAnswers, AreTheSameOnEveryMachineWithAnyNumberOfThreads) {
+  const std::vector<std::string> methods{"--no-cache", "--method",
+                                         "frustum,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
+                                         "--occluder-count", "16,64"};
+  const std::vector<std::string> city{"f93ff134933fb1fa", "f14cea3b36eb9c18", "d2d2cf695dc7a063",
+                                      "1de2a4420b725f9c", "9c34d2550b16d4b1", "e86b3200d5db48f2",
+                                      "4acaf4093a7416b7", "9658f8e9bab442b2", "b6fbc05126b56e30"};
+  const std::vector<std::string> building{"40d83cb56c4b5ca0", "de43e5e7f280b4fa", "65176768266b17de",
+                                          "3158f99542937da3", "df79ff0470312c73", "c80bfd7fcd088f8b",
+                                          "933295b24856760f", "2659134a15649b7a", "5cfefce52bbd902a"};
+  for (const auto& [scene, golden] : {std::pair(kBenchCity, city), std::pair(kBenchBuilding, building)}) {
+    for (const std::string threads : {"1", "3"}) {
+      std::vector<std::string> answers;
+      for (const CsvRow& row : rowsOf(joined(benchOf(scene, methods), {"--threads", threads}))) {
+        answers.push_back(row.at("answers"));
+      }
+      EXPECT_EQ(answers, golden) << scene << ", threads " << threads;
+    }
+  }
+}
+
+TEST(Bench, CountsAreConsistentAndFrustumCullingIsTheBaseline) {
+  const std::vector<CsvRow> rows =
+      rowsOf(benchOf(kBenchCity, {"--no-cache", "--method", "occlusion-tree,depth-pyramid", "--occluders",
+                                  "area-angle,database"}));
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_EQ(rows[0].at("method"), "frustum");
+  EXPECT_EQ(numberOf(rows[0], "times_frustum_mean"), 1.0);
+  int advised = 0;
+  std::set<std::string> settings;
+  for (const CsvRow& row : rows) {
+    settings.insert(row.at("method") + row.at("options"));
+    EXPECT_LE(numberOf(row, "kept"), numberOf(rows[0], "kept"));
+    EXPECT_GE(numberOf(row, "kept") + numberOf(row, "missed"), numberOf(row, "witnessed"));
+    EXPECT_EQ(numberOf(row, "missed"), 0.0);
+    EXPECT_NEAR(numberOf(row, "overestimate_high"), numberOf(row, "kept") / numberOf(row, "witnessed"), 1e-6);
+    EXPECT_NEAR(numberOf(row, "overestimate_low"),
+                numberOf(row, "kept") / (numberOf(row, "witnessed") + numberOf(row, "undecided")), 1e-6);
+    EXPECT_EQ(row.at("frames"), "4");
+    EXPECT_EQ(row.at("rounds"), "2");
+    for (const std::string time : {"cull_us_median", "cull_us_mean", "cull_us_p99", "cpu_us_mean"}) {
+      EXPECT_LE(numberOf(row, time + "_low"), numberOf(row, time + "_high")) << time;
+      EXPECT_GE(numberOf(row, time + "_low"), 0.0) << time;
+    }
+    EXPECT_EQ(row.at("draw_us_mean"), "") << "nothing was drawn";
+    EXPECT_GT(numberOf(row, "hierarchy_bytes"), 0.0);
+    EXPECT_EQ(numberOf(row, "databases_bytes") > 0.0,
+              row.at("options").find("database") != std::string::npos);
+    advised += row.at("advised") == "1" ? 1 : 0;
+    EXPECT_TRUE(row.at("advised") == "0" || row.at("front") == "1");
+  }
+  EXPECT_EQ(advised, 1);
+  EXPECT_EQ(settings.size(), rows.size());
+}
+
+TEST(Bench, KeepsWhatCullKeeps) {
+  const json result =
+      parse(runTool(benchOf(kBenchCity, {"--no-cache", "--variant", "FSC", "--json", "-"})).out);
+  const json cull =
+      parse(runTool({"cull", kBenchCity, "--frames", "0:400:100", "--variant", "FSC", "--json", "-"}).out);
+  std::size_t kept = 0;
+  for (const json& frame : cull["frames"]) {
+    kept += frame["visible"].size();
+  }
+  ASSERT_EQ(result["scenes"][0]["runs"].size(), 2u);
+  EXPECT_EQ(result["scenes"][0]["runs"][1]["options"], cull["options"]);
+  EXPECT_EQ(result["scenes"][0]["runs"][1]["kept"], kept);
+}
+
+TEST(Bench, ColumnsAndKeysAreDescribed) {
+  const TemporaryFolder folder;
+  const Outcome outcome = runTool(
+      benchOf(kBenchCity, {"--no-cache", "--draw", "--csv", folder.file("bench.csv"), "--json", "-"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expectDocumented(parse(outcome.out), {"bench"});
+  std::set<std::string> words = wordsOfSection("## bench");
+  for (const std::string& column : csvLines(contents(folder.file("bench.csv"))).front()) {
+    const std::size_t end = std::min(column.rfind("_low"), column.rfind("_high"));
+    EXPECT_TRUE(words.contains(column) || (end != std::string::npos && words.contains(column.substr(0, end))))
+        << "docs/formats.md does not describe the column " << column;
+  }
+}
+
+TEST(Bench, ExactVisibilityIsKeptFromRunToRun) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> cached{"--cache", folder.file("cache"), "--json", "-"};
+  const std::vector<std::string> bench = benchOf(kBenchCity, cached);
+  const auto scene = [](const std::vector<std::string>& arguments) {
+    return parse(runTool(arguments).out)["scenes"][0];
+  };
+  const json first = scene(bench);
+  EXPECT_EQ(first["frames_from_cache"], 0);
+  const json second = scene(bench);
+  EXPECT_EQ(second["frames_from_cache"], 4);
+  for (const auto& entry : std::filesystem::directory_iterator(folder.file("cache"))) {
+    std::filesystem::resize_file(entry.path(), 20);
+  }
+  const json damaged = scene(bench);
+  EXPECT_EQ(damaged["frames_from_cache"], 0);
+  const json mended = scene(bench);
+  EXPECT_EQ(mended["frames_from_cache"], 4);
+  EXPECT_EQ(scene(benchOf(kBenchCity, cached, "0:400:50"))["frames_from_cache"], 4)
+      << "frames are kept by their views";
+  EXPECT_EQ(scene(benchOf("demo:city?copies=1&seed=2", cached))["frames_from_cache"], 0);
+  EXPECT_EQ(scene(joined(bench, {"--rays", "5"}))["frames_from_cache"], 0);
+  for (const json& other : {second, damaged, mended}) {
+    EXPECT_EQ(first["witnessed"], other["witnessed"]);
+    EXPECT_EQ(first["undecided"], other["undecided"]);
+  }
+}
+
+TEST(Bench, TheUsualCacheIsWhereTheEnvironmentSays) {
+  const TemporaryFolder folder;
+  const auto bench_in = [&](const std::string& variables, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"-c", "env -u XDG_CACHE_HOME -u HOME " + variables + " \"$0\" \"$@\"",
+                                   SIGHTLINE_TOOL};
+    return runProgram("/bin/sh", joined(words, benchOf(kBenchCity, joined({"--method", "frustum"}, more))));
+  };
+  EXPECT_EQ(bench_in("XDG_CACHE_HOME=" + folder.file("cache"), {}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("cache/sightline")));
+  EXPECT_EQ(bench_in("HOME=" + folder.file("home"), {}).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("home/.cache/sightline")));
+  const Outcome homeless = bench_in("A=1", {});
+  EXPECT_EQ(homeless.code, 0) << homeless.err;
+  EXPECT_EQ(homeless.err, "");
+  const Outcome no_folder = bench_in("HOME=/dev/null", {});
+  EXPECT_EQ(no_folder.code, 0);
+  EXPECT_NE(no_folder.err.find("is not kept"), std::string::npos) << no_folder.err;
+  const std::size_t before = folder.entries();
+  EXPECT_EQ(bench_in("HOME=" + folder.file("other"), {"--no-cache"}).code, 0);
+  EXPECT_EQ(folder.entries(), before);
+}
+
+TEST(Bench, WritesAReportOfAllScenes) {
+  const TemporaryFolder folder;
+  const std::string report = folder.file("new/report");
+  const Outcome outcome = runTool({"bench", kBenchCity, kBenchBuilding, "--frames", "0:400:200", "--width",
+                                   "64", "--height", "36", "--repeats", "1", "--no-cache", "-o", report});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("for " + kBenchCity + " use "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("for " + kBenchBuilding + " use "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" core "), std::string::npos) << outcome.out;
+  const std::string page = contents(report + "/index.html");
+  EXPECT_EQ(tool::firstMarkupError(page), "");
+  EXPECT_NE(page.find("demo:building?floors=1"), std::string::npos);
+  EXPECT_NE(page.find("--frames 0:400:200"), std::string::npos) << "the whole command line";
+  EXPECT_NE(page.find("advised"), std::string::npos);
+  EXPECT_EQ(parse(contents(report + "/bench.json"))["scenes"].size(), 2u);
+  EXPECT_EQ(csvRows(contents(report + "/bench.csv")).size(), 4u);
+}
+
+TEST(Bench, DrawsWhatIsKept) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  for (const CsvRow& row : rowsOf(benchOf(kBenchCity, {"--no-cache", "--draw"}))) {
+    EXPECT_GT(numberOf(row, "draw_us_mean"), 0.0);
+  }
+}
+
+TEST(Bench, ASettingIsMeasuredOnce) {
+  EXPECT_EQ(rowsOf(benchOf(kBenchCity, {"--no-cache", "--method", "frustum,occlusion-tree,frustum"})).size(),
+            2u);
+}
+
+TEST(Bench, BadUsageAndInputAreOneLine) {
+  const TemporaryFolder folder;
+  expectRefused({"bench"}, "SCENE");
+  expectRefused({"bench", ""}, "SCENE");
+  expectRefused({"bench", kBenchCity, folder.file("missing.glb")}, "missing.glb");
+  expectRefused({"bench", folder.write("cut.glb", "glTF")}, "cut.glb");
+  expectRefused({"bench", kBenchCity, kBenchCity}, "twice");
+  expectRefused({"bench", kBenchCity, "--method", "oclusion-tree"}, "did you mean 'occlusion-tree'?");
+  expectRefused({"bench", kBenchCity, "--frames", "9:3"}, "--frames");
+  expectRefused({"bench", kBenchCity, "--path", "nowhere"}, "nowhere");
+  expectRefused({"bench", kBenchCity, "--cache", "a", "--no-cache"}, "--cache");
+  expectRefused({"bench", kBenchCity, "--csv", "-", "--json", "-"}, "--csv");
+  expectRefused({"bench", kBenchCity, kBenchBuilding, "--baked", "F.sight"}, "--baked");
+  for (const std::string bad : {"0", "-1", "x", "", "99999999999"}) {
+    expectRefused({"bench", kBenchCity, "--repeats", bad}, "--repeats");
+  }
+}
+
+TEST(Bench, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("file", "old");
+  expectRefused(benchOf(kBenchCity, {"--no-cache", "--csv", folder.file("no/such/bench.csv")}), "bench.csv");
+  expectRefused(benchOf(kBenchCity, {"--no-cache", "--json", folder.file("")}), folder.file(""));
+  expectRefused(benchOf(kBenchCity, {"--no-cache", "-o", file}), "file");
+  expectRefused(benchOf(kBenchCity, {"--no-cache", "-o", file + "/below"}), "below");
+  expectRefused(benchOf(kBenchCity, {"--cache", file}), "--cache");
+  expectRefused(benchOf(kBenchCity, {"--cache", file + "/below"}), "--cache");
+  expectRefused(benchOf(kBenchCity, {"--no-cache", "--csv", file, "--json", file}), "--csv");
+  EXPECT_EQ(contents(file), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(Bench, OutputsAreNeverInputs) {
+  const TemporaryFolder folder;
+  const std::string triangle = "v 0 0 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 3\n";
+  const std::string path = R"({"frames":[{"eye":[0,0,0],"forward":[0,0,-1]}]})";
+  const std::string scene = folder.write("s.obj", triangle), walk = folder.write("bench.json", path);
+  const std::vector<std::string> bench{"bench", scene, "--path", walk, "--no-cache"};
+  for (const std::string& input : {scene, walk}) {
+    expectRefused(joined(bench, {"--csv", input}), "the input itself");
+    expectRefused(joined(bench, {"--json", input}), "the input itself");
+  }
+  expectRefused(joined(bench, {"-o", std::filesystem::path(scene).parent_path().string()}),
+                "the input itself");
+  EXPECT_EQ(contents(scene), triangle);
+  EXPECT_EQ(contents(walk), path);
+}
+
+}  // namespace
+}  // namespace sightline::tool_test

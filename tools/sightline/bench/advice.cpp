@@ -1,0 +1,122 @@
+#include "tools/sightline/bench/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/sightline/bench/bench_text.h"
+
+namespace sightline::tool {
+namespace {
+
+bool beats(const SettingRecord& a, const SettingRecord& b) {
+  const double time_a = a.cull.mean.value, time_b = b.cull.mean.value;
+  return a.kept <= b.kept && time_a <= time_b && (a.kept < b.kept || time_a < time_b);
+}
+
+// The front's extent: the fastest setting is the loosest one, and the tightest one the slowest.
+struct FrontEnds {
+  double fastest = 0.0, slowest = 0.0;   // logarithms of mean culling times
+  double loosest = 0.0, tightest = 0.0;  // logarithms of numbers of kept objects
+
+  // How far a setting is on the way from the fastest one to the tightest one, 0 to 1: in tightness, in time.
+  double gainOf(const SettingRecord& run) const { return share(loosest - logKept(run), loosest - tightest); }
+  double costOf(const SettingRecord& run) const { return share(logTime(run) - fastest, slowest - fastest); }
+
+  static double logTime(const SettingRecord& run) { return std::log(std::max(run.cull.mean.value, 1e-3)); }
+  static double logKept(const SettingRecord& run) {
+    return std::log(std::max(static_cast<double>(run.kept), 1.0));
+  }
+  static double share(double part, double all) { return all > 0.0 ? part / all : 0.0; }
+};
+
+FrontEnds endsOf(const BenchRecord& record) {
+  FrontEnds ends;
+  bool first = true;
+  for (const SettingRecord& run : record.runs) {
+    if (run.on_front) {
+      const double time = FrontEnds::logTime(run), kept = FrontEnds::logKept(run);
+      ends.fastest = first ? time : std::min(ends.fastest, time);
+      ends.slowest = first ? time : std::max(ends.slowest, time);
+      ends.loosest = first ? kept : std::max(ends.loosest, kept);
+      ends.tightest = first ? kept : std::min(ends.tightest, kept);
+      first = false;
+    }
+  }
+  return ends;
+}
+
+std::string nameOf(const SettingRecord& run) {
+  return fmt::format("{} ({})", methodName(run.setting), optionsText(run.setting));
+}
+
+// Why the setting with the least time of culling and drawing was chosen.
+std::string whyByDrawing(const BenchRecord& record, const SettingRecord& chosen) {
+  const SettingRecord& baseline = record.baseline();
+  return fmt::format(
+      "culling ({} ms) and drawing ({} ms) of a mean frame take {} ms together, less than with any other "
+      "setting "
+      "on the front; with frustum culling alone they take {} ms",
+      milliseconds(chosen.cull.mean.value), milliseconds(chosen.draw->mean.value),
+      milliseconds(chosen.meanFrameUs()), milliseconds(baseline.meanFrameUs()));
+}
+
+// Why the knee of the front was chosen.
+std::string whyByKnee(const BenchRecord& record, const SettingRecord& chosen) {
+  const SettingRecord& baseline = record.baseline();
+  const FrontEnds ends = endsOf(record);
+  const std::string kept = record.witnessed > 0
+                               ? fmt::format("{} objects for each visible one (frustum culling {})",
+                                             intervalText(record.overestimate(chosen)),
+                                             intervalText(record.overestimate(baseline)))
+                               : fmt::format("{} objects, none of which is visible (frustum culling {})",
+                                             chosen.kept, baseline.kept);
+  return fmt::format(
+      "it keeps {} in {} ms a frame (frustum culling {} ms); of the way from the fastest setting to the "
+      "tightest "
+      "one it has gone {:.0f} % in tightness for {:.0f} % in time, on logarithmic scales, which is the best "
+      "bargain; --draw weighs this against drawing",
+      kept, milliseconds(chosen.cull.mean.value), milliseconds(baseline.cull.mean.value),
+      100.0 * ends.gainOf(chosen), 100.0 * ends.costOf(chosen));
+}
+
+// The larger, the better the setting.
+double meritOf(const SettingRecord& run, const FrontEnds& ends) {
+  return run.draw ? -run.meanFrameUs() : ends.gainOf(run) - ends.costOf(run);
+}
+
+}  // namespace
+
+void markFront(BenchRecord& record) {
+  for (SettingRecord& run : record.runs) {
+    run.on_front = !run.setting.approximate() &&
+                   std::none_of(record.runs.begin(), record.runs.end(), [&run](const SettingRecord& other) {
+                     return !other.setting.approximate() && beats(other, run);
+                   });
+  }
+}
+
+Advice adviceFor(const BenchRecord& record) {
+  const FrontEnds ends = endsOf(record);
+  std::size_t best = 0;
+  for (std::size_t r = 0; r < record.runs.size(); ++r) {
+    const SettingRecord &run = record.runs[r], &known = record.runs[best];
+    const double merit = meritOf(run, ends), most = meritOf(known, ends);
+    // Of two that are equally good, as the two ends of a front are, the tighter one.
+    const bool better = merit > most || (merit == most && run.kept < known.kept);
+    if (run.on_front && (!known.on_front || better)) {
+      best = r;
+    }
+  }
+  const SettingRecord& chosen = record.runs[best];
+  std::string why = record.runs.size() == 1 ? "no other method was measured"
+                    : chosen.draw           ? whyByDrawing(record, chosen)
+                                            : whyByKnee(record, chosen);
+  if (best == 0 && record.runs.size() > 1) {
+    why += "; no occlusion test here pays for itself";
+  }
+  return {best, fmt::format("for {} use {}: {}.", record.scene_name, nameOf(chosen), why)};
+}
+
+}  // namespace sightline::tool

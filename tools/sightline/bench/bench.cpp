@@ -1,0 +1,382 @@
+// sightline bench: measures methods side by side on scenes, in one interleaved run, and says which one to
+// use.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "sightline/io/file.h"
+#include "tools/sightline/bench/advice.h"
+#include "tools/sightline/bench/bench_report.h"
+#include "tools/sightline/bench/bench_runs.h"
+#include "tools/sightline/bench/bench_text.h"
+#include "tools/sightline/bench/exact_cache.h"
+#include "tools/sightline/bench/machine.h"
+#include "tools/sightline/command_line/command_line.h"
+#include "tools/sightline/command_line/json_output.h"
+#include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/command_line/signals.h"
+#include "tools/sightline/command_line/stopwatch.h"
+#include "tools/sightline/command_line/threads.h"
+#include "tools/sightline/commands.h"
+#include "tools/sightline/methods/baseline.h"
+
+#define XXH_INLINE_ALL
+#include "src/pvs/format/checksum.h"
+
+namespace sightline::tool {
+namespace {
+
+// Files in the folder of the report.
+constexpr const char *kPage = "index.html", *kBenchJson = "bench.json", *kBenchCsv = "bench.csv";
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  OutputOptions output;
+  std::string csv, folder;
+  std::uint32_t threads = 1;
+  PathOptions path;
+  MethodOptions method;
+  PictureOptions picture;
+  std::uint32_t repeats = 5, rays = ExactSettings{}.rays;
+  bool draw = false;
+  std::string cache;  // empty: the usual folder
+  bool no_cache = false;
+  std::string command_line;
+
+  bool textOnStdout() const { return output.textOnStdout() && csv != "-"; }
+};
+
+struct BenchInput {
+  SceneAndWalk data;
+  double load_us = 0.0;
+};
+
+// The settings with the baseline in front, each once: rows of a table are known by their method and options.
+std::vector<Setting> distinctSettings(const std::vector<Setting>& settings) {
+  std::vector<Setting> distinct;
+  std::set<std::pair<std::string, std::string>> known;
+  for (const Setting& setting : withBaseline(settings)) {
+    if (known.emplace(methodName(setting), optionsText(setting)).second) {
+      distinct.push_back(setting);
+    }
+  }
+  return distinct;
+}
+
+// Loads all scenes before the work starts, so that errors show early.
+Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
+  std::vector<BenchInput> inputs;
+  for (const std::string& scene : options.scenes) {
+    Stopwatch watch;
+    Result<SceneAndWalk> input = loadSceneAndWalk(scene, options.path, options.method.baked);
+    if (!input) {
+      return input.error();
+    }
+    inputs.push_back({std::move(*input), watch.lap()});
+  }
+  return inputs;
+}
+
+std::vector<View> viewsOf(const Walk& walk, const Scene& scene) {
+  std::vector<View> views;
+  for (const std::uint32_t frame : walk.frames) {
+    views.push_back(walk.view(frame, scene));
+  }
+  return views;
+}
+
+std::uint64_t hashOf(const std::vector<View>& views) {
+  pvs::Checksum hash;
+  for (const View& view : views) {
+    hash.add(viewBytes(view));
+  }
+  return hash.value();
+}
+
+class Bench {
+ public:
+  Bench(const BenchOptions& options, const std::vector<Setting>& settings, const ExactCache& cache)
+      : options_(options), settings_(settings), cache_(cache), threads_(options.threads) {}
+
+  BenchRecord measure(const std::string& name, BenchInput& input) {
+    const Scene& scene = input.data.scene;
+    const Walk& walk = input.data.walk;
+    const std::vector<View> views = viewsOf(walk, scene);
+    BenchRecord record{.scene_name = name,
+                       .path_name = walk.path.name.empty() ? "unnamed" : walk.path.name,
+                       .scene = sceneId(scene.view()),
+                       .views = hashOf(views),
+                       .frames = views.size(),
+                       .rounds = options_.repeats,
+                       .load_us = input.load_us};
+    const PictureOptions size = pictureSize(options_.picture, walk.path);
+    const std::vector<ExactFrame> exact = exactFrames(scene, views, size, record);
+    run(input, views, exact, size, record);
+    markFront(record);
+    record.advice = adviceFor(record);
+    return record;
+  }
+
+ private:
+  // Exact visibility of all views, from the cache as far as it is there.
+  std::vector<ExactFrame> exactFrames(const Scene& scene, const std::vector<View>& views,
+                                      const PictureOptions& size, BenchRecord& record) {
+    const ExactSettings settings{size.width, size.height, options_.rays};
+    std::unique_ptr<ExactVisibility> oracle;  // made when the first view needs it
+    std::vector<ExactFrame> frames;
+    ProgressBar progress("exact visibility of " + record.scene_name);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const ExactKey key(record.scene, views[i], settings);
+      std::optional<ExactFrame> frame = cache_.find(key);
+      record.frames_from_cache += frame ? 1 : 0;
+      if (!frame) {
+        oracle = oracle ? std::move(oracle) : std::make_unique<ExactVisibility>(scene.view());
+        frame = exactFrame(*oracle, views[i], static_cast<std::uint32_t>(scene.objects.size()), settings,
+                           threads_.parallelFor());
+        keep(key, *frame);
+      }
+      record.witnessed += frame->witnessed.size();
+      record.undecided += frame->undecided.size();
+      frames.push_back(std::move(*frame));
+      progress.update(static_cast<double>(i + 1) / static_cast<double>(views.size()));
+    }
+    return frames;
+  }
+
+  // A cache that cannot be written does not change the results, so it is only said, once.
+  void keep(const ExactKey& key, const ExactFrame& frame) {
+    const Status kept = cache_.keep(key, frame);
+    if (!kept && !told_) {
+      fmt::print(stderr, "sightline: exact visibility is not kept: {}\n", kept.error().message);
+      told_ = true;
+    }
+  }
+
+  void run(BenchInput& input, const std::vector<View>& views, const std::vector<ExactFrame>& exact,
+           const PictureOptions& size, BenchRecord& record) {
+    const HeapGrowth growth;
+    Stopwatch watch;
+    CullingData data(input.data.scene, threads_.parallelFor(), input.data.walk, std::move(input.data.baked));
+    const PartCost occluders{watch.lap(), growth.bytes()};
+    std::vector<BenchRun> runs = makeBenchRuns(settings_, data, occluders);
+    warmUp(runs, views, exact);
+    {
+      const CorePin pin;
+      record.core = pin.core();
+      ProgressBar progress("culling " + record.scene_name);
+      measureCulling(runs, views, options_.repeats, [&](double done) { progress.update(done); });
+    }
+    if (options_.draw) {
+      draw(input.data.scene, runs, views, size, record);
+    }
+    data.noteUnknownSets();
+    for (BenchRun& run : runs) {
+      record.runs.push_back(std::move(run.record));
+    }
+  }
+
+  void draw(const Scene& scene, std::vector<BenchRun>& runs, const std::vector<View>& views,
+            const PictureOptions& size, BenchRecord& record) const {
+    Result<Renderer> renderer = Renderer::create(scene.view(), size.width, size.height);
+    if (!renderer) {
+      fmt::print(stderr, "sightline: nothing is drawn: {}\n", renderer.error().message);
+      return;
+    }
+    record.device = renderer->device();
+    ProgressBar progress("drawing " + record.scene_name);
+    measureDrawing(runs, views, options_.repeats, *renderer, [&](double done) { progress.update(done); });
+  }
+
+  const BenchOptions& options_;
+  const std::vector<Setting>& settings_;
+  const ExactCache& cache_;
+  Threads threads_;
+  bool told_ = false;
+};
+
+Status writeFolder(const BenchOptions& options, const std::vector<BenchRecord>& records) {
+  const std::string page = benchReport(records, options.command_line);
+  for (const Status& status : {writeFile(options.folder + "/" + kPage, page),
+                               writeOutput(options.folder + "/" + kBenchJson, benchJson(records)),
+                               writeOutput(options.folder + "/" + kBenchCsv, benchCsv(records))}) {
+    if (!status) {
+      return status;
+    }
+  }
+  return Success{};
+}
+
+Result<ExitCode> writeResults(const BenchOptions& options, const std::vector<BenchRecord>& records) {
+  const SignalGuard guard;  // writes all files or none
+  for (const Status& status :
+       {writeOutput(options.output.json, options.output.json.empty() ? "" : benchJson(records)),
+        writeOutput(options.csv, options.csv.empty() ? "" : benchCsv(records)),
+        options.folder.empty() ? Status(Success{}) : writeFolder(options, records)}) {
+    if (!status) {
+      return status.error();
+    }
+  }
+  if (options.textOnStdout()) {
+    for (const BenchRecord& record : records) {
+      fmt::print("{}{}{}\n\n", benchNotes(record), benchTable(record), record.advice.sentence);
+    }
+    if (!options.folder.empty()) {
+      fmt::print("report: {}\n", (std::filesystem::path(options.folder) / kPage).string());
+    }
+  }
+  return kOk;
+}
+
+Status checkFilesOf(const BenchOptions& options) {
+  CommandFiles files{.scenes = options.scenes,
+                     .outputs = {{"--json", options.output.json}, {"--csv", options.csv}},
+                     .folder = {"--output", options.folder, {kPage, kBenchJson, kBenchCsv}}};
+  for (const std::string& scene : options.scenes) {
+    for (const NamedFile& input : walkInputs(scene, options.path, options.method.baked)) {
+      files.inputs.push_back(input);
+    }
+  }
+  if (options.output.json == "-" && options.csv == "-") {
+    return Error{"--csv -: standard output has the JSON; name a file"};
+  }
+  if (options.scenes.size() > 1 && !options.method.baked.empty()) {
+    return Error{"--baked: a baked file is of one scene; give one SCENE"};
+  }
+  for (const std::string& scene : options.scenes) {
+    if (std::count(options.scenes.begin(), options.scenes.end(), scene) > 1) {
+      return Error{fmt::format("SCENE {}: is given twice; give it once", scene)};
+    }
+  }
+  return checkFiles(files);
+}
+
+// The cache in the folder that the options name, or in the usual one. If the usual one cannot be used, this
+// is only said on stderr.
+Result<ExactCache> openCache(const BenchOptions& options) {
+  if (options.no_cache) {
+    return ExactCache::open("");
+  }
+  if (!options.cache.empty()) {
+    Result<ExactCache> cache = ExactCache::open(options.cache);
+    return cache ? std::move(cache) : Result<ExactCache>(Error{"--cache " + cache.error().message});
+  }
+  Result<ExactCache> usual = ExactCache::open(ExactCache::usualFolder());
+  if (usual) {
+    return usual;
+  }
+  fmt::print(stderr, "sightline: exact visibility is not kept: {}\n", usual.error().message);
+  return ExactCache::open("");
+}
+
+Result<ExitCode> runBench(const BenchOptions& options) {
+  const Result<std::vector<Setting>> chosen = settingsOf(options.method);
+  if (!chosen) {
+    return chosen.error();
+  }
+  if (const Status ok = checkFilesOf(options); !ok) {
+    return ok.error();
+  }
+  Result<std::vector<BenchInput>> inputs = loadInputs(options);
+  if (!inputs) {
+    return inputs.error();
+  }
+  const Result<ExactCache> cache = openCache(options);
+  if (!cache) {
+    return cache.error();
+  }
+  if (const Status made = options.folder.empty() ? Status(Success{}) : makeFolder(options.folder); !made) {
+    return made.error();
+  }
+  const std::vector<Setting> settings = distinctSettings(*chosen);
+  Bench bench(options, settings, *cache);
+  std::vector<BenchRecord> records;
+  for (std::size_t i = 0; i < inputs->size(); ++i) {
+    records.push_back(bench.measure(options.scenes[i], (*inputs)[i]));
+    (*inputs)[i].data = {};  // its memory is of use to the next scene
+  }
+  return writeResults(options, records);
+}
+
+void addBenchOptions(CLI::App& command, BenchOptions& options) {
+  command
+      .add_option(
+          "SCENE", options.scenes,
+          "a file (.glb .gltf .obj .ply .stl ...) or demo:NAME?key=value&...; several: one after the other")
+      ->required()
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
+  addOutputOptions(command, options.output);
+  command
+      .add_option("--csv", options.csv,
+                  "write a row for each scene and setting to this file; - is standard output")
+      ->type_name(kFileType);
+  command
+      .add_option("-o,--output", options.folder,
+                  "folder of the report index.html, with bench.json and bench.csv; made if needed")
+      ->type_name(kFolderType)
+      ->check(isNotEmpty());
+  addThreadsOption(command, options.threads);
+  command.get_option("--threads")
+      ->description("threads to prepare and to find exact visibility; culling has one");
+  addPathOptions(command, options.path);
+  addMethodOptions(command, options.method, true);
+  command
+      .add_option("--repeats", options.repeats,
+                  "rounds along the path, after a first one that is not measured")
+      ->check(CLI::Range(1u, 10000u))
+      ->capture_default_str();
+  command.add_flag("--draw", options.draw, "measure drawing as well, with headless OpenGL");
+  addPictureOptions(command, options.picture);
+  command
+      .add_option(
+          "--rays", options.rays,
+          "for exact visibility: rays aimed at each object, and beside each one's edges, in addition to one "
+          "for each pixel of a picture")
+      ->check(CLI::Range(0u, 4096u))
+      ->capture_default_str();
+  command
+      .add_option("--cache", options.cache,
+                  "folder in which exact visibility is kept for later runs; made if needed (default: "
+                  "$XDG_CACHE_HOME/sightline or ~/.cache/sightline)")
+      ->type_name(kFolderType)
+      ->check(isNotEmpty());
+  command.add_flag("--no-cache", options.no_cache, "neither read nor keep exact visibility")
+      ->excludes(command.get_option("--cache"));
+}
+
+}  // namespace
+
+void addBench(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "bench", "measures methods side by side and says which one to use: time, tightness, memory");
+  const auto options = std::make_shared<BenchOptions>();
+  addBenchOptions(*command, *options);
+  command->footer(
+      "All settings cull each frame one after the other, in an order that changes, on one core; view-frustum "
+      "culling is always among them.\n"
+      "kept/exact: objects kept for each exactly visible one, over all frames. front: no other setting is "
+      "faster "
+      "and keeps no more. /frustum: mean time divided by that of view-frustum culling. cpu: the thread's own "
+      "processor time. answers: hash of the objects kept, the same on every machine.\n"
+      "Examples:\n"
+      "  sightline bench demo:city\n"
+      "  sightline bench demo:city demo:building --method occlusion-tree,depth-pyramid --occluder-count "
+      "16,64,256 "
+      "-o report\n"
+      "  sightline bench city.glb --path walk.json --draw --csv city.csv\n"
+      "  sightline bench demo:ship --baked ship.sight --method visibility-octree,depth-pyramid "
+      "--visible-sets on,off\n"
+      "  sightline bench demo:building --occluders area-angle,database --frames 0:400:10 --repeats 9 --json "
+      "-");
+  command->callback([options, command, &chosen] {
+    options->command_line = commandLine(*command);
+    chosen = [options] { return runBench(*options); };
+  });
+}
+
+}  // namespace sightline::tool
