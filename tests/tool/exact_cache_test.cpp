@@ -1,4 +1,4 @@
-#include "tools/sightline/bench/exact_cache.h"
+#include "tools/sightline/exact/exact_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,9 @@ ExactKey keyOf(const SceneId& scene = kSceneOfTen, const View& view = {},
   return {scene, view, settings};
 }
 
-ExactFrame frameOf(const std::vector<std::uint32_t>& witnessed, const std::vector<std::uint32_t>& undecided) {
-  ExactFrame frame;
+ExactObjects frameOf(const std::vector<std::uint32_t>& witnessed,
+                     const std::vector<std::uint32_t>& undecided) {
+  ExactObjects frame;
   for (const std::uint32_t id : witnessed) {
     frame.witnessed.push_back(ObjectId(id));
   }
@@ -39,7 +40,7 @@ TEST(ExactCache, GivesBackWhatWasKept) {
   const Result<ExactCache> cache = ExactCache::open(folder.file("made/now"));
   ASSERT_TRUE(cache);
   EXPECT_FALSE(cache->find(keyOf()));
-  for (const ExactFrame& frame : {frameOf({0, 3, 9}, {4}), frameOf({}, {}), frameOf({}, {0, 9})}) {
+  for (const ExactObjects& frame : {frameOf({0, 3, 9}, {4}), frameOf({}, {}), frameOf({}, {0, 9})}) {
     ASSERT_TRUE(cache->keep(keyOf(), frame));
     EXPECT_EQ(cache->find(keyOf()), frame);
     EXPECT_EQ(ExactCache::open(cache->folder())->find(keyOf()), frame) << "in another run";
@@ -71,9 +72,13 @@ TEST(ExactCache, AnythingThatTheAnswerDependsOnIsPartOfTheKey) {
   for (const View& view : {moved, turned, wide, far, near, parallel}) {
     EXPECT_FALSE(cache->find(keyOf(kSceneOfTen, view)));
   }
-  ExactSettings more;
-  more.rays += 1;
-  EXPECT_FALSE(cache->find(keyOf(kSceneOfTen, {}, more)));
+  for (std::uint32_t ExactSettings::*number :
+       {&ExactSettings::width, &ExactSettings::height, &ExactSettings::aimed_rays, &ExactSettings::edge_rays,
+        &ExactSettings::steps}) {
+    ExactSettings more;
+    more.*number += 1;
+    EXPECT_FALSE(cache->find(keyOf(kSceneOfTen, {}, more)));
+  }
   EXPECT_TRUE(cache->find(keyOf()));
 }
 
@@ -81,7 +86,7 @@ TEST(ExactCache, IgnoresDamagedFilesAndWritesThemAnew) {
   const TemporaryFolder folder;
   const Result<ExactCache> cache = ExactCache::open(folder.file("cache"));
   ASSERT_TRUE(cache);
-  const ExactFrame frame = frameOf({0, 3}, {4});
+  const ExactObjects frame = frameOf({0, 3}, {4});
   ASSERT_TRUE(cache->keep(keyOf(), frame));
   const std::string name = onlyFile(folder.file("cache"));
   const std::string whole = tool_test::contents(name);
@@ -106,8 +111,8 @@ TEST(ExactCache, IgnoresListsThatAreNoAnswer) {
   const TemporaryFolder folder;
   const Result<ExactCache> cache = ExactCache::open(folder.file("cache"));
   ASSERT_TRUE(cache);
-  for (const ExactFrame& frame : {frameOf({3, 1}, {}), frameOf({1, 1}, {}), frameOf({10}, {}),
-                                  frameOf({}, {10}), frameOf({1, 2}, {2})}) {
+  for (const ExactObjects& frame : {frameOf({3, 1}, {}), frameOf({1, 1}, {}), frameOf({10}, {}),
+                                    frameOf({}, {10}), frameOf({1, 2}, {2})}) {
     ASSERT_TRUE(cache->keep(keyOf(), frame));
     EXPECT_FALSE(cache->find(keyOf()));
   }

@@ -14,7 +14,6 @@
 #include "tools/sightline/bench/bench_report.h"
 #include "tools/sightline/bench/bench_runs.h"
 #include "tools/sightline/bench/bench_text.h"
-#include "tools/sightline/bench/exact_cache.h"
 #include "tools/sightline/bench/machine.h"
 #include "tools/sightline/command_line/command_line.h"
 #include "tools/sightline/command_line/json_output.h"
@@ -23,6 +22,7 @@
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/exact/exact_cache.h"
 #include "tools/sightline/methods/baseline.h"
 
 #define XXH_INLINE_ALL
@@ -42,7 +42,7 @@ struct BenchOptions {
   PathOptions path;
   MethodOptions method;
   PictureOptions picture;
-  std::uint32_t repeats = 5, rays = ExactSettings{}.rays;
+  std::uint32_t repeats = 5, steps = 1000;
   bool draw = false;
   std::string cache;  // empty: the usual folder
   bool no_cache = false;
@@ -115,7 +115,7 @@ class Bench {
                        .rounds = options_.repeats,
                        .load_us = input.load_us};
     const PictureOptions size = pictureSize(options_.picture, walk.path);
-    const std::vector<ExactFrame> exact = exactFrames(scene, views, size, record);
+    const std::vector<ExactObjects> exact = exactFrames(scene, views, size, record);
     run(input, views, exact, size, record);
     markFront(record);
     record.advice = adviceFor(record);
@@ -124,20 +124,20 @@ class Bench {
 
  private:
   // Exact visibility of all views, from the cache as far as it is there.
-  std::vector<ExactFrame> exactFrames(const Scene& scene, const std::vector<View>& views,
-                                      const PictureOptions& size, BenchRecord& record) {
-    const ExactSettings settings{size.width, size.height, options_.rays};
+  std::vector<ExactObjects> exactFrames(const Scene& scene, const std::vector<View>& views,
+                                        const PictureOptions& size, BenchRecord& record) {
+    const ExactSettings settings{.width = size.width, .height = size.height, .steps = options_.steps};
     std::unique_ptr<ExactVisibility> oracle;  // made when the first view needs it
-    std::vector<ExactFrame> frames;
+    std::vector<ExactObjects> frames;
     ProgressBar progress("exact visibility of " + record.scene_name);
     for (std::size_t i = 0; i < views.size(); ++i) {
       const ExactKey key(record.scene, views[i], settings);
-      std::optional<ExactFrame> frame = cache_.find(key);
+      std::optional<ExactObjects> frame = cache_.find(key);
       record.frames_from_cache += frame ? 1 : 0;
       if (!frame) {
         oracle = oracle ? std::move(oracle) : std::make_unique<ExactVisibility>(scene.view());
-        frame = exactFrame(*oracle, views[i], static_cast<std::uint32_t>(scene.objects.size()), settings,
-                           threads_.parallelFor());
+        const auto object_count = static_cast<std::uint32_t>(scene.objects.size());
+        frame = objectsOf(exactFrame(*oracle, views[i], object_count, settings, threads_.parallelFor()));
         keep(key, *frame);
       }
       record.witnessed += frame->witnessed.size();
@@ -149,7 +149,7 @@ class Bench {
   }
 
   // A cache that cannot be written does not change the results, so it is only said, once.
-  void keep(const ExactKey& key, const ExactFrame& frame) {
+  void keep(const ExactKey& key, const ExactObjects& frame) {
     const Status kept = cache_.keep(key, frame);
     if (!kept && !told_) {
       fmt::print(stderr, "sightline: exact visibility is not kept: {}\n", kept.error().message);
@@ -157,7 +157,7 @@ class Bench {
     }
   }
 
-  void run(BenchInput& input, const std::vector<View>& views, const std::vector<ExactFrame>& exact,
+  void run(BenchInput& input, const std::vector<View>& views, const std::vector<ExactObjects>& exact,
            const PictureOptions& size, BenchRecord& record) {
     const HeapGrowth growth;
     Stopwatch watch;
@@ -211,6 +211,22 @@ Status writeFolder(const BenchOptions& options, const std::vector<BenchRecord>& 
   return Success{};
 }
 
+// Says on stderr which settings have culled visible objects although they are not approximate. Returns true
+// if there are none.
+bool noneMissed(const std::vector<BenchRecord>& records) {
+  bool none = true;
+  for (const BenchRecord& record : records) {
+    for (const SettingRecord& run : record.runs) {
+      if (run.missed > 0 && !run.setting.approximate()) {
+        fmt::print(stderr, "sightline: {}: {} ({}) has culled {} visible objects; see: sightline verify\n",
+                   record.scene_name, methodName(run.setting), optionsText(run.setting), run.missed);
+        none = false;
+      }
+    }
+  }
+  return none;
+}
+
 Result<ExitCode> writeResults(const BenchOptions& options, const std::vector<BenchRecord>& records) {
   const SignalGuard guard;  // writes all files or none
   for (const Status& status :
@@ -229,7 +245,7 @@ Result<ExitCode> writeResults(const BenchOptions& options, const std::vector<Ben
       fmt::print("report: {}\n", (std::filesystem::path(options.folder) / kPage).string());
     }
   }
-  return kOk;
+  return noneMissed(records) ? kOk : kCheckFailed;
 }
 
 Status checkFilesOf(const BenchOptions& options) {
@@ -302,6 +318,18 @@ Result<ExitCode> runBench(const BenchOptions& options) {
   return writeResults(options, records);
 }
 
+// Unless told otherwise, all methods that need no baked file, with few, some and many occluders.
+void setUsualMethods(MethodOptions& options) {
+  std::string methods;
+  for (const Method& method : allMethods()) {
+    if (method.traits.sets != SetUse::kAlways) {
+      methods += (methods.empty() ? "" : ",") + std::string(method.name);
+    }
+  }
+  options.set("method", methods);
+  options.set("occluder-count", "16,64,256");
+}
+
 void addBenchOptions(CLI::App& command, BenchOptions& options) {
   command
       .add_option(
@@ -324,6 +352,7 @@ void addBenchOptions(CLI::App& command, BenchOptions& options) {
   command.get_option("--threads")
       ->description("threads to prepare and to find exact visibility; culling has one");
   addPathOptions(command, options.path);
+  setUsualMethods(options.method);
   addMethodOptions(command, options.method, true);
   command
       .add_option("--repeats", options.repeats,
@@ -333,11 +362,9 @@ void addBenchOptions(CLI::App& command, BenchOptions& options) {
   command.add_flag("--draw", options.draw, "measure drawing as well, with headless OpenGL");
   addPictureOptions(command, options.picture);
   command
-      .add_option(
-          "--rays", options.rays,
-          "for exact visibility: rays aimed at each object, and beside each one's edges, in addition to one "
-          "for each pixel of a picture")
-      ->check(CLI::Range(0u, 4096u))
+      .add_option("--proof-steps", options.steps,
+                  "steps after which an object that is neither seen nor proved hidden is left undecided")
+      ->check(CLI::Range(0u, 1000000000u))
       ->capture_default_str();
   command
       .add_option("--cache", options.cache,
@@ -358,7 +385,8 @@ void addBench(CLI::App& app, Command& chosen) {
   addBenchOptions(*command, *options);
   command->footer(
       "All settings cull each frame one after the other, in an order that changes, on one core; view-frustum "
-      "culling is always among them.\n"
+      "culling is always among them. Exit code 1 when a setting that is not approximate culled a visible "
+      "object.\n"
       "kept/exact: objects kept for each exactly visible one, over all frames. front: no other setting is "
       "faster "
       "and keeps no more. /frustum: mean time divided by that of view-frustum culling. cpu: the thread's own "

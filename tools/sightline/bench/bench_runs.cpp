@@ -117,7 +117,7 @@ std::vector<BenchRun> makeBenchRuns(const std::vector<Setting>& settings, Cullin
 }
 
 void warmUp(std::vector<BenchRun>& runs, const std::vector<View>& views,
-            const std::vector<ExactFrame>& exact) {
+            const std::vector<ExactObjects>& exact) {
   for (BenchRun& run : runs) {
     SettingRecord& record = run.record;
     pvs::Checksum answers;

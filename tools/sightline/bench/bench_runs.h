@@ -7,7 +7,7 @@
 
 #include "sightline/render/renderer.h"
 #include "tools/sightline/bench/bench_record.h"
-#include "tools/sightline/bench/exact_frame.h"
+#include "tools/sightline/exact/exact_frame.h"
 #include "tools/sightline/input/load.h"
 
 namespace sightline::tool {
@@ -30,7 +30,7 @@ using Done = std::function<void(double)>;
 // Walks through all views once with every setting, without measuring times. Notes what was kept, and the
 // memory that each method has allocated. exact: one for each view.
 void warmUp(std::vector<BenchRun>& runs, const std::vector<View>& views,
-            const std::vector<ExactFrame>& exact);
+            const std::vector<ExactObjects>& exact);
 
 // Walks through all views `rounds` times. All settings cull a view one after the other. The setting that
 // begins changes from view to view, and their order is turned round from round to round, so that drift of the

@@ -15,7 +15,10 @@ struct Threads::Pool {
   tbb::task_arena arena;
 };
 
-Threads::Threads(std::uint32_t count) : pool_(count > 1 ? std::make_unique<Pool>(count) : nullptr) {}
+Threads::Threads(std::uint32_t count) : pool_(count > 1 ? std::make_unique<Pool>(count) : nullptr) {
+  // Starts the threads now: Embree's devices for one thread let oneTBB start none afterwards.
+  parallelFor()(count, [](std::uint32_t, std::uint32_t) {});
+}
 Threads::~Threads() = default;
 
 ParallelFor Threads::parallelFor() const {

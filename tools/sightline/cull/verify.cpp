@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 
 #include "oracle/exact_visibility.h"
@@ -14,6 +13,7 @@
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/exact/exact_frame.h"
 #include "tools/sightline/input/load.h"
 
 namespace sightline::tool {
@@ -30,27 +30,15 @@ struct VerifyOptions {
   std::uint32_t gap_steps = 16, proof_steps = 20000;
   bool proof = false;
 
-  // Steps in which one object that no ray has reached is to be found through a gap or proved hidden.
-  std::uint32_t steps() const { return proof ? proof_steps : gap_steps; }
+  ExactSettings exact() const {
+    return {width, height, aimed_rays, edge_rays, proof ? proof_steps : gap_steps};
+  }
 };
 
-enum class By : std::uint8_t { kPixel, kAimedRay, kGap };
-
-std::string nameOf(By by) {
-  return by == By::kPixel ? "pixel" : by == By::kAimedRay ? "aimed ray" : "gap";
-}
-
-// An object that a ray reached. It is a false cull if the culler said that it is hidden.
-struct Sighting {
-  Witness witness;
+// An object that was culled although it is visible.
+struct FalseCull {
+  Sighting sighting;
   std::uint32_t frame = 0;
-  By by = By::kPixel;
-};
-
-// What is known of each object in one frame, in exact arithmetic.
-struct ExactFrame {
-  std::map<ObjectId, Sighting> visible;
-  std::vector<ObjectId> undecided;  // ascending; all others are proved hidden
 };
 
 struct FrameCounts {
@@ -63,7 +51,7 @@ struct VerifyRun {
   Setting setting;
   Culler culler;
   std::vector<FrameCounts> frames;
-  std::vector<Sighting> false_culls;
+  std::vector<FalseCull> false_culls;
 
   FrameCounts total() const {
     FrameCounts sum;
@@ -98,9 +86,8 @@ class Verifier {
     for (VerifyRun& run : runs) {
       run.culler.cull(view_);
     }
-    exact_ = {};
-    castRays();
-    decideTheRest();
+    exact_ = exactFrame(oracle_, view_, static_cast<std::uint32_t>(scene_.objects.size()), options_.exact(),
+                        parallel_for_);
     of_frame.push_back({exact_.visible.size(), exact_.undecided.size()});
     total.visible += exact_.visible.size();
     total.undecided += exact_.undecided.size();
@@ -113,55 +100,6 @@ class Verifier {
   ExactCounts total;
 
  private:
-  // Rays through pixels, along the silhouettes of what they show, and at all that they do not show.
-  void castRays() {
-    note(oracle_.visibleThroughPixels(view_, options_.width, options_.height, parallel_for_), By::kPixel);
-    std::vector<ObjectId> seen;
-    for (const auto& [object, sighting] : exact_.visible) {
-      seen.push_back(object);
-    }
-    note(oracle_.visibleBesideEdges(view_, seen, options_.edge_rays, parallel_for_), By::kAimedRay);
-    note(oracle_.visibleByAimedRays(view_, notSeen(), options_.aimed_rays, parallel_for_), By::kAimedRay);
-  }
-
-  // Notes what rays have reached, if exact arithmetic confirms it.
-  void note(const std::vector<Witness>& witnesses, By by) {
-    std::vector<std::uint8_t> confirmed(witnesses.size());
-    parallel_for_(static_cast<std::uint32_t>(witnesses.size()), [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t i = begin; i < end; ++i) {
-        confirmed[i] = !exact_.visible.contains(witnesses[i].object) && oracle_.confirm(view_, witnesses[i]);
-      }
-    });
-    for (std::size_t i = 0; i < witnesses.size(); ++i) {
-      if (confirmed[i] != 0) {
-        exact_.visible.emplace(witnesses[i].object, Sighting{witnesses[i], frame_, by});
-      }
-    }
-  }
-
-  std::vector<ObjectId> notSeen() const {
-    std::vector<ObjectId> objects;
-    for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
-      if (!exact_.visible.contains(ObjectId(o))) {
-        objects.push_back(ObjectId(o));
-      }
-    }
-    return objects;
-  }
-
-  // Looks through the gaps that nearer surfaces leave, or proves that there is none.
-  void decideTheRest() {
-    const std::vector<ObjectId> objects = notSeen();
-    const std::vector<Decision> decisions = oracle_.decide(view_, objects, options_.steps(), parallel_for_);
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (decisions[i].verdict == Verdict::kVisible) {
-        exact_.visible.emplace(objects[i], Sighting{decisions[i].witness, frame_, By::kGap});
-      } else if (decisions[i].verdict == Verdict::kUndecided) {
-        exact_.undecided.push_back(objects[i]);
-      }
-    }
-  }
-
   void judge(VerifyRun& run) {
     const std::span<const ObjectId> kept = run.culler.visible();
     const auto isCulled = [&](ObjectId object) {
@@ -173,7 +111,7 @@ class Verifier {
     counts.proved = counts.culled - counts.undecided;
     for (const auto& [object, sighting] : exact_.visible) {
       if (isCulled(object)) {
-        run.false_culls.push_back(sighting);
+        run.false_culls.push_back({sighting, frame_});
         counts.proved -= 1;
       }
     }
@@ -201,13 +139,13 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
                       {"proved", run.frames[i].proved},
                       {"undecided", run.frames[i].undecided}});
   }
-  for (const Sighting& wrong : run.false_culls) {
-    const Vec3d point = wrong.witness.point + scene.origin;
-    witnesses.push_back({{"object", wrong.witness.object.value},
-                         {"name", scene.object_names[wrong.witness.object.value]},
+  for (const FalseCull& wrong : run.false_culls) {
+    const Vec3d point = wrong.sighting.witness.point + scene.origin;
+    witnesses.push_back({{"object", wrong.sighting.witness.object.value},
+                         {"name", scene.object_names[wrong.sighting.witness.object.value]},
                          {"frame", wrong.frame},
                          {"point", {point.x, point.y, point.z}},
-                         {"by", nameOf(wrong.by)}});
+                         {"by", nameOf(wrong.sighting.by)}});
   }
   const double overestimate = run.overestimate(verifier.total.visible),
                at_least = run.overestimate(verifier.total.visible + verifier.total.undecided);
@@ -238,13 +176,13 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
   std::size_t total = 0, listed = 0;
   for (const VerifyRun& run : runs) {
     total += run.false_culls.size();
-    for (const Sighting& wrong : run.false_culls) {
+    for (const FalseCull& wrong : run.false_culls) {
       if (listed < kMaxListed) {
-        const Vec3d point = wrong.witness.point + scene.origin;
+        const Vec3d point = wrong.sighting.witness.point + scene.origin;
         fmt::print("false cull: object {} '{}' in frame {}, seen at {:.6f} {:.6f} {:.6f} ({}); {} ({})\n",
-                   wrong.witness.object.value, scene.object_names[wrong.witness.object.value], wrong.frame,
-                   point.x, point.y, point.z, nameOf(wrong.by), methodName(run.setting),
-                   optionsText(run.setting));
+                   wrong.sighting.witness.object.value,
+                   scene.object_names[wrong.sighting.witness.object.value], wrong.frame, point.x, point.y,
+                   point.z, nameOf(wrong.sighting.by), methodName(run.setting), optionsText(run.setting));
         listed += 1;
       }
     }

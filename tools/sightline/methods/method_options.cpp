@@ -433,6 +433,10 @@ MethodOptions::MethodOptions() {
   }
 }
 
+void MethodOptions::set(std::string_view name, std::string text) {
+  texts[static_cast<std::size_t>(&optionNamed(name) - allOptions().data())] = std::move(text);
+}
+
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
     const Option& option = allOptions()[i];

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sightline/base/result.h"
@@ -62,6 +63,9 @@ std::unique_ptr<CullingMethod> makeMethod(const Setting& setting);
 // The options as text, one element per option; several values are separated by commas.
 struct MethodOptions {
   MethodOptions();  // the library's defaults
+
+  // name: of an option, without "--". Precondition: there is one.
+  void set(std::string_view name, std::string text);
 
   std::vector<std::string> texts;
   std::string baked;  // a .sight file; empty: none

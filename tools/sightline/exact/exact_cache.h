@@ -11,14 +11,14 @@
 #include "sightline/base/result.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "sightline/scene/camera.h"
-#include "tools/sightline/bench/exact_frame.h"
+#include "tools/sightline/exact/exact_frame.h"
 
 namespace sightline::tool {
 
 // The numbers of a view, as bytes that are the same on every machine.
 std::vector<std::byte> viewBytes(const View& view);
 
-// Everything that an ExactFrame depends on: the scene, the view, the settings and kExactFrameVersion.
+// Everything that an ExactObjects depends on: the scene, the view, the settings and kExactFrameVersion.
 struct ExactKey {
   ExactKey(const SceneId& scene, const View& view, const ExactSettings& settings);
 
@@ -35,9 +35,9 @@ class ExactCache {
   static std::string usualFolder();
 
   // Returns what was kept under the key. A file that is damaged or of another key counts as none.
-  std::optional<ExactFrame> find(const ExactKey& key) const;
+  std::optional<ExactObjects> find(const ExactKey& key) const;
   // Writes the file whole or not at all, over one that is there.
-  Status keep(const ExactKey& key, const ExactFrame& frame) const;
+  Status keep(const ExactKey& key, const ExactObjects& frame) const;
 
   const std::string& folder() const { return folder_; }
 

@@ -1,7 +1,7 @@
 // A file: magic, length of the key, the key, numbers of witnessed and undecided objects, their ids, checksum
 // of all before it. Little-endian.
 
-#include "tools/sightline/bench/exact_cache.h"
+#include "tools/sightline/exact/exact_cache.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -55,7 +55,7 @@ bool haveNoneInCommon(const std::vector<std::uint32_t>& a, const std::vector<std
   return common.empty();
 }
 
-std::string encode(const ExactKey& key, const ExactFrame& frame) {
+std::string encode(const ExactKey& key, const ExactObjects& frame) {
   base::ByteWriter writer;
   writer.add(kExactMagic);
   writer.add(static_cast<std::uint64_t>(key.bytes.size()));
@@ -72,7 +72,7 @@ std::string encode(const ExactKey& key, const ExactFrame& frame) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::optional<ExactFrame> decode(const ExactKey& key, std::string_view text) {
+std::optional<ExactObjects> decode(const ExactKey& key, std::string_view text) {
   const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
   constexpr std::size_t kSum = sizeof(std::uint64_t);
   if (bytes.size() < kSum) {
@@ -95,7 +95,7 @@ std::optional<ExactFrame> decode(const ExactKey& key, std::string_view text) {
       !haveNoneInCommon(witnessed, undecided)) {
     return {};
   }
-  return ExactFrame{idsOf(witnessed), idsOf(undecided)};
+  return ExactObjects{idsOf(witnessed), idsOf(undecided)};
 }
 
 }  // namespace
@@ -120,7 +120,8 @@ ExactKey::ExactKey(const SceneId& scene, const View& view, const ExactSettings& 
   for (const std::uint64_t number : {scene.hash, scene.objects, scene.triangles}) {
     writer.add(number);
   }
-  for (const std::uint32_t number : {kExactFrameVersion, settings.width, settings.height, settings.rays}) {
+  for (const std::uint32_t number : {kExactFrameVersion, settings.width, settings.height, settings.aimed_rays,
+                                     settings.edge_rays, settings.steps}) {
     writer.add(number);
   }
   writer.addBytes(viewBytes(view));
@@ -154,15 +155,15 @@ std::string ExactCache::fileOf(const ExactKey& key) const {
   return fmt::format("{}/{:016x}.exact", folder_, pvs::checksumOf(key.bytes));
 }
 
-std::optional<ExactFrame> ExactCache::find(const ExactKey& key) const {
+std::optional<ExactObjects> ExactCache::find(const ExactKey& key) const {
   if (folder_.empty()) {
     return {};
   }
   const Result<std::string> text = readFile(fileOf(key));
-  return text ? decode(key, *text) : std::optional<ExactFrame>();
+  return text ? decode(key, *text) : std::optional<ExactObjects>();
 }
 
-Status ExactCache::keep(const ExactKey& key, const ExactFrame& frame) const {
+Status ExactCache::keep(const ExactKey& key, const ExactObjects& frame) const {
   return folder_.empty() ? Status(Success{}) : saveFile(fileOf(key), encode(key, frame));
 }
 
