@@ -113,7 +113,9 @@ TEST(Bench, ColumnsAndKeysAreDescribed) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   expectDocumented(parse(outcome.out), {"bench"});
   std::set<std::string> words = wordsOfSection("## bench");
-  for (const std::string& column : csvLines(contents(folder.file("bench.csv"))).front()) {
+  const std::vector<std::vector<std::string>> lines = csvLines(contents(folder.file("bench.csv")));
+  ASSERT_FALSE(lines.empty());
+  for (const std::string& column : lines.front()) {
     const std::size_t end = std::min(column.rfind("_low"), column.rfind("_high"));
     EXPECT_TRUE(words.contains(column) || (end != std::string::npos && words.contains(column.substr(0, end))))
         << "docs/formats.md does not describe the column " << column;

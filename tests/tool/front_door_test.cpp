@@ -8,7 +8,7 @@
 namespace sightline::tool_test {
 namespace {
 
-const std::vector<std::string> kCommands{"info", "walk",  "cull",   "verify", "reproduce",
+const std::vector<std::string> kCommands{"info", "walk",  "cull",   "verify", "bench",  "reproduce",
                                          "bake", "query", "layers", "help",   "version"};
 
 TEST(FrontDoor, ListsTheCommandsWithoutBeingAskedFurther) {
@@ -141,6 +141,8 @@ TEST(FrontDoor, BashCompletesCommandsOptionsWordsAndFiles) {
   EXPECT_EQ(completed({"walk", "demo:city", "--method", "frustum,de"}), Words{"frustum,depth-pyramid"});
   EXPECT_EQ(completed({"reproduce", "s"}), (Words{"saona-vazquez", "snyder-lengyel"}));
   EXPECT_EQ(completed({"help", "qu"}), Words{"query"});
+  EXPECT_EQ(completed({"be"}), Words{"bench"});
+  EXPECT_EQ(completed({"bench", "demo:city", "--no-c"}), Words{"--no-cache"});
   EXPECT_EQ(completed({"cull", "demo:city", "--frames", ""}), Words{""});
   const TemporaryFolder folder;
   const std::string scene = folder.write("a scene.glb", "");

@@ -10,7 +10,7 @@ const std::string kCity = "demo:city?copies=1";
 TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
   EXPECT_EQ(runTool({"--help"}).code, 0);
   EXPECT_EQ(runTool({"--version"}).code, 0);
-  for (const std::string command : {"info", "walk", "cull", "verify", "reproduce"}) {
+  for (const std::string command : {"info", "walk", "cull", "verify", "bench", "reproduce"}) {
     const Outcome outcome = runTool({command, "--help"});
     EXPECT_EQ(outcome.code, 0) << command;
     EXPECT_EQ(outcome.err, "") << command;
@@ -19,7 +19,7 @@ TEST(Tool, HelpOfEveryCommandHasExamplesAndSucceeds) {
 }
 
 TEST(Tool, BadUsageIsOneLineAndExitCodeTwo) {
-  expectRefused({"bogus"}, "info, walk, cull, verify, reproduce");
+  expectRefused({"bogus"}, "info, walk, cull, verify, bench, reproduce");
   expectRefused({"cull"}, "SCENE");
   expectRefused({"cull", kCity, "--bogus"}, "--bogus");
   expectRefused({"cull", kCity, "--threads"}, "--threads");

@@ -31,6 +31,9 @@
 namespace sightline::tool {
 namespace {
 
+// Rays that look for visible objects before proofs decide about the others: as many as take little time.
+constexpr std::uint32_t kRayColumns = 640, kRayRows = 360;
+
 // Files in the folder of the report.
 constexpr const char *kPage = "index.html", *kBenchJson = "bench.json", *kBenchCsv = "bench.csv";
 
@@ -115,7 +118,7 @@ class Bench {
                        .rounds = options_.repeats,
                        .load_us = input.load_us};
     const PictureOptions size = pictureSize(options_.picture, walk.path);
-    const std::vector<ExactObjects> exact = exactFrames(scene, views, size, record);
+    const std::vector<ExactObjects> exact = exactFrames(scene, views, record);
     run(input, views, exact, size, record);
     markFront(record);
     record.advice = adviceFor(record);
@@ -125,8 +128,8 @@ class Bench {
  private:
   // Exact visibility of all views, from the cache as far as it is there.
   std::vector<ExactObjects> exactFrames(const Scene& scene, const std::vector<View>& views,
-                                        const PictureOptions& size, BenchRecord& record) {
-    const ExactSettings settings{.width = size.width, .height = size.height, .steps = options_.steps};
+                                        BenchRecord& record) {
+    const ExactSettings settings{.width = kRayColumns, .height = kRayRows, .steps = options_.steps};
     std::unique_ptr<ExactVisibility> oracle;  // made when the first view needs it
     std::vector<ExactObjects> frames;
     ProgressBar progress("exact visibility of " + record.scene_name);
@@ -304,6 +307,9 @@ Result<ExitCode> runBench(const BenchOptions& options) {
   const Result<ExactCache> cache = openCache(options);
   if (!cache) {
     return cache.error();
+  }
+  if (!cache->folder().empty()) {
+    keepWhenTold("no results were written; exact visibility is kept in " + cache->folder());
   }
   if (const Status made = options.folder.empty() ? Status(Success{}) : makeFolder(options.folder); !made) {
     return made.error();
