@@ -34,8 +34,9 @@ Outcome interrupted(const std::vector<std::string>& arguments, int signal) {
 
 TEST(Interrupted, CommandsSayThatNothingWasWritten) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"verify", "demo:city"}, {"layers", "demo:toothpicks?n=1600"}}) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"verify", "demo:city"},
+                                                  {"bench", "demo:city", "--no-cache", "--repeats", "10000"},
+                                                  {"layers", "demo:toothpicks?n=1600"}}) {
       const TemporaryFolder folder;
       const Outcome outcome = interrupted(joined(words, {"--json", folder.file("result.json")}), signal);
       EXPECT_EQ(outcome.code, 128 + signal) << outcome.err;

@@ -55,10 +55,9 @@ std::string nameOf(const SettingRecord& run) {
 std::string whyByDrawing(const BenchRecord& record, const SettingRecord& chosen) {
   const SettingRecord& baseline = record.baseline();
   return fmt::format(
-      "culling ({} ms) and drawing ({} ms) of a mean frame take {} ms together, less than with any other "
-      "setting "
-      "on the front; with frustum culling alone they take {} ms",
-      milliseconds(chosen.cull.mean.value), milliseconds(chosen.draw->mean.value),
+      "culling ({} ms) and drawing ({} ms, by {}) of a mean frame take {} ms together, the least of all "
+      "settings on the front; with frustum culling alone {} ms",
+      milliseconds(chosen.cull.mean.value), milliseconds(chosen.draw->mean.value), record.device,
       milliseconds(chosen.meanFrameUs()), milliseconds(baseline.meanFrameUs()));
 }
 
@@ -74,9 +73,8 @@ std::string whyByKnee(const BenchRecord& record, const SettingRecord& chosen) {
                                              chosen.kept, baseline.kept);
   return fmt::format(
       "it keeps {} in {} ms a frame (frustum culling {} ms); of the way from the fastest setting to the "
-      "tightest "
-      "one it has gone {:.0f} % in tightness for {:.0f} % in time, on logarithmic scales, which is the best "
-      "bargain; --draw weighs this against drawing",
+      "tightest one it has gone {:.0f} % in tightness for {:.0f} % in time, on logarithmic scales, which is "
+      "the best bargain; --draw weighs this against drawing",
       kept, milliseconds(chosen.cull.mean.value), milliseconds(baseline.cull.mean.value),
       100.0 * ends.gainOf(chosen), 100.0 * ends.costOf(chosen));
 }

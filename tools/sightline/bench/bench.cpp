@@ -332,8 +332,8 @@ void setUsualMethods(MethodOptions& options) {
       methods += (methods.empty() ? "" : ",") + std::string(method.name);
     }
   }
-  options.set("method", methods);
-  options.set("occluder-count", "16,64,256");
+  options.setDefault("method", methods);
+  options.setDefault("occluder-count", "16,64,256");
 }
 
 void addBenchOptions(CLI::App& command, BenchOptions& options) {
@@ -394,14 +394,12 @@ void addBench(CLI::App& app, Command& chosen) {
       "culling is always among them. Exit code 1 when a setting that is not approximate culled a visible "
       "object.\n"
       "kept/exact: objects kept for each exactly visible one, over all frames. front: no other setting is "
-      "faster "
-      "and keeps no more. /frustum: mean time divided by that of view-frustum culling. cpu: the thread's own "
-      "processor time. answers: hash of the objects kept, the same on every machine.\n"
+      "faster and keeps no more. /frustum: mean time divided by that of view-frustum culling. cpu: the "
+      "thread's own processor time. answers: hash of the objects kept, the same on every machine.\n"
       "Examples:\n"
       "  sightline bench demo:city\n"
       "  sightline bench demo:city demo:building --method occlusion-tree,depth-pyramid --occluder-count "
-      "16,64,256 "
-      "-o report\n"
+      "16,64,256 -o report\n"
       "  sightline bench city.glb --path walk.json --draw --csv city.csv\n"
       "  sightline bench demo:ship --baked ship.sight --method visibility-octree,depth-pyramid "
       "--visible-sets on,off\n"

@@ -74,23 +74,22 @@ std::string tableRow(const SettingRecord& run, const BenchRecord& record) {
 }
 
 std::string tableOf(const BenchRecord& record) {
-  std::string out =
-      "<div class=\"scroll\"><table>\n<thead><tr><th>method</th><th></th><th>kept "
-      "/<br>exact</th><th>missed</th>"
-      "<th>cull, ms<br>median</th><th>mean</th><th>99th<br>percentile</th><th>of<br>frustum’s</th>"
-      "<th>processor<br>ms</th><th>draw<br>ms</th><th>hierarchy</th><th>occluders</th><th>databases</th>"
-      "<th>method</th></tr></thead>\n<tbody>\n";
+  std::string out = "<div class=\"scroll\"><table>\n<thead><tr>";
+  for (const char* head : {"method", "", "kept /<br>exact", "missed", "cull, ms<br>median", "mean",
+                           "99th<br>percentile", "of<br>frustum’s", "processor<br>ms", "draw<br>ms",
+                           "hierarchy", "occluders", "databases", "method"}) {
+    out += fmt::format("<th>{}</th>", head);
+  }
+  out += "</tr></thead>\n<tbody>\n";
   for (const SettingRecord& run : record.runs) {
     out += tableRow(run, record);
   }
   return out +
-         "</tbody></table></div>\n<p class=\"hint\">Kept / exact: from all undecided objects being visible "
-         "to none "
-         "of them. Missed: visible objects that were not kept. Below a time: its least and greatest value in "
-         "a "
-         "single round. Of frustum’s: mean culling time divided by that of view-frustum culling. Processor: "
-         "mean "
-         "time of the thread’s own processor. Hierarchy to method: time to prepare, and memory.</p>\n";
+         "</tbody></table></div>\n"
+         "<p class=\"hint\">Kept / exact: from all undecided objects being visible to none of them. Missed: "
+         "visible objects that were not kept. Below a time: its least and greatest value in a single round. "
+         "Of frustum’s: mean culling time divided by that of view-frustum culling. Processor: mean processor "
+         "time of the thread. Hierarchy to method: time to prepare, and memory.</p>\n";
 }
 
 }  // namespace
@@ -100,8 +99,8 @@ std::string benchReport(const std::vector<BenchRecord>& records, const std::stri
   for (const BenchRecord& record : records) {
     body += "<h2>" + escapeMarkup(record.scene_name) + "</h2>\n<p class=\"summary\">" +
             escapeMarkup(record.advice.sentence) + "</p>\n<div class=\"plot\">\n" + toSvg(frontOf(record)) +
-            "</div>\n<p class=\"hint\">Filled points are on the front: no other setting is faster and keeps "
-            "no more. "
+            "</div>\n"
+            "<p class=\"hint\">Filled points are on the front: no other setting is faster and keeps no more. "
             "The ring marks the setting that is advised.</p>\n" +
             tableOf(record) + "<p class=\"hint\">" + escapeMarkup(benchNotes(record)) + "</p>\n";
   }

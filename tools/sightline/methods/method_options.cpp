@@ -362,7 +362,7 @@ Status checkBaked(const MethodOptions& options, const std::vector<Setting>& sett
     }
   }
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
-    if (allOptions()[i].when == mayUseSets && options.texts[i] != MethodOptions().texts[i]) {
+    if (allOptions()[i].when == mayUseSets && options.texts[i] != options.defaults[i]) {
       return Error{fmt::format("--{} {}: {}", allOptions()[i].name, options.texts[i], kRemedy)};
     }
   }
@@ -431,10 +431,12 @@ MethodOptions::MethodOptions() {
   for (const Option& option : allOptions()) {
     texts.push_back(plainText(option.value.get(Setting{})));
   }
+  defaults = texts;
 }
 
-void MethodOptions::set(std::string_view name, std::string text) {
-  texts[static_cast<std::size_t>(&optionNamed(name) - allOptions().data())] = std::move(text);
+void MethodOptions::setDefault(std::string_view name, const std::string& text) {
+  const auto option = static_cast<std::size_t>(&optionNamed(name) - allOptions().data());
+  texts[option] = defaults[option] = text;
 }
 
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
@@ -477,7 +479,7 @@ Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
   }
   for (std::size_t i = 0; i < allOptions().size(); ++i) {
     const Option& option = allOptions()[i];
-    const bool given = options.texts[i] != MethodOptions().texts[i];
+    const bool given = options.texts[i] != options.defaults[i];
     if (given && std::none_of(settings.begin(), settings.end(),
                               [&](const Setting& setting) { return option.belongs(setting); })) {
       fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);

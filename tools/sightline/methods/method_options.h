@@ -64,11 +64,12 @@ std::unique_ptr<CullingMethod> makeMethod(const Setting& setting);
 struct MethodOptions {
   MethodOptions();  // the library's defaults
 
-  // name: of an option, without "--". Precondition: there is one.
-  void set(std::string_view name, std::string text);
+  // Changes the default of an option; name: without "--". Precondition: there is such an option.
+  void setDefault(std::string_view name, const std::string& text);
 
   std::vector<std::string> texts;
-  std::string baked;  // a .sight file; empty: none
+  std::vector<std::string> defaults;  // texts that the user has not given
+  std::string baked;                  // a .sight file; empty: none
 };
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 

@@ -43,14 +43,14 @@ ScatterCanvas canvasFor(const ScatterPlot& plot, const std::vector<ScatterPoint>
 void addScatterAxes(std::string& out, const ScatterPlot& plot, const ScatterCanvas& c) {
   for (const double tick : c.y.ticks) {
     out += fmt::format(
-        "<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/>"
-        "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\" dy=\"0.35em\">{}</text>\n",
+        "<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text "
+        "x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\" dy=\"0.35em\">{}</text>\n",
         kScatterLeft, c.py(tick), c.right, kScatterLeft - 8.0, c.py(tick), tickLabel(tick));
   }
   for (const double tick : c.x.ticks) {
     out += fmt::format(
-        "<path d=\"M{:.1f} {:.1f}V{:.1f}\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/>"
-        "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
+        "<path d=\"M{:.1f} {:.1f}V{:.1f}\" stroke=\"currentColor\" stroke-opacity=\"0.15\"/><text "
+        "x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
         c.px(tick), kScatterTop, c.bottom, c.px(tick), c.bottom + 19.0, tickLabel(tick));
   }
   out += fmt::format(
@@ -113,11 +113,9 @@ std::string toSvg(const ScatterPlot& plot) {
   const std::string title = escapeMarkup(plot.title);
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "role=\"img\" "
-      "aria-label=\"{2}\" font-family=\"system-ui, -apple-system, Segoe UI, Roboto, Helvetica, Arial, "
-      "sans-serif\" "
-      "font-size=\"13\" fill=\"currentColor\">\n<text x=\"{3:.1f}\" y=\"22\" font-size=\"16\" "
-      "font-weight=\"600\">{2}</text>\n",
+      "role=\"img\" aria-label=\"{2}\" font-family=\"system-ui, -apple-system, Segoe UI, Roboto, Helvetica, "
+      "Arial, sans-serif\" font-size=\"13\" fill=\"currentColor\">\n"
+      "<text x=\"{3:.1f}\" y=\"22\" font-size=\"16\" font-weight=\"600\">{2}</text>\n",
       plot.width, plot.height, title, kScatterLeft);
   addScatterAxes(out, plot, canvas);
   addGroups(out, plot);
