@@ -14,7 +14,7 @@ namespace {
 
 ScatterPlot frontOf(const BenchRecord& record) {
   ScatterPlot plot{.title = "Time against tightness",
-                   .x_label = "culling time of a mean frame (ms)",
+                   .x_label = "processor time for culling a mean frame (ms)",
                    .y_label = "kept / exactly visible objects"};
   for (std::size_t r = 0; r < record.runs.size(); ++r) {
     const SettingRecord& run = record.runs[r];
@@ -26,8 +26,8 @@ ScatterPlot frontOf(const BenchRecord& record) {
     }
     const Interval y = tightness.value_or(Interval{});
     plot.points.push_back({.name = fmt::format("{} ({}): {} ms, {}", method, optionsText(run.setting),
-                                               milliseconds(run.cull.mean.value), intervalText(tightness)),
-                           .x = run.cull.mean.value * 1e-3,
+                                               milliseconds(run.cullingUs()), intervalText(tightness)),
+                           .x = run.cullingUs() * 1e-3,
                            .y_low = y.low,
                            .y_high = y.high,
                            .group = static_cast<std::size_t>(group - plot.groups.begin()),
@@ -100,8 +100,8 @@ std::string benchReport(const std::vector<BenchRecord>& records, const std::stri
     body += "<h2>" + escapeMarkup(record.scene_name) + "</h2>\n<p class=\"summary\">" +
             escapeMarkup(record.advice.sentence) + "</p>\n<div class=\"plot\">\n" + toSvg(frontOf(record)) +
             "</div>\n"
-            "<p class=\"hint\">Filled points are on the front: no other setting is faster and keeps no more. "
-            "The ring marks the setting that is advised.</p>\n" +
+            "<p class=\"hint\">Filled points are on the front: no other one takes less processor time and "
+            "keeps no more. The ring marks the setting that is advised.</p>\n" +
             tableOf(record) + "<p class=\"hint\">" + escapeMarkup(benchNotes(record)) + "</p>\n";
   }
   body += "<h2>Made by</h2>\n<pre>" + escapeMarkup(command_line) + "</pre>\n";
