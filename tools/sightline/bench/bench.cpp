@@ -10,29 +10,19 @@
 #include <set>
 
 #include "sightline/io/file.h"
-#include "tools/sightline/bench/advice.h"
 #include "tools/sightline/bench/bench_report.h"
-#include "tools/sightline/bench/bench_runs.h"
 #include "tools/sightline/bench/bench_text.h"
-#include "tools/sightline/bench/machine.h"
+#include "tools/sightline/bench/scene_bench.h"
 #include "tools/sightline/command_line/command_line.h"
 #include "tools/sightline/command_line/json_output.h"
-#include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/stopwatch.h"
-#include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/exact/exact_cache.h"
 #include "tools/sightline/methods/baseline.h"
 
-#define XXH_INLINE_ALL
-#include "src/pvs/format/checksum.h"
-
 namespace sightline::tool {
 namespace {
-
-// Rays that look for visible objects before proofs decide about the others: as many as take little time.
-constexpr std::uint32_t kRayColumns = 640, kRayRows = 360;
 
 // Files in the folder of the report.
 constexpr const char *kPage = "index.html", *kBenchJson = "bench.json", *kBenchCsv = "bench.csv";
@@ -44,19 +34,12 @@ struct BenchOptions {
   std::uint32_t threads = 1;
   PathOptions path;
   MethodOptions method;
-  PictureOptions picture;
-  std::uint32_t repeats = 5, steps = 1000;
-  bool draw = false;
+  BenchSettings measured;
   std::string cache;  // empty: the usual folder
   bool no_cache = false;
   std::string command_line;
 
   bool textOnStdout() const { return output.textOnStdout() && csv != "-"; }
-};
-
-struct BenchInput {
-  SceneAndWalk data;
-  double load_us = 0.0;
 };
 
 // The settings with the baseline in front, each once: rows of a table are known by their method and options.
@@ -84,123 +67,6 @@ Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
   }
   return inputs;
 }
-
-std::vector<View> viewsOf(const Walk& walk, const Scene& scene) {
-  std::vector<View> views;
-  for (const std::uint32_t frame : walk.frames) {
-    views.push_back(walk.view(frame, scene));
-  }
-  return views;
-}
-
-std::uint64_t hashOf(const std::vector<View>& views) {
-  pvs::Checksum hash;
-  for (const View& view : views) {
-    hash.add(viewBytes(view));
-  }
-  return hash.value();
-}
-
-class Bench {
- public:
-  Bench(const BenchOptions& options, const std::vector<Setting>& settings, const ExactCache& cache)
-      : options_(options), settings_(settings), cache_(cache), threads_(options.threads) {}
-
-  BenchRecord measure(const std::string& name, BenchInput& input) {
-    const Scene& scene = input.data.scene;
-    const Walk& walk = input.data.walk;
-    const std::vector<View> views = viewsOf(walk, scene);
-    BenchRecord record{.scene_name = name,
-                       .path_name = walk.path.name.empty() ? "unnamed" : walk.path.name,
-                       .scene = sceneId(scene.view()),
-                       .views = hashOf(views),
-                       .frames = views.size(),
-                       .rounds = options_.repeats,
-                       .load_us = input.load_us};
-    const PictureOptions size = pictureSize(options_.picture, walk.path);
-    const std::vector<ExactObjects> exact = exactFrames(scene, views, record);
-    run(input, views, exact, size, record);
-    markFront(record);
-    record.advice = adviceFor(record);
-    return record;
-  }
-
- private:
-  // Exact visibility of all views, from the cache as far as it is there.
-  std::vector<ExactObjects> exactFrames(const Scene& scene, const std::vector<View>& views,
-                                        BenchRecord& record) {
-    const ExactSettings settings{.width = kRayColumns, .height = kRayRows, .steps = options_.steps};
-    std::unique_ptr<ExactVisibility> oracle;  // made when the first view needs it
-    std::vector<ExactObjects> frames;
-    ProgressBar progress("exact visibility of " + record.scene_name);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      const ExactKey key(record.scene, views[i], settings);
-      std::optional<ExactObjects> frame = cache_.find(key);
-      record.frames_from_cache += frame ? 1 : 0;
-      if (!frame) {
-        oracle = oracle ? std::move(oracle) : std::make_unique<ExactVisibility>(scene.view());
-        const auto object_count = static_cast<std::uint32_t>(scene.objects.size());
-        frame = objectsOf(exactFrame(*oracle, views[i], object_count, settings, threads_.parallelFor()));
-        keep(key, *frame);
-      }
-      record.witnessed += frame->witnessed.size();
-      record.undecided += frame->undecided.size();
-      frames.push_back(std::move(*frame));
-      progress.update(static_cast<double>(i + 1) / static_cast<double>(views.size()));
-    }
-    return frames;
-  }
-
-  // A cache that cannot be written does not change the results, so it is only said, once.
-  void keep(const ExactKey& key, const ExactObjects& frame) {
-    const Status kept = cache_.keep(key, frame);
-    if (!kept && !told_) {
-      fmt::print(stderr, "sightline: exact visibility is not kept: {}\n", kept.error().message);
-      told_ = true;
-    }
-  }
-
-  void run(BenchInput& input, const std::vector<View>& views, const std::vector<ExactObjects>& exact,
-           const PictureOptions& size, BenchRecord& record) {
-    const HeapGrowth growth;
-    Stopwatch watch;
-    CullingData data(input.data.scene, threads_.parallelFor(), input.data.walk, std::move(input.data.baked));
-    const PartCost occluders{watch.lap(), growth.bytes()};
-    std::vector<BenchRun> runs = makeBenchRuns(settings_, data, occluders);
-    warmUp(runs, views, exact);
-    {
-      const CorePin pin;
-      record.core = pin.core();
-      ProgressBar progress("culling " + record.scene_name);
-      measureCulling(runs, views, options_.repeats, [&](double done) { progress.update(done); });
-    }
-    if (options_.draw) {
-      draw(input.data.scene, runs, views, size, record);
-    }
-    data.noteUnknownSets();
-    for (BenchRun& run : runs) {
-      record.runs.push_back(std::move(run.record));
-    }
-  }
-
-  void draw(const Scene& scene, std::vector<BenchRun>& runs, const std::vector<View>& views,
-            const PictureOptions& size, BenchRecord& record) const {
-    Result<Renderer> renderer = Renderer::create(scene.view(), size.width, size.height);
-    if (!renderer) {
-      fmt::print(stderr, "sightline: nothing is drawn: {}\n", renderer.error().message);
-      return;
-    }
-    record.device = renderer->device();
-    ProgressBar progress("drawing " + record.scene_name);
-    measureDrawing(runs, views, options_.repeats, *renderer, [&](double done) { progress.update(done); });
-  }
-
-  const BenchOptions& options_;
-  const std::vector<Setting>& settings_;
-  const ExactCache& cache_;
-  Threads threads_;
-  bool told_ = false;
-};
 
 Status writeFolder(const BenchOptions& options, const std::vector<BenchRecord>& records) {
   const std::string page = benchReport(records, options.command_line);
@@ -314,8 +180,7 @@ Result<ExitCode> runBench(const BenchOptions& options) {
   if (const Status made = options.folder.empty() ? Status(Success{}) : makeFolder(options.folder); !made) {
     return made.error();
   }
-  const std::vector<Setting> settings = distinctSettings(*chosen);
-  Bench bench(options, settings, *cache);
+  SceneBench bench(distinctSettings(*chosen), options.measured, *cache, options.threads);
   std::vector<BenchRecord> records;
   for (std::size_t i = 0; i < inputs->size(); ++i) {
     records.push_back(bench.measure(options.scenes[i], (*inputs)[i]));
@@ -361,14 +226,14 @@ void addBenchOptions(CLI::App& command, BenchOptions& options) {
   setUsualMethods(options.method);
   addMethodOptions(command, options.method, true);
   command
-      .add_option("--repeats", options.repeats,
+      .add_option("--repeats", options.measured.rounds,
                   "rounds along the path, after a first one that is not measured")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
-  command.add_flag("--draw", options.draw, "measure drawing as well, with headless OpenGL");
-  addPictureOptions(command, options.picture);
+  command.add_flag("--draw", options.measured.draw, "measure drawing as well, with headless OpenGL");
+  addPictureOptions(command, options.measured.picture);
   command
-      .add_option("--proof-steps", options.steps,
+      .add_option("--proof-steps", options.measured.steps,
                   "steps after which an object that is neither seen nor proved hidden is left undecided")
       ->check(CLI::Range(0u, 1000000000u))
       ->capture_default_str();
