@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kEye = 0.00005;                                         // x, in the middle of the slit
-constexpr int kBehind = 198, kSlitWalls = 2;                             // objects
-constexpr float kSlitLeft = 0.0f, kSlitRight = 0.0001f, kWallZ = -4.0f;  // metres
+constexpr double kSlitEye = 0.00005;                                         // x, in the middle of the slit
+constexpr int kObjectsBehind = 198, kSlitWalls = 2;                          // objects
+constexpr float kSlitLeft = 0.0f, kSlitRight = 0.0001f, kSlitWallZ = -4.0f;  // metres
 
 // Triangles of objects, corner after corner.
 struct Gap {
@@ -30,14 +30,14 @@ struct Gap {
 Gap wallsWithSlit() {
   Gap gap;
   const auto addWall = [&](float x0, float x1) {
-    const Vec3f a(x0, -8, kWallZ), b(x1, -8, kWallZ), c(x1, 8, kWallZ), d(x0, 8, kWallZ);
+    const Vec3f a(x0, -8, kSlitWallZ), b(x1, -8, kSlitWallZ), c(x1, 8, kSlitWallZ), d(x0, 8, kSlitWallZ);
     gap.objects.push_back({a, b, c, a, c, d});
   };
   addWall(-8, kSlitLeft);
   addWall(kSlitRight, 8);
-  for (int i = 0; i < kBehind; ++i) {
+  for (int i = 0; i < kObjectsBehind; ++i) {
     const float distance = 6.0f + static_cast<float>((i * 37) % 140) * 0.1f;
-    const float y = (static_cast<float>(i) / kBehind - 0.5f) * distance, size = 0.002f * distance;
+    const float y = (static_cast<float>(i) / kObjectsBehind - 0.5f) * distance, size = 0.002f * distance;
     const bool crosses = i % 3 == 0;
     const float x = crosses ? -0.01f : i % 3 == 1 ? 0.01f + static_cast<float>(i % 7) * 0.1f : -1.0f;
     const float end = crosses ? 0.02f : x + 0.3f;
@@ -67,12 +67,12 @@ std::string slitObj(const Gap& gap) {
 std::string slitPath() {
   return fmt::format(R"({{"fovy_deg": 60, "width": 640, "height": 480, "near": 0.1, "far": 100,
       "frames": [{{"eye": [{}, 0, 0], "forward": [0, 0, -1], "up": [0, 1, 0]}}]}})",
-                     kEye);
+                     kSlitEye);
 }
 
 View slitView() {
   View view;
-  view.eye = {kEye, 0, 0};
+  view.eye = {kSlitEye, 0, 0};
   setOrientation(view, {0, 0, -1}, {0, 1, 0});
   view.tan_half_fovy = 0.577;
   view.aspect = 640.0 / 480.0;
