@@ -72,6 +72,7 @@ class HostileSceneMaker {
   void city();
   void room();
   void stack();
+  void junction();
 
   Vec3d pointNearAnEdge();
   void addTargets();
@@ -392,6 +393,38 @@ inline void HostileSceneMaker::stack() {
   }
 }
 
+// Three walls that meet in a corner, of which two have no mesh edge in common, seen nearly level.
+inline void HostileSceneMaker::junction() {
+  const double x = in(0.5, 2), y = -in(0.5, 2), depth = -in(1.5, 4), left = -in(0.5, 3), top = in(0.5, 2),
+               front = -in(0.1, 1);
+  const double tilt = sign() * std::exp2(-in(12, 26)), part = in(0.2, 0.8);
+  const auto at = [&](double px, double py, double pz) { return Vec3d(px, py + tilt * px, pz); };
+  const Vec3d corner = at(x, y, depth),
+              middle = at(left + part * (x - left), y, depth) + Vec3d(0, tinyOrNone() * 1e-3, 0);
+  Triangles back{at(left, y, depth),
+                 middle,
+                 at(left, top, depth),
+                 middle,
+                 corner,
+                 at(x, top, depth),
+                 middle,
+                 at(x, top, depth),
+                 at(left, top, depth)};
+  Triangles walls;
+  quad(walls, corner, at(x, y, front), at(x, top, front), at(x, top, depth));
+  quad(walls, at(left, y, depth), at(left, y, front), at(x, y, front), corner);
+  walls.insert(walls.end(), back.begin(), back.end());
+  addOccluder(walls);
+  for (int i = 0; i < 8; ++i) {
+    const double size = length(corner) * std::exp2(-in(10, 30));
+    const Vec3d towards = corner + (middle - corner) * (chance(2) ? 0.0 : tiny()) +
+                          Vec3d(in(-1, 1), in(-1, 1), 0) * (chance(2) ? 0.0 : size);
+    const Vec3d behind = towards * in(1.05, 6);
+    targets_.push_back(
+        {behind + Vec3d(-size, -size, 0), behind + Vec3d(size, -size, 0), behind + Vec3d(0, size, 0)});
+  }
+}
+
 inline const std::vector<HostileSceneMaker::Family>& HostileSceneMaker::families() {
   static const std::vector<Family> kAll = {
       {"slit", &HostileSceneMaker::slit},       {"wedge", &HostileSceneMaker::wedge},
@@ -400,7 +433,7 @@ inline const std::vector<HostileSceneMaker::Family>& HostileSceneMaker::families
       {"fan", &HostileSceneMaker::fan},         {"bodies", &HostileSceneMaker::bodies},
       {"grazing", &HostileSceneMaker::grazing}, {"soup", &HostileSceneMaker::soup},
       {"city", &HostileSceneMaker::city},       {"room", &HostileSceneMaker::room},
-      {"stack", &HostileSceneMaker::stack},
+      {"stack", &HostileSceneMaker::stack},     {"junction", &HostileSceneMaker::junction},
   };
   return kAll;
 }
