@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
+#include <random>
 
 #include "sightline/comparison/centre_coverage.h"
 #include "tests/occlusion/exact_coverage.h"
@@ -485,6 +487,37 @@ TEST(Rasteriser, WhatIsSeenThroughGapsThatEndOnAnEdgeIsNotHidden) {
     }
     // Far from the origin these corners are rounded to millimetres and more, and little is sure.
     EXPECT_GT(covered, family.far_offset == 0.0 ? 5000u : 0u) << family.name;
+  }
+}
+
+// Three walls meet in a corner, of which two have no edge in common. Their open edges come almost along a row
+// of pixels and end in the corner's pixel, which two shared edges cross.
+TEST(Rasteriser, AnOpenEdgeThatIsNearlyLevelReachesItsEnd) {
+  const Vec3f corner(1.7f, -1.9f, -2), below(1.7f, -1.9f, -1), above(1.7f, 1.5f, -2);
+  const std::array<Vec3f, 4> back{Vec3f(-3, -1.9f, -2), corner, above, Vec3f(-3, 1.5f, -2)};
+  const std::array<Vec3f, 4> side{corner, below, Vec3f(1.7f, 1.5f, -1), above};
+  const std::array<Vec3f, 4> floor{Vec3f(-2.5f, -1.9f, -2), Vec3f(-2.5f, -1.9f, -1), below, corner};
+  const std::array<OccluderPolygon, 3> walls{OccluderPolygon{back}, OccluderPolygon{side},
+                                             OccluderPolygon{floor}};
+  const OccluderSet set = makeOccluders(walls);
+  ASSERT_EQ(set.occluders.size(), 3u);
+  std::mt19937_64 random(5);
+  const auto in = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  for (int i = 0; i < 2000; ++i) {
+    View view;
+    const double roll = std::exp2(-in(16, 30));
+    setOrientation(view, {0, 0, -1}, {i % 2 == 0 ? roll : -roll, 1, 0});
+    view.tan_half_fovy = in(1, 1.5);
+    view.aspect = in(1, 2);
+    const Drawn drawn(view, set, {.width = 64, .height = 64});
+    const auto [half_x, half_y] = halfSize(view);
+    const Vec3d at(corner);
+    const double x = 32.0 * (1.0 + dot(at, view.right) / (2.0 * half_x)),
+                 y = 32.0 * (1.0 + dot(at, view.up) / (2.0 * half_y));
+    EXPECT_LE(drawn.buffer.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), kUncovered)
+        << "case " << i << ", corner at " << x << ' ' << y;
   }
 }
 
