@@ -4,24 +4,13 @@
 #include <bit>
 #include <cmath>
 
+#include "oracle/split_mix.h"
+
 namespace sightline {
 namespace {
 
 constexpr double kInside = 1e-3;  // distance of samples from corners and edges, as a barycentric coordinate
 constexpr int kTries = 4;         // attempts to find a triangle that shows its front
-
-// Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014.
-struct SplitMix {
-  std::uint64_t state;
-
-  std::uint64_t next() {
-    std::uint64_t z = (state += 0x9e3779b97f4a7c15ull);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return z ^ (z >> 31);
-  }
-  double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-};
 
 SplitMix generatorFor(ObjectId object, std::uint32_t sample, const Vec3d& eye) {
   SplitMix mix{(static_cast<std::uint64_t>(object.value) << 32) | sample};

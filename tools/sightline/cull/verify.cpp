@@ -13,6 +13,7 @@
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/cull/verify_regions.h"
 #include "tools/sightline/exact/exact_frame.h"
 #include "tools/sightline/input/load.h"
 
@@ -25,6 +26,7 @@ struct VerifyOptions {
   CommonOptions common;
   PathOptions path;
   MethodOptions method;
+  RegionOptions regions;
   std::uint32_t width = 1280, height = 720;
   std::uint32_t aimed_rays = 16, edge_rays = 16;
   std::uint32_t gap_steps = 16, proof_steps = 20000;
@@ -244,7 +246,14 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
   return clean ? kOk : kCheckFailed;
 }
 
-Result<ExitCode> runVerify(const VerifyOptions& options) {
+Result<ExitCode> runVerify(const VerifyOptions& options, const CLI::App& command) {
+  const Result<bool> regions = asksForRegions(command);
+  if (!regions) {
+    return regions.error();
+  }
+  if (*regions) {
+    return verifyRegions(options.common, options.method.baked, options.regions);
+  }
   const Result<std::vector<Setting>> settings = settingsOf(options.method);
   if (!settings) {
     return settings.error();
@@ -292,10 +301,14 @@ void addVerify(CLI::App& app, Command& chosen) {
                    "steps after which --proof leaves an object undecided")
       ->check(CLI::Range(1u, 1000000000u))
       ->capture_default_str();
+  addRegionOptions(*command, options->regions);
   command->footer(
       "Exact arithmetic confirms each ray, and proves objects hidden by subtracting the images of nearer\n"
       "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden; they do not change the\nexit code.\n"
       "overestimate is kept / visible objects over all frames.\n"
+      "With --baked and --proof, and no path, method or rays: takes pairs of a cell and an object that is "
+      "not\n"
+      "in its set, and searches a place in the cell from where the object is visible.\n"
       "Examples:\n"
       "  sightline verify city.glb --path walk.json\n"
       "  sightline verify city.glb --path walk.json --frames 0:400:20 --proof\n"
@@ -306,9 +319,11 @@ void addVerify(CLI::App& app, Command& chosen) {
       "0:400:50\n"
       "  sightline verify demo:ship --baked ship.sight --path cells --method visibility-octree,depth-pyramid "
       "--visible-sets on,off\n"
+      "  sightline verify demo:ship --baked ship.sight --proof --pairs 10000 --seed 7\n"
       "  sightline verify demo:city --frames 0:400:20 --width 3840 --height 2160 --aimed-rays 64 --json "
       "verify.json");
-  command->callback([options, &chosen] { chosen = [options] { return runVerify(*options); }; });
+  command->callback(
+      [options, command, &chosen] { chosen = [options, command] { return runVerify(*options, *command); }; });
 }
 
 }  // namespace sightline::tool

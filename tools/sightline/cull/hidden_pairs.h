@@ -1,0 +1,38 @@
+#pragma once
+
+// A sample of what a baked file claims: that an object is hidden from everywhere in a cell.
+
+#include <cstdint>
+#include <vector>
+
+#include "oracle/eye_region.h"
+#include "sightline/base/result.h"
+#include "sightline/pvs/query/sight_file.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline::tool {
+
+// A part of a cell that has a set of its own.
+enum class CellPart : std::uint8_t { kWhole, kFront, kBetween, kBack };
+
+struct HiddenPair {
+  std::uint32_t leaf = 0;  // index into OctreeView::leaves
+  CellPart part = CellPart::kWhole;
+  ObjectId object;
+};
+
+// The eyes for which the look-up returns the part's set: the closed cell, on one side of its plane.
+EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32_t leaf, CellPart part);
+
+struct HiddenPairs {
+  std::vector<OctreeCell> cells;  // of all leaves
+  std::vector<HiddenPair> pairs;
+};
+
+// At most `count` pairs, each once. Parts of cells are drawn at random. Of each, four hidden objects are
+// drawn: any, one that looks large from the cell, one that is close to it, and one that is close to a visible
+// object. Fewer pairs if the file hides less. The same seed gives the same pairs. Error if a set is corrupt.
+Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, const Scene& scene, std::uint32_t count,
+                                      std::uint64_t seed);
+
+}  // namespace sightline::tool
