@@ -37,7 +37,7 @@ std::string nameOf(CellPart part) {
 struct RegionsReport {
   HiddenPairs sample;
   std::vector<RegionAnswer> answers;  // one for each pair
-  std::uint64_t seed = 0;
+  std::uint32_t seed = 0;
 
   std::size_t falseCulls() const {
     return static_cast<std::size_t>(
@@ -68,7 +68,7 @@ RegionsReport search(const Scene& scene, const SightFile& baked, HiddenPairs sam
       for (std::uint32_t i = first + begin; i < first + end; ++i) {
         const EyeRegion region =
             regionOf(baked.octree(), report.sample.cells[pairs[i].leaf], pairs[i].leaf, pairs[i].part);
-        const std::uint64_t seed = options.seed ^ (std::uint64_t{i} << 32);
+        const std::uint64_t seed = std::uint64_t{i} << 32 | options.seed;
         report.answers[i] = searcher.contradict(region, pairs[i].object, settings, seed);
       }
     });
@@ -107,6 +107,10 @@ std::string toJson(const RegionsReport& report, const Scene& scene) {
 }
 
 void print(const RegionsReport& report, const Scene& scene) {
+  if (report.answers.empty()) {
+    fmt::print("the sets of the cells hold every object; there is nothing to contradict\n");
+    return;
+  }
   std::size_t listed = 0;
   for (std::size_t i = 0; i < report.answers.size() && listed < kMaxListedPairs; ++i) {
     const RegionAnswer& answer = report.answers[i];
@@ -142,6 +146,7 @@ void addRegionOptions(CLI::App& command, RegionOptions& options) {
       ->check(CLI::Range(1u, 100000000u))
       ->capture_default_str();
   command.add_option("--seed", options.seed, "seed of the choice of pairs and of the search")
+      ->check(CLI::Range(0u, 4294967295u))
       ->capture_default_str();
 }
 

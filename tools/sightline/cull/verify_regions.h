@@ -17,7 +17,7 @@ namespace sightline::tool {
 
 struct RegionOptions {
   std::uint32_t pairs = 2000;
-  std::uint64_t seed = 1;
+  std::uint32_t seed = 1;
 };
 void addRegionOptions(CLI::App& command, RegionOptions& options);
 
