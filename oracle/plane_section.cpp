@@ -87,13 +87,13 @@ void PlaneSection::cut(const SceneView& scene, const TriangleTree& tree, const E
   if (targets_.empty()) {
     return;
   }
-  std::vector<Gate> cut;
+  std::vector<Gate> opaque;
   visit(tree.root(), [&](const TriangleTree::Node& leaf) {
     if (leaf.object != object && scene.materialOf(scene.objects[leaf.object.value]).opaque()) {
-      cutTriangle(scene, leaf, cut);
+      cutTriangle(scene, leaf, opaque);
     }
   });
-  for (const Gate& gate : cut) {
+  for (const Gate& gate : opaque) {
     keepBeyondNear(gate, near_distance);
   }
 }
