@@ -21,6 +21,9 @@ constexpr double kNarrowPicture = 1e-4;     // tangent of half the angle of a vi
 constexpr double kWidestPicture = 2.0;      // of a view of the whole object
 constexpr double kWithinNear = 1.0 - 1e-9;  // allows for the rounding of nearDistance()
 
+constexpr int kCornerAttempts = 16;  // lines whose blockers' corners are tried for one plane
+constexpr double kBeyondHit = 1e-4;  // of a line: where the search for the next blocker begins
+
 struct SightLine {
   Vec3d eye, target;
   std::uint32_t blocked = 0;  // surfaces between them
@@ -79,6 +82,10 @@ class RegionSearch::Attempt {
 
   Vec3d anyTarget(const Vec3d& eye);
   Vec3d across(std::uint32_t turn, const SightLine& line);
+  std::optional<SightLine> pastCorners();
+  Vec3d cornerOf(const RayHit& hit, std::uint32_t i) const {
+    return Vec3d(impl_.scene.positions[impl_.scene.indices[hit.first_index + i % 3]]);
+  }
   bool searchPlane(const SightLine& line, const Vec3d& across);
   std::optional<SightLine> advanced(const Vec3d& eye, const Vec3d& target) const;
   bool sees(const Vec3d& eye, const Vec3d& target);
@@ -173,10 +180,7 @@ Vec3d RegionSearch::Attempt::across(std::uint32_t turn, const SightLine& line) {
     const RayHit hit = firstHit(line);
     if (hit.object.valid()) {
       const std::uint32_t side = random_.below(3);
-      const auto corner = [&](std::uint32_t i) {
-        return Vec3d(impl_.scene.positions[impl_.scene.indices[hit.first_index + i % 3]]);
-      };
-      return cross(corner(side + 1) - corner(side), line.target - line.eye);
+      return cross(cornerOf(hit, side + 1) - cornerOf(hit, side), line.target - line.eye);
     }
   }
   return anyDirection(random_);
@@ -193,11 +197,48 @@ RayHit RegionSearch::Attempt::firstHit(const SightLine& line) {
   return opaque != hits_.end() ? *opaque : RayHit{};
 }
 
+// A line through corners of the first two surfaces that block a line: if there are small openings beside both
+// corners, planes through it look through both.
+std::optional<SightLine> RegionSearch::Attempt::pastCorners() {
+  const Box& bounds = impl_.scene.objects[object_.value].bounds;
+  const Vec3d middle = center(bounds);
+  const double radius = 0.5 * length(Vec3d(bounds.max) - Vec3d(bounds.min));
+  for (int attempt = 0; attempt < kCornerAttempts; ++attempt) {
+    SightLine line;
+    line.eye = places_.point(random_);
+    line.target = anyTarget(line.eye);
+    const RayHit first = firstHit(line);
+    if (!first.object.valid()) {
+      continue;
+    }
+    const Vec3d sight = line.target - line.eye;
+    const double near = settings_.near_distance * kWithinNear / length(sight);
+    const double beyond = near + (1.0 - near) * (static_cast<double>(first.t) + kBeyondHit);
+    const RayHit second = firstHit({line.eye + sight * beyond, line.target, 0});
+    if (!second.object.valid() || second.object == object_) {
+      continue;
+    }
+    const Vec3d p = cornerOf(first, random_.below(3)), q = cornerOf(second, random_.below(3));
+    const Vec3d d = q - p;
+    double enter = 0.0, leave = 0.0;
+    if (!(dot(d, sight) > 0.0) || !places_.interval(p, d, enter, leave) || !(leave < 1.0)) {
+      continue;
+    }
+    const Vec3d target = p + d * (dot(middle - p, d) / dot(d, d));
+    if (length(target - middle) <= radius && dot(target - q, d) > 0.0) {
+      return SightLine{p + d * leave, target, 0};
+    }
+  }
+  return std::nullopt;
+}
+
 bool RegionSearch::Attempt::byPlanes() {
   answer_.by = FoundBy::kPlane;
   for (std::uint32_t i = 0; i < settings_.planes; ++i) {
     SightLine line;
-    if (i % 2 == 1 && !best_.empty()) {
+    if (const std::optional<SightLine> past = i % 4 == 2 ? pastCorners() : std::nullopt) {
+      line = *past;
+    } else if (i % 2 == 1 && !best_.empty()) {
       line = best_[random_.below(static_cast<std::uint32_t>(best_.size()))];
     } else {
       line.eye = places_.point(random_);

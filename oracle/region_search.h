@@ -7,9 +7,9 @@
 // Four numbers describe a line from the region to the object. Whatever fixes two of them leaves a search that
 // is exact but for rounding: all lines in a plane (PlaneLines), and all lines through an eye
 // (VisibilityProof). The search takes random lines first, then planes: through random points of region and
-// object, across the edges of what blocks the best line so far, and around the best lines so far. A line is
-// better the fewer surfaces block it. At last it decides whether the eyes of the best lines and the corners
-// of the region see the object.
+// object, across the edges and through the corners of what blocks a line, and around the best lines so far. A
+// line is better the fewer surfaces block it. At last it decides whether the eyes of the best lines and the
+// corners of the region see the object.
 
 #include <cstdint>
 #include <memory>

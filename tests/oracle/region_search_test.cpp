@@ -81,6 +81,22 @@ TEST(RegionSearch, SeesThroughTwoSlitsAcrossEachOther) {
   expectSeen(claim);
 }
 
+// Four surfaces around each of two openings of a thousandth of a metre: one line, but for that, passes both.
+TEST(RegionSearch, SeesThroughTwoPinholesInARow) {
+  Claim claim;
+  const auto addPinhole = [&](float z, float x, float y) {
+    const float x1 = x + 1e-3f, y1 = y + 1e-3f;
+    addWall(claim.scene, claim.opaque, z, -60, x, -60, y1);
+    addWall(claim.scene, claim.opaque, z, -60, x1, y1, 60);
+    addWall(claim.scene, claim.opaque, z, x1, 60, y, 60);
+    addWall(claim.scene, claim.opaque, z, x, 60, -60, y);
+  };
+  addPinhole(-5, 0.3f, 0.2f);
+  addPinhole(-8, 0.5f, -0.2f);
+  claim.addObject(-20, -3, 3, -3, 3);
+  expectSeen(claim);
+}
+
 // The wall's border hides all but a millionth of a metre of the object, which only one border of the region
 // looks at.
 TEST(RegionSearch, SeesPastACorner) {
