@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "oracle/ray_scene.h"
+
 namespace sightline {
 namespace {
 
@@ -89,7 +91,7 @@ void PlaneSection::cut(const SceneView& scene, const TriangleTree& tree, const E
   }
   std::vector<Gate> opaque;
   visit(tree.root(), [&](const TriangleTree::Node& leaf) {
-    if (leaf.object != object && scene.materialOf(scene.objects[leaf.object.value]).opaque()) {
+    if (leaf.object != object && occludes(scene, scene.objects[leaf.object.value])) {
       cutTriangle(scene, leaf, opaque);
     }
   });
