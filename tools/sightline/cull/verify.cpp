@@ -304,11 +304,11 @@ void addVerify(CLI::App& app, Command& chosen) {
   addRegionOptions(*command, options->regions);
   command->footer(
       "Exact arithmetic confirms each ray, and proves objects hidden by subtracting the images of nearer\n"
-      "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden; they do not change the\nexit code.\n"
+      "triangles from theirs. 'undecided' culled objects are neither seen nor proved hidden; they do not\n"
+      "change the exit code.\n"
       "overestimate is kept / visible objects over all frames.\n"
-      "With --baked and --proof, and no path, method or rays: takes pairs of a cell and an object that is "
-      "not\n"
-      "in its set, and searches a place in the cell from where the object is visible.\n"
+      "With --baked and --proof, and no path, method or rays: takes pairs of a cell and an object that\n"
+      "is not in its set, and searches a place in the cell from where the object is visible.\n"
       "Examples:\n"
       "  sightline verify city.glb --path walk.json\n"
       "  sightline verify city.glb --path walk.json --frames 0:400:20 --proof\n"
