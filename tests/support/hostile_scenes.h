@@ -317,13 +317,13 @@ inline void HostileSceneMaker::grazing() {
   const int walls = 1 + below(4);
   for (int w = 0; w < walls; ++w) {
     Triangles all;
-    const double x = in(-1, 1), depth = in(1, 6), sine = around(-10);
+    const double x = in(-1, 1), depth = in(1, 6), sine = chance(2) ? around(-10) : std::exp2(-in(4, 30));
     const int kind = below(3);
     if (kind == 0) {
-      grid(all, {-depth * sine - 0.0, -2, -depth}, Vec3d(0.002, 0, -in(1, 5)), Vec3d(0, 4, 0), 1,
-           1 + below(3), 0.0, 0);
+      grid(all, {-depth * sine, -2, -depth}, Vec3d(0.002, 0, -in(1, 5)), Vec3d(0, 4, 0), 1, 1 + below(3), 0.0,
+           0);
     } else if (kind == 1) {
-      const double edge = depth * around(-20);
+      const double edge = depth * (chance(2) ? around(-20) : std::exp2(-in(8, 36)));
       all = {Vec3d(x, -3, -depth), Vec3d(x + edge, -3, -depth), Vec3d(in(-3, 3), 3, -depth)};
       quad(all, {x + edge, -3, -depth}, {4, -3, -depth}, {4, 3, -depth}, all[2]);
     } else {
