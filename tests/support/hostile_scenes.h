@@ -81,6 +81,7 @@ class HostileSceneMaker {
 
   std::mt19937_64 random_;
   std::vector<Triangles> occluders_, targets_;
+  std::vector<Vec3d> critical_;       // points around which targets gather
   Vec3d right_, up_, back_, offset_;  // of the eye's axes, scene space
   double scale_ = 1.0;
 };
@@ -161,6 +162,7 @@ inline void HostileSceneMaker::wedge() {
   const Vec3d tip(in(-0.5, 0.5), in(-1, 1), depth + (chance(2) ? 0.0 : in(-0.5, 0.5)));
   const Vec3d low(tip.x, -size, depth), high(tip.x, size, depth),
       other(tip.x + gap, size, depth - tinyOrNone());
+  critical_.push_back(tip);
   Triangles walls{Vec3d(-size, -size, depth), low, tip,
                   Vec3d(-size, -size, depth), tip, Vec3d(-size, size, depth),
                   Vec3d(-size, size, depth),  tip, high};
@@ -183,15 +185,21 @@ inline void HostileSceneMaker::corner() {
     edge.emplace_back((i > 0 && i < pieces ? in(-ulps, ulps) : 0.0), -size + 2 * size * i / pieces,
                       depth + (i > 0 && i < pieces ? in(-ulps, ulps) : 0.0));
   }
+  critical_.insert(critical_.end(), edge.begin(), edge.end());
   Triangles walls;
   const int sides = 2 + below(2);
   for (int s = 0; s < sides; ++s) {
     const double away = s == 0 ? -size : s == 1 ? size : in(-1, 1) * size;
     const double turn = chance(3) ? in(-1, 1) * std::exp2(-in(0, 20)) : in(-2, 2);
     const int first = chance(4) ? below(pieces) : 0;
+    // Perhaps a gap that begins at a vertex of the edge.
+    const int parting = chance(2) ? 1 + below(pieces) : 2 * pieces;
+    const double parted = size * (chance(2) ? in(0.0, 0.3) : tiny()), turn_beyond = turn + in(-1, 1);
     for (int i = first; i < pieces; ++i) {
       const Vec3d a = edge[std::size_t(i)], b = edge[std::size_t(i) + 1];
-      const Vec3d c = b + Vec3d(away, 0, turn), d = a + Vec3d(away, 0, turn);
+      const double depth_there = i < parting ? turn : turn_beyond;
+      const Vec3d c = b + Vec3d(away, i == parting - 1 ? -parted : 0.0, depth_there),
+                  d = a + Vec3d(away, i == parting ? parted : 0.0, depth_there);
       if (away < 0) {
         quad(walls, a, b, c, d);
       } else {
@@ -264,14 +272,26 @@ inline void HostileSceneMaker::fan() {
   Triangles all;
   double angle = start;
   const int gap = below(12);
+  const double pleat = chance(3) ? 0.0 : in(-1, 1), half = chance(3) ? in(0.2, 0.8) : std::exp2(-in(2, 22));
+  critical_.push_back(tip);
+  std::vector<Vec3d> rim;
   for (int i = 0; i < 40 && angle < start + 6.2; ++i) {
-    const double wide = chance(2) ? in(2.5, 3.5) * 0.0174533 : in(0.05, 1.0);
-    const double next = std::min(angle + wide, start + 6.2831853);
-    const auto at = [&](double a) { return Vec3d(std::cos(a) * size, std::sin(a) * size, depth); };
-    if (i != gap) {
-      all.insert(all.end(), {tip, at(angle), at(next)});
+    rim.emplace_back(std::cos(angle) * size, std::sin(angle) * size, depth + (i % 2 == 0 ? pleat : 0.0));
+    angle += chance(2) ? in(0.2, 4.0) * 0.0174533 : in(0.05, 1.0);
+  }
+  const bool whole = chance(3);
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const Vec3d &p = rim[i], &q = rim[(i + 1) % rim.size()];
+    if (int(i) == gap) {
+      continue;
     }
-    angle = i == gap ? angle + tiny() : next;
+    if (whole) {
+      all.insert(all.end(), {tip, p, q});
+    } else {
+      // Vertices along the edges, which rounding moves off them.
+      const Vec3d a = tip + (p - tip) * half, b = tip + (q - tip) * half;
+      all.insert(all.end(), {tip, a, b, a, p, q, a, q, b});
+    }
   }
   addOccluder(all);
 }
@@ -440,6 +460,10 @@ inline const std::vector<HostileSceneMaker::Family>& HostileSceneMaker::families
 
 // A point beside an edge of an occluder, at a distance of any size, or within a triangle.
 inline Vec3d HostileSceneMaker::pointNearAnEdge() {
+  if (!critical_.empty() && chance(2)) {
+    const Vec3d& point = critical_[std::size_t(below(int(critical_.size())))];
+    return point + Vec3d(in(-1, 1), in(-1, 1), in(-0.1, 0.1)) * (length(point) * std::exp2(-in(6, 40)));
+  }
   const Triangles& triangles = occluders_[std::size_t(below(int(occluders_.size())))];
   if (triangles.empty()) {
     return {in(-1, 1), in(-1, 1), -3};
