@@ -299,8 +299,11 @@ inline void HostileSceneMaker::fan() {
 inline void HostileSceneMaker::bodies() {
   const int count = 1 + below(4);
   for (int b = 0; b < count; ++b) {
-    const Vec3d middle(in(-2, 2), in(-2, 2), -in(2, 8));
+    Vec3d middle(in(-2, 2), in(-2, 2), -in(2, 8));
     const Vec3d half(in(0.1, 2), in(0.1, 2), in(0.1, 1.5));
+    if (chance(3)) {  // one face is seen nearly edge on
+      middle.y = half.y + sign() * (chance(2) ? around(-10) : tiny());
+    }
     Triangles all;
     if (chance(2)) {
       box(all, middle - half, middle + half, false, chance(3) ? below(6) : -1);
