@@ -1,5 +1,5 @@
-// No method culls what can be seen, on scenes made for that: a few seeds of what scripts/fuzz_scenes runs for as long
-// as one likes.
+// No method culls what can be seen, on scenes made for that: a few seeds of what scripts/fuzz_scenes runs for
+// as long as one likes.
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ TEST(HostileScenes, NothingThatIsCulledCanBeSeen) {
     const test::HostileScene hostile = test::HostileSceneMaker(seed).make();
     for (const test::FalseCull& wrong : test::CullingJudge(hostile, seed).judge(counts)) {
       ADD_FAILURE() << "seed " << seed << " (" << hostile.family << "), view " << wrong.view << ": object "
-                    << wrong.object.value << " is seen at " << wrong.seen_at.x << ' ' << wrong.seen_at.y << ' '
-                    << wrong.seen_at.z << ", but culled by " << wrong.method;
+                    << wrong.object.value << " is seen at " << wrong.seen_at.x << ' ' << wrong.seen_at.y
+                    << ' ' << wrong.seen_at.z << ", but culled by " << wrong.method;
     }
   }
   // The scenes are worth nothing if little is culled in them, or if little of that is proved.
