@@ -17,22 +17,10 @@ using Piece = std::vector<PlanePoint>;
 
 // The part of the piece whose lines have the point on their left (or on their right), borders included.
 Piece clipped(const Piece& piece, const PlanePoint& point, bool left) {
-  Piece kept;
-  const auto value = [&](const PlanePoint& line) {
+  Piece kept = clippedWhere(piece, [&](const PlanePoint& line) {
     const double f = PlaneLine{line.x, line.y}.leftOf(point);
     return left ? f : -f;
-  };
-  for (std::size_t i = 0; i < piece.size(); ++i) {
-    const PlanePoint &a = piece[i], &b = piece[(i + 1) % piece.size()];
-    const double at_a = value(a), at_b = value(b);
-    if (at_a >= 0.0) {
-      kept.push_back(a);
-    }
-    if ((at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0)) {
-      const double s = at_a / (at_a - at_b);
-      kept.push_back({a.x + (b.x - a.x) * s, a.y + (b.y - a.y) * s});
-    }
-  }
+  });
   if (kept.size() < 3) {
     kept.clear();
   }

@@ -19,6 +19,24 @@ struct PlanePoint {
   double x = 0.0, y = 0.0;
 };
 
+// The part of a convex outline where `value`, a linear function of the point, is not negative.
+template <typename Value>
+std::vector<PlanePoint> clippedWhere(std::span<const PlanePoint> outline, Value&& value) {
+  std::vector<PlanePoint> kept;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const PlanePoint &p = outline[i], &q = outline[(i + 1) % outline.size()];
+    const double at_p = value(p), at_q = value(q);
+    if (at_p >= 0.0) {
+      kept.push_back(p);
+    }
+    if ((at_p > 0.0 && at_q < 0.0) || (at_p < 0.0 && at_q > 0.0)) {
+      const double s = at_p / (at_p - at_q);
+      kept.push_back({p.x + (q.x - p.x) * s, p.y + (q.y - p.y) * s});
+    }
+  }
+  return kept;
+}
+
 // A segment that is crossed by lines with `left` on their left and `right` on their right.
 struct Gate {
   PlanePoint left, right;
@@ -46,7 +64,8 @@ class PlaneLines {
   bool search(const Gate& from, const Gate& to, std::span<const Gate> blockers, std::uint32_t max_steps,
               const Accept& accept);
 
-  // Of the last search: the line that the fewest blockers block, and how many they are; the lines tried.
+  // What the last search found: the line that the fewest blockers block, how many they are, and how many
+  // lines it tried.
   const PlaneLine& best() const { return best_; }
   std::uint32_t bestBlocked() const { return best_blocked_; }
   std::uint32_t steps() const { return steps_; }

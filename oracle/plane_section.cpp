@@ -12,20 +12,7 @@ namespace {
 
 // The part of a convex outline with a * x + b * y >= c.
 std::vector<PlanePoint> clipped(const std::vector<PlanePoint>& outline, double a, double b, double c) {
-  std::vector<PlanePoint> kept;
-  const auto value = [&](const PlanePoint& p) { return a * p.x + b * p.y - c; };
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const PlanePoint &p = outline[i], &q = outline[(i + 1) % outline.size()];
-    const double at_p = value(p), at_q = value(q);
-    if (at_p >= 0.0) {
-      kept.push_back(p);
-    }
-    if ((at_p > 0.0 && at_q < 0.0) || (at_p < 0.0 && at_q > 0.0)) {
-      const double s = at_p / (at_p - at_q);
-      kept.push_back({p.x + (q.x - p.x) * s, p.y + (q.y - p.y) * s});
-    }
-  }
-  return kept;
+  return clippedWhere(outline, [&](const PlanePoint& p) { return a * p.x + b * p.y - c; });
 }
 
 bool before(const Vec3f& a, const Vec3f& b) {

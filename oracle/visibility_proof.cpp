@@ -211,13 +211,8 @@ VisibilityProof::Cover VisibilityProof::coverBorder(const Target& target, const 
       }
     }
   }
-  for (const Corner end : ends) {
-    if (++steps_ > max_steps_) {
-      return Cover::kOpen;
-    }
-    if (!blockerOf(target, end)) {
-      return seenAt(target, end);
-    }
+  if (const Cover cover = coverPoints(target, ends); cover != Cover::kHidden) {
+    return cover;
   }
   const auto along = std::find_if(image.lines.begin(), image.lines.end(), [&](Line line) {
     return std::all_of(ends.begin(), ends.end(), [&](Corner end) { return figures_.side(line, end) == 0; });
@@ -384,15 +379,22 @@ VisibilityProof::Cover VisibilityProof::coverTies(const Target& target, const Im
       touching.push_back(corner);
     }
   }
-  for (const Corner corner : touching) {
+  if (const Cover cover = coverPoints(target, touching); cover != Cover::kHidden) {
+    return cover;
+  }
+  return touching.size() == 2 ? coverTie(target, touching[0], touching[1], tie) : Cover::kHidden;
+}
+
+VisibilityProof::Cover VisibilityProof::coverPoints(const Target& target, std::span<const Corner> points) {
+  for (const Corner point : points) {
     if (++steps_ > max_steps_) {
       return Cover::kOpen;
     }
-    if (!blockerOf(target, corner)) {
-      return seenAt(target, corner);
+    if (!blockerOf(target, point)) {
+      return seenAt(target, point);
     }
   }
-  return touching.size() == 2 ? coverTie(target, touching[0], touching[1], tie) : Cover::kHidden;
+  return Cover::kHidden;
 }
 
 // Covers the directions between two, of which both are hidden, along the line `tie`.

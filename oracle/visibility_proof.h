@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -83,6 +84,7 @@ class VisibilityProof {
   Cover coverPiece(const Target& target, const ImagePolygon& piece);
   Cover coverOutOfRaysReach(const Target& target, const ImagePolygon& piece);
   Cover coverTies(const Target& target, const ImagePolygon& inside, Line tie);
+  Cover coverPoints(const Target& target, std::span<const Corner> points);
   Cover coverTie(const Target& target, Corner from, Corner to, Line tie);
 
   void beginFigures();

@@ -68,8 +68,8 @@ BufferEdge edgeBetween(const PixelPoint& a, const PixelPoint& b, EdgeKind kind, 
   edge.margin = margin;
   edge.kind = kind;
   if (!edge.flat()) {
-    // Of the rounded ends: in a row that has all of a nearly level edge, the slope times their difference
-    // must lead from one end to the other.
+    // The rise is that of the rounded ends: in a row that has all of a nearly level edge, the slope times
+    // their difference must lead from one end to the other.
     const double rise = static_cast<double>(edge.high) - static_cast<double>(edge.low);
     edge.slope = static_cast<float>((high.x - low.x) / rise);
     edge.side = rises ? 1 : -1;

@@ -45,7 +45,7 @@ class HostileSceneMaker {
   int below(int count) { return static_cast<int>(random_() % static_cast<std::uint64_t>(count)); }
   bool chance(int one_in) { return below(one_in) == 0; }
   double sign() { return chance(2) ? 1.0 : -1.0; }
-  // Of all sizes, from a rounding of double precision to a quarter.
+  // It has all sizes, from a rounding of double precision to a quarter.
   double tiny() { return std::exp2(in(-52.0, -2.0)); }
   // Around a tolerance.
   double around(int exponent) { return std::exp2(exponent + in(-3.0, 3.0)); }

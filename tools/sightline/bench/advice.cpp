@@ -133,7 +133,7 @@ Advice adviceFor(const BenchRecord& record) {
   for (std::size_t r = 0; r < record.runs.size(); ++r) {
     const SettingRecord &run = record.runs[r], &known = record.runs[best];
     const double merit = meritOf(run, ground, ends), most = meritOf(known, ground, ends);
-    // Of two that are equally good, as the two ends of a front are, the tighter one.
+    // The tighter one wins where two are equally good, as the two ends of a front are.
     const bool better = merit > most || (merit == most && run.kept < known.kept);
     if (run.on_front && (!known.on_front || better)) {
       best = r;

@@ -14,7 +14,7 @@
 
 namespace sightline::tool {
 
-// What it took to make one part of the preparation. bytes: none if unknown.
+// The time and memory that one part of the preparation took. bytes: none if unknown.
 struct PartCost {
   double us = 0.0;
   std::optional<std::size_t> bytes = 0;
