@@ -12,7 +12,8 @@ namespace {
 // occluder's reach. See docs/conservative.md.
 constexpr double kMinInset = 0x1p-28;
 
-// Finds the plane through the eye and the line where the near plane cuts the occluder. False: there is none.
+// Finds the plane through the eye and the line where the near plane cuts the occluder. False: there is none,
+// or more than one, as where an occluder that is flat up to its slack is nearly parallel to the near plane.
 bool cutAtNear(const Eye& eye, const OccluderSet& set, ActiveOccluder& occluder) {
   Vec3d leaving, entering;
   bool leaves = false, enters = false;
@@ -23,6 +24,9 @@ bool cutAtNear(const Eye& eye, const OccluderSet& set, ActiveOccluder& occluder)
     const double b = dot(eye.forward, edge.to) - occluder.seen.clip_depth;
     if ((a >= 0.0) == (b >= 0.0)) {
       continue;
+    }
+    if (a >= 0.0 ? leaves : enters) {
+      return false;
     }
     const Vec3d crossing = edge.from + (edge.to - edge.from) * (a / (a - b));
     (a >= 0.0 ? leaving : entering) = crossing;

@@ -40,8 +40,8 @@ bool cutFragment(const Fragment& fragment, const Plane& plane, VolumeBuilder& vo
           corner.embedded = false;  // there is no tree yet whose planes edges could lie in
         }
       }
-      front = {parts.front, fragment.volume};
-      back = {parts.back, fragment.volume};
+      front = {parts.front, fragment.volume, fragment.outline};
+      back = {parts.back, fragment.volume, fragment.outline};
       return true;
     }
   }

@@ -11,6 +11,9 @@ namespace sightline::occlusion {
 struct Fragment {
   Piece piece;
   std::uint32_t volume = 0;
+  // What the fragment was before anything but the ends of open edges cut it. Its open edges are drawn in for
+  // all of its parts, also for those that a cut has separated from the edge.
+  Piece outline{};
 };
 
 // Cuts a fragment by a plane. Both parts get the same shadow plane for the cut. False: the cut would be badly

@@ -103,12 +103,12 @@ void VolumeBuilder::addEdge(const OccluderSet& set, const EyeOccluder& candidate
   corners.push_back({outline.from, addPlane(insetPlane(candidate, outline, sine)), false, true});
 }
 
-// Clips away what lies before the depth (metres). The new edge gets a plane of its own. Returns the new
-// number of corners.
+// Clips away what lies before the depth (metres). Each new edge gets a plane of its own; there are two or
+// more where an occluder that is flat up to its slack is nearly parallel to the near plane. Returns the new
+// number of corners, 0 if the occluder cannot be used.
 std::uint32_t VolumeBuilder::clipNear(std::uint32_t first, std::uint32_t count, double depth) {
+  constexpr PlaneRef kCut{};  // until the edge has its plane
   clipped_.clear();
-  std::size_t cut = clipped_.size();
-  bool has_cut = false;
   for (std::uint32_t i = 0; i < count; ++i) {
     const Corner& a = corners[first + i];
     const Corner& b = corners[first + (i + 1) % count];
@@ -119,23 +119,19 @@ std::uint32_t VolumeBuilder::clipNear(std::uint32_t first, std::uint32_t count, 
     }
     if (a_in != b_in) {
       const Vec3d crossing = a.position + (b.position - a.position) * (da / (da - db));
-      if (a_in) {
-        cut = clipped_.size();
-        has_cut = true;
-      }
-      clipped_.push_back({crossing, a.edge, false, a.open});
+      clipped_.push_back(a_in ? Corner{crossing, kCut} : Corner{crossing, a.edge, false, a.open});
     }
   }
-  if (has_cut) {
-    const Vec3d& p = clipped_[cut].position;
-    const Vec3d& q = clipped_[(cut + 1) % clipped_.size()].position;
-    double sine = 0.0;
-    const Plane plane = eye.shadowPlane(p, q, sine);
-    if (!(sine > kShortestEdgeSine)) {
-      return 0;
+  for (std::size_t i = 0; i < clipped_.size(); ++i) {
+    if (clipped_[i].edge.bits == kCut.bits) {
+      double sine = 0.0;
+      const Plane plane =
+          eye.shadowPlane(clipped_[i].position, clipped_[(i + 1) % clipped_.size()].position, sine);
+      if (!(sine > kShortestEdgeSine)) {
+        return 0;
+      }
+      clipped_[i].edge = addPlane(plane);
     }
-    clipped_[cut].edge = addPlane(plane);
-    clipped_[cut].open = false;
   }
   corners.resize(first);
   corners.insert(corners.end(), clipped_.begin(), clipped_.end());

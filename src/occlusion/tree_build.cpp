@@ -26,33 +26,58 @@ void TreeBuilder::addFrustum(const View& view) {
   tree_->frustum_nodes = 4;
 }
 
-// Makes the subtree for one lit fragment: a node for each edge, with shadow behind all of them.
-Link TreeBuilder::occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth) {
+// True if the piece lacks this open edge and comes closer to it than slack and rounding allow. The edge's
+// plane is inset by 32 slack and, for rounding, by 64 times kOnPlane; a quarter of the latter is enough for a
+// piece that another plane has cut.
+bool TreeBuilder::reachesBefore(Piece piece, const Corner& open_edge) const {
+  const Plane& stored = tree_->volumes.planes[open_edge.edge.plane()];
+  constexpr double kRoom = 48.0;
+  bool in_front = false;
+  for (const Corner& corner : stack_.of(piece)) {
+    if (corner.edge.samePlane(open_edge.edge)) {
+      return false;
+    }
+    const double distance = stored.evaluate(corner.position) * (open_edge.edge.flipped() ? -1.0 : 1.0);
+    in_front = in_front || distance > kRoom * kOnPlane * (l1Norm(corner.position) + tree_->on_plane_scale);
+  }
+  return in_front;
+}
+
+// Makes the subtree for one lit piece of a fragment: a node for each edge, with shadow behind all of them.
+Link TreeBuilder::occlusionVolume(Piece piece, const Fragment& fragment, std::uint32_t depth) {
   TreeData& tree = *tree_;
-  if (tree.nodes.size() + piece.count > limits_.max_nodes || depth + piece.count > kMaxTreeDepth) {
+  // A cut may have taken an open edge from the piece and left parts of it closer to the edge than its inset.
+  edges_.clear();
+  for (const Corner& corner : stack_.of(piece)) {
+    if (!corner.embedded || !limits_.modified) {
+      edges_.push_back(corner);
+    }
+  }
+  for (const Corner& corner : stack_.of(fragment.outline)) {
+    if (corner.open && reachesBefore(piece, corner)) {
+      edges_.push_back(corner);
+      edges_.back().embedded = false;
+    }
+  }
+  if (tree.nodes.size() + edges_.size() > limits_.max_nodes || depth + edges_.size() > kMaxTreeDepth) {
     failed_ = true;
     return Link::out();
   }
-  ShadowLeaf leaf{volume, static_cast<std::uint32_t>(tree.corners.size()), piece.count};
+  ShadowLeaf leaf{fragment.volume, static_cast<std::uint32_t>(tree.corners.size()), piece.count};
   for (const Corner& corner : stack_.of(piece)) {
     tree.corners.push_back(corner.position);
   }
   tree.leaves.push_back(leaf);
   Link link = Link::shadow(tree.leaves.size() - 1);
-  std::uint32_t added = 0;
-  for (const Corner& corner : stack_.of(piece)) {
-    if (corner.embedded && limits_.modified) {
-      continue;
-    }
-    const Plane& stored = tree.volumes.planes[corner.edge.plane()];
-    const Plane plane = corner.edge.flipped() ? stored.flipped() : stored;
+  for (const Corner& edge : edges_) {
+    const Plane& stored = tree.volumes.planes[edge.edge.plane()];
+    const Plane plane = edge.edge.flipped() ? stored.flipped() : stored;
     tree.nodes.push_back(
-        {plane, tree.volumes.tolerances[corner.edge.plane()], corner.embedded, Link::out(), link});
-    tree.node_plane.push_back(corner.edge);
+        {plane, tree.volumes.tolerances[edge.edge.plane()], edge.embedded, Link::out(), link});
+    tree.node_plane.push_back(edge.edge);
     link = Link::node(tree.nodes.size() - 1);
-    ++added;
   }
-  tree.depth = std::max(tree.depth, depth + added);
+  tree.depth = std::max(tree.depth, depth + static_cast<std::uint32_t>(edges_.size()));
   return link;
 }
 
@@ -65,7 +90,7 @@ Link& TreeBuilder::at(Place place) {
 }
 
 // Follows a piece to a leaf. Where the piece is split, the part behind is put on the stack.
-void TreeBuilder::followToLeaf(Waiting moving, std::uint32_t volume) {
+void TreeBuilder::followToLeaf(Waiting moving, const Fragment& fragment) {
   while (at(moving.place).isNode()) {
     const auto index = static_cast<std::uint32_t>(at(moving.place).nodeIndex());
     const SplitResult split = stack_.split(moving.piece, tree_->nodes[index].plane, tree_->node_plane[index],
@@ -89,20 +114,20 @@ void TreeBuilder::followToLeaf(Waiting moving, std::uint32_t volume) {
   }
   if (at(moving.place).isOut()) {
     // occlusionVolume() appends nodes, which may move the node of the link: keep no references across it.
-    const Link made = occlusionVolume(moving.piece, volume, moving.depth);
+    const Link made = occlusionVolume(moving.piece, fragment, moving.depth);
     at(moving.place) = made;
   }
 }
 
-void TreeBuilder::filterDown(Piece piece, std::uint32_t volume) {
+void TreeBuilder::filterDown(const Fragment& fragment) {
   const std::size_t stack_size = stack_.corners.size();
   waiting_.clear();
-  waiting_.push_back({Place{}, piece, 0, stack_size});
+  waiting_.push_back({Place{}, fragment.piece, 0, stack_size});
   while (!waiting_.empty() && !failed_) {
     const Waiting next = waiting_.back();
     waiting_.pop_back();
     stack_.corners.resize(next.corners_needed);
-    followToLeaf(next, volume);
+    followToLeaf(next, fragment);
   }
   stack_.corners.resize(stack_size);
 }
@@ -117,7 +142,7 @@ void TreeBuilder::makeFragments() {
     const auto first = volumes.corners.begin() + volume.first_corner;
     stack_.corners.insert(stack_.corners.end(), first, first + volume.corner_count);
     const std::size_t first_fragment = fragments_.size();
-    fragments_.push_back({piece, v});
+    fragments_.push_back({piece, v, {}});
     for (; next_cut < volumes.cuts.size() && volumes.cuts[next_cut].volume == v; ++next_cut) {
       const Plane plane = volumes.cuts[next_cut].plane;
       const std::size_t before = fragments_.size();
@@ -128,6 +153,9 @@ void TreeBuilder::makeFragments() {
           fragments_.push_back(back);
         }
       }
+    }
+    for (std::size_t f = first_fragment; f < fragments_.size(); ++f) {
+      fragments_[f].outline = fragments_[f].piece;
     }
   }
 }
@@ -156,7 +184,7 @@ bool TreeBuilder::build(const View& view, std::span<const ChosenOccluders> sets,
   makeFragments();
   front_to_back_.order(tree.volumes, stack_, fragments_);
   for (const Fragment& fragment : fragments_) {
-    filterDown(fragment.piece, fragment.volume);
+    filterDown(fragment);
   }
   return !failed_ && !stack_.overflow;
 }

@@ -36,15 +36,17 @@ class TreeBuilder {
   void addFrustum(const View& view);
   void makeFragments();
   Link& at(Place place);
-  void filterDown(Piece piece, std::uint32_t volume);
-  void followToLeaf(Waiting piece, std::uint32_t volume);
-  Link occlusionVolume(Piece piece, std::uint32_t volume, std::uint32_t depth);
+  void filterDown(const Fragment& fragment);
+  void followToLeaf(Waiting piece, const Fragment& fragment);
+  Link occlusionVolume(Piece piece, const Fragment& fragment, std::uint32_t depth);
+  bool reachesBefore(Piece piece, const Corner& open_edge) const;
 
   TreeData* tree_ = nullptr;
   TreeLimits limits_;
   bool failed_ = false;
   PolygonStack stack_;
   std::vector<Waiting> waiting_;
+  std::vector<Corner> edges_;  // that get a node for the current piece
   FrontToBack front_to_back_;
   std::vector<Fragment> fragments_;
 };
