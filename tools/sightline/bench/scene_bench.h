@@ -14,7 +14,7 @@
 namespace sightline::tool {
 
 struct BenchSettings {
-  std::uint32_t rounds = 5;    // walks along the path that are measured
+  std::uint32_t rounds = 5;     // walks along the path that are measured
   std::uint32_t steps = 20000;  // ExactSettings::steps
   bool draw = false;
   PictureOptions picture{};  // to draw
