@@ -42,6 +42,7 @@ std::string csvOf(const std::vector<Row>& rows) {
 class BenchScripts : public ::testing::Test {
  protected:
   void SetUp() override {
+    // Skipped without Python, which neither the library nor the tool needs.
     if (runProgram("/usr/bin/python3", {"-c", ""}).code != 0) {
       GTEST_SKIP() << "the scripts need /usr/bin/python3";
     }

@@ -26,6 +26,7 @@ TEST(CorePin, KeepsTheThreadOnOneCoreUntilItEnds) {
   const int before = coresOfThisThread();
   {
     const CorePin pin;
+    // Skipped where it cannot be tested: some systems have no call for it, and some containers refuse it.
     if (!pin.core()) {
       GTEST_SKIP() << "threads cannot be pinned on this system";
     }
@@ -49,6 +50,7 @@ TEST(ThreadTime, CountsTheWorkOfThisThreadAlone) {
 }
 
 TEST(HeapGrowth, IsWhatWasAllocatedAndNotFreed) {
+  // Skipped where there is nothing to test: sanitizers replace the allocator and leave its counts at zero.
   if (heapBytes().value_or(0) == 0) {
     GTEST_SKIP() << "the C library, or a sanitizer's, does not tell";
   }
