@@ -44,6 +44,10 @@ struct ExactVisibility::Impl {
   std::optional<Witness> aimAt(const View& view, ObjectId object, std::uint32_t samples,
                                std::vector<RayHit>& hits) const;
   void lookBeside(const View& view, ObjectId object, std::uint32_t samples, std::vector<Witness>& seen) const;
+  using Decide = Decision (VisibilityProof::*)(ObjectId object, std::uint32_t max_steps);
+  std::vector<Decision> decideEach(const View& view, std::span<const ObjectId> objects,
+                                   std::uint32_t max_steps, Decide decide,
+                                   const ParallelFor& parallel_for) const;
 
   SceneView scene;
   RayScene rays;
@@ -234,11 +238,23 @@ bool ExactVisibility::confirm(const View& view, const Witness& witness) const {
 std::vector<Decision> ExactVisibility::decide(const View& view, std::span<const ObjectId> objects,
                                               std::uint32_t max_steps,
                                               const ParallelFor& parallel_for) const {
+  return impl_->decideEach(view, objects, max_steps, &VisibilityProof::decide, parallel_for);
+}
+
+std::vector<Decision> ExactVisibility::decideBoxes(const View& view, std::span<const ObjectId> objects,
+                                                   std::uint32_t max_steps,
+                                                   const ParallelFor& parallel_for) const {
+  return impl_->decideEach(view, objects, max_steps, &VisibilityProof::decideBox, parallel_for);
+}
+
+std::vector<Decision> ExactVisibility::Impl::decideEach(const View& view, std::span<const ObjectId> objects,
+                                                        std::uint32_t max_steps, Decide decide,
+                                                        const ParallelFor& parallel_for) const {
   std::vector<Decision> decisions(objects.size());
   parallel_for(static_cast<std::uint32_t>(objects.size()), [&](std::uint32_t begin, std::uint32_t end) {
-    VisibilityProof proof(impl_->proofs, impl_->rays, view);
+    VisibilityProof proof(proofs, rays, view);
     for (std::uint32_t i = begin; i < end; ++i) {
-      decisions[i] = proof.decide(objects[i], max_steps);
+      decisions[i] = (proof.*decide)(objects[i], max_steps);
     }
   });
   return decisions;

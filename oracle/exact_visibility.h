@@ -84,6 +84,14 @@ class ExactVisibility {
   std::vector<Decision> decide(const View& view, std::span<const ObjectId> objects, std::uint32_t max_steps,
                                const ParallelFor& parallel_for = serialFor) const;
 
+  // Decides for each of these objects, in exact arithmetic, whether any point of its bounding box
+  // (Object::bounds) in the view volume is visible, as if the box were solid and hid nothing. It is if the
+  // object is. Boxes that are not finite are visible, those of objects without triangles are hidden. As in
+  // decide(), sides that are seen edge on show nothing. The point of a witness is one of the box.
+  std::vector<Decision> decideBoxes(const View& view, std::span<const ObjectId> objects,
+                                    std::uint32_t max_steps,
+                                    const ParallelFor& parallel_for = serialFor) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -9,9 +9,11 @@ const Whole& component(const WholeVec& v, int axis) {
 
 }  // namespace
 
-ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int lowest_exponent)
+ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int lowest_exponent,
+                       std::span<const Vec3f> more)
     : view_(view),
       positions_(positions),
+      more_(more),
       exponent_(std::min({lowest_exponent, lowestExponent(view.eye), 0})),
       forward_exponent_(lowestExponent(view.forward)),
       exact_eye_(wholeOf(view.eye, exponent_)),
@@ -35,7 +37,7 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
 }
 
 Vec3d ImageSpace::fromEye(std::uint32_t position) const {
-  return Vec3d(positions_[position]) - view_.eye;
+  return this->position(position) - view_.eye;
 }
 
 // Projects along the viewing direction onto the plane across `axis_`, times forward[axis_].
@@ -64,7 +66,7 @@ RoundedVec ImageSpace::direction(std::uint32_t position) const {
 }
 
 RoundedVec ImageSpace::difference(std::uint32_t from, std::uint32_t to) const {
-  const Vec3d d = Vec3d(positions_[to]) - Vec3d(positions_[from]);
+  const Vec3d d = position(to) - position(from);
   if (!view_.orthographic) {
     return {d, kRounding * maxNorm(d)};
   }
@@ -72,7 +74,7 @@ RoundedVec ImageSpace::difference(std::uint32_t from, std::uint32_t to) const {
 }
 
 WholeVec ImageSpace::exactDirection(std::uint32_t position) const {
-  return exactDirectionOf(Vec3d(positions_[position]));
+  return exactDirectionOf(this->position(position));
 }
 
 double ImageSpace::weight(std::uint32_t position) const {
@@ -87,7 +89,7 @@ Whole ImageSpace::exactWeight(std::uint32_t position) const {
   if (!view_.orthographic) {
     return 1;
   }
-  return -dot(wholeOf(Vec3d(positions_[position]), exponent_) - exact_eye_, exact_forward_);
+  return -dot(wholeOf(this->position(position), exponent_) - exact_eye_, exact_forward_);
 }
 
 ImageSpace::ExactNearness ImageSpace::exactNearnessAt(double depth) const {

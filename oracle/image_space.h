@@ -34,10 +34,15 @@ struct RoundedVec {
 
 class ImageSpace {
  public:
-  // `lowest_exponent` is that of all finite positions. The positions' memory must outlive this object.
-  ImageSpace(const View& view, std::span<const Vec3f> positions, int lowest_exponent);
+  // `lowest_exponent` is that of all finite positions. The memory of both lists must outlive this object.
+  // `more`: positions whose numbers follow those of `positions`; their coordinates may change between uses.
+  ImageSpace(const View& view, std::span<const Vec3f> positions, int lowest_exponent,
+             std::span<const Vec3f> more = {});
 
   const View& view() const { return view_; }
+  Vec3d position(std::uint32_t number) const {
+    return Vec3d(number < positions_.size() ? positions_[number] : more_[number - positions_.size()]);
+  }
 
   // The direction of a position with finite coordinates.
   RoundedVec direction(std::uint32_t position) const;
@@ -81,7 +86,7 @@ class ImageSpace {
   WholeVec exactProject(const WholeVec& from_eye, int exponent) const;
 
   View view_;
-  std::span<const Vec3f> positions_;
+  std::span<const Vec3f> positions_, more_;
   int exponent_ = 0;          // of exact coordinates in space
   int forward_exponent_ = 0;  // of the exact viewing direction
   WholeVec exact_eye_, exact_forward_;

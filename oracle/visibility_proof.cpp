@@ -11,8 +11,6 @@
 namespace sightline {
 namespace {
 
-constexpr double kMargin = 1e-12;  // relative; a thousand times the rounding of a box's extents in the image
-
 struct PositionHash {
   std::size_t operator()(const Vec3f& p) const {
     std::uint64_t hash = 0;
@@ -36,6 +34,12 @@ ProofScene::ProofScene(const SceneView& scene_) : scene(scene_), tree(scene_) {
       lowest_exponent = std::min(lowest_exponent, lowestExponent(Vec3d(p)));
     }
   }
+  for (const Object& object : scene.objects) {
+    if (object.bounds.wellFormed()) {
+      lowest_exponent = std::min({lowest_exponent, lowestExponent(Vec3d(object.bounds.min)),
+                                  lowestExponent(Vec3d(object.bounds.max))});
+    }
+  }
 }
 
 ImageTriangle ProofScene::corners(std::uint32_t first_index) const {
@@ -46,7 +50,7 @@ ImageTriangle ProofScene::corners(std::uint32_t first_index) const {
 VisibilityProof::VisibilityProof(const ProofScene& scene, const RayScene& rays, const View& view)
     : scene_(scene),
       rays_(rays),
-      space_(view, scene.scene.positions, scene.lowest_exponent),
+      space_(view, scene.scene.positions, scene.lowest_exponent, box_corners_),
       figures_(space_) {}
 
 void VisibilityProof::beginFigures() {
@@ -77,13 +81,18 @@ VisibilityProof::Appearance& VisibilityProof::appearance(const Triangle& triangl
   appearance.region.lines = {figures_.lineThrough(t.a, t.b, turned), figures_.lineThrough(t.b, t.c, turned),
                              figures_.lineThrough(t.c, t.a, turned)};
   appearance.depth = figures_.depthOf(t);
+  cutAtNear(appearance.region, appearance.depth);
+  return appearance;
+}
+
+// Leaves of a plane what is not before the near plane.
+void VisibilityProof::cutAtNear(ImageRegion& region, Depth depth) {
   if (space_.view().near > 0.0 || space_.view().orthographic) {
-    const Line beyond_near = figures_.lineWhereNearer(near_, appearance.depth);
+    const Line beyond_near = figures_.lineWhereNearer(near_, depth);
     if (!figures_.dividesNothing(beyond_near)) {
-      appearance.region.lines.push_back(beyond_near);
+      region.lines.push_back(beyond_near);
     }
   }
-  return appearance;
 }
 
 // The directions in which a triangle is nearer than the target. On the last of the lines both are at the same
@@ -102,10 +111,14 @@ bool VisibilityProof::contains(const ImageRegion& region, Corner direction) {
                      [&](Line line) { return figures_.side(line, direction) >= 0; });
 }
 
-Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
+void VisibilityProof::begin(std::uint32_t max_steps) {
   steps_ = 0;
   max_steps_ = max_steps;
   witness_.reset();
+}
+
+Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
+  begin(max_steps);
   std::vector<std::uint32_t> open;
   if (const std::uint32_t root = scene_.tree.rootOf(object); root != TriangleTree::kNoNode) {
     open.push_back(root);
@@ -115,7 +128,7 @@ Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
     const TriangleTree::Node& node = scene_.tree.node(open.back());
     open.pop_back();
     const Cover cover =
-        node.isLeaf() ? coverTriangle({node.first_index, node.object}) : coverBox(node, object);
+        node.isLeaf() ? coverTriangle({node.first_index, node.object}) : coverBox(node.box, object);
     if (cover == Cover::kSeen) {
       return {Verdict::kVisible, *witness_};
     }
@@ -128,89 +141,56 @@ Decision VisibilityProof::decide(ObjectId object, std::uint32_t max_steps) {
   return {undecided ? Verdict::kUndecided : Verdict::kHidden, {object, {}}};
 }
 
-// Rounded outwards.
-VisibilityProof::BoxImage VisibilityProof::imageOf(const Box& box) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  BoxImage image{{kInfinity, -kInfinity, kInfinity, -kInfinity}, true, kInfinity, -kInfinity};
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
-                  (corner & 4) != 0 ? box.max.z : box.min.z);
-    const View& view = space_.view();
-    const double margin = kMargin * length(p - view.eye), depth = depthOf(view, p);
-    image.nearest = std::min(image.nearest, depth - margin);
-    image.farthest = std::max(image.farthest, depth + margin);
-    const Vec3d d = space_.directionOf(p);
-    const double scale = dot(d, space_.forward());
-    if (!(scale > 1e3 * margin)) {
-      image.before_the_eye = false;
-      continue;
-    }
-    const double x = dot(d, space_.right()) / scale, y = dot(d, space_.up()) / scale;
-    const double widen = 4.0 * margin / scale;
-    const double x_margin = widen * (1.0 + std::abs(x)), y_margin = widen * (1.0 + std::abs(y));
-    image.extents = {std::min(image.extents.x_min, x - x_margin), std::max(image.extents.x_max, x + x_margin),
-                     std::min(image.extents.y_min, y - y_margin),
-                     std::max(image.extents.y_max, y + y_margin)};
-  }
-  return image;
-}
-
-VisibilityProof::Cover VisibilityProof::coverBox(const TriangleTree::Node& node, ObjectId object) {
-  const View& view = space_.view();
-  const BoxImage image = imageOf(node.box);
-  if (image.farthest < view.near || image.nearest > view.far) {
-    return Cover::kHidden;
-  }
-  if (!image.before_the_eye || !(image.nearest > view.near)) {
-    return Cover::kOpen;
-  }
-  const double x = space_.halfWidth(), y = space_.halfHeight();
-  const ImageRectangle& extents = image.extents;
-  const ImageRectangle shown{std::max(extents.x_min, -x), std::min(extents.x_max, x),
-                             std::max(extents.y_min, -y), std::min(extents.y_max, y)};
-  if (!(shown.x_min < shown.x_max && shown.y_min < shown.y_max)) {
-    return Cover::kHidden;
-  }
-  beginFigures();
-  pieces_.push_back(rectangle(figures_, shown));
-  return coverPolygons({{kNone, object}, figures_.depthGiven(image.nearest), image.nearest});
-}
-
 VisibilityProof::Cover VisibilityProof::coverTriangle(const Triangle& triangle) {
   beginFigures();
   const Appearance& shown = appearance(triangle);
   if (!shown.shown) {
     return Cover::kHidden;
   }
-  const Target target{triangle, shown.depth, 0.0};
-  ImageRegion region = shown.region;
+  return coverImage({.kind = TargetKind::kTriangle,
+                     .object = triangle.object,
+                     .depth = shown.depth,
+                     .first_index = triangle.first_index,
+                     .plane = scene_.corners(triangle.first_index)},
+                    shown.region);
+}
+
+// Covers what the picture shows of a target in a region that begins at the near plane.
+VisibilityProof::Cover VisibilityProof::coverImage(const Target& target, ImageRegion region) {
   if (std::isfinite(space_.view().far)) {
-    const Line before_far = figures_.lineWhereNearer(shown.depth, far_);
+    const Line before_far = figures_.lineWhereNearer(target.depth, far_);
     if (!figures_.dividesNothing(before_far)) {
       region.lines.push_back(before_far);
     }
   }
   ImagePolygon image = clipped(figures_, picture_, region);
   if (image.empty()) {
-    region.lines.insert(region.lines.end(), picture_.edges.begin(), picture_.edges.end());
     return coverBorder(target, region);
   }
   pieces_.push_back(std::move(image));
   return coverPolygons(target);
 }
 
-// Covers an image without area: that of a triangle that touches the view volume from outside. It is empty, a
-// point or a part of a line.
-VisibilityProof::Cover VisibilityProof::coverBorder(const Target& target, const ImageRegion& image) {
-  std::vector<Corner> ends;
-  for (std::size_t i = 0; i < image.lines.size(); ++i) {
+// The corners of what the picture shows of a region, some of them several times.
+std::vector<VisibilityProof::Corner> VisibilityProof::cornersInPicture(ImageRegion region) {
+  region.lines.insert(region.lines.end(), picture_.edges.begin(), picture_.edges.end());
+  std::vector<Corner> corners;
+  for (std::size_t i = 0; i < region.lines.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const Corner corner = figures_.intersection(image.lines[i], image.lines[j]);
-      if (figures_.isBeforeTheEye(corner) && contains(image, corner)) {
-        ends.push_back(corner);
+      const Corner corner = figures_.intersection(region.lines[i], region.lines[j]);
+      if (figures_.isBeforeTheEye(corner) && contains(region, corner)) {
+        corners.push_back(corner);
       }
     }
   }
+  return corners;
+}
+
+// Covers an image without area: that of a triangle that touches the view volume from outside. It is empty, a
+// point or a part of a line.
+VisibilityProof::Cover VisibilityProof::coverBorder(const Target& target, ImageRegion image) {
+  const std::vector<Corner> ends = cornersInPicture(image);
+  image.lines.insert(image.lines.end(), picture_.edges.begin(), picture_.edges.end());
   if (const Cover cover = coverPoints(target, ends); cover != Cover::kHidden) {
     return cover;
   }
@@ -271,7 +251,7 @@ void VisibilityProof::castRays(const ImagePolygon& piece) {
 // Appends what nearer triangles leave of the piece to pieces_.
 VisibilityProof::Cover VisibilityProof::coverPiece(const Target& target, const ImagePolygon& piece) {
   castRays(piece);
-  if (const Cover cover = findBlockers(target); cover != Cover::kHidden) {
+  if (const Cover cover = findBlockers(target, piece); cover != Cover::kHidden) {
     return cover;
   }
   bool progress = false;
@@ -296,51 +276,90 @@ VisibilityProof::Cover VisibilityProof::coverPiece(const Target& target, const I
     std::swap(parts_, next_parts_);
   }
   if (!progress) {
-    return target.isBox() ? Cover::kOpen : coverOutOfRaysReach(target, piece);
+    return target.kind == TargetKind::kDirections ? Cover::kOpen : coverOutOfRaysReach(target, piece);
   }
   std::move(parts_.begin(), parts_.end(), std::back_inserter(pieces_));
   return Cover::kHidden;
 }
 
-// Sets blockers_ to the nearer triangles that the rays hit. A box is given up where a ray reaches it.
-VisibilityProof::Cover VisibilityProof::findBlockers(const Target& target) {
+// Sets blockers_ to the nearer triangles that the rays hit. Directions are given up where a ray reaches the
+// depth.
+VisibilityProof::Cover VisibilityProof::findBlockers(const Target& target, const ImagePolygon& piece) {
   blockers_.clear();
   std::array<bool, RayScene::kBatch> blocked{};
   for (const RayHit& hit : hits_) {
-    if (hit.object == target.triangle.object &&
-        seen(hit.object, figures_.cornerGiven(directions_[hit.ray]))) {
+    if (hit.object == target.object && seen(hit.object, figures_.cornerGiven(directions_[hit.ray]))) {
       return Cover::kSeen;
     }
-    const double depth = space_.view().near + static_cast<double>(hit.t);
-    const bool nearer =
-        target.isBox() ? depth < target.nearest : hit.first_index != target.triangle.first_index;
-    if (hit.opaque && nearer) {
+    if (hit.opaque && isBefore(hit, target)) {
       blocked[hit.ray] = true;
-      const auto same = [&](const Triangle& blocker) { return blocker.first_index == hit.first_index; };
-      if (std::none_of(blockers_.begin(), blockers_.end(), same)) {
-        blockers_.push_back({hit.first_index, hit.object});
-      }
+      addBlocker({hit.first_index, hit.object});
     }
+  }
+  if (target.kind == TargetKind::kSide) {
+    return lookPastBlockers(target, piece, blocked);
   }
   const auto rays = static_cast<std::ptrdiff_t>(directions_.size());
   const bool reached = std::count(blocked.begin(), blocked.begin() + rays, true) < rays;
-  return target.isBox() && reached ? Cover::kOpen : Cover::kHidden;
+  return target.kind == TargetKind::kDirections && reached ? Cover::kOpen : Cover::kHidden;
+}
+
+// Whether what the ray hit may hide the target, as far as single precision tells. Rays hit the triangles of
+// the scene, so the first hit is before a triangle unless it is that triangle.
+bool VisibilityProof::isBefore(const RayHit& hit, const Target& target) const {
+  if (target.kind == TargetKind::kTriangle) {
+    return hit.first_index != target.first_index;
+  }
+  const View& view = space_.view();
+  const double depth = view.near + static_cast<double>(hit.t);
+  return depth < (target.kind == TargetKind::kDirections
+                      ? target.nearest
+                      : depthOf(view, pointOnPlane(target.plane, directions_[hit.ray])));
+}
+
+void VisibilityProof::addBlocker(const Triangle& blocker) {
+  const auto same = [&](const Triangle& other) { return other.first_index == blocker.first_index; };
+  if (std::none_of(blockers_.begin(), blockers_.end(), same)) {
+    blockers_.push_back(blocker);
+  }
+}
+
+// Looks along the rays that nothing seems to block. What blocks them after all is a blocker as well.
+VisibilityProof::Cover VisibilityProof::lookPastBlockers(const Target& target, const ImagePolygon& piece,
+                                                         const std::array<bool, RayScene::kBatch>& blocked) {
+  for (std::size_t ray = 0; ray < directions_.size(); ++ray) {
+    if (blocked[ray]) {
+      continue;
+    }
+    const Corner direction = figures_.cornerGiven(directions_[ray]);
+    if (!isInside(piece, direction)) {
+      continue;
+    }
+    const std::optional<Triangle> blocker = blockerOf(target, direction);
+    if (!blocker) {
+      return seenAt(target, direction);
+    }
+    addBlocker(*blocker);
+  }
+  return Cover::kHidden;
+}
+
+// True if the direction is strictly inside the piece, exactly.
+bool VisibilityProof::isInside(const ImagePolygon& piece, Corner direction) {
+  return std::all_of(piece.edges.begin(), piece.edges.end(), [&](Line edge) {
+    for (const Corner corner : piece.corners) {
+      if (const int side = figures_.side(edge, corner); side != 0) {
+        return side == figures_.side(edge, direction);
+      }
+    }
+    return false;
+  });
 }
 
 // A direction strictly inside the piece, exactly.
 VisibilityProof::Corner VisibilityProof::inside(const ImagePolygon& piece) {
   const Corner middle = figures_.cornerGiven(directions_.front());
-  const auto isInside = [&](Line edge) {
-    for (const Corner corner : piece.corners) {
-      if (const int side = figures_.side(edge, corner); side != 0) {
-        return side == figures_.side(edge, middle);
-      }
-    }
-    return false;
-  };
-  return std::all_of(piece.edges.begin(), piece.edges.end(), isInside)
-             ? middle
-             : figures_.cornerBetween(piece.corners);
+  return isInside(piece, middle) ? middle : figures_.cornerBetween(piece.corners);
 }
 
 // Rays in single precision found no triangle to subtract: searches without them.
@@ -370,8 +389,8 @@ VisibilityProof::Cover VisibilityProof::coverOutOfRaysReach(const Target& target
 // Where the blocker touches the target, it does not hide it: another triangle must.
 VisibilityProof::Cover VisibilityProof::coverTies(const Target& target, const ImagePolygon& inside,
                                                   Line tie) {
-  if (target.isBox()) {
-    return Cover::kHidden;  // its nearest depth lies before all that is in it
+  if (target.kind == TargetKind::kDirections) {
+    return Cover::kHidden;  // the depth lies before all that is in it
   }
   std::vector<Corner> touching;
   for (const Corner corner : inside.corners) {
@@ -443,7 +462,7 @@ std::optional<VisibilityProof::Triangle> VisibilityProof::blockerOf(const Target
   const ViewRay line = space_.lineOfSight(figures_.direction(direction));
   scene_.tree.alongRay(line.origin, line.direction, [&](const TriangleTree::Node& leaf) {
     const Triangle blocker{leaf.first_index, leaf.object};
-    if (found || leaf.first_index == target.triangle.first_index || !appearance(blocker).shown ||
+    if (found || leaf.first_index == target.first_index || !appearance(blocker).shown ||
         !appearance(blocker).occludes || !contains(appearance(blocker).region, direction)) {
       return;
     }
@@ -455,7 +474,7 @@ std::optional<VisibilityProof::Triangle> VisibilityProof::blockerOf(const Target
 }
 
 VisibilityProof::Cover VisibilityProof::seenAt(const Target& target, Corner direction) {
-  witness_ = Witness{target.triangle.object, pointAt(target.triangle.first_index, direction)};
+  witness_ = Witness{target.object, pointAt(target.plane, direction)};
   return Cover::kSeen;
 }
 
@@ -488,7 +507,7 @@ bool VisibilityProof::seen(ObjectId object, Corner direction) {
       return blocker != depth && figures_.side(figures_.lineWhereNearer(blocker, depth), direction) > 0;
     });
     if (in_view && !hidden) {
-      witness_ = Witness{object, pointAt(first_index, direction)};
+      witness_ = Witness{object, pointAt(scene_.corners(first_index), direction)};
       return true;
     }
   }
@@ -500,14 +519,16 @@ bool VisibilityProof::reaches(const Vec3d& point, ObjectId object) {
   return isFinite(point) && depthOf(space_.view(), point) > 0.0 && seen(object, figures_.cornerOf(point));
 }
 
-// The triangle's point in this direction, rounded.
-Vec3d VisibilityProof::pointAt(std::uint32_t first_index, Corner direction) const {
-  const auto corner = [&](std::uint32_t i) {
-    return Vec3d(scene_.scene.positions[scene_.scene.indices[first_index + i]]);
-  };
-  const ViewRay ray = space_.lineOfSight(figures_.direction(direction));
-  const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
-  return ray.origin + ray.direction * (dot(corner(0) - ray.origin, normal) / dot(ray.direction, normal));
+// The point of the plane in this direction, rounded.
+Vec3d VisibilityProof::pointAt(const ImageTriangle& plane, Corner direction) const {
+  return pointOnPlane(plane, figures_.direction(direction));
+}
+
+Vec3d VisibilityProof::pointOnPlane(const ImageTriangle& plane, const Vec3d& direction) const {
+  const Vec3d a = space_.position(plane.a);
+  const ViewRay ray = space_.lineOfSight(direction);
+  const Vec3d normal = cross(space_.position(plane.b) - a, space_.position(plane.c) - a);
+  return ray.origin + ray.direction * (dot(a - ray.origin, normal) / dot(ray.direction, normal));
 }
 
 }  // namespace sightline

@@ -1,13 +1,15 @@
 #pragma once
 
-// Decides whether an object is visible from a point, in exact arithmetic.
+// Decides whether an object, or its bounding box, is visible from a point, in exact arithmetic.
 //
 // The images of nearer opaque triangles are subtracted from the image of a triangle of the object. If nothing
 // is left, the triangle is hidden; otherwise a ray through what is left reaches it. Embree proposes the
 // triangles to subtract and the rays to try; what they prove is decided without rounding. A box around many
 // triangles of the object is tried before each of them: if all directions to it are blocked before its
-// nearest point, they are all hidden.
+// nearest point, they are all hidden. An object's bounding box is visible if one of its sides is, or if a ray
+// that starts on the near plane starts inside the box.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -30,7 +32,7 @@ struct ProofScene {
   SceneView scene;
   TriangleTree tree;
   std::vector<std::uint32_t> same_position;  // of each position, the first that is equal to it
-  int lowest_exponent = 0;                   // of all finite coordinates
+  int lowest_exponent = 0;                   // of all finite coordinates, those of bounding boxes too
 };
 
 // Proofs for one view. Not for several threads at once.
@@ -41,6 +43,8 @@ class VisibilityProof {
 
   // Gives up after about this many batches of rays.
   Decision decide(ObjectId object, std::uint32_t max_steps);
+  // The same for the object's bounding box; see ExactVisibility::decideBoxes().
+  Decision decideBox(ObjectId object, std::uint32_t max_steps);
 
   // True if the direction reaches the object before any opaque surface, in the view; ties count as visible.
   bool reaches(const Vec3d& point, ObjectId object);
@@ -62,13 +66,27 @@ class VisibilityProof {
     Depth depth = 0;
     ImageRegion hides;  // see hiddenBy(); no lines: not yet asked for
   };
-  // A triangle, or a box around triangles of an object, that is to be proved hidden.
+  // What is to be proved hidden.
+  enum class TargetKind : std::uint8_t {
+    kTriangle,    // of the object
+    kSide,        // of the object's bounding box
+    kDirections,  // all that is not before a depth, in the directions of a box around some of its triangles
+  };
   struct Target {
-    Triangle triangle;  // without first_index: a box
+    TargetKind kind = TargetKind::kDirections;
+    ObjectId object;
     Depth depth = 0;
-    double nearest = 0.0;  // of a box: depth of its nearest point, metres
-
-    bool isBox() const { return triangle.first_index == kNone; }
+    std::uint32_t first_index = kNone;  // of a triangle
+    ImageTriangle plane;                // of a triangle or side: three points of its plane
+    double nearest = 0.0;               // of directions: the depth, metres
+  };
+  // A side of a bounding box as it appears in the image, from the near plane on.
+  struct Side {
+    bool shown = false;  // it is not seen edge on
+    bool front = false;
+    ImageTriangle plane;
+    ImageRegion region;
+    Depth depth = 0;
   };
   struct BoxImage {
     ImageRectangle extents;                // only if all corners lie before the eye
@@ -77,9 +95,12 @@ class VisibilityProof {
   };
   enum class Cover : std::uint8_t { kHidden, kSeen, kOpen };
 
-  Cover coverBox(const TriangleTree::Node& node, ObjectId object);
+  void begin(std::uint32_t max_steps);
+  Cover coverBox(const Box& box, ObjectId object);
   Cover coverTriangle(const Triangle& triangle);
-  Cover coverBorder(const Target& target, const ImageRegion& image);
+  Cover coverSides(ObjectId object);
+  Cover coverImage(const Target& target, ImageRegion region);
+  Cover coverBorder(const Target& target, ImageRegion image);
   Cover coverPolygons(const Target& target);
   Cover coverPiece(const Target& target, const ImagePolygon& piece);
   Cover coverOutOfRaysReach(const Target& target, const ImagePolygon& piece);
@@ -89,19 +110,30 @@ class VisibilityProof {
 
   void beginFigures();
   void castRays(const ImagePolygon& piece);
-  Cover findBlockers(const Target& target);
+  Cover findBlockers(const Target& target, const ImagePolygon& piece);
+  bool isBefore(const RayHit& hit, const Target& target) const;
+  Cover lookPastBlockers(const Target& target, const ImagePolygon& piece,
+                         const std::array<bool, RayScene::kBatch>& blocked);
+  void addBlocker(const Triangle& blocker);
   BoxImage imageOf(const Box& box) const;
   Appearance& appearance(const Triangle& triangle);
+  Side side(std::uint32_t number);
+  std::optional<Corner> directionIntoBox();
+  void cutAtNear(ImageRegion& region, Depth depth);
+  std::vector<Corner> cornersInPicture(ImageRegion region);
   const ImageRegion& hiddenBy(const Triangle& blocker, const Target& target);
   bool contains(const ImageRegion& region, Corner direction);
+  bool isInside(const ImagePolygon& piece, Corner direction);
   Corner inside(const ImagePolygon& piece);
   std::optional<Triangle> blockerOf(const Target& target, Corner direction);
   Cover seenAt(const Target& target, Corner direction);
   bool seen(ObjectId object, Corner direction);
-  Vec3d pointAt(std::uint32_t first_index, Corner direction) const;
+  Vec3d pointAt(const ImageTriangle& plane, Corner direction) const;
+  Vec3d pointOnPlane(const ImageTriangle& plane, const Vec3d& direction) const;
 
   const ProofScene& scene_;
   const RayScene& rays_;
+  std::array<Vec3f, 8> box_corners_{};  // of the bounding box that is decided
   ImageSpace space_;
   ImageFigures figures_;
   ImagePolygon picture_;

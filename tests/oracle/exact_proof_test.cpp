@@ -1,5 +1,6 @@
-// What the exact verifier proves, against brute force in whole numbers. The coordinates are small integers,
-// and many corners lie on common lines of sight, so that most cases are ties.
+// What the exact verifier proves of objects and of their bounding boxes, against brute force in whole
+// numbers. The coordinates are small integers, and many corners lie on common lines of sight, so that most
+// cases are ties.
 
 #include <gtest/gtest.h>
 
@@ -242,6 +243,66 @@ void compare(const Scene& scene, const View& view, Maker& maker, Counts& counts,
   }
 }
 
+// The sides of the object's bounding box as an object of its own through which one sees; and the section of
+// the near plane, for views along -z.
+ObjectId addBoxInView(Scene& scene, const View& view, ObjectId object) {
+  const Box box = scene.objects[object.value].bounds;
+  const auto near = static_cast<float>(view.eye.z - view.near);
+  std::vector<Vec3f> corners;
+  const auto addRectangle = [&](int axis, float at) {
+    const int i = (axis + 1) % 3;
+    Vec3f a = box.min, b = box.min, c = box.max, d = box.max;
+    b[i] = box.max[i];
+    d[i] = box.min[i];
+    a[axis] = b[axis] = c[axis] = d[axis] = at;
+    corners.insert(corners.end(), {a, b, c, a, c, d});
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    addRectangle(axis, box.min[axis]);
+    addRectangle(axis, box.max[axis]);
+  }
+  if (view.forward.z == -1.0 && box.min.z < near && near < box.max.z) {
+    addRectangle(2, near);
+  }
+  return addTriangles(scene, MaterialId(3u), corners);  // see-through, double-sided
+}
+
+// Whether triangles can show all that is visible of the box: not where rays start in it and the section of
+// the near plane is rounded, or where they start at the eye.
+bool trianglesShow(const Box& box, const View& view) {
+  bool beyond_near = true, has_eye = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    has_eye = has_eye && box.min[axis] <= view.eye[axis] && view.eye[axis] <= box.max[axis];
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                  (corner & 4) != 0 ? box.max.z : box.min.z);
+    beyond_near = beyond_near && dot(p - view.eye, view.forward) > view.near * (1.0 + 1e-9);
+  }
+  const bool has_round_axes = maxComponent(abs(view.forward)) == 1.0;
+  return beyond_near || (has_round_axes && (view.orthographic || view.near > 0.0 || !has_eye));
+}
+
+// Expects of the bounding box of each object what brute force says of a box that is made of triangles.
+void compareBoxes(const Scene& scene, const View& view, Counts& counts, const std::string& where) {
+  const ExactVisibility oracle(scene.view());
+  const std::vector<ObjectId> all = allObjects(scene);
+  const std::vector<Decision> decisions = oracle.decideBoxes(view, all, kPlentyOfSteps);
+  for (const ObjectId object : all) {
+    if (!trianglesShow(scene.objects[object.value].bounds, view)) {
+      continue;
+    }
+    Scene with_box = scene;
+    const ObjectId shown = addBoxInView(with_box, view, object);
+    const bool visible = test::ExactSight(with_box.view(), view).isVisible(shown);
+    const bool occluded = !visible && test::ExactSight(only(with_box, shown).view(), view).isVisible(shown);
+    (visible ? counts.visible : occluded ? counts.occluded : counts.not_shown) += 1;
+    EXPECT_EQ(decisions[object.value].verdict, visible ? Verdict::kVisible : Verdict::kHidden)
+        << where << " box of object " << object.value << '\n'
+        << described(scene, view);
+  }
+}
+
 const Family kFamilies[] = {
     {.name = "Mixed"},
     {.name = "InFewPlanes", .min_z = -4, .max_z = -3, .nearest_cover = -2},
@@ -298,6 +359,35 @@ TEST_P(ExactProof, SaysWhatBruteForceSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, ExactProof, ::testing::ValuesIn(kFamilies),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+// Families whose coordinates are finite.
+std::vector<Family> familiesForBoxes() {
+  std::vector<Family> families;
+  std::copy_if(std::begin(kFamilies), std::end(kFamilies), std::back_inserter(families),
+               [](const Family& family) { return !family.broken; });
+  return families;
+}
+
+class ExactBoxProof : public ::testing::TestWithParam<Family> {};
+
+TEST_P(ExactBoxProof, SaysWhatBruteForceSaysOfBoundingBoxes) {
+  const Family& family = GetParam();
+  Counts counts;
+  const auto first = static_cast<std::uint32_t>(GTEST_FLAG_GET(random_seed)) * 1'000'000u;
+  for (int i = 0; i < family.cases && !HasFailure(); ++i) {
+    const std::uint32_t seed = first + static_cast<std::uint32_t>(i);
+    Maker maker(family, seed);
+    const Scene scene = maker.scene();
+    compareBoxes(scene, maker.view(), counts, family.name + (" seed " + std::to_string(seed)));
+  }
+  RecordProperty("occluded", counts.occluded);
+  EXPECT_GT(counts.visible, family.cases / 4);
+  EXPECT_GT(counts.occluded, family.cases / 20)
+      << counts.visible << " visible, " << counts.not_shown << " not shown";
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, ExactBoxProof, ::testing::ValuesIn(familiesForBoxes()),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
