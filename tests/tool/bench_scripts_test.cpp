@@ -171,6 +171,19 @@ TEST_F(ResultTables, AreFilledAndNothingElseChanges) {
   EXPECT_EQ(folder_.entries(), 2u);
 }
 
+TEST_F(ResultTables, HaveTheLeastOfAnyTestOfBoxes) {
+  std::string text = kDocument;
+  text.replace(text.find("plain = frustum: bvh"), 20, "boxes = boxes: any test");
+  folder_.write("results.md", text);
+  const std::string csv =
+      "scene,method,options,boxes_overestimate_low,boxes_overestimate_high\ndemo:city,frustum,bvh,1.1,1.104\n"
+      "forest,frustum,bvh,1.2,1.3\n";
+  EXPECT_EQ(results({folder_.write("bench.csv", csv)}).code, 0);
+  EXPECT_NE(contents(document_).find("| `demo:city` | 9 | 1.10 | 8 |\n| forest | 3 | 1.20–1.30 | 1 |"),
+            std::string::npos)
+      << contents(document_);
+}
+
 TEST_F(ResultTables, OfTimesAreMillisecondsOrPartsOfFrustumCulling) {
   for (const auto& [kind, cell] :
        {std::pair<std::string, std::string>("time", "0.100"), {"of-frustum", "2.50"}}) {

@@ -73,6 +73,14 @@ TEST(Bench, CountsAreConsistentAndFrustumCullingIsTheBaseline) {
     EXPECT_NEAR(numberOf(row, "overestimate_high"), numberOf(row, "kept") / numberOf(row, "witnessed"), 1e-6);
     EXPECT_NEAR(numberOf(row, "overestimate_low"),
                 numberOf(row, "kept") / (numberOf(row, "witnessed") + numberOf(row, "undecided")), 1e-6);
+    EXPECT_NEAR(numberOf(row, "boxes_overestimate_high"), numberOf(row, "boxes") / numberOf(row, "witnessed"),
+                1e-6);
+    EXPECT_NEAR(numberOf(row, "boxes_overestimate_low"),
+                numberOf(row, "boxes") / (numberOf(row, "witnessed") + numberOf(row, "undecided")), 1e-6);
+    EXPECT_GE(numberOf(row, "boxes"), numberOf(row, "witnessed"));
+    EXPECT_LE(numberOf(row, "boxes"), numberOf(row, "kept"))
+        << "a conservative test keeps at least the visible boxes";
+    EXPECT_EQ(numberOf(row, "undecided_boxes"), 0.0);
     EXPECT_EQ(row.at("frames"), "4");
     EXPECT_EQ(row.at("rounds"), "2");
     for (const std::string time : {"cull_us_median", "cull_us_mean", "cull_us_p99", "cpu_us_mean"}) {
@@ -88,6 +96,29 @@ TEST(Bench, CountsAreConsistentAndFrustumCullingIsTheBaseline) {
   }
   EXPECT_EQ(advised, 1);
   EXPECT_EQ(settings.size(), rows.size());
+}
+
+// A wall, an object behind it that is hidden while the far corner of its box looks out beside the wall, and
+// one whose box is hidden as well.
+TEST(Bench, BoxesAreThoseThatAnyTestOfBoxesMustKeep) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("wall.obj",
+                                         "o wall\nv -4 -4 -5\nv 1 -4 -5\nv 1 4 -5\nv -4 4 -5\nf 1 2 3 4\n"
+                                         "o slanted\nv -1 -1 -10\nv 1 -1 -10\nv 2.5 1 -13\nf 5 6 7\n"
+                                         "o hidden\nv -1 -1 -8\nv 0 -1 -8\nv 0 0 -9\nf 8 9 10\n"),
+                    path = folder.write("path.json", R"({"frames":[{"eye":[0,0,0],"forward":[0,0,-1]}]})");
+  const std::vector<std::string> bench{"bench", scene, "--path", path, "--no-cache", "--method", "frustum"};
+  const json result = parse(runTool(joined(bench, {"--json", "-"})).out)["scenes"][0];
+  EXPECT_EQ(result["witnessed"], 1);
+  EXPECT_EQ(result["boxes"], 2);
+  EXPECT_EQ(result["undecided_boxes"], 0);
+  EXPECT_EQ(result["boxes_overestimate"], json::parse("[2.0, 2.0]"));
+  EXPECT_EQ(result["runs"][0]["kept"], 3);
+  EXPECT_NE(runTool(bench).out.find("boxes: 2.00 kept/exact"), std::string::npos);
+  const json undecided =
+      parse(runTool(joined(bench, {"--proof-steps", "0", "--json", "-"})).out)["scenes"][0];
+  EXPECT_EQ(undecided["boxes"], 1) << "only what rays have seen";
+  EXPECT_EQ(undecided["undecided_boxes"], 2);
 }
 
 TEST(Bench, KeepsWhatCullKeeps) {
@@ -147,6 +178,8 @@ TEST(Bench, ExactVisibilityIsKeptFromRunToRun) {
   for (const json& other : {second, damaged, mended}) {
     EXPECT_EQ(first["witnessed"], other["witnessed"]);
     EXPECT_EQ(first["undecided"], other["undecided"]);
+    EXPECT_EQ(first["boxes"], other["boxes"]);
+    EXPECT_EQ(first["undecided_boxes"], other["undecided_boxes"]);
   }
 }
 
@@ -186,6 +219,7 @@ TEST(Bench, WritesAReportOfAllScenes) {
   EXPECT_NE(page.find("demo:building?floors=1"), std::string::npos);
   EXPECT_NE(page.find("--frames 0:400:200"), std::string::npos) << "the whole command line";
   EXPECT_NE(page.find("advised"), std::string::npos);
+  EXPECT_NE(page.find("boxes: 1."), std::string::npos) << "the least that any test of boxes must keep";
   EXPECT_EQ(parse(contents(report + "/bench.json"))["scenes"].size(), 2u);
   EXPECT_EQ(csvRows(contents(report + "/bench.csv")).size(), 2u * 13u)
       << "unless told otherwise: frustum culling, and four methods with three numbers of occluders";

@@ -18,16 +18,18 @@ ExactKey keyOf(const SceneId& scene = kSceneOfTen, const View& view = {},
   return {scene, view, settings};
 }
 
-ExactObjects frameOf(const std::vector<std::uint32_t>& witnessed,
-                     const std::vector<std::uint32_t>& undecided) {
-  ExactObjects frame;
-  for (const std::uint32_t id : witnessed) {
-    frame.witnessed.push_back(ObjectId(id));
+std::vector<ObjectId> idsOf(const std::vector<std::uint32_t>& numbers) {
+  std::vector<ObjectId> ids;
+  for (const std::uint32_t number : numbers) {
+    ids.emplace_back(number);
   }
-  for (const std::uint32_t id : undecided) {
-    frame.undecided.push_back(ObjectId(id));
-  }
-  return frame;
+  return ids;
+}
+
+ExactObjects frameOf(const std::vector<std::uint32_t>& witnessed, const std::vector<std::uint32_t>& undecided,
+                     const std::vector<std::uint32_t>& boxes = {},
+                     const std::vector<std::uint32_t>& undecided_boxes = {}) {
+  return {idsOf(witnessed), idsOf(undecided), idsOf(boxes), idsOf(undecided_boxes)};
 }
 
 // The only file of the cache.
@@ -40,7 +42,8 @@ TEST(ExactCache, GivesBackWhatWasKept) {
   const Result<ExactCache> cache = ExactCache::open(folder.file("made/now"));
   ASSERT_TRUE(cache);
   EXPECT_FALSE(cache->find(keyOf()));
-  for (const ExactObjects& frame : {frameOf({0, 3, 9}, {4}), frameOf({}, {}), frameOf({}, {0, 9})}) {
+  for (const ExactObjects& frame : {frameOf({0, 3, 9}, {4}), frameOf({}, {}), frameOf({}, {0, 9}),
+                                    frameOf({0}, {4, 5, 6}, {1, 4}, {5, 9})}) {
     ASSERT_TRUE(cache->keep(keyOf(), frame));
     EXPECT_EQ(cache->find(keyOf()), frame);
     EXPECT_EQ(ExactCache::open(cache->folder())->find(keyOf()), frame) << "in another run";
@@ -86,7 +89,7 @@ TEST(ExactCache, IgnoresDamagedFilesAndWritesThemAnew) {
   const TemporaryFolder folder;
   const Result<ExactCache> cache = ExactCache::open(folder.file("cache"));
   ASSERT_TRUE(cache);
-  const ExactObjects frame = frameOf({0, 3}, {4});
+  const ExactObjects frame = frameOf({0, 3}, {4}, {1}, {4});
   ASSERT_TRUE(cache->keep(keyOf(), frame));
   const std::string name = onlyFile(folder.file("cache"));
   const std::string whole = tool_test::contents(name);
@@ -111,8 +114,10 @@ TEST(ExactCache, IgnoresListsThatAreNoAnswer) {
   const TemporaryFolder folder;
   const Result<ExactCache> cache = ExactCache::open(folder.file("cache"));
   ASSERT_TRUE(cache);
-  for (const ExactObjects& frame : {frameOf({3, 1}, {}), frameOf({1, 1}, {}), frameOf({10}, {}),
-                                    frameOf({}, {10}), frameOf({1, 2}, {2})}) {
+  for (const ExactObjects& frame :
+       {frameOf({3, 1}, {}), frameOf({1, 1}, {}), frameOf({10}, {}), frameOf({}, {10}), frameOf({1, 2}, {2}),
+        frameOf({}, {}, {3, 1}), frameOf({}, {}, {}, {10}), frameOf({1, 2}, {}, {2}),
+        frameOf({1, 2}, {}, {}, {2}), frameOf({}, {}, {2}, {2})}) {
     ASSERT_TRUE(cache->keep(keyOf(), frame));
     EXPECT_FALSE(cache->find(keyOf()));
   }

@@ -84,6 +84,21 @@ void addScene(std::vector<CsvColumn>& columns) {
                      }});
 }
 
+using IntervalOf = std::optional<Interval> (*)(const BenchRecord& record, const SettingRecord& run);
+
+// Adds two columns, which are empty where there is no interval.
+void addInterval(std::vector<CsvColumn>& columns, const std::string& name, IntervalOf interval_of) {
+  constexpr std::pair<const char*, double Interval::*> kEnds[] = {{"_low", &Interval::low},
+                                                                  {"_high", &Interval::high}};
+  for (const auto& end : kEnds) {
+    columns.push_back({name + end.first,
+                       [interval_of, at = end.second](const BenchRecord& record, const SettingRecord& run) {
+                         const std::optional<Interval> interval = interval_of(record, run);
+                         return interval ? ratioText((*interval).*at) : std::string();
+                       }});
+  }
+}
+
 void addTightness(std::vector<CsvColumn>& columns) {
   using Record = BenchRecord;
   using Run = SettingRecord;
@@ -93,14 +108,14 @@ void addTightness(std::vector<CsvColumn>& columns) {
   columns.push_back(
       {"undecided", [](const Record& record, const Run&) { return std::to_string(record.undecided); }});
   columns.push_back({"missed", [](const Record&, const Run& run) { return std::to_string(run.missed); }});
-  columns.push_back({"overestimate_low", [](const Record& record, const Run& run) {
-                       const std::optional<Interval> interval = record.overestimate(run);
-                       return interval ? ratioText(interval->low) : std::string();
+  addInterval(columns, "overestimate",
+              [](const Record& record, const Run& run) { return record.overestimate(run); });
+  columns.push_back({"boxes", [](const Record& record, const Run&) { return std::to_string(record.boxes); }});
+  columns.push_back({"undecided_boxes", [](const Record& record, const Run&) {
+                       return std::to_string(record.undecided_boxes);
                      }});
-  columns.push_back({"overestimate_high", [](const Record& record, const Run& run) {
-                       const std::optional<Interval> interval = record.overestimate(run);
-                       return interval ? ratioText(interval->high) : std::string();
-                     }});
+  addInterval(columns, "boxes_overestimate",
+              [](const Record& record, const Run&) { return record.leastOfBoxes(); });
   columns.push_back({"answers", [](const Record&, const Run& run) { return answersText(run); }});
 }
 

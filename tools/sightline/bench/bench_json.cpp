@@ -19,14 +19,17 @@ Json partJson(const PartCost& part) {
   return {{"us", part.us}, {"bytes", part.bytes ? Json(*part.bytes) : Json()}};
 }
 
+Json intervalJson(const std::optional<Interval>& interval) {
+  return interval ? Json{interval->low, interval->high} : Json();
+}
+
 Json runJson(const SettingRecord& run, const BenchRecord& record) {
-  const std::optional<Interval> overestimate = record.overestimate(run);
   const FrameTimes& baseline = record.baseline().cull;
   return {{"method", methodName(run.setting)},
           {"options", optionsJson(run.setting)},
           {"kept", run.kept},
           {"missed", run.missed},
-          {"overestimate", overestimate ? Json{overestimate->low, overestimate->high} : Json()},
+          {"overestimate", intervalJson(record.overestimate(run))},
           {"answers", answersText(run)},
           {"cull_us", timesJson(run.cull)},
           {"times_frustum",
@@ -58,6 +61,9 @@ std::string recordJson(const BenchRecord& record) {
                      {"load_us", record.load_us},
                      {"witnessed", record.witnessed},
                      {"undecided", record.undecided},
+                     {"boxes", record.boxes},
+                     {"undecided_boxes", record.undecided_boxes},
+                     {"boxes_overestimate", intervalJson(record.leastOfBoxes())},
                      {"frames_from_cache", record.frames_from_cache},
                      {"advised", record.advice.run},
                      {"advice", record.advice.sentence}};

@@ -73,22 +73,30 @@ struct BenchRecord {
   SceneId scene{};
   std::uint64_t views = 0;  // hash of the views of all frames
   std::size_t frames = 0, rounds = 0;
-  std::optional<int> core{};          // to which the measuring thread was pinned; none: it was not
-  std::string device{};               // the OpenGL implementation; empty if nothing was drawn
-  double load_us = 0.0;               // scene, camera path and baked file
-  std::uint64_t witnessed = 0;        // objects, over all frames
-  std::uint64_t undecided = 0;        // objects, over all frames
+  std::optional<int> core{};    // to which the measuring thread was pinned; none: it was not
+  std::string device{};         // the OpenGL implementation; empty if nothing was drawn
+  double load_us = 0.0;         // scene, camera path and baked file
+  std::uint64_t witnessed = 0;  // objects, over all frames
+  std::uint64_t undecided = 0;  // objects, over all frames
+  // Objects whose bounding boxes are visible, over all frames: any test of one box an object must keep them.
+  std::uint64_t boxes = 0;
+  std::uint64_t undecided_boxes = 0;  // not among them
   std::size_t frames_from_cache = 0;  // frames whose exact visibility was kept from an earlier run
   std::vector<SettingRecord> runs{};  // [0] is the baseline: view-frustum culling
   Advice advice{};
 
   const SettingRecord& baseline() const { return runs.front(); }
   // Kept objects for each exactly visible one; none if no object was seen.
-  std::optional<Interval> overestimate(const SettingRecord& run) const {
+  std::optional<Interval> overestimate(const SettingRecord& run) const { return overestimateOf(run.kept); }
+  // The least that a test of one bounding box an object can have.
+  std::optional<Interval> leastOfBoxes() const { return overestimateOf(boxes); }
+
+ private:
+  std::optional<Interval> overestimateOf(std::uint64_t objects) const {
     if (witnessed == 0) {
       return {};
     }
-    const auto kept = static_cast<double>(run.kept);
+    const auto kept = static_cast<double>(objects);
     return Interval{kept / static_cast<double>(witnessed + undecided), kept / static_cast<double>(witnessed)};
   }
 };

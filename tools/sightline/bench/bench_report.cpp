@@ -86,7 +86,8 @@ std::string tableOf(const BenchRecord& record) {
   }
   return out +
          "</tbody></table></div>\n"
-         "<p class=\"hint\">Kept / exact: from all undecided objects being visible to none of them. Missed: "
+         "<p class=\"hint\">Kept / exact: from all undecided objects being visible to none of them; the line "
+         "“boxes” is the least that any test of one bounding box an object can have. Missed: "
          "visible objects that were not kept. Below a time: its least and greatest value in a single round. "
          "Of frustum’s: mean culling time divided by that of view-frustum culling. Processor: mean processor "
          "time of the thread. Hierarchy to method: time to prepare, and memory.</p>\n";

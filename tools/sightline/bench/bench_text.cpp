@@ -29,6 +29,16 @@ std::vector<std::string> rowOf(const SettingRecord& run, const BenchRecord& reco
           answersText(run)};
 }
 
+// The least kept/exact of any test of boxes.
+std::string boxesText(const BenchRecord& record) {
+  const std::string undecided =
+      record.undecided_boxes == 0 ? "" : fmt::format(" and {} undecided ones", record.undecided_boxes);
+  return fmt::format(
+      "boxes: {} kept/exact is the least that any test of one bounding box an object can have ({} visible "
+      "boxes{}).",
+      intervalText(record.leastOfBoxes()), record.boxes, undecided);
+}
+
 }  // namespace
 
 std::string milliseconds(double us) {
@@ -72,10 +82,10 @@ std::string benchNotes(const BenchRecord& record) {
   return fmt::format(
       "{}, path {}: {} objects, {} triangles; {} frames, {} rounds after a warm-up, {}; loaded in {} ms.\n"
       "{} objects seen in all frames, {} undecided; exact visibility of {} frames was kept from earlier "
-      "runs. {}\n",
+      "runs. {}\n{}\n",
       record.scene_name, record.path_name, record.scene.objects, record.scene.triangles, record.frames,
       record.rounds, core, milliseconds(record.load_us), record.witnessed, record.undecided,
-      record.frames_from_cache, drawn);
+      record.frames_from_cache, drawn, boxesText(record));
 }
 
 }  // namespace sightline::tool

@@ -72,10 +72,13 @@ std::vector<ExactObjects> SceneBench::exactFrames(const Scene& scene, const std:
       }
       const auto object_count = static_cast<std::uint32_t>(scene.objects.size());
       frame = objectsOf(exactFrame(*oracle, views[i], object_count, settings, threads_.parallelFor()));
+      addBoxes(*oracle, views[i], object_count, settings, threads_.parallelFor(), *frame);
       keep(key, *frame);
     }
     record.witnessed += frame->witnessed.size();
     record.undecided += frame->undecided.size();
+    record.boxes += frame->witnessed.size() + frame->boxes.size();
+    record.undecided_boxes += frame->undecided_boxes.size();
     frames.push_back(std::move(*frame));
     progress.update(static_cast<double>(i + 1) / static_cast<double>(views.size()));
   }

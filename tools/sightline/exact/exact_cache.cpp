@@ -1,5 +1,5 @@
-// A file: magic, length of the key, the key, numbers of witnessed and undecided objects, their ids, checksum
-// of all before it. Little-endian.
+// A file: magic, length of the key, the key, four lists of objects as in ExactObjects, each the number of ids
+// and the ids, checksum of all before it. Little-endian.
 
 #include "tools/sightline/exact/exact_cache.h"
 
@@ -25,7 +25,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr std::uint64_t kExactMagic = 0x3174636178654c53;  // "SLexact1"
+constexpr std::uint64_t kExactMagic = 0x3274636178654c53;  // "SLexact2"
 
 std::vector<std::uint32_t> numbersOf(const std::vector<ObjectId>& ids) {
   std::vector<std::uint32_t> numbers;
@@ -60,7 +60,8 @@ std::string encode(const ExactKey& key, const ExactObjects& frame) {
   writer.add(kExactMagic);
   writer.add(static_cast<std::uint64_t>(key.bytes.size()));
   writer.addBytes(key.bytes);
-  for (const std::vector<ObjectId>* ids : {&frame.witnessed, &frame.undecided}) {
+  for (const std::vector<ObjectId>* ids :
+       {&frame.witnessed, &frame.undecided, &frame.boxes, &frame.undecided_boxes}) {
     writer.add(static_cast<std::uint64_t>(ids->size()));
     writer.addAll(std::span<const std::uint32_t>(numbersOf(*ids)));
   }
@@ -88,14 +89,17 @@ std::optional<ExactObjects> decode(const ExactKey& key, std::string_view text) {
     const auto count = reader.readCount<std::uint64_t>(sizeof(std::uint32_t));
     return reader.readAll<std::uint32_t>(count);
   };
-  const std::vector<std::uint32_t> witnessed = read_ids(), undecided = read_ids();
+  const std::vector<std::uint32_t> witnessed = read_ids(), undecided = read_ids(), boxes = read_ids(),
+                                   undecided_boxes = read_ids();
   const auto sum = reader.read<std::uint64_t>();
   if (!reader.atEnd() || sum != pvs::checksumOf(bytes.first(bytes.size() - kSum)) ||
       !ascendBelow(witnessed, key.object_count) || !ascendBelow(undecided, key.object_count) ||
-      !haveNoneInCommon(witnessed, undecided)) {
+      !ascendBelow(boxes, key.object_count) || !ascendBelow(undecided_boxes, key.object_count) ||
+      !haveNoneInCommon(witnessed, undecided) || !haveNoneInCommon(witnessed, boxes) ||
+      !haveNoneInCommon(witnessed, undecided_boxes) || !haveNoneInCommon(boxes, undecided_boxes)) {
     return {};
   }
-  return ExactObjects{idsOf(witnessed), idsOf(undecided)};
+  return ExactObjects{idsOf(witnessed), idsOf(undecided), idsOf(boxes), idsOf(undecided_boxes)};
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "tools/sightline/exact/exact_frame.h"
 
+#include <algorithm>
+
 namespace sightline::tool {
 namespace {
 
@@ -88,11 +90,29 @@ ExactFrame exactFrame(const ExactVisibility& oracle, const View& view, std::uint
 }
 
 ExactObjects objectsOf(const ExactFrame& frame) {
-  ExactObjects objects{{}, frame.undecided};
+  ExactObjects objects{.undecided = frame.undecided};
   for (const auto& [object, sighting] : frame.visible) {
     objects.witnessed.push_back(object);
   }
   return objects;
+}
+
+void addBoxes(const ExactVisibility& oracle, const View& view, std::uint32_t object_count,
+              const ExactSettings& settings, const ParallelFor& parallel_for, ExactObjects& objects) {
+  std::vector<ObjectId> others;
+  for (std::uint32_t o = 0; o < object_count; ++o) {
+    if (!std::binary_search(objects.witnessed.begin(), objects.witnessed.end(), ObjectId(o))) {
+      others.emplace_back(o);
+    }
+  }
+  const std::vector<Decision> decisions = oracle.decideBoxes(view, others, settings.steps, parallel_for);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    if (decisions[i].verdict == Verdict::kVisible) {
+      objects.boxes.push_back(others[i]);
+    } else if (decisions[i].verdict == Verdict::kUndecided) {
+      objects.undecided_boxes.push_back(others[i]);
+    }
+  }
 }
 
 }  // namespace sightline::tool

@@ -1,6 +1,7 @@
 #pragma once
 
-// What is exactly visible in one view: `verify` and `bench` compare methods with it.
+// What is exactly visible in one view: `verify` and `bench` compare methods with it. And the least that any
+// test of one bounding box an object must keep, with which `bench` compares them too.
 
 #include <cstdint>
 #include <map>
@@ -13,14 +14,14 @@ namespace sightline::tool {
 
 // Raise this number whenever a change of oracle/ or of exactFrame() may change an answer: answers that
 // ExactCache kept under another number are not used.
-inline constexpr std::uint32_t kExactFrameVersion = 1;
+inline constexpr std::uint32_t kExactFrameVersion = 2;
 
 // How thoroughly objects are looked for.
 struct ExactSettings {
   std::uint32_t width = 1280, height = 720;  // one ray for each pixel of such a picture
   std::uint32_t aimed_rays = 16,
                 edge_rays = 16;  // at each object that is not seen; beside edges of each other
-  std::uint32_t steps = 16;      // of ExactVisibility::decide, for each object that is not seen
+  std::uint32_t steps = 16;  // of ExactVisibility::decide and decideBoxes, for each object that is not seen
 };
 
 // How an object was found to be visible.
@@ -42,13 +43,22 @@ struct ExactFrame {
 ExactFrame exactFrame(const ExactVisibility& oracle, const View& view, std::uint32_t object_count,
                       const ExactSettings& settings, const ParallelFor& parallel_for);
 
-// The objects alone. Both lists ascend, and no object is in both.
+// The objects alone. All lists ascend. No object is in two of `witnessed`, `boxes` and `undecided_boxes`, nor
+// in both `witnessed` and `undecided`.
 struct ExactObjects {
   std::vector<ObjectId> witnessed{};
   std::vector<ObjectId> undecided{};
+  std::vector<ObjectId> boxes{};  // not witnessed, but their bounding boxes are visible
+  std::vector<ObjectId> undecided_boxes{};
 
   friend bool operator==(const ExactObjects&, const ExactObjects&) = default;
 };
+// Without boxes.
 ExactObjects objectsOf(const ExactFrame& frame);
+
+// Fills in the boxes, of which ExactVisibility::decideBoxes() says what is visible. object_count: of the
+// scene.
+void addBoxes(const ExactVisibility& oracle, const View& view, std::uint32_t object_count,
+              const ExactSettings& settings, const ParallelFor& parallel_for, ExactObjects& objects);
 
 }  // namespace sightline::tool
