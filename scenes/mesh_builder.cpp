@@ -228,6 +228,41 @@ void MeshBuilder::lathe(std::span<const Point2> profile, std::uint32_t segments)
   }
 }
 
+void MeshBuilder::mesh(std::span<const Vec3d> points, std::span<const std::uint32_t> indices) {
+  const auto first = static_cast<std::uint32_t>(scene_.positions.size());
+  for (const Vec3d& point : points) {
+    vertex(point);
+  }
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    face(first + indices[i], first + indices[i + 1], first + indices[i + 2]);
+  }
+}
+
+void MeshBuilder::tube(std::span<const Vec3d> points, std::uint32_t corners) {
+  const auto first = static_cast<std::uint32_t>(scene_.positions.size());
+  const auto rings = static_cast<std::uint32_t>(points.size()) / corners;
+  const auto centre = [&](std::uint32_t ring) {
+    Vec3d sum;
+    for (std::uint32_t c = 0; c < corners; ++c) {
+      sum += points[ring * corners + c];
+    }
+    return sum / static_cast<double>(corners);
+  };
+  for (const Vec3d& point : points) {
+    vertex(point);
+  }
+  const std::uint32_t bottom = vertex(centre(0)), top = vertex(centre(rings - 1));
+  for (std::uint32_t c = 0; c < corners; ++c) {
+    const std::uint32_t d = (c + 1) % corners, last = first + (rings - 1) * corners;
+    face(bottom, first + d, first + c);
+    for (std::uint32_t low = first; low < last; low += corners) {
+      face(low + c, low + d, low + corners + d);
+      face(low + c, low + corners + d, low + corners + c);
+    }
+    face(top, last + c, last + d);
+  }
+}
+
 void MeshBuilder::plate(const Rectangle& area, double z0, double z1, std::span<const Rectangle> openings,
                         std::uint32_t faces) {
   const PlateGrid grid = gridOf(area, openings);

@@ -71,6 +71,12 @@ class MeshBuilder {
   // quads cut at every edge of an opening, so that all vertices are shared.
   void plate(const Rectangle& area, double z0, double z1, std::span<const Rectangle> openings,
              std::uint32_t faces = kAllFaces);
+  // Any mesh: three indices into the points per triangle.
+  void mesh(std::span<const Vec3d> points, std::span<const std::uint32_t> indices);
+  // A closed tube through rings of `corners` points each, which follow one another in `points`, bottom first;
+  // each ring is counter-clockwise as seen from the end. The first and the last ring are closed by fans
+  // about their centres.
+  void tube(std::span<const Vec3d> points, std::uint32_t corners);
   // A closed roof over a rectangle. The ridge runs along the longer side, inset at both ends (0: gables).
   void ridgeRoof(const Rectangle& area, double z0, double rise, double ridge_inset);
 
