@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenes/glass.h"
+#include "scenes/landscapes.h"
 #include "scenes/moving_scene.h"
 
 namespace sightline {
@@ -139,6 +140,38 @@ Result<Scene> makeDemoGlass(std::string_view query) {
   return status ? Result<Scene>(makeGlass(options)) : status.error();
 }
 
+Result<Scene> makeDemoTerrain(std::string_view query) {
+  TerrainOptions options;
+  Key keys[] = {{"triangles", 10000, 1000000, &options.triangles}, {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "terrain", keys);
+  return status ? Result<Scene>(makeTerrain(options)) : status.error();
+}
+
+Result<Scene> makeDemoCave(std::string_view query) {
+  CaveOptions options;
+  Key keys[] = {{"halls", 4, 100, &options.halls},
+                {"triangles", 10000, 1000000, &options.triangles},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "cave", keys);
+  return status ? Result<Scene>(makeCave(options)) : status.error();
+}
+
+Result<Scene> makeDemoVillage(std::string_view query) {
+  VillageOptions options;
+  Key keys[] = {{"houses", 1, 1000, &options.houses}, {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "village", keys);
+  return status ? Result<Scene>(makeVillage(options)) : status.error();
+}
+
+Result<Scene> makeDemoJungle(std::string_view query) {
+  JungleOptions options;
+  Key keys[] = {{"buttes", 0, 100, &options.buttes},
+                {"trees", 0, 10000, &options.trees},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "jungle", keys);
+  return status ? Result<Scene>(makeJungle(options)) : status.error();
+}
+
 Result<MovingScene> makeDemoToothpicks(std::string_view query) {
   static constexpr std::string_view kScalings[] = {"us", "ud"};
   ToothpickOptions options;
@@ -163,11 +196,10 @@ struct Maker {
   std::string_view name;
   Result<S> (*make)(std::string_view query);
 };
-constexpr Maker<Scene> kStillScenes[] = {{"city", makeDemoCity},
-                                         {"building", makeDemoBuilding},
-                                         {"boxes", makeDemoBoxes},
-                                         {"ship", makeDemoShip},
-                                         {"glass", makeDemoGlass}};
+constexpr Maker<Scene> kStillScenes[] = {
+    {"city", makeDemoCity}, {"building", makeDemoBuilding}, {"boxes", makeDemoBoxes},
+    {"ship", makeDemoShip}, {"glass", makeDemoGlass},       {"terrain", makeDemoTerrain},
+    {"cave", makeDemoCave}, {"village", makeDemoVillage},   {"jungle", makeDemoJungle}};
 constexpr Maker<MovingScene> kMovingScenes[] = {{"toothpicks", makeDemoToothpicks},
                                                 {"canyon", makeDemoCanyon}};
 

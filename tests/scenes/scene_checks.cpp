@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -184,6 +185,87 @@ std::string whatIsHit(const Scene& scene, const CameraPath& path, double clearan
           return path.name + " frame " + std::to_string(f) + ": " + scene.object_names[o];
         }
       }
+    }
+  }
+  return "";
+}
+
+std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view end) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < scene.object_names.size(); ++i) {
+    const std::string& name = scene.object_names[i];
+    if (name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0) {
+      found.push_back(i);
+    }
+  }
+  return found;
+}
+
+SheetCounts countSheet(const Scene& scene, std::string_view start, bool whole_name) {
+  SheetCounts counts;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+  std::map<std::uint32_t, std::uint32_t> parent;
+  const auto rootOf = [&](std::uint32_t at) {
+    parent.try_emplace(at, at);
+    while (parent[at] != at) {
+      at = parent[at] = parent[parent[at]];
+    }
+    return at;
+  };
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const std::string& name = scene.object_names[o];
+    if (name.compare(0, start.size(), start) != 0 || (whole_name && name.size() != start.size())) {
+      continue;
+    }
+    ++counts.objects;
+    counts.triangles += scene.objects[o].triangleCount();
+    for (std::uint32_t i = 0; i < scene.objects[o].index_count; ++i) {
+      const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+      const std::uint32_t a = scene.indices[scene.objects[o].first_index + i],
+                          b = scene.indices[scene.objects[o].first_index + next];
+      balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+      const std::uint32_t root = rootOf(a);
+      parent[root] = rootOf(b);
+    }
+  }
+  for (const auto& [edge, count] : balance) {
+    counts.open_edges += count != 0 ? 1 : 0;
+  }
+  for (const auto& [at, above] : parent) {
+    counts.pieces += at == above ? 1 : 0;
+  }
+  return counts;
+}
+
+double heightOf(const Scene& scene, std::string_view start, const Vec3d& point, bool below) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const Object& object = scene.objects[o];
+    if (scene.object_names[o].compare(0, start.size(), start) != 0 || point.x < object.bounds.min.x ||
+        point.x > object.bounds.max.x || point.z < object.bounds.min.z || point.z > object.bounds.max.z) {
+      continue;
+    }
+    for (std::uint32_t i = 0; i < object.index_count; i += 3) {
+      const Triangle t = triangleAt(scene, object.first_index + i);
+      const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
+      const auto isLeft = [&](std::size_t k) {
+        const Vec3d d = t[(k + 1) % 3] - t[k], p = point - t[k];
+        return d.z * p.x - d.x * p.z >= -1e-9;
+      };
+      if (normal.y > 0.0 && isLeft(0) && isLeft(1) && isLeft(2)) {
+        const double y = t[0].y - (normal.x * (point.x - t[0].x) + normal.z * (point.z - t[0].z)) / normal.y;
+        highest = below && y > point.y ? highest : std::max(highest, y);
+      }
+    }
+  }
+  return highest;
+}
+
+std::string whatLacksGround(const Scene& scene, const CameraPath& path, std::string_view start, double most) {
+  for (std::size_t f = 0; f < path.frames.size(); ++f) {
+    const Vec3d eye = path.frames[f].eye - scene.origin;
+    if (!(eye.y - heightOf(scene, start, eye, true) <= most)) {
+      return path.name + " frame " + std::to_string(f);
     }
   }
   return "";

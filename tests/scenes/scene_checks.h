@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "sightline/scene/scene.h"
 
@@ -34,6 +36,27 @@ double volumeOf(const Scene& scene, const Object& object);
 // Returns an empty text if the camera never passes through a triangle and never comes closer to one than
 // clearance metres (including transparent and alpha-tested ones). Otherwise returns the frame and the object.
 std::string whatIsHit(const Scene& scene, const CameraPath& path, double clearance);
+
+// Objects whose name ends with `end`.
+std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view end);
+
+// The objects whose names begin with `start` (or are it, if whole_name), taken together.
+struct SheetCounts {
+  std::size_t objects = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t open_edges = 0;  // edges without as many triangles in one direction as in the other
+  std::size_t pieces = 0;        // sets of triangles that hang together by shared positions
+};
+SheetCounts countSheet(const Scene& scene, std::string_view start, bool whole_name = false);
+
+// The largest height below a point of the objects whose names begin with `start`, of triangles that face
+// upwards; -infinity if there is none. Only x and z of the point count unless `below` is set: then only what
+// is lower than the point.
+double heightOf(const Scene& scene, std::string_view start, const Vec3d& point, bool below = false);
+
+// Returns an empty text if below every eye, at most `most` metres away, there is ground of the objects whose
+// names begin with `start`. Otherwise returns the frame.
+std::string whatLacksGround(const Scene& scene, const CameraPath& path, std::string_view start, double most);
 
 // The cosine of the maximum angle between the viewing directions of consecutive frames.
 double smallestTurnCosine(const CameraPath& path);
