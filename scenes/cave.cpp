@@ -43,7 +43,8 @@ Vec3d exitOf(const Hall& hall, const Vec3d& direction) {
 
 Tunnel anyTunnel(const Hall& from, const Hall& to, Random& random) {
   const Vec3d d = to.eye - from.eye, side = normalized(Vec3d(-d.y, d.x, 0.0));
-  const double bend = (random.chance(0.5) ? 1.0 : -1.0) * random.range(2.0, 7.0);
+  const double turn = random.chance(0.5) ? 1.0 : -1.0;
+  const double bend = turn * random.range(2.0, 7.0);
   const Vec3d a = exitOf(from, d), b = exitOf(to, d * -1.0);
   return {{from.eye, a, (a + b) * 0.5 + side * bend, b, to.eye}, random.range(2.2, 3.2)};
 }

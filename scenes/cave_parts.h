@@ -4,7 +4,6 @@
 // stand and hang in it. Plan space.
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "scenes/mesh_builder.h"

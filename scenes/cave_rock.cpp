@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ constexpr double kMargin = 2.5;       // around halls and tunnels within which t
 constexpr double kBlend = 1.2;        // radius of the edges where halls and tunnels join, metres
 constexpr double kChunk = 12.0;       // side of a cube of rock that is one object, metres
 constexpr double kCoarseCell = 1.25;  // of the grid by which the number of triangles is estimated, metres
+
+constexpr double kFinestCell = 0.2;  // metres
 
 struct Extent {
   Vec3d min, max;
@@ -40,7 +43,7 @@ double wallNoise(const Vec3d& p, std::uint64_t seed) {
 
 // Depth below the floor and behind the wall together.
 double hollowed(double wall, double floor, const Vec3d& p, std::uint64_t seed) {
-  const double rough_wall = std::abs(wall) < kMargin ? wall + wallNoise(p, seed) : wall;
+  const double rough_wall = std::abs(wall) < 1.9 && floor < wall + kMargin ? wall + wallNoise(p, seed) : wall;
   const double rough_floor =
       std::abs(floor) < 1.0 ? floor + 0.25 * fractalNoise(Point2{p.x, p.y} / 3.0, 2, seed + 8) : floor;
   return smoothMax(rough_wall, rough_floor, 0.6);
@@ -140,6 +143,9 @@ ValueGrid hollowWithCells(const Plan& plan, double cell, std::uint64_t seed) {
           [&](const Vec3d& p) { return depthOf(lines[i], radius, p, seed); });
   }
   keepConnected(grid, plan.halls.front().eye);
+  fillPinches(grid);
+  // What the filling has cut off is too small to be entered.
+  keepConnected(grid, plan.halls.front().eye);
   return grid;
 }
 
@@ -147,7 +153,8 @@ ValueGrid hollowWithCells(const Plan& plan, double cell, std::uint64_t seed) {
 
 ValueGrid hollow(const Plan& plan, std::uint32_t triangles, std::uint64_t seed) {
   const auto coarse = static_cast<double>(surfaceNet(hollowWithCells(plan, kCoarseCell, seed)).quads.size());
-  return hollowWithCells(plan, kCoarseCell * std::sqrt(2.0 * coarse / triangles), seed);
+  const double cell = kCoarseCell * std::sqrt(2.0 * coarse / triangles);
+  return hollowWithCells(plan, std::max(cell, kFinestCell), seed);
 }
 
 void addRock(MeshBuilder& mesh, const ValueGrid& grid) {

@@ -74,14 +74,16 @@ class Things {
 
  private:
   Vec3d inHall(const Hall& hall) {
-    const Point2 d = unitVector(random_.uniform()) * std::sqrt(random_.range(0.02, 0.85));
+    const Point2 direction = unitVector(random_.uniform());
+    const Point2 d = direction * std::sqrt(random_.range(0.02, 0.85));
     return hall.eye + Vec3d(d.x * hall.radii.x, d.y * hall.radii.y, 0.0);
   }
   Vec3d besideLine(const std::vector<Vec3d>& line, double radius) {
     const std::uint32_t leg = random_.below(static_cast<std::uint32_t>(line.size()) - 1);
     const Vec3d d = line[leg + 1] - line[leg];
     const Vec3d at = line[leg] + d * random_.uniform();
-    const double aside = (random_.chance(0.5) ? 1.0 : -1.0) * random_.range(0.45, 0.95) * radius;
+    const double side = random_.chance(0.5) ? radius : -radius;
+    const double aside = side * random_.range(0.45, 0.95);
     return at + normalized(Vec3d(-d.y, d.x, 0.0)) * aside;
   }
 

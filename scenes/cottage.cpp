@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace sightline::scenes {
 namespace {
@@ -42,7 +43,7 @@ WallCuts cutsOf(const Cottage& c) {
   return cuts;
 }
 
-// Calls visit(placement) for every window but the one above the door's place; the placement's origin is the
+// Calls visit(placement) for every window but the one in the door's place; the placement's origin is the
 // middle of the sill, x along the wall, y up, z outwards.
 template <typename Visit>
 void forEachWindow(const Placement& house, const Cottage& c, const Visit& visit) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scenes/mesh_builder.h"
 #include "scenes/random.h"

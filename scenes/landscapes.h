@@ -20,7 +20,7 @@ Scene makeTerrain(const TerrainOptions& options);
 
 struct CaveOptions {
   std::uint32_t halls = 24;          // number of halls, joined by tunnels
-  std::uint32_t triangles = 100000;  // about this many in the wall of the cave
+  std::uint32_t triangles = 100000;  // about this many in the rock; limited by cells of 20 cm
   std::uint32_t seed = 1;
 };
 // Halls and tunnels. Their walls, floors and ceilings are one closed surface seen from inside, cut into

@@ -1,5 +1,6 @@
 #include "scenes/nature.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>

@@ -150,7 +150,7 @@ Result<Scene> makeDemoTerrain(std::string_view query) {
 Result<Scene> makeDemoCave(std::string_view query) {
   CaveOptions options;
   Key keys[] = {{"halls", 4, 100, &options.halls},
-                {"triangles", 10000, 1000000, &options.triangles},
+                {"triangles", 10000, 400000, &options.triangles},
                 {"seed", 0, kAnySeed, &options.seed}};
   const Status status = readQuery(query, "cave", keys);
   return status ? Result<Scene>(makeCave(options)) : status.error();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sightline::scenes {
 namespace {
@@ -23,7 +24,7 @@ std::vector<bool> connectedTo(const ValueGrid& grid, std::size_t start) {
   while (!waiting.empty()) {
     const std::size_t at = waiting.back();
     waiting.pop_back();
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t coordinate = at / strides[axis] % grid.points[axis];
       const auto visit = [&](std::size_t next) {
         if (!reached[next] && (grid.values[next] > 0.0f) == solid) {
@@ -50,6 +51,22 @@ void flipUnreached(ValueGrid& grid, const std::vector<bool>& reached, bool solid
       grid.values[i] = solid ? -away : away;
     }
   }
+}
+
+// Fills the free corner nearest to the surface, if the corners of the face lie crosswise. Returns true if so.
+bool fillPinch(ValueGrid& grid, const std::array<std::size_t, 4>& face) {
+  std::array<bool, 4> solid{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    solid[i] = grid.values[face[i]] > 0.0f;
+  }
+  if (solid[0] != solid[2] || solid[1] != solid[3] || solid[0] == solid[1]) {
+    return false;
+  }
+  const std::size_t first = solid[0] ? 1 : 0;
+  float &a = grid.values[face[first]], &b = grid.values[face[first + 2]];
+  float& nearest = a > b ? a : b;
+  nearest = std::max(-nearest, 1e-3f);
+  return true;
 }
 
 // The mean of the crossings of a cell's edges, or nothing if there are none.
@@ -112,6 +129,24 @@ void keepConnected(ValueGrid& grid, const Vec3d& start) {
   flipUnreached(grid, connectedTo(grid, 0), true);
 }
 
+void fillPinches(ValueGrid& grid) {
+  const std::size_t strides[3] = {1, grid.points[0], std::size_t{grid.points[0]} * grid.points[1]};
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::uint32_t z = 0; z + 1 < grid.points[2]; ++z) {
+      for (std::uint32_t y = 0; y + 1 < grid.points[1]; ++y) {
+        for (std::uint32_t x = 0; x + 1 < grid.points[0]; ++x) {
+          const std::size_t at = grid.index(x, y, z);
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t u = strides[axis], v = strides[(axis + 1) % 3];
+            changed = fillPinch(grid, {at, at + u, at + u + v, at + v}) || changed;
+          }
+        }
+      }
+    }
+  }
+}
+
 SurfaceNet surfaceNet(const ValueGrid& grid) {
   SurfaceNet net;
   std::vector<std::uint32_t> vertex_of(grid.values.size(), kNoVertex);
@@ -127,11 +162,15 @@ SurfaceNet surfaceNet(const ValueGrid& grid) {
     }
   }
   const std::size_t strides[3] = {1, grid.points[0], std::size_t{grid.points[0]} * grid.points[1]};
-  for (std::uint32_t z = 1; z + 1 < grid.points[2]; ++z) {
-    for (std::uint32_t y = 1; y + 1 < grid.points[1]; ++y) {
-      for (std::uint32_t x = 1; x + 1 < grid.points[0]; ++x) {
+  for (std::uint32_t z = 0; z + 1 < grid.points[2]; ++z) {
+    for (std::uint32_t y = 0; y + 1 < grid.points[1]; ++y) {
+      for (std::uint32_t x = 0; x + 1 < grid.points[0]; ++x) {
+        const std::uint32_t at[] = {x, y, z};
         for (int axis = 0; axis < 3; ++axis) {
-          addQuad(grid, vertex_of, grid.index(x, y, z), axis, strides, net);
+          // An edge in the grid's border has fewer than four cells.
+          if (at[(axis + 1) % 3] > 0 && at[(axis + 2) % 3] > 0) {
+            addQuad(grid, vertex_of, grid.index(x, y, z), axis, strides, net);
+          }
         }
       }
     }

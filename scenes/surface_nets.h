@@ -31,12 +31,16 @@ struct ValueGrid {
 // what is connected to the grid's border; the rest changes sides. All points on the border become solid.
 void keepConnected(ValueGrid& grid, const Vec3d& start);
 
+// Fills free points, until no face of a cell has two free corners and two solid ones that lie crosswise:
+// there four quads would share an edge. May divide the free space.
+void fillPinches(ValueGrid& grid);
+
 struct SurfaceNet {
   std::vector<Vec3d> points{};
   std::vector<std::array<std::uint32_t, 4>> quads{};  // counter-clockwise as seen from free space
 };
 // The whole surface; it is closed if all points on the grid's border are solid. Each edge belongs to as many
-// quads in one direction as in the other.
+// quads in one direction as in the other: to one in each if there are no pinches.
 SurfaceNet surfaceNet(const ValueGrid& grid);
 
 }  // namespace sightline::scenes

@@ -63,7 +63,8 @@ double fromStreets(Point2 p) {
 void addSurroundings(MeshBuilder& mesh, const HeightField& ground, FreeGround& free, Random& random) {
   addProp(mesh, ground, free, Prop::kWell, {5.0, -9.0}, random, "market");
   for (std::uint32_t i = 0; i < 60; ++i) {
-    const Point2 at = unitVector(random.uniform()) * random.range(5.0, kSquare);
+    const Point2 direction = unitVector(random.uniform());
+    const Point2 at = direction * random.range(5.0, kSquare);
     const auto prop = static_cast<Prop>(random.below(static_cast<std::uint32_t>(Prop::kCount)));
     addProp(mesh, ground, free, prop, at, random, "market " + std::to_string(i));
   }

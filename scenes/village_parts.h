@@ -3,7 +3,6 @@
 // The pieces of the village: its streets and its houses and things. Plan space.
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -59,6 +59,24 @@ TEST(MeshBuilder, ALatheIsClosedAndOutward) {
   EXPECT_EQ(scene.triangleCount(), 9u * 4u);
 }
 
+TEST(MeshBuilder, ATubeIsClosedAndOutward) {
+  // A column of 2 by 2 and 3 high, and a frustum of a pyramid of 2 by 2 and 4 by 4 at its ends, 1 high.
+  const auto ring = [](double half, double z) {
+    return std::array<Vec3d, 4>{{{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}}};
+  };
+  std::vector<Vec3d> points;
+  for (const auto& corners : {ring(1.0, 0.0), ring(1.0, 3.0), ring(2.0, 4.0)}) {
+    points.insert(points.end(), corners.begin(), corners.end());
+  }
+  expectSolid(12.0 + 28.0 / 3.0, [&](MeshBuilder& mesh) { mesh.tube(points, 4); });
+}
+
+TEST(MeshBuilder, AMeshHasTheTrianglesThatAreGiven) {
+  const std::array<Vec3d, 4> points{{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}};
+  const std::array<std::uint32_t, 12> indices{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+  expectSolid(1.0, [&](MeshBuilder& mesh) { mesh.mesh(points, indices); });
+}
+
 TEST(MeshBuilder, APlateWithOpeningsIsClosedAndOutwardAndConforming) {
   const std::vector<Rectangle> openings = {{{1, 0}, {2, 2}}, {{3, 1}, {4, 2}}, {{6, 0.5}, {7.5, 2.5}}};
   expectSolid((10.0 * 3.0 - 2.0 - 1.0 - 3.0) * 0.25, [&](MeshBuilder& mesh) {

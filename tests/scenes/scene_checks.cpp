@@ -203,7 +203,7 @@ std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view e
 
 SheetCounts countSheet(const Scene& scene, std::string_view start, bool whole_name) {
   SheetCounts counts;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, int>> edges;  // forwards, backwards
   std::map<std::uint32_t, std::uint32_t> parent;
   const auto rootOf = [&](std::uint32_t at) {
     parent.try_emplace(at, at);
@@ -223,13 +223,15 @@ SheetCounts countSheet(const Scene& scene, std::string_view start, bool whole_na
       const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
       const std::uint32_t a = scene.indices[scene.objects[o].first_index + i],
                           b = scene.indices[scene.objects[o].first_index + next];
-      balance[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+      auto& [forwards, backwards] = edges[{std::min(a, b), std::max(a, b)}];
+      ++(a < b ? forwards : backwards);
       const std::uint32_t root = rootOf(a);
       parent[root] = rootOf(b);
     }
   }
-  for (const auto& [edge, count] : balance) {
-    counts.open_edges += count != 0 ? 1 : 0;
+  for (const auto& [edge, count] : edges) {
+    counts.open_edges += count.first != count.second ? 1 : 0;
+    counts.crowded_edges += count.first + count.second > 2 ? 1 : 0;
   }
   for (const auto& [at, above] : parent) {
     counts.pieces += at == above ? 1 : 0;

@@ -44,8 +44,9 @@ std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view e
 struct SheetCounts {
   std::size_t objects = 0;
   std::uint64_t triangles = 0;
-  std::uint64_t open_edges = 0;  // edges without as many triangles in one direction as in the other
-  std::size_t pieces = 0;        // sets of triangles that hang together by shared positions
+  std::uint64_t open_edges = 0;     // edges without as many triangles in one direction as in the other
+  std::uint64_t crowded_edges = 0;  // edges of more than two triangles
+  std::size_t pieces = 0;           // sets of triangles that hang together by shared positions
 };
 SheetCounts countSheet(const Scene& scene, std::string_view start, bool whole_name = false);
 

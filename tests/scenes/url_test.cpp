@@ -46,7 +46,7 @@ TEST(DemoUrl, GivesTheSceneOfItsOptions) {
 }
 
 TEST(DemoUrl, AnUnknownSceneIsAnErrorThatListsTheScenes) {
-  expectError("demo:castle", {"castle", "city", "building", "boxes"});
+  expectError("demo:castle", {"castle", "city", "building", "boxes", "terrain", "cave", "village", "jungle"});
   expectError("demo:", {"city", "building"});
   expectError("city", {"demo:"});
 }
