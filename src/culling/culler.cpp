@@ -126,11 +126,14 @@ struct Culler::Impl {
                        .min_node_cost = settings.min_node_cost,
                        .test_objects = settings.test_objects,
                        .parallel_for = &parallel_for};
-    if (method->wantsOccluders()) {
-      frame.occluders = inUse(
-          choice->choose({view, frustum, jumped, last_view.step(), visible, set, method->drawsBodies()}),
-          moving);
-      stats.choose_us = laps.lap();
+    if (choice) {
+      std::span<const OccluderId> chosen;
+      if (method->wantsOccluders()) {
+        chosen =
+            choice->choose({view, frustum, jumped, last_view.step(), visible, set, method->drawsBodies()});
+        stats.choose_us = laps.lap();
+      }
+      frame.occluders = inUse(chosen, moving);
     }
     method->build(frame);
     stats.build_us = laps.lap();

@@ -72,6 +72,12 @@ void DepthPyramid::draw(const OccluderSet& set, std::span<const OccluderId> chos
   impl_->stats.raster = impl_->raster.stats();
 }
 
+void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
+                        const SurfaceDrawing& drawing) {
+  impl_->finished = false;
+  impl_->raster.draw(surfaces, candidates, drawing);
+}
+
 void DepthPyramid::finish(const ParallelFor& parallel_for) {
   impl_->levels.build(impl_->raster.depthBuffer(), parallel_for);
   impl_->finished = true;
@@ -112,6 +118,9 @@ std::uint32_t DepthPyramid::levels() const {
 }
 DepthBufferView DepthPyramid::depthBuffer() const {
   return impl_->raster.depthBuffer();
+}
+const SurfaceStats& DepthPyramid::surfaceStats() const {
+  return impl_->raster.surfaceStats();
 }
 const DepthPyramidStats& DepthPyramid::stats() const {
   return impl_->stats;

@@ -100,6 +100,12 @@ void OpacityMap::draw(const OccluderSet& set, std::span<const OccluderId> chosen
   impl_->raster.draw(set, chosen, parallel_for);
 }
 
+void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
+                      const SurfaceDrawing& drawing) {
+  impl_->ready = false;
+  impl_->raster.draw(surfaces, candidates, drawing);
+}
+
 void OpacityMap::finish() {
   impl_->finish();
 }

@@ -11,6 +11,7 @@
 
 #include "src/occlusion/polygon_builder.h"
 #include "src/occlusion/raster_rows.h"
+#include "src/occlusion/surface_raster.h"
 
 namespace sightline {
 
@@ -105,6 +106,7 @@ struct Rasteriser::Impl {
   std::vector<float> reciprocal_depth;
   PixelView view;
   PolygonBuilder builder;
+  SurfaceRaster surfaces;
   BufferPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
   std::vector<std::uint8_t> drawn;     // by band and polygon: some of the polygon was nearer than the buffer
@@ -130,11 +132,21 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
   impl_->draw(set, chosen, parallel_for);
 }
 
+void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
+                      const SurfaceDrawing& drawing) {
+  impl_->surfaces.draw(
+      surfaces, impl_->view, candidates, drawing,
+      {impl_->reciprocal_depth.data(), impl_->settings.width, impl_->settings.height, impl_->stride});
+}
+
 const RasterSettings& Rasteriser::settings() const {
   return impl_->settings;
 }
 DepthBufferView Rasteriser::depthBuffer() const {
   return {impl_->reciprocal_depth, impl_->settings.width, impl_->settings.height, impl_->stride};
+}
+const SurfaceStats& Rasteriser::surfaceStats() const {
+  return impl_->surfaces.stats();
 }
 const RasterStats& Rasteriser::stats() const {
   return impl_->stats;

@@ -37,6 +37,8 @@ struct AnySettings {
   KeptPlanesSettings kept_planes{};
   RasterSettings raster{};
   FocusSettings focus{};
+  SurfaceUse surfaces = SurfaceUse::kNone;
+  SurfaceDrawing drawing{};
   bool temporal_coherence = true;
   std::uint32_t occluder_count = 64;
   AreaAngleDirection area_angle_direction = AreaAngleDirection::kOccluder;
@@ -62,18 +64,25 @@ inline std::unique_ptr<CullingMethod> makeMethod(const AnySettings& settings) {
     case AnyMethod::kKeptPlanes:
       return keptPlanes(kept);
     case AnyMethod::kOpacityMap:
-      return opacityMap({.map = {.raster = settings.raster}});
+      return opacityMap(
+          {.map = {.raster = settings.raster}, .surfaces = settings.surfaces, .drawing = settings.drawing});
     case AnyMethod::kDepthPyramid:
-      return depthPyramid({settings.raster, settings.focus, settings.temporal_coherence});
+      return depthPyramid({.raster = settings.raster,
+                           .focus = settings.focus,
+                           .temporal_coherence = settings.temporal_coherence,
+                           .surfaces = settings.surfaces,
+                           .drawing = settings.drawing});
     case AnyMethod::kVisibilityOctree:
       return visibilityOctree();
   }
   return nullptr;
 }
 
+// What some settings use of a scene, made ahead.
 struct AnyLists {
   const OccluderLists* from_eye = nullptr;      // with AnySettings::use_lists
   const OccluderLists* from_objects = nullptr;  // with AnySettings::detail_objects
+  const SurfaceSet* surfaces = nullptr;         // with AnySettings::surfaces
 };
 
 class AnyCuller : public Culler {
@@ -103,6 +112,7 @@ class AnyCuller : public Culler {
     return {.hierarchy = &hierarchy,
             .object_bounds = object_bounds,
             .occluders = &occluders,
+            .surfaces = lists.surfaces,
             .occluder_lists = settings.use_lists ? lists.from_eye : nullptr,
             .near_objects = lists.from_objects,
             .sets = sets};

@@ -40,6 +40,7 @@ class CullingJudge {
     const bool moves = !hostile.may_move.empty() && chance(3);
     static_occluders_ = occludersOf(moves, true);
     moving_occluders_ = moves ? occludersOf(true, false) : OccluderSet{};
+    surfaces_ = surfacesOf(moves);
     const std::uint32_t leaf = 1u + below(2);
     kd_tree_ = buildHierarchy(bounds_, {}, {.kind = HierarchyKind::kKdTree, .max_leaf_objects = leaf});
     bvh_ = buildHierarchy(bounds_, {}, {.kind = HierarchyKind::kBvh, .max_leaf_objects = leaf});
@@ -85,16 +86,34 @@ class CullingJudge {
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
 
-  // Those that do not move, or those that do.
-  OccluderSet occludersOf(bool some_move, bool of_static) {
+  // The objects, of which those that move, or those that do not, are marked not to be occluders.
+  std::vector<Object> marked(bool some_move, bool of_static) const {
     std::vector<Object> objects(scene_.objects.begin(), scene_.objects.end());
     for (std::uint32_t o = 0; some_move && o < objects.size(); ++o) {
       const bool moves = std::binary_search(hostile_.may_move.begin(), hostile_.may_move.end(), ObjectId(o));
       objects[o].mark = moves == of_static ? OccluderMark::kNever : OccluderMark::kAutomatic;
     }
+    return objects;
+  }
+
+  // Those that do not move, or those that do.
+  OccluderSet occludersOf(bool some_move, bool of_static) {
+    const std::vector<Object> objects = marked(some_move, of_static);
     SceneView chosen = scene_;
     chosen.objects = objects;
     return findOccluders(chosen, {.area_fraction = chance(3) ? 0.98 : 1.0});
+  }
+
+  // Of what does not move, in pieces of any size.
+  SurfaceSet surfacesOf(bool some_move) {
+    const std::vector<Object> objects = marked(some_move, true);
+    SceneView chosen = scene_;
+    chosen.objects = objects;
+    constexpr std::uint32_t kSizes[] = {1, 3, 16, 1024};
+    return findSurfaces(chosen, {.part_triangles = kSizes[below(4)],
+                                 .patch_triangles = kSizes[below(4)],
+                                 .cluster_triangles = kSizes[below(4)],
+                                 .max_angle_deg = chance(2) ? 10.0 : 180.0});
   }
 
   // The first culler only culls by the frustum; each other method comes in turn, with options by chance.
@@ -114,6 +133,12 @@ class CullingJudge {
     s.focus.min_objects = 0;
     s.temporal_coherence = chance(2);
     s.occluder_count = chance(4) ? 4u : 256u;
+    s.surfaces = std::array{SurfaceUse::kNone, SurfaceUse::kAlone, SurfaceUse::kAlone,
+                            SurfaceUse::kWithOccluders}[below(4)];
+    if (!chance(4)) {
+      s.drawing = {.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0};
+    }
+    s.drawing.budget = chance(6) ? 20u : s.drawing.budget;
     s.detail_objects = chance(6);
     s.use_lists = chance(6);
     const bool kd = chance(3);
@@ -129,9 +154,10 @@ class CullingJudge {
                      std::to_string(s.focus.magnification > 1.0) + ", coherence " +
                      std::to_string(s.temporal_coherence) + ", occluders " +
                      std::to_string(s.occluder_count) + ", detail " + std::to_string(s.detail_objects) +
-                     ", lists " + std::to_string(s.use_lists) + (kd ? ", kd-tree" : ", bvh") + ")");
+                     ", surfaces " + std::to_string(static_cast<int>(s.surfaces)) + ", lists " +
+                     std::to_string(s.use_lists) + (kd ? ", kd-tree" : ", bvh") + ")");
     cullers_.push_back(std::make_unique<AnyCuller>(kd ? kd_tree_ : bvh_, bounds_, static_occluders_, s,
-                                                   AnyLists{&lists_, &near_lists_}));
+                                                   AnyLists{&lists_, &near_lists_, &surfaces_}));
   }
 
   // Targets are given as moving boxes too: what either answer leaves out is culled.
@@ -158,6 +184,7 @@ class CullingJudge {
   std::uint32_t max_steps_;
   std::vector<Box> bounds_;
   OccluderSet static_occluders_, moving_occluders_;
+  SurfaceSet surfaces_;
   Hierarchy kd_tree_, bvh_;
   OccluderDatabase lists_, near_lists_;
   std::vector<std::string> names_;

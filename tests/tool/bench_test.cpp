@@ -39,16 +39,29 @@ TEST(BenchAnswers, AreTheSameOnEveryMachineWithAnyNumberOfThreads) {
   const std::vector<std::string> methods{"--no-cache", "--method",
                                          "frustum,occlusion-tree,supporting-planes,opacity-map,depth-pyramid",
                                          "--occluder-count", "16,64"};
+  const std::vector<std::string> pyramids{
+      "--no-cache",          "--method",         "depth-pyramid", "--surfaces",
+      "none,with-occluders", "--occluder-count", "16,64"};
   const std::vector<std::string> city{"f93ff134933fb1fa", "f14cea3b36eb9c18", "d2d2cf695dc7a063",
                                       "1de2a4420b725f9c", "9c34d2550b16d4b1", "e86b3200d5db48f2",
-                                      "4acaf4093a7416b7", "9658f8e9bab442b2", "b6fbc05126b56e30"};
+                                      "4acaf4093a7416b7", "59bf3105d46be72d"};
+  const std::vector<std::string> city_pyramids{"f93ff134933fb1fa", "9658f8e9bab442b2", "b6fbc05126b56e30",
+                                               "f8dfcb9566e24d16", "ebfdbe60fcf62040"};
   const std::vector<std::string> building{"40d83cb56c4b5ca0", "de43e5e7f280b4fa", "65176768266b17de",
                                           "3158f99542937da3", "df79ff0470312c73", "c80bfd7fcd088f8b",
-                                          "933295b24856760f", "2659134a15649b7a", "5cfefce52bbd902a"};
-  for (const auto& [scene, golden] : {std::pair(kBenchCity, city), std::pair(kBenchBuilding, building)}) {
+                                          "933295b24856760f", "1c6e0ce5b8ef3942"};
+  const std::vector<std::string> building_pyramids{"40d83cb56c4b5ca0", "2659134a15649b7a", "5cfefce52bbd902a",
+                                                   "1c6e0ce5b8ef3942", "22ac76970cc7f871"};
+  struct Case {
+    std::string scene;
+    std::vector<std::string> options, golden;
+  };
+  for (const auto& [scene, options, golden] :
+       {Case{kBenchCity, methods, city}, Case{kBenchCity, pyramids, city_pyramids},
+        Case{kBenchBuilding, methods, building}, Case{kBenchBuilding, pyramids, building_pyramids}}) {
     for (const std::string threads : {"1", "3"}) {
       std::vector<std::string> answers;
-      for (const CsvRow& row : rowsOf(joined(benchOf(scene, methods), {"--threads", threads}))) {
+      for (const CsvRow& row : rowsOf(joined(benchOf(scene, options), {"--threads", threads}))) {
         answers.push_back(row.at("answers"));
       }
       EXPECT_EQ(answers, golden) << scene << ", threads " << threads;
@@ -221,8 +234,9 @@ TEST(Bench, WritesAReportOfAllScenes) {
   EXPECT_NE(page.find("advised"), std::string::npos);
   EXPECT_NE(page.find("boxes: 1."), std::string::npos) << "the least that any test of boxes must keep";
   EXPECT_EQ(parse(contents(report + "/bench.json"))["scenes"].size(), 2u);
-  EXPECT_EQ(csvRows(contents(report + "/bench.csv")).size(), 2u * 13u)
-      << "unless told otherwise: frustum culling, and four methods with three numbers of occluders";
+  EXPECT_EQ(csvRows(contents(report + "/bench.csv")).size(), 2u * 11u)
+      << "unless told otherwise: frustum culling, three methods with three numbers of occluders, and "
+         "surfaces";
 }
 
 TEST(Bench, DrawsWhatIsKept) {

@@ -44,6 +44,7 @@ inline const std::map<std::string, std::string>& sharedObjects() {
                                                           {"sets", "### statistics of a method"},
                                                           {"map", "### statistics of a method"},
                                                           {"relations", "### statistics of a method"},
+                                                          {"surfaces", "### statistics of a method"},
                                                           {"detail", "### statistics of a method"},
                                                           {"database", "### databases"},
                                                           {"detail_database", "### databases"},

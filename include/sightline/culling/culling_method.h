@@ -14,6 +14,7 @@
 #include "sightline/math/frustum.h"
 #include "sightline/occluders/occluder_lists.h"
 #include "sightline/occluders/occluder_set.h"
+#include "sightline/occluders/surface_set.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "sightline/occlusion/visibility.h"
 #include "sightline/occlusion/visible_sets.h"
@@ -32,6 +33,8 @@ struct CullingScene {
   const Hierarchy* hierarchy = nullptr;  // of these boxes
   std::span<const Box> object_bounds{};  // by ObjectId, scene space
   const OccluderSet* occluders = nullptr;
+  // Surfaces of the same scene, for methods that draw whole surfaces; null: they draw none.
+  const SurfaceSet* surfaces = nullptr;
   // Candidates for the occluders of a frame, by the eye's place and direction; null: they are found anew in
   // each frame among the objects that the last one kept.
   const OccluderLists* occluder_lists = nullptr;
@@ -89,6 +92,13 @@ struct MethodStatistic {
   std::uint64_t value = 0;
 };
 
+// How a method uses CullingScene::surfaces. With a coverage rule of the caller it draws none.
+enum class SurfaceUse : std::uint8_t {
+  kNone,
+  kAlone,          // instead of chosen occluders; occluders that move are drawn nevertheless
+  kWithOccluders,  // in addition to them
+};
+
 // What a method is told about a frame. All of it is valid until the frame ends.
 struct CullingFrame {
   View view{};          // validate() accepts it; never left-handed
@@ -129,7 +139,7 @@ class CullingMethod {
   virtual ~CullingMethod() = default;
 
   virtual MethodTraits traits() const = 0;
-  // Whether the next frame needs occluders.
+  // Whether the next frame needs chosen occluders of the scene's set.
   virtual bool wantsOccluders() const { return traits().occluders; }
   // Whether a convex body counts as one occluder, so that one of its faces is enough.
   virtual bool drawsBodies() const { return false; }

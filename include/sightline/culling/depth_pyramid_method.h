@@ -20,15 +20,20 @@ struct FocusSettings {
 
 struct DepthPyramidMethodSettings {
   RasterSettings raster{};
-  FocusSettings focus{};           // with the conservative coverage only
-  bool temporal_coherence = true;  // what was kept is not tested again for six to nine frames
+  FocusSettings focus{};  // with the conservative coverage only
+  // Surfaces that were of no use of late rest for a few frames; without surfaces, what was kept is not tested
+  // again for six to nine frames.
+  bool temporal_coherence = true;
+  SurfaceUse surfaces = SurfaceUse::kAlone;
+  SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame
 };
 
 inline constexpr MethodTraits kDepthPyramidTraits{.occluders = true};
 
-// Culling by a DepthPyramid of the chosen occluders: all children of a node are compared with it at once.
-// Statistics: "map" with occluders_hidden, the occluders behind others, and focused, 1 in frames with a
-// second depth buffer.
+// Culling by a DepthPyramid of whole surfaces, or of the chosen occluders where the scene has none: all
+// children of a node are compared with it at once. The surfaces of a frame are those of the objects that the
+// last frame kept. Statistics: "map" with occluders_hidden, the occluders behind others, focused, 1 in frames
+// with a second depth buffer, and what was drawn of surfaces: groups, and edges of their boundaries.
 std::unique_ptr<CullingMethod> depthPyramid(const DepthPyramidMethodSettings& settings = {});
 
 }  // namespace sightline

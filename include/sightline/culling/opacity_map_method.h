@@ -13,11 +13,13 @@ struct OpacityMapMethodSettings {
   // one begins that follows the measured times, and culling by occlusion is suspended while it does not pay;
   // then what is kept, always conservative, depends on times.
   double triangle_us = 0.0;
+  SurfaceUse surfaces = SurfaceUse::kNone;
+  SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame
 };
 
 inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};
 
-// Culling by an OpacityMap of the chosen occluders (Poon, Wang 1999).
+// Culling by an OpacityMap of the chosen occluders (Poon, Wang 1999), or of whole surfaces.
 // Statistics: "map" with occluders_hidden, overlap_tests, overlap_failed, given_up, depth_tests,
 // depths_compared, and, where triangle_us is set, suspended;
 // then also "coverage" with per_mille, the coverage ratio of the frame.

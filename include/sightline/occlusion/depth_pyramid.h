@@ -72,6 +72,8 @@ class DepthPyramid {
   void begin(const View& view);
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
+  void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
+            const SurfaceDrawing& drawing = {});
   void finish(const ParallelFor& parallel_for = serialFor);
 
   // Classifies boxes in scene space as seen in the last view. answers: as many as boxes. Boxes that are not
@@ -87,6 +89,7 @@ class DepthPyramid {
   std::uint32_t levels() const;
   DepthBufferView depthBuffer() const;
   const DepthPyramidStats& stats() const;
+  const SurfaceStats& surfaceStats() const;
   std::span<const OccluderId> occluders() const;
 
  private:

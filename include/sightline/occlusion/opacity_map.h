@@ -68,6 +68,8 @@ class OpacityMap {
   void begin(const View& view);
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
+  void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
+            const SurfaceDrawing& drawing = {});
   void finish();
 
   // Classifies a box in scene space as seen in the last view. Boxes that are not well formed, and those that

@@ -9,6 +9,7 @@
 
 #include "sightline/base/parallel_for.h"
 #include "sightline/occluders/occluder_set.h"
+#include "sightline/occluders/surface_set.h"
 #include "sightline/scene/camera.h"
 
 namespace sightline {
@@ -60,6 +61,35 @@ struct DepthBufferView {
   }
 };
 
+// What a view has to do with the one before.
+enum class ViewStep : std::uint8_t {
+  kJump,  // nothing
+  kNext,  // it follows: what changed few pixels of late rests for a few views
+  kSame,  // it is the same view: what is drawn in it is not drawn again
+};
+
+// How surfaces are drawn. Whatever the values are, what is covered is hidden.
+struct SurfaceDrawing {
+  double min_pixels = 100.0;        // parts whose rectangle in the buffer has fewer pixels are left out
+  double min_patch_pixels = 150.0;  // patches with fewer are drawn only together with the rest of their part
+  // Surfaces whose rectangle has fewer pixels for each edge of their boundary are left out: they hardly cover
+  // any.
+  double pixels_per_edge = 4.0;
+  bool slabs = true;  // parts that adjoin each other at about the same depth are drawn together too
+  // Surfaces are drawn, the nearest ones first, until they have cost so much: 1 for each edge of their
+  // boundaries, for each 256 pixels within them, and 8 for each time that some are drawn together.
+  std::uint32_t budget = 60000;
+  ViewStep step = ViewStep::kJump;  // from the view in which this set was drawn last
+};
+
+// What the last draw() of surfaces drew.
+struct SurfaceStats {
+  std::uint32_t patches = 0, clusters = 0;  // that were looked at closely
+  std::uint32_t groups = 0;                 // of clusters that were drawn together
+  std::uint32_t edges = 0;                  // of their boundaries
+  bool complete = true;                     // the budget was enough
+};
+
 struct RasterStats {
   std::uint32_t occluders = 0;  // occluders that were drawn, or are behind what was drawn
   // Chosen, but seen from behind, edge-on, wholly before the near plane, or outside the buffer.
@@ -88,9 +118,15 @@ class Rasteriser {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
 
+  // Draws the surfaces of some objects, SurfaceSet::objects for all. With any coverage rule they are drawn
+  // conservatively.
+  void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
+            const SurfaceDrawing& drawing = {});
+
   const RasterSettings& settings() const;
   DepthBufferView depthBuffer() const;
   const RasterStats& stats() const;  // counts since begin()
+  const SurfaceStats& surfaceStats() const;
   // The chosen occluders that were drawn or are behind what was drawn, since begin(), draw by draw. A convex
   // body that was drawn as one is named by the first of its faces that was chosen.
   std::span<const OccluderId> occluders() const;

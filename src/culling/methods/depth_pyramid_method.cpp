@@ -1,11 +1,14 @@
 #include "sightline/culling/depth_pyramid_method.h"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 
 #include "sightline/occluders/choose_occluders.h"
 #include "src/culling/focus_window.h"
 #include "src/culling/methods/draw_occluders.h"
+#include "src/culling/methods/surface_drawing.h"
 #include "src/culling/methods/traversal_options.h"
 #include "src/culling/set_filter.h"
 #include "src/culling/wide_traversal.h"
@@ -15,17 +18,22 @@ namespace {
 
 class DepthPyramidMethod final : public CullingMethod {
  public:
-  explicit DepthPyramidMethod(const DepthPyramidMethodSettings& settings) : settings_(settings) {}
+  explicit DepthPyramidMethod(const DepthPyramidMethodSettings& settings)
+      : settings_(settings), surfaces_(settings.surfaces, settings.drawing, settings.raster.coverage) {}
 
   MethodTraits traits() const override { return kDepthPyramidTraits; }
+  bool wantsOccluders() const override { return surfaces_.wantsOccluders(); }
   bool drawsBodies() const override { return settings_.raster.coverage == nullptr; }
 
   void prepare(const CullingScene& scene) override {
     scene_ = scene;
     traversal_.emplace(*scene.hierarchy, scene.object_bounds);
+    surfaces_.prepare(scene);
     pyramid_.emplace(DepthPyramidSettings{settings_.raster});
     own_occluders_ = 0;
     focused_ = false;
+    last_kept_.clear();
+    news_.clear();
     if (settings_.focus.magnification > 1.0 && drawsBodies()) {
       const DepthBufferView buffer = pyramid_->depthBuffer();
       window_.emplace(settings_.focus, buffer.width, buffer.height);
@@ -43,6 +51,8 @@ class DepthPyramidMethod final : public CullingMethod {
       traversal_->forget();
     }
     own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, *frame.parallel_for);
+    surfaces_.begin(frame);
+    surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
     pyramid_->finish(*frame.parallel_for);
     focused_ = false;
     if (window_) {
@@ -55,10 +65,16 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    const culling::TraversalBuffers buffers{*pyramid_, window_ ? &*window_ : nullptr,
-                                            focused_ ? &*fine_pyramid_ : nullptr};
-    traversal_->run(buffers, culling::optionsOf(frame, settings_.temporal_coherence), stats, visible,
-                    *frame.parallel_for);
+    if (surfaces_.draws() && !frame.jumped && news_.size() * kCalm > last_kept_.size()) {
+      drawNews(frame);
+    }
+    // With surfaces most time goes into drawing, and testing everything costs little.
+    const bool skips = settings_.temporal_coherence && !surfaces_.draws();
+    traversal_->run(buffers(), culling::optionsOf(frame, skips), stats, visible, *frame.parallel_for);
+    if (surfaces_.draws()) {
+      findNews(visible);
+      last_kept_ = visible;
+    }
   }
 
   void finish(CullStats& stats) override {
@@ -66,6 +82,9 @@ class DepthPyramidMethod final : public CullingMethod {
     stats.occluders = raster.occluders;
     statistics_[0].value = raster.hidden;
     statistics_[1].value = focused_ ? 1 : 0;
+    const SurfaceStats& surfaces = pyramid_->surfaceStats();
+    statistics_[2].value = surfaces.groups;
+    statistics_[3].value = surfaces.edges;
   }
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
@@ -97,10 +116,12 @@ class DepthPyramidMethod final : public CullingMethod {
         fine_chosen_.push_back(id);
       }
     }
-    const ChoiceSettings choice{.count = settings_.focus.occluder_count, .bodies = true};
-    const auto more =
-        chooser_.choose(window_->view(), *scene_.occluders, in_window_, scene_.object_bounds, choice);
-    fine_chosen_.insert(fine_chosen_.end(), more.begin(), more.end());
+    if (wantsOccluders()) {
+      const ChoiceSettings choice{.count = settings_.focus.occluder_count, .bodies = true};
+      const auto more =
+          chooser_.choose(window_->view(), *scene_.occluders, in_window_, scene_.object_bounds, choice);
+      fine_chosen_.insert(fine_chosen_.end(), more.begin(), more.end());
+    }
     std::array<ChosenOccluders, 2> sets{{{scene_.occluders, fine_chosen_}, {}}};
     const bool moving = frame.occluders.size() > 1;
     if (moving) {
@@ -108,10 +129,38 @@ class DepthPyramidMethod final : public CullingMethod {
     }
     culling::drawOccluders(*fine_pyramid_, window_->view(), std::span(sets).first(moving ? 2 : 1),
                            *frame.parallel_for);
+    surfaces_.draw(*fine_pyramid_, frame, false);
     fine_pyramid_->finish(*frame.parallel_for);
   }
 
+  culling::TraversalBuffers buffers() {
+    return {*pyramid_, window_ ? &*window_ : nullptr, focused_ ? &*fine_pyramid_ : nullptr};
+  }
+
+  // Sets news_ to the objects that the last frame did not keep.
+  void findNews(std::span<const ObjectId> kept) {
+    news_.clear();
+    std::set_difference(kept.begin(), kept.end(), last_kept_.begin(), last_kept_.end(),
+                        std::back_inserter(news_));
+  }
+
+  // Draws the surfaces of objects that come into view in this frame.
+  void drawNews(const CullingFrame& frame) {
+    found_.clear();
+    CullStats ignored;
+    traversal_->run({*pyramid_}, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
+    findNews(found_);
+    surfaces_.drawMore(*pyramid_, news_);
+    pyramid_->finish(*frame.parallel_for);
+  }
+
+  // Where more than one of so many objects that were kept is new, the view changes fast, and the surfaces of
+  // what the last frame kept are not enough.
+  static constexpr std::size_t kCalm = 16;
+
   DepthPyramidMethodSettings settings_;
+  culling::SurfaceDrawer surfaces_;
+  std::vector<ObjectId> last_kept_, news_, found_;
   CullingScene scene_;
   std::optional<culling::WideTraversal> traversal_;
   std::optional<DepthPyramid> pyramid_;
@@ -123,8 +172,10 @@ class DepthPyramidMethod final : public CullingMethod {
   OccluderChooser chooser_;
   std::vector<ObjectId> in_window_;
   std::vector<OccluderId> fine_chosen_;
-  std::array<MethodStatistic, 2> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
-                                              {"map", "focused", "frames with a finer map"}}};
+  std::array<MethodStatistic, 4> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
+                                              {"map", "focused", "frames with a finer map"},
+                                              {"surfaces", "groups", "groups of surfaces drawn"},
+                                              {"surfaces", "edges", "edges of their boundaries"}}};
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "src/culling/adaptive_coverage.h"
 #include "src/culling/methods/draw_occluders.h"
+#include "src/culling/methods/surface_drawing.h"
 #include "src/culling/methods/traversal_options.h"
 
 namespace sightline {
@@ -15,7 +16,8 @@ using culling::TraversalBox;
 
 class OpacityMapMethod final : public CullingMethod {
  public:
-  explicit OpacityMapMethod(const OpacityMapMethodSettings& settings) : settings_(settings) {
+  explicit OpacityMapMethod(const OpacityMapMethodSettings& settings)
+      : settings_(settings), surfaces_(settings.surfaces, settings.drawing, settings.map.raster.coverage) {
     if (adapts()) {
       statistics_.push_back({"map", "suspended", "frames without occlusion culling"});
       statistics_.push_back({"coverage", "per_mille", "coverage ratio, per mille"});
@@ -23,11 +25,12 @@ class OpacityMapMethod final : public CullingMethod {
   }
 
   MethodTraits traits() const override { return kOpacityMapTraits; }
-  bool wantsOccluders() const override { return !coverage_->suspended(); }
+  bool wantsOccluders() const override { return !coverage_->suspended() && surfaces_.wantsOccluders(); }
   bool drawsBodies() const override { return settings_.map.raster.coverage == nullptr; }
 
   void prepare(const CullingScene& scene) override {
     traversal_.emplace(*scene.hierarchy, scene.object_bounds);
+    surfaces_.prepare(scene);
     map_.emplace(settings_.map);
     coverage_.emplace(settings_.map.coverage_ratio);
     own_occluders_ = 0;
@@ -36,9 +39,12 @@ class OpacityMapMethod final : public CullingMethod {
 
   void build(const CullingFrame& frame) override {
     map_->setCoverageRatio(coverage_->ratio());
+    const bool was_suspended = suspended_;
     suspended_ = coverage_->suspended();
     if (!suspended_) {
       own_occluders_ = culling::drawOccluders(*map_, frame.view, frame.occluders, *frame.parallel_for);
+      surfaces_.begin(frame);
+      surfaces_.draw(*map_, frame, !was_suspended);
       map_->finish();
     }
   }
@@ -86,6 +92,7 @@ class OpacityMapMethod final : public CullingMethod {
   bool adapts() const { return settings_.triangle_us > 0.0; }
 
   OpacityMapMethodSettings settings_;
+  culling::SurfaceDrawer surfaces_;
   std::optional<culling::HierarchicalTraversal> traversal_;
   std::optional<OpacityMap> map_;
   std::optional<culling::AdaptiveCoverage> coverage_;

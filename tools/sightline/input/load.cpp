@@ -153,6 +153,7 @@ CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, co
                          std::optional<SightFile> baked)
     : parallel_for_(parallel_for),
       occluders_(findOccluders(scene.view(), {}, parallel_for)),
+      scene_(scene.view()),
       baked_(std::move(baked)) {
   for (const std::uint32_t frame : walk.frames) {
     walk_.push_back(walk.view(frame, scene).eye);
@@ -271,6 +272,12 @@ void CullingData::prepare(const Setting& setting) {
 Culler CullingData::makeCuller(const Setting& setting) {
   CullingScene scene{
       .hierarchy = &hierarchy(setting.hierarchy), .object_bounds = bounds_, .occluders = &occluders_};
+  if (setting.surfaces() != SurfaceUse::kNone) {
+    if (!surfaces_) {
+      surfaces_ = std::make_unique<SurfaceSet>(findSurfaces(scene_, {}, parallel_for_));
+    }
+    scene.surfaces = surfaces_.get();
+  }
   if (setting.usesDatabase()) {
     scene.occluder_lists = databaseFor(setting, false, from_eye_);
   }

@@ -107,6 +107,8 @@ class CullingData {
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
   OccluderSet occluders_;
+  SceneView scene_;
+  std::unique_ptr<SurfaceSet> surfaces_;
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
   std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion

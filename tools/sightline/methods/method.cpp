@@ -42,18 +42,24 @@ const std::vector<Method>& methods() {
        [](const Setting& s) {
          OpacityMapMethodSettings settings = s.opacity_map;
          settings.map.raster = s.raster;
+         settings.surfaces = s.surfaces();
+         settings.drawing = s.surface_drawing;
          return opacityMap(settings);
        },
-       {"resolution", "coverage", "tolerance", "coverage-ratio", "depth-comparison", "triangle-us"},
+       {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "tolerance",
+        "coverage-ratio", "depth-comparison", "triangle-us"},
        /*hidden_statistics=*/{"coverage"}},
       {"depth-pyramid",
        kDepthPyramidTraits,
        [](const Setting& s) {
-         return depthPyramid(
-             {.raster = s.raster, .focus = s.focus, .temporal_coherence = s.temporal_coherence});
+         return depthPyramid({.raster = s.raster,
+                              .focus = s.focus,
+                              .temporal_coherence = s.temporal_coherence,
+                              .surfaces = s.surfaces(),
+                              .drawing = s.surface_drawing});
        },
-       {"resolution", "coverage", "coherence", "focus", "focus-resolution", "focus-occluder-count",
-        "focus-objects"}},
+       {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "coherence", "focus",
+        "focus-resolution", "focus-occluder-count", "focus-objects"}},
       {"visibility-octree", kVisibilityOctreeTraits, [](const Setting&) { return visibilityOctree(); }, {}},
   };
   return kMethods;

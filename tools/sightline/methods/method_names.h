@@ -26,6 +26,9 @@ enum class OccluderChoice : std::uint8_t {
   kProjectedSize,
 };
 
+// How a method uses whole surfaces; kAutomatic: as its default is.
+enum class SurfaceOption : std::uint8_t { kAutomatic, kNone, kAlone, kWithOccluders };
+
 // Which planes --method supporting-planes compares boxes with.
 enum class PlaneForm : std::uint8_t { kThroughEye, kThroughBox };
 
@@ -61,6 +64,12 @@ inline constexpr std::array<Name<OccluderChoice>, 5> kOccluderChoices{{
     {"minimum-sets", OccluderChoice::kMinimumSets},
     {"projected-size", OccluderChoice::kProjectedSize},
     {"first-hit", OccluderChoice::kFirstHit},
+}};
+inline constexpr std::array<Name<SurfaceOption>, 4> kSurfaceOptions{{
+    {"auto", SurfaceOption::kAutomatic},
+    {"none", SurfaceOption::kNone},
+    {"alone", SurfaceOption::kAlone},
+    {"with-occluders", SurfaceOption::kWithOccluders},
 }};
 inline constexpr std::array<Name<PlaneForm>, 2> kPlaneForms{{
     {"through-eye", PlaneForm::kThroughEye},

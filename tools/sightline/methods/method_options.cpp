@@ -137,6 +137,12 @@ bool always(const Setting&) {
 bool usesOccluders(const Setting& setting) {
   return setting.method->traits.occluders;
 }
+bool choosesOccluders(const Setting& setting) {
+  return setting.choosesOccluders();
+}
+bool drawsSurfaces(const Setting& setting) {
+  return setting.surfaces() != SurfaceUse::kNone;
+}
 bool mayUseSets(const Setting& setting) {
   return setting.baked && setting.method->traits.sets == SetUse::kIfAsked;
 }
@@ -155,6 +161,9 @@ bool mayFocus(const Setting& setting) {
 bool focuses(const Setting& setting) {
   return mayFocus(setting) && setting.focus.magnification > 1.0;
 }
+bool focusesOccluders(const Setting& setting) {
+  return focuses(setting) && setting.choosesOccluders();
+}
 bool usesViewpoints(const Setting& setting) {
   return setting.usesViewpoints();
 }
@@ -162,7 +171,7 @@ bool usesMinimumSets(const Setting& setting) {
   return setting.usesViewpoints() && setting.occluders == OccluderChoice::kMinimumSets;
 }
 bool ranksByAreaAngle(const Setting& setting) {
-  return usesOccluders(setting) && !setting.usesViewpoints();
+  return setting.choosesOccluders() && !setting.usesViewpoints();
 }
 bool usesAreaAngle(const Setting& setting) {
   return ranksByAreaAngle(setting) && !setting.usesDatabase();
@@ -219,10 +228,6 @@ const std::vector<Option>& allOptions() {
        decimal(+[](Setting& s) -> double& { return s.focus.magnification; })},
       {"focus-resolution", kOwn, focuses, kOne, kWhenChanged, "of that second map",
        resolution(+[](Setting& s) -> RasterSettings& { return s.focus.raster; })},
-      {"focus-occluder-count", kOwn, focuses, kOne, kWhenChanged,
-       "most occluders that only the second map has",
-       whole(
-           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.occluder_count; })},
       {"focus-objects", kOwn, focuses, kOne, kWhenChanged,
        "the second map is made where the first one leaves so many objects",
        whole(
@@ -244,9 +249,24 @@ const std::vector<Option>& allOptions() {
       {"occluders", kAny, usesOccluders, kList, kWhenChanged, "how occluders are chosen",
        oneOf(
            kOccluderChoices, +[](Setting& s) -> OccluderChoice& { return s.occluders; })},
-      {"occluder-count", kAny, usesOccluders, kList, kHeadline, "most occluders in a frame",
+      {"surfaces", kOwn, mayFocus, kList, kWhenChanged,
+       "whole surfaces as occluders; auto: alone by the depth pyramid, unless --occluders is given",
+       oneOf(
+           kSurfaceOptions, +[](Setting& s) -> SurfaceOption& { return s.surface_option; })},
+      {"surface-pixels", kOwn, drawsSurfaces, kList, kWhenChanged,
+       "surfaces whose rectangle has fewer pixels are not drawn",
+       decimal(+[](Setting& s) -> double& { return s.surface_drawing.min_pixels; })},
+      {"surface-budget", kOwn, drawsSurfaces, kList, kWhenChanged,
+       "surfaces are drawn until they have cost so much: 1 for an edge, 1 for 256 pixels, 8 for a group",
+       whole(
+           0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.surface_drawing.budget; })},
+      {"occluder-count", kAny, choosesOccluders, kList, kHeadline, "most occluders in a frame",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluders.count; })},
+      {"focus-occluder-count", kOwn, focusesOccluders, kOne, kWhenChanged,
+       "most occluders that only the second map has",
+       whole(
+           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.occluder_count; })},
       {"planes", kOwn, always, kList, kWhenChanged,
        "supporting planes: made for each occluder, or for each occluder and box, to be kept",
        oneOf(
@@ -387,12 +407,35 @@ std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option
 
 }  // namespace
 
+SurfaceUse Setting::surfaces() const {
+  const std::vector<std::string_view>& own = method->options;
+  if (raster.coverage != nullptr || std::find(own.begin(), own.end(), "surfaces") == own.end()) {
+    return SurfaceUse::kNone;
+  }
+  switch (surface_option) {
+    case SurfaceOption::kNone:
+      return SurfaceUse::kNone;
+    case SurfaceOption::kAlone:
+      return SurfaceUse::kAlone;
+    case SurfaceOption::kWithOccluders:
+      return SurfaceUse::kWithOccluders;
+    case SurfaceOption::kAutomatic:
+      break;
+  }
+  return method->name == "depth-pyramid" && occluders == OccluderChoice::kAreaAngle ? SurfaceUse::kAlone
+                                                                                    : SurfaceUse::kNone;
+}
+
+bool Setting::choosesOccluders() const {
+  return usesOccluders(*this) && surfaces() != SurfaceUse::kAlone;
+}
+
 bool Setting::usesDatabase() const {
-  return usesOccluders(*this) && occluders == OccluderChoice::kDatabase;
+  return choosesOccluders() && occluders == OccluderChoice::kDatabase;
 }
 
 bool Setting::usesViewpoints() const {
-  return usesOccluders(*this) &&
+  return choosesOccluders() &&
          (occluders == OccluderChoice::kMinimumSets || occluders == OccluderChoice::kFirstHit ||
           occluders == OccluderChoice::kProjectedSize);
 }
@@ -504,7 +547,10 @@ std::string methodName(const Setting& setting) {
 
 std::string optionsText(const Setting& setting) {
   std::string text = nameOf(kHierarchies, setting.hierarchy);
-  if (usesOccluders(setting)) {
+  if (setting.surfaces() != SurfaceUse::kNone) {
+    text = "surfaces, " + text;
+  }
+  if (setting.choosesOccluders()) {
     text = fmt::format("{} occluders, {}", setting.culler.occluders.count, text);
   }
   const auto shows = [&](std::string_view name) { return optionNamed(name).belongs(setting); };

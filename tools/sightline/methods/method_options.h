@@ -40,6 +40,8 @@ struct Setting {
   ViewpointDatabaseSettings viewpoints{};
   bool detail_objects = false;
   DetailObjectsSettings detail{};
+  SurfaceOption surface_option = SurfaceOption::kAutomatic;
+  SurfaceDrawing surface_drawing{};
   bool temporal_coherence = true;  // for the methods that have it
   OcclusionTreeVariant variant = OcclusionTreeMethodSettings{}.variant;
   PlaneForm plane_form = PlaneForm::kThroughEye;
@@ -49,6 +51,8 @@ struct Setting {
   FocusSettings focus{};
   bool baked = false;  // there is a baked file
 
+  SurfaceUse surfaces() const;
+  bool choosesOccluders() const;
   bool usesDatabase() const;
   bool usesViewpoints() const;
   bool usesDepthBuffer() const;

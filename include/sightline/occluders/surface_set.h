@@ -1,0 +1,128 @@
+#pragma once
+
+// Whole surfaces as occluders: the opaque triangles of a scene in connected clusters.
+//
+// What a surface hides depends on its boundary alone. Give each triangle its three directed edges and cancel
+// every edge against its opposite: what remains is the boundary of the surface, and the winding number of its
+// image about a direction is the number of times that a line of sight crosses the surface, front first.
+// docs/conservative.md, "Surfaces", has the argument.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
+#include "sightline/math/plane.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+// How often the triangles of a cluster run along a chain in its direction, less how often they run back.
+struct ChainUse {
+  std::uint32_t cluster = 0;  // into SurfaceSet::clusters
+  std::int32_t value = 0;     // not 0; positive: the cluster lies to the left, seen from its front
+};
+
+// A path of mesh edges at which the same clusters end.
+struct SurfaceChain {
+  std::uint32_t first_vertex = 0, vertex_count = 0;  // into SurfaceSet::chain_vertices, at least two
+  std::uint32_t first_use = 0, use_count = 0;        // into SurfaceSet::uses, ascending by cluster
+};
+
+// Connected triangles and of similar direction, all single-sided or all double-sided. They
+// count as an occluder together or not at all.
+struct SurfaceCluster {
+  std::uint32_t first_triangle = 0, triangle_count = 0;  // into SurfaceSet::triangles
+  std::uint32_t first_chain = 0, chain_count = 0;        // into SurfaceSet::cluster_chains
+  // All of the cluster lies in front of this plane or on it, within `thickness` metres of it. The unit normal
+  // is that of the cluster on average.
+  Plane support{};
+  double thickness = 0.0;
+  Box bounds{};
+  bool double_sided = false;
+  bool joins_parts = false;  // clusters of other parts adjoin it
+};
+
+// Connected clusters and of similar direction.
+struct SurfacePatch {
+  std::uint32_t first_cluster = 0, cluster_count = 0;  // into SurfaceSet::clusters
+  std::uint32_t edge_count = 0;                        // of its boundary
+  // As of a cluster.
+  Plane support{};
+  double thickness = 0.0;
+  Box bounds{};
+  bool double_sided = false;
+  // The angle between the normal of any of its triangles and that of `support` is at most that of this
+  // cosine, rounded down; -1 if it may be any.
+  float cone_cosine = -1.0f;
+};
+
+// Connected patches.
+struct SurfacePart {
+  std::uint32_t first_patch = 0, patch_count = 0;  // into SurfaceSet::patches
+  std::uint32_t edge_count = 0;                    // of its boundary
+  Box bounds{};
+};
+
+// Made by findSurfaces() and not to be changed by hand.
+struct SurfaceSet {
+  // Scene space; no two are equal, and they ascend by x, y and z.
+  std::vector<Vec3f> vertices{};
+  // By cluster: three vertices each, counter-clockwise from the front.
+  std::vector<std::uint32_t> triangles{};
+  std::vector<SurfaceCluster> clusters{};  // by patch
+  std::vector<SurfacePatch> patches{};     // by part
+  std::vector<SurfacePart> parts{};
+  std::vector<std::uint32_t> first_of_object{};  // by ObjectId, and one more; into of_object
+  std::vector<std::uint32_t> of_object{};        // numbers of parts, by object, the largest ones first
+  std::vector<ObjectId> objects{};               // that have parts, ascending
+  std::vector<Box> object_bounds{};              // of all parts of an object, by ObjectId
+  std::vector<SurfaceChain> chains{};
+  std::vector<ChainUse> uses{};
+  std::vector<std::uint32_t> cluster_chains{};  // numbers of chains, by cluster
+  std::vector<Vec3f> chain_vertices{};          // by chain, scene space
+
+  // Numbers of the parts that have triangles of an object, those with the largest boxes first.
+  std::span<const std::uint32_t> partsOf(ObjectId object) const {
+    return object.value + 1 < first_of_object.size()
+               ? std::span(of_object).subspan(
+                     first_of_object[object.value],
+                     first_of_object[object.value + 1] - first_of_object[object.value])
+               : std::span<const std::uint32_t>();
+  }
+  std::span<const SurfacePatch> patchesOf(const SurfacePart& p) const {
+    return std::span(patches).subspan(p.first_patch, p.patch_count);
+  }
+  std::span<const std::uint32_t> trianglesOf(const SurfaceCluster& c) const {
+    return std::span(triangles).subspan(std::size_t{3} * c.first_triangle, std::size_t{3} * c.triangle_count);
+  }
+  std::span<const std::uint32_t> chainsOf(const SurfaceCluster& c) const {
+    return std::span(cluster_chains).subspan(c.first_chain, c.chain_count);
+  }
+  std::span<const Vec3f> verticesOf(const SurfaceChain& c) const {
+    return std::span(chain_vertices).subspan(c.first_vertex, c.vertex_count);
+  }
+  std::span<const ChainUse> usesOf(const SurfaceChain& c) const {
+    return std::span(uses).subspan(c.first_use, c.use_count);
+  }
+};
+
+struct SurfaceSettings {
+  // Triangles of a part, of a patch and of a cluster, 1 to 65,535 each. More triangles mean a shorter
+  // boundary for each, but a cluster is drawn as a whole, and the depth of a part is that of its farthest
+  // cluster in a pixel.
+  std::uint32_t part_triangles = 1024, patch_triangles = 1024, cluster_triangles = 16;
+  // Largest angle between the normal of a triangle and that of the first one of its patch or cluster,
+  // degrees.
+  double max_angle_deg = 10.0;
+};
+
+// Finds the surfaces of all opaque triangles of a scene. Equal positions are one vertex, whatever objects
+// they belong to, so objects must not move apart. Triangles with coordinates that are not finite are left
+// out. The result does not depend on the threads.
+SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings = {},
+                        const ParallelFor& parallel_for = serialFor);
+
+}  // namespace sightline

@@ -1,0 +1,66 @@
+#pragma once
+
+// What all methods that draw whole surfaces have in common.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sightline/culling/culling_method.h"
+#include "src/culling/hierarchical_traversal.h"
+#include "src/culling/methods/traversal_options.h"
+
+namespace sightline::culling {
+
+// Draws the surfaces of the objects that the last frame kept, or, after a jump, of those in the frustum.
+class SurfaceDrawer {
+ public:
+  SurfaceDrawer(SurfaceUse use, const SurfaceDrawing& drawing, const CoverageRule* coverage)
+      : use_(coverage == nullptr ? use : SurfaceUse::kNone), drawing_(drawing) {}
+
+  void prepare(const CullingScene& scene) {
+    surfaces_ = use_ != SurfaceUse::kNone ? scene.surfaces : nullptr;
+    search_.reset();
+    if (surfaces_ != nullptr) {
+      search_.emplace(*scene.hierarchy, scene.object_bounds);
+    }
+  }
+
+  bool draws() const { return surfaces_ != nullptr; }
+  bool wantsOccluders() const { return !draws() || use_ == SurfaceUse::kWithOccluders; }
+
+  // Call this once a frame, before draw().
+  void begin(const CullingFrame& frame) {
+    in_frustum_.clear();
+    if (draws() && frame.jumped) {
+      CullStats ignored;
+      search_->run(frame.frustum, {.temporal_coherence = false, .filter = frame.filter}, seeEverything(),
+                   ignored, in_frustum_);
+    }
+  }
+  // follows: the view follows the last one for which this buffer was drawn.
+  template <typename Buffer>
+  void draw(Buffer& buffer, const CullingFrame& frame, bool follows) const {
+    if (draws()) {
+      SurfaceDrawing drawing = drawing_;
+      drawing.step = follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump;
+      buffer.draw(*surfaces_, frame.jumped ? in_frustum_ : frame.last_visible, drawing);
+    }
+  }
+  // Draws the surfaces of further objects in the same view.
+  template <typename Buffer>
+  void drawMore(Buffer& buffer, std::span<const ObjectId> objects) const {
+    SurfaceDrawing drawing = drawing_;
+    drawing.step = ViewStep::kSame;
+    buffer.draw(*surfaces_, objects, drawing);
+  }
+
+ private:
+  SurfaceUse use_;
+  SurfaceDrawing drawing_;
+  const SurfaceSet* surfaces_ = nullptr;
+  std::optional<HierarchicalTraversal> search_;
+  std::vector<ObjectId> in_frustum_;
+};
+
+}  // namespace sightline::culling

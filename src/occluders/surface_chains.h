@@ -1,0 +1,16 @@
+#pragma once
+
+// The boundaries of clusters of triangles, as chains of mesh edges.
+
+#include <cstdint>
+#include <span>
+
+#include "sightline/occluders/surface_set.h"
+#include "src/occluders/surface_mesh.h"
+
+namespace sightline::occluders {
+
+// Fills the chains of a set with vertices and clusters. cluster_of: by triangle of the mesh.
+void findChains(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, SurfaceSet& set);
+
+}  // namespace sightline::occluders

@@ -1,0 +1,119 @@
+#include "src/occluders/surface_mesh.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace sightline::occluders {
+namespace {
+
+constexpr Vec3f kZero{0.0f, 0.0f, 0.0f};  // added, it makes 0 of -0
+
+bool precedes(const Vec3f& a, const Vec3f& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+// Calls use(corners, object, double_sided) for the opaque triangles of a scene that are finite.
+template <typename Use>
+void forOpaqueTriangles(const SceneView& scene, Use&& use) {
+  for (std::uint32_t number = 0; number < scene.objects.size(); ++number) {
+    const Object& object = scene.objects[number];
+    const Material& material = scene.materialOf(object);
+    if (!material.opaque() || object.mark == OccluderMark::kNever) {
+      continue;
+    }
+    const std::span<const std::uint32_t> indices = scene.indicesOf(object);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      if (isFinite(scene.positions[indices[i]]) && isFinite(scene.positions[indices[i + 1]]) &&
+          isFinite(scene.positions[indices[i + 2]])) {
+        use(indices.subspan(i, 3), number, material.double_sided);
+      }
+    }
+  }
+}
+
+// Fills the mesh's vertices and returns the number of each of the scene's positions that triangles use.
+std::vector<std::uint32_t> weldVertices(const SceneView& scene, SurfaceMesh& mesh) {
+  std::vector<bool> used(scene.positions.size());
+  forOpaqueTriangles(scene, [&](std::span<const std::uint32_t> corners, std::uint32_t, bool) {
+    for (const std::uint32_t corner : corners) {
+      used[corner] = true;
+    }
+  });
+  struct Place {
+    Vec3f position;
+    std::uint32_t source;
+  };
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; i < used.size(); ++i) {
+    if (used[i]) {
+      places.push_back({scene.positions[i] + kZero, i});
+    }
+  }
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return precedes(a.position, b.position); });
+  std::vector<std::uint32_t> vertex_of(scene.positions.size());
+  for (const Place& place : places) {
+    if (mesh.vertices.empty() || !(mesh.vertices.back() == place.position)) {
+      mesh.vertices.push_back(place.position);
+    }
+    vertex_of[place.source] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  }
+  return vertex_of;
+}
+
+// Numbers the edges, ascending by their lower and then their higher vertex.
+void numberEdges(SurfaceMesh& mesh) {
+  struct Side {
+    std::uint32_t high, triangle, corner;
+  };
+  base::Rows<Side> by_low;
+  by_low.group(mesh.vertices.size(), [&](auto&& pair) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = mesh.triangles[t].vertices[k], b = mesh.triangles[t].vertices[(k + 1) % 3];
+        pair(std::min(a, b), Side{std::max(a, b), t, k});
+      }
+    }
+  });
+  for (std::uint32_t low = 0; low < by_low.count(); ++low) {
+    const std::span<Side> sides = by_low[low];
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+      return std::tie(a.high, a.triangle, a.corner) < std::tie(b.high, b.triangle, b.corner);
+    });
+    std::uint32_t last = low;  // no edge ends where it begins
+    for (const Side& side : sides) {
+      if (side.high != last) {
+        last = side.high;
+        mesh.edge_vertices.insert(mesh.edge_vertices.end(), {low, last});
+      }
+      MeshTriangle& triangle = mesh.triangles[side.triangle];
+      const bool back = triangle.vertices[side.corner] != low;
+      triangle.edges[side.corner] = 2 * static_cast<std::uint32_t>(mesh.edgeCount() - 1) + (back ? 1 : 0);
+    }
+  }
+}
+
+}  // namespace
+
+SurfaceMesh weld(const SceneView& scene) {
+  SurfaceMesh mesh;
+  const std::vector<std::uint32_t> vertex_of = weldVertices(scene, mesh);
+  forOpaqueTriangles(
+      scene, [&](std::span<const std::uint32_t> corners, std::uint32_t object, bool double_sided) {
+        const std::uint32_t a = vertex_of[corners[0]], b = vertex_of[corners[1]], c = vertex_of[corners[2]];
+        if (a != b && b != c && c != a) {
+          mesh.triangles.push_back({{a, b, c}, {}, object, double_sided});
+        }
+      });
+  numberEdges(mesh);
+  mesh.beside.group(mesh.edgeCount(), [&](auto&& pair) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const std::uint32_t edge : mesh.triangles[t].edges) {
+        pair(edge / 2, t);
+      }
+    }
+  });
+  return mesh;
+}
+
+}  // namespace sightline::occluders

@@ -1,0 +1,34 @@
+#pragma once
+
+// The opaque triangles of a scene as one mesh: equal positions are one vertex, equal pairs of them one edge.
+
+#include <cstdint>
+#include <vector>
+
+#include "sightline/scene/scene.h"
+#include "src/base/rows.h"
+
+namespace sightline::occluders {
+
+struct MeshTriangle {
+  std::uint32_t vertices[3] = {};  // three different ones, counter-clockwise from the front
+  // Edge i goes from vertex i to the next one: twice its number, plus 1 if it runs from its higher to its
+  // lower vertex.
+  std::uint32_t edges[3] = {};
+  std::uint32_t object = 0;
+  bool double_sided = false;
+};
+
+struct SurfaceMesh {
+  std::vector<Vec3f> vertices;               // ascending by x, y and z
+  std::vector<MeshTriangle> triangles;       // by object
+  std::vector<std::uint32_t> edge_vertices;  // two for each edge, the lower one first
+  base::Rows<std::uint32_t> beside;          // triangles by edge
+
+  std::size_t edgeCount() const { return edge_vertices.size() / 2; }
+};
+
+// Leaves out triangles that are not finite, and those with two equal corners.
+SurfaceMesh weld(const SceneView& scene);
+
+}  // namespace sightline::occluders

@@ -1,0 +1,224 @@
+// Each cluster is drawn in several groups: the boundary between two clusters is none within a group, but the
+// depth of a pixel is that of the group's farthest part in it. The nearest answer counts.
+
+#include "src/occlusion/surface_raster.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "src/base/rows.h"
+
+namespace sightline::occlusion {
+namespace {
+
+// A slab of depths is a quarter of an octave: the exponent and two bits of a single-precision depth.
+constexpr std::uint32_t kSlabShift = 21, kSlabs = 1u << (32 - kSlabShift);
+// Pixels that a group must change for each unit of work, or it rests.
+constexpr double kMinGain = 0.02;
+constexpr std::uint8_t kLongestRest = 15;  // views
+
+constexpr PixelRectangle kNoPixels{1 << 30, 1 << 30, 0, 0};
+
+PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
+  return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+}  // namespace
+
+// Whether something is left out in this view.
+bool SurfaceRaster::Rest::takes() {
+  left = static_cast<std::uint8_t>(left > 0 ? left - 1 : 0);
+  return left > 0;
+}
+
+void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
+                         const SurfaceDrawing& drawing, const DepthTarget& target) {
+  drawing_ = drawing;
+  start(set, drawing.step);
+  map_.resize(target);
+  view_.begin(set, view, candidates, drawing.min_pixels, target);
+  points_.begin(set, view, view_.clipDepth());
+  for (const PartImage& part : view_.parts()) {
+    if (work() >= drawing.budget) {
+      break;
+    }
+    if (drawn_in_[part.part] != view_number_ && !map_.hides(part.rectangle, part.nearest)) {
+      drawn_in_[part.part] = view_number_;
+      drawPart(part);
+    }
+  }
+  if (drawing.slabs) {
+    drawSlabs(0, std::span(slab_rests_).first(kSlabs));
+    drawSlabs(1u << (kSlabShift - 1), std::span(slab_rests_).last(kSlabs));
+  }
+  stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
+  stats_.edges = static_cast<std::uint32_t>(map_.edges());
+  stats_.complete = work() < drawing.budget;
+}
+
+void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
+  stats_ = {};
+  if (set_ != &set || members_.size() != set.clusters.size() || drawn_in_.size() != set.parts.size()) {
+    set_ = &set;
+    members_.assign(set.clusters.size(), {});
+    group_ = 0;
+    step = ViewStep::kJump;
+  }
+  if (step == ViewStep::kJump || (step == ViewStep::kNext && view_number_ == 0xffffffffu)) {
+    patch_rests_.assign(set.patches.size(), {});
+    part_rests_.assign(set.parts.size(), {});
+    slab_rests_.assign(2 * kSlabs, {});
+    drawn_in_.assign(set.parts.size(), 0);
+    view_number_ = 0;
+  }
+  view_number_ += step == ViewStep::kSame ? 0 : 1;
+}
+
+// Whether a surface is worth drawing at all.
+bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) const {
+  return rectangle.area() >= drawing_.pixels_per_edge * edges;
+}
+
+// Draws the large patches of a part, each alone, and all of them together.
+void SurfaceRaster::drawPart(const PartImage& image) {
+  const SurfacePart& part = set_->parts[image.part];
+  const bool together =
+      part.patch_count > 1 && pays(image.rectangle, part.edge_count) && !part_rests_[image.part].takes();
+  const std::size_t first_cluster = view_.clusters().size();
+  PixelRectangle rectangle = kNoPixels;
+  std::uint32_t shown = 0;
+  for (std::uint32_t number = part.first_patch; number < part.first_patch + part.patch_count; ++number) {
+    const SurfacePatch& source = set_->patches[number];
+    const bool resting = patch_rests_[number].takes();
+    PatchImage patch;
+    if ((resting && !together) || !view_.imageOf(source, together ? 0.0 : drawing_.min_patch_pixels, patch) ||
+        map_.hides(patch.rectangle, patch.nearest)) {
+      continue;
+    }
+    view_.addClusters(source, patch);
+    if (patch.count == 0) {
+      continue;
+    }
+    ++shown;
+    rectangle = join(rectangle, patch.rectangle);
+    if (!resting && patch.rectangle.area() >= drawing_.min_patch_pixels &&
+        pays(patch.rectangle, source.edge_count) && work() < drawing_.budget) {
+      drawPatch(patch, patch_rests_[number]);
+    }
+  }
+  stats_.patches += shown;
+  if (together && shown > 1 && work() < drawing_.budget) {
+    drawTogether(view_.clusters().subspan(first_cluster), rectangle, part_rests_[image.part]);
+  }
+}
+
+void SurfaceRaster::drawPatch(const PatchImage& patch, Rest& rest) {
+  const std::span<const ClusterImage> clusters = view_.clusters().subspan(patch.first, patch.count);
+  if (!patch.flat) {
+    drawTogether(clusters, patch.rectangle, rest);
+    return;
+  }
+  addBoundary(clusters, patch.rectangle);
+  account(map_.resolve(patch.depth), rest);
+}
+
+// Seams between parts: clusters at which parts adjoin each other, and that have similar depths, are drawn
+// together.
+void SurfaceRaster::drawSlabs(std::uint32_t shift, std::span<Rest> slab_rests) {
+  const std::span<const ClusterImage> clusters = view_.clusters();
+  base::groupIntoRows(kSlabs, slab_first_, slab_members_, [&](auto&& pair) {
+    for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+      if (set_->clusters[clusters[i].cluster].joins_parts) {
+        pair((std::bit_cast<std::uint32_t>(clusters[i].middle_depth) + shift) >> kSlabShift, i);
+      }
+    }
+  });
+  for (std::uint32_t slab = 0; slab < kSlabs; ++slab) {
+    if (slab_first_[slab + 1] - slab_first_[slab] < 2 || slab_rests[slab].takes() ||
+        work() >= drawing_.budget) {
+      continue;
+    }
+    slab_.clear();
+    PixelRectangle rectangle = kNoPixels;
+    for (std::uint32_t i = slab_first_[slab]; i < slab_first_[slab + 1]; ++i) {
+      slab_.push_back(clusters[slab_members_[i]]);
+      rectangle = join(rectangle, slab_.back().rectangle);
+    }
+    drawTogether(slab_, rectangle, slab_rests[slab]);
+  }
+}
+
+void SurfaceRaster::drawTogether(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle,
+                                 Rest& rest) {
+  addBoundary(clusters, rectangle);
+  for (const ClusterImage& image : clusters) {
+    view_.addDepth(image, map_);
+  }
+  account(map_.resolve(), rest);
+}
+
+void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle) {
+  work_before_ = work();
+  stats_.groups += 1;
+  if (++group_ == 0) {
+    std::fill(members_.begin(), members_.end(), Membership{});
+    group_ = 1;
+  }
+  for (const ClusterImage& image : clusters) {
+    members_[image.cluster] = {group_, image.sign};
+  }
+  map_.begin(rectangle);
+  for (const ClusterImage& image : clusters) {
+    addChains(image);
+    if (image.cut) {
+      addCuts(image);
+    }
+  }
+}
+
+// Draws the chains at which the cluster is the first of the group.
+void SurfaceRaster::addChains(const ClusterImage& image) {
+  for (const std::uint32_t number : set_->chainsOf(set_->clusters[image.cluster])) {
+    std::int32_t value = 0;
+    bool first = true;
+    for (const ChainUse& use : set_->usesOf(set_->chains[number])) {
+      const Membership& member = members_[use.cluster];
+      if (member.group == group_) {
+        first = first && use.cluster >= image.cluster;
+        value += use.value * member.sign;
+      }
+    }
+    if (first && value != 0) {
+      const ChainPoints::Edges edges = points_.edges(number);
+      map_.addEdges(edges.points, edges.step, value);
+    }
+  }
+}
+
+// Draws the lines along which the near plane cuts the cluster's triangles.
+void SurfaceRaster::addCuts(const ClusterImage& image) {
+  const std::span<const std::uint32_t> corners = set_->trianglesOf(set_->clusters[image.cluster]);
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    GridSegment line;
+    if (points_.cut(corners.subspan(i).first<3>(), line)) {
+      map_.addEdges(std::array{line.from, line.to}, 1, image.sign);
+    }
+  }
+}
+
+std::uint64_t SurfaceRaster::work() const {
+  return map_.edges() + map_.pixels() / 256 + std::uint64_t{8} * stats_.groups;
+}
+
+// A group that changed too few pixels for what it cost rests, twice as long as the last time.
+void SurfaceRaster::account(std::uint32_t nearer, Rest& rest) {
+  if (nearer < kMinGain * static_cast<double>(work() - work_before_)) {
+    rest.length = static_cast<std::uint8_t>(std::min(2 * rest.length + 1, int{kLongestRest}));
+    rest.left = static_cast<std::uint8_t>(rest.length + 1);
+  } else {
+    rest.length = 0;
+  }
+}
+
+}  // namespace sightline::occlusion

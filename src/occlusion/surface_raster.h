@@ -1,0 +1,69 @@
+#pragma once
+
+// Draws whole surfaces into a depth buffer, by the winding of their boundaries. See docs/conservative.md,
+// "Surfaces".
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/occluders/surface_set.h"
+#include "sightline/occlusion/rasteriser.h"
+#include "src/occlusion/chain_points.h"
+#include "src/occlusion/surface_view.h"
+#include "src/occlusion/winding_map.h"
+#include "src/scene/pixel_view.h"
+
+namespace sightline::occlusion {
+
+class SurfaceRaster {
+ public:
+  void draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
+            const SurfaceDrawing& drawing, const DepthTarget& target);
+  const SurfaceStats& stats() const { return stats_; }
+
+ private:
+  // The group that a cluster was in most recently.
+  struct Membership {
+    std::uint32_t group = 0;
+    std::int32_t sign = 0;  // 1, or -1 with its other side
+  };
+
+  // What is not worth its cost is left out for some views.
+  struct Rest {
+    std::uint8_t left = 0;    // views, the one in which that was found included
+    std::uint8_t length = 0;  // of the last rest, views
+
+    bool takes();
+  };
+
+  void start(const SurfaceSet& set, ViewStep step);
+  bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
+  void drawPart(const PartImage& part);
+  void drawPatch(const PatchImage& patch, Rest& rest);
+  void drawSlabs(std::uint32_t shift, std::span<Rest> rests);
+  void drawTogether(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle, Rest& rest);
+  void addBoundary(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle);
+  void addChains(const ClusterImage& image);
+  void addCuts(const ClusterImage& image);
+  void account(std::uint32_t nearer, Rest& rest);
+  std::uint64_t work() const;  // in this view, as SurfaceDrawing::budget counts it
+
+  const SurfaceSet* set_ = nullptr;
+  SurfaceDrawing drawing_;
+  SurfaceView view_;
+  ChainPoints points_;
+  WindingMap map_;
+  SurfaceStats stats_;
+  std::uint64_t work_before_ = 0;               // before the group that is drawn
+  std::vector<Membership> members_;             // by cluster of the set
+  std::uint32_t group_ = 0;                     // number of the last group
+  std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part of the set
+  std::vector<Rest> slab_rests_;                // by slab
+  std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
+  std::uint32_t view_number_ = 0;
+  std::vector<std::uint32_t> slab_first_, slab_members_;
+  std::vector<ClusterImage> slab_;
+};
+
+}  // namespace sightline::occlusion

@@ -1,0 +1,275 @@
+#include "src/occlusion/surface_view.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace sightline::occlusion {
+namespace {
+
+constexpr double kNearMargin = 1e-6;
+constexpr double kMaxError = 1.0 / 4096.0;  // pixels, of an image before it is rounded
+constexpr double kCosineMargin = 1e-5;
+constexpr double kBorder = 2.0 / kGridStep;  // pixels by which rectangles are widened
+// A patch is flat if its thickness is at most this fraction of its depth, and that of a cluster.
+constexpr double kFlat = 1.0 / 64.0;
+constexpr std::int32_t kSmall = 64;  // pixels of the rectangle of a cluster whose triangles are not looked at
+
+}  // namespace
+
+void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
+                        double min_pixels, const DepthTarget& target) {
+  set_ = &set;
+  view_ = view;
+  min_pixels_ = min_pixels;
+  target_ = target;
+  clip_depth_ = view.near * (1.0 + kNearMargin);
+  clusters_.clear();
+  unsorted_.clear();
+  listed_.resize(set.parts.size());
+  for (const ObjectId object : view.sane() ? candidates : std::span<const ObjectId>()) {
+    const double smallest = smallestOf(object);
+    for (const std::uint32_t part : set.partsOf(object)) {
+      if (length(Vec3d(set.parts[part].bounds.extent())) < smallest) {
+        break;
+      }
+      if (!listed_[part]) {
+        listed_[part] = true;
+        candidates_.push_back(part);
+      }
+    }
+  }
+  for (const std::uint32_t part : candidates_) {
+    listed_[part] = false;
+    addPart(part);
+  }
+  candidates_.clear();
+  sortParts();
+}
+
+// The least diameter, in metres, of a part of an object that may have min_pixels.
+double SurfaceView::smallestOf(ObjectId object) const {
+  BoxExtent extent;
+  if (set_->partsOf(object).empty() || !extentOf(set_->object_bounds[object.value], extent)) {
+    return 0.0;
+  }
+  // The rectangle of a part is at most so much larger than its image, which has at most its diameter.
+  constexpr double kRectangle = 0.5;
+  const double depth = view_.orthographic ? 1.0 : std::max(extent.nearest, clip_depth_);
+  return kRectangle * std::sqrt(min_pixels_) * depth / std::max(view_.scale_x, view_.scale_y);
+}
+
+void SurfaceView::addPart(std::uint32_t number) {
+  BoxExtent extent;
+  if (extentOf(set_->parts[number].bounds, extent) && extent.rectangle.area() >= min_pixels_) {
+    unsorted_.push_back({number, extent.rectangle, nearestOf(extent)});
+  }
+}
+
+// By the leading bits of their depth.
+void SurfaceView::sortParts() {
+  constexpr std::uint32_t kShift = 20, kKeys = 1u << (32 - kShift);
+  const auto keyOf = [](const PartImage& part) {
+    const auto bits = std::bit_cast<std::uint32_t>(part.nearest);
+    const std::uint32_t ascending = (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
+    return kKeys - 1 - (ascending >> kShift);
+  };
+  first_of_key_.assign(kKeys + 1, 0);
+  for (const PartImage& part : unsorted_) {
+    ++first_of_key_[keyOf(part) + 1];
+  }
+  std::partial_sum(first_of_key_.begin(), first_of_key_.end(), first_of_key_.begin());
+  parts_.resize(unsorted_.size());
+  for (const PartImage& part : unsorted_) {
+    parts_[first_of_key_[keyOf(part)]++] = part;
+  }
+}
+
+float SurfaceView::nearestOf(const BoxExtent& extent) const {
+  const double value = view_.reciprocalDepth(std::max(extent.nearest, clip_depth_));
+  return static_cast<float>(value + 1e-6 * std::abs(value));
+}
+
+bool SurfaceView::showsBack(const SurfacePatch& patch) const {
+  if (patch.double_sided || !(patch.cone_cosine > 0.0f)) {
+    return false;
+  }
+  const Vec3d middle = center(patch.bounds) - view_.eye;
+  const double distance = std::max(length(middle), 1e-300);
+  const Vec3d away = view_.orthographic ? view_.forward : middle / distance;
+  const double cosine = dot(patch.support.normal, away), cone = patch.cone_cosine;
+  const double least = cosine * cone - std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) *
+                                           std::sqrt(std::max(0.0, 1.0 - cone * cone));
+  const double spread = view_.orthographic ? 0.0 : 0.5 * length(Vec3d(patch.bounds.extent())) / distance;
+  return least > spread + kCosineMargin;
+}
+
+bool SurfaceView::imageOf(const SurfacePatch& patch, double min_pixels, PatchImage& image) const {
+  BoxExtent extent;
+  if (!extentOf(patch.bounds, extent) || extent.rectangle.area() < min_pixels || showsBack(patch)) {
+    return false;
+  }
+  image = {};
+  image.rectangle = extent.rectangle;
+  image.nearest = nearestOf(extent);
+  image.flat = patch.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
+  return true;
+}
+
+void SurfaceView::addClusters(const SurfacePatch& patch, PatchImage& image) {
+  image.first = static_cast<std::uint32_t>(clusters_.size());
+  std::int32_t signs = 0;
+  double farthest = 0.0;
+  for (std::uint32_t i = 0; i < patch.cluster_count; ++i) {
+    ClusterImage cluster;
+    double depth = 0.0;
+    if (chooseCluster(patch.first_cluster + i, cluster, depth)) {
+      clusters_.push_back(cluster);
+      signs += cluster.sign;
+      farthest = std::max(farthest, depth);
+    }
+  }
+  image.count = static_cast<std::uint32_t>(clusters_.size()) - image.first;
+  if (image.count == 1) {
+    image.flat = clusters_.back().flat;
+    image.rectangle = clusters_.back().rectangle;
+    image.depth = clusters_.back().depth;
+    return;
+  }
+  image.flat = image.flat && std::abs(signs) == static_cast<std::int32_t>(image.count);
+  if (image.flat && image.count > 0) {
+    image.depth = boundOf(behind(patch.support, patch.thickness, signs), farthest);
+  }
+}
+
+// farthest: receives a bound of its depth, metres.
+bool SurfaceView::chooseCluster(std::uint32_t number, ClusterImage& image, double& farthest) const {
+  const SurfaceCluster& cluster = set_->clusters[number];
+  const double height = view_.orthographic ? -dot(cluster.support.normal, view_.forward)
+                                           : cluster.support.evaluate(view_.eye) - 0.5 * cluster.thickness;
+  image.sign = height > 0.0 ? 1 : cluster.double_sided ? -1 : 0;
+  BoxExtent extent;
+  if (image.sign == 0 || !extentOf(cluster.bounds, extent)) {
+    return false;
+  }
+  farthest = extent.farthest;
+  image.cluster = number;
+  image.cut = extent.cut;
+  image.rectangle = extent.rectangle;
+  image.middle_depth = static_cast<float>(
+      std::max(clip_depth_, 0.5 * (std::max(extent.nearest, clip_depth_) + extent.farthest)));
+  image.flat = cluster.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
+  image.depth = boundOf(behind(cluster.support, cluster.thickness, image.sign), extent.farthest);
+  return true;
+}
+
+void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) const {
+  if (image.flat || image.rectangle.area() < kSmall) {
+    map.addDepth(image.rectangle, image.depth);
+    return;
+  }
+  // Triangle by triangle. Where the surface hides something, it shows its front there.
+  const std::span<const std::uint32_t> corners = set_->trianglesOf(set_->clusters[image.cluster]);
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    const Vec3f &a = set_->vertices[corners[i]], &b = set_->vertices[corners[i + 1]],
+                &c = set_->vertices[corners[i + 2]];
+    Box box;
+    box.extend(a);
+    box.extend(b);
+    box.extend(c);
+    BoxExtent extent;
+    if (!extentOf(box, extent)) {
+      continue;
+    }
+    const Vec3d p = Vec3d(a) - view_.eye, u = Vec3d(b) - Vec3d(a), v = Vec3d(c) - Vec3d(a);
+    const Vec3d normal = cross(u, v) * image.sign;
+    const double size = length(u) * length(v),
+                 reach = maxComponent(abs(p)) + maxComponent(abs(u)) + maxComponent(abs(v));
+    // Of the plane through the triangle, at the eye.
+    const double height = view_.orthographic ? -dot(normal, view_.forward) : -dot(normal, p);
+    if (height < -1e-9 * size * (view_.orthographic ? 1.0 : reach)) {
+      continue;
+    }
+    map.addDepth(extent.rectangle,
+                 boundOf(normal, -dot(normal, p) + 1e-14 * reach * size, size, extent.farthest));
+  }
+}
+
+// False: outside the buffer, or its image cannot be computed exactly enough.
+bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
+  const PixelView& view = view_;
+  const Vec3d middle = view.toCamera(center(box) - view.eye), half = Vec3d(box.extent()) * 0.5;
+  const Vec3d size{dot(abs(view.right), half), dot(abs(view.up), half), dot(abs(view.forward), half)};
+  const double reach = maxComponent(abs(middle)) + maxComponent(size);
+  const double rounding = 1e-14 * reach;
+  extent.nearest = middle.z - size.z - rounding;
+  extent.farthest = middle.z + size.z + rounding;
+  if (!(extent.farthest > clip_depth_)) {
+    return false;
+  }
+  extent.cut = !(extent.nearest > clip_depth_);
+  const double front = std::max(extent.nearest, clip_depth_);
+  const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);
+  const double pixels = reach * scale + view.middle_x + view.middle_y;
+  if (!(pixels < kLargestGrid / kGridStep) || !(4e-15 * pixels < kMaxError)) {
+    return false;
+  }
+  const double near_inverse = view.orthographic ? 1.0 : 1.0 / front,
+               far_inverse = view.orthographic ? 1.0 : 1.0 / extent.farthest;
+  const auto least = [&](double v) { return std::min(v * near_inverse, v * far_inverse); };
+  const auto pixel = [](double v, std::uint32_t last) {
+    return static_cast<std::int32_t>(std::clamp(v, 0.0, static_cast<double>(last)));
+  };
+  const double x0 = view.middle_x + view.scale_x * least(middle.x - size.x),
+               x1 = view.middle_x - view.scale_x * least(-middle.x - size.x),
+               y0 = view.middle_y + view.scale_y * least(middle.y - size.y),
+               y1 = view.middle_y - view.scale_y * least(-middle.y - size.y);
+  extent.rectangle = {pixel(x0 - kBorder, target_.width), pixel(y0 - kBorder, target_.height),
+                      pixel(x1 + kBorder + 1.0, target_.width), pixel(y1 + kBorder + 1.0, target_.height)};
+  return !extent.rectangle.empty();
+}
+
+Plane SurfaceView::behind(const Plane& support, double thickness, std::int32_t sign) const {
+  Plane plane = support;
+  if (sign < 0) {
+    plane = plane.flipped();
+    plane.offset += thickness;
+  }
+  return plane;
+}
+
+DepthBound SurfaceView::boundOf(const Plane& plane, double farthest) const {
+  return boundOf(plane.normal, plane.evaluate(view_.eye), 1.0, farthest);
+}
+
+DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size, double farthest) const {
+  const PixelView& view = view_;
+  const double floor = view.reciprocalDepth(farthest);
+  DepthBound bound;
+  bound.floor = static_cast<float>(floor - 1e-6 * std::abs(floor));
+  bound.at_origin = bound.floor;
+  // Reciprocal depth of the plane: n . (x, y, 1) in camera space over minus its value at the eye; in an
+  // orthographic view minus the depth.
+  const Vec3d n = view.normalToCamera(normal);
+  const double slope = view.orthographic ? n.z : -at_eye;
+  if (!(slope < (view.orthographic ? -1e-3 * size : -1e-9 * size * farthest))) {
+    return bound;
+  }
+  // Rays through pixel (x, y): camera x is (x - middle) / scale, times the depth in a perspective view.
+  const double inverse = 1.0 / slope;
+  const double a = n.x * inverse / view.scale_x, b = n.y * inverse / view.scale_y;
+  const double constant = (view.orthographic ? at_eye : n.z) * inverse;
+  const double c = constant - a * view.middle_x - b * view.middle_y;
+  const double range = std::abs(a) * target_.width + std::abs(b) * target_.height + std::abs(c);
+  if (!(range < 1e30)) {
+    return bound;
+  }
+  // The least over the pixel's square, and less than rounding.
+  bound.along_x = static_cast<float>(a);
+  bound.along_y = static_cast<float>(b);
+  bound.at_origin = static_cast<float>(c + std::min(a, 0.0) + std::min(b, 0.0) - 1e-6 * range);
+  return bound;
+}
+
+}  // namespace sightline::occlusion

@@ -1,0 +1,94 @@
+#pragma once
+
+// Which surfaces are drawn in a view, and how they appear in a depth buffer.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/occluders/surface_set.h"
+#include "src/occlusion/winding_map.h"
+#include "src/scene/pixel_view.h"
+
+namespace sightline::occlusion {
+
+// The image of a box.
+struct BoxExtent {
+  double nearest = 0.0, farthest = 0.0;  // depths, metres
+  bool cut = false;                      // it reaches the depth at which surfaces are clipped
+  PixelRectangle rectangle;
+};
+
+// A chosen cluster as it appears in the buffer.
+struct ClusterImage {
+  std::uint32_t cluster = 0;
+  std::int32_t sign = 0;  // 1: as it is; -1: with its other side
+  bool cut = false;       // by the near plane
+  bool flat = false;      // `depth` is about as good as those of its triangles
+  PixelRectangle rectangle;
+  float middle_depth = 0.0f;  // metres, above 0
+  DepthBound depth;
+};
+
+// A patch that may show its front.
+struct PatchImage {
+  std::uint32_t first = 0, count = 0;  // of its clusters in SurfaceView::clusters()
+  PixelRectangle rectangle;
+  float nearest = 0.0f;  // reciprocal depth, rounded up
+  bool flat = false;     // `depth` is about as good as those of its clusters
+  DepthBound depth;
+};
+
+// A part of a surface that may be drawn.
+struct PartImage {
+  std::uint32_t part = 0;
+  PixelRectangle rectangle;
+  float nearest = 0.0f;  // reciprocal depth, rounded up
+};
+
+class SurfaceView {
+ public:
+  // What surfaces nearer than this depth do is left out, metres.
+  double clipDepth() const { return clip_depth_; }
+  const PixelView& view() const { return view_; }
+
+  // Lists the parts of the candidates that are large enough in the buffer, the nearest ones first.
+  void begin(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
+             double min_pixels, const DepthTarget& target);
+  std::span<const PartImage> parts() const { return parts_; }
+
+  // False: the patch shows its back, or has fewer pixels. The image has no clusters yet.
+  bool imageOf(const SurfacePatch& patch, double min_pixels, PatchImage& image) const;
+  // Appends the clusters of a patch that may show their fronts to clusters().
+  void addClusters(const SurfacePatch& patch, PatchImage& image);
+  std::span<const ClusterImage> clusters() const { return clusters_; }  // since begin()
+
+  // Tells a map how far away the cluster is.
+  void addDepth(const ClusterImage& image, WindingMap& map) const;
+
+ private:
+  void addPart(std::uint32_t number);
+  double smallestOf(ObjectId object) const;
+  void sortParts();
+  bool showsBack(const SurfacePatch& patch) const;
+  float nearestOf(const BoxExtent& extent) const;
+  bool extentOf(const Box& box, BoxExtent& extent) const;
+  bool chooseCluster(std::uint32_t number, ClusterImage& image, double& farthest) const;
+  // The bound of surfaces that lie before this plane and no farther away than `farthest`.
+  DepthBound boundOf(const Plane& plane, double farthest) const;
+  // size: the length of the normal, or more; at_eye: the plane's value at the eye.
+  DepthBound boundOf(const Vec3d& normal, double at_eye, double size, double farthest) const;
+  Plane behind(const Plane& support, double thickness, std::int32_t sign) const;
+
+  const SurfaceSet* set_ = nullptr;
+  PixelView view_;
+  double min_pixels_ = 0.0;
+  DepthTarget target_;
+  double clip_depth_ = 0.0;
+  std::vector<ClusterImage> clusters_;
+  std::vector<PartImage> parts_, unsorted_;
+  std::vector<std::uint32_t> first_of_key_, candidates_;
+  std::vector<bool> listed_;  // by part: it is among candidates_
+};
+
+}  // namespace sightline::occlusion

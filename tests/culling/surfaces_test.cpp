@@ -1,0 +1,460 @@
+// What a depth buffer of surfaces promises, against exact proofs: whatever lies in a covered pixel farther
+// than its depth is hidden.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "oracle/exact_visibility.h"
+#include "sightline/occluders/surface_set.h"
+#include "sightline/occlusion/rasteriser.h"
+#include "tests/oracle/hand_made.h"
+#include "tests/support/random_numbers.h"
+
+namespace sightline {
+namespace {
+
+using namespace hand_made;
+
+// Adds a see-through quad that fills pixel (x, y) of the view at this depth, farther by a millionth.
+ObjectId addPixel(Scene& scene, MaterialId glass, const View& view, std::uint32_t width, std::uint32_t height,
+                  std::uint32_t x, std::uint32_t y, double depth) {
+  depth *= 1.0 + 1e-5;
+  const auto corner = [&](std::uint32_t column, std::uint32_t row) {
+    // A thousandth of a pixel inside: corners are rounded to single precision.
+    const double inset_x = column == x ? 1e-3 : -1e-3, inset_y = row == y ? 1e-3 : -1e-3;
+    const double u = 2.0 * (column + inset_x) / width - 1.0, v = 2.0 * (row + inset_y) / height - 1.0;
+    const double half = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
+    return Vec3f(view.eye + view.forward * depth + view.right * (u * half * view.aspect) +
+                 view.up * (v * half));
+  };
+  const Vec3f a = corner(x, y), b = corner(x + 1, y), c = corner(x + 1, y + 1), d = corner(x, y + 1);
+  return addTriangles(scene, glass, std::array<Vec3f, 6>{a, b, c, a, c, d});
+}
+
+struct Checked {
+  std::size_t covered = 0, wrong = 0, undecided = 0;
+
+  bool right() const { return wrong + undecided == 0; }
+};
+
+constexpr SurfaceDrawing kEverything{.min_pixels = 0.0, .min_patch_pixels = 0.0, .pixels_per_edge = 0.0};
+
+// Proves for each covered pixel, or for every so many of them, that what lies behind it is hidden.
+Checked prove(const Scene& scene, const View& view, const DepthBufferView& buffer, std::size_t every = 1) {
+  Scene with_pixels = scene;
+  const MaterialId glass = addMaterial(with_pixels, Opacity::kBlended, true);
+  std::vector<ObjectId> pixels;
+  Checked checked;
+  for (std::uint32_t y = 0; y < buffer.height; ++y) {
+    for (std::uint32_t x = 0; x < buffer.width; ++x) {
+      if (!buffer.covered(x, y) || checked.covered++ % every != 0) {
+        continue;
+      }
+      const double value = buffer.at(x, y), depth = view.orthographic ? -value : 1.0 / value;
+      if (depth < view.far / 1.1) {
+        pixels.push_back(addPixel(with_pixels, glass, view, buffer.width, buffer.height, x, y, depth));
+      }
+    }
+  }
+  for (const Decision& decision : ExactVisibility(with_pixels.view()).decide(view, pixels, 20'000)) {
+    checked.wrong += decision.verdict == Verdict::kVisible ? 1 : 0;
+    checked.undecided += decision.verdict == Verdict::kUndecided ? 1 : 0;
+  }
+  return checked;
+}
+
+Checked check(const Scene& scene, const View& view, std::uint32_t width, std::uint32_t height,
+              const SurfaceSettings& settings = {}, const SurfaceDrawing& drawing = kEverything) {
+  Rasteriser raster({.width = width, .height = height});
+  raster.begin(view);
+  const SurfaceSet surfaces = findSurfaces(scene.view(), settings);
+  raster.draw(surfaces, surfaces.objects, drawing);
+  return prove(scene, view, raster.depthBuffer());
+}
+
+// A square sheet of hills, count x count squares, as seen from its front: z = -depth + height(x, y).
+Scene sheet(std::uint32_t count, float size, float depth, const std::function<float(float, float)>& height,
+            const std::function<bool(std::uint32_t)>& leave_out, bool double_sided = false) {
+  Scene scene;
+  const MaterialId material = addMaterial(scene, Opacity::kOpaque, double_sided);
+  std::vector<Vec3f> corners;
+  const auto at = [&](std::uint32_t i, std::uint32_t j) {
+    const float x = size * (static_cast<float>(i) / static_cast<float>(count) - 0.5f),
+                y = size * (static_cast<float>(j) / static_cast<float>(count) - 0.5f);
+    return Vec3f(x, y, -depth + height(x, y));
+  };
+  std::uint32_t triangle = 0;
+  for (std::uint32_t j = 0; j < count; ++j) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3f a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+      for (const std::array<Vec3f, 3>& t : {std::array<Vec3f, 3>{a, b, c}, std::array<Vec3f, 3>{a, c, d}}) {
+        if (!leave_out(triangle++)) {
+          corners.insert(corners.end(), t.begin(), t.end());
+        }
+      }
+    }
+  }
+  addTriangles(scene, material, corners);
+  return scene;
+}
+
+bool none(std::uint32_t) {
+  return false;
+}
+
+TEST(Surfaces, ASheetOfSmallTrianglesCoversAllThatLiesWithinItsOutline) {
+  const Scene scene = sheet(
+      40, 30.0f, 10.0f, [](float x, float y) { return 0.2f * std::sin(3 * x) * y * 0.1f; }, none);
+  const Checked checked = check(scene, frontView(), 16, 16, {.part_triangles = 4000});
+  EXPECT_EQ(checked.covered, 16u * 16u);
+  EXPECT_EQ(checked.wrong + checked.undecided, 0u);
+}
+
+TEST(Surfaces, OneMissingTriangleLeavesItsPixelsOpen) {
+  for (const std::uint32_t missing : {0u, 399u, 1000u, 3199u}) {
+    const Scene scene = sheet(
+        40, 24.0f, 10.0f, [](float, float) { return 0.0f; }, [&](std::uint32_t t) { return t == missing; });
+    const Checked checked = check(scene, frontView(), 32, 32);
+    EXPECT_EQ(checked.wrong + checked.undecided, 0u);
+    EXPECT_GT(checked.covered, 800u);
+  }
+}
+
+TEST(Surfaces, BoundariesOfPatchesWithinASheetAreNone) {
+  const Scene scene = sheet(
+      12, 24.0f, 10.0f, [](float x, float y) { return std::cos(x) * std::cos(y); }, none);
+  const SurfaceSet set = findSurfaces(scene.view(), {.part_triangles = 7, .max_angle_deg = 90.0});
+  EXPECT_GT(set.parts.size(), 288u / 7);
+  for (const SurfaceCluster& cluster : set.clusters) {
+    EXPECT_LE(cluster.triangle_count, 7u);
+  }
+  std::size_t outline = 0;
+  for (const SurfaceChain& chain : set.chains) {
+    std::int32_t sum = 0;
+    for (const ChainUse& use : set.usesOf(chain)) {
+      sum += use.value;
+    }
+    outline += sum != 0 ? chain.vertex_count - 1 : 0;
+  }
+  EXPECT_EQ(outline, 48u);  // four sides of 12 squares
+}
+
+// A scene of one material with these triangles.
+Scene sceneOf(std::span<const Vec3f> corners, bool double_sided = false) {
+  Scene scene;
+  addTriangles(scene, addMaterial(scene, Opacity::kOpaque, double_sided), corners);
+  return scene;
+}
+
+// The corners of two triangles that fill a convex quad.
+void addQuad(std::vector<Vec3f>& corners, const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
+  corners.insert(corners.end(), {a, b, c, a, c, d});
+}
+
+// The faces of a box, seen from outside or from inside.
+void addBox(std::vector<Vec3f>& corners, const Vec3f& low, const Vec3f& high, bool inside) {
+  const auto at = [&](int x, int y, int z) {
+    return Vec3f(x != 0 ? high.x : low.x, y != 0 ? high.y : low.y, z != 0 ? high.z : low.z);
+  };
+  const std::size_t first = corners.size();
+  addQuad(corners, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
+  addQuad(corners, at(1, 0, 0), at(0, 0, 0), at(0, 1, 0), at(1, 1, 0));
+  addQuad(corners, at(1, 0, 1), at(1, 0, 0), at(1, 1, 0), at(1, 1, 1));
+  addQuad(corners, at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0));
+  addQuad(corners, at(0, 1, 1), at(1, 1, 1), at(1, 1, 0), at(0, 1, 0));
+  addQuad(corners, at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1));
+  for (std::size_t i = first; inside && i < corners.size(); i += 3) {
+    std::swap(corners[i + 1], corners[i + 2]);
+  }
+}
+
+// Level and upright edges, many of them exactly along rows, columns and centres of pixels.
+TEST(SurfaceProbes, BoxesInAxisAlignedViews) {
+  for (const bool orthographic : {false, true}) {
+    for (std::uint32_t step = 0; step < 8; ++step) {
+      std::vector<Vec3f> corners;
+      const float shift = static_cast<float>(step) / 8.0f;
+      addBox(corners, {-4.0f + shift, -3.0f, -12.0f}, {1.0f, 2.0f + shift, -10.0f}, false);
+      addBox(corners, {1.5f, -6.0f, -30.0f}, {6.0f, 3.0f - shift, -20.0f}, false);
+      View view = frontView();
+      view.orthographic = orthographic;
+      view.ortho_height = 16.0;
+      for (const std::uint32_t size : {1u, 16u, 33u}) {
+        const Checked checked = check(sceneOf(corners), view, size, size);
+        EXPECT_TRUE(checked.right()) << step << ", " << size;
+        EXPECT_TRUE(size == 1 || checked.covered > 4);
+      }
+    }
+  }
+}
+
+TEST(SurfaceProbes, AClosedRoomHidesAllThatLiesBehindItsWalls) {
+  std::vector<Vec3f> corners;
+  addBox(corners, {-5.0f, -4.0f, -7.0f}, {6.0f, 3.0f, 8.0f}, true);
+  View view = frontView();
+  view.eye = {0.25, -0.5, 1.0};
+  for (const double near : {0.01, 0.1, 2.0, 7.5}) {
+    view.near = near;
+    const Checked checked = check(sceneOf(corners), view, 24, 24);
+    EXPECT_TRUE(checked.right());
+    EXPECT_TRUE(checked.covered == 24u * 24u || near > 7.0) << "the near plane leaves a corner of the room";
+  }
+  // From the back, its walls hide nothing.
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    std::swap(corners[i + 1], corners[i + 2]);
+  }
+  view.near = 0.1;
+  EXPECT_EQ(check(sceneOf(corners), view, 24, 24).covered, 0u);
+}
+
+TEST(SurfaceProbes, TheNearPlaneCutsThroughEverything) {
+  const Scene scene = sheet(
+      20, 30.0f, 10.0f, [](float x, float y) { return 4.0f * std::sin(0.4f * x) * std::cos(0.3f * y); },
+      none);
+  for (const double near : {5.0, 6.0, 8.0, 10.0, 12.0, 13.5}) {
+    View view = frontView();
+    view.near = near;
+    EXPECT_TRUE(check(scene, view, 32, 32).right()) << near;
+    view.orthographic = true;
+    EXPECT_TRUE(check(scene, view, 32, 32).right()) << near;
+  }
+}
+
+// Two sheets with a slit between them; where they only almost meet, the slit is one unit in the last place.
+TEST(SurfaceProbes, SlitsAndCracksStayOpen) {
+  for (const float gap : {1e-4f, 0.0f}) {
+    std::vector<Vec3f> corners;
+    const float right = gap > 0.0f ? gap : std::nextafter(1.0f, 2.0f) - 1.0f;
+    addQuad(corners, {-9.0f, -9.0f, -10.0f}, {1.0f, -9.0f, -10.0f}, {1.0f, 9.0f, -10.0f},
+            {-9.0f, 9.0f, -10.0f});
+    addQuad(corners, {1.0f + right, -9.0f, -10.0f}, {9.0f, -9.0f, -10.0f}, {9.0f, 9.0f, -10.0f},
+            {1.0f + right, 9.0f, -10.0f});
+    const Checked checked = check(sceneOf(corners), frontView(), 32, 32);
+    EXPECT_TRUE(checked.right());
+    // The sheets fill 28 x 28 pixels of the picture, and the slit runs through one column of them.
+    EXPECT_EQ(checked.covered, 27u * 28u);
+  }
+}
+
+// Sheets that meet at one edge, in all orientations, single-sided and double-sided.
+TEST(SurfaceProbes, EdgesWithUpToFourSheets) {
+  const Vec3f low{0.1f, -6.0f, -10.0f}, high{-0.2f, 6.0f, -10.0f};
+  const Vec3f ends[4] = {
+      {-7.0f, 0.5f, -9.0f}, {7.0f, 0.3f, -11.0f}, {-6.0f, 0.2f, -14.0f}, {5.0f, -0.4f, -7.0f}};
+  std::size_t covered = 0;
+  for (std::uint32_t sheets = 2; sheets <= 4; ++sheets) {
+    for (std::uint32_t turned = 0; turned < 1u << sheets; ++turned) {
+      for (const bool double_sided : {false, true}) {
+        for (const std::uint32_t size : {1u, 1024u}) {
+          std::vector<Vec3f> corners;
+          for (std::uint32_t i = 0; i < sheets; ++i) {
+            const bool turn = (turned >> i & 1) != 0;
+            corners.insert(corners.end(), {turn ? high : low, turn ? low : high, ends[i]});
+          }
+          const Checked checked = check(sceneOf(corners, double_sided), frontView(), 20, 20,
+                                        {.cluster_triangles = size, .max_angle_deg = 180.0});
+          EXPECT_TRUE(checked.right()) << sheets << ", " << turned << ", " << double_sided;
+          covered += checked.covered;
+        }
+      }
+    }
+  }
+  EXPECT_GT(covered, 3000u);
+}
+
+TEST(SurfaceProbes, MoebiusStripsAndFoldedSheets) {
+  for (const bool double_sided : {false, true}) {
+    std::vector<Vec3f> strip, folded;
+    const auto edge = [](std::uint32_t i, float side) {
+      const float angle = 6.2831853f * static_cast<float>(i % 24) / 24.0f;
+      const float turn = (i == 24 ? -side : side);  // the strip closes with its sides exchanged
+      const float radius = 5.0f + turn * 2.0f * std::cos(0.5f * angle);
+      return Vec3f(radius * std::cos(angle), radius * std::sin(angle),
+                   -12.0f + turn * 2.0f * std::sin(0.5f * angle));
+    };
+    for (std::uint32_t i = 0; i < 24; ++i) {
+      addQuad(strip, edge(i, -1.0f), edge(i, 1.0f), edge(i + 1, 1.0f), edge(i + 1, -1.0f));
+    }
+    addQuad(folded, {-6, -5, -10}, {5, -5, -10}, {5, 5, -10}, {-6, 5, -10});
+    addQuad(folded, {5, -5, -10}, {5, 5, -10}, {-4, 4, -8}, {-4, -4, -8});
+    addQuad(folded, {-4, -4, -8}, {-4, 4, -8}, {6, 3, -6}, {6, -3, -6});
+    for (const std::uint32_t size : {1u, 5u, 1024u}) {
+      const SurfaceSettings settings{.cluster_triangles = size, .max_angle_deg = 180.0};
+      EXPECT_TRUE(check(sceneOf(strip, double_sided), frontView(), 32, 32, settings).right());
+      const Checked checked = check(sceneOf(folded, double_sided), frontView(), 32, 32, settings);
+      EXPECT_TRUE(checked.right());
+      EXPECT_GT(checked.covered, 50u);
+    }
+  }
+}
+
+TEST(SurfaceProbes, ABudgetThatRunsOutCoversLess) {
+  const Scene scene = sheet(
+      24, 40.0f, 12.0f, [](float x, float y) { return 3.0f * std::sin(x) * std::cos(0.7f * y); }, none);
+  const SurfaceSettings settings{.part_triangles = 60};
+  SurfaceDrawing drawing = kEverything;
+  std::size_t last = 0;
+  for (const std::uint32_t budget : {0u, 1u, 100u, 400u, 1000u, 1'000'000u}) {
+    drawing.budget = budget;
+    const Checked checked = check(scene, frontView(), 40, 40, settings, drawing);
+    EXPECT_TRUE(checked.right());
+    EXPECT_GE(checked.covered, last);
+    EXPECT_TRUE(budget > 0 || checked.covered == 0);
+    last = checked.covered;
+  }
+  EXPECT_GT(last, 1000u);
+}
+
+// More edges than a row can count.
+TEST(SurfaceProbes, ManyEdgesThroughOneRowCoverNothingWrong) {
+  std::vector<Vec3f> corners;
+  for (int i = 0; i < 9000; ++i) {
+    const float x = -6.0f + 12.0f * static_cast<float>(i) / 9000.0f,
+                depth = -10.0f - 1e-4f * static_cast<float>(i);
+    corners.insert(corners.end(),
+                   {Vec3f(x, -3.0f, depth), Vec3f(x + 4.0f, -3.0f, depth), Vec3f(x + 2.0f, 3.0f, depth)});
+    corners.insert(corners.end(),
+                   {Vec3f(x, -3.0f, depth), Vec3f(x + 2.0f, 3.0f, depth), Vec3f(x - 1.0f, 3.0f, depth)});
+  }
+  Rasteriser raster({.width = 16, .height = 16});
+  const Scene scene = sceneOf(corners);
+  raster.begin(frontView());
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  raster.draw(surfaces, surfaces.objects, kEverything);
+  EXPECT_TRUE(prove(scene, frontView(), raster.depthBuffer(), 16).right());
+}
+
+TEST(SurfaceProbes, ViewsThatFollowEachOtherAreRightToo) {
+  const Scene scene = sheet(
+      30, 50.0f, 10.0f, [](float x, float y) { return 3.0f * std::sin(0.5f * x) * std::cos(0.8f * y); },
+      [](std::uint32_t t) { return t % 37 == 0; });
+  const SurfaceSet surfaces = findSurfaces(scene.view(), {.part_triangles = 100, .patch_triangles = 20});
+  const SurfaceSet others = findSurfaces(scene.view());
+  Rasteriser raster({.width = 32, .height = 32});
+  SurfaceDrawing drawing = kEverything;
+  for (int i = 0; i < 12; ++i) {
+    View view = frontView();
+    view.eye = {0.3 * i, 0.1 * i, -0.2 * i};
+    drawing.step = i == 5 ? ViewStep::kJump : ViewStep::kNext;
+    raster.begin(view);
+    raster.draw(i % 4 == 3 ? others : surfaces, surfaces.objects, drawing);
+    drawing.step = ViewStep::kSame;
+    raster.draw(i % 4 == 3 ? others : surfaces, surfaces.objects, drawing);
+    const Checked checked = prove(scene, view, raster.depthBuffer());
+    EXPECT_TRUE(checked.right()) << i;
+    EXPECT_GT(checked.covered, 300u);
+  }
+}
+
+TEST(SurfaceProbes, MapsOfManySizes) {
+  const Scene scene = sheet(
+      16, 30.0f, 10.0f, [](float x, float y) { return 2.0f * std::sin(x) * std::cos(y); },
+      [](std::uint32_t t) { return t == 200; });
+  for (const auto& [width, height] : {std::pair(1u, 1u), {1u, 64u}, {7u, 3u}, {1000u, 8u}, {4096u, 4096u}}) {
+    Rasteriser raster({.width = width, .height = height});
+    raster.begin(frontView());
+    const SurfaceSet surfaces = findSurfaces(scene.view());
+    raster.draw(surfaces, surfaces.objects, kEverything);
+    const Checked checked =
+        prove(scene, frontView(), raster.depthBuffer(), std::max(1u, width * height / 2000));
+    EXPECT_TRUE(checked.right()) << width << " x " << height;
+    EXPECT_TRUE(width < 1000 || checked.covered > width * height / 2);
+  }
+}
+
+TEST(SurfaceProbes, HostileInputHidesNothing) {
+  constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(),
+                  kInf = std::numeric_limits<float>::infinity();
+  std::vector<Vec3f> corners{
+      {kNotANumber, 0, -10}, {1, 0, -10},           {0, 1, -10},          {-kInf, -5, -10}, {5, -5, -10},
+      {0, kInf, -10},        {-3e38f, -3e38f, -10}, {3e38f, -3e38f, -10}, {0, 3e38f, -10},  {1, 1, -10},
+      {1, 1, -10},           {2, 2, -10},           {0, 0, -10},          {1, 0, -10},      {2, 0, -10}};
+  EXPECT_TRUE(check(sceneOf(corners), frontView(), 16, 16).right());
+  EXPECT_EQ(findSurfaces(Scene().view()).parts.size(), 0u);
+  Rasteriser raster({.width = 8, .height = 8});
+  const Scene scene = sheet(
+      4, 30.0f, 10.0f, [](float, float) { return 0.0f; }, none);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  View view = frontView();
+  view.eye.x = std::numeric_limits<double>::quiet_NaN();
+  raster.begin(view);
+  raster.draw(surfaces, surfaces.objects, kEverything);
+  EXPECT_FALSE(raster.depthBuffer().covered(4, 4));
+}
+
+TEST(SurfaceSets, EveryTriangleIsInOneClusterAndChainsAreItsBoundary) {
+  const Scene scene = sheet(
+      13, 20.0f, 10.0f, [](float x, float y) { return std::sin(x) + std::cos(3.0f * y); },
+      [](std::uint32_t t) { return t % 11 == 0; });
+  const SurfaceSet set =
+      findSurfaces(scene.view(), {.part_triangles = 50, .patch_triangles = 20, .cluster_triangles = 7});
+  EXPECT_EQ(set.triangles.size(), scene.view().indices.size());
+  // The signed edges of each cluster, from its triangles and from its chains.
+  using Edge = std::array<float, 6>;
+  for (std::uint32_t c = 0; c < set.clusters.size(); ++c) {
+    std::map<Edge, int> edges;
+    const auto add = [&](const Vec3f& a, const Vec3f& b, int value) {
+      edges[{a.x, a.y, a.z, b.x, b.y, b.z}] += value;
+      edges[{b.x, b.y, b.z, a.x, a.y, a.z}] -= value;
+    };
+    EXPECT_LE(set.clusters[c].triangle_count, 7u);
+    const auto corners = set.trianglesOf(set.clusters[c]);
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        add(set.vertices[corners[i + k]], set.vertices[corners[i + (k + 1) % 3]], 1);
+      }
+    }
+    for (const std::uint32_t number : set.chainsOf(set.clusters[c])) {
+      const auto vertices = set.verticesOf(set.chains[number]);
+      for (const ChainUse& use : set.usesOf(set.chains[number])) {
+        for (std::size_t i = 1; use.cluster == c && i < vertices.size(); ++i) {
+          add(vertices[i - 1], vertices[i], -use.value);
+        }
+      }
+    }
+    for (const auto& [edge, value] : edges) {
+      EXPECT_EQ(value, 0) << "cluster " << c;
+    }
+  }
+}
+
+class RandomSurfaces : public testing::TestWithParam<bool> {};
+
+TEST_P(RandomSurfaces, HideWhatTheyCover) {
+  Checked all;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
+    const auto number = test::numbersFrom<double>(engine);
+    const float rough = static_cast<float>(number(0.0, 4.0));
+    const double waves = number(0.1, 2.0);
+    const std::uint32_t count = 4 + static_cast<std::uint32_t>(number(0.0, 20.0));
+    const double holes = number(0.0, 1.0) < 0.5 ? 0.0 : number(0.0, 0.2);
+    Scene scene = sheet(
+        count, 40.0f, 12.0f,
+        [&](float x, float y) {
+          return rough * static_cast<float>(std::sin(waves * x) * std::cos(waves * y));
+        },
+        [&](std::uint32_t) { return number(0.0, 1.0) < holes; }, number(0.0, 1.0) < 0.5);
+    View view = frontView();
+    view.eye = {number(-3.0, 3.0), number(-3.0, 3.0), number(-13.0, 3.0)};
+    setOrientation(view, {number(-1.0, 1.0), number(-1.0, 1.0), -1.0}, {0.0, 1.0, 0.0});
+    view.near = number(0.0, 1.0) < 0.5 ? 0.1 : number(0.5, 8.0);
+    view.orthographic = GetParam();
+    view.ortho_height = 20.0;
+    const Checked checked = check(scene, view, 1 + static_cast<std::uint32_t>(number(0.0, 40.0)), 24);
+    EXPECT_EQ(checked.wrong + checked.undecided, 0u) << "seed " << seed;
+    all.covered += checked.covered;
+  }
+  EXPECT_GT(all.covered, 4000u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, RandomSurfaces, testing::Bool(),
+                         [](const auto& shown) { return shown.param ? "Orthographic" : "Perspective"; });
+
+}  // namespace
+}  // namespace sightline
