@@ -55,10 +55,10 @@ HWY_INLINE bool sumUp(std::int16_t* steps, std::int16_t* doubts, std::int16_t& w
 }
 
 // Covers pixels of a row from `first` to `last`, and beyond while the winding is positive, eight at a time.
-// depthOf(x, d): the reciprocal depths of the pixels from x on. Returns how many pixels became nearer.
+// depth_of(x, d): the reciprocal depths of the pixels from x on. Returns how many pixels became nearer.
 template <typename DepthOf>
 HWY_INLINE std::uint32_t resolveRow(std::int16_t* steps, std::int16_t* doubts, float* out, std::int32_t first,
-                                    std::int32_t last, std::int32_t end, DepthOf&& depthOf) {
+                                    std::int32_t last, std::int32_t end, DepthOf&& depth_of) {
   const hn::CappedTag<float, kLanes> d;
   const hn::RebindToSigned<decltype(d)> d32;
   const hn::Rebind<std::int16_t, decltype(d)> d16;
@@ -71,7 +71,7 @@ HWY_INLINE std::uint32_t resolveRow(std::int16_t* steps, std::int16_t* doubts, f
     for (std::int32_t lane = 0; lane < kLanes; lane += static_cast<std::int32_t>(hn::Lanes(d))) {
       const auto mask = hn::MaskFromVec(hn::BitCast(d, hn::PromoteTo(d32, hn::LoadU(d16, covered + lane))));
       const auto old = hn::LoadU(d, out + x + lane);
-      const auto depth = depthOf(x + lane, d);
+      const auto depth = depth_of(x + lane, d);
       const auto gained = hn::And(mask, hn::Gt(depth, old));
       nearer += hn::CountTrue(d, gained);
       hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + x + lane);
@@ -330,7 +330,7 @@ void WindingMap::addDepth(const PixelRectangle& r, const DepthBound& depth) {
 }
 
 template <typename ResolveRow>
-std::uint32_t WindingMap::resolveRows(ResolveRow&& resolveRow) {
+std::uint32_t WindingMap::resolveRows(ResolveRow&& resolve_row) {
   const bool none = sum_ > kLargestSum;
   std::uint32_t nearer = 0;
   for (std::int32_t y = rectangle_.y0; y < rectangle_.y1; ++y) {
@@ -345,8 +345,9 @@ std::uint32_t WindingMap::resolveRows(ResolveRow&& resolveRow) {
       std::fill_n(doubts_.begin() + static_cast<std::ptrdiff_t>(at), target_.stride, std::int16_t{0});
       continue;
     }
-    nearer += resolveRow(y, WindingRow{steps_.data() + at, doubts_.data() + at, target_.reciprocal_depth + at,
-                                       extent.first, extent.last, rectangle_.x1});
+    nearer +=
+        resolve_row(y, WindingRow{steps_.data() + at, doubts_.data() + at, target_.reciprocal_depth + at,
+                                  extent.first, extent.last, rectangle_.x1});
   }
   return nearer;
 }

@@ -87,7 +87,7 @@ class WindingMap {
 
  private:
   template <typename ResolveRow>
-  std::uint32_t resolveRows(ResolveRow&& resolveRow);
+  std::uint32_t resolveRows(ResolveRow&& resolve_row);
 
   DepthTarget target_;
   PixelRectangle rectangle_;
