@@ -59,7 +59,8 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
 
 void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
   stats_ = {};
-  if (set_ != &set || members_.size() != set.clusters.size() || drawn_in_.size() != set.parts.size()) {
+  if (set_ != &set || members_.size() != set.clusters.size() || drawn_in_.size() != set.parts.size() ||
+      patch_rests_.size() != set.patches.size()) {
     set_ = &set;
     members_.assign(set.clusters.size(), {});
     group_ = 0;

@@ -180,6 +180,9 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) const {
     box.extend(c);
     BoxExtent extent;
     if (!extentOf(box, extent)) {
+      if (extent.inexact) {
+        map.addDepth(image.rectangle, image.depth);
+      }
       continue;
     }
     const Vec3d p = Vec3d(a) - view_.eye, u = Vec3d(b) - Vec3d(a), v = Vec3d(c) - Vec3d(a);
@@ -199,7 +202,7 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) const {
 // False: outside the buffer, or its image cannot be computed exactly enough.
 bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
   const PixelView& view = view_;
-  const Vec3d middle = view.toCamera(center(box) - view.eye), half = Vec3d(box.extent()) * 0.5;
+  const Vec3d middle = view.toCamera(center(box) - view.eye), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
   const Vec3d size{dot(abs(view.right), half), dot(abs(view.up), half), dot(abs(view.forward), half)};
   const double reach = maxComponent(abs(middle)) + maxComponent(size);
   const double rounding = 1e-14 * reach;
@@ -209,10 +212,12 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
     return false;
   }
   extent.cut = !(extent.nearest > clip_depth_);
+  extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.near;
   const double front = std::max(extent.nearest, clip_depth_);
   const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);
   const double pixels = reach * scale + view.middle_x + view.middle_y;
-  if (!(pixels < kLargestGrid / kGridStep) || !(4e-15 * pixels < kMaxError)) {
+  extent.inexact = extent.inexact || !(pixels < kLargestGrid / kGridStep) || !(4e-15 * pixels < kMaxError);
+  if (extent.inexact) {
     return false;
   }
   const double near_inverse = view.orthographic ? 1.0 : 1.0 / front,

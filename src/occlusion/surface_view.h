@@ -16,6 +16,7 @@ namespace sightline::occlusion {
 struct BoxExtent {
   double nearest = 0.0, farthest = 0.0;  // depths, metres
   bool cut = false;                      // it reaches the depth at which surfaces are clipped
+  bool inexact = false;                  // nothing can be told of its image
   PixelRectangle rectangle;
 };
 

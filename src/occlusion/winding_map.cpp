@@ -124,20 +124,23 @@ class EdgeRows {
     const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
     const std::size_t at = std::size_t{target_.stride} * static_cast<std::uint32_t>(row);
     const auto margin = hn::Set(d, margin_);
-    const auto along = hn::Mul(hn::Iota(d, 0.0f), hn::Set(d, static_cast<float>(along_x_)));
+    const auto along = hn::Set(d, static_cast<float>(along_x_));
     const auto doubt = hn::Set(d32, size_);
     WindingExtent& extent = target_.rows[row];
-    for (std::int32_t x = begin; x <= last; x += lanes) {
-      // The distance of the pixels' centres to the inner side of the edge, times the edge's length.
-      const auto inside =
-          hn::Add(along, hn::Set(d, static_cast<float>(at_origin_ + along_y_ * row + along_x_ * x)));
-      const auto valid = hn::FirstN(d, static_cast<std::size_t>(last - x + 1));
-      const auto some = hn::And(valid, hn::Ge(inside, hn::Neg(margin))),
-                 more = hn::And(valid, hn::Le(hn::Abs(inside), margin));
-      const auto weight = hn::Add(hn::IfThenElseZero(hn::RebindMask(d32, some), doubt),
-                                  hn::IfThenElseZero(hn::RebindMask(d32, more), doubt));
-      std::int16_t* doubts = target_.doubts + at + static_cast<std::uint32_t>(x);
-      hn::StoreU(hn::SaturatedAdd(hn::LoadU(d16, doubts), hn::DemoteTo(d16, weight)), d16, doubts);
+    // Eight pixels from one base, so that the bits do not depend on the number of lanes.
+    for (std::int32_t x = begin; x <= last; x += kLanes) {
+      const auto base = hn::Set(d, static_cast<float>(at_origin_ + along_y_ * row + along_x_ * x));
+      for (std::int32_t lane = 0; lane < kLanes && x + lane <= last; lane += lanes) {
+        // The distance of the pixels' centres to the inner side of the edge, times the edge's length.
+        const auto inside = hn::Add(hn::Mul(hn::Iota(d, static_cast<float>(lane)), along), base);
+        const auto valid = hn::FirstN(d, static_cast<std::size_t>(last - x - lane + 1));
+        const auto some = hn::And(valid, hn::Ge(inside, hn::Neg(margin))),
+                   more = hn::And(valid, hn::Le(hn::Abs(inside), margin));
+        const auto weight = hn::Add(hn::IfThenElseZero(hn::RebindMask(d32, some), doubt),
+                                    hn::IfThenElseZero(hn::RebindMask(d32, more), doubt));
+        std::int16_t* doubts = target_.doubts + at + static_cast<std::uint32_t>(x + lane);
+        hn::StoreU(hn::SaturatedAdd(hn::LoadU(d16, doubts), hn::DemoteTo(d16, weight)), d16, doubts);
+      }
     }
     if (begin <= last) {
       extent.first = std::min(extent.first, begin);
@@ -179,7 +182,7 @@ HWY_INLINE bool drawEdge(const WindingEdges& target, GridPoint from, GridPoint t
   const hn::CappedTag<float, kLanes> d;
   const hn::RebindToSigned<decltype(d)> d32;
   const bool steep = std::abs(slope) <= kSteepest;
-  const std::int32_t lanes = steep ? static_cast<std::int32_t>(hn::Lanes(d)) : 1;
+  const std::int32_t block = steep ? kLanes : 1;  // rows from one base, whatever the number of lanes
   // A level edge crosses no border.
   const double spread = dy == 0.0 ? 4.0 * kLargestGrid : std::abs(slope) * kMargin + 3.0 * kMargin;
   const auto clampedTo = [&](double x) HWY_ATTR {
@@ -192,21 +195,28 @@ HWY_INLINE bool drawEdge(const WindingEdges& target, GridPoint from, GridPoint t
              x1 = hn::Set(d, static_cast<float>(r.x1 * kPixel));
   const auto pixel = hn::Set(d, 1.0f / kGridStep);
   HWY_ALIGN std::int32_t begins[kLanes], lasts[kLanes], columns[kLanes];
-  for (std::int32_t row = first_row; row <= last_row; row += lanes) {
+  for (std::int32_t row = first_row; row <= last_row; row += block) {
     const double x = from.x + (row * kPixel - from.y) * slope;
-    const auto below = hn::Add(hn::Mul(hn::Iota(d, 0.0f), per_row), hn::Set(d, clampedTo(x)));
-    const auto above = steep ? hn::Add(below, per_row) : hn::Set(d, clampedTo(x + slope * kPixel));
-    const auto from_x = hn::Max(hn::Sub(hn::Min(below, above), reach), lowest),
-               to_x = hn::Min(hn::Add(hn::Max(below, above), reach), highest);
-    const auto begin = hn::Floor(hn::Mul(hn::Max(from_x, x0), pixel)),
-               last = hn::Floor(hn::Mul(hn::Min(to_x, hn::Sub(x1, hn::Set(d, 1.0f))), pixel));
-    // Halfway between the borders, as far as the edge goes.
-    const auto middle = hn::Min(hn::Max(hn::Mul(hn::Add(below, above), hn::Set(d, 0.5f)), lowest), highest);
-    const auto column = hn::Ceil(hn::Sub(hn::Mul(middle, pixel), hn::Set(d, 0.5f)));
-    hn::Store(hn::ConvertTo(d32, begin), d32, begins);
-    hn::Store(hn::ConvertTo(d32, last), d32, lasts);
-    hn::Store(hn::ConvertTo(d32, hn::Max(column, hn::Set(d, static_cast<float>(r.x0)))), d32, columns);
-    const std::int32_t end = std::min(lanes, last_row - row + 1);
+    const auto base = hn::Set(d, clampedTo(x));
+    const std::int32_t end = std::min(block, last_row - row + 1);
+    for (std::int32_t lane = 0; lane < end; lane += static_cast<std::int32_t>(hn::Lanes(d))) {
+      const auto below = hn::Add(hn::Mul(hn::Iota(d, static_cast<float>(lane)), per_row), base);
+      const auto above = steep ? hn::Add(below, per_row) : hn::Set(d, clampedTo(x + slope * kPixel));
+      const auto from_x = hn::Max(hn::Sub(hn::Min(below, above), reach), lowest),
+                 to_x = hn::Min(hn::Add(hn::Max(below, above), reach), highest);
+      const auto begin = hn::Floor(hn::Mul(hn::Max(from_x, x0), pixel)),
+                 last = hn::Floor(hn::Mul(hn::Min(to_x, hn::Sub(x1, hn::Set(d, 1.0f))), pixel));
+      // Where the edge crosses the row's middle, as far as the edge goes. Of a flat edge the places at the
+      // borders may be clamped, and what is halfway between them means nothing.
+      const auto crossing = steep ? hn::Mul(hn::Add(below, above), hn::Set(d, 0.5f))
+                                  : hn::Set(d, clampedTo(x + 0.5 * slope * kPixel));
+      const auto middle = hn::Min(hn::Max(crossing, lowest), highest);
+      const auto column = hn::Ceil(hn::Sub(hn::Mul(middle, pixel), hn::Set(d, 0.5f)));
+      hn::Store(hn::ConvertTo(d32, begin), d32, begins + lane);
+      hn::Store(hn::ConvertTo(d32, last), d32, lasts + lane);
+      hn::Store(hn::ConvertTo(d32, hn::Max(column, hn::Set(d, static_cast<float>(r.x0)))), d32,
+                columns + lane);
+    }
     for (std::int32_t i = 0; i < end; ++i) {
       rows.draw(row + i, begins[i], lasts[i], columns[i]);
     }
@@ -316,7 +326,12 @@ void WindingMap::addEdges(std::span<const GridPoint> points, std::uint32_t step,
   sum_ += std::uint64_t{drawn} * static_cast<std::uint32_t>(std::abs(value));
 }
 
-void WindingMap::addDepth(const PixelRectangle& r, const DepthBound& depth) {
+void WindingMap::addDepth(const PixelRectangle& rectangle, const DepthBound& depth) {
+  const PixelRectangle r{std::max(rectangle.x0, rectangle_.x0), std::max(rectangle.y0, rectangle_.y0),
+                         std::min(rectangle.x1, rectangle_.x1), std::min(rectangle.y1, rectangle_.y1)};
+  if (r.empty()) {
+    return;
+  }
   const std::int32_t first = r.x0 / kTileWidth, end = (r.x1 - 1) / kTileWidth + 1;
   const float top = depth.along_y < 0.0f ? kTileHeight - 1 : 0.0f,
               right = depth.along_x < 0.0f ? kTileWidth - 1 : 0.0f;

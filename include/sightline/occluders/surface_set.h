@@ -86,7 +86,7 @@ struct SurfaceSet {
 
   // Numbers of the parts that have triangles of an object, those with the largest boxes first.
   std::span<const std::uint32_t> partsOf(ObjectId object) const {
-    return object.value + 1 < first_of_object.size()
+    return std::size_t{object.value} + 1 < first_of_object.size()
                ? std::span(of_object).subspan(
                      first_of_object[object.value],
                      first_of_object[object.value + 1] - first_of_object[object.value])
