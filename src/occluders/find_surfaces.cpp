@@ -95,7 +95,7 @@ class Gathering {
 // the cosine of the greatest angle between normals and that of the supporting plane, rounded down.
 template <typename Part>
 double measure(const SurfaceMesh& mesh, std::span<const Vec3d> normals,
-               std::span<const std::uint32_t> triangles, Part& part) {
+               std::span<const std::uint32_t> triangles, Part& part, Box& bounds) {
   Vec3d axis{};
   for (const std::uint32_t t : triangles) {
     const MeshTriangle& triangle = mesh.triangles[t];
@@ -110,7 +110,7 @@ double measure(const SurfaceMesh& mesh, std::span<const Vec3d> normals,
     cosine = normals[t] == Vec3d{} ? cosine : std::min(cosine, dot(normals[t], axis));
     for (const std::uint32_t v : mesh.triangles[t].vertices) {
       const Vec3d p(mesh.vertices[v]);
-      part.bounds.extend(mesh.vertices[v]);
+      bounds.extend(mesh.vertices[v]);
       lowest = std::min(lowest, dot(axis, p));
       highest = std::max(highest, dot(axis, p));
       reach = std::max(reach, maxComponent(abs(p)));
@@ -173,14 +173,15 @@ void listByObject(const SurfaceMesh& mesh, std::span<const std::uint32_t> part_o
     std::sort(begin, set.of_object.end());
     set.of_object.erase(std::unique(begin, set.of_object.end()), set.of_object.end());
     std::stable_sort(begin, set.of_object.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return diameter(set.parts[a].bounds) > diameter(set.parts[b].bounds);
+      return diameter(set.part_bounds[a]) > diameter(set.part_bounds[b]);
     });
     if (set.of_object.size() > first) {
       set.objects.push_back(ObjectId(object));
     }
     Box bounds;
     for (std::size_t i = first; i < set.of_object.size(); ++i) {
-      bounds.extend(set.parts[set.of_object[i]].bounds);
+      bounds.extend(set.part_bounds[set.of_object[i]]);
+      set.sizes_of_object.push_back(diameter(set.part_bounds[set.of_object[i]]));
     }
     set.object_bounds.push_back(bounds);
     set.first_of_object.push_back(static_cast<std::uint32_t>(set.of_object.size()));
@@ -206,6 +207,9 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
   set.parts.resize(by_part.count());
   set.patches.resize(by_patch.count());
   set.clusters.resize(by_cluster.count());
+  set.part_bounds.resize(by_part.count());
+  set.patch_bounds.resize(by_patch.count());
+  set.cluster_bounds.resize(by_cluster.count());
   const auto count = [](std::uint32_t i, std::uint32_t& first, std::uint32_t& number) {
     first = number == 0 ? i : first;
     ++number;
@@ -228,16 +232,19 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
       }
     });
   };
-  parallel(by_cluster.count(),
-           [&](std::uint32_t c) { measure(mesh, normals, by_cluster[c], set.clusters[c]); });
+  parallel(by_cluster.count(), [&](std::uint32_t c) {
+    measure(mesh, normals, by_cluster[c], set.clusters[c], set.cluster_bounds[c]);
+  });
   parallel(by_patch.count(), [&](std::uint32_t p) {
-    const double cosine = measure(mesh, normals, by_patch[p], set.patches[p]);
+    const double cosine = measure(mesh, normals, by_patch[p], set.patches[p], set.patch_bounds[p]);
     set.patches[p].cone_cosine = static_cast<float>(cosine - kRounding);
   });
-  for (SurfacePart& part : set.parts) {
-    for (const SurfacePatch& patch : set.patchesOf(part)) {
-      part.bounds.extend(patch.bounds);
+  for (std::size_t p = 0; p < set.parts.size(); ++p) {
+    const SurfacePart& part = set.parts[p];
+    for (std::uint32_t i = part.first_patch; i < part.first_patch + part.patch_count; ++i) {
+      set.part_bounds[p].extend(set.patch_bounds[i]);
     }
+    set.bounds.extend(set.part_bounds[p]);
   }
   for (const std::uint32_t t : by_cluster.items()) {
     set.triangles.insert(set.triangles.end(), mesh.triangles[t].vertices, mesh.triangles[t].vertices + 3);

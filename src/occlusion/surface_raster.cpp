@@ -15,8 +15,8 @@ namespace {
 // A slab of depths is a quarter of an octave: the exponent and two bits of a single-precision depth.
 constexpr std::uint32_t kSlabShift = 21, kSlabs = 1u << (32 - kSlabShift);
 // Pixels that a group must change for each unit of work, or it rests.
-constexpr double kMinGain = 0.02;
-constexpr std::uint8_t kLongestRest = 15;  // views
+constexpr double kMinGain = 0.3;
+constexpr std::uint32_t kLongestRest = 15;  // views
 
 constexpr PixelRectangle kNoPixels{1 << 30, 1 << 30, 0, 0};
 
@@ -25,12 +25,6 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 }
 
 }  // namespace
-
-// Whether something is left out in this view.
-bool SurfaceRaster::Rest::takes() {
-  left = static_cast<std::uint8_t>(left > 0 ? left - 1 : 0);
-  return left > 0;
-}
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
                          const SurfaceDrawing& drawing, const DepthTarget& target) {
@@ -64,16 +58,23 @@ void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
     set_ = &set;
     members_.assign(set.clusters.size(), {});
     group_ = 0;
-    step = ViewStep::kJump;
+    view_number_ = 0;
   }
-  if (step == ViewStep::kJump || (step == ViewStep::kNext && view_number_ == 0xffffffffu)) {
+  if (view_number_ == 0 || view_number_ == 0xffffffffu) {
     patch_rests_.assign(set.patches.size(), {});
     part_rests_.assign(set.parts.size(), {});
     slab_rests_.assign(2 * kSlabs, {});
     drawn_in_.assign(set.parts.size(), 0);
     view_number_ = 0;
+    step = ViewStep::kJump;
   }
   view_number_ += step == ViewStep::kSame ? 0 : 1;
+  first_view_ = step == ViewStep::kJump ? view_number_ : first_view_;
+}
+
+// Whether something is left out in this view.
+bool SurfaceRaster::rests(const Rest& rest) const {
+  return rest.since >= first_view_ && view_number_ - rest.since <= rest.length && view_number_ > rest.since;
 }
 
 // Whether a surface is worth drawing at all.
@@ -85,15 +86,16 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
 void SurfaceRaster::drawPart(const PartImage& image) {
   const SurfacePart& part = set_->parts[image.part];
   const bool together =
-      part.patch_count > 1 && pays(image.rectangle, part.edge_count) && !part_rests_[image.part].takes();
+      part.patch_count > 1 && pays(image.rectangle, part.edge_count) && !rests(part_rests_[image.part]);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
   std::uint32_t shown = 0;
+  view_.beginPart(part);
   for (std::uint32_t number = part.first_patch; number < part.first_patch + part.patch_count; ++number) {
     const SurfacePatch& source = set_->patches[number];
-    const bool resting = patch_rests_[number].takes();
+    const bool resting = rests(patch_rests_[number]);
     PatchImage patch;
-    if ((resting && !together) || !view_.imageOf(source, together ? 0.0 : drawing_.min_patch_pixels, patch) ||
+    if ((resting && !together) || !view_.imageOf(number, together ? 0.0 : drawing_.min_patch_pixels, patch) ||
         map_.hides(patch.rectangle, patch.nearest)) {
       continue;
     }
@@ -136,7 +138,7 @@ void SurfaceRaster::drawSlabs(std::uint32_t shift, std::span<Rest> slab_rests) {
     }
   });
   for (std::uint32_t slab = 0; slab < kSlabs; ++slab) {
-    if (slab_first_[slab + 1] - slab_first_[slab] < 2 || slab_rests[slab].takes() ||
+    if (slab_first_[slab + 1] - slab_first_[slab] < 2 || rests(slab_rests[slab]) ||
         work() >= drawing_.budget) {
       continue;
     }
@@ -215,10 +217,10 @@ std::uint64_t SurfaceRaster::work() const {
 // A group that changed too few pixels for what it cost rests, twice as long as the last time.
 void SurfaceRaster::account(std::uint32_t nearer, Rest& rest) {
   if (nearer < kMinGain * static_cast<double>(work() - work_before_)) {
-    rest.length = static_cast<std::uint8_t>(std::min(2 * rest.length + 1, int{kLongestRest}));
-    rest.left = static_cast<std::uint8_t>(rest.length + 1);
+    const std::uint32_t last = rest.since >= first_view_ ? rest.length : 0;
+    rest = {view_number_, std::min(2 * last + 1, kLongestRest)};
   } else {
-    rest.length = 0;
+    rest = {};
   }
 }
 

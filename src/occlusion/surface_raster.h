@@ -31,13 +31,12 @@ class SurfaceRaster {
 
   // What is not worth its cost is left out for some views.
   struct Rest {
-    std::uint8_t left = 0;    // views, the one in which that was found included
-    std::uint8_t length = 0;  // of the last rest, views
-
-    bool takes();
+    std::uint32_t since = 0;   // number of the view in which that was found
+    std::uint32_t length = 0;  // views after that one
   };
 
   void start(const SurfaceSet& set, ViewStep step);
+  bool rests(const Rest& rest) const;
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
   void drawPart(const PartImage& part);
   void drawPatch(const PatchImage& patch, Rest& rest);
@@ -62,6 +61,7 @@ class SurfaceRaster {
   std::vector<Rest> slab_rests_;                // by slab
   std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t view_number_ = 0;
+  std::uint32_t first_view_ = 0;  // number of the first one since a jump
   std::vector<std::uint32_t> slab_first_, slab_members_;
   std::vector<ClusterImage> slab_;
 };

@@ -9,12 +9,19 @@ namespace sightline::occlusion {
 namespace {
 
 constexpr double kNearMargin = 1e-6;
-constexpr double kMaxError = 1.0 / 4096.0;  // pixels, of an image before it is rounded
 constexpr double kCosineMargin = 1e-5;
 constexpr double kBorder = 2.0 / kGridStep;  // pixels by which rectangles are widened
 // A patch is flat if its thickness is at most this fraction of its depth, and that of a cluster.
 constexpr double kFlat = 1.0 / 64.0;
 constexpr std::int32_t kSmall = 64;  // pixels of the rectangle of a cluster whose triangles are not looked at
+
+// A bound of the coordinates of what lies in a box and is projected in batches: metres in an orthographic
+// view, divided by their depth in a perspective one.
+double reachOf(const Box& box, const PixelView& view) {
+  constexpr double kLargestSlope = 0x1p15;  // what is seen at a larger one is too near for single precision
+  const Vec3d far = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
+  return view.orthographic ? far.x + far.y + far.z : kLargestSlope;
+}
 
 }  // namespace
 
@@ -25,46 +32,71 @@ void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<
   min_pixels_ = min_pixels;
   target_ = target;
   clip_depth_ = view.near * (1.0 + kNearMargin);
+  candidates_.clear();
+  boxes_.clear();
+  listed_.resize(set.parts.size());
+  projection_ = BoxProjection(view, target.width, target.height);
+  batches_ =
+      reachOf(set.bounds, view) * std::max(view.scale_x, view.scale_y) + view.middle_x + view.middle_y <
+      kLargestGrid / kGridStep;
   clusters_.clear();
   unsorted_.clear();
-  listed_.resize(set.parts.size());
-  for (const ObjectId object : view.sane() ? candidates : std::span<const ObjectId>()) {
-    const double smallest = smallestOf(object);
-    for (const std::uint32_t part : set.partsOf(object)) {
-      if (length(Vec3d(set.parts[part].bounds.extent())) < smallest) {
-        break;
-      }
-      if (!listed_[part]) {
-        listed_[part] = true;
-        candidates_.push_back(part);
+  if (view.sane()) {
+    listParts(candidates);
+  }
+  for (const std::uint32_t part : candidates_) {
+    boxes_.push_back(set.part_bounds[part]);
+  }
+  project(boxes_, images_);
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    BoxExtent extent;
+    if (extentOf(boxes_[i], images_[i], extent) && extent.rectangle.area() >= min_pixels_) {
+      unsorted_.push_back({candidates_[i], extent.rectangle, nearestOf(extent)});
+    }
+  }
+  sortParts();
+}
+
+// Sets candidates_ to the parts of the objects that may be large enough.
+void SurfaceView::listParts(std::span<const ObjectId> objects) {
+  for (const ObjectId object : objects) {
+    if (!set_->partsOf(object).empty()) {
+      objects_.push_back(object);
+      boxes_.push_back(set_->object_bounds[object.value]);
+    }
+  }
+  project(boxes_, images_);
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    BoxExtent extent;
+    if (!extentOf(boxes_[i], images_[i], extent) && !extent.inexact) {
+      continue;
+    }
+    const std::span<const std::uint32_t> parts = set_->partsOf(objects_[i]);
+    const std::span<const float> sizes = set_->sizesOf(objects_[i]);
+    const double smallest = smallestOf(extent);
+    for (std::size_t k = 0; k < parts.size() && !(sizes[k] < smallest); ++k) {
+      if (!listed_[parts[k]]) {
+        listed_[parts[k]] = true;
+        candidates_.push_back(parts[k]);
       }
     }
   }
   for (const std::uint32_t part : candidates_) {
     listed_[part] = false;
-    addPart(part);
   }
-  candidates_.clear();
-  sortParts();
+  objects_.clear();
+  boxes_.clear();
 }
 
 // The least diameter, in metres, of a part of an object that may have min_pixels.
-double SurfaceView::smallestOf(ObjectId object) const {
-  BoxExtent extent;
-  if (set_->partsOf(object).empty() || !extentOf(set_->object_bounds[object.value], extent)) {
+double SurfaceView::smallestOf(const BoxExtent& object) const {
+  if (object.inexact) {
     return 0.0;
   }
   // The rectangle of a part is at most so much larger than its image, which has at most its diameter.
   constexpr double kRectangle = 0.5;
-  const double depth = view_.orthographic ? 1.0 : std::max(extent.nearest, clip_depth_);
+  const double depth = view_.orthographic ? 1.0 : std::max(object.nearest, clip_depth_);
   return kRectangle * std::sqrt(min_pixels_) * depth / std::max(view_.scale_x, view_.scale_y);
-}
-
-void SurfaceView::addPart(std::uint32_t number) {
-  BoxExtent extent;
-  if (extentOf(set_->parts[number].bounds, extent) && extent.rectangle.area() >= min_pixels_) {
-    unsorted_.push_back({number, extent.rectangle, nearestOf(extent)});
-  }
 }
 
 // By the leading bits of their depth.
@@ -91,29 +123,37 @@ float SurfaceView::nearestOf(const BoxExtent& extent) const {
   return static_cast<float>(value + 1e-6 * std::abs(value));
 }
 
-bool SurfaceView::showsBack(const SurfacePatch& patch) const {
+bool SurfaceView::showsBack(std::uint32_t number) const {
+  const SurfacePatch& patch = set_->patches[number];
   if (patch.double_sided || !(patch.cone_cosine > 0.0f)) {
     return false;
   }
-  const Vec3d middle = center(patch.bounds) - view_.eye;
+  const Box& bounds = set_->patch_bounds[number];
+  const Vec3d middle = center(bounds) - view_.eye;
   const double distance = std::max(length(middle), 1e-300);
   const Vec3d away = view_.orthographic ? view_.forward : middle / distance;
   const double cosine = dot(patch.support.normal, away), cone = patch.cone_cosine;
   const double least = cosine * cone - std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) *
                                            std::sqrt(std::max(0.0, 1.0 - cone * cone));
-  const double spread = view_.orthographic ? 0.0 : 0.5 * length(Vec3d(patch.bounds.extent())) / distance;
+  const double spread = view_.orthographic ? 0.0 : 0.5 * length(Vec3d(bounds.extent())) / distance;
   return least > spread + kCosineMargin;
 }
 
-bool SurfaceView::imageOf(const SurfacePatch& patch, double min_pixels, PatchImage& image) const {
+void SurfaceView::beginPart(const SurfacePart& part) {
+  first_patch_ = part.first_patch;
+  project(std::span(set_->patch_bounds).subspan(part.first_patch, part.patch_count), patch_images_);
+}
+
+bool SurfaceView::imageOf(std::uint32_t number, double min_pixels, PatchImage& image) const {
   BoxExtent extent;
-  if (!extentOf(patch.bounds, extent) || extent.rectangle.area() < min_pixels || showsBack(patch)) {
+  if (!extentOf(set_->patch_bounds[number], patch_images_[number - first_patch_], extent) ||
+      extent.rectangle.area() < min_pixels || showsBack(number)) {
     return false;
   }
   image = {};
   image.rectangle = extent.rectangle;
   image.nearest = nearestOf(extent);
-  image.flat = patch.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
+  image.flat = set_->patches[number].thickness <= kFlat * std::max(extent.nearest, clip_depth_);
   return true;
 }
 
@@ -121,10 +161,11 @@ void SurfaceView::addClusters(const SurfacePatch& patch, PatchImage& image) {
   image.first = static_cast<std::uint32_t>(clusters_.size());
   std::int32_t signs = 0;
   double farthest = 0.0;
+  project(std::span(set_->cluster_bounds).subspan(patch.first_cluster, patch.cluster_count), images_);
   for (std::uint32_t i = 0; i < patch.cluster_count; ++i) {
     ClusterImage cluster;
     double depth = 0.0;
-    if (chooseCluster(patch.first_cluster + i, cluster, depth)) {
+    if (chooseCluster(patch.first_cluster + i, images_[i], cluster, depth)) {
       clusters_.push_back(cluster);
       signs += cluster.sign;
       farthest = std::max(farthest, depth);
@@ -144,13 +185,14 @@ void SurfaceView::addClusters(const SurfacePatch& patch, PatchImage& image) {
 }
 
 // farthest: receives a bound of its depth, metres.
-bool SurfaceView::chooseCluster(std::uint32_t number, ClusterImage& image, double& farthest) const {
+bool SurfaceView::chooseCluster(std::uint32_t number, const PixelBox& box, ClusterImage& image,
+                                double& farthest) const {
   const SurfaceCluster& cluster = set_->clusters[number];
   const double height = view_.orthographic ? -dot(cluster.support.normal, view_.forward)
                                            : cluster.support.evaluate(view_.eye) - 0.5 * cluster.thickness;
   image.sign = height > 0.0 ? 1 : cluster.double_sided ? -1 : 0;
   BoxExtent extent;
-  if (image.sign == 0 || !extentOf(cluster.bounds, extent)) {
+  if (image.sign == 0 || !extentOf(set_->cluster_bounds[number], box, extent)) {
     return false;
   }
   farthest = extent.farthest;
@@ -164,32 +206,37 @@ bool SurfaceView::chooseCluster(std::uint32_t number, ClusterImage& image, doubl
   return true;
 }
 
-void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) const {
+void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) {
   if (image.flat || image.rectangle.area() < kSmall) {
     map.addDepth(image.rectangle, image.depth);
     return;
   }
   // Triangle by triangle. Where the surface hides something, it shows its front there.
   const std::span<const std::uint32_t> corners = set_->trianglesOf(set_->clusters[image.cluster]);
+  boxes_.clear();
   for (std::size_t i = 0; i < corners.size(); i += 3) {
-    const Vec3f &a = set_->vertices[corners[i]], &b = set_->vertices[corners[i + 1]],
-                &c = set_->vertices[corners[i + 2]];
     Box box;
-    box.extend(a);
-    box.extend(b);
-    box.extend(c);
+    for (std::size_t k = i; k < i + 3; ++k) {
+      box.extend(set_->vertices[corners[k]]);
+    }
+    boxes_.push_back(box);
+  }
+  project(boxes_, images_);
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
     BoxExtent extent;
-    if (!extentOf(box, extent)) {
+    if (!extentOf(boxes_[i / 3], images_[i / 3], extent)) {
       if (extent.inexact) {
         map.addDepth(image.rectangle, image.depth);
       }
       continue;
     }
+    const Vec3f &a = set_->vertices[corners[i]], &b = set_->vertices[corners[i + 1]],
+                &c = set_->vertices[corners[i + 2]];
     const Vec3d p = Vec3d(a) - view_.eye, u = Vec3d(b) - Vec3d(a), v = Vec3d(c) - Vec3d(a);
     const Vec3d normal = cross(u, v) * image.sign;
     const double size = length(u) * length(v),
                  reach = maxComponent(abs(p)) + maxComponent(abs(u)) + maxComponent(abs(v));
-    // Of the plane through the triangle, at the eye.
+    // The value of the plane through the triangle at the eye.
     const double height = view_.orthographic ? -dot(normal, view_.forward) : -dot(normal, p);
     if (height < -1e-9 * size * (view_.orthographic ? 1.0 : reach)) {
       continue;
@@ -199,7 +246,27 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) const {
   }
 }
 
+void SurfaceView::project(std::span<const Box> boxes, std::vector<PixelBox>& images) const {
+  images.resize(std::max(images.size(), boxes.size()));
+  projectBoxes(projection_, boxes, images);
+}
+
 // False: outside the buffer, or its image cannot be computed exactly enough.
+bool SurfaceView::extentOf(const Box& box, const PixelBox& image, BoxExtent& extent) const {
+  if (image.place == BoxPlace::kOutside) {
+    return false;
+  }
+  if (image.place == BoxPlace::kOnBuffer && batches_) {
+    extent.nearest = view_.orthographic ? -image.nearest : 1.0 / image.nearest;
+    extent.farthest = view_.orthographic ? -image.farthest : 1.0 / image.farthest;
+    extent.rectangle = {image.x0, image.y0, image.x1 + 1, image.y1 + 1};
+    if (extent.nearest > clip_depth_) {
+      return true;
+    }
+  }
+  return extentOf(box, extent);
+}
+
 bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
   const PixelView& view = view_;
   const Vec3d middle = view.toCamera(center(box) - view.eye), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
@@ -216,7 +283,7 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
   const double front = std::max(extent.nearest, clip_depth_);
   const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);
   const double pixels = reach * scale + view.middle_x + view.middle_y;
-  extent.inexact = extent.inexact || !(pixels < kLargestGrid / kGridStep) || !(4e-15 * pixels < kMaxError);
+  extent.inexact = extent.inexact || !(pixels < kLargestGrid / kGridStep);
   if (extent.inexact) {
     return false;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
+#include "src/occlusion/pixel_boxes.h"
 #include "src/occlusion/winding_map.h"
 #include "src/scene/pixel_view.h"
 
@@ -58,23 +59,28 @@ class SurfaceView {
              double min_pixels, const DepthTarget& target);
   std::span<const PartImage> parts() const { return parts_; }
 
-  // False: the patch shows its back, or has fewer pixels. The image has no clusters yet.
-  bool imageOf(const SurfacePatch& patch, double min_pixels, PatchImage& image) const;
+  // Projects the patches of a part, for imageOf().
+  void beginPart(const SurfacePart& part);
+  // False: the patch of that part shows its back, or has fewer pixels. The image has no clusters yet.
+  bool imageOf(std::uint32_t patch, double min_pixels, PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
   std::span<const ClusterImage> clusters() const { return clusters_; }  // since begin()
 
   // Tells a map how far away the cluster is.
-  void addDepth(const ClusterImage& image, WindingMap& map) const;
+  void addDepth(const ClusterImage& image, WindingMap& map);
 
  private:
-  void addPart(std::uint32_t number);
-  double smallestOf(ObjectId object) const;
+  void listParts(std::span<const ObjectId> candidates);
+  double smallestOf(const BoxExtent& object) const;
   void sortParts();
-  bool showsBack(const SurfacePatch& patch) const;
+  bool showsBack(std::uint32_t patch) const;
   float nearestOf(const BoxExtent& extent) const;
+  // Projects boxes, for the other form of extentOf().
+  void project(std::span<const Box> boxes, std::vector<PixelBox>& images) const;
+  bool extentOf(const Box& box, const PixelBox& image, BoxExtent& extent) const;
   bool extentOf(const Box& box, BoxExtent& extent) const;
-  bool chooseCluster(std::uint32_t number, ClusterImage& image, double& farthest) const;
+  bool chooseCluster(std::uint32_t number, const PixelBox& box, ClusterImage& image, double& farthest) const;
   // The bound of surfaces that lie before this plane and no farther away than `farthest`.
   DepthBound boundOf(const Plane& plane, double farthest) const;
   // size: the length of the normal, or more; at_eye: the plane's value at the eye.
@@ -86,10 +92,16 @@ class SurfaceView {
   double min_pixels_ = 0.0;
   DepthTarget target_;
   double clip_depth_ = 0.0;
+  BoxProjection projection_;
+  bool batches_ = false;  // projection_ is exact enough for all of the set
   std::vector<ClusterImage> clusters_;
   std::vector<PartImage> parts_, unsorted_;
   std::vector<std::uint32_t> first_of_key_, candidates_;
+  std::vector<ObjectId> objects_;
   std::vector<bool> listed_;  // by part: it is among candidates_
+  std::vector<Box> boxes_;
+  std::vector<PixelBox> images_, patch_images_;
+  std::uint32_t first_patch_ = 0;  // of patch_images_
 };
 
 }  // namespace sightline::occlusion

@@ -40,7 +40,6 @@ struct SurfaceCluster {
   // is that of the cluster on average.
   Plane support{};
   double thickness = 0.0;
-  Box bounds{};
   bool double_sided = false;
   bool joins_parts = false;  // clusters of other parts adjoin it
 };
@@ -52,7 +51,6 @@ struct SurfacePatch {
   // As of a cluster.
   Plane support{};
   double thickness = 0.0;
-  Box bounds{};
   bool double_sided = false;
   // The angle between the normal of any of its triangles and that of `support` is at most that of this
   // cosine, rounded down; -1 if it may be any.
@@ -63,7 +61,6 @@ struct SurfacePatch {
 struct SurfacePart {
   std::uint32_t first_patch = 0, patch_count = 0;  // into SurfaceSet::patches
   std::uint32_t edge_count = 0;                    // of its boundary
-  Box bounds{};
 };
 
 // Made by findSurfaces() and not to be changed by hand.
@@ -75,8 +72,11 @@ struct SurfaceSet {
   std::vector<SurfaceCluster> clusters{};  // by patch
   std::vector<SurfacePatch> patches{};     // by part
   std::vector<SurfacePart> parts{};
+  std::vector<Box> cluster_bounds{}, patch_bounds{}, part_bounds{};
+  Box bounds{};                                  // of all
   std::vector<std::uint32_t> first_of_object{};  // by ObjectId, and one more; into of_object
   std::vector<std::uint32_t> of_object{};        // numbers of parts, by object, the largest ones first
+  std::vector<float> sizes_of_object{};          // the diameters of their boxes, metres
   std::vector<ObjectId> objects{};               // that have parts, ascending
   std::vector<Box> object_bounds{};              // of all parts of an object, by ObjectId
   std::vector<SurfaceChain> chains{};
@@ -91,6 +91,12 @@ struct SurfaceSet {
                      first_of_object[object.value],
                      first_of_object[object.value + 1] - first_of_object[object.value])
                : std::span<const std::uint32_t>();
+  }
+  // Their sizes, by number in partsOf().
+  std::span<const float> sizesOf(ObjectId object) const {
+    const std::size_t count = partsOf(object).size();
+    return count > 0 ? std::span(sizes_of_object).subspan(first_of_object[object.value], count)
+                     : std::span<const float>();
   }
   std::span<const SurfacePatch> patchesOf(const SurfacePart& p) const {
     return std::span(patches).subspan(p.first_patch, p.patch_count);

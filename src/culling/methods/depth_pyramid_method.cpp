@@ -129,7 +129,7 @@ class DepthPyramidMethod final : public CullingMethod {
     }
     culling::drawOccluders(*fine_pyramid_, window_->view(), std::span(sets).first(moving ? 2 : 1),
                            *frame.parallel_for);
-    surfaces_.draw(*fine_pyramid_, frame, false);
+    surfaces_.drawOf(*fine_pyramid_, in_window_);
     fine_pyramid_->finish(*frame.parallel_for);
   }
 

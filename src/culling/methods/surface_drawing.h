@@ -47,6 +47,15 @@ class SurfaceDrawer {
       buffer.draw(*surfaces_, frame.jumped ? in_frustum_ : frame.last_visible, drawing);
     }
   }
+  // Draws the surfaces of some of the objects, in a view that follows no other.
+  template <typename Buffer>
+  void drawOf(Buffer& buffer, std::span<const ObjectId> objects) const {
+    if (draws()) {
+      SurfaceDrawing drawing = drawing_;
+      drawing.step = ViewStep::kJump;
+      buffer.draw(*surfaces_, objects, drawing);
+    }
+  }
   // Draws the surfaces of further objects in the same view.
   template <typename Buffer>
   void drawMore(Buffer& buffer, std::span<const ObjectId> objects) const {
