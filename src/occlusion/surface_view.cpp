@@ -189,7 +189,7 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) const {
     const Vec3d normal = cross(u, v) * image.sign;
     const double size = length(u) * length(v),
                  reach = maxComponent(abs(p)) + maxComponent(abs(u)) + maxComponent(abs(v));
-    // Of the plane through the triangle, at the eye.
+    // This is the value of the triangle's plane at the eye, times the length of the normal.
     const double height = view_.orthographic ? -dot(normal, view_.forward) : -dot(normal, p);
     if (height < -1e-9 * size * (view_.orthographic ? 1.0 : reach)) {
       continue;
