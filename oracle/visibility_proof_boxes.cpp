@@ -106,7 +106,8 @@ Decision VisibilityProof::decideBox(ObjectId object, std::uint32_t max_steps) {
   }
 }
 
-// Of the box whose corners are box_corners_. The positions of a scene come first, then these corners.
+// Returns a side of the box whose corners are box_corners_. Points are numbered: the scene's positions come
+// first, then these corners.
 VisibilityProof::Side VisibilityProof::side(std::uint32_t number) {
   const auto first = static_cast<std::uint32_t>(scene_.scene.positions.size());
   const auto corner = [&](std::uint32_t i) { return first + kSideCorners[number][i % 4]; };

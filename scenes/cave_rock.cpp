@@ -165,7 +165,7 @@ void addRock(MeshBuilder& mesh, const ValueGrid& grid) {
     chunks[{static_cast<int>(from.x), static_cast<int>(from.y), static_cast<int>(from.z)}].push_back(i);
   }
   mesh.place({});
-  // Of each point: the last chunk that it is in, and its place there.
+  // For each point, this holds the number of the last chunk that it is in, and its place there.
   std::vector<std::pair<std::size_t, std::uint32_t>> last(net.points.size());
   std::size_t number = 0;
   for (const auto& [chunk, quads] : chunks) {

@@ -57,7 +57,7 @@ struct WindingEdges {
   PixelRectangle rectangle;
 };
 
-// Draws one group of surfaces after the other: begin(), all of its boundary with addEdge(), how far away it
+// Draws one group of surfaces after the other: begin(), all of its boundary with addEdges(), how far away it
 // is with addDepth(), then resolve().
 class WindingMap {
  public:

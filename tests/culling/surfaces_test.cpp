@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -364,6 +365,165 @@ TEST(SurfaceProbes, MapsOfManySizes) {
         prove(scene, frontView(), raster.depthBuffer(), std::max(1u, width * height / 2000));
     EXPECT_TRUE(checked.right()) << width << " x " << height;
     EXPECT_TRUE(width < 1000 || checked.covered > width * height / 2);
+  }
+}
+
+// The top edge of each wall rises by a pixel in thousands; within one row of pixels its line leaves the map
+// by thousands of pixels.
+TEST(SurfaceProbes, EdgesThatAreNearlyLevelCrossTheirRowsWhereTheyDo) {
+  constexpr std::uint32_t kWidth = 1280, kHeight = 8;
+  View view = frontView();
+  view.aspect = static_cast<double>(kWidth) / kHeight;
+  view.tan_half_fovy = 0.5 * kHeight / 720.0;  // 720 pixels a metre, one metre before the eye
+  const auto at = [](double x, double y) {
+    return Vec3f(static_cast<float>((x - 0.5 * kWidth) / 720.0),
+                 static_cast<float>((y - 0.5 * kHeight) / 720.0), -1.0f);
+  };
+  // Half of a wall's length and what its top rises in that, pixels: walls of 17, 56 and 278 metres.
+  for (const auto& [half, rise] : {std::pair(6000.0, 0.43), {20'000.0, 0.6}, {100'000.0, 0.6}}) {
+    std::vector<Vec3f> corners;
+    addQuad(corners, at(-half, -1e4), at(half, -1e4), at(half, 4.25 + rise), at(-half, 4.25 - rise));
+    const Checked checked = check(sceneOf(corners), view, kWidth, kHeight);
+    EXPECT_TRUE(checked.right()) << half;
+    // The top edge lies within the fifth row of pixels, or begins to do so in the map's middle.
+    EXPECT_GE(checked.covered, 4 * kWidth - 2);
+    EXPECT_LE(checked.covered, 5 * kWidth);
+  }
+}
+
+// The part of the triangle before the near plane is smaller than what single precision makes of half the size
+// of its box.
+TEST(SurfaceProbes, AVertexJustBeforeTheNearPlaneIsCutOff) {
+  const View view = frontView();
+  const double clip = view.near * (1.0 + 1e-6);
+  for (float depth = static_cast<float>(clip - 4.5e-7); depth < clip; depth = std::nextafter(depth, 1.0f)) {
+    const std::array<Vec3f, 3> corners{Vec3f(-0.12f, 0.12f, -depth), Vec3f(-22.0f, -22.0f, -20.0f),
+                                       Vec3f(0.12f, -0.12f, -depth)};
+    const Checked checked = check(sceneOf(corners), view, 16, 16);
+    EXPECT_TRUE(checked.right()) << depth;
+    EXPECT_GT(checked.covered, 50u);
+  }
+}
+
+TEST(SurfaceProbes, TrianglesWithVerticesAlmostInTheNearPlane) {
+  std::mt19937 engine(5);
+  const auto number = test::numbersFrom<double>(engine);
+  std::size_t covered = 0;
+  for (int n = 0; n < 400; ++n) {
+    View view = frontView();
+    view.near = n % 2 == 0 ? 0.1 : 0.25;
+    view.orthographic = n % 4 == 0;
+    view.ortho_height = 4.0;
+    view.far = 1e6;
+    const double clip = view.near * (1.0 + 1e-6), reach = std::exp2(number(-2.0, 14.0));
+    std::vector<Vec3f> vertices, corners;
+    for (std::uint32_t i = 0; i < 16; ++i) {
+      const double depths[] = {number(-reach, reach), number(0.0, 2.0), number(0.0, reach),
+                               clip * (1.0 + number(-3e-7, 3e-7)), clip * (1.0 + number(-6e-6, 6e-6))};
+      const double depth = depths[i % 5], size = view.orthographic ? 1.0 : std::max(std::abs(depth), 0.1);
+      vertices.push_back(Vec3f(Vec3d(number(-3.0, 3.0) * size, number(-3.0, 3.0) * size, -depth)));
+    }
+    for (int i = 0; i < 8; ++i) {
+      const std::size_t first = engine() % 16, second = (first + 1 + engine() % 7) % 16;
+      corners.insert(corners.end(),
+                     {vertices[first], vertices[second], vertices[(second + 1 + engine() % 7) % 16]});
+    }
+    const Checked checked =
+        check(sceneOf(corners, n % 3 == 0), view, 8, 8, {.max_angle_deg = n % 5 < 2 ? 180.0 : 20.0});
+    EXPECT_TRUE(checked.right()) << n;
+    covered += checked.covered;
+  }
+  EXPECT_GT(covered, 2000u);
+}
+
+// Triangles of 100 km whose plane is that of the eye but for 10^-12 metres, as seen straight from the front.
+// What lies behind the plane of the eye hides nothing.
+TEST(SurfaceProbes, ANearDistanceOfZeroLeavesRoomForRounding) {
+  std::mt19937 engine(1);
+  const auto number = test::numbersFrom<double>(engine);
+  std::size_t behind = 0;
+  for (int n = 0; n < 20'000; ++n) {
+    View view = frontView();
+    view.orthographic = true;
+    view.ortho_height = 2000.0;
+    view.near = 0.0;
+    view.far = 1000.0;
+    setOrientation(view, {number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)}, {0.0, 1.0, 0.0});
+    const Vec3d base{std::floor(number(-1e3, 1e3)), std::floor(number(-1e3, 1e3)),
+                     std::floor(number(-1e3, 1e3))};
+    const auto at = [&](double x, double y) { return Vec3f(base + view.right * x + view.up * y); };
+    const std::array<Vec3f, 3> corners{at(-4e4, -4e4), at(4e4, -4e4), at(0.0, 6e4)};
+    const Vec3d a(corners[0]), b(corners[1]), c(corners[2]);
+    Vec3d normal = normalized(cross(b - a, c - a));
+    normal = dot(normal, view.forward) < 0.0 ? -normal : normal;
+    setOrientation(view, normal, view.up);
+    view.eye = (a + b + c) * (1.0 / 3.0) + normal * number(0.0, 8e-12);
+    // Exact to 10^-14 metres.
+    const auto depth = [&](const Vec3d& p) {
+      const auto product = [](double direction, double to, double from) {
+        return static_cast<long double>(direction) * (static_cast<long double>(to) - from);
+      };
+      return product(view.forward.x, p.x, view.eye.x) + product(view.forward.y, p.y, view.eye.y) +
+             product(view.forward.z, p.z, view.eye.z);
+    };
+    const bool all_behind = std::max({depth(a), depth(b), depth(c)}) < -1e-14L;
+    Rasteriser raster({.width = 1, .height = 1});
+    raster.begin(view);
+    const SurfaceSet surfaces = findSurfaces(sceneOf(corners, true).view());
+    raster.draw(surfaces, surfaces.objects, kEverything);
+    EXPECT_FALSE(all_behind && raster.depthBuffer().covered(0, 0)) << n;
+    behind += all_behind ? 1 : 0;
+  }
+  EXPECT_GT(behind, 1000u);
+  View view = frontView();
+  view.orthographic = true;
+  view.ortho_height = 20.0;
+  view.near = 0.0;
+  const Scene beyond = sheet(
+      4, 24.0f, 10.0f, [](float x, float) { return 0.1f * x; }, none);
+  const Checked checked = check(beyond, view, 16, 16);
+  EXPECT_TRUE(checked.right());
+  EXPECT_EQ(checked.covered, 16u * 16u);
+}
+
+// Pairs of triangles that share an edge, in as many parts and clusters as in any other such scene. Folded
+// ones are two patches each.
+Scene pairs(float size, float fold) {
+  Scene scene;
+  const MaterialId material = addMaterial(scene, Opacity::kOpaque, false);
+  for (int i = 0; i < 400; ++i) {
+    const float x = 2.0f * static_cast<float>(i % 20 - 10), y = 2.0f * static_cast<float>(i / 20 - 10);
+    std::vector<Vec3f> corners;
+    addQuad(corners, {x, y, -20.0f}, {x + size, y, -20.0f + fold}, {x + size, y + size, -20.0f},
+            {x, y + size, -20.0f + fold});
+    addTriangles(scene, material, corners);
+  }
+  return scene;
+}
+
+TEST(SurfaceProbes, ASetMadeAnewInTheSamePlaceIsAnotherSet) {
+  const SurfaceSettings settings{.cluster_triangles = 1};
+  const Scene small = pairs(1e-3f, 0.0f), large = pairs(1.8f, 1.5f);
+  Rasteriser raster({.width = 64, .height = 64}), fresh({.width = 64, .height = 64});
+  SurfaceDrawing drawing = kEverything;
+  drawing.step = ViewStep::kNext;
+  SurfaceSet set = findSurfaces(small.view(), settings);
+  const std::size_t parts = set.parts.size(), clusters = set.clusters.size(), patches = set.patches.size();
+  raster.begin(frontView());
+  raster.draw(set, set.objects, drawing);
+  set = findSurfaces(large.view(), settings);
+  ASSERT_EQ(set.parts.size(), parts);
+  ASSERT_EQ(set.clusters.size(), clusters);
+  ASSERT_EQ(set.patches.size(), 2 * patches);
+  raster.begin(frontView());
+  raster.draw(set, set.objects, drawing);
+  fresh.begin(frontView());
+  fresh.draw(set, set.objects, drawing);
+  const Checked checked = prove(large, frontView(), raster.depthBuffer());
+  EXPECT_TRUE(checked.right());
+  EXPECT_GT(checked.covered, 400u);
+  for (std::uint32_t y = 0; y < 64; ++y) {
+    EXPECT_TRUE(std::ranges::equal(raster.depthBuffer().row(y), fresh.depthBuffer().row(y))) << y;
   }
 }
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "sightline/occluders/occluder_set.h"
+#include "sightline/scene/camera.h"
 
 namespace sightline::exact {
 
@@ -58,6 +59,29 @@ struct Camera {
   std::int64_t gx = 1, gy = 1;
   std::int64_t near = 1;
 };
+
+// The camera at a place of the scene, with axis-aligned directions.
+inline View viewOf(const Camera& camera, const Vec3d& eye, const Vec3d& forward, const Vec3d& up) {
+  View view;
+  view.forward = forward;
+  view.up = up;
+  view.right = cross(forward, up);
+  view.eye = eye;
+  view.orthographic = camera.orthographic;
+  view.near = static_cast<double>(camera.near);
+  view.far = 1e4;
+  const auto gx = static_cast<double>(camera.gx), gy = static_cast<double>(camera.gy);
+  view.tan_half_fovy = 1.0 / gy;
+  view.ortho_height = 2.0 * gy;
+  view.aspect = camera.orthographic ? gx / gy : gy / gx;
+  return view;
+}
+
+// The point of the scene with these coordinates in the view's camera space.
+inline Vec3f inScene(const View& view, const Point& p) {
+  return Vec3f(view.eye + view.right * static_cast<double>(p.x) + view.up * static_cast<double>(p.y) +
+               view.forward * static_cast<double>(p.z));
+}
 
 // Aborts where 128 bits do not suffice: such a scene is too large for this judge.
 inline Wide times(Wide a, Wide b) {

@@ -235,26 +235,15 @@ struct Placed {
   Placed(const Scene& scene, std::uint64_t seed) {
     constexpr int kForward[] = {-3, 1, -2};  // along -z, x, -y
     const int way = kForward[seed % 3];
-    view.forward = way == -3 ? Vec3d(0, 0, -1) : way == 1 ? Vec3d(1, 0, 0) : Vec3d(0, -1, 0);
-    view.up = way == -2 ? Vec3d(0, 0, -1) : Vec3d(0, 1, 0);
-    view.right = cross(view.forward, view.up);
-    view.eye = seed % 2 == 0 ? Vec3d(0, 0, 0) : Vec3d(10, -20, 30);
-    const exact::Camera& c = scene.camera;
-    view.orthographic = c.orthographic;
-    view.near = static_cast<double>(c.near);
-    view.far = 1e4;
-    const auto gx = static_cast<double>(c.gx), gy = static_cast<double>(c.gy);
-    view.tan_half_fovy = 1.0 / gy;
-    view.ortho_height = 2.0 * gy;
-    view.aspect = c.orthographic ? gx / gy : gy / gx;
+    const Vec3d forward = way == -3 ? Vec3d(0, 0, -1) : way == 1 ? Vec3d(1, 0, 0) : Vec3d(0, -1, 0);
+    view = exact::viewOf(scene.camera, seed % 2 == 0 ? Vec3d(0, 0, 0) : Vec3d(10, -20, 30), forward,
+                         way == -2 ? Vec3d(0, 0, -1) : Vec3d(0, 1, 0));
     std::vector<OccluderPolygon> input;
     std::vector<std::vector<Vec3f>> vertices;
     for (const Polygon& polygon : scene.polygons) {
       vertices.emplace_back();
       for (const Point& p : polygon.vertices) {
-        vertices.back().push_back(Vec3f(view.eye + view.right * static_cast<double>(p.x) +
-                                        view.up * static_cast<double>(p.y) +
-                                        view.forward * static_cast<double>(p.z)));
+        vertices.back().push_back(exact::inScene(view, p));
       }
     }
     for (std::size_t i = 0; i < vertices.size(); ++i) {

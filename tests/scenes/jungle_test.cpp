@@ -37,11 +37,7 @@ TEST(Jungle, TheDefaultOneHasThousandsOfObjectsMostOfThemSeeThrough) {
   const Scene scene = makeJungle({});
   EXPECT_GE(scene.objects.size(), 3000u);
   EXPECT_LE(scene.objects.size(), 8000u);
-  std::size_t see_through = 0;
-  for (const Object& object : scene.objects) {
-    see_through += scene.view().materialOf(object).opaque() ? 0 : 1;
-  }
-  EXPECT_GT(see_through, scene.objects.size() / 3);
+  EXPECT_GT(countSeeThrough(scene), scene.objects.size() / 3);
 }
 
 TEST(Jungle, ButtesAndTreesAreAsManyAsAskedFor) {
@@ -65,10 +61,7 @@ TEST(Jungle, EachButteIsOneClosedPieceOfSmallTriangles) {
 
 TEST(Jungle, EverythingButGroundAndLeavesIsASolidWithItsFrontsOutside) {
   const Scene scene = makeJungle({.seed = 4});
-  std::size_t leaves = 0;
-  for (const Object& object : scene.objects) {
-    leaves += scene.view().materialOf(object).opaque() ? 0 : 1;
-  }
+  const std::size_t leaves = countSeeThrough(scene);
   const SolidCounts solids = countSolids(scene);
   EXPECT_EQ(solids.closed, scene.objects.size() - leaves - countSheet(scene, "ground ").objects);
   EXPECT_EQ(solids.inside_out, 0u);
@@ -77,13 +70,12 @@ TEST(Jungle, EverythingButGroundAndLeavesIsASolidWithItsFrontsOutside) {
 TEST(Jungle, TheWalkTouchesNothing) {
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
     const Scene scene = makeJungle({.buttes = 100, .trees = 3000, .seed = seed});
-    ASSERT_EQ(scene.paths.size(), 1u);
-    const CameraPath& path = scene.paths.front();
-    EXPECT_EQ(path.frames.size(), 400u);
-    EXPECT_EQ(whatIsHit(scene, path, 0.3), "") << "seed " << seed;
-    EXPECT_EQ(whatLacksGround(scene, path, "ground ", 1.9), "") << "seed " << seed;
-    EXPECT_GT(smallestTurnCosine(path), 0.97);
-    EXPECT_LT(longestStep(path), 2.5);
+    EXPECT_EQ(
+        whatIsWrongWithWalk(
+            scene,
+            {.clearance = 0.3, .ground = "ground ", .most_height = 1.9, .turn_cosine = 0.97, .step = 2.5}),
+        "")
+        << "seed " << seed;
   }
 }
 

@@ -290,4 +290,30 @@ double longestStep(const CameraPath& path) {
   return longest;
 }
 
+std::size_t countSeeThrough(const Scene& scene) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      scene.objects, [&](const Object& object) { return !scene.view().materialOf(object).opaque(); }));
+}
+
+std::string whatIsWrongWithWalk(const Scene& scene, const WalkLimits& limits) {
+  if (scene.paths.size() != 1 || scene.paths.front().frames.size() != 400) {
+    return "not one path of 400 frames";
+  }
+  const CameraPath& path = scene.paths.front();
+  if (const std::string hit = whatIsHit(scene, path, limits.clearance); !hit.empty()) {
+    return "too close: " + hit;
+  }
+  if (const std::string lacking = whatLacksGround(scene, path, limits.ground, limits.most_height);
+      !lacking.empty()) {
+    return "no ground: " + lacking;
+  }
+  if (!(smallestTurnCosine(path) > limits.turn_cosine)) {
+    return "a turn of cosine " + std::to_string(smallestTurnCosine(path));
+  }
+  if (!(longestStep(path) < limits.step)) {
+    return "a step of " + std::to_string(longestStep(path)) + " metres";
+  }
+  return "";
+}
+
 }  // namespace sightline::scene_checks

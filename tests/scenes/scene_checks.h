@@ -37,6 +37,9 @@ double volumeOf(const Scene& scene, const Object& object);
 // clearance metres (including transparent and alpha-tested ones). Otherwise returns the frame and the object.
 std::string whatIsHit(const Scene& scene, const CameraPath& path, double clearance);
 
+// Counts the objects whose material is not opaque.
+std::size_t countSeeThrough(const Scene& scene);
+
 // Objects whose name ends with `end`.
 std::vector<std::size_t> namesThatEndWith(const Scene& scene, std::string_view end);
 
@@ -63,5 +66,17 @@ std::string whatLacksGround(const Scene& scene, const CameraPath& path, std::str
 double smallestTurnCosine(const CameraPath& path);
 // The maximum distance between consecutive eyes, metres.
 double longestStep(const CameraPath& path);
+
+// What a walk through a landscape promises.
+struct WalkLimits {
+  double clearance = 0.0;    // metres between the camera and any triangle, at least
+  std::string_view ground;   // what the names of the objects that are walked on begin with
+  double most_height = 0.0;  // metres of the eye above the ground, at most
+  double turn_cosine = 0.0;  // smallestTurnCosine() is greater
+  double step = 0.0;         // metres; longestStep() is less
+};
+// Returns an empty text if the scene has one path, of 400 frames, that keeps the limits. Otherwise returns
+// what is wrong.
+std::string whatIsWrongWithWalk(const Scene& scene, const WalkLimits& limits);
 
 }  // namespace sightline::scene_checks

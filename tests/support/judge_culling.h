@@ -86,7 +86,7 @@ class CullingJudge {
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
 
-  // The objects, of which those that move, or those that do not, are marked not to be occluders.
+  // Returns the objects; those that move, or those that do not, are marked never to be occluders.
   std::vector<Object> marked(bool some_move, bool of_static) const {
     std::vector<Object> objects(scene_.objects.begin(), scene_.objects.end());
     for (std::uint32_t o = 0; some_move && o < objects.size(); ++o) {
@@ -96,7 +96,7 @@ class CullingJudge {
     return objects;
   }
 
-  // Those that do not move, or those that do.
+  // Finds the occluders of the objects that do not move, or of those that do.
   OccluderSet occludersOf(bool some_move, bool of_static) {
     const std::vector<Object> objects = marked(some_move, of_static);
     SceneView chosen = scene_;
@@ -104,7 +104,7 @@ class CullingJudge {
     return findOccluders(chosen, {.area_fraction = chance(3) ? 0.98 : 1.0});
   }
 
-  // Of what does not move, in pieces of any size.
+  // Finds the surfaces of what does not move, in pieces of any size.
   SurfaceSet surfacesOf(bool some_move) {
     const std::vector<Object> objects = marked(some_move, true);
     SceneView chosen = scene_;

@@ -25,13 +25,13 @@ struct ChainUse {
   std::int32_t value = 0;     // not 0; positive: the cluster lies to the left, seen from its front
 };
 
-// A path of mesh edges at which the same clusters end.
+// A chain is a path of mesh edges at which the same clusters end.
 struct SurfaceChain {
   std::uint32_t first_vertex = 0, vertex_count = 0;  // into SurfaceSet::chain_vertices, at least two
   std::uint32_t first_use = 0, use_count = 0;        // into SurfaceSet::uses, ascending by cluster
 };
 
-// Connected triangles and of similar direction, all single-sided or all double-sided. They
+// A cluster is a set of connected triangles of similar direction, all single-sided or all double-sided. They
 // count as an occluder together or not at all.
 struct SurfaceCluster {
   std::uint32_t first_triangle = 0, triangle_count = 0;  // into SurfaceSet::triangles
@@ -44,11 +44,11 @@ struct SurfaceCluster {
   bool joins_parts = false;  // clusters of other parts adjoin it
 };
 
-// Connected clusters and of similar direction.
+// A patch is a set of connected clusters of similar direction.
 struct SurfacePatch {
   std::uint32_t first_cluster = 0, cluster_count = 0;  // into SurfaceSet::clusters
   std::uint32_t edge_count = 0;                        // of its boundary
-  // As of a cluster.
+  // These have the same meaning as those of a cluster.
   Plane support{};
   double thickness = 0.0;
   bool double_sided = false;
@@ -57,7 +57,7 @@ struct SurfacePatch {
   float cone_cosine = -1.0f;
 };
 
-// Connected patches.
+// A part is a set of connected patches.
 struct SurfacePart {
   std::uint32_t first_patch = 0, patch_count = 0;  // into SurfaceSet::patches
   std::uint32_t edge_count = 0;                    // of its boundary
@@ -67,7 +67,8 @@ struct SurfacePart {
 struct SurfaceSet {
   // Scene space; no two are equal, and they ascend by x, y and z.
   std::vector<Vec3f> vertices{};
-  // By cluster: three vertices each, counter-clockwise from the front.
+  // Each triangle has three vertices, counter-clockwise as seen from its front; triangles are sorted by
+  // cluster.
   std::vector<std::uint32_t> triangles{};
   std::vector<SurfaceCluster> clusters{};  // by patch
   std::vector<SurfacePatch> patches{};     // by part
