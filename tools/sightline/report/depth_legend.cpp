@@ -33,14 +33,6 @@ constexpr Glyph kGlyphs[] = {
     {'.', {0x00, 0x00, 0x00, 0x00, 0x00, 0x0c, 0x0c}}, {'k', {0x10, 0x10, 0x12, 0x14, 0x18, 0x14, 0x12}},
     {'m', {0x00, 0x00, 0x1a, 0x15, 0x15, 0x11, 0x11}}};
 
-// 0.35 -> "0.35 m", 7.25 -> "7.3 m", 310.4 -> "310 m", 12000 -> "12 km"
-std::string depthText(double metres) {
-  const bool kilo = metres >= 9999.5;
-  const double value = kilo ? metres / 1000.0 : metres;
-  const int decimals = value >= 9.95 || value == std::floor(value) ? 0 : value >= 0.995 ? 1 : 2;
-  return fmt::format("{:.{}f} {}", value, decimals, kilo ? "km" : "m");
-}
-
 class Strip {
  public:
   Strip(Image& image, std::uint32_t top, std::uint32_t unit) : image_(image), top_(top), unit_(unit) {}
@@ -82,7 +74,7 @@ class Strip {
   std::uint32_t top_, unit_;
 };
 
-// Ticks of the axis that have room for their text, the ends of the scale first.
+// The ticks, with the text of those that have room for it, the ends of the scale first.
 class DepthAxis {
  public:
   DepthAxis(Strip& strip, const DepthScale& scale, std::uint32_t left, std::uint32_t width,
@@ -106,6 +98,7 @@ class DepthAxis {
     const std::string text = depthText(metres);
     const std::uint32_t length = strip_.widthOf(text);
     const auto at = left_ + static_cast<std::uint32_t>(std::lround(scale_.place(metres) * (width_ - unit_)));
+    strip_.fill(at, y, unit_, kTick * unit_, kInk);
     const std::uint32_t most = left_ + width_ > length ? left_ + width_ - length : 0;
     const std::uint32_t begin =
         std::clamp(at > length / 2 ? at - length / 2 : 0, std::min(left_, most), most);
@@ -116,7 +109,6 @@ class DepthAxis {
       }
     }
     taken_.push_back({begin, begin + length});
-    strip_.fill(at, y, unit_, kTick * unit_, kInk);
     strip_.write(begin, y + (kTick + kAboveText) * unit_, text);
   }
 
@@ -127,6 +119,13 @@ class DepthAxis {
 };
 
 }  // namespace
+
+std::string depthText(double metres) {
+  const bool kilo = metres >= 9999.5;
+  const double value = kilo ? metres / 1000.0 : metres;
+  const int decimals = value >= 9.95 || value == std::floor(value) ? 0 : value >= 0.995 ? 1 : 2;
+  return fmt::format("{:.{}f} {}", value, decimals, kilo ? "km" : "m");
+}
 
 Image withDepthLegend(const Image& picture, const DepthScale& scale,
                       std::span<const std::span<const DepthColor>> ramps) {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "sightline/occlusion/rasteriser.h"
+#include "tools/sightline/report/depth_legend.h"
 #include "tools/sightline/walk/coverage_picture.h"
 #include "tools/sightline/walk/walk_report.h"
 
@@ -109,15 +111,20 @@ CoverageMap coverageOf(const WalkRecord& record, const KeptFrame& frame, const O
                      frame.view.orthographic);
 }
 
-// "40,231 of 57,600 pixels of the coverage map are covered (69.8 %), 2.1 to 310 metres away, by ..."
+// 0.6984 -> "69.8"; only all of it is "100.0".
+std::string percentText(double share) {
+  return fmt::format("{:.1f}", share < 1.0 ? std::min(100.0 * share, 99.9) : 100.0);
+}
+
+// "Coverage map, 320 x 180: 40,231 of 57,600 pixels are covered (69.8 %), from 2.1 m to 310 m away. ..."
 std::string coverageCaption(const WalkRecord& record, const KeptFrame& frame, const CoverageMap& map) {
   std::string text =
-      fmt::format("Coverage map, {} x {}: {} of {} pixels are covered ({:.1f} %)", map.width, map.height,
-                  grouped(map.covered()), grouped(map.covered_by.size()), 100.0 * map.share());
+      fmt::format("Coverage map, {} x {}: {} of {} pixels are covered ({} %)", map.width, map.height,
+                  grouped(map.covered()), grouped(map.covered_by.size()), percentText(map.share()));
   if (map.covered() == 0) {
     return text + ".";
   }
-  text += fmt::format(", from {:.3g} to {:.3g} metres away.", map.scale.nearest, map.scale.farthest);
+  text += fmt::format(", from {} to {} away.", depthText(map.scale.nearest), depthText(map.scale.farthest));
   const bool surfaces = record.runs[record.shown].setting.surfaces() != SurfaceUse::kNone;
   const auto groups = statisticOf(record, frame.frame, "surfaces", "groups");
   const auto edges = statisticOf(record, frame.frame, "surfaces", "edges");
