@@ -48,6 +48,7 @@ TEST(DepthBufferAnswers, SurfacesOfObjectsThatComeIntoViewAreCountedWithTheOther
   const Walls walls;
   Culler culler(walls.parts(), depthPyramid());
   culler.cull(frontView());
+  EXPECT_EQ(culler.visible().size(), 1u);
   EXPECT_EQ(culler.statistic("surfaces", "edges"), 4u) << "the wall ahead";
   const std::uint64_t groups = culler.statistic("surfaces", "groups");
   EXPECT_GT(groups, 0u);

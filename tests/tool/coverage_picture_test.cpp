@@ -204,12 +204,26 @@ TEST_F(WalkWithoutPictures, NothingIsDrawnNorSaidToBeEqual) {
   for (const std::string picture : {"frame", "plan"}) {
     EXPECT_FALSE(std::filesystem::exists(report_ + "/" + picture + "_0000.png")) << picture;
   }
+  EXPECT_FALSE(std::filesystem::exists(report_ + "/frame_time.svg"));
+  EXPECT_NE(contents(report_ + "/cull_time.svg").find("Cull time"), std::string::npos);
   EXPECT_EQ(html().find("equal"), std::string::npos);
   EXPECT_EQ(html().find("the frame rate of"), std::string::npos);
   const nlohmann::json result = parse(contents(report_ + "/walk.json"));
   EXPECT_EQ(result["device"], "");
   EXPECT_EQ(result["runs"][1]["frames"][0]["draw_us"], 0.0);
   EXPECT_EQ(result["runs"][1]["frames"][0]["triangles"], 2) << "what is behind the wall is hidden";
+}
+
+TEST_F(WalkWithoutPictures, AWalkThatFindsNoOpenGlNamesTheOption) {
+  const Outcome outcome = runProgram("env", {"__EGL_VENDOR_LIBRARY_DIRS=/nowhere", SIGHTLINE_TOOL, "walk",
+                                             "demo:glass", "--frames", "0", "-o", report_});
+  if (outcome.code == 0) {
+    GTEST_SKIP() << "the variable does not hide this machine's OpenGL";
+  }
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.errorLines(), 1);
+  EXPECT_NE(outcome.err.find("--no-pictures"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(report_));
 }
 
 }  // namespace

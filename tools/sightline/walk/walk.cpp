@@ -37,6 +37,7 @@ constexpr std::size_t kEverythingEvery =
 constexpr const char* kJsonFile = "walk.json";
 constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
                                                 "nodes_tested.svg"};
+constexpr std::size_t kFrameTimePlot = 1;  // made only if something was drawn
 // The names of the files in the report's folder. frames are those that get pictures, if they are known
 // already; each run may add one picture for each frame that differs.
 std::vector<std::string> filesOfFolder(std::span<const std::uint32_t> frames = {}, std::size_t runs = 0) {
@@ -188,10 +189,12 @@ class Walker {
 };
 
 Status writePlots(const Report& report, const std::string& folder) {
-  for (std::size_t i = 0; i < report.plots.size(); ++i) {
-    if (const Status ok = writeFile(folder + "/" + kPlotFiles[i], toSvg(report.plots[i])); !ok) {
+  std::size_t file = 0;
+  for (const Plot& plot : report.plots) {
+    if (const Status ok = writeFile(folder + "/" + kPlotFiles[file], toSvg(plot)); !ok) {
       return ok;
     }
+    file += file + 1 == kFrameTimePlot && !report.drawn ? 2 : 1;
   }
   return Success{};
 }
