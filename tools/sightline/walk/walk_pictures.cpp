@@ -180,8 +180,11 @@ class PictureWriter {
 
   void addPlan(const KeptFrame& frame) {
     const std::string objects =
-        fmt::format("{} objects kept, {} hidden in the frustum, {} occluders", grouped(frame.visible.size()),
-                    grouped(frame.in_frustum.size() - frame.visible.size()), grouped(frame.occluders.size()));
+        fmt::format("{} objects kept, {} hidden in the frustum, {}", grouped(frame.visible.size()),
+                    grouped(frame.in_frustum.size() - frame.visible.size()),
+                    record_.runs[record_.shown].setting.surfaces() == SurfaceUse::kAlone
+                        ? "whole surfaces as occluders"
+                        : grouped(frame.occluders.size()) + " occluders");
     add(drawPlanOf(frame, scene_, occluders_, *renderer_), "plan",
         {.caption = objects, .frame = frame.frame, .plan = true});
   }
