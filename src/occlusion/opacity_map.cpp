@@ -132,6 +132,9 @@ DepthBufferView OpacityMap::depthBuffer() const {
 const OpacityMapStats& OpacityMap::stats() const {
   return impl_->stats;
 }
+const SurfaceStats& OpacityMap::surfaceStats() const {
+  return impl_->raster.surfaceStats();
+}
 std::span<const OccluderId> OpacityMap::occluders() const {
   return impl_->raster.occluders();
 }

@@ -81,6 +81,7 @@ class OpacityMap {
 
   DepthBufferView depthBuffer() const;  // valid until the next begin() or build()
   const OpacityMapStats& stats() const;
+  const SurfaceStats& surfaceStats() const;  // of the last draw() of surfaces
   std::span<const OccluderId> occluders() const;
 
  private:

@@ -53,6 +53,8 @@ class DepthPyramidMethod final : public CullingMethod {
     own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, *frame.parallel_for);
     surfaces_.begin(frame);
     surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
+    groups_ = edges_ = 0;
+    countSurfaces();
     pyramid_->finish(*frame.parallel_for);
     focused_ = false;
     if (window_) {
@@ -82,9 +84,8 @@ class DepthPyramidMethod final : public CullingMethod {
     stats.occluders = raster.occluders;
     statistics_[0].value = raster.hidden;
     statistics_[1].value = focused_ ? 1 : 0;
-    const SurfaceStats& surfaces = pyramid_->surfaceStats();
-    statistics_[2].value = surfaces.groups;
-    statistics_[3].value = surfaces.edges;
+    statistics_[2].value = groups_;
+    statistics_[3].value = edges_;
   }
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
@@ -151,7 +152,16 @@ class DepthPyramidMethod final : public CullingMethod {
     traversal_->run({*pyramid_}, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
     findNews(found_);
     surfaces_.drawMore(*pyramid_, news_);
+    countSurfaces();
     pyramid_->finish(*frame.parallel_for);
+  }
+
+  // Adds what the last draw() of surfaces drew to the frame's counts.
+  void countSurfaces() {
+    if (surfaces_.draws()) {
+      groups_ += pyramid_->surfaceStats().groups;
+      edges_ += pyramid_->surfaceStats().edges;
+    }
   }
 
   // Where more than one of so many objects that were kept is new, the view changes fast, and the surfaces of
@@ -168,7 +178,8 @@ class DepthPyramidMethod final : public CullingMethod {
   // The focus window and its finer depth buffer; empty if the settings turn them off.
   std::optional<culling::FocusWindow> window_;
   std::optional<DepthPyramid> fine_pyramid_;
-  bool focused_ = false;  // this frame has a window
+  bool focused_ = false;                  // this frame has a window
+  std::uint64_t groups_ = 0, edges_ = 0;  // of the surfaces in the pyramid
   OccluderChooser chooser_;
   std::vector<ObjectId> in_window_;
   std::vector<OccluderId> fine_chosen_;

@@ -18,7 +18,13 @@ class OpacityMapMethod final : public CullingMethod {
  public:
   explicit OpacityMapMethod(const OpacityMapMethodSettings& settings)
       : settings_(settings), surfaces_(settings.surfaces, settings.drawing, settings.map.raster.coverage) {
+    if (settings.surfaces != SurfaceUse::kNone) {
+      surface_statistics_ = statistics_.size();
+      statistics_.push_back({"surfaces", "groups", "groups of surfaces drawn"});
+      statistics_.push_back({"surfaces", "edges", "edges of their boundaries"});
+    }
     if (adapts()) {
+      adaptive_statistics_ = statistics_.size();
       statistics_.push_back({"map", "suspended", "frames without occlusion culling"});
       statistics_.push_back({"coverage", "per_mille", "coverage ratio, per mille"});
     }
@@ -68,9 +74,15 @@ class OpacityMapMethod final : public CullingMethod {
     statistics_[3].value = counts.given_up;
     statistics_[4].value = counts.depth_tests;
     statistics_[5].value = counts.depths_compared;
+    if (surface_statistics_ > 0) {
+      const SurfaceStats drawn = suspended_ || !surfaces_.draws() ? SurfaceStats{} : map_->surfaceStats();
+      statistics_[surface_statistics_].value = drawn.groups;
+      statistics_[surface_statistics_ + 1].value = drawn.edges;
+    }
     if (adapts()) {
-      statistics_[6].value = suspended_ ? 1 : 0;
-      statistics_[7].value = static_cast<std::uint64_t>(std::llround(1000.0 * coverage_->ratio()));
+      statistics_[adaptive_statistics_].value = suspended_ ? 1 : 0;
+      statistics_[adaptive_statistics_ + 1].value =
+          static_cast<std::uint64_t>(std::llround(1000.0 * coverage_->ratio()));
       coverage_->frame(stats.choose_us + stats.build_us + stats.traverse_us,
                        static_cast<double>(stats.hidden_triangles) * settings_.triangle_us);
     }
@@ -85,7 +97,9 @@ class OpacityMapMethod final : public CullingMethod {
   std::span<const OccluderId> occludersUsed() const override {
     return suspended_ ? std::span<const OccluderId>() : map_->occluders().first(own_occluders_);
   }
-  DepthBufferView depthBuffer() const override { return map_->depthBuffer(); }
+  DepthBufferView depthBuffer() const override {
+    return suspended_ ? DepthBufferView{} : map_->depthBuffer();
+  }
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
@@ -104,6 +118,8 @@ class OpacityMapMethod final : public CullingMethod {
                                            {"map", "given_up", "given up for little coverage"},
                                            {"map", "depth_tests", "depth tests"},
                                            {"map", "depths_compared", "depths compared"}};
+  // The first of the statistics of surfaces, and of an adaptive coverage ratio; 0: there are none.
+  std::size_t surface_statistics_ = 0, adaptive_statistics_ = 0;
 };
 
 }  // namespace

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "sightline/io/file.h"
 #include "sightline/render/plan_view.h"
+#include "tools/sightline/report/depth_colors.h"
 #include "tools/sightline/report/markup.h"
 #include "tools/sightline/report/report_style.h"
 
@@ -34,7 +36,7 @@ std::string tile(const std::string& number, const std::string& text) {
 // Adds the headline: the fastest method's gain over view-frustum culling, and whether all pictures are
 // correct.
 void addTiles(std::string& out, const Report& report) {
-  if (report.rows.size() < 2) {
+  if (report.rows.size() < 2 || !report.drawn) {
     return;
   }
   const auto best =
@@ -85,15 +87,17 @@ std::string picturesCell(const ReportRow& row) {
              : fmt::format("<td class=\"bad\">{} differ{}</td>", *row.frames_differing, ties);
 }
 
-void addRow(std::string& out, const ReportRow& row) {
+void addRow(std::string& out, const ReportRow& row, bool drawn) {
   const double share = std::isfinite(row.triangles_share) ? std::clamp(row.triangles_share, 0.0, 1.0) : 0.0;
   out += "<tr><td>" + escapeMarkup(row.method) + "<small>" + escapeMarkup(row.options) + "</small></td>";
   out += "<td>" + groupedNumber(row.triangles, 0) + "</td>";
   out += fmt::format("<td class=\"share\" style=\"--share: {:.1f}%\">{}</td>", 100.0 * share,
                      percent(row.triangles_share));
-  for (const std::string& cell : {groupedNumber(row.objects, 1), milliseconds(row.cull_ms),
-                                  milliseconds(row.draw_ms), milliseconds(row.frame_ms), factor(row.speed_up),
-                                  groupedNumber(row.nodes_tested, 1), groupedNumber(row.occluders, 1)}) {
+  const auto ofDrawing = [drawn](const std::string& cell) { return drawn ? cell : "–"; };
+  for (const std::string& cell :
+       {groupedNumber(row.objects, 1), milliseconds(row.cull_ms), ofDrawing(milliseconds(row.draw_ms)),
+        ofDrawing(milliseconds(row.frame_ms)), ofDrawing(factor(row.speed_up)),
+        groupedNumber(row.nodes_tested, 1), groupedNumber(row.occluders, 1)}) {
     out += "<td>" + cell + "</td>";
   }
   out += picturesCell(row) + "</tr>\n";
@@ -109,7 +113,7 @@ void addTable(std::string& out, const Report& report) {
       "frustum’s</th><th>objects<br>drawn</th><th>cull<br>ms</th><th>draw<br>ms</th><th>frame<br>ms</th>"
       "<th>speed-up</th><th>nodes<br>tested</th><th>occluders</th><th>pictures</th></tr></thead>\n<tbody>\n";
   for (const ReportRow& row : report.rows) {
-    addRow(out, row);
+    addRow(out, row, report.drawn);
   }
   out +=
       "</tbody></table></div>\n<p class=\"hint\">Means over all frames. Frame is cull plus draw; speed-up is "
@@ -143,14 +147,40 @@ void addPlanLegend(std::string& out) {
   out += "</ul>\n";
 }
 
+std::string gradientOf(std::span<const DepthColor> ramp) {
+  std::string colors;
+  for (const DepthColor& c : ramp) {
+    colors += fmt::format(", rgb({}, {}, {})", c[0], c[1], c[2]);
+  }
+  return "linear-gradient(to right" + colors + ")";
+}
+
+void addCoverageLegend(std::string& out) {
+  const auto item = [&out](const std::string& background, const char* text) {
+    out += "<li><i class=\"wide\" style=\"background: " + background + "\"></i>" + text + "</li>\n";
+  };
+  const DepthColor& none = kUncoveredColor;
+  out += "<ul class=\"legend\">\n";
+  item(gradientOf(greenRamp()), "covered by whole surfaces, from near to far");
+  item(gradientOf(redRamp()), "covered by chosen occluders");
+  item(fmt::format("rgb({}, {}, {})", none[0], none[1], none[2]), "not covered: hides nothing");
+  out += "</ul>\n";
+}
+
 void addPictures(std::string& out, const Report& report) {
   if (report.pictures.empty()) {
     return;
   }
   out += "<h2>Pictures</h2>\n";
-  if (std::any_of(report.pictures.begin(), report.pictures.end(),
-                  [](const ReportPicture& p) { return p.plan; })) {
+  const auto any = [&](bool ReportPicture::*is) {
+    return std::any_of(report.pictures.begin(), report.pictures.end(),
+                       [is](const ReportPicture& picture) { return picture.*is; });
+  };
+  if (any(&ReportPicture::plan)) {
     addPlanLegend(out);
+  }
+  if (any(&ReportPicture::coverage)) {
+    addCoverageLegend(out);
   }
   std::map<std::uint32_t, std::vector<const ReportPicture*>> by_frame;
   for (const ReportPicture& picture : report.pictures) {

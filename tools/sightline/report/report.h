@@ -35,14 +35,16 @@ struct ReportPicture {
   std::string file{};  // a name inside the report's folder
   std::string caption{};
   std::uint32_t frame = 0;
-  bool plan = false;      // a plan view, below which the legend of its colours is shown
+  bool plan = false;      // a plan view, the colours of which are explained above all pictures
   std::string heading{};  // of a frame's first picture: stands over the frame in place of its number
+  bool coverage = false;  // a coverage map, the colours of which are explained above all pictures
 };
 
 struct Report {
   std::string title{};    // the scene's name
   std::string summary{};  // one sentence under the title; may be empty
   std::string command{};  // the command line that made it
+  bool drawn = true;      // false: the rows have no times of drawing, and no pictures were compared
   std::vector<ReportFact> facts{};
   std::vector<ReportRow> rows{};  // view-frustum culling is the first
   std::vector<Plot> plots{};

@@ -42,6 +42,7 @@ figcaption { color: var(--dim); font-size: 14px; padding-top: 6px; }
 .legend { display: flex; flex-wrap: wrap; gap: 4px 18px; list-style: none; padding: 0; margin: 0 0 4px; font-size: 14px; }
 .legend i { display: inline-block; width: 14px; height: 14px; border-radius: 3px; margin-right: 7px;
   vertical-align: -2px; border: 1px solid rgba(128, 128, 128, 0.5); }
+.legend i.wide { width: 48px; }
 pre { background: var(--card); border-radius: 8px; padding: 12px 16px; margin: 0; white-space: pre-wrap;
   font: 14px/1.5 ui-monospace, SFMono-Regular, Menlo, Consolas, monospace; }
 li { margin-bottom: 4px; max-width: 75ch; }

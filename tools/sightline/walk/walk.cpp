@@ -8,7 +8,9 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "sightline/io/file.h"
 #include "sightline/render/compare.h"
@@ -35,13 +37,14 @@ constexpr std::size_t kEverythingEvery =
 constexpr const char* kJsonFile = "walk.json";
 constexpr std::array<const char*, 4> kPlotFiles{"triangles.svg", "frame_time.svg", "cull_time.svg",
                                                 "nodes_tested.svg"};
+constexpr std::size_t kFrameTimePlot = 1;  // made only if something was drawn
 // The names of the files in the report's folder. frames are those that get pictures, if they are known
 // already; each run may add one picture for each frame that differs.
 std::vector<std::string> filesOfFolder(std::span<const std::uint32_t> frames = {}, std::size_t runs = 0) {
   std::vector<std::string> files(kPlotFiles.begin(), kPlotFiles.end());
   files.insert(files.end(), {"index.html", kJsonFile});
   for (const std::uint32_t frame : frames) {
-    for (const char* picture : {"frame", "plan", "coverage", "depth"}) {
+    for (const char* picture : {"frame", "coverage", "plan"}) {
       files.push_back(fmt::format("{}_{:04}.png", picture, frame));
     }
     for (std::size_t run = 0; run < runs; ++run) {
@@ -57,12 +60,14 @@ struct WalkOptions {
   MethodOptions method;
   std::string folder;
   PictureOptions picture;
+  bool no_pictures = false;  // draw nothing, without OpenGL
   std::string command_line;
 };
 
+// renderer: null draws and compares nothing.
 class Walker {
  public:
-  Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer& renderer,
+  Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer* renderer,
          const std::string& folder, std::vector<WalkRun> runs)
       : scene_(scene), walk_(walk), data_(data), renderer_(renderer), folder_(folder), chooser_(walk.frames) {
     record_.runs = std::move(runs);
@@ -74,7 +79,7 @@ class Walker {
   // Walks all frames. If the process is told to end, stops after the current frame.
   Result<WalkRecord> run() {
     record_.shown = record_.runs.size() > 1 ? 1 : 0;
-    record_.device = renderer_.device();
+    record_.device = renderer_ != nullptr ? renderer_->device() : "";
     images_.resize(record_.runs.size());
     ProgressBar progress("walking");
     for (std::size_t i = 0; i < walk_.frames.size(); ++i) {
@@ -95,10 +100,14 @@ class Walker {
     const std::uint32_t frame = walk_.frames[i];
     const View view = walk_.view(frame, scene_);
     cullFrame(record_.runs, data_, frame, view);
-    drawFrame(record_.runs, view, renderer_, &images_);
     keep(frame, view);
+    return renderer_ != nullptr ? drawAndCompare(i, view) : Status(Success{});
+  }
+
+  Status drawAndCompare(std::size_t i, const View& view) {
+    drawFrame(record_.runs, view, *renderer_, &images_);
     if (i % kEverythingEvery == 0) {
-      if (const Status drawn = compare(renderer_.draw(view, everything_), everything_, 0, view); !drawn) {
+      if (const Status drawn = compare(renderer_->draw(view, everything_), everything_, 0, view); !drawn) {
         return drawn;
       }
     }
@@ -122,7 +131,7 @@ class Walker {
     const std::uint32_t frame = run.frames.back().frame;
     const std::span<const ObjectId> kept = run.run.culler.visible();
     const std::vector<ObjectId> culled = culledOf(reference_objects, kept);
-    if (!culled.empty() && renderer_.countShowing(view, kept, culled) == 0) {
+    if (!culled.empty() && renderer_->countShowing(view, kept, culled) == 0) {
       run.frames.back().tie = true;
       return Success{};
     }
@@ -162,13 +171,7 @@ class Walker {
     kept.in_frustum.assign(all.visible().begin(), all.visible().end());
     kept.visible.assign(shown.visible().begin(), shown.visible().end());
     kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
-    const DepthBufferView map = shown.depthBuffer();
-    kept.depth_buffer.width = map.width;
-    kept.depth_buffer.height = map.height;
-    for (std::uint32_t y = 0; y < map.height; ++y) {
-      kept.depth_buffer.reciprocal_depth.insert(kept.depth_buffer.reciprocal_depth.end(), map.row(y).begin(),
-                                                map.row(y).end());
-    }
+    kept.depth_buffer = copyOf(shown.depthBuffer());
     kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
     kept.triangles_visible = data_.trianglesOf(kept.visible);
     chooser_.offer(kept);
@@ -177,7 +180,7 @@ class Walker {
   const Scene& scene_;
   const Walk& walk_;
   CullingData& data_;
-  Renderer& renderer_;
+  Renderer* renderer_;
   const std::string& folder_;
   std::vector<ObjectId> everything_;
   PictureChooser chooser_;
@@ -186,16 +189,18 @@ class Walker {
 };
 
 Status writePlots(const Report& report, const std::string& folder) {
-  for (std::size_t i = 0; i < report.plots.size(); ++i) {
-    if (const Status ok = writeFile(folder + "/" + kPlotFiles[i], toSvg(report.plots[i])); !ok) {
+  std::size_t file = 0;
+  for (const Plot& plot : report.plots) {
+    if (const Status ok = writeFile(folder + "/" + kPlotFiles[file], toSvg(plot)); !ok) {
       return ok;
     }
+    file += file + 1 == kFrameTimePlot && !report.drawn ? 2 : 1;
   }
   return Success{};
 }
 
 Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRecord& record,
-                Renderer& renderer) {
+                Renderer* renderer) {
   Result<std::vector<ReportPicture>> pictures =
       drawPictures(record, input.scene, input.data.occluders(), renderer, options.folder);
   if (!pictures) {
@@ -218,16 +223,21 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
                            const SceneAndWalk& input) {
   const auto& [scene, walk, baked] = input;
   const auto [width, height] = pictureSize(options.picture, walk.path);
-  Result<Renderer> renderer = Renderer::create(scene.view(), width, height);
-  if (!renderer) {
-    return renderer.error();
+  std::optional<Renderer> renderer;
+  if (!options.no_pictures) {
+    Result<Renderer> created = Renderer::create(scene.view(), width, height);
+    if (!created) {
+      return Error{created.error().message + "; --no-pictures walks without it"};
+    }
+    renderer.emplace(std::move(*created));
   }
   if (const Status made = makeFolder(options.folder); !made) {
     return made.error();
   }
   const Threads threads(options.common.threads);
   CullingData data(scene, threads.parallelFor(), walk, baked);
-  Walker walker(scene, walk, data, *renderer, options.folder, makeRuns(settings, data));
+  Renderer* const drawing = renderer ? &*renderer : nullptr;
+  Walker walker(scene, walk, data, drawing, options.folder, makeRuns(settings, data));
   const SignalGuard guard;  // if told to end, the walker stops early and its results are still written
   Result<WalkRecord> record = walker.run();
   if (!record) {
@@ -239,7 +249,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   record->width = width;
   record->height = height;
   const WalkInput walked{options.common.scene, scene, walk, data};
-  if (const Status written = writeAll(options, walked, *record, *renderer); !written) {
+  if (const Status written = writeAll(options, walked, *record, drawing); !written) {
     return written.error();
   }
   if (options.common.textOnStdout()) {
@@ -298,10 +308,16 @@ void addWalk(CLI::App& app, Command& chosen) {
       ->type_name(kFolderType)
       ->check(isNotEmpty());
   addPictureOptions(*command, options->picture);
+  command->add_flag(
+      "--no-pictures", options->no_pictures,
+      "draw and compare nothing, so that no OpenGL is needed; of the pictures, only coverage maps "
+      "are written");
   command->footer(
       "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
       "picture, "
       "ties of the depth buffer apart.\n"
+      "With a method that has a depth buffer of occluders (opacity-map, depth-pyramid) as the first one, the "
+      "report shows in some frames which of its pixels are covered, and how far away what covers them is.\n"
       "Interrupted (Ctrl-C), it writes the report of the frames walked so far and ends with exit code 130.\n"
       "Examples:\n"
       "  sightline walk demo:city -o report\n"
@@ -312,7 +328,8 @@ void addWalk(CLI::App& app, Command& chosen) {
       "report\n"
       "  sightline walk demo:ship --baked ship.sight --method visibility-octree,depth-pyramid --visible-sets "
       "on,off -o report\n"
-      "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report");
+      "  sightline walk demo:building --frames 0:400:4 --width 640 --height 360 -o report\n"
+      "  sightline walk demo:terrain --method depth-pyramid --no-pictures -o report");
   command->callback([options, command, &chosen] {
     options->command_line = commandLine(*command);
     chosen = [options] { return runWalk(*options); };

@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
 
+#include "sightline/occlusion/rasteriser.h"
+#include "tools/sightline/report/depth_legend.h"
+#include "tools/sightline/walk/coverage_picture.h"
 #include "tools/sightline/walk/walk_report.h"
 
 namespace sightline::tool {
@@ -16,6 +21,8 @@ constexpr double kRoofAbove = 8.0;    // a surface overhead within so many metre
 constexpr float kRoofWidth = 1.5f;    // its smallest size in metres, in both directions
 constexpr double kCutAboveEye = 0.5;  // metres between the eye and the cut of an indoor plan
 constexpr double kMinRadius = 8.0;    // of a plan, in metres
+// Pixels: so wide is the picture of a depth buffer at least, that its single pixels can be seen.
+constexpr std::uint32_t kMinCoverageWidth = 960;
 
 double shareKept(const KeptFrame& frame) {
   return frame.triangles_in_frustum > 0
@@ -74,45 +81,130 @@ Image drawPlanOf(const KeptFrame& frame, const Scene& scene, const OccluderSet& 
   return renderer.drawPlan(plan);
 }
 
-// A picture of the depth buffer, top row first. shade(reciprocal depth) is the grey of a pixel.
-template <typename Shade>
-Image depthBufferImage(const KeptDepthBuffer& buffer, Shade&& shade) {
-  Image image{buffer.width, buffer.height, {}};
-  for (std::uint32_t y = buffer.height; y-- > 0;) {
-    for (std::uint32_t x = 0; x < buffer.width; ++x) {
-      const std::uint8_t grey = shade(buffer.reciprocal_depth[std::size_t{y} * buffer.width + x]);
-      image.rgba.insert(image.rgba.end(), {grey, grey, grey, 255});
+// The value of a statistic of the shown run in a frame; empty if the run has no such one.
+std::optional<std::uint64_t> statisticOf(const WalkRecord& record, std::uint32_t frame,
+                                         std::string_view group, std::string_view name) {
+  const WalkRun& run = record.runs[record.shown];
+  for (const FrameRecord& of_frame : run.frames) {
+    for (std::size_t i = 0; of_frame.frame == frame && i < run.statistics.size(); ++i) {
+      if (run.statistics[i].group == group && run.statistics[i].name == name) {
+        return of_frame.statistics[i];
+      }
     }
   }
-  return image;
+  return std::nullopt;
 }
 
-Image coverageImage(const KeptDepthBuffer& buffer) {
-  return depthBufferImage(
-      buffer, [](float reciprocal_depth) -> std::uint8_t { return reciprocal_depth > kUncovered ? 255 : 0; });
+// What covers the pixels of the frame's map. With surfaces and occluders, the occluders are drawn once more
+// alone.
+CoverageMap coverageOf(const WalkRecord& record, const KeptFrame& frame, const OccluderSet& occluders) {
+  const Setting& setting = record.runs[record.shown].setting;
+  const bool surfaces = setting.surfaces() != SurfaceUse::kNone;
+  KeptDepthBuffer alone;
+  if (surfaces && !frame.occluders.empty()) {
+    Rasteriser rasteriser(setting.raster);
+    rasteriser.begin(frame.view);
+    rasteriser.draw(occluders, frame.occluders);
+    alone = copyOf(rasteriser.depthBuffer());
+  }
+  return coverageMap(frame.depth_buffer, alone, surfaces ? CoveredBy::kSurface : CoveredBy::kOccluder,
+                     frame.view.orthographic);
 }
 
-// Greys from the farthest (dark) to the nearest (white) in equal steps of rank, so that all distances can be
-// distinguished.
-Image depthImage(const KeptDepthBuffer& buffer) {
-  std::vector<float> sorted;
-  std::copy_if(buffer.reciprocal_depth.begin(), buffer.reciprocal_depth.end(), std::back_inserter(sorted),
-               [](float reciprocal_depth) { return reciprocal_depth > kUncovered; });
-  std::sort(sorted.begin(), sorted.end());
-  return depthBufferImage(buffer, [&](float reciprocal_depth) -> std::uint8_t {
-    if (!(reciprocal_depth > kUncovered)) {
-      return 0;
+// 0.6984 -> "69.8"; only all of it is "100.0".
+std::string percentText(double share) {
+  return fmt::format("{:.1f}", share < 1.0 ? std::min(100.0 * share, 99.9) : 100.0);
+}
+
+// "Coverage map, 320 x 180: 40,231 of 57,600 pixels are covered (69.8 %), from 2.1 m to 310 m away. ..."
+std::string coverageCaption(const WalkRecord& record, const KeptFrame& frame, const CoverageMap& map) {
+  std::string text =
+      fmt::format("Coverage map, {} x {}: {} of {} pixels are covered ({} %)", map.width, map.height,
+                  grouped(map.covered()), grouped(map.covered_by.size()), percentText(map.share()));
+  if (map.covered() == 0) {
+    return text + ".";
+  }
+  text += fmt::format(", from {} to {} away.", depthText(map.scale.nearest), depthText(map.scale.farthest));
+  const bool surfaces = record.runs[record.shown].setting.surfaces() != SurfaceUse::kNone;
+  const auto groups = statisticOf(record, frame.frame, "surfaces", "groups");
+  const auto edges = statisticOf(record, frame.frame, "surfaces", "edges");
+  if (surfaces && groups && edges) {
+    text += fmt::format(" Surfaces: {} pixels, {} groups with {} edges.", grouped(map.by_surfaces),
+                        grouped(*groups), grouped(*edges));
+  }
+  if (!frame.occluders.empty()) {
+    text += fmt::format(" Chosen occluders: {} pixels, {} occluders.", grouped(map.by_occluders),
+                        grouped(frame.occluders.size()));
+  }
+  return text;
+}
+
+// Writes the pictures of a walk's chosen frames one after the other, until one cannot be written.
+class PictureWriter {
+ public:
+  PictureWriter(const WalkRecord& record, const Scene& scene, const OccluderSet& occluders,
+                Renderer* renderer, const std::string& folder)
+      : record_(record), scene_(scene), occluders_(occluders), renderer_(renderer), folder_(folder) {}
+
+  Result<std::vector<ReportPicture>> writeAll() {
+    for (const KeptFrame& frame : record_.pictures) {
+      if (renderer_ != nullptr) {
+        addRendered(frame);
+      }
+      if (!frame.depth_buffer.empty()) {
+        addCoverage(frame);
+      }
+      if (renderer_ != nullptr) {
+        addPlan(frame);
+      }
+      if (!written_) {
+        return written_.error();
+      }
     }
-    const auto rank = std::lower_bound(sorted.begin(), sorted.end(), reciprocal_depth) - sorted.begin();
-    return static_cast<std::uint8_t>(64 + 191 * rank / static_cast<std::ptrdiff_t>(sorted.size()));
-  });
-}
+    return std::move(pictures_);
+  }
 
-double coveredShare(const KeptDepthBuffer& buffer) {
-  const auto covered = std::count_if(buffer.reciprocal_depth.begin(), buffer.reciprocal_depth.end(),
-                                     [](float reciprocal_depth) { return reciprocal_depth > kUncovered; });
-  return static_cast<double>(covered) / static_cast<double>(buffer.reciprocal_depth.size());
-}
+ private:
+  void addRendered(const KeptFrame& frame) {
+    const std::string drawn =
+        fmt::format("{} of {} triangles in the frustum drawn ({:.1f} %)", grouped(frame.triangles_visible),
+                    grouped(frame.triangles_in_frustum), 100.0 * shareKept(frame));
+    add(renderer_->draw(frame.view, frame.visible), "frame", {.caption = drawn, .frame = frame.frame});
+  }
+
+  void addCoverage(const KeptFrame& frame) {
+    const CoverageMap map = coverageOf(record_, frame, occluders_);
+    add(coverageImage(map, frame.view.aspect, std::max(record_.width, kMinCoverageWidth)), "coverage",
+        {.caption = coverageCaption(record_, frame, map), .frame = frame.frame, .coverage = true});
+  }
+
+  void addPlan(const KeptFrame& frame) {
+    const std::string objects =
+        fmt::format("{} objects kept, {} hidden in the frustum, {}", grouped(frame.visible.size()),
+                    grouped(frame.in_frustum.size() - frame.visible.size()),
+                    record_.runs[record_.shown].setting.surfaces() == SurfaceUse::kAlone
+                        ? "whole surfaces as occluders"
+                        : grouped(frame.occluders.size()) + " occluders");
+    add(drawPlanOf(frame, scene_, occluders_, *renderer_), "plan",
+        {.caption = objects, .frame = frame.frame, .plan = true});
+  }
+
+  void add(const Image& image, std::string_view kind, ReportPicture picture) {
+    picture.file = fmt::format("{}_{:04}.png", kind, picture.frame);
+    if (written_) {
+      written_ = writePng(image, folder_ + "/" + picture.file);
+    }
+    pictures_.push_back(std::move(picture));
+  }
+
+  const WalkRecord& record_;
+  const Scene& scene_;
+  const OccluderSet& occluders_;
+  Renderer* renderer_;
+  const std::string& folder_;
+  Status written_ = Success{};
+  std::vector<ReportPicture> pictures_;
+};
 
 }  // namespace
 
@@ -142,45 +234,9 @@ std::vector<KeptFrame> PictureChooser::chosen() const {
 }
 
 Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const Scene& scene,
-                                                const OccluderSet& occluders, Renderer& renderer,
+                                                const OccluderSet& occluders, Renderer* renderer,
                                                 const std::string& folder) {
-  std::vector<ReportPicture> pictures;
-  const auto add = [&](const Image& image, const std::string& file, const std::string& caption,
-                       std::uint32_t frame, bool plan) {
-    pictures.push_back({file, caption, frame, plan});
-    return writePng(image, folder + "/" + file);
-  };
-  for (const KeptFrame& frame : record.pictures) {
-    const std::string drawn =
-        fmt::format("{} of {} triangles in the frustum drawn ({:.1f} %)", grouped(frame.triangles_visible),
-                    grouped(frame.triangles_in_frustum), 100.0 * shareKept(frame));
-    const Status picture = add(renderer.draw(frame.view, frame.visible),
-                               fmt::format("frame_{:04}.png", frame.frame), drawn, frame.frame, false);
-    const Status plan = add(
-        drawPlanOf(frame, scene, occluders, renderer), fmt::format("plan_{:04}.png", frame.frame),
-        fmt::format("{} objects kept, {} hidden in the frustum, {} occluders", grouped(frame.visible.size()),
-                    grouped(frame.in_frustum.size() - frame.visible.size()), grouped(frame.occluders.size())),
-        frame.frame, true);
-    if (!picture || !plan) {
-      return picture ? plan.error() : picture.error();
-    }
-    if (!frame.depth_buffer.reciprocal_depth.empty()) {
-      const std::string size =
-          fmt::format("{} x {} pixels", frame.depth_buffer.width, frame.depth_buffer.height);
-      const Status coverage =
-          add(coverageImage(frame.depth_buffer), fmt::format("coverage_{:04}.png", frame.frame),
-              fmt::format("coverage map, {}: {:.1f} % covered by occluders", size,
-                          100.0 * coveredShare(frame.depth_buffer)),
-              frame.frame, false);
-      const Status depth =
-          add(depthImage(frame.depth_buffer), fmt::format("depth_{:04}.png", frame.frame),
-              fmt::format("depth map, {}: white is near, black is not covered", size), frame.frame, false);
-      if (!coverage || !depth) {
-        return coverage ? depth.error() : coverage.error();
-      }
-    }
-  }
-  return pictures;
+  return PictureWriter(record, scene, occluders, renderer, folder).writeAll();
 }
 
 }  // namespace sightline::tool

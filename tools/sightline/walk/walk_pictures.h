@@ -23,9 +23,10 @@ class PictureChooser {
   std::optional<KeptFrame> best_;
 };
 
-// Writes the picture and the plan view of every chosen frame into the folder and says where they are.
+// Writes the picture, the coverage map (if the method has a depth buffer) and the plan view of every chosen
+// frame into the folder and says where they are. renderer: null writes the coverage map alone.
 Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const Scene& scene,
-                                                const OccluderSet& occluders, Renderer& renderer,
+                                                const OccluderSet& occluders, Renderer* renderer,
                                                 const std::string& folder);
 
 }  // namespace sightline::tool

@@ -12,6 +12,7 @@
 #include "tools/sightline/cull/cull_run.h"
 #include "tools/sightline/input/load.h"
 #include "tools/sightline/methods/statistics.h"
+#include "tools/sightline/walk/coverage_picture.h"
 
 namespace sightline::tool {
 
@@ -69,12 +70,6 @@ struct WalkRun {
     }
     return numbers;
   }
-};
-
-// A copy of the occluders' depth buffer (DepthBufferView) without the padding of its rows.
-struct KeptDepthBuffer {
-  std::uint32_t width = 0, height = 0;
-  std::vector<float> reciprocal_depth;
 };
 
 // The result of culling one frame, kept for its pictures.

@@ -128,12 +128,13 @@ std::string pathName(const Walk& walk) {
   return walk.path.name.empty() ? "unnamed" : walk.path.name;
 }
 
-// The fastest run with occlusion culling, which the report's headline is about.
+// The run with occlusion culling that the report's headline is about: the fastest one or, where nothing was
+// drawn, the one with the fewest triangles.
 ReportRow bestRow(const WalkRecord& record) {
   ReportRow best = rowOf(record.runs[1], record);
   for (std::size_t r = 2; r < record.runs.size(); ++r) {
     const ReportRow row = rowOf(record.runs[r], record);
-    if (row.speed_up > best.speed_up) {
+    if (record.device.empty() ? row.triangles < best.triangles : row.speed_up > best.speed_up) {
       best = row;
     }
   }
@@ -145,6 +146,11 @@ std::string summaryOf(const WalkRecord& record) {
     return "View-frustum culling alone.";
   }
   const ReportRow row = bestRow(record);
+  if (record.device.empty()) {
+    return fmt::format(
+        "{} ({}) leaves {:.1f} % of the triangles that view-frustum culling leaves; nothing was drawn.",
+        row.method, row.options, 100.0 * row.triangles_share);
+  }
   const std::size_t differing = record.differing();
   const std::size_t ties = record.ties();
   return fmt::format(
@@ -155,6 +161,20 @@ std::string summaryOf(const WalkRecord& record) {
       : differing == 0
           ? fmt::format("every picture is the same but for ties of the depth buffer in {}", grouped(ties))
           : fmt::format("{} pictures DIFFER from those without culling", differing));
+}
+
+std::vector<std::string> notesOf(const WalkRecord& record) {
+  const Setting& shown = record.runs[record.shown].setting;
+  const std::string name = fmt::format("{} ({})", methodName(shown), optionsText(shown));
+  if (record.device.empty()) {
+    return {"Times are of this machine, in this run. Nothing was drawn, and no pictures were compared.",
+            "Coverage maps, if there are any, show " + name + "."};
+  }
+  return {
+      "Times are of this machine, in this run; drawing is measured to the last pixel, without reading back.",
+      "Every frame's picture is compared with the one of view-frustum culling, pixel by pixel, and this one, "
+      "every tenth frame, with a picture of all objects.",
+      "Pictures, coverage maps and plan views show " + name + "."};
 }
 
 }  // namespace
@@ -175,9 +195,10 @@ ReportRow rowOf(const WalkRun& run, const WalkRecord& record) {
   row.occluders = run.mean(occludersOf);
   row.frames_differing = run.differingFrames().size();
   row.frames_tied = run.tieFrames().size();
-  if (&run == &baseline && row.frames_differing == 0 && row.frames_tied == 0) {
-    row.frames_differing
-        .reset();  // it is what the others are compared with, and is compared itself here and there
+  // The baseline is what the others are compared with, and is compared itself here and there.
+  const bool reference = &run == &baseline && row.frames_differing == 0 && row.frames_tied == 0;
+  if (reference || record.device.empty()) {
+    row.frames_differing.reset();
   }
   return row;
 }
@@ -266,13 +287,17 @@ void printWalk(const WalkRecord& record) {
                    "speed-up", "differ", "ties"},
                   {},
                   2};
+  const bool drawn = !record.device.empty();
+  const auto ofDrawing = [&](double value, int decimals) {
+    return drawn ? fmt::format("{:.{}f}", value, decimals) : "-";
+  };
   for (const WalkRun& run : record.runs) {
     const ReportRow row = rowOf(run, record);
     table.rows.push_back({row.method, row.options, fmt::format("{:.0f}", row.triangles),
                           fmt::format("{:.1f}%", 100.0 * row.triangles_share),
                           fmt::format("{:.1f}%", 100.0 * run.mean(testedShareOf(run))),
-                          fmt::format("{:.3f}", row.cull_ms), fmt::format("{:.3f}", row.draw_ms),
-                          fmt::format("{:.3f}", row.frame_ms), fmt::format("{:.2f}", row.speed_up),
+                          fmt::format("{:.3f}", row.cull_ms), ofDrawing(row.draw_ms, 3),
+                          ofDrawing(row.frame_ms, 3), ofDrawing(row.speed_up, 2),
                           row.frames_differing ? std::to_string(*row.frames_differing) : "-",
                           row.frames_differing ? std::to_string(row.frames_tied) : "-"});
   }
@@ -292,6 +317,7 @@ Report walkReport(const WalkInput& input, const WalkRecord& record, std::vector<
   const std::filesystem::path file(input.scene_name);
   report.title = file.has_filename() ? file.filename().string() : input.scene_name;
   report.summary = summaryOf(record);
+  report.drawn = !record.device.empty();
   report.facts = walkFacts(input, record);
   for (const WalkRun& run : record.runs) {
     report.rows.push_back(rowOf(run, record));
@@ -301,13 +327,7 @@ Report walkReport(const WalkInput& input, const WalkRecord& record, std::vector<
   for (const ChangedPicture& changed : record.changed) {
     report.pictures.push_back({changed.file, changed.caption, changed.frame, false});
   }
-  report.notes = {
-      "Times are of this machine, in this run; drawing is measured to the last pixel, without reading back.",
-      "Every frame's picture is compared with the one of view-frustum culling, pixel by pixel, and this one, "
-      "every "
-      "tenth frame, with a picture of all objects.",
-      fmt::format("Pictures and plan views show {} ({}).", methodName(record.runs[record.shown].setting),
-                  optionsText(record.runs[record.shown].setting))};
+  report.notes = notesOf(record);
   for (std::size_t r = 1; r < record.runs.size(); ++r) {
     report.notes.push_back(statisticsText(record.runs[r]) + ".");
   }
