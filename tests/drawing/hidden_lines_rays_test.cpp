@@ -235,6 +235,9 @@ TEST(HiddenLinesRays, AgreeOnRandomTriangles) {
       View amid = fromOutside(scene, orthographic, seed);
       amid.eye = {0, 0, 0};  // many triangles cross the near plane
       expectRight(check(scene, amid, 1, seed));
+      amid.shift_x = 0.7;
+      amid.shift_y = -0.4;
+      expectRight(check(scene, amid, 1, seed));
     }
   }
 }
