@@ -88,8 +88,10 @@ class RayDepth {
       nearest = std::min(nearest, corner.z);
     }
     const double half_height = view_.tan_half_fovy, half_width = half_height * view_.aspect;
-    return Rectangle{pixel(low_x / half_width, width_), pixel(high_x / half_width, width_),
-                     pixel(low_y / half_height, height_), pixel(high_y / half_height, height_), nearest};
+    const double left = view_.shift_x, down = view_.shift_y;
+    return Rectangle{pixel(low_x / half_width - left, width_), pixel(high_x / half_width - left, width_),
+                     pixel(low_y / half_height - down, height_), pixel(high_y / half_height - down, height_),
+                     nearest};
   }
 
   // Whether in some pixel of the box's rectangle nothing is nearer than the box. Boxes that reach the near
@@ -121,9 +123,9 @@ class RayDepth {
   void castPacket(int x0, int y) {
     alignas(64) RTCRayHit16 packet;
     alignas(64) int valid[kPacket];
-    const double v = 2.0 * (y + 0.5) / height_ - 1.0;
+    const double v = 2.0 * (y + 0.5) / height_ - 1.0 + view_.shift_y;
     for (int i = 0; i < kPacket; ++i) {
-      const double u = 2.0 * (x0 + i + 0.5) / width_ - 1.0;
+      const double u = 2.0 * (x0 + i + 0.5) / width_ - 1.0 + view_.shift_x;
       const Vec3d d = view_.forward + view_.right * (u * view_.tan_half_fovy * view_.aspect) +
                       view_.up * (v * view_.tan_half_fovy);
       auto& ray = packet.ray;

@@ -69,13 +69,16 @@ std::string objOf(const Scene& scene) {
   return text;
 }
 
-CameraPath pathOf(const std::vector<View>& views) {
+// All frames of a path have one shift: that of this view.
+CameraPath pathOf(const std::vector<View>& views, std::size_t shown) {
   CameraPath path;
   const View& first = views.front();
   path.fovy_deg = std::atan(first.tan_half_fovy) * 114.59155902616465;
   path.ortho_height = first.orthographic ? first.ortho_height : 0.0;
   path.width = static_cast<std::uint32_t>(1000.0 * first.aspect);
   path.height = 1000;
+  path.shift_x = views[shown].shift_x;
+  path.shift_y = views[shown].shift_y;
   path.near = first.near;
   path.far = std::min(first.far, 1e12);
   for (const View& view : views) {
@@ -93,7 +96,7 @@ void report(const test::HostileScene& hostile, const std::vector<test::FalseCull
   }
   const std::string base = folder + "/false-cull-" + std::to_string(seed);
   const bool written = writeFile(base + ".obj", objOf(hostile.scene)) &&
-                       writeFile(base + ".json", toJson(pathOf(hostile.views)));
+                       writeFile(base + ".json", toJson(pathOf(hostile.views, wrong.front().view)));
   if (written) {
     std::printf("the scene: %s.obj, the path: %s.json (materials are lost; the seed makes them again)\n",
                 base.c_str(), base.c_str());

@@ -17,11 +17,7 @@ struct ImagePolygon {
   bool empty() const { return corners.empty(); }
 };
 
-// The part of the picture between these, in tangents of the angle from the middle, or in metres. Empty unless
-// both differences are positive.
-struct ImageRectangle {
-  double x_min = 0.0, x_max = 0.0, y_min = 0.0, y_max = 0.0;
-};
+// Empty unless both differences of the extents are positive.
 ImagePolygon rectangle(ImageFigures& figures, const ImageRectangle& extents);
 
 // The parts on both sides of a line; one of them is empty unless the line runs through the inside. If no

@@ -26,7 +26,8 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
   }
   const Vec3d along = abs(view.forward);
   axis_ = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
-  const int size = std::ilogb(0.5 * view.ortho_height * std::max(view.aspect, 1.0));
+  const double shift = std::max(std::abs(view.shift_x), std::abs(view.shift_y));
+  const int size = std::ilogb(0.5 * view.ortho_height * std::max(view.aspect, 1.0) * (1.0 + shift));
   last_ = std::ldexp(view.forward[axis_] > 0.0 ? 1.0 : -1.0, size);
   exponent_ = std::min(exponent_, size);
   exact_eye_ = wholeOf(view.eye, exponent_);
@@ -131,7 +132,8 @@ ViewRay ImageSpace::lineOfSight(const Vec3d& direction) const {
 
 ViewRay ImageSpace::ray(const Vec3d& direction) const {
   const Vec3d d = direction / dot(direction, forward_);
-  return rayThrough(view_, dot(d, right_) / halfWidth(), dot(d, up_) / halfHeight());
+  return rayThrough(view_, dot(d, right_) / halfWidth() - view_.shift_x,
+                    dot(d, up_) / halfHeight() - view_.shift_y);
 }
 
 }  // namespace sightline

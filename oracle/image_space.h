@@ -32,6 +32,11 @@ struct RoundedVec {
   double error = 0.0;
 };
 
+// A part of the image: tangents of the angle from the forward axis, or metres.
+struct ImageRectangle {
+  double x_min = 0.0, x_max = 0.0, y_min = 0.0, y_max = 0.0;
+};
+
 class ImageSpace {
  public:
   // `lowest_exponent` is that of all finite positions. The memory of both lists must outlive this object.
@@ -67,8 +72,14 @@ class ImageSpace {
   const Vec3d& right() const { return right_; }
   const Vec3d& up() const { return up_; }
   const Vec3d& forward() const { return forward_; }
-  double halfWidth() const { return halfHeight() * view_.aspect; }
   double halfHeight() const { return view_.orthographic ? 0.5 * view_.ortho_height : view_.tan_half_fovy; }
+  double halfWidth() const { return halfHeight() * view_.aspect; }
+  // What of the image the picture shows, in these coordinates.
+  ImageRectangle picture() const {
+    const double x = halfWidth(), y = halfHeight();
+    return {x * (view_.shift_x - 1.0), x * (view_.shift_x + 1.0), y * (view_.shift_y - 1.0),
+            y * (view_.shift_y + 1.0)};
+  }
 
   // The line of sight in a direction before the eye, from the plane through the eye on. It follows from the
   // eye and the viewing direction alone, as the exact direction does: axes may be off by single-precision

@@ -23,6 +23,8 @@ inline double depthOf(const View& view, const Vec3d& point) {
 // The ray through a point of the picture. x, y are in [-1, 1], from the left to the right and from the lower
 // to the upper border.
 inline ViewRay rayThrough(const View& view, double x, double y) {
+  x += view.shift_x;
+  y += view.shift_y;
   if (view.orthographic) {
     const double half = 0.5 * view.ortho_height;
     const Vec3d start = view.eye + view.right * (x * half * view.aspect) + view.up * (y * half);
@@ -57,10 +59,13 @@ inline bool inVolume(const View& view, const Vec3d& point, double slack) {
   const Vec3d from_eye = point - view.eye;
   const double depth = dot(from_eye, view.forward);
   const double half_height = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
-  const double limit = half_height * (1.0 + slack);
+  const double x = dot(from_eye, view.right) - view.shift_x * half_height * view.aspect;
+  const double y = dot(from_eye, view.up) - view.shift_y * half_height;
+  // Rounding grows with the distance from the forward axis.
+  const double x_limit = half_height * (1.0 + slack * (1.0 + std::abs(view.shift_x))) * view.aspect;
+  const double y_limit = half_height * (1.0 + slack * (1.0 + std::abs(view.shift_y)));
   return depth >= view.near * (1.0 - slack) && depth <= view.far * (1.0 + slack) &&
-         std::abs(dot(from_eye, view.right)) <= limit * view.aspect &&
-         std::abs(dot(from_eye, view.up)) <= limit;
+         std::abs(x) <= x_limit && std::abs(y) <= y_limit;
 }
 
 }  // namespace sightline

@@ -57,8 +57,7 @@ void VisibilityProof::beginFigures() {
   figures_.clear();
   appearances_.clear();
   pieces_.clear();
-  const double x = space_.halfWidth(), y = space_.halfHeight();
-  picture_ = rectangle(figures_, {-x, x, -y, y});
+  picture_ = rectangle(figures_, space_.picture());
   near_ = figures_.depthGiven(space_.view().near);
   far_ = figures_.depthGiven(std::isfinite(space_.view().far) ? space_.view().far : 1.0);
 }

@@ -60,10 +60,10 @@ VisibilityProof::Cover VisibilityProof::coverBox(const Box& box, ObjectId object
   if (!image.before_the_eye || !(image.nearest > view.near)) {
     return Cover::kOpen;
   }
-  const double x = space_.halfWidth(), y = space_.halfHeight();
-  const ImageRectangle& extents = image.extents;
-  const ImageRectangle shown{std::max(extents.x_min, -x), std::min(extents.x_max, x),
-                             std::max(extents.y_min, -y), std::min(extents.y_max, y)};
+  const ImageRectangle &extents = image.extents, picture = space_.picture();
+  const ImageRectangle shown{
+      std::max(extents.x_min, picture.x_min), std::min(extents.x_max, picture.x_max),
+      std::max(extents.y_min, picture.y_min), std::min(extents.y_max, picture.y_max)};
   if (!(shown.x_min < shown.x_max && shown.y_min < shown.y_max)) {
     return Cover::kHidden;
   }

@@ -78,6 +78,7 @@ bool FocusWindow::setWindow(const View& view, const Vec3d& direction) {
   }
   window_ = view;
   setOrientation(window_, direction, view.up);
+  window_.shift_x = window_.shift_y = 0.0;
   window_.tan_half_fovy = tan_y;
   window_.aspect = tan_x / tan_y;
   tan_half_diagonal_ = std::sqrt(tan_x * tan_x + tan_y * tan_y);

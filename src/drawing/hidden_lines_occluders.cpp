@@ -29,8 +29,8 @@ HidingBox boxOnScreen(const HidingTriangle& triangle, const LineView& view) {
 }
 
 bool onScreen(const HidingBox& box, const LineView& view) {
-  const bool beside = box.min_x > view.halfWidth() || box.max_x < -view.halfWidth() ||
-                      box.min_y > view.halfHeight() || box.max_y < -view.halfHeight();
+  const bool beside = box.min_x > view.right() || box.max_x < view.left() || box.min_y > view.top() ||
+                      box.max_y < view.bottom();
   return !beside && box.reciprocal_depth >= view.onScreen({0.0, 0.0, view.view().far}).reciprocal_depth;
 }
 

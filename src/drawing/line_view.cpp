@@ -14,6 +14,10 @@ bool isSize(double value) {
   return std::isfinite(value) && value > 0.0;
 }
 
+bool isShift(double value) {
+  return std::abs(value) <= View::kLargestShift;
+}
+
 bool isPageSide(double value) {
   return value >= kSmallestPage && value <= kLargestPage;
 }
@@ -24,7 +28,8 @@ bool isDrawable(const View& view, double page_height) {
   const double opening = view.orthographic ? view.ortho_height : view.tan_half_fovy;
   return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
          isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
-         isSize(view.near) && isSize(view.far) && view.near < view.far && isFinite(view.eye) &&
+         isSize(view.near) && isSize(view.far) && view.near < view.far && isShift(view.shift_x) &&
+         isShift(view.shift_y) && isFinite(view.eye) &&
          isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
 }
 
@@ -46,9 +51,13 @@ bool narrow(double at_0, double at_1, double& from, double& to) {
 
 LineView::LineView(const View& view, double page_height)
     : view_(view), drawable_(isDrawable(view, page_height)) {
-  half_height_ = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
-  half_width_ = half_height_ * view.aspect;
-  page_scale_ = page_height / (2.0 * half_height_);
+  const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
+  const double half_width = half_height * view.aspect;
+  left_ = half_width * (view.shift_x - 1.0);
+  right_ = half_width * (view.shift_x + 1.0);
+  bottom_ = half_height * (view.shift_y - 1.0);
+  top_ = half_height * (view.shift_y + 1.0);
+  page_scale_ = page_height / (2.0 * half_height);
 }
 
 Vec3d LineView::cameraPoint(const Vec3f& position) const {
@@ -64,11 +73,11 @@ ScreenPoint LineView::onScreen(const Vec3d& camera) const {
 }
 
 double LineView::pageX(double screen_x) const {
-  return std::clamp((half_width_ + screen_x) * page_scale_, 0.0, 2.0 * half_width_ * page_scale_);
+  return std::clamp((screen_x - left_) * page_scale_, 0.0, (right_ - left_) * page_scale_);
 }
 
 double LineView::pageY(double screen_y) const {
-  return std::clamp((half_height_ - screen_y) * page_scale_, 0.0, 2.0 * half_height_ * page_scale_);
+  return std::clamp((top_ - screen_y) * page_scale_, 0.0, (top_ - bottom_) * page_scale_);
 }
 
 bool LineView::clip(const Vec3d& a, const Vec3d& b, double& from, double& to) const {
@@ -78,10 +87,10 @@ bool LineView::clip(const Vec3d& a, const Vec3d& b, double& from, double& to) co
   const double scale_b = view_.orthographic ? 1.0 : b.z;
   return drawable_ && narrow(a.z - view_.near, b.z - view_.near, from, to) &&
          narrow(view_.far - a.z, view_.far - b.z, from, to) &&
-         narrow(half_width_ * scale_a + a.x, half_width_ * scale_b + b.x, from, to) &&
-         narrow(half_width_ * scale_a - a.x, half_width_ * scale_b - b.x, from, to) &&
-         narrow(half_height_ * scale_a + a.y, half_height_ * scale_b + b.y, from, to) &&
-         narrow(half_height_ * scale_a - a.y, half_height_ * scale_b - b.y, from, to);
+         narrow(a.x - left_ * scale_a, b.x - left_ * scale_b, from, to) &&
+         narrow(right_ * scale_a - a.x, right_ * scale_b - b.x, from, to) &&
+         narrow(a.y - bottom_ * scale_a, b.y - bottom_ * scale_b, from, to) &&
+         narrow(top_ * scale_a - a.y, top_ * scale_b - b.y, from, to);
 }
 
 }  // namespace sightline::drawing

@@ -27,8 +27,11 @@ class LineView {
 
   Vec3d cameraPoint(const Vec3f& position) const;
   ScreenPoint onScreen(const Vec3d& camera) const;  // camera.z > 0 in perspective
-  double halfWidth() const { return half_width_; }  // half the screen's width
-  double halfHeight() const { return half_height_; }
+  // What the page shows of the screen.
+  double left() const { return left_; }
+  double right() const { return right_; }
+  double bottom() const { return bottom_; }
+  double top() const { return top_; }
   double pageScale() const { return page_scale_; }  // page units for each unit of the screen
 
   // From the screen to the page: units, x to the right, y down, clamped to the page.
@@ -42,7 +45,8 @@ class LineView {
  private:
   View view_;
   bool drawable_ = false;
-  double half_width_ = 0.0, half_height_ = 0.0, page_scale_ = 0.0;
+  double left_ = 0.0, right_ = 0.0, bottom_ = 0.0, top_ = 0.0;  // on the screen
+  double page_scale_ = 0.0;
 };
 
 // Narrows [from, to] to where the linear function with these values at 0 and 1 is >= 0. False if that is

@@ -23,10 +23,12 @@ double gridScaleOf(double extent) {
 
 void Outliner::setView(const View& view, double page_height) {
   view_ = LineView(view, page_height);
-  const double margin = 2.0 * view_.halfHeight() * kMargin;
-  widest_ = view_.halfWidth() + margin;
-  highest_ = view_.halfHeight() + margin;
-  scale_ = gridScaleOf(2.0 * view_.pageScale() * std::max(widest_, highest_));
+  const double margin = (view_.top() - view_.bottom()) * kMargin;
+  left_ = view_.left() - margin;
+  right_ = view_.right() + margin;
+  bottom_ = view_.bottom() - margin;
+  top_ = view_.top() + margin;
+  scale_ = gridScaleOf(view_.pageScale() * std::max(right_ - left_, top_ - bottom_));
 }
 
 bool Outliner::mayShow(const SceneView& scene, ObjectId object) const {
@@ -51,13 +53,13 @@ double Outliner::borderDistance(std::uint32_t border, const Vec3d& p) const {
     case 1:
       return view_.view().far - p.z;
     case 2:
-      return p.x + widest_ * depth;
+      return p.x - left_ * depth;
     case 3:
-      return widest_ * depth - p.x;
+      return right_ * depth - p.x;
     case 4:
-      return p.y + highest_ * depth;
+      return p.y - bottom_ * depth;
     default:
-      return highest_ * depth - p.y;
+      return top_ * depth - p.y;
   }
 }
 
@@ -73,10 +75,10 @@ std::uint32_t Outliner::bordersBeyond(const Vec3d& p) const {
 // points beyond the margin, and points before the near plane that have no depth at all.
 GridPoint Outliner::onGrid(const Vec3d& p) const {
   const double depth = view_.view().orthographic ? 1.0 : std::max(p.z, view_.view().near);
-  const double x = std::clamp(p.x / depth, -widest_, widest_);
-  const double y = std::clamp(p.y / depth, -highest_, highest_);
+  const double x = std::clamp(p.x / depth, left_, right_);
+  const double y = std::clamp(p.y / depth, bottom_, top_);
   const double lines = view_.pageScale() * scale_;
-  return {std::llround((x + view_.halfWidth()) * lines), std::llround((view_.halfHeight() - y) * lines)};
+  return {std::llround((x - view_.left()) * lines), std::llround((view_.top() - y) * lines)};
 }
 
 // Clips polygon_ by these borders. False if nothing is left.

@@ -51,7 +51,7 @@ class Outliner {
   bool clip(std::uint32_t borders);
 
   LineView view_;
-  double widest_ = 0.0, highest_ = 0.0;  // half the screen's width and height, with the margin
+  double left_ = 0.0, right_ = 0.0, bottom_ = 0.0, top_ = 0.0;  // of the screen, with the margin
   double scale_ = 1024.0;
   std::vector<Corner> polygon_, scratch_;
   std::vector<GridPoint> ring_;

@@ -20,8 +20,8 @@ using nlohmann::json;
 
 constexpr double kLargestSide = 65536.0;  // pixels
 
-constexpr std::array<std::string_view, 8> kPathKeys{"name",   "fovy_deg", "ortho_height", "width",
-                                                    "height", "near",     "far",          "frames"};
+constexpr std::array<std::string_view, 9> kPathKeys{"name",  "fovy_deg", "ortho_height", "width", "height",
+                                                    "shift", "near",     "far",          "frames"};
 constexpr std::array<std::string_view, 3> kFrameKeys{"eye", "forward", "up"};
 
 constexpr std::size_t kMaxUnknownKeys = 20;
@@ -90,6 +90,23 @@ Status readSide(const json& object, const char* key, const std::string& where, s
   return Success{};
 }
 
+// Replaces both values when the key is there.
+Status readShift(const json& object, const char* key, const std::string& where, CameraPath& path) {
+  const auto found = object.find(key);
+  if (found == object.end()) {
+    return Success{};
+  }
+  const auto inRange = [](const json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= View::kLargestShift;
+  };
+  if (!(found->is_array() && found->size() == 2 && inRange((*found)[0]) && inRange((*found)[1]))) {
+    return missing(where, key, "two numbers from -1000 to 1000");
+  }
+  path.shift_x = (*found)[0].get<double>();
+  path.shift_y = (*found)[1].get<double>();
+  return Success{};
+}
+
 Result<Vec3d> readVector(const json& object, const char* key, const std::string& where) {
   const auto found = object.find(key);
   if (found == object.end()) {
@@ -141,6 +158,9 @@ Status readProjection(const json& document, const std::string& name, CameraPath&
     if (status) {
       status = readSide(document, key, name, *value);
     }
+  }
+  if (status) {
+    status = readShift(document, "shift", name, path);
   }
   if (!status) {
     return status;
@@ -221,6 +241,9 @@ std::string toJson(const CameraPath& path) {
   }
   document["width"] = path.width;
   document["height"] = path.height;
+  if (path.shift_x != 0.0 || path.shift_y != 0.0) {
+    document["shift"] = json::array({path.shift_x, path.shift_y});
+  }
   document["near"] = path.near;
   document["far"] = path.far;
   document["frames"] = json::array();

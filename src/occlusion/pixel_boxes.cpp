@@ -8,7 +8,7 @@
 //                                       products, 2 u of the sums. With what follows kRounding = 10 u is used
 //   q = c.x / c.z                       off by r (1 + |q|), r = E / (z - E); made 1/16 larger for its own
 //                                       square, and 8 u for division and product
-//   X = middle + scale q                off by another 8 u (middle + scale |q|)
+//   X = middle + scale q                off by another 8 u (|middle| + scale |q|)
 //
 // The bound of q grows more slowly than q itself, so that the extremes over the corners give those of the
 // bounds too.
@@ -146,7 +146,7 @@ HWY_INLINE Vec bufferSlack(Lanes d, Vec q, Vec q_error, float scale, float middl
   const Vec size = hn::Abs(q), rounding = hn::Set(d, kBufferRounding);
   const Vec grown = orthographic ? q_error : hn::Mul(q_error, hn::Add(hn::Set(d, 1.0f), size));
   const Vec in_q = hn::Add(grown, hn::Mul(rounding, size));
-  return hn::Add(hn::Mul(hn::Set(d, scale), in_q), hn::Set(d, kBufferRounding * middle));
+  return hn::Add(hn::Mul(hn::Set(d, scale), in_q), hn::Set(d, kBufferRounding * std::abs(middle)));
 }
 
 // Whether the box is surely beyond a side of the view's volume. The functions are linear: nothing is divided
@@ -301,12 +301,11 @@ BoxProjection::BoxProjection(const PixelView& view, std::uint32_t map_width, std
   right = rounded(view.right);
   up = rounded(view.up);
   forward = rounded(view.forward);
-  const double tan_x = view.middle_x / view.scale_x, tan_y = view.middle_y / view.scale_y;
-  sides[0] = rounded(view.right + view.forward * tan_x);
-  sides[1] = rounded(view.forward * tan_x - view.right);
-  sides[2] = rounded(view.up + view.forward * tan_y);
-  sides[3] = rounded(view.forward * tan_y - view.up);
-  side_size = roundedUp(1.0 + std::max(tan_x, tan_y));
+  sides[0] = rounded(view.right + view.forward * (view.middle_x / view.scale_x));
+  sides[1] = rounded(view.forward * ((view.width - view.middle_x) / view.scale_x) - view.right);
+  sides[2] = rounded(view.up + view.forward * (view.middle_y / view.scale_y));
+  sides[3] = rounded(view.forward * ((view.height - view.middle_y) / view.scale_y) - view.up);
+  side_size = roundedUp(1.0 + std::max(view.reachX() / view.scale_x, view.reachY() / view.scale_y));
   near_min = roundedDown(view.frustum_near);
   near_max = roundedUp(view.near);
   far_min = roundedDown(view.far);

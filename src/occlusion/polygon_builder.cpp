@@ -47,7 +47,7 @@ void PolygonBuilder::activate(const PolygonProjection& projection, const Eye& ey
   // Occluders whose position error exceeds the guard band around the buffer are skipped.
   if (seen && keepsShape(set[id], inset) &&
       projection.marginAt(inset, 1.0 / std::max(seen->nearest, view.near)) <
-          std::min(view.middle_x, view.middle_y)) {
+          0.5 * std::min(view.width, view.height)) {
     active_.add(*seen, chosen, inset);
   }
 }

@@ -22,8 +22,10 @@ struct ClipVolume {
 
   // beyond: so many widths and heights of the buffer around it.
   ClipVolume(const PixelView& view, double clip_depth, double beyond)
-      : half_width((1.0 + 2.0 * beyond) * view.middle_x),
-        half_height((1.0 + 2.0 * beyond) * view.middle_y),
+      : left(view.middle_x + beyond * view.width),
+        right(view.width - view.middle_x + beyond * view.width),
+        bottom(view.middle_y + beyond * view.height),
+        top(view.height - view.middle_y + beyond * view.height),
         scale_x(view.scale_x),
         scale_y(view.scale_y),
         depth(clip_depth),
@@ -35,24 +37,25 @@ struct ClipVolume {
       case kNear:
         return c.z - depth;
       case 1:
-        return half_width * w + scale_x * c.x;
+        return left * w + scale_x * c.x;
       case 2:
-        return half_width * w - scale_x * c.x;
+        return right * w - scale_x * c.x;
       case 3:
-        return half_height * w + scale_y * c.y;
+        return bottom * w + scale_y * c.y;
       default:
-        return half_height * w - scale_y * c.y;
+        return top * w - scale_y * c.y;
     }
   }
   // A bit for each plane that the point is beyond.
   unsigned outside(const Vec3d& c) const {
     const double w = orthographic ? 1.0 : c.z;
-    const double x = scale_x * c.x, y = scale_y * c.y, right = half_width * w, top = half_height * w;
-    return (c.z < depth ? 1u : 0u) | (x < -right ? 2u : 0u) | (x > right ? 4u : 0u) | (y < -top ? 8u : 0u) |
-           (y > top ? 16u : 0u);
+    const double x = scale_x * c.x, y = scale_y * c.y;
+    return (c.z < depth ? 1u : 0u) | (x < -left * w ? 2u : 0u) | (x > right * w ? 4u : 0u) |
+           (y < -bottom * w ? 8u : 0u) | (y > top * w ? 16u : 0u);
   }
 
-  double half_width, half_height, scale_x, scale_y, depth;
+  double left, right, bottom, top;  // from the forward axis, pixels
+  double scale_x, scale_y, depth;
   bool orthographic;
 };
 
@@ -133,7 +136,7 @@ float PolygonProjection::marginAt(double inset, double inverse_depth) const {
   const double stretch =
       view_.orthographic
           ? std::max(view_.scale_x, view_.scale_y)
-          : std::max(view_.scale_x + view_.middle_x, view_.scale_y + view_.middle_y) * inverse_depth;
+          : std::max(view_.scale_x + view_.reachX(), view_.scale_y + view_.reachY()) * inverse_depth;
   return static_cast<float>(4.0 * rounding_ + 2.25 * inset * stretch);
 }
 
@@ -192,10 +195,13 @@ PolygonDepth PolygonProjection::depthOf(const Plane& support, double slack, cons
     max = std::max(max, plane.at_origin + x + y);
     sums = std::max(sums, std::abs(x) + std::abs(y));
   }
+  // In an off-centre view the terms of at_origin may be larger than all values over the buffer.
+  const double beside = std::abs(plane.along_x * (view_.middle_x - 0.5 * view_.width)) +
+                        std::abs(plane.along_y * (view_.middle_y - 0.5 * view_.height));
   const double slope = std::abs(plane.along_x) + std::abs(plane.along_y);
   const double width = std::abs(plane.along_x) * (polygon.right - polygon.left);
   const double rounding = 0x1p-22 * (std::max(std::abs(min), std::abs(max)) + width + 4.0 * slope) +
-                          0x1p-50 * (std::abs(plane.at_origin) + sums);
+                          0x1p-50 * (std::abs(plane.at_origin) + sums + beside);
   if (conservative) {
     plane.at_origin += std::min(plane.along_x, 0.0) + std::min(plane.along_y, 0.0) - rounding;
   }

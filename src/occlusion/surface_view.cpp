@@ -282,7 +282,7 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
   extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.near;
   const double front = std::max(extent.nearest, clip_depth_);
   const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);
-  const double pixels = reach * scale + view.middle_x + view.middle_y;
+  const double pixels = reach * scale + std::abs(view.middle_x) + std::abs(view.middle_y);
   extent.inexact = extent.inexact || !(pixels < kLargestGrid / kGridStep);
   if (extent.inexact) {
     return false;

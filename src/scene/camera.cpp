@@ -42,11 +42,15 @@ Mat4 clipFromScene(const View& view) {
     const double half = view.ortho_height * 0.5;
     clip_from_camera(0, 0) = 1.0 / (half * view.aspect);
     clip_from_camera(1, 1) = 1.0 / half;
+    clip_from_camera(0, 3) = -view.shift_x;
+    clip_from_camera(1, 3) = -view.shift_y;
     clip_from_camera(2, 2) = -2.0 / depth;
     clip_from_camera(2, 3) = -middle;
   } else {
     clip_from_camera(0, 0) = 1.0 / (view.tan_half_fovy * view.aspect);
     clip_from_camera(1, 1) = 1.0 / view.tan_half_fovy;
+    clip_from_camera(0, 2) = view.shift_x;
+    clip_from_camera(1, 2) = view.shift_y;
     clip_from_camera(2, 2) = -middle;
     clip_from_camera(2, 3) = endless ? -2.0 * view.near : -2.0 * view.far * view.near / depth;
     clip_from_camera(3, 2) = -1.0;
@@ -66,20 +70,21 @@ Frustum frustumOf(const View& given) {
     const Vec3d unit = normalized(normal);
     return Plane{unit, -dot(unit, point)};
   };
+  // From the forward axis to the borders: tangents of angles, or metres in an orthographic view.
+  const double half_height = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;
+  const double half_width = half_height * view.aspect;
+  const double left = half_width * (1.0 - view.shift_x), right = half_width * (1.0 + view.shift_x);
+  const double down = half_height * (1.0 - view.shift_y), up = half_height * (1.0 + view.shift_y);
   if (view.orthographic) {
-    const Vec3d x = view.right * (view.ortho_height * 0.5 * view.aspect);
-    const Vec3d y = view.up * (view.ortho_height * 0.5);
-    frustum.planes[0] = through(view.right, view.eye - x);
-    frustum.planes[1] = through(-view.right, view.eye + x);
-    frustum.planes[2] = through(view.up, view.eye - y);
-    frustum.planes[3] = through(-view.up, view.eye + y);
+    frustum.planes[0] = through(view.right, view.eye - view.right * left);
+    frustum.planes[1] = through(-view.right, view.eye + view.right * right);
+    frustum.planes[2] = through(view.up, view.eye - view.up * down);
+    frustum.planes[3] = through(-view.up, view.eye + view.up * up);
   } else {
-    const Vec3d x = view.forward * (view.tan_half_fovy * view.aspect);
-    const Vec3d y = view.forward * view.tan_half_fovy;
-    frustum.planes[0] = through(view.right + x, view.eye);
-    frustum.planes[1] = through(x - view.right, view.eye);
-    frustum.planes[2] = through(view.up + y, view.eye);
-    frustum.planes[3] = through(y - view.up, view.eye);
+    frustum.planes[0] = through(view.right + view.forward * left, view.eye);
+    frustum.planes[1] = through(view.forward * right - view.right, view.eye);
+    frustum.planes[2] = through(view.up + view.forward * down, view.eye);
+    frustum.planes[3] = through(view.forward * up - view.up, view.eye);
   }
   frustum.planes[4] = through(view.forward, view.eye + view.forward * view.near);
   // An infinite offset would make the plane NaN; this one is beyond all boxes.
@@ -95,13 +100,14 @@ double nearDistance(const View& given) {
     // The rays of an orthographic view start at any distance.
     return std::numeric_limits<double>::infinity();
   }
-  // The corners of the near plane are at near * (forward +- x right +- y up). All four are measured, because
+  // The corners of the near plane are at near * (forward + x right + y up). All four are measured, because
   // axes that are not quite perpendicular make their distances differ. The result is rounded up.
-  const double y = view.tan_half_fovy;
-  const double x = view.tan_half_fovy * view.aspect;
+  const double half_width = view.tan_half_fovy * view.aspect, half_height = view.tan_half_fovy;
+  const double x = half_width * (1.0 + std::abs(view.shift_x));
+  const double y = half_height * (1.0 + std::abs(view.shift_y));
   double farthest = std::sqrt(1.0 + x * x + y * y);
-  for (const double side : {-x, x}) {
-    for (const double height : {-y, y}) {
+  for (const double side : {half_width * (view.shift_x - 1.0), half_width * (view.shift_x + 1.0)}) {
+    for (const double height : {half_height * (view.shift_y - 1.0), half_height * (view.shift_y + 1.0)}) {
       farthest = std::max(farthest, length(view.forward + view.right * side + view.up * height));
     }
   }
@@ -117,6 +123,8 @@ View CameraPath::view(std::size_t frame, const Vec3d& scene_origin) const {
   view.ortho_height = ortho_height > 0.0 ? ortho_height : view.ortho_height;
   view.tan_half_fovy = std::tan(fovy_deg * std::numbers::pi / 360.0);
   view.aspect = static_cast<double>(width) / static_cast<double>(height);
+  view.shift_x = shift_x;
+  view.shift_y = shift_y;
   view.near = near;
   view.far = far;
   return view;

@@ -28,10 +28,13 @@ struct PixelView {
   double near = 0.0;
   double scale_x = 0.0,
          scale_y = 0.0;                   // pixels per unit of x / z (perspective), per metre (orthographic)
-  double middle_x = 0.0, middle_y = 0.0;  // centre of the buffer, pixels
+  // Where the forward axis meets the buffer: in its middle, unless the view is off-centre; pixels.
+  double middle_x = 0.0, middle_y = 0.0;
+  double width = 0.0, height = 0.0;  // of the buffer, pixels
 
   PixelView() = default;
-  PixelView(const View& given, std::uint32_t width, std::uint32_t height) {
+  PixelView(const View& given, std::uint32_t buffer_width, std::uint32_t buffer_height)
+      : width(buffer_width), height(buffer_height) {
     View view = given;
     valid_ = makeUsable(view) == nullptr;
     eye = view.eye;
@@ -42,11 +45,11 @@ struct PixelView {
     frustum_near = view.near;
     far = view.far;
     near = std::max(view.near, 2.0 / kLargestScale);
-    middle_x = 0.5 * width;
-    middle_y = 0.5 * height;
+    middle_x = 0.5 * width * (1.0 - view.shift_x);
+    middle_y = 0.5 * height * (1.0 - view.shift_y);
     const double half_height = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
-    scale_x = middle_x / (half_height * view.aspect);
-    scale_y = middle_y / half_height;
+    scale_x = 0.5 * width / (half_height * view.aspect);
+    scale_y = 0.5 * height / half_height;
     const Vec3d across = cross(up, forward);
     const double volume = dot(right, across);
     unit_x = across / volume;
@@ -79,6 +82,9 @@ struct PixelView {
   // Position in the buffer, pixels, of a point in camera space; in perspective views, z must be > 0.
   double pixelX(const Vec3d& c) const { return middle_x + scale_x * (orthographic ? c.x : c.x / c.z); }
   double pixelY(const Vec3d& c) const { return middle_y + scale_y * (orthographic ? c.y : c.y / c.z); }
+  // Greatest distances in the buffer from where the forward axis meets it, pixels.
+  double reachX() const { return std::max(middle_x, width - middle_x); }
+  double reachY() const { return std::max(middle_y, height - middle_y); }
   double reciprocalDepth(double depth) const { return orthographic ? -depth : 1.0 / depth; }
 
  private:

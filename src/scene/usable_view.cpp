@@ -1,5 +1,6 @@
 #include "src/scene/usable_view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -23,7 +24,12 @@ const char* projectionFault(const View& view) {
   if (!isPositive(view.aspect)) {
     return "View::aspect (width / height) must be greater than 0 and finite";
   }
-  if (!isPositive(view.aspect * (view.orthographic ? view.ortho_height : view.tan_half_fovy))) {
+  const double shift = std::max(std::abs(view.shift_x), std::abs(view.shift_y));
+  if (!(std::isfinite(view.shift_x) && std::isfinite(view.shift_y) && shift <= View::kLargestShift)) {
+    return "View::shift_x and shift_y must be from -1000 to 1000 half widths and half heights of the view";
+  }
+  if (!isPositive(view.aspect * (view.orthographic ? view.ortho_height : view.tan_half_fovy) *
+                  (1.0 + shift))) {
     return "View::aspect times the height of the view must be greater than 0 and finite";
   }
   if (!(std::isfinite(view.near) && view.near >= 0.0)) {
@@ -66,9 +72,12 @@ const char* makeUsable(View& view) {
   if (const char* fault = projectionFault(usable)) {
     return fault;
   }
-  // The frustum is symmetric, so a mirrored view shows the same objects.
+  // A mirrored view shows the same objects.
   const bool left_handed = dot(cross(usable.right, usable.up), usable.forward) > 0.0;
-  usable.right = left_handed ? -usable.right : usable.right;
+  if (left_handed) {
+    usable.right = -usable.right;
+    usable.shift_x = -usable.shift_x;
+  }
   view = usable;
   return nullptr;
 }

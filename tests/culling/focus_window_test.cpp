@@ -28,6 +28,10 @@ View anyView(Random& random) {
   view.tan_half_fovy = random.in(0.2, 1.2);
   view.near = random.in(0.05, 1.0);
   view.far = 500.0;
+  if (random.in(0, 2) < 1) {
+    view.shift_x = random.in(-0.5, 0.5);
+    view.shift_y = random.in(-0.5, 0.5);
+  }
   return view;
 }
 

@@ -235,6 +235,10 @@ TEST(HiddenLinesRays, AgreeOnRandomTriangles) {
       View amid = fromOutside(scene, orthographic, seed);
       amid.eye = {0, 0, 0};  // many triangles cross the near plane
       expectRight(check(scene, amid, 1, seed));
+      View off_centre = fromOutside(scene, orthographic, seed);
+      off_centre.shift_x = 0.4;
+      off_centre.shift_y = -0.3;
+      expectRight(check(scene, off_centre, 1, seed));
     }
   }
 }

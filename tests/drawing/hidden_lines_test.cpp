@@ -70,6 +70,24 @@ TEST(HiddenLines, EndAtTheBordersOfTheView) {
   EXPECT_EQ(border[0].to.x, kPage);
 }
 
+TEST(HiddenLines, EndAtTheBordersOfAnOffCentreView) {
+  Sketch sketch;
+  View view = squareView();
+  view.shift_x = 0.5;
+  view.shift_y = -0.25;
+  // The page shows x / depth from -0.5 to 1.5 and y / depth from -1.25 to 0.75.
+  const std::vector<LinePiece> level = sketch.pieces(view, sketch.line({-4, 0, -2}, {4, 0, -2}));
+  expectShares(level, {{0.375, 0.875}});
+  EXPECT_NEAR(level[0].from.x, 0.0, 1e-9);
+  EXPECT_NEAR(level[0].to.x, kPage, 1e-9);
+  EXPECT_NEAR(level[0].from.y, 0.375 * kPage, 1e-9);
+  const std::vector<LinePiece> upright = sketch.pieces(view, sketch.line({1, -4, -2}, {1, 4, -2}));
+  expectShares(upright, {{0.1875, 0.6875}});
+  EXPECT_NEAR(upright[0].from.x, 0.5 * kPage, 1e-9);
+  EXPECT_NEAR(upright[0].from.y, kPage, 1e-9);
+  EXPECT_NEAR(upright[0].to.y, 0.0, 1e-9);
+}
+
 TEST(HiddenLines, SharesAreOfTheLineInSpace) {
   Sketch sketch;
   const ObjectId object = sketch.add(wall(-1, 0.5, 2));

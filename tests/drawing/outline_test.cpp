@@ -68,7 +68,8 @@ struct OneObject {
 // Whether the ray through a point of the page intersects a drawn triangle between near and far.
 bool raySees(const SceneView& scene, const View& view, const PagePoint& p, double page_height) {
   const double half = view.orthographic ? view.ortho_height * 0.5 : view.tan_half_fovy;
-  const double x = (p.x / page_height * 2.0 - view.aspect) * half, y = (1.0 - p.y / page_height * 2.0) * half;
+  const double x = (p.x / page_height * 2.0 - view.aspect + view.shift_x * view.aspect) * half;
+  const double y = (1.0 - p.y / page_height * 2.0 + view.shift_y) * half;
   const Vec3d across = view.right * x + view.up * y;
   const Vec3d from = view.orthographic ? view.eye + across : view.eye;
   const Vec3d along = view.orthographic ? view.forward : view.forward + across;
@@ -177,6 +178,10 @@ TEST(Outline, OfClosedSolidsFromAnywhereCoversWhatRaysSee) {
     view.ortho_height = 8.0;
     view.aspect = random.number(0.5, 2.0);
     setOrientation(view, -view.eye + random.point({-1, -1, -1}, {1, 1, 1}), {0, 1, 0});
+    if (seed % 2 == 0) {
+      view.shift_x = random.number(-1, 1);
+      view.shift_y = random.number(-1, 1);
+    }
     expectCoversWhatRaysSee(object, view, seed);
   }
 }

@@ -28,6 +28,8 @@ TEST(CameraPathJson, ReadsEveryKey) {
   EXPECT_EQ(path->height, 480u);
   EXPECT_EQ(path->near, 0.25);
   EXPECT_EQ(path->far, 500.0);
+  EXPECT_EQ(path->shift_x, 0.0);
+  EXPECT_EQ(path->shift_y, 0.0);
   ASSERT_EQ(path->frames.size(), 1u);
   EXPECT_EQ(path->frames[0].eye, Vec3d(1, 2, 3));
   EXPECT_EQ(path->frames[0].forward, Vec3d(0, 0, -2));
@@ -45,7 +47,7 @@ TEST(CameraPathJson, NamesKeysThatItDoesNotKnowOnceEach) {
   ASSERT_EQ(unknown.size(), 2u);
   EXPECT_EQ(unknown[0].key, "fovydeg");
   EXPECT_FALSE(unknown[0].frame);
-  EXPECT_EQ(unknown[0].known.size(), 8u);
+  EXPECT_EQ(unknown[0].known.size(), 9u);
   EXPECT_EQ(unknown[1].key, "fovydeg");
   EXPECT_EQ(unknown[1].frame, 1u);
   EXPECT_EQ(unknown[1].frames, 2u);
@@ -58,6 +60,7 @@ TEST(CameraPathJson, KnowsEveryKeyThatItWrites) {
   std::vector<UnknownKey> unknown;
   EXPECT_TRUE(parseCameraPath(toJson(path), "walk", &unknown));
   path.ortho_height = 2.0;
+  path.shift_x = 0.5;
   EXPECT_TRUE(parseCameraPath(toJson(path), "walk", &unknown));
   EXPECT_TRUE(unknown.empty());
 }
@@ -82,6 +85,14 @@ TEST(CameraPathJson, WritesWhatItReadsBackBitForBit) {
     EXPECT_EQ(again->frames[i].forward, path.frames[i].forward);
     EXPECT_EQ(again->frames[i].up, path.frames[i].up);
   }
+  EXPECT_EQ(again->shift_x, 0.0);
+  EXPECT_EQ(toJson(path).find("shift"), std::string::npos) << "only views that are off-centre have one";
+  path.shift_x = -1.0 / 3.0;
+  path.shift_y = 1e-5;
+  const Result<CameraPath> shifted = parseCameraPath(toJson(path), "again");
+  ASSERT_TRUE(shifted) << shifted.error().message;
+  EXPECT_EQ(shifted->shift_x, path.shift_x);
+  EXPECT_EQ(shifted->shift_y, path.shift_y);
   path.ortho_height = 12.5;
   EXPECT_EQ(parseCameraPath(toJson(path), "again").value().ortho_height, 12.5);
 }
@@ -105,6 +116,11 @@ TEST(CameraPathJson, NamesTheKeyThatIsWrong) {
   EXPECT_EQ(with("ortho_height", 0), "walk.path.json: \"ortho_height\" must be greater than 0");
   EXPECT_EQ(with("near", 0), "walk.path.json: \"near\" must be greater than 0");
   EXPECT_EQ(with("near", 500), "walk.path.json: \"far\" must be greater than \"near\"");
+  EXPECT_EQ(with("shift", {-1000, 1000}), "accepted");
+  for (const json& bad : {json({1, 2, 3}), json({1}), json({1, "2"}), json({0, 1000.5}), json({-1e308, 0}),
+                          json(0.5), json(nullptr), json::object()}) {
+    EXPECT_EQ(with("shift", bad), "walk.path.json: \"shift\" must be two numbers from -1000 to 1000");
+  }
   EXPECT_NE(with("width", 0).find("\"width\" must be a whole number"), std::string::npos);
   EXPECT_NE(with("height", 4.5).find("\"height\" must be a whole number"), std::string::npos);
   EXPECT_NE(with("width", 1e18).find("\"width\" must be a whole number"), std::string::npos);

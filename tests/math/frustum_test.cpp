@@ -31,6 +31,10 @@ View randomView(Random& random, bool orthographic, double scale) {
   view.ortho_height = random.in(1.0, 40.0) * scale;
   view.tan_half_fovy = random.in(0.1, 3.0);
   view.aspect = random.in(0.3, 3.0);
+  if (random.in(0.0, 1.0) < 0.5) {
+    view.shift_x = random.in(-2.0, 2.0);
+    view.shift_y = random.in(-2.0, 2.0);
+  }
   view.near = random.in(0.01, 1.0) * scale;
   view.far = view.near + random.in(1.0, 60.0) * scale;
   return view;
@@ -70,7 +74,11 @@ TEST_P(FrustumOfView, HasUnitNormalsThatPointInwards) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);
     const View view = randomView(random, GetParam().orthographic, GetParam().scale);
-    const Vec3d inside = view.eye + view.forward * (0.5 * (view.near + view.far));
+    const double depth = 0.5 * (view.near + view.far);
+    const double half_height = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
+    const Vec3d inside = view.eye + view.forward * depth +
+                         view.right * (view.shift_x * half_height * view.aspect) +
+                         view.up * (view.shift_y * half_height);
     for (const Plane& plane : frustumOf(view).planes) {
       EXPECT_NEAR(length(plane.normal), 1.0, 1e-12) << "seed " << seed;
       EXPECT_GT(plane.evaluate(inside), 0.0) << "seed " << seed;
@@ -226,6 +234,25 @@ TEST(Frustum, ABoxThatTouchesAPlaneFromOutsideIsNotOutside) {
     const float beyond = std::nextafter(16.0f, 17.0f);
     EXPECT_EQ(sideOf(view, {{-1, -1, -17}, {1, 1, -beyond}}), FrustumSide::kOutside);
     EXPECT_EQ(sideOf(view, {{std::nextafter(4.0f, 5.0f), -1, -4}, {5, 1, -2}}), FrustumSide::kOutside);
+  }
+}
+
+TEST(Frustum, OfAnOffCentreViewEndsWhereItsWindowDoes) {
+  for (const bool orthographic : {false, true}) {
+    // At a depth of 4 metres the window is 8 metres wide and high: x from -2 to 6, y from -8 to 0.
+    View view = looksAlongMinusZ();
+    view.orthographic = orthographic;
+    view.ortho_height = 8.0;
+    view.shift_x = 0.5;
+    view.shift_y = -1.0;
+    const float in = 0.01f;
+    const auto at = [&](float x, float y) { return sideOf(view, {{x, y, -4}, {x, y, -4}}); };
+    EXPECT_EQ(at(-2 + in, -8 + in), FrustumSide::kInside);
+    EXPECT_EQ(at(6 - in, -in), FrustumSide::kInside);
+    EXPECT_EQ(at(-2 - in, -4), FrustumSide::kOutside);
+    EXPECT_EQ(at(6 + in, -4), FrustumSide::kOutside);
+    EXPECT_EQ(at(0, -8 - in), FrustumSide::kOutside);
+    EXPECT_EQ(at(0, in), FrustumSide::kOutside);
   }
 }
 

@@ -220,7 +220,7 @@ struct Bed {
   }
   // The largest tangent of the view.
   double spread() const {
-    return view.orthographic ? 0.0 : std::max(view.middle_x / view.scale_x, view.middle_y / view.scale_y);
+    return view.orthographic ? 0.0 : std::max(view.reachX() / view.scale_x, view.reachY() / view.scale_y);
   }
   BoxAnswer ask() const {
     DepthLevels levels;

@@ -29,8 +29,10 @@ struct Exact {
 
   Exact(const PixelView& view, const Box& box) {
     const auto dotted = [](const Vec3d& a, const Wide* d) { return a.x * d[0] + a.y * d[1] + a.z * d[2]; };
-    const Wide tan_x = view.middle_x / static_cast<Wide>(view.scale_x);
-    const Wide tan_y = view.middle_y / static_cast<Wide>(view.scale_y);
+    const Wide left = view.middle_x / static_cast<Wide>(view.scale_x);
+    const Wide right = (view.width - view.middle_x) / static_cast<Wide>(view.scale_x);
+    const Wide bottom = view.middle_y / static_cast<Wide>(view.scale_y);
+    const Wide top = (view.height - view.middle_y) / static_cast<Wide>(view.scale_y);
     Wide beyond[4] = {INFINITY, INFINITY, INFINITY, INFINITY};
     for (int axis = 0; axis < 3; ++axis) {
       reach += std::max(std::abs(static_cast<Wide>(box.min[axis]) - view.eye[axis]),
@@ -50,7 +52,7 @@ struct Exact {
       x1 = std::max(x1, view.middle_x + view.scale_x * (x / by));
       y0 = std::min(y0, view.middle_y + view.scale_y * (y / by));
       y1 = std::max(y1, view.middle_y + view.scale_y * (y / by));
-      const Wide out[4] = {-x - tan_x * by, x - tan_x * by, -y - tan_y * by, y - tan_y * by};
+      const Wide out[4] = {-x - left * by, x - right * by, -y - bottom * by, y - top * by};
       for (int side = 0; side < 4; ++side) {
         beyond[side] = std::min(beyond[side], out[side]);
       }
@@ -91,7 +93,7 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
       const bool near = exact.z0 <= view.near * (1 + 0x1p-20L) + rounding;
       EXPECT_TRUE(near || (!view.orthographic && exact.z0 < 200 * rounding)) << "seed " << seed;
       EXPECT_LT(exact.beyond_side,
-                rounding * (1 + view.middle_x / view.scale_x + view.middle_y / view.scale_y))
+                rounding * (1 + view.reachX() / view.scale_x + view.reachY() / view.scale_y))
           << "seed " << seed;
       continue;
     }
@@ -107,7 +109,8 @@ TEST(PixelBoxes, RectangleAndDepthsHoldTheExactOnesAndAreTight) {
     const Wide ratio = view.orthographic ? 0 : rounding / exact.z0;
     const auto slack = [&](Wide at, double scale, double middle) {
       const Wide q = std::abs(at - middle) / scale;
-      return scale * (view.orthographic ? rounding : ratio * (1 + q)) + 0x1p-18L * (middle + std::abs(at));
+      return scale * (view.orthographic ? rounding : ratio * (1 + q)) +
+             0x1p-18L * (std::abs(middle) + std::abs(at));
     };
     const Wide left = slack(exact.x0, view.scale_x, view.middle_x);
     const Wide right = slack(exact.x1, view.scale_x, view.middle_x);

@@ -36,6 +36,11 @@ inline View randomView(ViewRandom& random) {
   view.aspect = random.sized(0.3, 3.0);
   view.near = random.sized(1e-3, 1.0);
   view.far = random.sized(50.0, 1e5);
+  if (random.below(2) == 0) {
+    const double reach = random.sized(1e-6, 20.0);
+    view.shift_x = random.in(-reach, reach);
+    view.shift_y = random.in(-reach, reach);
+  }
   return view;
 }
 
@@ -44,8 +49,9 @@ inline Box randomBox(ViewRandom& random, const View& view) {
   const double depth =
       random.below(5) == 0 ? random.in(-1.0, 3.0) * view.near : random.sized(view.near, 300.0);
   const double reach = view.orthographic ? view.ortho_height : view.tan_half_fovy * std::abs(depth);
-  const Vec3d middle = view.eye + view.forward * depth + view.right * (reach * random.in(-1.0, 1.0)) +
-                       view.up * (reach * random.in(-1.0, 1.0));
+  const Vec3d middle = view.eye + view.forward * depth +
+                       view.right * (reach * (random.in(-1.0, 1.0) + view.shift_x)) +
+                       view.up * (reach * (random.in(-1.0, 1.0) + view.shift_y));
   Vec3d half = abs(random.point(1.0)) * (std::abs(depth) * random.sized(1e-5, 3.0));
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint64_t kind = random.below(12);

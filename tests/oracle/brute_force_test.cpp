@@ -96,6 +96,10 @@ View randomView(std::mt19937& random) {
   view.ortho_height = 20.0 * share(random);
   view.near = share(random);
   view.far = 20.0 * share(random) + 2.0;
+  if (random() % 2 == 0) {
+    view.shift_x = unit(random);
+    view.shift_y = unit(random);
+  }
   return view;
 }
 

@@ -33,6 +33,7 @@ struct Family {
   bool broken = false;  // triangles without area or with coordinates that are not finite
   std::vector<double> near{0.5}, far{100.0};
   std::vector<double> tangents{4.0}, aspects{1.0};
+  std::vector<double> shifts{0.0};  // multiples of 1/64
 };
 
 std::string described(const Scene& scene, const View& view) {
@@ -41,7 +42,7 @@ std::string described(const Scene& scene, const View& view) {
   text << (view.orthographic ? "orthographic " : "perspective ") << "eye " << view.eye.x << ' ' << view.eye.y
        << ' ' << view.eye.z << " forward " << view.forward.x << ' ' << view.forward.y << ' ' << view.forward.z
        << " near " << view.near << " far " << view.far << " tan " << view.tan_half_fovy << " height "
-       << view.ortho_height << " aspect " << view.aspect;
+       << view.ortho_height << " aspect " << view.aspect << " shift " << view.shift_x << ' ' << view.shift_y;
   for (const Object& object : scene.objects) {
     const Material& material = scene.view().materialOf(object);
     text << "\nobject" << (material.opaque() ? "" : " see-through")
@@ -93,6 +94,8 @@ class Maker {
     view.tan_half_fovy = oneOf(family_.tangents);
     view.ortho_height = 2.0 * oneOf(family_.tangents);
     view.aspect = oneOf(family_.aspects);
+    view.shift_x = oneOf(family_.shifts);
+    view.shift_y = oneOf(family_.shifts);
     if (family_.eye_on_grid) {
       view.eye = Vec3d(grid(family_.half_extent), grid(family_.half_extent), grid(2));
     }
@@ -337,6 +340,16 @@ const Family kFamilies[] = {
      .eye_on_grid = true,
      .tangents = {1.0, 2.0},
      .aspects = {0.5, 1.0}},
+    {.name = "OffCentre",
+     .tangents = {1.0, 2.0},
+     .aspects = {0.5, 1.0},
+     .shifts = {0.0, -0.5, 0.75, 1.0, -2.0}},
+    {.name = "OrthographicOffCentre",
+     .orthographic = true,
+     .eye_on_grid = true,
+     .tangents = {1.0, 2.0},
+     .aspects = {0.5, 1.0},
+     .shifts = {0.0, -0.5, 0.75, 1.0, -2.0}},
     {.name = "OrthographicOblique", .orthographic = true, .oblique = true, .tangents = {16.0}},
 };
 

@@ -134,7 +134,10 @@ TEST_F(LayerReuseTest, FirstImageIsWhatTheRendererDraws) {
     Reused reused(maker.scene, {.guard_px = guard});
     EXPECT_EQ(reused.reuse.width(), kWidth);
     EXPECT_EQ(reused.reuse.height(), kHeight);
-    reused.begin(testView());
+    View view = testView();
+    view.shift_x = 0.25 * (guard % 3);
+    view.shift_y = -0.125 * (guard % 3);
+    reused.begin(view);
     for (const std::uint32_t object : {0u, 1u}) {
       EXPECT_TRUE(reused.draw(ids({object})));
       EXPECT_LT(largestDifference(reused.image, reused.expected), 1e-4) << guard;
@@ -148,8 +151,11 @@ TEST_F(LayerReuseTest, PlaneMovedParallelToThePictureIsShiftedExactly) {
   maker.wall(0.0, 1.43, kRed);
   for (const auto& [right, down] : {std::pair(3, 2), {-11, 5}, {0, -7}, {20, 0}}) {
     Reused reused(maker.scene, {.tolerance_px = 0.01});
-    EXPECT_TRUE(reused.drawFrame(testView(), {Mat4{}}, ids({0})));
-    EXPECT_FALSE(reused.drawFrame(testView(), {shifted(right * kPixel, -down * kPixel, 0.0)}, ids({0})));
+    View view = testView();
+    view.shift_x = 0.02 * down;
+    view.shift_y = 0.01 * right;
+    EXPECT_TRUE(reused.drawFrame(view, {Mat4{}}, ids({0})));
+    EXPECT_FALSE(reused.drawFrame(view, {shifted(right * kPixel, -down * kPixel, 0.0)}, ids({0})));
     // The light of the wall is the same; haze differs a little with the distance from the eye.
     EXPECT_LT(largestDifference(reused.image, reused.expected), 5e-3) << right << ' ' << down;
     EXPECT_GT(covered(reused.image), 300.0);
@@ -315,6 +321,19 @@ TEST_F(LayerReuseTest, OrthographicViewsShiftExactlyWhereverThingsAre) {
   view.eye = view.eye + Vec3d(4 * kPixel, 0, 0);
   EXPECT_FALSE(reused.drawFrame(view, {}, ids({0})));
   EXPECT_LT(largestDifference(reused.image, reused.expected), 2e-3);
+}
+
+// As jitter between frames does.
+TEST_F(LayerReuseTest, AWindowMovedByWholePixelsShiftsTheImageExactly) {
+  maker.wall(0.0, 1.43, kRed);
+  Reused reused(maker.scene, {.tolerance_px = 0.01});
+  View view = testView();
+  EXPECT_TRUE(reused.drawFrame(view, {}, ids({0})));
+  view.shift_x = 2.0 * 3 / kWidth;
+  view.shift_y = -2.0 * 5 / kHeight;
+  EXPECT_FALSE(reused.drawFrame(view, {}, ids({0})));
+  EXPECT_LT(largestDifference(reused.image, reused.expected), 5e-3);
+  EXPECT_GT(covered(reused.image), 300.0);
 }
 
 TEST_F(LayerReuseTest, LayersOutsideTheViewCostNothing) {

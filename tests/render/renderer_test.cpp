@@ -140,6 +140,41 @@ TEST_F(RendererTest, OrthographicSizesDoNotDependOnDistance) {
   }
 }
 
+TEST_F(RendererTest, OffCentreViewsAreTilesOfAPicture) {
+  SceneMaker maker;
+  maker.box({1.0f, 0.5f, -1.0f}, {3.0f, 2.5f, 1.0f}, kRed);
+  Renderer renderer = rendererOf(maker.scene);
+  for (const bool orthographic : {false, true}) {
+    View whole = testView();
+    whole.orthographic = orthographic;
+    whole.ortho_height = 10.0;
+    const Image picture = renderer.draw(whole, allOf(maker.scene));
+    int different = 0, red = 0;
+    for (const int right : {-1, 1}) {
+      for (const int up : {-1, 1}) {
+        View tile = whole;
+        tile.tan_half_fovy *= 0.5;
+        tile.ortho_height *= 0.5;
+        tile.shift_x = right;
+        tile.shift_y = up;
+        const Image part = renderer.draw(tile, allOf(maker.scene));
+        // Every second pixel of the tile beside the pixels of the picture.
+        for (std::uint32_t y = 0; y < part.height; ++y) {
+          for (std::uint32_t x = 0; x < part.width; ++x) {
+            const std::uint32_t at_x = (x + (right > 0 ? part.width : 0)) / 2;
+            const std::uint32_t at_y = (y + (up > 0 ? 0 : part.height)) / 2;
+            const bool in_part = isRed(pixelOf(part, x, y));
+            different += in_part != isRed(pixelOf(picture, at_x, at_y)) ? 1 : 0;
+            red += in_part ? 1 : 0;
+          }
+        }
+      }
+    }
+    EXPECT_GT(red, 1000);
+    EXPECT_LT(different, red / 20) << "along the borders";
+  }
+}
+
 TEST_F(RendererTest, WhatTheNearAndFarPlanesCutAwayIsNotDrawn) {
   SceneMaker maker;
   maker.wall(2.0, 3.0, kRed);

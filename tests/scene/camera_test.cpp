@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -37,6 +38,8 @@ View randomView(std::mt19937& random) {
   view.tan_half_fovy = 0.2 + 0.1 * static_cast<double>(random() % 10);
   view.ortho_height = 1.0 + static_cast<double>(random() % 50);
   view.aspect = 0.5 + 0.25 * static_cast<double>(random() % 8);
+  view.shift_x = 0.25 * static_cast<double>(random() % 17) - 2.0;
+  view.shift_y = 0.25 * static_cast<double>(random() % 17) - 2.0;
   view.near = 0.5;
   view.far = 80.0;
   return view;
@@ -137,21 +140,53 @@ TEST(Camera, CornersOfThePictureProjectToTheCornersOfClipSpace) {
   EXPECT_NEAR(clip.z, 0.0, 1e-12) << "half way between near and far";
 }
 
+TEST(Camera, TheMiddleOfAnOffCentrePictureLiesOffTheForwardAxis) {
+  View view;
+  view.eye = {10, 20, 30};
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.tan_half_fovy = 0.5;
+  view.aspect = 2.0;
+  view.shift_x = 0.5;
+  view.shift_y = -1.5;
+  // At 2 metres distance, half the picture is 2 metres wide and 1 metre high.
+  Clip clip = project(clipFromScene(view), {11, 18.5, 28});
+  EXPECT_NEAR(clip.x, 0.0, 1e-12);
+  EXPECT_NEAR(clip.y, 0.0, 1e-12);
+  clip = project(clipFromScene(view), {13, 19.5, 28});
+  EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-12);
+  EXPECT_NEAR(clip.y / clip.w, 1.0, 1e-12);
+  view.orthographic = true;
+  view.ortho_height = 2.0;
+  clip = project(clipFromScene(view), {11, 18.5, 25});
+  EXPECT_NEAR(clip.x, 0.0, 1e-12);
+  EXPECT_NEAR(clip.y, 0.0, 1e-12);
+  clip = project(clipFromScene(view), {9, 17.5, 25});
+  EXPECT_NEAR(clip.x, -1.0, 1e-12);
+  EXPECT_NEAR(clip.y, -1.0, 1e-12);
+}
+
 TEST(Camera, NearDistanceReachesTheCornersOfTheNearPlane) {
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
     View view = randomView(random);
     view.orthographic = false;
-    // Converts the corner (1, 1) of the near plane back from clip space.
-    const Vec3d corner = view.forward * view.near +
-                         view.right * (view.near * view.tan_half_fovy * view.aspect) +
-                         view.up * (view.near * view.tan_half_fovy);
-    const Clip clip = project(clipFromScene(view), view.eye + corner);
-    EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-9) << "seed " << seed;
-    EXPECT_NEAR(clip.y / clip.w, 1.0, 1e-9) << "seed " << seed;
-    EXPECT_NEAR(clip.z / clip.w, -1.0, 1e-9) << "seed " << seed;
-    EXPECT_GE(nearDistance(view), length(corner)) << "seed " << seed;
-    EXPECT_LE(nearDistance(view), length(corner) * (1.0 + 1e-12)) << "seed " << seed;
+    double farthest = 0.0;
+    for (const double x : {-1.0, 1.0}) {
+      for (const double y : {-1.0, 1.0}) {
+        // Converts the corner (x, y) of the near plane back from clip space.
+        const Vec3d corner =
+            view.forward * view.near +
+            view.right * (view.near * view.tan_half_fovy * view.aspect * (x + view.shift_x)) +
+            view.up * (view.near * view.tan_half_fovy * (y + view.shift_y));
+        const Clip clip = project(clipFromScene(view), view.eye + corner);
+        EXPECT_NEAR(clip.x / clip.w, x, 1e-9) << "seed " << seed;
+        EXPECT_NEAR(clip.y / clip.w, y, 1e-9) << "seed " << seed;
+        EXPECT_NEAR(clip.z / clip.w, -1.0, 1e-9) << "seed " << seed;
+        farthest = std::max(farthest, length(corner));
+      }
+    }
+    EXPECT_GE(nearDistance(view), farthest) << "seed " << seed;
+    EXPECT_LE(nearDistance(view), farthest * (1.0 + 1e-12)) << "seed " << seed;
   }
 }
 
@@ -168,6 +203,8 @@ TEST(CameraPath, ViewsAreInSceneSpace) {
   path.height = 200;
   path.near = 0.25;
   path.far = 70.0;
+  path.shift_x = 0.25;
+  path.shift_y = -3.0;
   path.frames = {{{5e6 + 1.5, 0, 0}, {0, 0, -4}, {0, 2, 0}}, {{5e6, 3, 0}, {1, 0, 0}, {0, 1, 0}}};
   const View view = path.view(0, {5e6, 0, 10});
   EXPECT_EQ(view.eye, Vec3d(1.5, 0, -10));
@@ -177,6 +214,8 @@ TEST(CameraPath, ViewsAreInSceneSpace) {
   EXPECT_EQ(view.aspect, 1.5);
   EXPECT_EQ(view.near, 0.25);
   EXPECT_EQ(view.far, 70.0);
+  EXPECT_EQ(view.shift_x, 0.25);
+  EXPECT_EQ(view.shift_y, -3.0);
   EXPECT_EQ(path.view(1, {5e6, 0, 0}).eye, Vec3d(0, 3, 0));
   path.ortho_height = 8.0;
   EXPECT_TRUE(path.view(0, {}).orthographic);

@@ -68,9 +68,13 @@ TEST(ValidateView, MirrorsALeftHandedBasis) {
   const View right_handed = viewAlong({1, 0.5, -2});
   View view = right_handed;
   view.right = -view.right;
+  view.shift_x = 0.5;
+  view.shift_y = 0.75;
   const Result<View> result = validate(view);
   ASSERT_TRUE(result);
   expectSameAxes(*result, right_handed);
+  EXPECT_EQ(result->shift_x, -0.5) << "the window stays where it is";
+  EXPECT_EQ(result->shift_y, 0.75);
 }
 
 TEST(ValidateView, AcceptsANearDistanceOfZeroAndAnInfiniteFarOne) {
@@ -128,6 +132,15 @@ TEST(ValidateView, NamesTheMemberThatMakesNoView) {
     view = good;
     view.aspect = bad;
     expectError(view, "View::aspect");
+  }
+  for (const double bad : {1000.001, -1001.0, 1e300, kNan, kInfinite, -kInfinite}) {
+    for (double View::*shift : {&View::shift_x, &View::shift_y}) {
+      View view = good;
+      view.*shift = View::kLargestShift;
+      EXPECT_TRUE(validate(view));
+      view.*shift = bad;
+      expectError(view, "View::shift_x and shift_y");
+    }
   }
   for (const double bad : {-1e-9, -1.0, kNan, kInfinite}) {
     View view = good;

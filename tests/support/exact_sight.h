@@ -23,7 +23,7 @@
 namespace sightline::test {
 
 // Finds what one view of a scene shows. Triangles that are seen edge on, and triangles with coordinates that
-// are not finite, neither show nor hide anything.
+// are not finite, neither show nor hide anything. The shifts of the view are multiples of 1/64.
 class ExactSight {
  public:
   ExactSight(const SceneView& scene, const View& view);
@@ -69,6 +69,8 @@ class ExactSight {
   static Whole dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
   static int side(const Vec& line, const Vec& d) { return dot(line, d).sign(); }
   static Whole power(int exponent) { return Whole(1) << static_cast<unsigned>(exponent); }
+
+  static constexpr int kShiftUnits = 64;
 
   static int unitOf(double value) { return value == 0.0 ? 0 : std::ilogb(value) - 52; }
   static int unitOf(const Vec3d& v) { return std::min({unitOf(v.x), unitOf(v.y), unitOf(v.z), 0}); }
@@ -120,31 +122,32 @@ inline ExactSight::ExactSight(const SceneView& scene, const View& view) : view_(
   }
 }
 
-// Perspective: |right . d| <= tan aspect (forward . d). Orthographic: a point is x right + y up + z forward,
-// and d is (x, y, 1), with x and y times the volume of the axes.
+// Perspective: |right . d - shift tan aspect (forward . d)| <= tan aspect (forward . d). Orthographic: a
+// point is x right + y up + z forward, and d is (x, y, 1), with x and y times the volume of the axes.
 inline void ExactSight::setUpPicture() {
   const double height = view_.orthographic ? 0.5 * view_.ortho_height : view_.tan_half_fovy;
   const int height_unit = unitOf(height), aspect_unit = unitOf(view_.aspect);
   const Whole y = whole(height, height_unit);
   const Whole x = y * whole(view_.aspect, aspect_unit);
-  const auto set = [&](int at, const Vec& axis, const Vec& along, Whole extent, int unit) {
-    // axis . d <= extent 2^unit (along . d)
+  const auto set = [&](int at, const Vec& axis, const Vec& along, Whole extent, int unit, double shift) {
+    // axis . d <= extent 2^unit (1 + shift) (along . d), and the same to the other side
+    const int one = shift == 0.0 ? 1 : kShiftUnits, shifted = static_cast<int>(shift * one);
     const Vec border = times(along, extent * power(std::max(unit, 0)));
-    const Vec scaled = times(axis, power(std::max(-unit, 0)));
-    picture_[static_cast<std::size_t>(at)] = add(border, scaled);
-    picture_[static_cast<std::size_t>(at) + 1] = add(border, times(scaled, -1));
+    const Vec scaled = times(axis, power(std::max(-unit, 0)) * one);
+    picture_[static_cast<std::size_t>(at)] = add(times(border, one - shifted), scaled);
+    picture_[static_cast<std::size_t>(at) + 1] = add(times(border, one + shifted), times(scaled, -1));
   };
   if (!view_.orthographic) {
     before_eye_ = forward_;
-    set(0, right_, forward_, x, height_unit + aspect_unit);
-    set(2, up_, forward_, y, height_unit);
+    set(0, right_, forward_, x, height_unit + aspect_unit, view_.shift_x);
+    set(2, up_, forward_, y, height_unit, view_.shift_y);
     return;
   }
   before_eye_ = {0, 0, 1};
   const Whole volume = abs(dot(cross(right_, up_), forward_));
   const int unit = axis_unit_ - position_unit_ + height_unit;
-  set(0, {1, 0, 0}, before_eye_, x * volume, unit + aspect_unit);
-  set(2, {0, 1, 0}, before_eye_, y * volume, unit);
+  set(0, {1, 0, 0}, before_eye_, x * volume, unit + aspect_unit, view_.shift_x);
+  set(2, {0, 1, 0}, before_eye_, y * volume, unit, view_.shift_y);
 }
 
 inline ExactSight::Vec ExactSight::image(const Vec& from_eye, const Whole& unit) const {

@@ -78,6 +78,7 @@ class HostileSceneMaker {
   void addTargets();
   void place(HostileScene& made);
   void addViews(HostileScene& made);
+  void shiftViews(HostileScene& made);
 
   std::mt19937_64 random_;
   std::vector<Triangles> occluders_, targets_;
@@ -585,6 +586,22 @@ inline void HostileSceneMaker::addViews(HostileScene& made) {
     const double s = chance(3) ? 0.0 : in(-2, 2), t = chance(3) ? 0.0 : in(-2, 2);
     view.eye = a + (b - a) * s + (c - a) * t + back_ * (scale_ * (chance(2) ? 0.0 : tiny()));
     made.views.push_back(view);
+  }
+  shiftViews(made);
+}
+
+// Makes some views off-centre: a little, as between the samples of a pixel, or so far that the forward axis
+// is outside of the picture. Most objects stay in view.
+inline void HostileSceneMaker::shiftViews(HostileScene& made) {
+  if (!chance(3)) {
+    return;
+  }
+  const auto shift = [&] { return chance(3) ? tinyOrNone() : chance(12) ? in(-30, 30) : in(-1.5, 1.5); };
+  const double x = shift(), y = shift();
+  const bool each = chance(3);  // as the tiles of a picture
+  for (View& view : made.views) {
+    view.shift_x = each ? shift() : x;
+    view.shift_y = each ? shift() : y;
   }
 }
 

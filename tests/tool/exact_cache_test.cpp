@@ -65,14 +65,15 @@ TEST(ExactCache, AnythingThatTheAnswerDependsOnIsPartOfTheKey) {
   SceneId other_scene = kSceneOfTen;
   other_scene.hash = 8;
   EXPECT_FALSE(cache->find(keyOf(other_scene)));
-  View moved, turned, wide, far, parallel, near;
+  View moved, turned, wide, far, parallel, near, beside, above;
   moved.eye.z = 1e-300;
   turned.up.y = 1.0;
   wide.aspect = 2.0;
   far.far = 2000.0;
   near.near = 0.2;
   parallel.orthographic = true;
-  for (const View& view : {moved, turned, wide, far, near, parallel}) {
+  beside.shift_x = above.shift_y = 1e-9;
+  for (const View& view : {moved, turned, wide, far, near, parallel, beside, above}) {
     EXPECT_FALSE(cache->find(keyOf(kSceneOfTen, view)));
   }
   for (std::uint32_t ExactSettings::*number :

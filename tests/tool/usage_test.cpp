@@ -105,6 +105,8 @@ TEST(Tool, FilesThatAreNoPathsAreRefused) {
       {"null", pathWith("[null,0,0]")},
       {"short", pathWith("[0,0]")},
       {"text", pathWith("\"here\"")},
+      {"shift", pathWith("[0,2,0]", ",\"shift\":[0,1001]")},
+      {"shifts", pathWith("[0,2,0]", ",\"shift\":0.5")},
       {"wrong_types", "{\"fovy_deg\":\"wide\",\"frames\":7}"},
       {"utf8", "{\"\xff\xfe\":1}"},
   };

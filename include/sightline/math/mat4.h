@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <span>
 
 #include "sightline/math/vec3.h"
 
@@ -27,6 +29,26 @@ constexpr Mat4 operator*(const Mat4& a, const Mat4& b) {
       }
       r(row, column) = sum;
     }
+  }
+  return r;
+}
+
+constexpr Mat4 transposed(const Mat4& a) {
+  Mat4 r;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      r(row, column) = a(column, row);
+    }
+  }
+  return r;
+}
+
+// From a program's own matrix: 16 numbers, column by column. So lie those of OpenGL, glTF and GLM in memory,
+// and those of DirectXMath too, whose rows are for row vectors. Use transposed() for the other order.
+constexpr Mat4 mat4FromColumns(std::span<const float, 16> columns) {
+  Mat4 r;
+  for (std::size_t i = 0; i < 16; ++i) {
+    r.m[i] = static_cast<double>(columns[i]);
   }
   return r;
 }

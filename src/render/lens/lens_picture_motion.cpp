@@ -22,7 +22,8 @@ std::optional<Vec3d> pointBefore(const Mat4& m, const Vec3d& to) {
 }
 
 Vec3d pointAt(const View& view, const SeenLayer& seen, const LayerImage& image) {
-  const double right = 2.0 * seen.x / image.width - 1.0, up = 1.0 - 2.0 * seen.y / image.height;
+  const double right = 2.0 * seen.x / image.width - 1.0 + view.shift_x;
+  const double up = 1.0 - 2.0 * seen.y / image.height + view.shift_y;
   const double half = view.orthographic ? 0.5 * view.ortho_height : seen.depth * view.tan_half_fovy;
   return view.eye + view.forward * seen.depth + view.right * (right * half * view.aspect) +
          view.up * (up * half);
@@ -35,9 +36,16 @@ std::optional<PixelStep> pixelOf(const View& view, const Vec3d& from_eye, const 
     return std::nullopt;
   }
   const double half = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
-  const PixelStep pixel{0.5 * image.width * (1.0 + dot(from_eye, view.right) / (half * view.aspect)),
-                        0.5 * image.height * (1.0 - dot(from_eye, view.up) / half)};
+  const double right = dot(from_eye, view.right) / (half * view.aspect) - view.shift_x;
+  const double up = dot(from_eye, view.up) / half - view.shift_y;
+  const PixelStep pixel{0.5 * image.width * (1.0 + right), 0.5 * image.height * (1.0 - up)};
   return std::isfinite(pixel.x) && std::isfinite(pixel.y) ? std::optional(pixel) : std::nullopt;
+}
+
+// The direction that the middle of the picture shows, in a perspective view.
+Vec3d pictureMiddle(const View& view) {
+  return view.forward + view.right * (view.shift_x * view.tan_half_fovy * view.aspect) +
+         view.up * (view.shift_y * view.tan_half_fovy);
 }
 
 }  // namespace
@@ -87,7 +95,8 @@ PixelStep skyStep(const View& view, const FrameMotion& motion, const LayerImage&
   if (view.orthographic) {
     return {};
   }
-  const std::optional<PixelStep> there = pixelOf(motion.later, view.forward, image);
+  const Vec3d middle = pictureMiddle(view);
+  const std::optional<PixelStep> there = pixelOf(motion.later, middle, image);
   return there ? PixelStep{motion.shutter * (there->x - 0.5 * image.width),
                            motion.shutter * (there->y - 0.5 * image.height)}
                : PixelStep{};

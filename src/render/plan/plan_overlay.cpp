@@ -103,8 +103,8 @@ std::vector<Point> frustumOutline(const OverlayBuilder& builder, const PlanView&
   std::vector<Point> corners;
   for (const double depth : {view.near, far}) {
     const double half = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
-    for (const double x : {-1.0, 1.0}) {
-      for (const double y : {-1.0, 1.0}) {
+    for (const double x : {view.shift_x - 1.0, view.shift_x + 1.0}) {
+      for (const double y : {view.shift_y - 1.0, view.shift_y + 1.0}) {
         corners.push_back(builder.project(view.eye + view.forward * depth +
                                           view.right * (x * half * view.aspect) + view.up * (y * half)));
       }

@@ -29,7 +29,7 @@ bool areOfOneKind(const View& a, const View& b) {
 bool areEqual(const View& a, const View& b) {
   return areOfOneKind(a, b) && a.eye == b.eye && a.right == b.right && a.up == b.up &&
          a.forward == b.forward && a.tan_half_fovy == b.tan_half_fovy && a.ortho_height == b.ortho_height &&
-         a.aspect == b.aspect;
+         a.aspect == b.aspect && a.shift_x == b.shift_x && a.shift_y == b.shift_y;
 }
 
 // How far an object has turned between two transforms, about in radians; growing and shrinking count too.
@@ -115,6 +115,8 @@ View LayerReuse::Impl::guardedView(const View& frame_view) const {
   wide.tan_half_fovy *= upwards;
   wide.ortho_height *= upwards;
   wide.aspect *= across / upwards;
+  wide.shift_x /= across;
+  wide.shift_y /= upwards;
   return wide;
 }
 

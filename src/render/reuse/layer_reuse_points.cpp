@@ -93,8 +93,9 @@ std::optional<PicturePoint> PictureView::find(const Vec3d& point_scene) const {
   const Vec3d relative = point_scene - view_.eye;
   const double depth = dot(relative, view_.forward);
   const double divisor = view_.orthographic ? 1.0 : depth;
-  const PicturePoint at{0.5 * width_ + scale_x_ * dot(relative, view_.right) / divisor,
-                        0.5 * height_ - scale_y_ * dot(relative, view_.up) / divisor};
+  const PicturePoint at{
+      0.5 * width_ * (1.0 - view_.shift_x) + scale_x_ * dot(relative, view_.right) / divisor,
+      0.5 * height_ * (1.0 + view_.shift_y) - scale_y_ * dot(relative, view_.up) / divisor};
   // Corners that were clipped at these planes lie a little before or behind them.
   constexpr double kSlack = 1e-9;
   const bool is_between = depth >= view_.near * (1.0 - kSlack) && depth <= view_.far * (1.0 + kSlack);

@@ -118,9 +118,10 @@ Result<SkyProgram> makeSkyProgram(const char* fragment) {
 void drawSkyBehind(const SkyProgram& sky, const View& view) {
   // Orthographic rays are parallel; their sky still gets a mild gradient.
   const double half_height = view.orthographic ? 0.3 : view.tan_half_fovy;
-  const Vec3f forward(view.forward);
-  const Vec3f right(view.right * (half_height * view.aspect));
-  const Vec3f up(view.up * half_height);
+  const Vec3d half_right = view.right * (half_height * view.aspect), half_up = view.up * half_height;
+  const Vec3f forward(view.forward + half_right * view.shift_x + half_up * view.shift_y);
+  const Vec3f right(half_right);
+  const Vec3f up(half_up);
   glUseProgram(sky.id);
   glUniform3f(sky.forward, forward.x, forward.y, forward.z);
   glUniform3f(sky.right, right.x, right.y, right.z);

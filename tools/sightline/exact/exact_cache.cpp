@@ -115,6 +115,11 @@ std::vector<std::byte> viewBytes(const View& view) {
   for (const double number : {view.tan_half_fovy, view.ortho_height, view.aspect, view.near, view.far}) {
     writer.add(number);
   }
+  // Symmetric views keep the bytes, and so the answers, that they had before there were others.
+  if (view.shift_x != 0.0 || view.shift_y != 0.0) {
+    writer.add(view.shift_x);
+    writer.add(view.shift_y);
+  }
   return writer.take();
 }
 

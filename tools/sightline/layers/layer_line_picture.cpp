@@ -92,8 +92,8 @@ class NearestSurfaces {
   std::vector<float> reciprocal_depth_;
 };
 
-// A point in camera space. The unit of x and y is half the picture, at depth 1 unless the view is
-// orthographic.
+// A point in camera space, sheared so that the middle of the picture is at x = y = 0. The unit of x and y is
+// half the picture, at depth 1 unless the view is orthographic.
 struct CameraPoint {
   double x = 0.0, y = 0.0, depth = 0.0;
 };
@@ -101,8 +101,9 @@ struct CameraPoint {
 CameraPoint cameraPoint(const View& view, const Vec3f& position) {
   const Vec3d from_eye = Vec3d(position) - view.eye;
   const double half = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
-  return {dot(from_eye, view.right) / (half * view.aspect), dot(from_eye, view.up) / half,
-          dot(from_eye, view.forward)};
+  const double depth = dot(from_eye, view.forward), w = view.orthographic ? 1.0 : depth;
+  return {dot(from_eye, view.right) / (half * view.aspect) - view.shift_x * w,
+          dot(from_eye, view.up) / half - view.shift_y * w, depth};
 }
 
 CameraPoint between(const CameraPoint& a, const CameraPoint& b, double share) {

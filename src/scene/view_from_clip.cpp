@@ -1,0 +1,190 @@
+// With the eye e and depths d = forward . (p - e), the rows of a perspective matrix are
+//
+//   w = q d                                       q > 0
+//   x = (q / half_width) right . (p - e) - q shift_x d
+//   z = a d + b                                   near = b / (z_near q - a), far = b / (z_far q - a)
+//
+// and y is like x. So the part of a row that is not along forward has the direction of an axis, and what is
+// along forward is the shift. In an orthographic matrix w is constant.
+
+#include "sightline/scene/view_from_clip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace sightline {
+namespace {
+
+constexpr double kTilt = 0x1p-20;  // largest sine of angles that count as none: single precision is better
+
+// A function of points p: normal . p + offset.
+struct Row {
+  Vec3d normal;
+  double offset = 0.0;
+
+  double length() const { return sightline::length(normal); }
+  Row operator*(double s) const { return {normal * s, offset * s}; }
+  Row operator-(const Row& other) const { return {normal - other.normal, offset - other.offset}; }
+};
+
+struct Rows {
+  Row x, y, z, w;
+};
+
+Row rowOf(const Mat4& m, int row) {
+  return {{m(row, 0), m(row, 1), m(row, 2)}, m(row, 3)};
+}
+
+// The point where each of the functions, of unit normals, is 0.
+Vec3d commonPoint(const Row& a, const Row& b, const Row& c) {
+  const Vec3d bc = cross(b.normal, c.normal), ca = cross(c.normal, a.normal), ab = cross(a.normal, b.normal);
+  return (bc * a.offset + ca * b.offset + ab * c.offset) * (-1.0 / dot(a.normal, bc));
+}
+
+struct DepthRange {
+  double near = 0.0, far = 0.0;  // z / w
+};
+
+DepthRange rangeOf(ClipDepth depth) {
+  switch (depth) {
+    case ClipDepth::kZeroToOne:
+      return {0.0, 1.0};
+    case ClipDepth::kOneToZero:
+      return {1.0, 0.0};
+    default:
+      return {-1.0, 1.0};
+  }
+}
+
+// A row as a unit normal times a scale, and what it has along forward.
+struct Border {
+  Row unit;
+  double scale = 0.0, along = 0.0;
+};
+
+// Takes a row apart. along: the row of depths, unit normal.
+std::optional<Border> borderOf(const Row& row, const Row& along) {
+  Border border;
+  border.along = dot(row.normal, along.normal);
+  const Row across = row - along * border.along;
+  border.scale = across.length();
+  // A row along forward has nothing across but rounding.
+  if (!(border.scale > 0x1p-40 * row.length())) {
+    return std::nullopt;
+  }
+  border.unit = across * (1.0 / border.scale);
+  return border;
+}
+
+Error notAProjection() {
+  return Error{"clip_from_scene is not the matrix of a view: its rows x, y and w do not span space"};
+}
+
+bool tilted(const Vec3d& a, const Vec3d& b) {
+  return std::abs(dot(a, b)) > kTilt;
+}
+
+Error tiltedDepths() {
+  return Error{
+      "clip_from_scene has an oblique near plane or a sheared depth: z does not depend on the distance along "
+      "the viewing direction alone; give the matrix before its near plane was tilted"};
+}
+
+Error tiltedBorders() {
+  return Error{"clip_from_scene is sheared: the borders of the picture are not at right angles"};
+}
+
+Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
+  const double q = rows.w.length();
+  const Row depth = rows.w * (1.0 / q);
+  const std::optional<Border> x = borderOf(rows.x, depth), y = borderOf(rows.y, depth);
+  if (!x || !y) {
+    return notAProjection();
+  }
+  if (tilted(x->unit.normal, y->unit.normal)) {
+    return tiltedBorders();
+  }
+  const double a = dot(rows.z.normal, depth.normal);
+  if (length(rows.z.normal - depth.normal * a) > kTilt * rows.z.length()) {
+    return tiltedDepths();
+  }
+  View view;
+  view.forward = depth.normal;
+  view.right = x->unit.normal;
+  view.up = y->unit.normal;
+  view.eye = commonPoint(x->unit, y->unit, depth);
+  view.tan_half_fovy = q / y->scale;
+  view.aspect = y->scale / x->scale;
+  view.shift_x = -x->along / q;
+  view.shift_y = -y->along / q;
+  const double b = rows.z.offset - a * depth.offset;
+  view.near = b / (range.near * q - a);
+  view.far = b / (range.far * q - a);
+  if (!(view.near > 0.0 && std::isfinite(view.near))) {
+    return Error{
+        "clip_from_scene has no near plane in front of the eye: is ClipSpace::depth that of the matrix?"};
+  }
+  if (!(view.far >= 0.0)) {
+    view.far = std::numeric_limits<double>::infinity();  // the plane lies beyond infinity, behind the eye
+  }
+  if (!(view.far > view.near)) {
+    return Error{"clip_from_scene has its far plane before its near plane: is ClipSpace::depth kOneToZero?"};
+  }
+  return view;
+}
+
+Result<View> orthographicView(const Rows& rows, const DepthRange& range) {
+  const double w = rows.w.offset, scale = rows.z.length() / w;
+  if (!(w > 0.0)) {
+    return Error{"clip_from_scene is not the matrix of a view: its row w is not positive anywhere"};
+  }
+  if (!(scale > 0.0)) {
+    return Error{"clip_from_scene is an orthographic projection without a depth range: z is constant"};
+  }
+  const double sign = range.far > range.near ? 1.0 : -1.0;
+  const Row depth = rows.z * (sign / rows.z.length());
+  const double x_scale = rows.x.length(), y_scale = rows.y.length();
+  if (!(x_scale > 0.0 && y_scale > 0.0)) {
+    return notAProjection();
+  }
+  const Row x = rows.x * (1.0 / x_scale), y = rows.y * (1.0 / y_scale);
+  if (tilted(x.normal, y.normal)) {
+    return tiltedBorders();
+  }
+  if (tilted(x.normal, depth.normal) || tilted(y.normal, depth.normal)) {
+    return tiltedDepths();
+  }
+  View view;
+  view.orthographic = true;
+  view.right = x.normal;
+  view.up = y.normal;
+  view.forward = depth.normal;
+  Row near = depth;
+  near.offset -= sign * range.near / scale;
+  view.eye = commonPoint(x, y, near);
+  view.ortho_height = 2.0 * w / y_scale;
+  view.aspect = y_scale / x_scale;
+  view.near = 0.0;
+  view.far = std::abs(range.far - range.near) / scale;
+  return view;
+}
+
+}  // namespace
+
+Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space) {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  if (!std::all_of(clip_from_scene.m.begin(), clip_from_scene.m.end(), finite)) {
+    return Error{"clip_from_scene must be finite"};
+  }
+  Rows rows{rowOf(clip_from_scene, 0), rowOf(clip_from_scene, 1), rowOf(clip_from_scene, 2),
+            rowOf(clip_from_scene, 3)};
+  rows.y = clip_space.y_down ? rows.y * -1.0 : rows.y;
+  const DepthRange range = rangeOf(clip_space.depth);
+  const Result<View> view =
+      rows.w.length() > 0.0 ? perspectiveView(rows, range) : orthographicView(rows, range);
+  return view ? validate(*view) : view;
+}
+
+}  // namespace sightline

@@ -1,0 +1,449 @@
+#include "sightline/scene/view_from_clip.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "sightline/math/frustum.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double in(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
+  bool chance() { return (engine_() >> 20 & 1) != 0; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+Mat4 fromRows(const std::array<double, 16>& rows) {
+  return transposed(Mat4{rows});
+}
+
+// ---- Projections as their definitions give them.
+
+struct Window {
+  double left, right, bottom, top, near, far;
+};
+
+// glFrustum()
+Mat4 glFrustum(const Window& w) {
+  const double width = w.right - w.left, height = w.top - w.bottom, depth = w.far - w.near;
+  return fromRows({2 * w.near / width, 0, (w.right + w.left) / width, 0,          //
+                   0, 2 * w.near / height, (w.top + w.bottom) / height, 0,        //
+                   0, 0, -(w.far + w.near) / depth, -2 * w.far * w.near / depth,  //
+                   0, 0, -1, 0});
+}
+
+// glOrtho()
+Mat4 glOrtho(const Window& w) {
+  const double width = w.right - w.left, height = w.top - w.bottom, depth = w.far - w.near;
+  return fromRows({2 / width, 0, 0, -(w.right + w.left) / width,    //
+                   0, 2 / height, 0, -(w.top + w.bottom) / height,  //
+                   0, 0, -2 / depth, -(w.far + w.near) / depth,     //
+                   0, 0, 0, 1});
+}
+
+// D3DXMatrixPerspectiveOffCenterLH(), which is for row vectors: transposed here. The view looks along +z.
+Mat4 d3dOffCenterLeftHanded(const Window& w) {
+  const double width = w.right - w.left, height = w.top - w.bottom, depth = w.far - w.near;
+  return transposed(fromRows({2 * w.near / width, 0, 0, 0,   //
+                              0, 2 * w.near / height, 0, 0,  //
+                              (w.left + w.right) / (w.left - w.right),
+                              (w.top + w.bottom) / (w.bottom - w.top), w.far / depth, 1,  //
+                              0, 0, w.near * w.far / (w.near - w.far), 0}));
+}
+
+// Depth from 1 to 0, without an end; right-handed.
+Mat4 reversedInfinite(const Window& w) {
+  const double width = w.right - w.left, height = w.top - w.bottom;
+  return fromRows({2 * w.near / width, 0, (w.right + w.left) / width, 0,    //
+                   0, 2 * w.near / height, (w.top + w.bottom) / height, 0,  //
+                   0, 0, 0, w.near,                                         //
+                   0, 0, -1, 0});
+}
+
+// gluLookAt() from an eye and orthonormal axes.
+Mat4 lookAt(const View& view) {
+  const Vec3d r = view.right, u = view.up, b = -view.forward;
+  return fromRows({r.x, r.y, r.z, -dot(r, view.eye),  //
+                   u.x, u.y, u.z, -dot(u, view.eye),  //
+                   b.x, b.y, b.z, -dot(b, view.eye),  //
+                   0, 0, 0, 1});
+}
+
+Mat4 scaling(double x, double y, double z) {
+  return fromRows({x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1});
+}
+
+Mat4 inSinglePrecision(const Mat4& m) {
+  std::array<float, 16> floats{};
+  for (std::size_t i = 0; i < 16; ++i) {
+    floats[i] = static_cast<float>(m.m[i]);
+  }
+  return mat4FromColumns(floats);
+}
+
+constexpr Window kWindow{-0.3, 0.5, -0.2, 0.1, 0.25, 80.0};
+
+View someCamera() {
+  View view;
+  view.eye = {12, -3, 40};
+  setOrientation(view, {1, 0.25, -2}, {0.1, 1, 0});
+  return view;
+}
+
+// What the window above is as a view.
+void expectWindow(const View& view, const Window& w, double far) {
+  const View camera = someCamera();
+  EXPECT_NEAR(length(view.eye - camera.eye), 0.0, 1e-12);
+  EXPECT_NEAR(length(view.right - camera.right), 0.0, 1e-12);
+  EXPECT_NEAR(length(view.up - camera.up), 0.0, 1e-12);
+  EXPECT_NEAR(length(view.forward - camera.forward), 0.0, 1e-12);
+  EXPECT_FALSE(view.orthographic);
+  EXPECT_NEAR(view.tan_half_fovy, 0.5 * (w.top - w.bottom) / w.near, 1e-12);
+  EXPECT_NEAR(view.aspect, (w.right - w.left) / (w.top - w.bottom), 1e-12);
+  EXPECT_NEAR(view.shift_x, (w.right + w.left) / (w.right - w.left), 1e-12);
+  EXPECT_NEAR(view.shift_y, (w.top + w.bottom) / (w.top - w.bottom), 1e-12);
+  EXPECT_NEAR(view.near, w.near, 1e-12 * w.near);
+  if (std::isinf(far)) {
+    EXPECT_EQ(view.far, far);
+  } else {
+    EXPECT_NEAR(view.far, far, 1e-11 * far);
+  }
+}
+
+void expectView(const Result<View>& view, double far) {
+  ASSERT_TRUE(view) << view.error().message;
+  expectWindow(*view, kWindow, far);
+}
+
+TEST(ViewFromClip, ReadsGlFrustum) {
+  expectView(viewFromClip(glFrustum(kWindow) * lookAt(someCamera())), kWindow.far);
+}
+
+TEST(ViewFromClip, ReadsTheOffCentreProjectionOfDirect3D) {
+  // Of a left-handed view matrix only the sign of z differs.
+  const Mat4 view = scaling(1, 1, -1) * lookAt(someCamera());
+  expectView(viewFromClip(d3dOffCenterLeftHanded(kWindow) * view, {.depth = ClipDepth::kZeroToOne}),
+             kWindow.far);
+}
+
+TEST(ViewFromClip, ReadsReversedDepthWithoutAnEnd) {
+  const Mat4 clip = reversedInfinite(kWindow) * lookAt(someCamera());
+  expectView(viewFromClip(clip, {.depth = ClipDepth::kOneToZero}), kEndless);
+}
+
+TEST(ViewFromClip, ReadsReversedDepthWithAnEnd) {
+  const Mat4 view = scaling(1, 1, -1) * lookAt(someCamera());
+  Mat4 clip = d3dOffCenterLeftHanded(kWindow) * view;
+  for (int column = 0; column < 4; ++column) {
+    clip(2, column) = clip(3, column) - clip(2, column);
+  }
+  expectView(viewFromClip(clip, {.depth = ClipDepth::kOneToZero}), kWindow.far);
+}
+
+TEST(ViewFromClip, ReadsTheDownwardPicturesOfVulkan) {
+  const Mat4 view = scaling(1, 1, -1) * lookAt(someCamera());
+  const Mat4 clip = scaling(1, -1, 1) * d3dOffCenterLeftHanded(kWindow) * view;
+  expectView(viewFromClip(clip, {.depth = ClipDepth::kZeroToOne, .y_down = true}), kWindow.far);
+  // Unless the caller says so, the view is upside down: the same volume.
+  const Result<View> turned = viewFromClip(clip, {.depth = ClipDepth::kZeroToOne});
+  ASSERT_TRUE(turned);
+  EXPECT_NEAR(length(turned->up + someCamera().up), 0.0, 1e-12);
+  EXPECT_NEAR(length(turned->right + someCamera().right), 0.0, 1e-12);
+  EXPECT_NEAR(turned->shift_x, -0.25, 1e-12);
+  EXPECT_NEAR(turned->shift_y, 1.0 / 3.0, 1e-12);
+}
+
+TEST(ViewFromClip, MirrorsALeftHandedSceneAsValidateDoes) {
+  const Mat4 clip = glFrustum(kWindow) * scaling(-1, 1, 1) * lookAt(someCamera());
+  const Result<View> view = viewFromClip(clip);
+  ASSERT_TRUE(view);
+  EXPECT_NEAR(length(view->right - someCamera().right), 0.0, 1e-12);
+  EXPECT_NEAR(view->shift_x, -0.25, 1e-12);
+  EXPECT_NEAR(view->shift_y, -1.0 / 3.0, 1e-12);
+}
+
+TEST(ViewFromClip, ReadsAPictureThatIsTurnedByAQuarter) {
+  const Mat4 quarter = fromRows({0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  const Result<View> view = viewFromClip(quarter * glFrustum(kWindow) * lookAt(someCamera()));
+  ASSERT_TRUE(view);
+  EXPECT_NEAR(length(view->up - someCamera().right), 0.0, 1e-12);
+  EXPECT_NEAR(length(view->right + someCamera().up), 0.0, 1e-12);
+  EXPECT_NEAR(view->aspect, 3.0 / 8.0, 1e-12);
+  EXPECT_NEAR(view->shift_y, 0.25, 1e-12);
+  EXPECT_NEAR(view->shift_x, 1.0 / 3.0, 1e-12);
+}
+
+TEST(ViewFromClip, MeasuresInTheUnitsOfTheScene) {
+  // The view matrix turns metres of the scene into centimetres; the projection is in centimetres.
+  Window centimetres = kWindow;
+  for (double* length : {&centimetres.left, &centimetres.right, &centimetres.bottom, &centimetres.top,
+                         &centimetres.near, &centimetres.far}) {
+    *length *= 100.0;
+  }
+  expectView(viewFromClip(glFrustum(centimetres) * scaling(100, 100, 100) * lookAt(someCamera())),
+             kWindow.far);
+}
+
+TEST(ViewFromClip, ReadsTheShiftOfAJitteredPicture) {
+  const double width = 1920, height = 1080;
+  const Window symmetric{-0.4, 0.4, -0.3, 0.3, 0.5, 100};
+  for (const Vec3d& pixels : {Vec3d(0.25, -0.375, 0), Vec3d(-0.5, 0.125, 0)}) {
+    Mat4 projection = glFrustum(symmetric);
+    // The picture moves by so many pixels to the right and up: the window moves to the left and down.
+    projection(0, 2) -= 2 * pixels.x / width;
+    projection(1, 2) -= 2 * pixels.y / height;
+    const Result<View> view = viewFromClip(projection * lookAt(someCamera()));
+    ASSERT_TRUE(view);
+    EXPECT_NEAR(view->shift_x, -2 * pixels.x / width, 1e-15);
+    EXPECT_NEAR(view->shift_y, -2 * pixels.y / height, 1e-15);
+    EXPECT_NEAR(view->tan_half_fovy, 0.6, 1e-15);
+  }
+}
+
+TEST(ViewFromClip, PutsTheEyeOfAnOrthographicViewOnItsNearPlane) {
+  const Window box{-3, 5, -2, 1, -10, 80};  // 10 metres behind the camera, as engines' shadow maps begin
+  const View camera = someCamera();
+  const Result<View> view = viewFromClip(glOrtho(box) * lookAt(camera));
+  ASSERT_TRUE(view) << view.error().message;
+  EXPECT_TRUE(view->orthographic);
+  EXPECT_NEAR(view->ortho_height, 3.0, 1e-12);
+  EXPECT_NEAR(view->aspect, 8.0 / 3.0, 1e-12);
+  EXPECT_EQ(view->near, 0.0);
+  EXPECT_NEAR(view->far, 90.0, 1e-10);
+  EXPECT_EQ(view->shift_x, 0.0);
+  EXPECT_EQ(view->shift_y, 0.0);
+  const Vec3d eye = camera.eye + camera.right * 1.0 - camera.up * 0.5 - camera.forward * 10.0;
+  EXPECT_NEAR(length(view->eye - eye), 0.0, 1e-11);
+  EXPECT_NEAR(length(view->forward - camera.forward), 0.0, 1e-12);
+}
+
+TEST(ViewFromClip, ReadsTheDepthOfAnOrthographicViewInAnyRange) {
+  const Mat4 look = lookAt(someCamera());
+  const Mat4 clip = glOrtho(kWindow) * look;
+  const Result<View> expected = viewFromClip(clip);
+  ASSERT_TRUE(expected);
+  for (const bool reversed : {false, true}) {
+    Mat4 other = clip;
+    for (int column = 0; column < 4; ++column) {
+      other(2, column) = 0.5 * (clip(3, column) + clip(2, column) * (reversed ? -1.0 : 1.0));
+    }
+    const Result<View> view =
+        viewFromClip(other, {.depth = reversed ? ClipDepth::kOneToZero : ClipDepth::kZeroToOne});
+    ASSERT_TRUE(view);
+    EXPECT_NEAR(length(view->eye - expected->eye), 0.0, 1e-10);
+    EXPECT_NEAR(length(view->forward - expected->forward), 0.0, 1e-12);
+    EXPECT_NEAR(view->far, expected->far, 1e-10);
+  }
+}
+
+// ---- Any matrix of a view.
+
+View randomView(Random& random, bool orthographic) {
+  View view;
+  view.eye = random.point(random.chance() ? 20.0 : 1e5);
+  setOrientation(view, random.point(1.0), random.point(1.0));
+  view.orthographic = orthographic;
+  view.ortho_height = random.in(1.0, 40.0);
+  view.tan_half_fovy = random.in(0.05, 3.0);
+  view.aspect = random.in(0.3, 3.0);
+  view.shift_x = random.in(-3.0, 3.0);
+  view.shift_y = random.chance() ? random.in(-3.0, 3.0) : 0.0;
+  view.near = random.in(0.01, 1.0);
+  view.far = random.chance() && !orthographic ? kEndless : view.near + random.in(1.0, 1000.0);
+  return view;
+}
+
+TEST(ViewFromClip, IsTheInverseOfClipFromScene) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    Random random(seed);
+    const View view = randomView(random, false);
+    const Result<View> found = viewFromClip(clipFromScene(view));
+    ASSERT_TRUE(found) << "seed " << seed << ": " << found.error().message;
+    const double slack = 1e-12 * (1.0 + length(view.eye));
+    EXPECT_NEAR(length(found->eye - view.eye), 0.0, slack) << "seed " << seed;
+    EXPECT_NEAR(length(found->right - view.right), 0.0, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(length(found->up - view.up), 0.0, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(length(found->forward - view.forward), 0.0, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(found->tan_half_fovy, view.tan_half_fovy, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(found->aspect, view.aspect, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(found->shift_x, view.shift_x, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(found->shift_y, view.shift_y, 1e-12) << "seed " << seed;
+    EXPECT_NEAR(found->near, view.near, slack) << "seed " << seed;
+    if (std::isinf(view.far)) {
+      EXPECT_GT(found->far, 1e12 * view.near) << "seed " << seed;
+    } else {
+      EXPECT_NEAR(found->far, view.far, 1e-10 * (1.0 + length(view.eye)) * view.far / view.near)
+          << "seed " << seed;
+    }
+  }
+}
+
+// From OpenGL's depths to others.
+Mat4 withDepth(Mat4 clip, ClipDepth depth) {
+  for (int column = 0; column < 4 && depth != ClipDepth::kMinusOneToOne; ++column) {
+    const double z = 0.5 * (clip(3, column) + clip(2, column));
+    clip(2, column) = depth == ClipDepth::kZeroToOne ? z : clip(3, column) - z;
+  }
+  return clip;
+}
+
+// The borders of what the matrix shows, in long double: positive inside. Left, right, bottom, top, near, far.
+std::array<long double, 6> margins(const Mat4& clip, const ClipDepth depth, const Vec3d& point) {
+  const auto row = [&](int r) {
+    return static_cast<long double>(clip(r, 0)) * point.x + static_cast<long double>(clip(r, 1)) * point.y +
+           static_cast<long double>(clip(r, 2)) * point.z + static_cast<long double>(clip(r, 3));
+  };
+  const long double x = row(0), y = row(1), z = row(2), w = row(3);
+  const bool reversed = depth == ClipDepth::kOneToZero;
+  const long double low = depth == ClipDepth::kMinusOneToOne ? z + w : z;
+  return {w + x, w - x, w + y, w - y, reversed ? w - z : low, reversed ? low : w - z};
+}
+
+// Points close to each plane of the view are where the matrix says, as soon as they are clear of it by the
+// relative error that is promised.
+TEST(ViewFromClip, HasThePlanesOfTheMatrixEvenInSinglePrecision) {
+  int compared = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    Random random(seed);
+    const bool orthographic = seed % 4 == 0;
+    const View view = randomView(random, orthographic);
+    const ClipDepth depth = static_cast<ClipDepth>(seed % 3);
+    Mat4 clip = withDepth(clipFromScene(view), depth);
+    if (random.chance()) {
+      // The two matrices of a program, in single precision.
+      View camera = view;
+      camera.eye = {};
+      setOrientation(camera, {0, 0, -1}, {0, 1, 0});
+      const Mat4 projection = inSinglePrecision(withDepth(clipFromScene(camera), depth));
+      clip = projection * inSinglePrecision(lookAt(view));
+    }
+    const Result<View> found = viewFromClip(clip, {.depth = depth});
+    ASSERT_TRUE(found) << "seed " << seed << ": " << found.error().message;
+    const Frustum frustum = frustumOf(*found);
+    for (int i = 0; i < 200; ++i) {
+      // A point beside one of the planes.
+      const double along = view.near * std::exp(random.in(-1.0, 8.0));
+      Vec3d point = found->eye + found->forward * along + random.point(along);
+      const std::size_t plane = static_cast<std::size_t>(random.in(0.0, 6.0));
+      const double reach = length(point - found->eye) + length(found->eye);
+      point = point - frustum.planes[plane].normal *
+                          (frustum.planes[plane].evaluate(point) -
+                           random.in(-1.0, 1.0) * std::exp2(random.in(-42.0, 0.0)) * reach);
+      const double distance = frustum.planes[plane].evaluate(point);
+      const double allowed =
+          1e-12 * (length(point - found->eye) + length(found->eye)) +
+          (plane == 5 && !orthographic ? 1e-15 * (found->far + length(found->eye)) / found->near * found->far
+                                       : 0.0);
+      if (std::abs(distance) > allowed && std::isfinite(allowed)) {
+        ++compared;
+        EXPECT_EQ(margins(clip, depth, point)[plane] > 0.0L, distance > 0.0)
+            << "seed " << seed << " plane " << plane << " distance " << distance << " of " << reach;
+      }
+    }
+  }
+  EXPECT_GT(compared, 100000);
+}
+
+// ---- Errors.
+
+void expectError(const Mat4& clip, const ClipSpace& space, const std::string& word) {
+  const Result<View> view = viewFromClip(clip, space);
+  ASSERT_FALSE(view) << word;
+  EXPECT_NE(view.error().message.find(word), std::string::npos) << view.error().message;
+}
+
+TEST(ViewFromClip, RefusesAnObliqueNearPlane) {
+  Mat4 projection = glFrustum(kWindow);
+  // E. Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005: z becomes a clip plane minus w.
+  projection(2, 0) = 0.3;
+  projection(2, 1) = 0.2;
+  projection(2, 2) = -0.9 + 1.0;
+  projection(2, 3) = -0.5;
+  expectError(projection * lookAt(someCamera()), {}, "oblique");
+}
+
+TEST(ViewFromClip, RefusesShearedProjections) {
+  Mat4 cabinet = glOrtho(kWindow);
+  cabinet(0, 2) = 0.5;  // what is farther is farther to the right
+  expectError(cabinet * lookAt(someCamera()), {}, "sheared");
+  for (Mat4 sheared : {glFrustum(kWindow), glOrtho(kWindow)}) {
+    sheared(0, 1) = 0.1;
+    expectError(sheared * lookAt(someCamera()), {}, "right angles");
+  }
+}
+
+TEST(ViewFromClip, RefusesDepthsInAnotherOrder) {
+  const Mat4 look = lookAt(someCamera());
+  expectError(reversedInfinite(kWindow) * look, {.depth = ClipDepth::kZeroToOne}, "ClipSpace::depth");
+  Mat4 direct3d = d3dOffCenterLeftHanded(kWindow) * scaling(1, 1, -1) * look;
+  expectError(direct3d, {.depth = ClipDepth::kOneToZero}, "ClipSpace::depth");
+  for (int column = 0; column < 4; ++column) {
+    direct3d(2, column) = direct3d(3, column) - direct3d(2, column);
+  }
+  expectError(direct3d, {.depth = ClipDepth::kZeroToOne}, "ClipSpace::depth");
+}
+
+TEST(ViewFromClip, RefusesWhatIsNoProjection) {
+  expectError(fromRows({}), {}, "row w");
+  Mat4 negative = glOrtho(kWindow);
+  negative(3, 3) = -1.0;
+  expectError(negative, {}, "row w");
+  Mat4 behind = glFrustum(kWindow);
+  for (double& element : behind.m) {
+    element = -element;
+  }
+  expectError(behind, {}, "in front of the eye");
+  for (const int row : {0, 1}) {
+    for (Mat4 flat : {glFrustum(kWindow), glOrtho(kWindow)}) {
+      for (int column = 0; column < 4; ++column) {
+        flat(row, column) = 0.0;
+      }
+      expectError(flat * lookAt(someCamera()), {}, "do not span space");
+    }
+  }
+  Mat4 no_depth = glOrtho(kWindow);
+  no_depth(2, 2) = 0.0;
+  expectError(no_depth, {}, "depth range");
+  Mat4 beside = glFrustum(kWindow);
+  beside(0, 2) = 1001.0;
+  expectError(beside, {}, "View::shift_x");
+}
+
+TEST(ViewFromClip, RefusesNumbersThatAreNotFinite) {
+  for (std::size_t i = 0; i < 16; ++i) {
+    for (const double bad : {kNotANumber, kEndless, -kEndless}) {
+      Mat4 clip = glFrustum(kWindow) * lookAt(someCamera());
+      clip.m[i] = bad;
+      expectError(clip, {}, "finite");
+    }
+  }
+  // Any numbers at all give a view that validate() accepts, or an error.
+  for (std::uint64_t seed = 1; seed <= 20000; ++seed) {
+    Random random(seed);
+    Mat4 clip = random.chance() ? glFrustum(kWindow) : Mat4{};
+    for (double& element : clip.m) {
+      element = random.chance() ? element : random.in(-1, 1) * std::exp2(random.in(-1074.0, 1023.0));
+    }
+    const Result<View> view = viewFromClip(clip, {.depth = static_cast<ClipDepth>(seed % 3)});
+    EXPECT_TRUE(!view || validate(*view)) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace sightline
