@@ -111,7 +111,8 @@ struct Culler::Impl {
     return another;
   }
 
-  void cullObjects(const View& view, const Frustum& frustum, const OccluderSet* moving) {
+  void cullObjects(const View& view, const Frustum& frustum, const OccluderSet* moving,
+                   std::span<const MovingSurfaces> moving_surfaces) {
     const bool jumped = last_view.jumpsTo(view);
     const bool another_set = filter && lookUp(view);
     const SetFilter* set = filter && !filter->everything() ? &*filter : nullptr;
@@ -119,6 +120,7 @@ struct Culler::Impl {
     CullingFrame frame{.view = view,
                        .frustum = frustum,
                        .jumped = jumped,
+                       .moving_surfaces = moving_surfaces,
                        .max_occluders = settings.occluders.count,
                        .last_visible = visible,
                        .filter = set,
@@ -215,7 +217,8 @@ Culler::~Culler() = default;
 Culler::Culler(Culler&&) noexcept = default;
 Culler& Culler::operator=(Culler&&) noexcept = default;
 
-void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const OccluderSet* moving) {
+void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const OccluderSet* moving,
+                  std::span<const MovingSurfaces> moving_surfaces) {
   View view = given;
   const char* fault = makeUsable(view);
   const Frustum frustum = frustumOf(view);
@@ -227,7 +230,7 @@ void Culler::cull(const View& given, std::span<const Box> dynamic_boxes, const O
     impl_->stats.traverse_us = impl_->classifyMoving(frustum, dynamic_boxes);
     return;
   }
-  impl_->cullObjects(view, frustum, moving);
+  impl_->cullObjects(view, frustum, moving, moving_surfaces);
   const double moving_us = impl_->classifyMoving(frustum, dynamic_boxes);
   impl_->method->finish(impl_->stats);
   impl_->takeStatistics();

@@ -78,6 +78,11 @@ void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> ca
   impl_->raster.draw(surfaces, candidates, drawing);
 }
 
+void DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+  impl_->finished = false;
+  impl_->raster.draw(moving, drawing);
+}
+
 void DepthPyramid::finish(const ParallelFor& parallel_for) {
   impl_->levels.build(impl_->raster.depthBuffer(), parallel_for);
   impl_->finished = true;

@@ -106,6 +106,11 @@ void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> cand
   impl_->raster.draw(surfaces, candidates, drawing);
 }
 
+void OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+  impl_->ready = false;
+  impl_->raster.draw(moving, drawing);
+}
+
 void OpacityMap::finish() {
   impl_->finish();
 }

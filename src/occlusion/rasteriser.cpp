@@ -82,6 +82,8 @@ struct Rasteriser::Impl {
     count();
   }
 
+  DepthTarget target() { return {reciprocal_depth.data(), settings.width, settings.height, stride}; }
+
   // Counts what the last draw() drew.
   void count() {
     const std::size_t before = used.size(), size = polygons.polygons.size();
@@ -106,7 +108,7 @@ struct Rasteriser::Impl {
   std::vector<float> reciprocal_depth;
   PixelView view;
   PolygonBuilder builder;
-  SurfaceRaster surfaces;
+  SurfaceRaster surfaces, moving_surfaces;
   BufferPolygons polygons;
   std::vector<std::uint32_t> order, by_group;
   std::vector<std::uint8_t> drawn;     // by band and polygon: some of the polygon was nearer than the buffer
@@ -134,9 +136,17 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing) {
-  impl_->surfaces.draw(
-      surfaces, impl_->view, candidates, drawing,
-      {impl_->reciprocal_depth.data(), impl_->settings.width, impl_->settings.height, impl_->stride});
+  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target());
+}
+
+void Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+  if (moving.surfaces == nullptr) {
+    return;
+  }
+  SurfaceDrawing alone = drawing;
+  alone.step = ViewStep::kJump;
+  impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
+                              moving.surfaces->objects, alone, impl_->target());
 }
 
 const RasterSettings& Rasteriser::settings() const {

@@ -36,9 +36,9 @@ void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<
   boxes_.clear();
   listed_.resize(set.parts.size());
   projection_ = BoxProjection(view, target.width, target.height);
-  batches_ =
-      reachOf(set.bounds, view) * std::max(view.scale_x, view.scale_y) + view.middle_x + view.middle_y <
-      kLargestGrid / kGridStep;
+  batches_ = reachOf(set.bounds, view) * std::max(view.scale_x, view.scale_y) + std::abs(view.middle_x) +
+                 std::abs(view.middle_y) <
+             kLargestGrid / kGridStep;
   clusters_.clear();
   unsorted_.clear();
   if (view.sane()) {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "sightline/math/mat4.h"
 #include "src/scene/usable_view.h"
 
 namespace sightline {
@@ -67,6 +68,39 @@ struct PixelView {
            axis(unit_z) && scale(scale_x) && scale(scale_y) && isFinite(eye) &&
            maxComponent(abs(eye)) < kLargestCoordinate && near < kLargestCoordinate && far > near;
   }
+  // The view of geometry that is given in another space: a point p there has the image of scene_from_space p
+  // here. Not sane() unless the matrix is a rotation and a translation, exact up to single precision, and the
+  // places are near enough to the origin that double precision moves nothing by more than 2^-16 pixels.
+  PixelView inSpace(const Mat4& scene_from_space) const {
+    const auto column = [&](int i) {
+      return Vec3d(scene_from_space(0, i), scene_from_space(1, i), scene_from_space(2, i));
+    };
+    const Vec3d x = column(0), y = column(1), z = column(2), origin = column(3);
+    const auto unit = [](const Vec3d& v) { return std::abs(dot(v, v) - 1.0) < kRigid; };
+    const double volume = dot(x, cross(y, z));
+    PixelView moved = *this;
+    moved.valid_ = sane() && isFinite(origin) && unit(x) && unit(y) && unit(z) &&
+                   std::abs(dot(x, y)) < kRigid && std::abs(dot(y, z)) < kRigid &&
+                   std::abs(dot(z, x)) < kRigid && volume > 0.0;
+    if (!moved.valid_) {
+      return moved;
+    }
+    const auto turned = [&](const Vec3d& axis) { return Vec3d(dot(x, axis), dot(y, axis), dot(z, axis)); };
+    const auto back = [&](const Vec3d& v) {
+      return Vec3d(dot(cross(y, z), v), dot(cross(z, x), v), dot(cross(x, y), v)) / volume;
+    };
+    moved.eye = back(eye - origin);
+    moved.right = turned(right);
+    moved.up = turned(up);
+    moved.forward = turned(forward);
+    moved.unit_x = back(unit_x);
+    moved.unit_y = back(unit_y);
+    moved.unit_z = back(unit_z);
+    const auto size = [](const Vec3d& v) { return maxComponent(abs(v)); };
+    const double rounding = 0x1p-46 * (size(eye) + size(origin) + size(moved.eye));
+    moved.valid_ = rounding * std::max(scale_x, scale_y) < 0x1p-16 * (orthographic ? 1.0 : near);
+    return moved;
+  }
   // Transforms the normal of a plane.
   Vec3d normalToCamera(const Vec3d& n) const { return {dot(unit_x, n), dot(unit_y, n), dot(unit_z, n)}; }
   // Transforms a direction, or a point relative to the eye.
@@ -89,7 +123,8 @@ struct PixelView {
 
  private:
   static constexpr double kLargestScale = 0x1p40;
-  bool valid_ = false;  // makeUsable() found no fault in the view
+  static constexpr double kRigid = 1e-5;  // of the products of the columns of a rotation
+  bool valid_ = false;                    // makeUsable() found no fault in the view
 };
 
 }  // namespace sightline

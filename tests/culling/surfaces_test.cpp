@@ -11,6 +11,10 @@
 #include <random>
 
 #include "oracle/exact_visibility.h"
+#include "sightline/culling/culler.h"
+#include "sightline/culling/depth_pyramid_method.h"
+#include "sightline/culling/opacity_map_method.h"
+#include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/surface_set.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "tests/oracle/hand_made.h"
@@ -611,6 +615,119 @@ TEST_P(RandomSurfaces, HideWhatTheyCover) {
     all.covered += checked.covered;
   }
   EXPECT_GT(all.covered, 4000u);
+}
+
+// A rotation and a translation.
+Mat4 placement(const Vec3d& forward, const Vec3d& up, const Vec3d& origin) {
+  View axes;
+  setOrientation(axes, forward, up);
+  Mat4 m;
+  const Vec3d columns[] = {axes.right, axes.up, -axes.forward, origin};
+  for (int column = 0; column < 4; ++column) {
+    m(0, column) = columns[column].x;
+    m(1, column) = columns[column].y;
+    m(2, column) = columns[column].z;
+  }
+  return m;
+}
+
+// The view that sees the moved surfaces where they are before they are moved.
+View movedBack(const View& view, const Mat4& m) {
+  const auto turned = [&](const Vec3d& v) {
+    return Vec3d(m(0, 0) * v.x + m(1, 0) * v.y + m(2, 0) * v.z, m(0, 1) * v.x + m(1, 1) * v.y + m(2, 1) * v.z,
+                 m(0, 2) * v.x + m(1, 2) * v.y + m(2, 2) * v.z);
+  };
+  View back = view;
+  back.eye = turned(view.eye - Vec3d(m(0, 3), m(1, 3), m(2, 3)));
+  back.right = turned(view.right);
+  back.up = turned(view.up);
+  back.forward = turned(view.forward);
+  return back;
+}
+
+TEST_P(RandomSurfaces, HideWhatTheyCoverWhereverTheyAreMoved) {
+  std::size_t covered = 0;
+  Rasteriser raster({.width = 24, .height = 24});
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    std::mt19937 engine(static_cast<std::mt19937::result_type>(seed));
+    const auto number = test::numbersFrom<double>(engine);
+    const auto anywhere = [&](double size) {
+      return Vec3d(number(-size, size), number(-size, size), number(-size, size));
+    };
+    const Scene scene = sheet(
+        6, 40.0f, 12.0f, [&](float x, float y) { return 2.0f * std::sin(0.3f * x) * std::cos(0.4f * y); },
+        [&](std::uint32_t) { return number(0.0, 1.0) < 0.05; });
+    const SurfaceSet surfaces = findSurfaces(scene.view(), {.part_triangles = 30});
+    const Mat4 m = placement(anywhere(1.0), anywhere(1.0), anywhere(seed % 3 == 0 ? 1e5 : 50.0));
+    View view = frontView();
+    view.orthographic = GetParam();
+    view.ortho_height = 20.0;
+    view.eye = transformPoint(m, anywhere(4.0));
+    setOrientation(view, transformDirection(m, Vec3d(0.0, 0.0, -1.0) + anywhere(0.6)), anywhere(1.0));
+    raster.begin(view);
+    raster.draw(MovingSurfaces{&surfaces, m}, kEverything);
+    const Checked checked = prove(scene, movedBack(view, m), raster.depthBuffer());
+    EXPECT_TRUE(checked.right()) << "seed " << seed;
+    covered += checked.covered;
+  }
+  EXPECT_GT(covered, 3000u);
+}
+
+TEST(MovingSurfaces, AreDrawnWithRotationsAndTranslationsOnly) {
+  Scene scene;
+  addWall(scene, addMaterial(scene, Opacity::kOpaque, true), 0.0f, -50.0f, 50.0f, -50.0f, 50.0f);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  Rasteriser raster({.width = 16, .height = 16});
+  const auto coveredWith = [&](const Mat4& m) {
+    raster.begin(frontView());
+    raster.draw(MovingSurfaces{&surfaces, m}, kEverything);
+    std::size_t count = 0;
+    for (std::uint32_t y = 0; y < 16; ++y) {
+      for (std::uint32_t x = 0; x < 16; ++x) {
+        count += raster.depthBuffer().covered(x, y) ? 1 : 0;
+      }
+    }
+    return count;
+  };
+  const Mat4 rigid = placement({0.2, 0.1, -1.0}, {0.3, 1.0, 0.0}, {0.0, 0.0, -10.0});
+  EXPECT_EQ(coveredWith(rigid), 256u);
+  Mat4 scaled = rigid, mirrored = rigid, sheared = rigid, not_a_number = rigid, far = rigid;
+  for (int row = 0; row < 3; ++row) {
+    scaled(row, 0) *= 1.001;
+    mirrored(row, 0) *= -1.0;
+    sheared(row, 0) += 0.001 * rigid(row, 1);
+  }
+  not_a_number(1, 3) = std::numeric_limits<double>::quiet_NaN();
+  far(0, 3) = 1e18;
+  for (const Mat4& m : {scaled, mirrored, sheared, not_a_number, far}) {
+    EXPECT_EQ(coveredWith(m), 0u);
+  }
+  raster.begin(frontView());
+  raster.draw(MovingSurfaces{}, kEverything);
+  EXPECT_FALSE(raster.depthBuffer().covered(8, 8));
+}
+
+TEST(MovingSurfaces, ADoorHidesTheRoomWhileItIsShut) {
+  Scene door, scene;
+  addWall(door, addMaterial(door, Opacity::kOpaque, true), 0.0f, -20.0f, 20.0f, -20.0f, 20.0f);
+  const SurfaceSet surfaces = findSurfaces(door.view());
+  addWall(scene, addMaterial(scene, Opacity::kOpaque, true), -20.0f, -1.0f, 1.0f, -1.0f, 1.0f);
+  const std::vector<Box> bounds{scene.objects[0].bounds};
+  const Hierarchy hierarchy = buildHierarchy(bounds, {});
+  const Mat4 shut = placement({0, 0, -1}, {0, 1, 0}, {0, 0, -10}),
+             open = placement({-1, 0, 0}, {0, 1, 0}, {-5, 0, -10});
+  for (const bool pyramid : {false, true}) {
+    OpacityMapMethodSettings drawing;
+    drawing.surfaces = SurfaceUse::kAlone;
+    Culler culler({.hierarchy = &hierarchy, .object_bounds = bounds},
+                  pyramid ? depthPyramid() : opacityMap(drawing));
+    for (const bool is_shut : {true, false, true, true}) {
+      const MovingSurfaces moving{&surfaces, is_shut ? shut : open};
+      culler.cull(frontView(), bounds, nullptr, std::span(&moving, 1));
+      EXPECT_EQ(culler.visible().empty(), is_shut) << pyramid;
+      EXPECT_EQ(culler.dynamicStates()[0] == Visibility::kHidden, is_shut) << pyramid;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Views, RandomSurfaces, testing::Bool(),

@@ -54,7 +54,10 @@ class Culler {
   // Does not fail, and does not allocate after a few frames; with a view that validate() refuses, everything
   // is visible (CullStats::view_fault). moving: occluders of this frame only (makeOccluders), in scene space,
   // all of which are used in addition by all methods that have occluders. They need to outlive the call only.
-  void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr);
+  // moving_surfaces: whole surfaces that move, drawn by the methods that draw surfaces, whether the scene has
+  // a SurfaceSet or not, unless the method is set to draw none.
+  void cull(const View& view, std::span<const Box> dynamic_boxes = {}, const OccluderSet* moving = nullptr,
+            std::span<const MovingSurfaces> moving_surfaces = {});
 
   // Answers of the last cull(). Objects that may be seen, ascending.
   std::span<const ObjectId> visible() const;

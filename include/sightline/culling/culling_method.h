@@ -108,8 +108,9 @@ struct CullingFrame {
   // uses all of them, and counts them all in CullStats::occluders; occludersUsed() names those of the first
   // set alone. Empty where the method wants none.
   std::span<const ChosenOccluders> occluders{};
-  std::uint32_t max_occluders = 0;           // so many were asked for
-  std::span<const ObjectId> last_visible{};  // what the last frame kept; only if not jumped
+  std::span<const MovingSurfaces> moving_surfaces{};  // of this frame alone; for methods that draw surfaces
+  std::uint32_t max_occluders = 0;                    // so many were asked for
+  std::span<const ObjectId> last_visible{};           // what the last frame kept; only if not jumped
   const culling::SetFilter* filter =
       nullptr;                      // what is not in it is neither tested nor kept; null: no filter
   bool filter_changed = false;      // since the last frame

@@ -14,6 +14,7 @@
 #include "sightline/base/ids.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/math/box.h"
+#include "sightline/math/mat4.h"
 #include "sightline/math/plane.h"
 #include "sightline/scene/scene.h"
 
@@ -114,6 +115,13 @@ struct SurfaceSet {
   std::span<const ChainUse> usesOf(const SurfaceChain& c) const {
     return std::span(uses).subspan(c.first_use, c.use_count);
   }
+};
+
+// Surfaces that move as one, as a door or a train does, and where they are in a frame.
+struct MovingSurfaces {
+  const SurfaceSet* surfaces = nullptr;  // in a space of their own; null: none
+  // A rotation and a translation, exact up to single precision. With any other matrix nothing is drawn.
+  Mat4 scene_from_surfaces{};
 };
 
 struct SurfaceSettings {

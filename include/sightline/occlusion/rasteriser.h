@@ -123,6 +123,10 @@ class Rasteriser {
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing = {});
 
+  // Draws all surfaces of a set that moves. The set must outlive the call only; it costs least where the same
+  // one is drawn in each view. drawing.step has no effect.
+  void draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
+
   const RasterSettings& settings() const;
   DepthBufferView depthBuffer() const;
   const RasterStats& stats() const;  // counts since begin()

@@ -55,6 +55,7 @@ class DepthPyramidMethod final : public CullingMethod {
     surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
     groups_ = edges_ = 0;
     countSurfaces();
+    surfaces_.drawMoving(*pyramid_, frame);
     pyramid_->finish(*frame.parallel_for);
     focused_ = false;
     if (window_) {
@@ -71,7 +72,7 @@ class DepthPyramidMethod final : public CullingMethod {
       drawNews(frame);
     }
     // With surfaces most time goes into drawing, and testing everything costs little.
-    const bool skips = settings_.temporal_coherence && !surfaces_.draws();
+    const bool skips = settings_.temporal_coherence && !surfaces_.draws() && !surfaces_.drawsMoving(frame);
     traversal_->run(buffers(), culling::optionsOf(frame, skips), stats, visible, *frame.parallel_for);
     if (surfaces_.draws()) {
       findNews(visible);
@@ -131,6 +132,7 @@ class DepthPyramidMethod final : public CullingMethod {
     culling::drawOccluders(*fine_pyramid_, window_->view(), std::span(sets).first(moving ? 2 : 1),
                            *frame.parallel_for);
     surfaces_.drawOf(*fine_pyramid_, in_window_);
+    surfaces_.drawMoving(*fine_pyramid_, frame);
     fine_pyramid_->finish(*frame.parallel_for);
   }
 

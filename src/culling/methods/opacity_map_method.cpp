@@ -51,6 +51,7 @@ class OpacityMapMethod final : public CullingMethod {
       own_occluders_ = culling::drawOccluders(*map_, frame.view, frame.occluders, *frame.parallel_for);
       surfaces_.begin(frame);
       surfaces_.draw(*map_, frame, !was_suspended);
+      surfaces_.drawMoving(*map_, frame);
       map_->finish();
     }
   }

@@ -26,6 +26,7 @@ class SurfaceDrawer {
     }
   }
 
+  // Whether those of the scene are drawn.
   bool draws() const { return surfaces_ != nullptr; }
   bool wantsOccluders() const { return !draws() || use_ == SurfaceUse::kWithOccluders; }
 
@@ -55,6 +56,16 @@ class SurfaceDrawer {
       drawing.step = ViewStep::kJump;
       buffer.draw(*surfaces_, objects, drawing);
     }
+  }
+  // Draws the surfaces that move.
+  template <typename Buffer>
+  void drawMoving(Buffer& buffer, const CullingFrame& frame) const {
+    for (std::size_t i = 0; drawsMoving(frame) && i < frame.moving_surfaces.size(); ++i) {
+      buffer.draw(frame.moving_surfaces[i], drawing_);
+    }
+  }
+  bool drawsMoving(const CullingFrame& frame) const {
+    return use_ != SurfaceUse::kNone && !frame.moving_surfaces.empty();
   }
   // Draws the surfaces of further objects in the same view.
   template <typename Buffer>
