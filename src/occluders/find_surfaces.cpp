@@ -122,17 +122,25 @@ double measure(const SurfaceMesh& mesh, std::span<const Vec3d> normals,
   return size > 0.0 ? std::max(-1.0, cosine - kRounding) : -1.0;
 }
 
-// Finds the clusters at which parts adjoin each other. part_of: by cluster.
-void markSeams(std::span<const std::uint32_t> part_of, SurfaceSet& set) {
+// Lists the clusters that adjoin each part. part_of: by cluster.
+void findAdjoining(std::span<const std::uint32_t> part_of, SurfaceSet& set) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // part and cluster
   for (const SurfaceChain& chain : set.chains) {
-    const std::span<const ChainUse> uses = set.usesOf(chain);
-    const bool seam = std::any_of(uses.begin(), uses.end(), [&](const ChainUse& use) {
-      return part_of[use.cluster] != part_of[uses[0].cluster];
-    });
-    for (const ChainUse& use : uses) {
-      set.clusters[use.cluster].joins_parts = set.clusters[use.cluster].joins_parts || seam;
+    for (const ChainUse& a : set.usesOf(chain)) {
+      for (const ChainUse& b : set.usesOf(chain)) {
+        if (part_of[a.cluster] != part_of[b.cluster]) {
+          pairs.push_back({part_of[a.cluster], b.cluster});
+        }
+      }
     }
   }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  base::groupIntoRows(set.parts.size(), set.first_adjoining, set.adjoining, [&](auto&& add) {
+    for (const auto& pair : pairs) {
+      add(pair.first, pair.second);
+    }
+  });
 }
 
 // Counts the edges between each whole and anything that is not of it. whole_of: by cluster.
@@ -257,7 +265,7 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
     part_of[c] = parts.partOf()[by_cluster[c][0]];
     patch_of[c] = patches.partOf()[by_cluster[c][0]];
   }
-  markSeams(part_of, set);
+  findAdjoining(part_of, set);
   countEdges(set, part_of, set.parts);
   countEdges(set, patch_of, set.patches);
   return set;

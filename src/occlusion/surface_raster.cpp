@@ -12,8 +12,6 @@
 namespace sightline::occlusion {
 namespace {
 
-// A slab of depths is a quarter of an octave: the exponent and two bits of a single-precision depth.
-constexpr std::uint32_t kSlabShift = 21, kSlabs = 1u << (32 - kSlabShift);
 // Pixels that a group must change for each unit of work, or it rests.
 constexpr double kMinGain = 0.3;
 constexpr std::uint32_t kLongestRest = 15;  // views
@@ -42,10 +40,6 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
       drawPart(part);
     }
   }
-  if (drawing.slabs) {
-    drawSlabs(0, std::span(slab_rests_).first(kSlabs));
-    drawSlabs(1u << (kSlabShift - 1), std::span(slab_rests_).last(kSlabs));
-  }
   stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
   stats_.edges = static_cast<std::uint32_t>(map_.edges());
   stats_.complete = work() < drawing.budget;
@@ -63,7 +57,6 @@ void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
   if (view_number_ == 0 || view_number_ == 0xffffffffu) {
     patch_rests_.assign(set.patches.size(), {});
     part_rests_.assign(set.parts.size(), {});
-    slab_rests_.assign(2 * kSlabs, {});
     drawn_in_.assign(set.parts.size(), 0);
     view_number_ = 0;
     step = ViewStep::kJump;
@@ -85,8 +78,10 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
 // Draws the large patches of a part, each alone, and all of them together.
 void SurfaceRaster::drawPart(const PartImage& image) {
   const SurfacePart& part = set_->parts[image.part];
-  const bool together =
-      part.patch_count > 1 && pays(image.rectangle, part.edge_count) && !rests(part_rests_[image.part]);
+  const std::span<const std::uint32_t> adjoining =
+      drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
+  const bool together = part.patch_count + adjoining.size() > 1 && pays(image.rectangle, part.edge_count) &&
+                        !rests(part_rests_[image.part]);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
   std::uint32_t shown = 0;
@@ -111,6 +106,14 @@ void SurfaceRaster::drawPart(const PartImage& image) {
     }
   }
   stats_.patches += shown;
+  if (together && shown > 0) {
+    const std::size_t own = view_.clusters().size();
+    view_.addClusters(adjoining);
+    for (const ClusterImage& cluster : view_.clusters().subspan(own)) {
+      rectangle = join(rectangle, cluster.rectangle);
+      ++shown;
+    }
+  }
   if (together && shown > 1 && work() < drawing_.budget) {
     drawTogether(view_.clusters().subspan(first_cluster), rectangle, part_rests_[image.part]);
   }
@@ -124,32 +127,6 @@ void SurfaceRaster::drawPatch(const PatchImage& patch, Rest& rest) {
   }
   addBoundary(clusters, patch.rectangle);
   account(map_.resolve(patch.depth), rest);
-}
-
-// Seams between parts: clusters at which parts adjoin each other, and that have similar depths, are drawn
-// together.
-void SurfaceRaster::drawSlabs(std::uint32_t shift, std::span<Rest> slab_rests) {
-  const std::span<const ClusterImage> clusters = view_.clusters();
-  base::groupIntoRows(kSlabs, slab_first_, slab_members_, [&](auto&& pair) {
-    for (std::uint32_t i = 0; i < clusters.size(); ++i) {
-      if (set_->clusters[clusters[i].cluster].joins_parts) {
-        pair((std::bit_cast<std::uint32_t>(clusters[i].middle_depth) + shift) >> kSlabShift, i);
-      }
-    }
-  });
-  for (std::uint32_t slab = 0; slab < kSlabs; ++slab) {
-    if (slab_first_[slab + 1] - slab_first_[slab] < 2 || rests(slab_rests[slab]) ||
-        work() >= drawing_.budget) {
-      continue;
-    }
-    slab_.clear();
-    PixelRectangle rectangle = kNoPixels;
-    for (std::uint32_t i = slab_first_[slab]; i < slab_first_[slab + 1]; ++i) {
-      slab_.push_back(clusters[slab_members_[i]]);
-      rectangle = join(rectangle, slab_.back().rectangle);
-    }
-    drawTogether(slab_, rectangle, slab_rests[slab]);
-  }
 }
 
 void SurfaceRaster::drawTogether(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle,

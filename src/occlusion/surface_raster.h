@@ -40,7 +40,6 @@ class SurfaceRaster {
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
   void drawPart(const PartImage& part);
   void drawPatch(const PatchImage& patch, Rest& rest);
-  void drawSlabs(std::uint32_t shift, std::span<Rest> rests);
   void drawTogether(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle, Rest& rest);
   void addBoundary(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle);
   void addChains(const ClusterImage& image);
@@ -58,12 +57,9 @@ class SurfaceRaster {
   std::vector<Membership> members_;             // by cluster of the set
   std::uint32_t group_ = 0;                     // number of the last group
   std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part of the set
-  std::vector<Rest> slab_rests_;                // by slab
   std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;  // number of the first one since a jump
-  std::vector<std::uint32_t> slab_first_, slab_members_;
-  std::vector<ClusterImage> slab_;
 };
 
 }  // namespace sightline::occlusion

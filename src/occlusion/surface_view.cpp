@@ -184,6 +184,21 @@ void SurfaceView::addClusters(const SurfacePatch& patch, PatchImage& image) {
   }
 }
 
+void SurfaceView::addClusters(std::span<const std::uint32_t> numbers) {
+  boxes_.clear();
+  for (const std::uint32_t number : numbers) {
+    boxes_.push_back(set_->cluster_bounds[number]);
+  }
+  project(boxes_, images_);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    ClusterImage cluster;
+    double depth = 0.0;
+    if (chooseCluster(numbers[i], images_[i], cluster, depth)) {
+      clusters_.push_back(cluster);
+    }
+  }
+}
+
 // farthest: receives a bound of its depth, metres.
 bool SurfaceView::chooseCluster(std::uint32_t number, const PixelBox& box, ClusterImage& image,
                                 double& farthest) const {

@@ -65,6 +65,8 @@ class SurfaceView {
   bool imageOf(std::uint32_t patch, double min_pixels, PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
+  // The same of clusters by their numbers.
+  void addClusters(std::span<const std::uint32_t> numbers);
   std::span<const ClusterImage> clusters() const { return clusters_; }  // since begin()
 
   // Tells a map how far away the cluster is.

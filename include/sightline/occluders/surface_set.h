@@ -42,7 +42,6 @@ struct SurfaceCluster {
   Plane support{};
   double thickness = 0.0;
   bool double_sided = false;
-  bool joins_parts = false;  // clusters of other parts adjoin it
 };
 
 // A patch is a set of connected clusters of similar direction.
@@ -75,7 +74,9 @@ struct SurfaceSet {
   std::vector<SurfacePatch> patches{};     // by part
   std::vector<SurfacePart> parts{};
   std::vector<Box> cluster_bounds{}, patch_bounds{}, part_bounds{};
-  Box bounds{};                                  // of all
+  Box bounds{};  // of all
+  // Clusters that adjoin a part and are not of it: by part, and one more, into `adjoining`.
+  std::vector<std::uint32_t> first_adjoining{}, adjoining{};
   std::vector<std::uint32_t> first_of_object{};  // by ObjectId, and one more; into of_object
   std::vector<std::uint32_t> of_object{};        // numbers of parts, by object, the largest ones first
   std::vector<float> sizes_of_object{};          // the diameters of their boxes, metres
@@ -102,6 +103,11 @@ struct SurfaceSet {
   }
   std::span<const SurfacePatch> patchesOf(const SurfacePart& p) const {
     return std::span(patches).subspan(p.first_patch, p.patch_count);
+  }
+  // Numbers of the clusters that share edges with a part and are not of it, ascending.
+  std::span<const std::uint32_t> adjoiningOf(std::uint32_t part) const {
+    return std::span(adjoining).subspan(first_adjoining[part],
+                                        first_adjoining[part + 1] - first_adjoining[part]);
   }
   std::span<const std::uint32_t> trianglesOf(const SurfaceCluster& c) const {
     return std::span(triangles).subspan(std::size_t{3} * c.first_triangle, std::size_t{3} * c.triangle_count);

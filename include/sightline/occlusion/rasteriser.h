@@ -75,7 +75,7 @@ struct SurfaceDrawing {
   // Surfaces whose rectangle has fewer pixels for each edge of their boundary are left out: they hardly cover
   // any.
   double pixels_per_edge = 4.0;
-  bool slabs = true;  // parts that adjoin each other at about the same depth are drawn together too
+  bool seams = true;  // each part is drawn together with what adjoins it too
   // Surfaces are drawn, the nearest ones first, until they have cost so much: 1 for each edge of their
   // boundaries, for each 256 pixels within them, and 8 for each time that some are drawn together.
   std::uint32_t budget = 60000;
