@@ -1,11 +1,11 @@
 // Orientations with a floating-point filter.
 //
-// Based on: J. R. Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric predicates.
-// Discrete and Computational Geometry 18, 1997: the filters of orientation() of given points, with his bounds.
-// Points that lines and planes define: M. Attene. Indirect predicates for geometric constructions.
-// Computer-Aided Design 126, 2020.
-// Differs from both: what the filter leaves open is computed in whole numbers instead of expansions, and a
-// defined point is computed once, so that its filter starts from coordinates that are rounded once.
+// Based on: J. R. Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric
+// predicates. Discrete and Computational Geometry 18, 1997: the filters of orientation() of given points,
+// with his bounds. Points that lines and planes define: M. Attene. Indirect predicates for geometric
+// constructions. Computer-Aided Design 126, 2020. Differs from both: what the filter leaves open is computed
+// in whole numbers instead of expansions, and a defined point is computed once, so that its filter starts
+// from coordinates that are rounded once.
 
 #include "src/geometry/exact_point.h"
 
@@ -27,10 +27,11 @@ int signOf(Wide value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
-// Differences of coordinates in units of the lattice, if all of them are less than 2^limit: then a difference is a
-// number of at most 53 bits, so double precision has it exactly.
+// Differences of coordinates in units of the lattice, if all of them are less than 2^limit: then a difference
+// is a number of at most 53 bits, so double precision has it exactly.
 struct Units {
-  Units(const Lattice& lattice, int limit) : scale(std::ldexp(1.0, -lattice.exponent())), most(std::ldexp(1.0, limit)) {}
+  Units(const Lattice& lattice, int limit)
+      : scale(std::ldexp(1.0, -lattice.exponent())), most(std::ldexp(1.0, limit)) {}
   std::int64_t of(double difference) {
     const double units = difference * scale;
     fits = fits && std::abs(units) < most;
@@ -83,8 +84,7 @@ int orientation(const Lattice& lattice, const Vec3d& a, const Vec3d& b, const Ve
   const double qx_ry = q.x * r.y, rx_qy = r.x * q.y, rx_py = r.x * p.y, px_ry = p.x * r.y;
   const double px_qy = p.x * q.y, qx_py = q.x * p.y;
   // Shewchuk's sign is that of d below the plane, so it is turned around.
-  const double determinant =
-      -(p.z * (qx_ry - rx_qy) + q.z * (rx_py - px_ry) + r.z * (px_qy - qx_py));
+  const double determinant = -(p.z * (qx_ry - rx_qy) + q.z * (rx_py - px_ry) + r.z * (px_qy - qx_py));
   const double magnitude = (std::abs(qx_ry) + std::abs(rx_qy)) * std::abs(p.z) +
                            (std::abs(rx_py) + std::abs(px_ry)) * std::abs(q.z) +
                            (std::abs(px_qy) + std::abs(qx_py)) * std::abs(r.z);
@@ -101,7 +101,8 @@ int orientation(const Lattice& lattice, const Vec3d& a, const Vec3d& b, const Ve
                    (Wide{px} * qy - Wide{qx} * py) * rz);
   }
   const WholeVec<1> origin = lattice.whole(d);
-  const WholeVec<1> u = lattice.whole(a) - origin, v = lattice.whole(b) - origin, w = lattice.whole(c) - origin;
+  const WholeVec<1> u = lattice.whole(a) - origin, v = lattice.whole(b) - origin,
+                    w = lattice.whole(c) - origin;
   return -dot(cross(u, v), w).sign();
 }
 
@@ -130,8 +131,8 @@ int longestAxis(const Lattice& lattice, const PlanePoints& triangle) {
   int longest = -1;
   for (int axis = 0; axis < 3; ++axis) {
     if (normal[axis].sign() != 0 &&
-        (longest < 0 || words::compare(normal[axis].words(), normal[axis].wordCount(), normal[longest].words(),
-                                       normal[longest].wordCount()) > 0)) {
+        (longest < 0 || words::compare(normal[axis].words(), normal[axis].wordCount(),
+                                       normal[longest].words(), normal[longest].wordCount()) > 0)) {
       longest = axis;
     }
   }
@@ -174,10 +175,10 @@ ExactPoint pointOfPlanes(const Lattice& lattice, std::span<const PlanePoints, 3>
 
 // The filter. The rounded coordinates are off by at most u times themselves, so with d the greatest of the
 // differences along a coordinate and m the greatest coordinate, a computed difference is off by at most
-// e = u (2 m + d) (1 + 2 u). The determinant, a difference of two products of such differences, is then off by at
-// most 2 (du ev + dv eu) + 2 eu ev, and by 3 u 2 du dv (1 + u) for its own rounding. e exceeds u d, so the factor 8
-// in place of 2 covers all of it, also that the bound itself is rounded. Nothing underflows to a wrong sign: the
-// smallest positive number is added.
+// e = u (2 m + d) (1 + 2 u). The determinant, a difference of two products of such differences, is then off
+// by at most 2 (du ev + dv eu) + 2 eu ev, and by 3 u 2 du dv (1 + u) for its own rounding. e exceeds u d, so
+// the factor 8 in place of 2 covers all of it, also that the bound itself is rounded. Nothing underflows to a
+// wrong sign: the smallest positive number is added.
 int orientation(int axis, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const double au = a.rounded[u] - c.rounded[u], av = a.rounded[v] - c.rounded[v];
@@ -192,7 +193,8 @@ int orientation(int axis, const ExactPoint& a, const ExactPoint& b, const ExactP
     return signOf(determinant);
   }
   const WholeVec<7>&p = a.numerator, &q = b.numerator, &r = c.numerator;
-  const Whole<14> pq = p[u] * q[v] - p[v] * q[u], qr = q[u] * r[v] - q[v] * r[u], rp = r[u] * p[v] - r[v] * p[u];
+  const Whole<14> pq = p[u] * q[v] - p[v] * q[u], qr = q[u] * r[v] - q[v] * r[u],
+                  rp = r[u] * p[v] - r[v] * p[u];
   return (pq * c.denominator + qr * a.denominator + rp * b.denominator).sign();
 }
 

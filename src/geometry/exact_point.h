@@ -11,8 +11,8 @@
 
 namespace sightline::geometry {
 
-// 1 where d lies on the side of the triangle's plane from which a, b, c run counter-clockwise, -1 on the other
-// side, 0 in the plane. All four points must be of the lattice.
+// 1 where d lies on the side of the triangle's plane from which a, b, c run counter-clockwise, -1 on the
+// other side, 0 in the plane. All four points must be of the lattice.
 int orientation(const Lattice& lattice, const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d);
 
 // Points of a plane are told apart by two of their coordinates, those after `axis`, along which the plane's

@@ -19,8 +19,8 @@ std::uint32_t withoutZeros(const std::uint64_t* a, std::uint32_t count) {
 
 }  // namespace
 
-std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b, std::uint32_t b_count,
-                  std::uint64_t* sum) {
+std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                  std::uint32_t b_count, std::uint64_t* sum) {
   if (a_count < b_count) {
     std::swap(a, b);
     std::swap(a_count, b_count);
@@ -81,9 +81,9 @@ namespace {
 
 template <int kDegree>
 int bitsOf(const Whole<kDegree>& a) {
-  return a.sign() == 0 ? 0
-                       : static_cast<int>(64 * a.wordCount()) -
-                             std::countl_zero(a.words()[a.wordCount() - 1]);
+  return a.sign() == 0
+             ? 0
+             : static_cast<int>(64 * a.wordCount()) - std::countl_zero(a.words()[a.wordCount() - 1]);
 }
 
 // The mantissa of a finite number as a whole number, and its exponent.

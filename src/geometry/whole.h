@@ -2,10 +2,10 @@
 
 // Whole numbers that are large enough for what is computed exactly of coordinates.
 //
-// A floating-point coordinate is a whole number times a power of two. With one power for all of them, a Lattice,
-// the coordinates are whole numbers, and sums and products of them are exact. A polynomial of degree d in them
-// is a Whole<d>, which holds it without allocating: terms of the same degree may be added, and the product of a
-// Whole<a> and a Whole<b> is a Whole<a + b>.
+// A floating-point coordinate is a whole number times a power of two. With one power for all of them, a
+// Lattice, the coordinates are whole numbers, and sums and products of them are exact. A polynomial of degree
+// d in them is a Whole<d>, which holds it without allocating: terms of the same degree may be added, and the
+// product of a Whole<a> and a Whole<b> is a Whole<a + b>.
 //
 // The whole numbers of any size that the oracle takes from Boost would do, but the runtime needs no library
 // beside Highway, and knowing the degree keeps every number on the stack.
@@ -18,16 +18,17 @@
 
 namespace sightline::geometry {
 
-// Coordinates have no bit below 2^-149, the lowest of single precision, and are less than 2^64. So they have at
-// most 213 bits, and differences of them 214. Two more for each factor cover the sums of up to 64 terms.
+// Coordinates have no bit below 2^-149, the lowest of single precision, and are less than 2^64. So they have
+// at most 213 bits, and differences of them 214. Two more for each factor cover the sums of up to 64 terms.
 inline constexpr int kLowestExponent = -149, kHighestExponent = 64;
 inline constexpr int kBitsOfFactor = kHighestExponent - kLowestExponent + 3;
 
 namespace words {
 
-// Numbers are little-endian words without leading zeros; zero has none. What is returned is the number of words.
-std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b, std::uint32_t b_count,
-                  std::uint64_t* sum);
+// Numbers are little-endian words without leading zeros; zero has none. What is returned is the number of
+// words.
+std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                  std::uint32_t b_count, std::uint64_t* sum);
 // a >= b. `difference` may be a.
 std::uint32_t subtract(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
                        std::uint32_t b_count, std::uint64_t* difference);
@@ -43,8 +44,7 @@ class Whole {
   static constexpr int kCapacity = (kDegree * kBitsOfFactor + 63) / 64 + 1;
 
   Whole() = default;  // zero
-  explicit Whole(std::int64_t value)
-      : sign_(value < 0 ? -1 : value > 0 ? 1 : 0), count_(value == 0 ? 0 : 1) {
+  explicit Whole(std::int64_t value) : sign_(value < 0 ? -1 : value > 0 ? 1 : 0), count_(value == 0 ? 0 : 1) {
     words_[0] = value < 0 ? -static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
   }
   Whole(const Whole& other) { *this = other; }
@@ -56,8 +56,8 @@ class Whole {
   }
   // A number of lower degree.
   template <int kLower>
-    requires(kLower < kDegree)
-  Whole(const Whole<kLower>& other) : sign_(other.sign_), count_(other.count_) {  // NOLINT: widens silently
+  requires(kLower < kDegree) Whole(const Whole<kLower>& other)
+      : sign_(other.sign_), count_(other.count_) {  // NOLINT: widens silently
     std::copy_n(other.words_, count_, words_);
   }
 
@@ -106,9 +106,8 @@ class Whole {
   }
 
   friend int compare(const Whole& a, const Whole& b) {
-    return a.sign_ != b.sign_
-               ? (a.sign_ < b.sign_ ? -1 : 1)
-               : a.sign_ * words::compare(a.words_, a.count_, b.words_, b.count_);
+    return a.sign_ != b.sign_ ? (a.sign_ < b.sign_ ? -1 : 1)
+                              : a.sign_ * words::compare(a.words_, a.count_, b.words_, b.count_);
   }
   friend bool operator==(const Whole& a, const Whole& b) { return compare(a, b) == 0; }
 
@@ -183,9 +182,7 @@ class Lattice {
 
   // Whether the bits of a coordinate lie between the two exponents above.
   static bool allowed(double coordinate);
-  static bool allowed(const Vec3d& point) {
-    return allowed(point.x) && allowed(point.y) && allowed(point.z);
-  }
+  static bool allowed(const Vec3d& point) { return allowed(point.x) && allowed(point.y) && allowed(point.z); }
   // The exponent of the lowest bit that is set in a finite number; a large one for zero.
   static int lowestExponent(double value);
 

@@ -1,11 +1,11 @@
-// Conforming: pairs of triangles whose boxes meet, what they have in common, the pieces of each triangle, and the new
-// points as vertices.
+// Conforming: pairs of triangles whose boxes meet, what they have in common, the pieces of each triangle, and
+// the new points as vertices.
 //
-// Based on: G. Cherchi, M. Livesu, R. Scateni, M. Attene. Fast and robust mesh arrangements using floating-point
-// arithmetic. ACM Transactions on Graphics 39, 2020: contacts first, then each triangle alone.
-// Differs from the paper in that a point is what its coordinates are, as exact numbers, and not what defines it; so
-// points that coincide by chance are one point without further ado. And in that triangles are divided by a sweep,
-// which treats coplanar triangles alike.
+// Based on: G. Cherchi, M. Livesu, R. Scateni, M. Attene. Fast and robust mesh arrangements using
+// floating-point arithmetic. ACM Transactions on Graphics 39, 2020: contacts first, then each triangle alone.
+// Differs from the paper in that a point is what its coordinates are, as exact numbers, and not what defines
+// it; so points that coincide by chance are one point without further ado. And in that triangles are divided
+// by a sweep, which treats coplanar triangles alike.
 
 #include "src/occluders/conform.h"
 
@@ -33,7 +33,8 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 
 float below(double value) {
   const auto rounded = static_cast<float>(value);
-  return double{rounded} > value ? std::nextafterf(rounded, -std::numeric_limits<float>::infinity()) : rounded;
+  return double{rounded} > value ? std::nextafterf(rounded, -std::numeric_limits<float>::infinity())
+                                 : rounded;
 }
 
 // Calls one(i) for all i below a number.
@@ -79,7 +80,8 @@ class Conforming {
                                        : Role::kDegenerate;
     });
     mesh_.untouched = static_cast<std::uint32_t>(std::count(roles_.begin(), roles_.end(), Role::kUntouched));
-    mesh_.degenerate = static_cast<std::uint32_t>(std::count(roles_.begin(), roles_.end(), Role::kDegenerate));
+    mesh_.degenerate =
+        static_cast<std::uint32_t>(std::count(roles_.begin(), roles_.end(), Role::kDegenerate));
   }
 
   void findContacts() {
@@ -252,11 +254,11 @@ class Conforming {
   ConformScene scene_;
   std::uint32_t count_;
   const ParallelFor& parallel_for_;
-  std::vector<Role> roles_;             // by triangle
-  std::vector<std::uint32_t> touched_;  // triangles with contacts, ascending
-  std::vector<std::uint32_t> row_of_;   // by triangle: its place in touched_, or kNone
-  base::Rows<Contact> contacts_;        // by touched triangle
-  std::vector<Pieces> pieces_;          // by part of touched_
+  std::vector<Role> roles_;                 // by triangle
+  std::vector<std::uint32_t> touched_;      // triangles with contacts, ascending
+  std::vector<std::uint32_t> row_of_;       // by triangle: its place in touched_, or kNone
+  base::Rows<Contact> contacts_;            // by touched triangle
+  std::vector<Pieces> pieces_;              // by part of touched_
   std::vector<std::uint32_t> first_point_;  // by part: its first point in vertex_of_
   std::vector<std::uint32_t> vertex_of_;    // by point of all parts
   ConformedMesh mesh_;

@@ -46,22 +46,23 @@ struct ConformedMesh {
   std::vector<PointName> names;          // of the new ones
   std::vector<std::uint32_t> triangles;  // three vertices each, by source
   std::vector<std::uint32_t> source;     // of each triangle: the one of the input that it is a piece of
-  // No point of a piece is farther than this from where it would be without rounding, metres. New vertices are
-  // computed exactly and then rounded to double precision.
+  // No point of a piece is farther than this from where it would be without rounding, metres. New vertices
+  // are computed exactly and then rounded to double precision.
   double slack = 0.0;
   std::uint32_t degenerate = 0;  // triangles without area, which are left out
-  std::uint32_t untouched = 0;   // triangles that are passed on without a look at their contacts: see conform()
-  std::uint32_t divided = 0;     // triangles of the input that have several pieces, or new vertices
+  std::uint32_t untouched =
+      0;                      // triangles that are passed on without a look at their contacts: see conform()
+  std::uint32_t divided = 0;  // triangles of the input that have several pieces, or new vertices
   ContactCounts contacts;
 };
 
 // The pieces of a triangle cover it exactly, without overlap, and face as it does; a triangle that touches
-// others only in common vertices and edges is its own only piece. No vertex lies inside an edge or a face, and
-// no edge crosses another or a face, before new vertices are rounded.
-// Triangles without area are left out: the edges of the others are divided where its corners lie on them, so its
-// edges would cancel each other. A triangle with coordinates that are not finite, of 2^64 metres and more, or
-// with bits below 2^-149 metres is passed on and divides no other.
-// The result does not depend on the threads, and but for numbers not on the order of the input either.
+// others only in common vertices and edges is its own only piece. No vertex lies inside an edge or a face,
+// and no edge crosses another or a face, before new vertices are rounded. Triangles without area are left
+// out: the edges of the others are divided where its corners lie on them, so its edges would cancel each
+// other. A triangle with coordinates that are not finite, of 2^64 metres and more, or with bits below 2^-149
+// metres is passed on and divides no other. The result does not depend on the threads, and but for numbers
+// not on the order of the input either.
 ConformedMesh conform(const ConformInput& input, const ParallelFor& parallel_for = serialFor);
 
 }  // namespace sightline::occluders

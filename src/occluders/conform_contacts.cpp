@@ -1,6 +1,6 @@
-// Based on: O. Devillers and P. Guigue. Faster triangle-triangle intersection tests. INRIA report 4488, 2002: where
-// the edges of one triangle pass the other follows from orientations of given points alone.
-// Differs from the paper in that touching is told from crossing, and common vertices are known to be common.
+// Based on: O. Devillers and P. Guigue. Faster triangle-triangle intersection tests. INRIA report 4488, 2002:
+// where the edges of one triangle pass the other follows from orientations of given points alone. Differs
+// from the paper in that touching is told from crossing, and common vertices are known to be common.
 
 #include "src/occluders/conform_contacts.h"
 
@@ -98,8 +98,8 @@ class Pair {
   }
 
  private:
-  // Finds the sides of the other's plane on which the corners of a triangle lie, and whether it has no more than
-  // common corners in that plane, and the rest on one side.
+  // Finds the sides of the other's plane on which the corners of a triangle lie, and whether it has no more
+  // than common corners in that plane, and the rest on one side.
   bool clear(int which) {
     const Corner3 &t = t_[which], &plane = t_[1 - which];
     bool front = false, back = false, touches = false;
@@ -149,8 +149,9 @@ class Pair {
     }
   }
 
-  // Places where an edge of one triangle passes through the other one, but not through its corners. crossed: edges of
-  // both that are known to cross each other, bit 3 k + m for edge k of the first and m of the second triangle.
+  // Places where an edge of one triangle passes through the other one, but not through its corners. crossed:
+  // edges of both that are known to cross each other, bit 3 k + m for edge k of the first and m of the second
+  // triangle.
   void addPiercings(int which, std::uint32_t& crossed, Meetings& meetings) const {
     const Corner3 &t = t_[which], &face = t_[1 - which];
     for (int k = 0; k < 3; ++k) {
@@ -160,8 +161,7 @@ class Pair {
       bool left = false, right = false;
       Borders other = 0;
       for (int m = 0; m < 3; ++m) {
-        const int turn =
-            orientation(lattice_, t.at[k], t.at[kNext[k]], face.at[m], face.at[kNext[m]]);
+        const int turn = orientation(lattice_, t.at[k], t.at[kNext[k]], face.at[m], face.at[kNext[m]]);
         left = left || turn > 0;
         right = right || turn < 0;
         other |= static_cast<Borders>((turn == 0 ? 1 : 0) << m);
@@ -201,17 +201,17 @@ class Pair {
       const bool line = meetings.count == 2;
       const bool edge_0 = line && (meetings.at[0].in[0] & meetings.at[1].in[0]) != 0;
       const bool edge_1 = line && (meetings.at[0].in[1] & meetings.at[1].in[1]) != 0;
-      ++(!line               ? counts_.points
-         : edge_0 && edge_1  ? counts_.edges_on_edges
-         : edge_0 || edge_1  ? counts_.edges_in_faces
-                             : counts_.penetrations);
+      ++(!line              ? counts_.points
+         : edge_0 && edge_1 ? counts_.edges_on_edges
+         : edge_0 || edge_1 ? counts_.edges_in_faces
+                            : counts_.penetrations);
     }
   }
 
   // Sides of the other triangle's edges on which the corners of a triangle of the same plane lie.
   struct Sides {
-    int of[3][3];      // by edge of the other, then corner; 1 is inside
-    bool inside[3];    // of the closed triangle, by corner
+    int of[3][3];        // by edge of the other, then corner; 1 is inside
+    bool inside[3];      // of the closed triangle, by corner
     Borders borders[3];  // of the other, by corner
   };
 
@@ -264,7 +264,8 @@ class Pair {
       bool apart = false;  // has an edge with nothing on its inner side
       for (const int which : {0, 1}) {
         for (int k = 0; k < 3; ++k) {
-          apart = apart || std::all_of(sides[which].of[k], sides[which].of[k] + 3, [](int s) { return s <= 0; });
+          apart =
+              apart || std::all_of(sides[which].of[k], sides[which].of[k] + 3, [](int s) { return s <= 0; });
         }
       }
       ++(apart ? counts_.edges_on_edges : counts_.overlaps);

@@ -25,16 +25,16 @@ struct ConformScene {
   }
 };
 
-// Where a point lies in a triangle: bit k for edge k, which goes from corner k to the next one. So a corner has
-// two bits, and a point inside none.
+// Where a point lies in a triangle: bit k for edge k, which goes from corner k to the next one. So a corner
+// has two bits, and a point inside none.
 using Borders = std::uint8_t;
 
 // A point of a triangle, or a segment across it, that it has in common with another triangle.
 struct Contact {
   enum class Kind : std::uint8_t {
-    kPoint,           // ends[0] alone
-    kAlongPlane,      // in the plane of triangle along[0]
-    kAlongEdge,       // on the line through vertices along[0] and along[1], which lies in the triangle's plane
+    kPoint,       // ends[0] alone
+    kAlongPlane,  // in the plane of triangle along[0]
+    kAlongEdge,   // on the line through vertices along[0] and along[1], which lies in the triangle's plane
   };
   std::uint32_t triangle = 0;
   Kind kind = Kind::kPoint;
@@ -46,8 +46,9 @@ struct Contact {
 // Whether a triangle has an area.
 bool hasArea(const ConformScene& scene, std::uint32_t triangle);
 
-// Adds what each of two triangles with areas has in common with the other, beyond its own corners and parts of its
-// own edges between them. Contacts along an edge of the triangle are points: the ends of the common part.
+// Adds what each of two triangles with areas has in common with the other, beyond its own corners and parts
+// of its own edges between them. Contacts along an edge of the triangle are points: the ends of the common
+// part.
 void addContacts(const ConformScene& scene, std::uint32_t a, std::uint32_t b, std::vector<Contact>& contacts,
                  ContactCounts& counts);
 

@@ -67,7 +67,9 @@ BoxPairs::BoxPairs(std::span<const Box> boxes, std::span<const std::uint32_t> nu
 }
 
 std::uint32_t BoxPairs::partCount() const {
-  return levels_.empty() ? 0 : (static_cast<std::uint32_t>(levels_[0].size()) + kLeavesOfPart - 1) / kLeavesOfPart;
+  return levels_.empty()
+             ? 0
+             : (static_cast<std::uint32_t>(levels_[0].size()) + kLeavesOfPart - 1) / kLeavesOfPart;
 }
 
 }  // namespace sightline::occluders

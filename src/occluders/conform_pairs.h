@@ -36,15 +36,17 @@ class BoxPairs {
   template <typename Use>
   void forPairsOfLeaves(std::uint32_t leaf, std::uint32_t other, Use&& use) const;
 
-  std::vector<Box> boxes_;                // in the order of the curve
-  std::vector<std::uint32_t> numbers_;    // by box
-  std::vector<std::vector<Box>> levels_;  // each box holds kWidth of the level before; the first one, of boxes_
+  std::vector<Box> boxes_;              // in the order of the curve
+  std::vector<std::uint32_t> numbers_;  // by box
+  std::vector<std::vector<Box>>
+      levels_;  // each box holds kWidth of the level before; the first one, of boxes_
 };
 
 template <typename Use>
 void BoxPairs::forPairsOfLeaves(std::uint32_t leaf, std::uint32_t other, Use&& use) const {
   const auto count = static_cast<std::uint32_t>(boxes_.size());
-  const std::uint32_t end = std::min(count, (leaf + 1) * kWidth), other_end = std::min(count, (other + 1) * kWidth);
+  const std::uint32_t end = std::min(count, (leaf + 1) * kWidth),
+                      other_end = std::min(count, (other + 1) * kWidth);
   for (std::uint32_t i = leaf * kWidth; i < end; ++i) {
     for (std::uint32_t k = leaf == other ? i + 1 : other * kWidth; k < other_end; ++k) {
       if (meet(boxes_[i], boxes_[k])) {
@@ -61,7 +63,8 @@ void BoxPairs::forPairs(std::uint32_t part, Use&& use) const {
     std::uint32_t level, node;
   };
   std::vector<Entry> open;
-  for (std::uint32_t leaf = part * kLeavesOfPart; leaf < std::min(leaves, (part + 1) * kLeavesOfPart); ++leaf) {
+  for (std::uint32_t leaf = part * kLeavesOfPart; leaf < std::min(leaves, (part + 1) * kLeavesOfPart);
+       ++leaf) {
     const Box& box = levels_[0][leaf];
     open.assign(1, {static_cast<std::uint32_t>(levels_.size() - 1), 0});
     while (!open.empty()) {
@@ -72,7 +75,8 @@ void BoxPairs::forPairs(std::uint32_t part, Use&& use) const {
         continue;
       }
       const std::vector<Box>& below = levels_[at.level - 1];
-      const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(below.size(), (at.node + 1) * std::size_t{kWidth}));
+      const auto end = static_cast<std::uint32_t>(
+          std::min<std::size_t>(below.size(), (at.node + 1) * std::size_t{kWidth}));
       for (std::uint32_t node = at.node * kWidth; node < end; ++node) {
         // Leaves before this one have looked for their pairs with it.
         const std::uint64_t last_leaf = ((std::uint64_t{node} + 1) << (2 * (at.level - 1))) - 1;

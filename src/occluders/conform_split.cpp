@@ -26,8 +26,8 @@ ExactPoint exactPoint(const ConformScene& scene, const PointName& name) {
   return geometry::pointOfPlanes(scene.lattice, planes);
 }
 
-void TriangleSplit::split(const ConformScene& scene, std::uint32_t triangle, std::span<const Contact> contacts,
-                          Pieces& pieces) {
+void TriangleSplit::split(const ConformScene& scene, std::uint32_t triangle,
+                          std::span<const Contact> contacts, Pieces& pieces) {
   scene_ = &scene;
   triangle_ = triangle;
   const geometry::PlanePoints plane = scene.planeOf(triangle);
@@ -67,7 +67,8 @@ void TriangleSplit::placePoints(std::span<const Contact> contacts) {
       named_.push_back({contacts[i].ends[k], contacts[i].borders[k], 2 * i + k});
     }
   }
-  std::sort(named_.begin(), named_.end(), [](const NamedPlace& a, const NamedPlace& b) { return a.name < b.name; });
+  std::sort(named_.begin(), named_.end(),
+            [](const NamedPlace& a, const NamedPlace& b) { return a.name < b.name; });
   place_of_end_.assign(2 * contacts.size(), 0);
   for (std::size_t i = 0; i < named_.size(); ++i) {
     if (i == 0 || named_[i].name != named_[i - 1].name) {
@@ -104,8 +105,9 @@ void TriangleSplit::makeSegments(std::span<const Contact> contacts) {
   segments_.clear();
   for (std::uint32_t i = 0; i < contacts.size(); ++i) {
     if (contacts[i].kind != Contact::Kind::kPoint) {
-      const auto [low, high] = std::minmax(place_of_end_[2 * i], place_of_end_[2 * i + 1],
-                                           [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; });
+      const auto [low, high] =
+          std::minmax(place_of_end_[2 * i], place_of_end_[2 * i + 1],
+                      [&](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; });
       segments_.push_back({low, high, contacts[i].kind, contacts[i].along});
     }
   }
@@ -234,7 +236,8 @@ void TriangleSplit::makeEdges() {
     for (std::uint32_t rank = segment.low + 1; rank < segment.high; ++rank) {
       const double at = point(rank).rounded[v];
       if (bordersOf(rank) == 0 && at >= across.first && at <= across.second &&
-          !std::binary_search(on_segment_.begin(), on_segment_.begin() + static_cast<std::ptrdiff_t>(known), rank) &&
+          !std::binary_search(on_segment_.begin(), on_segment_.begin() + static_cast<std::ptrdiff_t>(known),
+                              rank) &&
           turn(segment.low, segment.high, rank) == 0) {
         on_segment_.push_back(rank);
       }

@@ -21,7 +21,8 @@ struct NewPoint {
 // The pieces of some triangles.
 struct Pieces {
   std::vector<NewPoint> points;
-  // By triangle, three for each piece: a vertex of the input, or that number of vertices and more for a new point.
+  // By triangle, three for each piece: a vertex of the input, or that number of vertices and more for a new
+  // point.
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> ends;  // by triangle: how many corners there are up to its last piece
 };
@@ -32,9 +33,10 @@ geometry::ExactPoint exactPoint(const ConformScene& scene, const PointName& name
 // Divides triangles one at a time; keeps its storage.
 class TriangleSplit {
  public:
-  // Appends the pieces of a triangle with area. contacts: all of its contacts, in any order. The pieces do not
-  // depend on that order.
-  void split(const ConformScene& scene, std::uint32_t triangle, std::span<const Contact> contacts, Pieces& pieces);
+  // Appends the pieces of a triangle with area. contacts: all of its contacts, in any order. The pieces do
+  // not depend on that order.
+  void split(const ConformScene& scene, std::uint32_t triangle, std::span<const Contact> contacts,
+             Pieces& pieces);
 
  private:
   // A segment between two ranks, and the plane or line in which it lies; see Contact.
@@ -66,10 +68,10 @@ class TriangleSplit {
   std::uint32_t triangle_ = 0;
   int axis_ = 0;  // of the triangle's plane, and the sign of its normal along it
   int sign_ = 0;
-  // Places are the points by name, some of which may be the same point; ranks are different points in the order of
-  // the sweep.
+  // Places are the points by name, some of which may be the same point; ranks are different points in the
+  // order of the sweep.
   std::vector<NamedPlace> named_;
-  std::vector<std::uint32_t> place_of_end_;  // by 2 i + k
+  std::vector<std::uint32_t> place_of_end_;   // by 2 i + k
   std::vector<geometry::ExactPoint> points_;  // by place
   std::vector<PointName> names_;
   std::vector<Borders> borders_;

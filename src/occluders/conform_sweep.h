@@ -2,17 +2,17 @@
 
 // Triangulates a planar figure by a sweep.
 //
-// Based on: S. Hertel and K. Mehlhorn. Fast triangulation of simple polygons. Fundamentals of Computation Theory,
-// 1983. Differs from the paper in that the figure is any set of straight edges that meet only at their ends, with
-// loose ends and single points inside, whose outline is a triangle.
+// Based on: S. Hertel and K. Mehlhorn. Fast triangulation of simple polygons. Fundamentals of Computation
+// Theory, 1983. Differs from the paper in that the figure is any set of straight edges that meet only at
+// their ends, with loose ends and single points inside, whose outline is a triangle.
 //
-// The points are swept in their order. Between two edges that the sweep crosses, one above the other, lies a slab
-// with a chain of points, from the lower edge's first point to the upper one's: to the left of the chain all is
-// triangulated, and no triangle can be added there without a new point. A new point sees the last point of the
-// chain, and from there on all up to the first that it does not lie strictly outside of.
+// The points are swept in their order. Between two edges that the sweep crosses, one above the other, lies a
+// slab with a chain of points, from the lower edge's first point to the upper one's: to the left of the chain
+// all is triangulated, and no triangle can be added there without a new point. A new point sees the last
+// point of the chain, and from there on all up to the first that it does not lie strictly outside of.
 //
-// What a face of the figure is divided into follows from the face alone: the triangles are the same in every figure
-// that has it.
+// What a face of the figure is divided into follows from the face alone: the triangles are the same in every
+// figure that has it.
 
 #include <algorithm>
 #include <cstdint>
@@ -30,9 +30,9 @@ class PlaneSweep {
     friend auto operator<=>(const Edge&, const Edge&) = default;
   };
 
-  // Appends three points for each triangle, counter-clockwise. Points are numbers below `count`, in the order of
-  // the sweep: by one coordinate, then by the other. edges: ascending; among them the outline. turn(a, b, c) is
-  // positive if a, b, c run counter-clockwise.
+  // Appends three points for each triangle, counter-clockwise. Points are numbers below `count`, in the order
+  // of the sweep: by one coordinate, then by the other. edges: ascending; among them the outline. turn(a, b,
+  // c) is positive if a, b, c run counter-clockwise.
   template <typename Turn>
   void triangulate(std::uint32_t count, std::span<const Edge> edges, const Turn& turn,
                    std::vector<std::uint32_t>& triangles);
@@ -104,9 +104,8 @@ void PlaneSweep::triangulate(std::uint32_t count, std::span<const Edge> edges, c
     for (; next_edge < edges.size() && edges[next_edge].low == point; ++next_edge) {
       leaving_.push_back({edges[next_edge], {point}});
     }
-    std::sort(leaving_.begin(), leaving_.end(), [&](const Crossed& a, const Crossed& b) {
-      return turn(point, a.edge.high, b.edge.high) > 0;
-    });
+    std::sort(leaving_.begin(), leaving_.end(),
+              [&](const Crossed& a, const Crossed& b) { return turn(point, a.edge.high, b.edge.high) > 0; });
     std::size_t first = 0;
     while (first < crossed_.size() && crossed_[first].edge.high != point) {
       ++first;
@@ -134,7 +133,8 @@ void PlaneSweep::triangulate(std::uint32_t count, std::span<const Edge> edges, c
     } else if (!crossed_.empty()) {
       first = end = slabOf(point, turn) + 1;
       lower = std::move(crossed_[first - 1].above);
-      const auto last = static_cast<std::size_t>(std::max_element(lower.begin(), lower.end()) - lower.begin());
+      const auto last =
+          static_cast<std::size_t>(std::max_element(lower.begin(), lower.end()) - lower.begin());
       upper.assign(lower.begin() + static_cast<std::ptrdiff_t>(last), lower.end());
       cutDown(lower, last, point, turn, triangles);
       cutUp(upper, 0, point, turn, triangles);
@@ -151,8 +151,8 @@ void PlaneSweep::triangulate(std::uint32_t count, std::span<const Edge> edges, c
     }
     const auto begin = crossed_.begin() + static_cast<std::ptrdiff_t>(first);
     crossed_.erase(begin, crossed_.begin() + static_cast<std::ptrdiff_t>(end));
-    crossed_.insert(crossed_.begin() + static_cast<std::ptrdiff_t>(first), std::make_move_iterator(leaving_.begin()),
-                    std::make_move_iterator(leaving_.end()));
+    crossed_.insert(crossed_.begin() + static_cast<std::ptrdiff_t>(first),
+                    std::make_move_iterator(leaving_.begin()), std::make_move_iterator(leaving_.end()));
   }
 }
 
