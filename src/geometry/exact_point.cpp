@@ -31,7 +31,7 @@ int signOf(Wide value) {
 // is a number of at most 53 bits, so double precision has it exactly.
 struct Units {
   Units(const Lattice& lattice, int limit)
-      : scale(std::ldexp(1.0, -lattice.exponent())), most(std::ldexp(1.0, limit)) {}
+      : scale(lattice.units()), most(static_cast<double>(std::int64_t{1} << limit)) {}
   std::int64_t of(double difference) {
     const double units = difference * scale;
     fits = fits && std::abs(units) < most;

@@ -86,11 +86,14 @@ int bitsOf(const Whole<kDegree>& a) {
              : static_cast<int>(64 * a.wordCount()) - std::countl_zero(a.words()[a.wordCount() - 1]);
 }
 
-// The mantissa of a finite number as a whole number, and its exponent.
+// The mantissa of a finite number, not zero, as a whole number, and its exponent.
 std::int64_t mantissaOf(double value, int& exponent) {
-  const double mantissa = std::frexp(value, &exponent);
-  exponent -= 53;
-  return static_cast<std::int64_t>(std::ldexp(mantissa, 53));
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const auto biased = static_cast<int>(bits >> 52 & 0x7ff);
+  const auto fraction = static_cast<std::int64_t>(bits & 0xfffffffffffffull);
+  exponent = std::max(biased, 1) - 1075;
+  const std::int64_t mantissa = biased == 0 ? fraction : fraction | std::int64_t{1} << 52;
+  return value < 0.0 ? -mantissa : mantissa;
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 // beside Highway, and knowing the degree keeps every number on the stack.
 
 #include <algorithm>
-#include <compare>
+#include <cmath>
 #include <cstdint>
 
 #include "sightline/math/vec3.h"
@@ -51,14 +51,14 @@ class Whole {
   Whole& operator=(const Whole& other) {
     sign_ = other.sign_;
     count_ = other.count_;
-    std::copy_n(other.words_, count_, words_);
+    copyWords(other.words_);
     return *this;
   }
   // A number of lower degree.
   template <int kLower>
   requires(kLower < kDegree) Whole(const Whole<kLower>& other)
       : sign_(other.sign_), count_(other.count_) {  // NOLINT: widens silently
-    std::copy_n(other.words_, count_, words_);
+    copyWords(other.words_);
   }
 
   int sign() const { return sign_; }
@@ -114,6 +114,13 @@ class Whole {
  private:
   template <int>
   friend class Whole;
+
+  // Word by word: most numbers have few.
+  void copyWords(const std::uint64_t* from) {
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      words_[i] = from[i];
+    }
+  }
 
   static Whole sum(const Whole& a, const Whole& b, std::int32_t sign_of_b) {
     Whole result;
@@ -177,6 +184,7 @@ class Lattice {
         lattice.exponent_ = std::min(lattice.exponent_, lowestExponent(point[axis]));
       }
     }
+    lattice.units_ = std::ldexp(1.0, -lattice.exponent_);
     return lattice;
   }
 
@@ -187,11 +195,13 @@ class Lattice {
   static int lowestExponent(double value);
 
   int exponent() const { return exponent_; }
+  double units() const { return units_; }  // of the lattice in a metre, 2^-exponent
   Whole<1> whole(double coordinate) const;
   WholeVec<1> whole(const Vec3d& point) const { return {whole(point.x), whole(point.y), whole(point.z)}; }
 
  private:
   int exponent_ = 0;
+  double units_ = 1.0;
 };
 
 struct RoundedQuotient {

@@ -49,9 +49,10 @@ void forEach(const ParallelFor& parallel_for, std::size_t count, const One& one)
 
 class Conforming {
  public:
-  Conforming(const ConformInput& input, const ParallelFor& parallel_for)
+  Conforming(const ConformInput& input, const ConformSettings& settings, const ParallelFor& parallel_for)
       : scene_{input.vertices, input.triangles, {}},
         count_(static_cast<std::uint32_t>(input.triangles.size() / 3)),
+        settings_(settings),
         parallel_for_(parallel_for) {}
 
   ConformedMesh run() {
@@ -104,7 +105,7 @@ class Conforming {
     std::vector<ContactCounts> counts(pairs.partCount());
     forEach(parallel_for_, pairs.partCount(), [&](std::uint32_t part) {
       pairs.forPairs(part, [&](std::uint32_t a, std::uint32_t b) {
-        addContacts(scene_, std::min(a, b), std::max(a, b), parts[part], counts[part]);
+        addContacts(scene_, settings_, std::min(a, b), std::max(a, b), parts[part], counts[part]);
       });
     });
     for (const ContactCounts& part : counts) {
@@ -253,6 +254,7 @@ class Conforming {
 
   ConformScene scene_;
   std::uint32_t count_;
+  const ConformSettings settings_;
   const ParallelFor& parallel_for_;
   std::vector<Role> roles_;                 // by triangle
   std::vector<std::uint32_t> touched_;      // triangles with contacts, ascending
@@ -266,8 +268,9 @@ class Conforming {
 
 }  // namespace
 
-ConformedMesh conform(const ConformInput& input, const ParallelFor& parallel_for) {
-  return Conforming(input, parallel_for).run();
+ConformedMesh conform(const ConformInput& input, const ConformSettings& settings,
+                      const ParallelFor& parallel_for) {
+  return Conforming(input, settings, parallel_for).run();
 }
 
 }  // namespace sightline::occluders

@@ -17,6 +17,13 @@ struct ConformInput {
   std::span<const std::uint32_t> triangles;  // three vertices each
 };
 
+struct ConformSettings {
+  // Whether triangles are divided along the segment in which they penetrate each other. Without it they are
+  // not divided by one another at all where neither has an edge in the other; foliage makes thousands of
+  // pieces for nothing that hides.
+  bool penetrations = true;
+};
+
 // A point by what defines it.
 struct PointName {
   enum class Kind : std::uint8_t {
@@ -63,6 +70,7 @@ struct ConformedMesh {
 // other. A triangle with coordinates that are not finite, of 2^64 metres and more, or with bits below 2^-149
 // metres is passed on and divides no other. The result does not depend on the threads, and but for numbers
 // not on the order of the input either.
-ConformedMesh conform(const ConformInput& input, const ParallelFor& parallel_for = serialFor);
+ConformedMesh conform(const ConformInput& input, const ConformSettings& settings = {},
+                      const ParallelFor& parallel_for = serialFor);
 
 }  // namespace sightline::occluders

@@ -71,9 +71,13 @@ PointName vertexName(std::uint32_t vertex) {
 
 class Pair {
  public:
-  Pair(const ConformScene& scene, std::uint32_t a, std::uint32_t b, std::vector<Contact>& contacts,
-       ContactCounts& counts)
-      : lattice_(scene.lattice), t_{{scene, a}, {scene, b}}, contacts_(contacts), counts_(counts) {
+  Pair(const ConformScene& scene, const ConformSettings& settings, std::uint32_t a, std::uint32_t b,
+       std::vector<Contact>& contacts, ContactCounts& counts)
+      : lattice_(scene.lattice),
+        settings_(settings),
+        t_{{scene, a}, {scene, b}},
+        contacts_(contacts),
+        counts_(counts) {
     for (int k = 0; k < 3; ++k) {
       for (int m = 0; m < 3; ++m) {
         if (t_[0].id[k] == t_[1].id[m]) {
@@ -193,14 +197,18 @@ class Pair {
     for (const int which : {0, 1}) {
       addPiercings(which, crossed, meetings);
     }
+    const bool line = meetings.count >= 2;
+    const bool edge_0 = line && (meetings.at[0].in[0] & meetings.at[1].in[0]) != 0;
+    const bool edge_1 = line && (meetings.at[0].in[1] & meetings.at[1].in[1]) != 0;
+    if (line && !edge_0 && !edge_1 && !settings_.penetrations) {
+      emitBorders(meetings);
+      return;
+    }
     bool added = false;
     for (const int which : {0, 1}) {
       added = emit(which, meetings, Contact::Kind::kAlongPlane, {t_[1 - which].number, 0}) || added;
     }
     if (added) {
-      const bool line = meetings.count == 2;
-      const bool edge_0 = line && (meetings.at[0].in[0] & meetings.at[1].in[0]) != 0;
-      const bool edge_1 = line && (meetings.at[0].in[1] & meetings.at[1].in[1]) != 0;
       ++(!line              ? counts_.points
          : edge_0 && edge_1 ? counts_.edges_on_edges
          : edge_0 || edge_1 ? counts_.edges_in_faces
@@ -322,7 +330,23 @@ class Pair {
     return added;
   }
 
+  // Adds what penetrating triangles must know of each other although they are not divided along their common
+  // segment: where borders of both meet. Other triangles at these borders may be divided there, for another
+  // reason; then all are. Where an edge pierces a face, none of those at the edge is divided there: the face
+  // and each of them penetrate each other.
+  void emitBorders(const Meetings& meetings) {
+    for (const Meeting& meeting : meetings.at) {
+      if (meeting.in[0] != 0 && meeting.in[1] != 0) {
+        Meetings one;
+        one.add(meeting.name, meeting.in[0], meeting.in[1]);
+        emit(0, one, Contact::Kind::kPoint, {});
+        emit(1, one, Contact::Kind::kPoint, {});
+      }
+    }
+  }
+
   const Lattice& lattice_;
+  const ConformSettings& settings_;
   Corner3 t_[2];
   int same_[2][3] = {{-1, -1, -1}, {-1, -1, -1}};  // the other's corner that is the same vertex
   int common_ = 0;
@@ -338,9 +362,9 @@ bool hasArea(const ConformScene& scene, std::uint32_t triangle) {
   return facingOf(scene.lattice, t.at).sign != 0;
 }
 
-void addContacts(const ConformScene& scene, std::uint32_t a, std::uint32_t b, std::vector<Contact>& contacts,
-                 ContactCounts& counts) {
-  Pair(scene, a, b, contacts, counts).meet();
+void addContacts(const ConformScene& scene, const ConformSettings& settings, std::uint32_t a, std::uint32_t b,
+                 std::vector<Contact>& contacts, ContactCounts& counts) {
+  Pair(scene, settings, a, b, contacts, counts).meet();
 }
 
 }  // namespace sightline::occluders

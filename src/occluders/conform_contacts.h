@@ -49,7 +49,7 @@ bool hasArea(const ConformScene& scene, std::uint32_t triangle);
 // Adds what each of two triangles with areas has in common with the other, beyond its own corners and parts
 // of its own edges between them. Contacts along an edge of the triangle are points: the ends of the common
 // part.
-void addContacts(const ConformScene& scene, std::uint32_t a, std::uint32_t b, std::vector<Contact>& contacts,
-                 ContactCounts& counts);
+void addContacts(const ConformScene& scene, const ConformSettings& settings, std::uint32_t a, std::uint32_t b,
+                 std::vector<Contact>& contacts, ContactCounts& counts);
 
 }  // namespace sightline::occluders

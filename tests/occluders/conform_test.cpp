@@ -182,7 +182,7 @@ TEST(Conform, ThreadsChangeNothing) {
                  one.vertices[one.triangles[i + 2]] + at);
       }
     }
-    const ConformedMesh one = conform(soup.input()), two = conform(soup.input(), onThreads);
+    const ConformedMesh one = conform(soup.input()), two = conform(soup.input(), {}, onThreads);
     EXPECT_EQ(one.vertices, two.vertices) << family.name;
     EXPECT_EQ(one.triangles, two.triangles) << family.name;
     EXPECT_EQ(one.source, two.source) << family.name;
