@@ -82,7 +82,9 @@ Triangles village(std::uint32_t cells) {
 }
 
 occluders::SurfaceMesh weldVillage(const Triangles& village) {
-  const Object object{.first_index = 0, .index_count = static_cast<std::uint32_t>(village.indices.size())};
+  const Object object{.first_index = 0,
+                      .index_count = static_cast<std::uint32_t>(village.indices.size()),
+                      .material = MaterialId(0u)};
   const Material material;
   return occluders::weld({village.positions, village.indices, {&object, 1}, {&material, 1}});
 }
