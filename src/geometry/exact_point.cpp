@@ -131,7 +131,7 @@ int longestAxis(const Lattice& lattice, const PlanePoints& triangle) {
   int longest = -1;
   for (int axis = 0; axis < 3; ++axis) {
     if (normal[axis].sign() != 0 &&
-        (longest < 0 || words::compare(normal[axis].words(), normal[axis].wordCount(),
+        (longest < 0 || Words::compare(normal[axis].words(), normal[axis].wordCount(),
                                        normal[longest].words(), normal[longest].wordCount()) > 0)) {
       longest = axis;
     }

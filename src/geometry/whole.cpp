@@ -5,10 +5,9 @@
 #include <limits>
 
 namespace sightline::geometry {
-namespace words {
 namespace {
 
-__extension__ using Wide = unsigned __int128;
+__extension__ using DoubleWord = unsigned __int128;
 
 std::uint32_t withoutZeros(const std::uint64_t* a, std::uint32_t count) {
   while (count > 0 && a[count - 1] == 0) {
@@ -19,15 +18,15 @@ std::uint32_t withoutZeros(const std::uint64_t* a, std::uint32_t count) {
 
 }  // namespace
 
-std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
-                  std::uint32_t b_count, std::uint64_t* sum) {
+std::uint32_t Words::add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                         std::uint32_t b_count, std::uint64_t* sum) {
   if (a_count < b_count) {
     std::swap(a, b);
     std::swap(a_count, b_count);
   }
   std::uint64_t carry = 0;
   for (std::uint32_t i = 0; i < a_count; ++i) {
-    const Wide word = Wide{a[i]} + (i < b_count ? b[i] : 0) + carry;
+    const DoubleWord word = DoubleWord{a[i]} + (i < b_count ? b[i] : 0) + carry;
     sum[i] = static_cast<std::uint64_t>(word);
     carry = static_cast<std::uint64_t>(word >> 64);
   }
@@ -37,24 +36,24 @@ std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint
   return a_count;
 }
 
-std::uint32_t subtract(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
-                       std::uint32_t b_count, std::uint64_t* difference) {
+std::uint32_t Words::subtract(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                              std::uint32_t b_count, std::uint64_t* difference) {
   std::uint64_t borrow = 0;
   for (std::uint32_t i = 0; i < a_count; ++i) {
-    const Wide word = Wide{a[i]} - (i < b_count ? b[i] : 0) - borrow;
+    const DoubleWord word = DoubleWord{a[i]} - (i < b_count ? b[i] : 0) - borrow;
     difference[i] = static_cast<std::uint64_t>(word);
     borrow = static_cast<std::uint64_t>(word >> 64) & 1;
   }
   return withoutZeros(difference, a_count);
 }
 
-std::uint32_t multiply(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
-                       std::uint32_t b_count, std::uint64_t* product) {
+std::uint32_t Words::multiply(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                              std::uint32_t b_count, std::uint64_t* product) {
   std::fill_n(product, a_count + b_count, std::uint64_t{0});
   for (std::uint32_t i = 0; i < a_count; ++i) {
     std::uint64_t carry = 0;
     for (std::uint32_t k = 0; k < b_count; ++k) {
-      const Wide word = Wide{a[i]} * b[k] + product[i + k] + carry;
+      const DoubleWord word = DoubleWord{a[i]} * b[k] + product[i + k] + carry;
       product[i + k] = static_cast<std::uint64_t>(word);
       carry = static_cast<std::uint64_t>(word >> 64);
     }
@@ -63,7 +62,8 @@ std::uint32_t multiply(const std::uint64_t* a, std::uint32_t a_count, const std:
   return withoutZeros(product, a_count + b_count);
 }
 
-int compare(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b, std::uint32_t b_count) {
+int Words::compare(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                   std::uint32_t b_count) {
   if (a_count != b_count) {
     return a_count < b_count ? -1 : 1;
   }
@@ -74,8 +74,6 @@ int compare(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* 
   }
   return 0;
 }
-
-}  // namespace words
 
 namespace {
 
@@ -141,15 +139,15 @@ RoundedQuotient roundQuotient(const Whole<7>& a, const Whole<6>& b, int exponent
   const std::uint32_t count = low.wordCount();
   std::uint64_t rest[Whole<14>::kCapacity + 1] = {}, product[Whole<14>::kCapacity + 1];
   std::copy_n(high.words(), high.wordCount(), rest);
-  words::Wide guess = (words::Wide{rest[count]} << 64 | rest[count - 1]) / low.words()[count - 1];
-  guess = std::min(guess, words::Wide{std::numeric_limits<std::uint64_t>::max()});
+  DoubleWord guess = (DoubleWord{rest[count]} << 64 | rest[count - 1]) / low.words()[count - 1];
+  guess = std::min(guess, DoubleWord{std::numeric_limits<std::uint64_t>::max()});
   std::uint64_t quotient = static_cast<std::uint64_t>(guess);
-  std::uint32_t product_count = words::multiply(low.words(), count, &quotient, 1, product);
-  while (words::compare(product, product_count, high.words(), high.wordCount()) > 0) {
-    product_count = words::subtract(product, product_count, low.words(), count, product);
+  std::uint32_t product_count = Words::multiply(low.words(), count, &quotient, 1, product);
+  while (Words::compare(product, product_count, high.words(), high.wordCount()) > 0) {
+    product_count = Words::subtract(product, product_count, low.words(), count, product);
     --quotient;
   }
-  const bool inexact = words::compare(product, product_count, high.words(), high.wordCount()) != 0;
+  const bool inexact = Words::compare(product, product_count, high.words(), high.wordCount()) != 0;
   const int dropped_bits = 64 - std::countl_zero(quotient) - 53;
   const std::uint64_t dropped = quotient & ((std::uint64_t{1} << dropped_bits) - 1);
   const std::uint64_t half = std::uint64_t{1} << (dropped_bits - 1);

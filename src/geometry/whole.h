@@ -23,20 +23,20 @@ namespace sightline::geometry {
 inline constexpr int kLowestExponent = -149, kHighestExponent = 64;
 inline constexpr int kBitsOfFactor = kHighestExponent - kLowestExponent + 3;
 
-namespace words {
-
-// Numbers are little-endian words without leading zeros; zero has none. What is returned is the number of
-// words.
-std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
-                  std::uint32_t b_count, std::uint64_t* sum);
-// a >= b. `difference` may be a.
-std::uint32_t subtract(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
-                       std::uint32_t b_count, std::uint64_t* difference);
-std::uint32_t multiply(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
-                       std::uint32_t b_count, std::uint64_t* product);
-int compare(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b, std::uint32_t b_count);
-
-}  // namespace words
+// Magnitudes of numbers.
+struct Words {
+  // Numbers are little-endian words without leading zeros; zero has none. What is returned is the number of
+  // words.
+  static std::uint32_t add(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                           std::uint32_t b_count, std::uint64_t* sum);
+  // a >= b. `difference` may be a.
+  static std::uint32_t subtract(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                                std::uint32_t b_count, std::uint64_t* difference);
+  static std::uint32_t multiply(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                                std::uint32_t b_count, std::uint64_t* product);
+  static int compare(const std::uint64_t* a, std::uint32_t a_count, const std::uint64_t* b,
+                     std::uint32_t b_count);
+};
 
 template <int kDegree>
 class Whole {
@@ -77,7 +77,7 @@ class Whole {
     Whole<kDegree + kOther> product;
     product.sign_ = sign_ * b.sign_;
     if (product.sign_ != 0) {
-      product.count_ = words::multiply(words_, count_, b.words_, b.count_, product.words_);
+      product.count_ = Words::multiply(words_, count_, b.words_, b.count_, product.words_);
     }
     return product;
   }
@@ -107,7 +107,7 @@ class Whole {
 
   friend int compare(const Whole& a, const Whole& b) {
     return a.sign_ != b.sign_ ? (a.sign_ < b.sign_ ? -1 : 1)
-                              : a.sign_ * words::compare(a.words_, a.count_, b.words_, b.count_);
+                              : a.sign_ * Words::compare(a.words_, a.count_, b.words_, b.count_);
   }
   friend bool operator==(const Whole& a, const Whole& b) { return compare(a, b) == 0; }
 
@@ -129,13 +129,13 @@ class Whole {
       result.sign_ = sign_of_b == 0 ? a.sign_ : sign_of_b;
     } else if (a.sign_ == sign_of_b) {
       result.sign_ = a.sign_;
-      result.count_ = words::add(a.words_, a.count_, b.words_, b.count_, result.words_);
-    } else if (const int order = words::compare(a.words_, a.count_, b.words_, b.count_); order > 0) {
+      result.count_ = Words::add(a.words_, a.count_, b.words_, b.count_, result.words_);
+    } else if (const int order = Words::compare(a.words_, a.count_, b.words_, b.count_); order > 0) {
       result.sign_ = a.sign_;
-      result.count_ = words::subtract(a.words_, a.count_, b.words_, b.count_, result.words_);
+      result.count_ = Words::subtract(a.words_, a.count_, b.words_, b.count_, result.words_);
     } else if (order < 0) {
       result.sign_ = sign_of_b;
-      result.count_ = words::subtract(b.words_, b.count_, a.words_, a.count_, result.words_);
+      result.count_ = Words::subtract(b.words_, b.count_, a.words_, a.count_, result.words_);
     }
     return result;
   }
