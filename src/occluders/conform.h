@@ -65,11 +65,12 @@ struct ConformedMesh {
 
 // The pieces of a triangle cover it exactly, without overlap, and face as it does; a triangle that touches
 // others only in common vertices and edges is its own only piece. No vertex lies inside an edge or a face,
-// and no edge crosses another or a face, before new vertices are rounded. Triangles without area are left
-// out: the edges of the others are divided where its corners lie on them, so its edges would cancel each
-// other. A triangle with coordinates that are not finite, of 2^64 metres and more, or with bits below 2^-149
-// metres is passed on and divides no other. The result does not depend on the threads, and but for numbers
-// not on the order of the input either.
+// and no edge crosses another or a face, before new vertices are rounded; see ConformSettings for the
+// exception. What this promises of lines of sight, and what `slack` is for: docs/conservative.md, "Contacts".
+// Triangles without area are left out: the edges of the others are divided where its corners lie on them, so
+// its edges would cancel each other. A triangle with coordinates that are not finite, of 2^64 metres and
+// more, or with bits below 2^-149 metres is passed on and divides no other. The result does not depend on the
+// threads, and but for numbers not on the order of the input either.
 ConformedMesh conform(const ConformInput& input, const ConformSettings& settings = {},
                       const ParallelFor& parallel_for = serialFor);
 

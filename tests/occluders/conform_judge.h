@@ -134,11 +134,16 @@ class ConformJudge {
   }
 
   void judge() {
+    judgeTiling();
+    judgeMeetings();
+  }
+
+  // As far as it holds whatever is divided.
+  void judgeTiling() {
     ASSERT_EQ(mesh_.vertices.size(), soup_.vertices.size() + mesh_.names.size());
     ASSERT_EQ(mesh_.triangles.size(), 3 * mesh_.source.size());
     judgeRounding();
     judgePieces();
-    judgeMeetings();
   }
 
  private:

@@ -367,6 +367,42 @@ TEST(Conform, BoxesPushedIntoEachOtherStayClosed) {
   }
 }
 
+// Tetrahedra of small whole numbers: corners on edges, edges that cross, faces in common.
+Soup tetrahedra(unsigned seed, int count) {
+  Random random(seed);
+  Soup soup;
+  for (int i = 0; i < count; ++i) {
+    Vec3d p[4];
+    for (Vec3d& corner : p) {
+      corner = {double(random.below(4)), double(random.below(4)), double(random.below(4))};
+    }
+    const bool turned = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0.0;
+    for (const auto& face : {std::array{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}) {
+      soup.add(p[face[0]], p[face[turned ? 2 : 1]], p[face[turned ? 1 : 2]]);
+    }
+  }
+  return soup;
+}
+
+TEST(Conform, SolidsStayClosedWhetherPenetrationsAreDividedOrNot) {
+  std::uint64_t spared = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Soup soup = tetrahedra(seed, 5);
+    const ConformedMesh whole = conform(soup.input(), {.penetrations = false}),
+                        divided = conform(soup.input());
+    ConformJudge(soup, whole).judgeTiling();
+    EXPECT_EQ(boundaryEdges(whole.triangles), 0u);
+    EXPECT_EQ(boundaryEdges(divided.triangles), 0u);
+    EXPECT_LE(whole.source.size(), divided.source.size());
+    spared += divided.source.size() - whole.source.size();
+    if (seed < 6) {
+      ConformJudge(soup, divided).judge();
+    }
+  }
+  EXPECT_GT(spared, 1000u);
+}
+
 // What stands on a slab, without a floor of its own, has its lowest edges in common with pieces of the slab.
 TEST(Conform, WallsThatStandOnASlabShareTheirEdgesWithIt) {
   Soup soup;
