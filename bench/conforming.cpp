@@ -3,7 +3,7 @@
 // the scenes that are named. In the same run, of the same triangles: the time that joining equal positions
 // takes, which is all that was done before.
 //
-//   conforming [--threads N] [--largest TRIANGLES] [--no-penetrations] [SCENE...]
+//   conforming [--threads N] [--largest TRIANGLES] [--no-penetrations] [--crack-width METRES] [SCENE...]
 //
 // boundary, after: how often triangles run along an edge, less how often they run back, summed over all
 // edges.
@@ -131,7 +131,8 @@ ParallelFor onThreads(std::uint32_t threads) {
 }
 
 template <typename Weld>
-void measure(std::string_view name, const Weld& weld, std::uint32_t threads, bool penetrations) {
+void measure(std::string_view name, const Weld& weld, std::uint32_t threads,
+             const occluders::ConformSettings& settings) {
   double start = secondsNow();
   const occluders::SurfaceMesh mesh = weld();
   const double welding = secondsNow() - start;
@@ -145,7 +146,7 @@ void measure(std::string_view name, const Weld& weld, std::uint32_t threads, boo
   }
   start = secondsNow();
   const occluders::ConformedMesh conformed =
-      occluders::conform({vertices, triangles}, {.penetrations = penetrations}, onThreads(threads));
+      occluders::conform({vertices, triangles}, settings, onThreads(threads));
   const double conforming = secondsNow() - start;
   fmt::print("{:<24} {:>9} {:>9} {:>8} {:>8.2f} {:>8.2f} {:>9} {:>9} {:>9.1e}\n", name, triangles.size() / 3,
              conformed.source.size(), conformed.divided, welding, conforming, boundaryEdges(triangles),
@@ -157,7 +158,7 @@ void measure(std::string_view name, const Weld& weld, std::uint32_t threads, boo
 int main(int argc, char** argv) {
   std::uint32_t threads = 1;
   double largest = 1e6;
-  bool penetrations = true;
+  occluders::ConformSettings settings;
   std::vector<std::string> scenes;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -166,7 +167,9 @@ int main(int argc, char** argv) {
     } else if (argument == "--largest" && i + 1 < argc) {
       largest = std::atof(argv[++i]);
     } else if (argument == "--no-penetrations") {
-      penetrations = false;
+      settings.penetrations = false;
+    } else if (argument == "--crack-width" && i + 1 < argc) {
+      settings.crack_width = std::atof(argv[++i]);
     } else if (argument.rfind("--", 0) != 0) {
       scenes.push_back(argument);
     }
@@ -177,14 +180,13 @@ int main(int argc, char** argv) {
     if (2.0 * cells * cells <= 1.05 * largest) {
       const Triangles triangles = village(cells);
       measure(
-          fmt::format("village of {}", cells), [&] { return weldVillage(triangles); }, threads, penetrations);
+          fmt::format("village of {}", cells), [&] { return weldVillage(triangles); }, threads, settings);
     }
   }
   for (const std::string& name : scenes) {
     const Scene scene = isDemoUrl(name) ? bench::valueOrExit(makeDemoScene(name), "conforming")
                                         : bench::valueOrExit(importScene(name), "conforming");
     measure(
-        name.substr(name.rfind('/') + 1), [&] { return occluders::weld(scene.view()); }, threads,
-        penetrations);
+        name.substr(name.rfind('/') + 1), [&] { return occluders::weld(scene.view()); }, threads, settings);
   }
 }

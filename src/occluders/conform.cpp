@@ -17,6 +17,7 @@
 
 #include "sightline/math/box.h"
 #include "src/base/rows.h"
+#include "src/occluders/close_cracks.h"
 #include "src/occluders/conform_contacts.h"
 #include "src/occluders/conform_pairs.h"
 #include "src/occluders/conform_split.h"
@@ -270,7 +271,16 @@ class Conforming {
 
 ConformedMesh conform(const ConformInput& input, const ConformSettings& settings,
                       const ParallelFor& parallel_for) {
-  return Conforming(input, settings, parallel_for).run();
+  if (!(settings.crack_width > 0.0)) {
+    return Conforming(input, settings, parallel_for).run();
+  }
+  const ClosedCracks closed = closeCracks(input, settings.crack_width, parallel_for);
+  ConformedMesh mesh = Conforming({input.vertices, closed.triangles}, settings, parallel_for).run();
+  for (std::uint32_t& source : mesh.source) {
+    source = closed.source[source];
+  }
+  mesh.slack += closed.slack;
+  return mesh;
 }
 
 }  // namespace sightline::occluders

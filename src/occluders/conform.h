@@ -22,9 +22,13 @@ struct ConformSettings {
   // not divided by one another at all where neither has an edge in the other; foliage makes thousands of
   // pieces for nothing that hides.
   bool penetrations = true;
+  // Metres. If it is above 0, cracks that are narrower are closed first: see closeCracks(). What is promised
+  // then holds of the triangles as that leaves them, and `slack` includes how far it moves them.
+  double crack_width = 0.0;
 };
 
-// A point by what defines it.
+// A point by what defines it: vertices and triangles of the input, or triangles that closeCracks() made of
+// it.
 struct PointName {
   enum class Kind : std::uint8_t {
     kVertex,        // vertex of[0]
@@ -67,10 +71,10 @@ struct ConformedMesh {
 // others only in common vertices and edges is its own only piece. No vertex lies inside an edge or a face,
 // and no edge crosses another or a face, before new vertices are rounded; see ConformSettings for the
 // exception. What this promises of lines of sight, and what `slack` is for: docs/conservative.md, "Contacts".
-// Triangles without area are left out: the edges of the others are divided where its corners lie on them, so
-// its edges would cancel each other. A triangle with coordinates that are not finite, of 2^64 metres and
-// more, or with bits below 2^-149 metres is passed on and divides no other. The result does not depend on the
-// threads, and but for numbers not on the order of the input either.
+// Triangles without area are left out: divided at their corners, their three edges cancel each other. A
+// triangle with coordinates that are not finite, of 2^64 metres and more, or with bits below 2^-149 metres is
+// passed on and divides no other. The result does not depend on the threads, and but for numbers not on the
+// order of the input either.
 ConformedMesh conform(const ConformInput& input, const ConformSettings& settings = {},
                       const ParallelFor& parallel_for = serialFor);
 

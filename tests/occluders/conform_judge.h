@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "src/occluders/conform.h"
+#include "tests/occluders/triangle_soup.h"
 
 namespace sightline::test {
 
@@ -55,71 +56,6 @@ using RationalTriangle = std::array<RationalVec, 3>;
 
 inline RationalVec areaOf(const RationalTriangle& t) {  // twice
   return cross(t[1] - t[0], t[2] - t[0]);
-}
-
-// A list of triangles whose equal positions are one vertex.
-struct Soup {
-  std::vector<Vec3d> vertices;
-  std::vector<std::uint32_t> triangles;
-
-  void add(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    for (const Vec3d& v : {a, b, c}) {
-      triangles.push_back(vertexAt(v));
-    }
-  }
-  void addQuad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
-    add(a, b, c);
-    add(a, c, d);
-  }
-  // A box whose faces look outwards.
-  void addBox(const Vec3d& low, const Vec3d& high) {
-    const auto corner = [&](int bits) {
-      return Vec3d{(bits & 1) != 0 ? high.x : low.x, (bits & 2) != 0 ? high.y : low.y,
-                   (bits & 4) != 0 ? high.z : low.z};
-    };
-    for (const auto& face :
-         {std::array{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}) {
-      addQuad(corner(face[0]), corner(face[1]), corner(face[2]), corner(face[3]));
-    }
-  }
-  std::uint32_t count() const { return static_cast<std::uint32_t>(triangles.size() / 3); }
-  occluders::ConformInput input() const { return {vertices, triangles}; }
-  void move(Vec3d (*place)(const Vec3d&)) {
-    for (Vec3d& v : vertices) {
-      v = place(v);
-    }
-  }
-
- private:
-  std::uint32_t vertexAt(const Vec3d& v) {
-    if (!isFinite(v)) {
-      vertices.push_back(v);
-      return static_cast<std::uint32_t>(vertices.size() - 1);
-    }
-    const auto [at, added] =
-        numbers_.try_emplace(std::array{v.x, v.y, v.z}, static_cast<std::uint32_t>(vertices.size()));
-    if (added) {
-      vertices.push_back(v);
-    }
-    return at->second;
-  }
-  std::map<std::array<double, 3>, std::uint32_t> numbers_;
-};
-
-// How many directed edges are left after each is cancelled against its opposite.
-inline std::size_t boundaryEdges(std::span<const std::uint32_t> triangles) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> values;
-  for (std::size_t i = 0; i < triangles.size(); i += 3) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles[i + k], b = triangles[i + (k + 1) % 3];
-      values[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  }
-  std::size_t left = 0;
-  for (const auto& value : values) {
-    left += static_cast<std::size_t>(std::abs(value.second));
-  }
-  return left;
 }
 
 class ConformJudge {

@@ -21,7 +21,9 @@ namespace {
 
 using test::boundaryEdges;
 using test::ConformJudge;
+using test::greedyVoxels;
 using test::Soup;
+using Random = test::SoupRandom;
 
 ConformedMesh judged(const Soup& soup) {
   const ConformedMesh mesh = conform(soup.input());
@@ -34,19 +36,6 @@ void onThreads(std::uint32_t count, const RangeBody& body) {
   body(0, count / 3);
   other.join();
 }
-
-class Random {
- public:
-  explicit Random(unsigned seed) : random_(seed) {}
-  int below(int end) { return std::uniform_int_distribution<int>(0, end - 1)(random_); }
-  double in(double low, double high) {
-    return double{static_cast<float>(std::uniform_real_distribution<>(low, high)(random_))};
-  }
-  std::mt19937& engine() { return random_; }
-
- private:
-  std::mt19937 random_;
-};
 
 // Families of triangle soups, most of them full of ties.
 using Family = Soup (*)(unsigned seed);
@@ -249,83 +238,6 @@ TEST(Conform, AVertexBesideAnEdgeByOneUnitIsACrack) {
     EXPECT_EQ(mesh.triangles, soup.triangles);
     EXPECT_EQ(mesh.divided, 0u);
   }
-}
-
-// Random rectangles of a voxel's faces merged greedily, as voxel engines do.
-Soup greedyVoxels(unsigned seed, int size) {
-  Random random(seed);
-  std::vector<bool> solid(static_cast<std::size_t>(size * size * size));
-  for (std::size_t i = 0; i < solid.size(); ++i) {
-    solid[i] = random.below(5) < 3;
-  }
-  const auto at = [&](const int(&p)[3]) {
-    for (const int c : p) {
-      if (c < 0 || c >= size) {
-        return false;
-      }
-    }
-    return static_cast<bool>(solid[static_cast<std::size_t>((p[2] * size + p[1]) * size + p[0])]);
-  };
-  Soup soup;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (int plane = 0; plane <= size; ++plane) {
-      for (const int side : {-1, 1}) {  // faces that look down or up
-        std::vector<bool> face(static_cast<std::size_t>(size * size));
-        for (int b = 0; b < size; ++b) {
-          for (int a = 0; a < size; ++a) {
-            int in[3], out[3];
-            in[u] = out[u] = a;
-            in[v] = out[v] = b;
-            in[axis] = side < 0 ? plane : plane - 1;
-            out[axis] = side < 0 ? plane - 1 : plane;
-            face[static_cast<std::size_t>(b * size + a)] = at(in) && !at(out);
-          }
-        }
-        for (int b = 0; b < size; ++b) {
-          for (int a = 0; a < size; ++a) {
-            const auto free = [&](int x, int y) { return face[static_cast<std::size_t>(y * size + x)]; };
-            if (!free(a, b)) {
-              continue;
-            }
-            int right = a, top = b;
-            while (right < size && free(right, b)) {
-              ++right;
-            }
-            const auto rowFree = [&](int y) {
-              for (int x = a; x < right; ++x) {
-                if (!free(x, y)) {
-                  return false;
-                }
-              }
-              return true;
-            };
-            while (top < size && rowFree(top)) {
-              ++top;
-            }
-            for (int y = b; y < top; ++y) {
-              for (int x = a; x < right; ++x) {
-                face[static_cast<std::size_t>(y * size + x)] = false;
-              }
-            }
-            const auto corner = [&](int x, int y) {
-              Vec3d p;
-              p[axis] = plane;
-              p[u] = x;
-              p[v] = y;
-              return p;
-            };
-            if (side > 0) {
-              soup.addQuad(corner(a, b), corner(right, b), corner(right, top), corner(a, top));
-            } else {
-              soup.addQuad(corner(a, b), corner(a, top), corner(right, top), corner(right, b));
-            }
-          }
-        }
-      }
-    }
-  }
-  return soup;
 }
 
 TEST(Conform, GreedilyMergedVoxelsBecomeWatertight) {
@@ -534,6 +446,29 @@ TEST(Conform, LargeAndTinyCoordinatesMeetExactly) {
   soup.add({0, 0, 0}, {0x1p20, 0, 0}, {0, 0x1p20, 0});
   soup.add({1, 1, 0x1p-140}, {2, 1, 0x1p-140}, {1, 2, 0x1p-140});
   EXPECT_EQ(judged(soup).divided, 0u);
+}
+
+// Merged voxels whose rectangles have corners of their own, a little apart, and a box pushed into them.
+TEST(Conform, CracksNarrowerThanTheWidthAreClosedFirst) {
+  const Soup exact = greedyVoxels(2, 5);
+  Random random(2);
+  Soup soup;
+  for (std::size_t i = 0; i < exact.triangles.size(); i += 3) {
+    Vec3d corners[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = exact.vertices[exact.triangles[i + k]] +
+                   Vec3d{random.in(0.0, 1e-4), random.in(0.0, 1e-4), random.in(0.0, 1e-4)};
+    }
+    soup.add(corners[0], corners[1], corners[2]);
+  }
+  soup.addBox({0.5, 0.5, -2.0}, {2.25, 3.5, 7.0});
+  EXPECT_GT(boundaryEdges(conform(soup.input(), {.crack_width = 1e-5}).triangles), 1000u);
+  const ConformedMesh mesh = conform(soup.input(), {.crack_width = 1e-3});
+  EXPECT_EQ(boundaryEdges(mesh.triangles), 0u);
+  EXPECT_GE(mesh.slack, 5e-5);
+  EXPECT_LE(mesh.slack, 2e-3);
+  EXPECT_EQ(mesh.source.back(), soup.count() - 1);
+  EXPECT_TRUE(std::is_sorted(mesh.source.begin(), mesh.source.end()));
 }
 
 TEST(Conform, NothingGivesNothing) {
