@@ -1,0 +1,32 @@
+#pragma once
+
+// Closes narrow cracks before triangles are conformed: boundaries that nearly meet are made to meet.
+
+#include <cstdint>
+#include <vector>
+
+#include "sightline/base/parallel_for.h"
+#include "src/occluders/conform.h"
+
+namespace sightline::occluders {
+
+struct ClosedCracks {
+  std::vector<std::uint32_t> triangles;  // three vertices of the input each, by source
+  std::vector<std::uint32_t> source;     // of each triangle: the one of the input that it comes from
+  // No point of a triangle of the input is farther than this from where it is now, metres; at most twice the
+  // width.
+  double slack = 0.0;
+  std::uint64_t merged = 0;  // vertices that another one replaces
+  std::uint64_t bent = 0;    // places at which an edge is led through a vertex
+};
+
+// Of vertices at edges that are left after cancelling, those closer to each other than `width` metres become
+// one of them. Then such an edge is led through all such vertices that are closer to it. Vertices do not
+// move, edges are bent and triangles with them; what is connected stays connected. Edges that cancel are not
+// looked at, and neither are vertices beside a face. Triangles that have collapsed to a line or a point are
+// left out. A line of sight through a crack that was closed is then taken to be blocked: the crack was
+// narrower than twice the width. With a width of 0, or one that is not finite, nothing changes.
+ClosedCracks closeCracks(const ConformInput& input, double width,
+                         const ParallelFor& parallel_for = serialFor);
+
+}  // namespace sightline::occluders

@@ -1,0 +1,91 @@
+#pragma once
+
+// Pairs of triangles whose boxes meet.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
+
+namespace sightline::occluders {
+
+// A tree with four children a node over boxes that are sorted by size and then along a space-filling curve.
+// Sorting by size first keeps the few large triangles of a scene from widening the nodes of the small ones.
+class BoxPairs {
+ public:
+  // boxes: finite ones; numbers: one for each box, by which pairs name them.
+  BoxPairs(std::span<const Box> boxes, std::span<const std::uint32_t> numbers);
+
+  // The search is divided into this many parts, whatever the threads.
+  std::uint32_t partCount() const;
+  // Calls use(a, b) once for each pair of boxes that touch, with their numbers; every pair is in one part.
+  template <typename Use>
+  void forPairs(std::uint32_t part, Use&& use) const;
+
+ private:
+  static constexpr std::uint32_t kWidth = 4, kLeavesOfPart = 256;
+
+  // Meets includes touching.
+  static bool meet(const Box& a, const Box& b) {
+    return (a.min.x <= b.max.x) & (b.min.x <= a.max.x) & (a.min.y <= b.max.y) & (b.min.y <= a.max.y) &
+           (a.min.z <= b.max.z) & (b.min.z <= a.max.z);
+  }
+  template <typename Use>
+  void forPairsOfLeaves(std::uint32_t leaf, std::uint32_t other, Use&& use) const;
+
+  std::vector<Box> boxes_;              // in the order of the curve
+  std::vector<std::uint32_t> numbers_;  // by box
+  std::vector<std::vector<Box>>
+      levels_;  // each box holds kWidth of the level before; the first one, of boxes_
+};
+
+template <typename Use>
+void BoxPairs::forPairsOfLeaves(std::uint32_t leaf, std::uint32_t other, Use&& use) const {
+  const auto count = static_cast<std::uint32_t>(boxes_.size());
+  const std::uint32_t end = std::min(count, (leaf + 1) * kWidth),
+                      other_end = std::min(count, (other + 1) * kWidth);
+  for (std::uint32_t i = leaf * kWidth; i < end; ++i) {
+    for (std::uint32_t k = leaf == other ? i + 1 : other * kWidth; k < other_end; ++k) {
+      if (meet(boxes_[i], boxes_[k])) {
+        use(numbers_[i], numbers_[k]);
+      }
+    }
+  }
+}
+
+template <typename Use>
+void BoxPairs::forPairs(std::uint32_t part, Use&& use) const {
+  const auto leaves = static_cast<std::uint32_t>(levels_.empty() ? 0 : levels_[0].size());
+  struct Entry {
+    std::uint32_t level, node;
+  };
+  std::vector<Entry> open;
+  for (std::uint32_t leaf = part * kLeavesOfPart; leaf < std::min(leaves, (part + 1) * kLeavesOfPart);
+       ++leaf) {
+    const Box& box = levels_[0][leaf];
+    open.assign(1, {static_cast<std::uint32_t>(levels_.size() - 1), 0});
+    while (!open.empty()) {
+      const Entry at = open.back();
+      open.pop_back();
+      if (at.level == 0) {
+        forPairsOfLeaves(leaf, at.node, use);
+        continue;
+      }
+      const std::vector<Box>& below = levels_[at.level - 1];
+      const auto end = static_cast<std::uint32_t>(
+          std::min<std::size_t>(below.size(), (at.node + 1) * std::size_t{kWidth}));
+      for (std::uint32_t node = at.node * kWidth; node < end; ++node) {
+        // Leaves before this one have looked for their pairs with it.
+        const std::uint64_t last_leaf = ((std::uint64_t{node} + 1) << (2 * (at.level - 1))) - 1;
+        if (last_leaf >= leaf && meet(box, below[node])) {
+          open.push_back({at.level - 1, node});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace sightline::occluders
