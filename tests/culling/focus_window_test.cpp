@@ -168,6 +168,7 @@ TEST(FocusWindow, IsNotFoundFarOffTheViewingDirection) {
   Random random(7);
   View view = anyView(random);
   view.tan_half_fovy = 0.5;
+  view.shift_x = view.shift_y = 0.0;
   for (const double degrees : {0.0, 40.0, 70.0, 80.0}) {
     EXPECT_TRUE(isFound(kTen, view, turned(view, degrees), true, 100)) << degrees;
     EXPECT_TRUE(isFound(kTen, view, turned(view, -degrees), true, 100)) << degrees;
