@@ -89,8 +89,13 @@ occluders::SurfaceMesh weldVillage(const Triangles& village) {
   return occluders::weld({village.positions, village.indices, {&object, 1}, {&material, 1}});
 }
 
-// Sum over all edges of how often triangles run along them, less how often they run back.
-std::uint64_t boundaryEdges(std::span<const std::uint32_t> triangles) {
+struct Boundary {
+  std::uint64_t edges = 0;
+  double metres = 0.0;
+};
+
+// Sums over all edges of how often triangles run along them, less how often they run back.
+Boundary boundaryOf(std::span<const Vec3d> vertices, std::span<const std::uint32_t> triangles) {
   std::vector<std::pair<std::uint64_t, int>> edges;
   edges.reserve(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -98,16 +103,19 @@ std::uint64_t boundaryEdges(std::span<const std::uint32_t> triangles) {
     edges.emplace_back(std::min(a, b) << 32 | std::max(a, b), a < b ? 1 : -1);
   }
   std::sort(edges.begin(), edges.end());
-  std::uint64_t sum = 0;
+  Boundary boundary;
   for (std::size_t i = 0; i < edges.size();) {
     int value = 0;
     const std::uint64_t edge = edges[i].first;
     for (; i < edges.size() && edges[i].first == edge; ++i) {
       value += edges[i].second;
     }
-    sum += static_cast<std::uint64_t>(std::abs(value));
+    boundary.edges += static_cast<std::uint64_t>(std::abs(value));
+    if (value != 0) {
+      boundary.metres += std::abs(value) * length(vertices[edge >> 32] - vertices[edge & 0xffffffffu]);
+    }
   }
-  return sum;
+  return boundary;
 }
 
 // Hands out ranges in turn.
@@ -148,9 +156,11 @@ void measure(std::string_view name, const Weld& weld, std::uint32_t threads,
   const occluders::ConformedMesh conformed =
       occluders::conform({vertices, triangles}, settings, onThreads(threads));
   const double conforming = secondsNow() - start;
-  fmt::print("{:<24} {:>9} {:>9} {:>8} {:>8.2f} {:>8.2f} {:>9} {:>9} {:>9.1e}\n", name, triangles.size() / 3,
-             conformed.source.size(), conformed.divided, welding, conforming, boundaryEdges(triangles),
-             boundaryEdges(conformed.triangles), conformed.slack);
+  const Boundary before = boundaryOf(vertices, triangles),
+                 after = boundaryOf(conformed.vertices, conformed.triangles);
+  fmt::print("{:<24} {:>9} {:>9} {:>8} {:>7.2f} {:>7.2f} {:>9} {:>9} {:>9.0f} {:>9.0f} {:>9.1e}\n", name,
+             triangles.size() / 3, conformed.source.size(), conformed.divided, welding, conforming,
+             before.edges, after.edges, before.metres, after.metres, conformed.slack);
 }
 
 }  // namespace
@@ -174,8 +184,9 @@ int main(int argc, char** argv) {
       scenes.push_back(argument);
     }
   }
-  fmt::print("{} threads; weld: on one\n{:<24} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9} {:>9}\n", threads,
-             "scene", "triangles", "pieces", "divided", "weld s", "conf. s", "boundary", "after", "slack m");
+  fmt::print("{} threads; weld: on one\n{:<24} {:>9} {:>9} {:>8} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+             threads, "scene", "triangles", "pieces", "divided", "weld s", "conf. s", "boundary", "after",
+             "metres", "after", "slack m");
   for (const std::uint32_t cells : {224u, 704u, 2208u}) {
     if (2.0 * cells * cells <= 1.05 * largest) {
       const Triangles triangles = village(cells);
