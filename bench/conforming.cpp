@@ -3,7 +3,7 @@
 // the scenes that are named. In the same run, of the same triangles: the time that joining equal positions
 // takes, which is all that was done before.
 //
-//   conforming [--threads N] [--largest TRIANGLES] [--no-penetrations] [--crack-width METRES] [SCENE...]
+//   conforming [--threads N] [--largest TRIANGLES] [--divide edges|faces] [--crack-width METRES] [SCENE...]
 //
 // boundary, after: how often triangles run along an edge, less how often they run back, summed over all
 // edges.
@@ -176,8 +176,9 @@ int main(int argc, char** argv) {
       threads = static_cast<std::uint32_t>(std::max(1, std::atoi(argv[++i])));
     } else if (argument == "--largest" && i + 1 < argc) {
       largest = std::atof(argv[++i]);
-    } else if (argument == "--no-penetrations") {
-      settings.penetrations = false;
+    } else if (argument == "--divide" && i + 1 < argc) {
+      settings.divide =
+          argv[++i] == std::string("edges") ? occluders::Divide::kEdges : occluders::Divide::kFaces;
     } else if (argument == "--crack-width" && i + 1 < argc) {
       settings.crack_width = std::atof(argv[++i]);
     } else if (argument.rfind("--", 0) != 0) {

@@ -17,11 +17,21 @@ struct ConformInput {
   std::span<const std::uint32_t> triangles;  // three vertices each
 };
 
+// What is divided. Each includes those before it.
+enum class Divide : std::uint8_t {
+  // Edges, at vertices that lie on them. No vertex is new, so nothing is rounded. All that surfaces of whole
+  // triangles need: what of a triangle's border cancels does not depend on how it is divided inside.
+  kEdges,
+  // Faces, where an edge or a vertex of another triangle lies in them, and overlaps.
+  kFaces,
+  // Faces that penetrate each other, along their common segment. Foliage makes thousands of pieces for
+  // nothing
+  // that hides.
+  kPenetrations,
+};
+
 struct ConformSettings {
-  // Whether triangles are divided along the segment in which they penetrate each other. Without it they are
-  // not divided by one another at all where neither has an edge in the other; foliage makes thousands of
-  // pieces for nothing that hides.
-  bool penetrations = true;
+  Divide divide = Divide::kPenetrations;
   // Metres. If it is above 0, cracks that are narrower are closed first: see closeCracks(). What is promised
   // then holds of the triangles as that leaves them, and `slack` includes how far it moves them.
   double crack_width = 0.0;
@@ -69,12 +79,12 @@ struct ConformedMesh {
 
 // The pieces of a triangle cover it exactly, without overlap, and face as it does; a triangle that touches
 // others only in common vertices and edges is its own only piece. No vertex lies inside an edge or a face,
-// and no edge crosses another or a face, before new vertices are rounded; see ConformSettings for the
-// exception. What this promises of lines of sight, and what `slack` is for: docs/conservative.md, "Contacts".
-// Triangles without area are left out: divided at their corners, their three edges cancel each other. A
-// triangle with coordinates that are not finite, of 2^64 metres and more, or with bits below 2^-149 metres is
-// passed on and divides no other. The result does not depend on the threads, and but for numbers not on the
-// order of the input either.
+// and no edge crosses another or a face, before new vertices are rounded and as far as
+// ConformSettings::divide says. What this promises of lines of sight, and what `slack` is for:
+// docs/conservative.md, "Contacts". Triangles without area are left out: divided at their corners, their
+// three edges cancel each other. A triangle with coordinates that are not finite, of 2^64 metres and more, or
+// with bits below 2^-149 metres is passed on and divides no other. The result does not depend on the threads,
+// and but for numbers not on the order of the input either.
 ConformedMesh conform(const ConformInput& input, const ConformSettings& settings = {},
                       const ParallelFor& parallel_for = serialFor);
 

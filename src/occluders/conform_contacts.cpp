@@ -200,7 +200,7 @@ class Pair {
     const bool line = meetings.count >= 2;
     const bool edge_0 = line && (meetings.at[0].in[0] & meetings.at[1].in[0]) != 0;
     const bool edge_1 = line && (meetings.at[0].in[1] & meetings.at[1].in[1]) != 0;
-    if (line && !edge_0 && !edge_1 && !settings_.penetrations) {
+    if (line && !edge_0 && !edge_1 && settings_.divide == Divide::kFaces) {
       emitBorders(meetings);
       return;
     }
@@ -314,7 +314,8 @@ class Pair {
   bool emit(int which, const Meetings& meetings, Contact::Kind kind, std::array<std::uint32_t, 2> along) {
     const Meeting *first = &meetings.at[0], *second = &meetings.at[1];
     const std::uint32_t number = t_[which].number;
-    if (meetings.count >= 2 && (first->in[which] & second->in[which]) == 0) {
+    const bool only_edges = settings_.divide == Divide::kEdges;
+    if (meetings.count >= 2 && (first->in[which] & second->in[which]) == 0 && !only_edges) {
       contacts_.push_back(
           {number, kind, {first->in[which], second->in[which]}, {first->name, second->name}, along});
       return true;
@@ -322,7 +323,8 @@ class Pair {
     bool added = false;
     for (int i = 0; i < std::min(meetings.count, 2); ++i) {
       const Meeting& meeting = meetings.at[i];
-      if (std::popcount(meeting.in[which]) < 2) {
+      const int borders = std::popcount(meeting.in[which]);
+      if (only_edges ? borders == 1 && meeting.name.kind == PointName::Kind::kVertex : borders < 2) {
         contacts_.push_back({number, Contact::Kind::kPoint, {meeting.in[which], 0}, {meeting.name, {}}, {}});
         added = true;
       }

@@ -202,6 +202,9 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
                         const ParallelFor& parallel_for) {
   SurfaceSet set;
   SurfaceMesh mesh = occluders::weld(scene);
+  if (settings.join_edges) {
+    occluders::divideEdges(mesh, parallel_for);
+  }
   const std::vector<Vec3d> normals = unitNormals(mesh);
   std::vector<std::uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0u);

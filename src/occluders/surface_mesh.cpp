@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
+
+#include "src/occluders/conform.h"
 
 namespace sightline::occluders {
 namespace {
@@ -61,8 +64,10 @@ std::vector<std::uint32_t> weldVertices(const SceneView& scene, SurfaceMesh& mes
   return vertex_of;
 }
 
-// Numbers the edges, ascending by their lower and then their higher vertex.
-void numberEdges(SurfaceMesh& mesh) {
+// Numbers the edges, ascending by their lower and then their higher vertex, and finds the triangles beside
+// them.
+void connect(SurfaceMesh& mesh) {
+  mesh.edge_vertices.clear();
   struct Side {
     std::uint32_t high, triangle, corner;
   };
@@ -91,6 +96,13 @@ void numberEdges(SurfaceMesh& mesh) {
       triangle.edges[side.corner] = 2 * static_cast<std::uint32_t>(mesh.edgeCount() - 1) + (back ? 1 : 0);
     }
   }
+  mesh.beside.group(mesh.edgeCount(), [&](auto&& pair) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (const std::uint32_t edge : mesh.triangles[t].edges) {
+        pair(edge / 2, t);
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -105,15 +117,27 @@ SurfaceMesh weld(const SceneView& scene) {
           mesh.triangles.push_back({{a, b, c}, {}, object, double_sided});
         }
       });
-  numberEdges(mesh);
-  mesh.beside.group(mesh.edgeCount(), [&](auto&& pair) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      for (const std::uint32_t edge : mesh.triangles[t].edges) {
-        pair(edge / 2, t);
-      }
-    }
-  });
+  connect(mesh);
   return mesh;
+}
+
+void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+  const std::vector<Vec3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
+  std::vector<std::uint32_t> corners;
+  corners.reserve(3 * mesh.triangles.size());
+  for (const MeshTriangle& t : mesh.triangles) {
+    corners.insert(corners.end(), t.vertices, t.vertices + 3);
+  }
+  const ConformedMesh divided = conform({vertices, corners}, {.divide = Divide::kEdges}, parallel_for);
+  std::vector<MeshTriangle> pieces;
+  pieces.reserve(divided.source.size());
+  for (std::size_t i = 0; i < divided.source.size(); ++i) {
+    const MeshTriangle& source = mesh.triangles[divided.source[i]];
+    const std::uint32_t* of = &divided.triangles[3 * i];
+    pieces.push_back({{of[0], of[1], of[2]}, {}, source.object, source.double_sided});
+  }
+  mesh.triangles = std::move(pieces);
+  connect(mesh);
 }
 
 }  // namespace sightline::occluders

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sightline/base/parallel_for.h"
 #include "sightline/scene/scene.h"
 #include "src/base/rows.h"
 
@@ -30,5 +31,9 @@ struct SurfaceMesh {
 
 // Leaves out triangles that are not finite, and those with two equal corners.
 SurfaceMesh weld(const SceneView& scene);
+
+// Divides edges at vertices that lie on them, and their triangles with them: see Divide::kEdges. Triangles
+// without area are left out.
+void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for);
 
 }  // namespace sightline::occluders

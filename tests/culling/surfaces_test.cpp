@@ -246,6 +246,43 @@ TEST(SurfaceProbes, SlitsAndCracksStayOpen) {
   }
 }
 
+// A wall of panels, each row shifted by half a panel, so that corners lie on edges; leaning, where it must
+// still be exact, and with one panel's corner moved.
+std::vector<Vec3f> panels(bool leaning, float moved) {
+  std::vector<Vec3f> corners;
+  const auto at = [&](int x, int y) {
+    const auto u = static_cast<float>(x), v = static_cast<float>(y);
+    return leaning ? Vec3f(u + 0.25f * v, v - 0.5f * u, -20.0f + 0.75f * u + 0.5f * v) : Vec3f(u, v, -14.0f);
+  };
+  for (int y = -8; y < 8; y += 2) {
+    for (int x = -12 + (y & 2) / 2; x < 10; x += 2) {
+      Vec3f a = at(x, y), b = at(x + 2, y), c = at(x + 2, y + 2), d = at(x, y + 2);
+      if (x == 0 && y == 0) {
+        a.y += moved;
+      }
+      addQuad(corners, a, b, c, d);
+    }
+  }
+  return corners;
+}
+
+TEST(SurfaceProbes, PanelsWhoseCornersLieOnEdgesJoin) {
+  for (const bool leaning : {false, true}) {
+    std::size_t covered[3] = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Scene scene = sceneOf(panels(leaning, i == 2 ? 0x1p-20f : 0.0f));
+      const SurfaceSettings settings{.part_triangles = 4096, .join_edges = i > 0};
+      const Checked checked = check(scene, frontView(), 40, 40, settings);
+      EXPECT_TRUE(checked.right()) << leaning << ", " << i;
+      covered[i] = checked.covered;
+    }
+    EXPECT_GT(covered[1], covered[0] + 100);
+    // A millionth of a metre is a crack.
+    EXPECT_LT(covered[2], covered[1]);
+    EXPECT_GT(covered[2] + 20, covered[1]);
+  }
+}
+
 // Sheets that meet at one edge, in all orientations, single-sided and double-sided.
 TEST(SurfaceProbes, EdgesWithUpToFourSheets) {
   const Vec3f low{0.1f, -6.0f, -10.0f}, high{-0.2f, 6.0f, -10.0f};
@@ -261,8 +298,9 @@ TEST(SurfaceProbes, EdgesWithUpToFourSheets) {
             const bool turn = (turned >> i & 1) != 0;
             corners.insert(corners.end(), {turn ? high : low, turn ? low : high, ends[i]});
           }
-          const Checked checked = check(sceneOf(corners, double_sided), frontView(), 20, 20,
-                                        {.cluster_triangles = size, .max_angle_deg = 180.0});
+          const Checked checked =
+              check(sceneOf(corners, double_sided), frontView(), 20, 20,
+                    {.cluster_triangles = size, .max_angle_deg = 180.0, .join_edges = size == 1});
           EXPECT_TRUE(checked.right()) << sheets << ", " << turned << ", " << double_sided;
           covered += checked.covered;
         }

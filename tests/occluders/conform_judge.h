@@ -74,6 +74,24 @@ class ConformJudge {
     judgeMeetings();
   }
 
+  // No vertex of the input lies on an edge at the border of a triangle, between its ends.
+  void judgeBorders() {
+    for (std::size_t i = 0; i < mesh_.source.size(); ++i) {
+      const RationalTriangle whole = sourceOf(mesh_.source[i]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const RationalVec &a = exact_[pieceOf(i)[k]], &b = exact_[pieceOf(i)[(k + 1) % 3]];
+        if (!onBorder(whole, a, b)) {
+          continue;
+        }
+        for (const std::uint32_t v : mesh_.triangles) {
+          const RationalVec &p = exact_[v], along = b - a;
+          EXPECT_FALSE(isZero(cross(along, p - a)) && dot(along, p - a) > 0 && dot(along, b - p) > 0)
+              << "vertex " << v << " on an edge of piece " << i;
+        }
+      }
+    }
+  }
+
   // As far as it holds whatever is divided.
   void judgeTiling() {
     ASSERT_EQ(mesh_.vertices.size(), soup_.vertices.size() + mesh_.names.size());

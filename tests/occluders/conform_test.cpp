@@ -301,7 +301,7 @@ TEST(Conform, SolidsStayClosedWhetherPenetrationsAreDividedOrNot) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Soup soup = tetrahedra(seed, 5);
-    const ConformedMesh whole = conform(soup.input(), {.penetrations = false}),
+    const ConformedMesh whole = conform(soup.input(), {.divide = Divide::kFaces}),
                         divided = conform(soup.input());
     ConformJudge(soup, whole).judgeTiling();
     EXPECT_EQ(boundaryEdges(whole.triangles), 0u);
@@ -313,6 +313,25 @@ TEST(Conform, SolidsStayClosedWhetherPenetrationsAreDividedOrNot) {
     }
   }
   EXPECT_GT(spared, 1000u);
+}
+
+TEST(Conform, EdgesAloneAreDividedAtVerticesThatAreThere) {
+  for (const NamedFamily& family : kFamilies) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      SCOPED_TRACE(std::string(family.name) + ", seed " + std::to_string(seed));
+      const Soup soup = family.make(seed);
+      const ConformedMesh mesh = conform(soup.input(), {.divide = Divide::kEdges});
+      EXPECT_TRUE(mesh.names.empty());
+      EXPECT_EQ(mesh.slack, 0.0);
+      ConformJudge(soup, mesh).judgeTiling();
+      ConformJudge(soup, mesh).judgeBorders();
+    }
+  }
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Soup soup = tetrahedra(seed, 5), voxels = greedyVoxels(seed, 6);
+    EXPECT_EQ(boundaryEdges(conform(soup.input(), {.divide = Divide::kEdges}).triangles), 0u);
+    EXPECT_EQ(boundaryEdges(conform(voxels.input(), {.divide = Divide::kEdges}).triangles), 0u);
+  }
 }
 
 // What stands on a slab, without a floor of its own, has its lowest edges in common with pieces of the slab.

@@ -113,7 +113,8 @@ class CullingJudge {
     return findSurfaces(chosen, {.part_triangles = kSizes[below(4)],
                                  .patch_triangles = kSizes[below(4)],
                                  .cluster_triangles = kSizes[below(4)],
-                                 .max_angle_deg = chance(2) ? 10.0 : 180.0});
+                                 .max_angle_deg = chance(2) ? 10.0 : 180.0,
+                                 .join_edges = chance(2)});
   }
 
   // The first culler only culls by the frustum; each other method comes in turn, with options by chance.
