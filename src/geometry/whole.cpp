@@ -96,6 +96,20 @@ std::int64_t mantissaOf(double value, int& exponent) {
 
 }  // namespace
 
+Lattice Lattice::of(std::span<const Vec3d> points) {
+  Lattice lattice;
+  lattice.exponent_ = kHighestExponent;
+  for (const Vec3d& point : points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (allowed(point[axis])) {
+        lattice.exponent_ = std::min(lattice.exponent_, lowestExponent(point[axis]));
+      }
+    }
+  }
+  lattice.units_ = std::ldexp(1.0, -lattice.exponent_);
+  return lattice;
+}
+
 int Lattice::lowestExponent(double value) {
   if (value == 0.0) {
     return std::numeric_limits<int>::max() / 4;

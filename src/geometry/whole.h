@@ -11,8 +11,8 @@
 // beside Highway, and knowing the degree keeps every number on the stack.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "sightline/math/vec3.h"
 
@@ -174,19 +174,8 @@ WholeVec<kA + kB> cross(const WholeVec<kA>& a, const WholeVec<kB>& b) {
 // The whole multiples of 2^exponent.
 class Lattice {
  public:
-  // The lattice of some coordinates, all of which must be allowed().
-  template <typename Points>
-  static Lattice of(const Points& points) {
-    Lattice lattice;
-    lattice.exponent_ = kHighestExponent;
-    for (const Vec3d& point : points) {
-      for (int axis = 0; axis < 3; ++axis) {
-        lattice.exponent_ = std::min(lattice.exponent_, lowestExponent(point[axis]));
-      }
-    }
-    lattice.units_ = std::ldexp(1.0, -lattice.exponent_);
-    return lattice;
-  }
+  // The lattice of all coordinates that are allowed().
+  static Lattice of(std::span<const Vec3d> points);
 
   // Whether the bits of a coordinate lie between the two exponents above.
   static bool allowed(double coordinate);

@@ -67,12 +67,11 @@ class Conforming {
 
  private:
   void assignRoles() {
-    std::vector<Vec3d> allowed;
     std::vector<std::uint8_t> vertex_allowed(scene_.vertices.size());
     for (std::size_t v = 0; v < scene_.vertices.size(); ++v) {
-      vertex_allowed[v] = isFinite(scene_.vertices[v]) && Lattice::allowed(scene_.vertices[v]) ? 1 : 0;
+      vertex_allowed[v] = Lattice::allowed(scene_.vertices[v]) ? 1 : 0;
     }
-    scene_.lattice = Lattice::of(AllowedVertices{scene_.vertices, vertex_allowed});
+    scene_.lattice = Lattice::of(scene_.vertices);
     roles_.resize(count_);
     forEach(parallel_for_, count_, [&](std::uint32_t t) {
       const std::uint32_t* corner = scene_.corners(t);
@@ -147,6 +146,9 @@ class Conforming {
       }
     });
     mesh_.divided = static_cast<std::uint32_t>(touched_.size());
+    for (const Pieces& part : pieces_) {
+      mesh_.overfull += part.overfull;
+    }
   }
 
   // Numbers the new points: equal ones, which several triangles have, are one vertex.
@@ -233,25 +235,6 @@ class Conforming {
       mesh_.source.resize(mesh_.triangles.size() / 3, t);
     }
   }
-
-  // What Lattice::of() iterates over.
-  struct AllowedVertices {
-    std::span<const Vec3d> vertices;
-    std::span<const std::uint8_t> allowed;
-
-    struct Iterator {
-      const AllowedVertices* of;
-      std::size_t at;
-      Vec3d operator*() const { return of->allowed[at] != 0 ? of->vertices[at] : Vec3d{}; }
-      Iterator& operator++() {
-        ++at;
-        return *this;
-      }
-      bool operator!=(const Iterator& other) const { return at != other.at; }
-    };
-    Iterator begin() const { return {this, 0}; }
-    Iterator end() const { return {this, vertices.size()}; }
-  };
 
   ConformScene scene_;
   std::uint32_t count_;

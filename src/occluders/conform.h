@@ -74,6 +74,9 @@ struct ConformedMesh {
   std::uint32_t untouched =
       0;                      // triangles that are passed on without a look at their contacts: see conform()
   std::uint32_t divided = 0;  // triangles of the input that have several pieces, or new vertices
+  // Triangles of these that more segments cross, or in which segments cross each other more often, than is
+  // worth the memory (65,536 times). Only their borders are divided.
+  std::uint32_t overfull = 0;
   ContactCounts contacts;
 };
 

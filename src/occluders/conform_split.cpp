@@ -9,6 +9,13 @@ namespace sightline::occluders {
 
 using geometry::ExactPoint;
 
+namespace {
+
+constexpr std::size_t kMost =
+    65536;  // contacts of a triangle with segments among them, and crossings of these
+
+}  // namespace
+
 ExactPoint exactPoint(const ConformScene& scene, const PointName& name) {
   const auto vertex = [&](int k) { return scene.vertices[name.of[k]]; };
   switch (name.kind) {
@@ -33,16 +40,39 @@ void TriangleSplit::split(const ConformScene& scene, std::uint32_t triangle,
   const geometry::PlanePoints plane = scene.planeOf(triangle);
   axis_ = geometry::longestAxis(scene.lattice, plane);
   sign_ = geometry::orientation(scene.lattice, axis_, plane.a, plane.b, plane.c);
-  placePoints(contacts);
-  rankPlaces();
-  makeSegments(contacts);
-  crossSegments();
+  if (!arrange(contacts)) {
+    ++pieces.overfull;
+    on_borders_.clear();
+    for (const Contact& contact : contacts) {
+      for (std::size_t k = 0; k < (contact.kind == Contact::Kind::kPoint ? 1u : 2u); ++k) {
+        if (contact.borders[k] != 0) {
+          on_borders_.push_back(
+              {triangle, Contact::Kind::kPoint, {contact.borders[k], 0}, {contact.ends[k], {}}, {}});
+        }
+      }
+    }
+    arrange(on_borders_);
+  }
   makeEdges();
   triangles_.clear();
   sweep_.triangulate(
       static_cast<std::uint32_t>(place_of_rank_.size()), edges_,
       [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) { return turn(a, b, c); }, triangles_);
   append(pieces);
+}
+
+// Finds the points and segments of a triangle; false if it is overfull.
+bool TriangleSplit::arrange(std::span<const Contact> contacts) {
+  if (contacts.size() > kMost) {
+    const auto segment = [](const Contact& contact) { return contact.kind != Contact::Kind::kPoint; };
+    if (std::any_of(contacts.begin(), contacts.end(), segment)) {
+      return false;
+    }
+  }
+  placePoints(contacts);
+  rankPlaces();
+  makeSegments(contacts);
+  return crossSegments();
 }
 
 void TriangleSplit::addPlace(const PointName& name, Borders borders) {
@@ -136,8 +166,8 @@ PointName TriangleSplit::crossing(const Segment& a, const Segment& b) const {
   return name;
 }
 
-// Finds where segments cross, and turns their ends into ranks.
-void TriangleSplit::crossSegments() {
+// Finds where segments cross, and turns their ends into ranks; false if they cross too often.
+bool TriangleSplit::crossSegments() {
   const auto toRanks = [&] {
     for (Segment& segment : segments_) {
       segment.low = rank_[segment.low];
@@ -175,6 +205,9 @@ void TriangleSplit::crossSegments() {
           turn(b.low, b.high, a.low) * turn(b.low, b.high, a.high) >= 0) {
         continue;
       }
+      if (crossings_.size() >= 2 * kMost) {
+        return false;
+      }
       crossings_.push_back({i, static_cast<std::uint32_t>(names_.size())});
       crossings_.push_back({k, static_cast<std::uint32_t>(names_.size())});
       names_.push_back(crossing(a, b));
@@ -192,6 +225,7 @@ void TriangleSplit::crossSegments() {
   std::sort(crossings_.begin(), crossings_.end(), [](const Crossing& a, const Crossing& b) {
     return std::tie(a.segment, a.place) < std::tie(b.segment, b.place);
   });
+  return true;
 }
 
 // Adds the edges between consecutive points of on_segment_ and its ends.
@@ -209,7 +243,6 @@ void TriangleSplit::addEdges(std::uint32_t low, std::uint32_t high) {
 // Divides the borders and the segments at all points that lie on them.
 void TriangleSplit::makeEdges() {
   edges_.clear();
-  const auto ranks = static_cast<std::uint32_t>(place_of_rank_.size());
   for (int k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax({rank_[k], rank_[k == 2 ? 0 : k + 1]});
     on_segment_.clear();
@@ -220,7 +253,6 @@ void TriangleSplit::makeEdges() {
     }
     addEdges(low, high);
   }
-  (void)ranks;
   const int v = (axis_ + 2) % 3;
   std::size_t next = 0;
   for (std::uint32_t i = 0; i < segments_.size(); ++i) {

@@ -25,6 +25,7 @@ struct Pieces {
   // point.
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> ends;  // by triangle: how many corners there are up to its last piece
+  std::uint32_t overfull = 0;       // triangles of which only the borders are divided
 };
 
 // The point of a name, and what defines it.
@@ -55,7 +56,8 @@ class TriangleSplit {
   void addPlace(const PointName& name, Borders borders);
   void rankPlaces();
   void makeSegments(std::span<const Contact> contacts);
-  void crossSegments();
+  bool arrange(std::span<const Contact> contacts);
+  bool crossSegments();
   PointName crossing(const Segment& a, const Segment& b) const;
   void makeEdges();
   void addEdges(std::uint32_t low, std::uint32_t high);
@@ -65,6 +67,7 @@ class TriangleSplit {
   Borders bordersOf(std::uint32_t rank) const { return borders_of_rank_[rank]; }
 
   const ConformScene* scene_ = nullptr;
+  std::vector<Contact> on_borders_;
   std::uint32_t triangle_ = 0;
   int axis_ = 0;  // of the triangle's plane, and the sign of its normal along it
   int sign_ = 0;

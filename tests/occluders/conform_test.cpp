@@ -490,6 +490,29 @@ TEST(Conform, CracksNarrowerThanTheWidthAreClosedFirst) {
   EXPECT_TRUE(std::is_sorted(mesh.source.begin(), mesh.source.end()));
 }
 
+// A floor in which 260 by 260 walls cross, which neither a few bytes nor a user would want.
+TEST(Conform, ATriangleFullOfCrossingsIsDividedAtItsBorderOnly) {
+  for (const int walls : {20, 260}) {
+    Soup soup;
+    soup.add({-300, 0, -300}, {1500, 0, -300}, {-300, 0, 1500});
+    for (int i = 0; i < walls; ++i) {
+      const double at = i + 0.5;
+      soup.add({at, -1, -400}, {at, -1, 900}, {at, 1, -350});
+      soup.add({-200, -1, at}, {600, -1, at}, {-200, 3, at});
+    }
+    const ConformedMesh mesh = conform(soup.input());
+    EXPECT_EQ(mesh.overfull, walls == 20 ? 0u : 1u);
+    const auto pieces = static_cast<std::size_t>(std::count(mesh.source.begin(), mesh.source.end(), 0u));
+    if (walls == 20) {
+      EXPECT_GT(pieces, 400u);
+      ConformJudge(soup, mesh).judge();
+    } else {
+      EXPECT_EQ(pieces, 261u);  // each wall of one direction passes through one border
+    }
+    EXPECT_GT(mesh.source.size(), std::size_t(walls) * std::size_t(walls));
+  }
+}
+
 TEST(Conform, NothingGivesNothing) {
   const ConformedMesh mesh = conform({});
   EXPECT_TRUE(mesh.triangles.empty());
