@@ -32,6 +32,9 @@ enum class Divide : std::uint8_t {
 
 struct ConformSettings {
   Divide divide = Divide::kPenetrations;
+  // With kEdges: which edges of each triangle may be divided, bit k for the one from corner k to the next;
+  // empty: all. Give all triangles at an edge the same bit.
+  std::span<const std::uint8_t> edges{};
   // Metres. If it is above 0, cracks that are narrower are closed first: see closeCracks(). What is promised
   // then holds of the triangles as that leaves them, and `slack` includes how far it moves them.
   double crack_width = 0.0;

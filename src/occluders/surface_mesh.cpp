@@ -105,6 +105,24 @@ void connect(SurfaceMesh& mesh) {
   });
 }
 
+// By triangle, bit k for its edge k: the triangles at that edge do not cancel.
+std::vector<std::uint8_t> openEdges(const SurfaceMesh& mesh) {
+  std::vector<std::int32_t> sums(mesh.edgeCount());
+  for (const MeshTriangle& triangle : mesh.triangles) {
+    for (const std::uint32_t edge : triangle.edges) {
+      sums[edge / 2] += edge % 2 == 0 ? 1 : -1;
+    }
+  }
+  std::vector<std::uint8_t> open(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool remains = sums[mesh.triangles[t].edges[k] / 2] != 0;
+      open[t] = static_cast<std::uint8_t>(open[t] | (remains ? 1u << k : 0u));
+    }
+  }
+  return open;
+}
+
 }  // namespace
 
 SurfaceMesh weld(const SceneView& scene) {
@@ -122,19 +140,35 @@ SurfaceMesh weld(const SceneView& scene) {
 }
 
 void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+  const std::vector<std::uint8_t> open = openEdges(mesh);
   const std::vector<Vec3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
-  std::vector<std::uint32_t> corners;
-  corners.reserve(3 * mesh.triangles.size());
-  for (const MeshTriangle& t : mesh.triangles) {
-    corners.insert(corners.end(), t.vertices, t.vertices + 3);
+  std::vector<std::uint32_t> asked, corners;
+  std::vector<std::uint8_t> edges;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (open[t] != 0) {
+      asked.push_back(t);
+      edges.push_back(open[t]);
+      corners.insert(corners.end(), mesh.triangles[t].vertices, mesh.triangles[t].vertices + 3);
+    }
   }
-  const ConformedMesh divided = conform({vertices, corners}, {.divide = Divide::kEdges}, parallel_for);
+  const ConformedMesh divided =
+      conform({vertices, corners}, {.divide = Divide::kEdges, .edges = edges}, parallel_for);
   std::vector<MeshTriangle> pieces;
-  pieces.reserve(divided.source.size());
-  for (std::size_t i = 0; i < divided.source.size(); ++i) {
-    const MeshTriangle& source = mesh.triangles[divided.source[i]];
-    const std::uint32_t* of = &divided.triangles[3 * i];
-    pieces.push_back({{of[0], of[1], of[2]}, {}, source.object, source.double_sided});
+  pieces.reserve(mesh.triangles.size());
+  std::size_t next = 0, piece = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const MeshTriangle& triangle = mesh.triangles[t];
+    const std::size_t before = pieces.size();
+    if (next < asked.size() && asked[next] == t) {
+      for (; piece < divided.source.size() && divided.source[piece] == next; ++piece) {
+        const std::uint32_t* of = &divided.triangles[3 * piece];
+        pieces.push_back({{of[0], of[1], of[2]}, {}, triangle.object, triangle.double_sided});
+      }
+      ++next;
+    }
+    if (pieces.size() == before) {
+      pieces.push_back(triangle);
+    }
   }
   mesh.triangles = std::move(pieces);
   connect(mesh);

@@ -32,8 +32,8 @@ struct SurfaceMesh {
 // Leaves out triangles that are not finite, and those with two equal corners.
 SurfaceMesh weld(const SceneView& scene);
 
-// Divides edges at vertices that lie on them, and their triangles with them: see Divide::kEdges. Triangles
-// without area are left out.
+// Divides edges at which triangles do not cancel where vertices of other such edges lie on them exactly, and
+// their triangles with them. No vertex is new.
 void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for);
 
 }  // namespace sightline::occluders

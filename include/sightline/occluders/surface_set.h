@@ -138,9 +138,9 @@ struct SurfaceSettings {
   // Largest angle between the normal of a triangle and that of the first one of its patch or cluster,
   // degrees.
   double max_angle_deg = 10.0;
-  // Whether edges are divided at the vertices of other triangles that lie on them exactly, so that merged
-  // rectangles and rows of panels join. It finds longer connected parts: more `part_triangles` suit it.
-  bool join_edges = false;
+  // Whether edges at which triangles do not cancel are divided at the vertices of other such edges that lie
+  // on them exactly, so that merged rectangles and rows of panels join.
+  bool join_edges = true;
 };
 
 // Finds the surfaces of all opaque triangles of a scene. Equal positions are one vertex, whatever objects
