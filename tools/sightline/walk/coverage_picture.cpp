@@ -9,7 +9,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr double kMinMetres = 1e-3;  // nearer depths have the colour of this one
+constexpr double kMinMetres = 0.01;  // nearer depths have the colour of this one
 constexpr double kMinRatio = 1.01;   // of the farthest to the nearest depth of a scale
 
 double metresOf(float reciprocal_depth, bool orthographic) {

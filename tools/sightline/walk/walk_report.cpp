@@ -80,7 +80,18 @@ Plot plotOf(const WalkRecord& record, const Walk& walk, const std::string& title
   return plot;
 }
 
-std::string frameJson(const FrameRecord& frame, const WalkRun& run) {
+// Leaves out what nothing is known of where nothing was drawn.
+Json asDrawn(Json json, const WalkRecord& record) {
+  for (const char* key :
+       {"draw_us", "frame_us", "speed_up", "differs", "tie", "differing_frames", "tie_frames"}) {
+    if (record.device.empty()) {
+      json.erase(key);
+    }
+  }
+  return json;
+}
+
+std::string frameJson(const FrameRecord& frame, const WalkRun& run, const WalkRecord& record) {
   Json json = {{"frame", frame.frame},
                {"objects", frame.objects},
                {"triangles", frame.triangles},
@@ -92,7 +103,7 @@ std::string frameJson(const FrameRecord& frame, const WalkRun& run) {
                {"differs", frame.differs},
                {"tie", frame.tie}};
   addStatistics(json, run.statistics, [&](std::size_t i) { return frame.statistics[i]; });
-  return dump(json);
+  return dump(asDrawn(json, record));
 }
 
 Json meanJson(const WalkRun& run, const ReportRow& row) {
@@ -114,14 +125,14 @@ std::string runJson(const WalkRun& run, const WalkRecord& record) {
   const ReportRow row = rowOf(run, record);
   const Json head = {{"method", row.method},
                      {"options", optionsJson(run.setting)},
-                     {"mean", meanJson(run, row)},
+                     {"mean", asDrawn(meanJson(run, row), record)},
                      {"differing_frames", run.differingFrames()},
                      {"tie_frames", run.tieFrames()}};
   std::vector<std::string> frames;
   for (const FrameRecord& frame : run.frames) {
-    frames.push_back(frameJson(frame, run));
+    frames.push_back(frameJson(frame, run, record));
   }
-  return dumpWithList(head, "frames", frames);
+  return dumpWithList(asDrawn(head, record), "frames", frames);
 }
 
 std::string pathName(const Walk& walk) {
@@ -279,7 +290,7 @@ std::string walkJson(const WalkInput& input, const WalkRecord& record) {
   for (const WalkRun& run : record.runs) {
     runs.push_back(runJson(run, record));
   }
-  return dumpWithList(head, "runs", runs);
+  return dumpWithList(asDrawn(head, record), "runs", runs);
 }
 
 void printWalk(const WalkRecord& record) {
