@@ -64,8 +64,8 @@ inline bool inVolume(const View& view, const Vec3d& point, double slack) {
   // Rounding grows with the distance from the forward axis.
   const double x_limit = half_height * (1.0 + slack * (1.0 + std::abs(view.shift_x))) * view.aspect;
   const double y_limit = half_height * (1.0 + slack * (1.0 + std::abs(view.shift_y)));
-  return depth >= view.near * (1.0 - slack) && depth <= view.far * (1.0 + slack) &&
-         std::abs(x) <= x_limit && std::abs(y) <= y_limit;
+  return depth >= view.near * (1.0 - slack) && depth <= view.far * (1.0 + slack) && std::abs(x) <= x_limit &&
+         std::abs(y) <= y_limit;
 }
 
 }  // namespace sightline

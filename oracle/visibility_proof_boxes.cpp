@@ -61,9 +61,8 @@ VisibilityProof::Cover VisibilityProof::coverBox(const Box& box, ObjectId object
     return Cover::kOpen;
   }
   const ImageRectangle &extents = image.extents, picture = space_.picture();
-  const ImageRectangle shown{
-      std::max(extents.x_min, picture.x_min), std::min(extents.x_max, picture.x_max),
-      std::max(extents.y_min, picture.y_min), std::min(extents.y_max, picture.y_max)};
+  const ImageRectangle shown{std::max(extents.x_min, picture.x_min), std::min(extents.x_max, picture.x_max),
+                             std::max(extents.y_min, picture.y_min), std::min(extents.y_max, picture.y_max)};
   if (!(shown.x_min < shown.x_max && shown.y_min < shown.y_max)) {
     return Cover::kHidden;
   }

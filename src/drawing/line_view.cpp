@@ -29,8 +29,8 @@ bool isDrawable(const View& view, double page_height) {
   return isPageSide(page_height) && isPageSide(page_height * view.aspect) && isSize(view.aspect) &&
          isSize(opening) && isSize(opening * view.aspect) && isSize(page_height / opening) &&
          isSize(view.near) && isSize(view.far) && view.near < view.far && isShift(view.shift_x) &&
-         isShift(view.shift_y) && isFinite(view.eye) &&
-         isFinite(view.right) && isFinite(view.up) && isFinite(view.forward);
+         isShift(view.shift_y) && isFinite(view.eye) && isFinite(view.right) && isFinite(view.up) &&
+         isFinite(view.forward);
 }
 
 bool narrow(double at_0, double at_1, double& from, double& to) {

@@ -48,7 +48,7 @@ class Whole {
     words_[0] = value < 0 ? -static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
   }
   Whole(const Whole& other) { *this = other; }
-  Whole& operator=(const Whole& other) {
+  Whole& operator=(const Whole& other) {  // NOLINT: of itself, it copies words onto themselves
     sign_ = other.sign_;
     count_ = other.count_;
     copyWords(other.words_);

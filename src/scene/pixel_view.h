@@ -28,7 +28,7 @@ struct PixelView {
   // hides nor has a rectangle in the buffer.
   double near = 0.0;
   double scale_x = 0.0,
-         scale_y = 0.0;                   // pixels per unit of x / z (perspective), per metre (orthographic)
+         scale_y = 0.0;  // pixels per unit of x / z (perspective), per metre (orthographic)
   // Where the forward axis meets the buffer: in its middle, unless the view is off-centre; pixels.
   double middle_x = 0.0, middle_y = 0.0;
   double width = 0.0, height = 0.0;  // of the buffer, pixels

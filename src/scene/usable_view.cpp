@@ -28,8 +28,8 @@ const char* projectionFault(const View& view) {
   if (!(std::isfinite(view.shift_x) && std::isfinite(view.shift_y) && shift <= View::kLargestShift)) {
     return "View::shift_x and shift_y must be from -1000 to 1000 half widths and half heights of the view";
   }
-  if (!isPositive(view.aspect * (view.orthographic ? view.ortho_height : view.tan_half_fovy) *
-                  (1.0 + shift))) {
+  const double height = (view.orthographic ? view.ortho_height : view.tan_half_fovy) * (1.0 + shift);
+  if (!isPositive(height) || !isPositive(view.aspect * height)) {
     return "View::aspect times the height of the view must be greater than 0 and finite";
   }
   if (!(std::isfinite(view.near) && view.near >= 0.0)) {

@@ -182,8 +182,11 @@ Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_spa
             rowOf(clip_from_scene, 3)};
   rows.y = clip_space.y_down ? rows.y * -1.0 : rows.y;
   const DepthRange range = rangeOf(clip_space.depth);
-  const Result<View> view =
-      rows.w.length() > 0.0 ? perspectiveView(rows, range) : orthographicView(rows, range);
+  // Row w of an orthographic projection may have some rounding in it, and then changes hardly over the range
+  // of depths.
+  constexpr double kConstant = 0x1p-40;
+  const bool perspective = rows.w.length() * std::abs(range.far - range.near) > kConstant * rows.z.length();
+  const Result<View> view = perspective ? perspectiveView(rows, range) : orthographicView(rows, range);
   return view ? validate(*view) : view;
 }
 

@@ -368,6 +368,23 @@ void expectError(const Mat4& clip, const ClipSpace& space, const std::string& wo
   EXPECT_NE(view.error().message.find(word), std::string::npos) << view.error().message;
 }
 
+TEST(ViewFromClip, RoundingInRowWMakesNoPerspective) {
+  View view;
+  setOrientation(view, {0, 0, -1}, {0, 1, 0});
+  view.orthographic = true;
+  view.ortho_height = 100.0;
+  view.far = 100.0;
+  for (const double noise : {1e-17, -1e-17, -3e-18, 1e-15}) {
+    Mat4 clip = clipFromScene(view);
+    clip(3, 2) = noise;
+    const Result<View> found = viewFromClip(clip);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_TRUE(found->orthographic) << noise;
+    EXPECT_NEAR(found->ortho_height, 100.0, 1e-9);
+    EXPECT_NEAR(found->far, view.far - view.near, 1e-9);
+  }
+}
+
 TEST(ViewFromClip, RefusesAnObliqueNearPlane) {
   Mat4 projection = glFrustum(kWindow);
   // E. Lengyel, Oblique View Frustum Depth Projection and Clipping, 2005: z becomes a clip plane minus w.

@@ -23,8 +23,8 @@ struct UnknownKey {
 // Reads a camera path in the JSON form "path" (docs/formats.md). Only "frames" with "eye" and "forward" is
 // required; other keys default to those of CameraPath, and "up" to +Y. Wrong types, numbers that are not
 // finite, zero directions, no frames, near >= far, angles outside (0, 180) and shifts that validate() rejects
-// are errors that name the key and the frame. Unknown keys are ignored; the first 20 of them are added to unknown_keys, each once, also
-// before an error.
+// are errors that name the key and the frame. Unknown keys are ignored; the first 20 of them are added to
+// unknown_keys, each once, also before an error.
 Result<CameraPath> parseCameraPath(std::string_view json, const std::string& name_in_errors,
                                    std::vector<UnknownKey>* unknown_keys = nullptr);
 Result<CameraPath> readCameraPath(const std::string& file);

@@ -22,20 +22,20 @@ struct View {
   double aspect = 16.0 / 9.0;  // width / height
   // Where the middle of the picture lies off the forward axis: half widths to the right and half heights up,
   // at most kLargestShift. Both are 0 in a symmetric view. With 1, the axis is at the left or lower border of
-  // the picture; beyond, outside of it. In the terms of glFrustum() and glOrtho(), shift_x is (right + left) /
-  // (right - left), and shift_y is (top + bottom) / (top - bottom).
+  // the picture; beyond, outside of it. In the terms of glFrustum() and glOrtho(), shift_x is (right + left)
+  // / (right - left), and shift_y is (top + bottom) / (top - bottom).
   double shift_x = 0.0, shift_y = 0.0;
   static constexpr double kLargestShift = 1000.0;
-  double near = 0.1;           // metres along forward, >= 0
-  double far = 1000.0;         // metres along forward, > near; may be infinite
+  double near = 0.1;    // metres along forward, >= 0
+  double far = 1000.0;  // metres along forward, > near; may be infinite
 };
 
 // Returns the view as the library uses it: axes of other lengths are normalised, and a left-handed basis is
-// mirrored (right becomes -right, shift_x becomes -shift_x), which does not change what is visible. The error names the invalid member
-// and what it must be: a value is not finite, an axis is zero, axes are not perpendicular (beyond
-// single-precision rounding), the angle of view, height or aspect is not positive, a shift is too large, near
-// is negative, or far is not beyond near. All functions that take a view validate it themselves and treat everything as visible
-// if it is invalid; call this to learn the reason.
+// mirrored (right becomes -right, shift_x becomes -shift_x), which does not change what is visible. The error
+// names the invalid member and what it must be: a value is not finite, an axis is zero, axes are not
+// perpendicular (beyond single-precision rounding), the angle of view, height or aspect is not positive, a
+// shift is too large, near is negative, or far is not beyond near. All functions that take a view validate it
+// themselves and treat everything as visible if it is invalid; call this to learn the reason.
 Result<View> validate(const View& view);
 
 // Sets right and up from any forward and up hint, even if they are parallel.
@@ -51,7 +51,8 @@ Mat4 clipFromScene(const View& view);
 Frustum frustumOf(const View& view);
 
 // Maximum distance in metres from the eye to a point that the near plane of a perspective view clips (a
-// corner of the near plane; the farthest one), rounded up. Infinite for an orthographic view, whose rays start anywhere.
+// corner of the near plane; the farthest one), rounded up. Infinite for an orthographic view, whose rays
+// start anywhere.
 double nearDistance(const View& view);
 
 struct CameraFrame {

@@ -22,19 +22,22 @@ struct ClipSpace {
   bool y_down = false;  // Vulkan: y = -w at the upper border of the picture
 };
 
-// Returns the view of a projection matrix times a view matrix: `viewFromClip(clip_from_view *
-// view_from_scene,
-// {...})`. It is the inverse of clipFromScene(). The matrix transforms points of scene space, given as
-// columns (see Mat4), to clip space, where a point is inside if |x| <= w, |y| <= w, and z is between its
+// Returns the view of a projection matrix times a view matrix:
+// `viewFromClip(clip_from_view * view_from_scene, {...})`. The matrix transforms points of scene space, given
+// as columns (see Mat4), to clip space, where a point is inside if |x| <= w, |y| <= w, and z is between its
 // values on the near and on the far plane. Perspective and orthographic, off-centre and jittered projections
 // are views, also with an infinite far distance, of either handedness, and with a view matrix that scales.
 // Without y_down a matrix of Vulkan gives the same frustum, with the view upside down.
 //
 // The matrix is taken as exact; so are matrices of single precision. The planes of the frustum are those of
-// the matrix to within 1e-12 of the distance from the eye and of the eye's coordinates. The far plane is where
-// the depth range of the matrix ends, which is within 1e-15 (far + |eye|) / near of what its near and far
-// distance were before all was multiplied; where it lies at infinity or beyond, far is infinite. In an orthographic view the matrix does not tell where the eye is: it is put on
-// the middle of the near plane, so that near and both shifts are 0.
+// the matrix to within 1e-12 of the distance from the eye and of the eye's coordinates. The far plane is
+// where the depth range of the matrix ends: the far distance is known to a fraction of 1e-15 (far + |eye|) /
+// near of itself, and where it lies at infinity or beyond, far is infinite. In an orthographic view the
+// matrix does not tell where the eye is: it is put on the middle of the near plane, so that near and both
+// shifts are 0. Otherwise the result is the inverse of clipFromScene().
+//
+// Give the right ClipSpace::depth: only planes in the wrong order are noticed. A matrix of OpenGL that is
+// read as kZeroToOne, for example, is that of another view, with a near plane farther away.
 //
 // The error says what is wrong: the matrix is not finite or not a projection, the near plane is tilted
 // (oblique) or not in front of the eye, the planes are in the other order, borders of the picture are not at
