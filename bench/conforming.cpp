@@ -3,7 +3,8 @@
 // the scenes that are named. In the same run, of the same triangles: the time that joining equal positions
 // takes, which is all that was done before.
 //
-//   conforming [--threads N] [--largest TRIANGLES] [--divide edges|faces] [--crack-width METRES] [SCENE...]
+//   conforming [--threads N] [--largest TRIANGLES] [--divide edges|faces|penetrations] [--crack-width METRES]
+//              [SCENE...]
 //
 // boundary, after: how often triangles run along an edge, less how often they run back, summed over all
 // edges.
@@ -15,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -163,6 +165,20 @@ void measure(std::string_view name, const Weld& weld, std::uint32_t threads,
              before.edges, after.edges, before.metres, after.metres, conformed.slack);
 }
 
+occluders::Divide divideOrExit(std::string_view word) {
+  if (word == "edges") {
+    return occluders::Divide::kEdges;
+  }
+  if (word == "faces") {
+    return occluders::Divide::kFaces;
+  }
+  if (word == "penetrations") {
+    return occluders::Divide::kPenetrations;
+  }
+  fmt::print(stderr, "conforming: --divide {}: unknown word; give edges, faces or penetrations\n", word);
+  std::exit(2);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -177,12 +193,17 @@ int main(int argc, char** argv) {
     } else if (argument == "--largest" && i + 1 < argc) {
       largest = std::atof(argv[++i]);
     } else if (argument == "--divide" && i + 1 < argc) {
-      settings.divide =
-          argv[++i] == std::string("edges") ? occluders::Divide::kEdges : occluders::Divide::kFaces;
+      settings.divide = divideOrExit(argv[++i]);
     } else if (argument == "--crack-width" && i + 1 < argc) {
       settings.crack_width = std::atof(argv[++i]);
     } else if (argument.rfind("--", 0) != 0) {
       scenes.push_back(argument);
+    } else {
+      fmt::print(stderr,
+                 "conforming: {}: unknown option, or its value is missing; give --threads, --largest, "
+                 "--divide or --crack-width with a value\n",
+                 argument);
+      return 2;
     }
   }
   fmt::print("{} threads; weld: on one\n{:<24} {:>9} {:>9} {:>8} {:>7} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9}\n",

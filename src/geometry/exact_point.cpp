@@ -177,8 +177,9 @@ ExactPoint pointOfPlanes(const Lattice& lattice, std::span<const PlanePoints, 3>
 // differences along a coordinate and m the greatest coordinate, a computed difference is off by at most
 // e = u (2 m + d) (1 + 2 u). The determinant, a difference of two products of such differences, is then off
 // by at most 2 (du ev + dv eu) + 2 eu ev, and by 3 u 2 du dv (1 + u) for its own rounding. e exceeds u d, so
-// the factor 8 in place of 2 covers all of it, also that the bound itself is rounded. Nothing underflows to a
-// wrong sign: the smallest positive number is added.
+// the factor 8 in place of 2 covers all of it, also that the bound itself is rounded. The
+// 2^-1000 covers underflow: a rounded coordinate below the normal range is off by up to 2^-1075 more, times a
+// difference below 2^65, and products round by as little.
 int orientation(int axis, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const double au = a.rounded[u] - c.rounded[u], av = a.rounded[v] - c.rounded[v];

@@ -62,7 +62,7 @@ class Closing {
  private:
   const Vec3d& at(std::uint32_t vertex) const { return input_.vertices[vertex]; }
 
-  // Those of which more triangles run along one way than the other, and their vertices.
+  // Finds the edges along which more triangles run one way than the other, and their vertices.
   void findOpenEdges() {
     struct Half {
       OpenEdge edge;
@@ -95,7 +95,7 @@ class Closing {
     }
     std::sort(vertices_.begin(), vertices_.end());
     vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
-    // By place, so that the order of the input does not matter.
+    // They are sorted by place, so that the order of the input does not matter.
     std::sort(vertices_.begin(), vertices_.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::tie(at(a).x, at(a).y, at(a).z) < std::tie(at(b).x, at(b).y, at(b).z);
     });
@@ -242,7 +242,7 @@ class Closing {
     }
   }
 
-  // Triangles around a point, along the way from a to b.
+  // Adds the triangles between a point and each step of the way from a to b.
   void addFan(std::uint32_t point, std::uint32_t a, std::span<const std::uint32_t> way, std::uint32_t b,
               std::uint32_t source) {
     for (const std::uint32_t next : way) {

@@ -24,16 +24,16 @@ enum class Divide : std::uint8_t {
   kEdges,
   // Faces, where an edge or a vertex of another triangle lies in them, and overlaps.
   kFaces,
-  // Faces that penetrate each other, along their common segment. Foliage makes thousands of pieces for
-  // nothing
-  // that hides.
+  // Faces that penetrate each other, along their common segment. In foliage this makes thousands of pieces
+  // of what hides nothing.
   kPenetrations,
 };
 
 struct ConformSettings {
   Divide divide = Divide::kPenetrations;
   // With kEdges: which edges of each triangle may be divided, bit k for the one from corner k to the next;
-  // empty: all. Give all triangles at an edge the same bit.
+  // empty: all. Give all triangles at an edge the same bit. With a crack_width above 0 they are not looked at
+  // and all edges may be divided, because closing makes other triangles than those of the input.
   std::span<const std::uint8_t> edges{};
   // Metres. If it is above 0, cracks that are narrower are closed first: see closeCracks(). What is promised
   // then holds of the triangles as that leaves them, and `slack` includes how far it moves them.
@@ -74,9 +74,8 @@ struct ConformedMesh {
   // are computed exactly and then rounded to double precision.
   double slack = 0.0;
   std::uint32_t degenerate = 0;  // triangles without area, which are left out
-  std::uint32_t untouched =
-      0;                      // triangles that are passed on without a look at their contacts: see conform()
-  std::uint32_t divided = 0;  // triangles of the input that have several pieces, or new vertices
+  std::uint32_t untouched = 0;   // triangles passed on without a look at their contacts: see conform()
+  std::uint32_t divided = 0;     // triangles of the input that have several pieces, or new vertices
   // Triangles of these that more segments cross, or in which segments cross each other more often, than is
   // worth the memory (65,536 times). Only their borders are divided.
   std::uint32_t overfull = 0;

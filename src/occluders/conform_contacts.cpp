@@ -15,9 +15,8 @@ using geometry::Lattice;
 using geometry::orientation;
 
 constexpr int kNext[3] = {1, 2, 0};
-constexpr Borders kCornerBorders[3] = {0b101, 0b011, 0b110};
 
-// A triangle with its plane's axis: see geometry::orientation() in a plane.
+// A triangle's number, and the numbers and places of its corners.
 struct Corner3 {
   Corner3(const ConformScene& scene, std::uint32_t triangle) : number(triangle) {
     for (int k = 0; k < 3; ++k) {
@@ -139,15 +138,15 @@ class Pair {
       Borders other = 0;
       if (m >= 0) {
         if (which == 0) {  // once
-          meetings.add(vertexName(t_[0].id[k]), kCornerBorders[k], kCornerBorders[m]);
+          meetings.add(vertexName(t_[0].id[k]), kBordersOfCorner[k], kBordersOfCorner[m]);
         }
       } else if (side_[which][k] == 0) {
         if (facing.axis < 0) {
           facing = facingOf(lattice_, t_[1 - which].at);
         }
         if (locate(1 - which, facing, t_[which].at[k], other)) {
-          meetings.add(vertexName(t_[which].id[k]), which == 0 ? kCornerBorders[k] : other,
-                       which == 0 ? other : kCornerBorders[k]);
+          meetings.add(vertexName(t_[which].id[k]), which == 0 ? kBordersOfCorner[k] : other,
+                       which == 0 ? other : kBordersOfCorner[k]);
         }
       }
     }
@@ -291,13 +290,13 @@ class Pair {
     };
     for (const int corner : {edge, end}) {
       if (sides[which].inside[corner]) {
-        add(vertexName(t.id[corner]), kCornerBorders[corner], sides[which].borders[corner]);
+        add(vertexName(t.id[corner]), kBordersOfCorner[corner], sides[which].borders[corner]);
       }
     }
     for (int k = 0; k < 3; ++k) {
       const int corner = same_[face][k];
       if (corner != edge && corner != end && sides[face].of[edge][k] == 0 && sides[face].inside[k]) {
-        add(vertexName(other.id[k]), own, kCornerBorders[k]);
+        add(vertexName(other.id[k]), own, kBordersOfCorner[k]);
       }
       if (sides[which].of[k][edge] * sides[which].of[k][end] < 0 &&
           sides[face].of[edge][k] * sides[face].of[edge][kNext[k]] < 0) {

@@ -28,6 +28,7 @@ struct ConformScene {
 // Where a point lies in a triangle: bit k for edge k, which goes from corner k to the next one. So a corner
 // has two bits, and a point inside none.
 using Borders = std::uint8_t;
+inline constexpr Borders kBordersOfCorner[3] = {0b101, 0b011, 0b110};
 
 // A point of a triangle, or a segment across it, that it has in common with another triangle.
 struct Contact {

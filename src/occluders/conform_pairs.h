@@ -28,7 +28,7 @@ class BoxPairs {
  private:
   static constexpr std::uint32_t kWidth = 4, kLeavesOfPart = 256;
 
-  // Meets includes touching.
+  // Boxes that only touch meet as well.
   static bool meet(const Box& a, const Box& b) {
     return (a.min.x <= b.max.x) & (b.min.x <= a.max.x) & (a.min.y <= b.max.y) & (b.min.y <= a.max.y) &
            (a.min.z <= b.max.z) & (b.min.z <= a.max.z);

@@ -87,9 +87,8 @@ void TriangleSplit::placePoints(std::span<const Contact> contacts) {
   names_.clear();
   borders_.clear();
   const std::uint32_t* corner = scene_->corners(triangle_);
-  constexpr Borders kOfCorner[3] = {0b101, 0b011, 0b110};
   for (int k = 0; k < 3; ++k) {
-    addPlace({PointName::Kind::kVertex, 0, {corner[k], 0, 0, 0}}, kOfCorner[k]);
+    addPlace({PointName::Kind::kVertex, 0, {corner[k], 0, 0, 0}}, kBordersOfCorner[k]);
   }
   named_.clear();
   for (std::uint32_t i = 0; i < contacts.size(); ++i) {

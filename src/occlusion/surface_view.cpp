@@ -99,7 +99,7 @@ double SurfaceView::smallestOf(const BoxExtent& object) const {
   return kRectangle * std::sqrt(min_pixels_) * depth / std::max(view_.scale_x, view_.scale_y);
 }
 
-// By the leading bits of their depth.
+// Sorts the parts by the leading bits of their depth, the nearest first.
 void SurfaceView::sortParts() {
   constexpr std::uint32_t kShift = 20, kKeys = 1u << (32 - kShift);
   const auto keyOf = [](const PartImage& part) {

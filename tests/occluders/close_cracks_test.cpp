@@ -70,8 +70,8 @@ TEST(CloseCracks, AVertexBesideAnEdgeBendsIt) {
   soup.add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
   soup.add({2, 2, 0.001}, {4, 0, 0}, {4, 4, 1});
   soup.add({0, 4, 0}, {2, 2, 0.001}, {0, 4, 7});
-  const ClosedCracks wide = closeCracks(soup.input(), 0.0009);
-  EXPECT_EQ(wide.triangles, soup.triangles);
+  const ClosedCracks left_open = closeCracks(soup.input(), 0.0009);
+  EXPECT_EQ(left_open.triangles, soup.triangles);
   const ClosedCracks closed = closeCracks(soup.input(), 0.0011);
   EXPECT_EQ(closed.source, (std::vector<std::uint32_t>{0, 0, 1, 2}));
   EXPECT_EQ(boundaryEdges(closed.triangles), 6u);

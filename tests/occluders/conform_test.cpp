@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -332,6 +333,46 @@ TEST(Conform, EdgesAloneAreDividedAtVerticesThatAreThere) {
     EXPECT_EQ(boundaryEdges(conform(soup.input(), {.divide = Divide::kEdges}).triangles), 0u);
     EXPECT_EQ(boundaryEdges(conform(voxels.input(), {.divide = Divide::kEdges}).triangles), 0u);
   }
+}
+
+TEST(Conform, EdgesThatMayNotBeDividedStayWhole) {
+  Soup soup;
+  soup.add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+  soup.add({2, 0, 0}, {1, -3, 0}, {3, -3, 0});  // a corner on edge 0 of the first
+  soup.add({0, 2, 0}, {-3, 3, 0}, {-3, 1, 0});  // a corner on edge 2 of the first
+  using Corners = std::set<std::uint32_t>;
+  const auto piecesOfFirst = [&](std::uint8_t bits) {
+    const std::uint8_t edges[3] = {bits, 0b111, 0b111};
+    const ConformedMesh mesh = conform(soup.input(), {.divide = Divide::kEdges, .edges = edges});
+    ConformJudge(soup, mesh).judgeTiling();
+    std::set<Corners> pieces;
+    for (std::size_t i = 0; i < mesh.source.size(); ++i) {
+      if (mesh.source[i] == 0) {
+        pieces.insert({mesh.triangles[3 * i], mesh.triangles[3 * i + 1], mesh.triangles[3 * i + 2]});
+      }
+    }
+    EXPECT_EQ(mesh.source.size(), pieces.size() + 2);  // the others are whole
+    return pieces;
+  };
+  const std::uint32_t on_edge_0 = soup.triangles[3], on_edge_2 = soup.triangles[6];
+  EXPECT_EQ(piecesOfFirst(0b000), (std::set<Corners>{{0, 1, 2}}));
+  EXPECT_EQ(piecesOfFirst(0b001), (std::set<Corners>{{0, on_edge_0, 2}, {on_edge_0, 1, 2}}));
+  EXPECT_EQ(piecesOfFirst(0b100), (std::set<Corners>{{0, 1, on_edge_2}, {on_edge_2, 1, 2}}));
+  EXPECT_EQ(piecesOfFirst(0b101).size(), 3u);
+}
+
+// Bits for edges of the input say nothing of the triangles that closing cracks makes, which are more.
+TEST(Conform, AfterClosingCracksAllEdgesMayBeDivided) {
+  Soup soup;
+  soup.add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});  // its long edge is bent to the next one's first corner
+  soup.add({2, 2, 0.001}, {4, 0, 0}, {4, 4, 1});
+  soup.add({0, 4, 0}, {2, 2, 0.001}, {0, 4, 7});
+  soup.addQuad({10, 0, 0}, {14, 0, 0}, {14, 4, 0}, {10, 4, 0});
+  soup.add({12, 2, 0}, {12, 2, 3}, {13, 1, 3});  // a corner on the quad's diagonal, which is no crack
+  const std::vector<std::uint8_t> edges(soup.count(), 0);
+  const ConformedMesh mesh =
+      conform(soup.input(), {.divide = Divide::kEdges, .edges = edges, .crack_width = 0.002});
+  EXPECT_EQ(mesh.source, (std::vector<std::uint32_t>{0, 0, 1, 2, 3, 3, 4, 4, 5}));
 }
 
 // What stands on a slab, without a floor of its own, has its lowest edges in common with pieces of the slab.
