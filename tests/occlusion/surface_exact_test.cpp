@@ -246,7 +246,7 @@ exact::Surface allImages(const SurfaceCase& made) {
   return all;
 }
 
-// Of a surface, the images that a pixel touches.
+// Keeps the images of a surface that a pixel touches.
 exact::Surface within(const exact::Surface& all, const exact::Part& pixel) {
   exact::Surface some{.images = {}, .sheet = false};
   for (const exact::Image& image : all.images) {

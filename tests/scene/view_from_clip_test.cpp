@@ -136,7 +136,7 @@ TEST(ViewFromClip, ReadsGlFrustum) {
 }
 
 TEST(ViewFromClip, ReadsTheOffCentreProjectionOfDirect3D) {
-  // Of a left-handed view matrix only the sign of z differs.
+  // A left-handed view matrix differs in the sign of z alone.
   const Mat4 view = scaling(1, 1, -1) * lookAt(someCamera());
   expectView(viewFromClip(d3dOffCenterLeftHanded(kWindow) * view, {.depth = ClipDepth::kZeroToOne}),
              kWindow.far);
