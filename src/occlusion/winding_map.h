@@ -34,27 +34,35 @@ struct DepthBound {
   float floor = 0.0f;
 };
 
-// A row of a WindingMap, and which pixels of it are to be covered.
-struct WindingRow {
-  std::int16_t* steps;
-  std::int16_t* doubts;
-  float* reciprocal_depth;
-  std::int32_t first, last;  // pixels that edges have changed
-  std::int32_t end;
+// A tile of a WindingMap: in each row a bit for each pixel, the leftmost one in the lowest bit.
+struct alignas(64) WindingTile {
+  static constexpr std::int32_t kWidth = 32, kHeight = 8;  // pixels
+  static constexpr std::int32_t kPlanes = 4;               // bits of a winding
+  std::uint32_t planes[kPlanes][kHeight];  // of two's complements, the lowest bit first: lower bounds
+  std::uint32_t unknown[kHeight];          // a winding here went beyond what its bits can hold
+  std::int16_t carry[kHeight];             // what edges to the left of the tile add to all of a row
 };
 
-// The first and last pixels of a row that edges have changed; last < first: none.
+// Which tiles of a row of them edges have changed; last < first: none.
 struct WindingExtent {
   std::int32_t first = 0, last = -1;
 };
 
-// What edges are drawn into.
+// What edges are drawn into, in tiles.
 struct WindingEdges {
-  std::int16_t* steps;
-  std::int16_t* doubts;
-  WindingExtent* rows;
+  WindingTile* tiles;
+  WindingExtent* extents;  // by row of tiles
+  std::int32_t stride;
+  PixelRectangle rectangle;  // pixels, whole tiles
+};
+
+// A row of tiles, and the pixels of the target to which it belongs.
+struct WindingRow {
+  WindingTile* tiles;
+  std::int32_t first, last, end;  // the tiles that edges have changed, and the end of the group's rectangle
+  float* reciprocal_depth;        // of the first pixel of the lowest row
   std::uint32_t stride;
-  PixelRectangle rectangle;
+  std::int32_t width, rows;  // pixels that there are
 };
 
 // Draws one group of surfaces after the other: begin(), all of its boundary with addEdges(), how far away it
@@ -81,7 +89,7 @@ class WindingMap {
   // The same for a group that is nowhere farther away than `depth`.
   std::uint32_t resolve(const DepthBound& depth);
 
-  // Since resize(): edges drawn, and pixels between the first and the last ones of their rows.
+  // Since resize(): edges drawn, and pixels of the tiles that were resolved.
   std::uint64_t edges() const { return edges_; }
   std::uint64_t pixels() const { return pixels_; }
 
@@ -90,12 +98,12 @@ class WindingMap {
   std::uint32_t resolveRows(ResolveRow&& resolve_row);
 
   DepthTarget target_;
-  PixelRectangle rectangle_;
-  std::vector<std::int16_t> steps_;   // by pixel: change of the winding from the pixel to its left
-  std::vector<std::int16_t> doubts_;  // by pixel: how much lower the winding may be in a part of it
-  std::vector<WindingExtent> rows_;
-  std::uint32_t tile_stride_ = 0;
-  std::vector<float> far_;  // by tile: the least reciprocal depth of the group
+  PixelRectangle rectangle_;            // whole tiles
+  std::int32_t columns_ = 0;            // of tiles
+  std::vector<WindingTile> tiles_;      // all zero between groups
+  std::vector<WindingExtent> extents_;  // by row of tiles
+  std::uint32_t far_stride_ = 0;
+  std::vector<float> far_;  // by 8 x 4 pixels: the least reciprocal depth of the group
   std::uint64_t edges_ = 0, pixels_ = 0;
   std::uint64_t sum_ = 0;  // of the values of the group's edges
 };
