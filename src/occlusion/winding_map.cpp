@@ -283,46 +283,57 @@ HWY_INLINE bool coverTile(WindingTile& tile, const std::int32_t* outside, std::u
 
 // depth_of(x, y, d): the reciprocal depths of the pixels from x on in row y, counted from the lowest one of
 // the tiles. Returns how many pixels became nearer.
-template <typename DepthOf>
-HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& row, std::uint64_t& tiles, DepthOf&& depth_of) {
-  const hn::CappedTag<float, kLanes> d;
-  constexpr std::int32_t kChunk = 8;
+template <std::int32_t kMostLanes, typename DepthOf>
+HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& target, std::uint64_t& tiles, DepthOf&& depth_of) {
+  const hn::CappedTag<float, kMostLanes> d;
+  const hn::RebindToUnsigned<decltype(d)> d32;
   const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
+  const std::uint32_t all_lanes = ~0u >> (kWide - lanes);
+  const auto lane_bits = hn::Shl(hn::Set(d32, 1u), hn::Iota(d32, 0u));
   HWY_ALIGN std::int32_t outside[kHigh] = {};
   HWY_ALIGN std::uint32_t covered[kHigh];
   std::size_t nearer = 0;
-  bool inside = false;  // some pixel of the last column of the tile before may be
+  bool inside = false;  // some pixel at the right border of the tile before may be
+  const WindingRow row = target;
   for (std::int32_t x = row.first; x < row.end && (x <= row.last || inside); ++x) {
     WindingTile& tile = row.tiles[x];
     inside = false;
-    for (std::int32_t y = 0; y < kHigh; ++y) {
-      outside[y] += tile.carry[y];
-      tile.carry[y] = 0;
-      inside = inside || outside[y] > 0;
+    for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kNumbers))) {
+      const hn::Rebind<std::int16_t, Numbers> d16;
+      const auto sum = hn::Add(hn::Load(kNumbers, outside + lane),
+                               hn::PromoteTo(kNumbers, hn::LoadU(d16, tile.carry + lane)));
+      hn::Store(sum, kNumbers, outside + lane);
+      hn::StoreU(hn::Zero(d16), d16, tile.carry + lane);
+      inside = inside || !hn::AllFalse(kNumbers, hn::Gt(sum, hn::Zero(kNumbers)));
     }
     ++tiles;
     if (!coverTile(tile, outside, covered)) {
       continue;
     }
+    const std::size_t nearer_before = nearer;
     const std::int32_t width = std::min(row.width - x * kWide, kWide);
     const std::uint32_t valid = width < kWide ? (1u << width) - 1u : ~0u;
     for (std::int32_t y = 0; y < row.rows; ++y) {
+      const std::uint32_t bits = covered[y] & valid;
+      if (bits == 0) {
+        continue;
+      }
       float* out = row.reciprocal_depth + std::size_t{row.stride} * static_cast<std::uint32_t>(y) + x * kWide;
-      for (std::uint32_t bits = covered[y] & valid, at = 0; bits != 0; bits >>= kChunk, at += kChunk) {
-        if ((bits & 0xffu) == 0) {
+      for (std::int32_t at = 0; at < kWide; at += lanes) {
+        const std::uint32_t chunk = bits >> at;
+        if ((chunk & all_lanes) == 0) {
           continue;
         }
-        for (std::int32_t lane = 0; lane < kChunk; lane += lanes) {
-          const std::uint8_t some[8] = {static_cast<std::uint8_t>((bits & 0xffu) >> lane)};
-          const auto mask = hn::LoadMaskBits(d, some);
-          const std::int32_t column = static_cast<std::int32_t>(at) + lane;
-          const auto old = hn::LoadU(d, out + column);
-          const auto depth = depth_of(x * kWide + column, y, d);
-          const auto gained = hn::And(mask, hn::Gt(depth, old));
-          nearer += hn::CountTrue(d, gained);
-          hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + column);
-        }
+        const auto mask = hn::RebindMask(d, hn::TestBit(hn::Set(d32, chunk), lane_bits));
+        const auto old = hn::LoadU(d, out + at);
+        const auto depth = depth_of(x * kWide + at, y, d);
+        const auto gained = hn::And(mask, hn::Gt(depth, old));
+        nearer += hn::CountTrue(d, gained);
+        hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + at);
       }
+    }
+    if (nearer != nearer_before) {
+      tile.stale = true;
     }
   }
   return static_cast<std::uint32_t>(nearer);
@@ -331,7 +342,7 @@ HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& row, std::uint64_t& ti
 // far: least reciprocal depths of 8 x 4 pixels, `stride` for each four rows.
 std::uint32_t resolveFar(const WindingRow& row, std::uint64_t& tiles, const float* far,
                          std::uint32_t stride) {
-  return resolveTilesOf(row, tiles, [far, stride](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
+  return resolveTilesOf<8>(row, tiles, [far, stride](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
     constexpr float kMax = std::numeric_limits<float>::max();
     const float depth = far[stride * static_cast<std::uint32_t>(y / 4) + static_cast<std::uint32_t>(x / 8)];
     return hn::Set(d, depth <= kMax ? depth : -kMax);
@@ -341,12 +352,13 @@ std::uint32_t resolveFar(const WindingRow& row, std::uint64_t& tiles, const floa
 // first_row: the number of the lowest row in the target.
 std::uint32_t resolvePlane(const WindingRow& row, std::uint64_t& tiles, const DepthBound& depth,
                            std::int32_t first_row) {
-  return resolveTilesOf(row, tiles, [&depth, first_row](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
-    const float at_row = depth.along_y * static_cast<float>(first_row + y) + depth.at_origin;
-    const auto column = hn::Iota(d, static_cast<float>(x));
-    const auto plane = hn::Add(hn::Mul(column, hn::Set(d, depth.along_x)), hn::Set(d, at_row));
-    return hn::Max(plane, hn::Set(d, depth.floor));
-  });
+  return resolveTilesOf<kWide>(
+      row, tiles, [&depth, first_row](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
+        const float at_row = depth.along_y * static_cast<float>(first_row + y) + depth.at_origin;
+        const auto column = hn::Iota(d, static_cast<float>(x));
+        const auto plane = hn::Add(hn::Mul(column, hn::Set(d, depth.along_x)), hn::Set(d, at_row));
+        return hn::Max(plane, hn::Set(d, depth.floor));
+      });
 }
 
 // Draws the edges from each point to the next one, or only every second of them (step 2). Returns how many
@@ -360,16 +372,44 @@ std::uint32_t drawEdges(const WindingEdges& target, std::span<const GridPoint> p
   return drawn;
 }
 
-// Whether the reciprocal depth of all pixels of a rectangle is greater than `than`.
-bool allNearer(const DepthTarget& target, const PixelRectangle& r, float than) {
+// The least value of a rectangle of the target's pixels.
+float leastOf(const DepthTarget& target, const PixelRectangle& r) {
   const hn::CappedTag<float, kLanes> d;
   const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
-  const auto limit = hn::Set(d, than);
+  auto least = hn::Set(d, std::numeric_limits<float>::infinity());
   for (std::int32_t y = r.y0; y < r.y1; ++y) {
     const float* row = target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y);
     for (std::int32_t x = r.x0; x < r.x1; x += lanes) {
-      const auto valid = hn::FirstN(d, static_cast<std::size_t>(r.x1 - x));
-      if (!hn::AllFalse(d, hn::And(valid, hn::Not(hn::Gt(hn::LoadU(d, row + x), limit))))) {
+      const auto valid = hn::FirstN(d, static_cast<std::size_t>(std::min(r.x1 - x, lanes)));
+      least = hn::Min(least, hn::IfThenElse(valid, hn::LoadU(d, row + x), least));
+    }
+  }
+  return hn::GetLane(hn::MinOfLanes(d, least));
+}
+
+// Whether all pixels of a rectangle have a greater value than this.
+bool allNearer(const DepthTarget& target, WindingTile* tiles, std::int32_t stride, const PixelRectangle& r,
+               float than) {
+  const auto width = static_cast<std::int32_t>(target.width),
+             height = static_cast<std::int32_t>(target.height);
+  for (std::int32_t tile_y = r.y0 / kHigh; tile_y * kHigh < r.y1; ++tile_y) {
+    for (std::int32_t tile_x = r.x0 / kWide; tile_x * kWide < r.x1; ++tile_x) {
+      WindingTile& tile = tiles[std::ptrdiff_t{stride} * tile_y + tile_x];
+      if (tile.least > than) {
+        continue;
+      }
+      const PixelRectangle whole{tile_x * kWide, tile_y * kHigh, std::min(tile_x * kWide + kWide, width),
+                                 std::min(tile_y * kHigh + kHigh, height)};
+      if (tile.stale) {
+        tile.stale = false;
+        tile.least = leastOf(target, whole);
+        if (tile.least > than) {
+          continue;
+        }
+      }
+      const PixelRectangle part{std::max(whole.x0, r.x0), std::max(whole.y0, r.y0), std::min(whole.x1, r.x1),
+                                std::min(whole.y1, r.y1)};
+      if (part.area() == whole.area() || !(leastOf(target, part) > than)) {
         return false;
       }
     }
@@ -432,10 +472,14 @@ void WindingMap::resize(const DepthTarget& target) {
         std::size_t{far_stride_} * static_cast<std::size_t>(rows) * (WindingTile::kHeight / kFarHeight),
         kInfinity);
   }
+  for (WindingTile& tile : tiles_) {
+    tile.stale = true;
+    tile.least = -kInfinity;
+  }
 }
 
-bool WindingMap::hides(const PixelRectangle& rectangle, float nearest) const {
-  return HWY_DYNAMIC_DISPATCH(allNearer)(target_, rectangle, nearest);
+bool WindingMap::hides(const PixelRectangle& rectangle, float nearest) {
+  return HWY_DYNAMIC_DISPATCH(allNearer)(target_, tiles_.data(), columns_, rectangle, nearest);
 }
 
 void WindingMap::begin(const PixelRectangle& rectangle) {
@@ -489,7 +533,9 @@ std::uint32_t WindingMap::resolveRows(ResolveRow&& resolve_row) {
     }
     WindingTile* tile_row = tiles_.data() + std::ptrdiff_t{columns_} * row;
     if (sum_ > kLargestSum) {
-      std::fill(tile_row + extent.first, tile_row + extent.last + 1, WindingTile{});
+      for (std::int32_t x = extent.first; x <= extent.last; ++x) {
+        tile_row[x].clear();
+      }
       continue;
     }
     const std::int32_t y = row * kHeight;

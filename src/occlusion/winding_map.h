@@ -4,6 +4,7 @@
 // "Surfaces".
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,14 @@ struct alignas(64) WindingTile {
   std::uint32_t planes[kPlanes][kHeight];  // of two's complements, the lowest bit first: lower bounds
   std::uint32_t unknown[kHeight];          // a winding here went beyond what its bits can hold
   std::int16_t carry[kHeight];             // what edges to the left of the tile add to all of a row
+  float least;                             // of the target's values, or less
+  bool stale;                              // it may be less
+
+  void clear() {
+    std::memset(planes, 0, sizeof(planes));
+    std::memset(unknown, 0, sizeof(unknown));
+    std::memset(carry, 0, sizeof(carry));
+  }
 };
 
 // Which tiles of a row of them edges have changed; last < first: none.
@@ -75,7 +84,7 @@ class WindingMap {
   void resize(const DepthTarget& target);
 
   // Whether all of a rectangle of the target is nearer than this reciprocal depth.
-  bool hides(const PixelRectangle& rectangle, float nearest) const;
+  bool hides(const PixelRectangle& rectangle, float nearest);
 
   void begin(const PixelRectangle& rectangle);
   // Adds the edges from each point to the next one, or only every second of them (step 2). The surface lies
