@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "sightline/occluders/surface_set.h"
 #include "src/occluders/surface_chains.h"
@@ -143,11 +144,11 @@ void findAdjoining(std::span<const std::uint32_t> part_of, SurfaceSet& set) {
   });
 }
 
-// Counts the edges between each whole and anything that is not of it. whole_of: by cluster.
-template <typename Whole>
-void countEdges(const SurfaceSet& set, std::span<const std::uint32_t> whole_of, std::vector<Whole>& wholes) {
-  for (const SurfaceChain& chain : set.chains) {
-    const std::span<const ChainUse> uses = set.usesOf(chain);
+// Calls visit(whole, chain, value) for each whole that ends at a chain. whole_of: by cluster.
+template <typename Visit>
+void visitBoundaries(const SurfaceSet& set, std::span<const std::uint32_t> whole_of, Visit&& visit) {
+  for (std::uint32_t chain = 0; chain < set.chains.size(); ++chain) {
+    const std::span<const ChainUse> uses = set.usesOf(set.chains[chain]);
     for (std::size_t i = 0; i < uses.size(); ++i) {
       const std::uint32_t whole = whole_of[uses[i].cluster];
       std::int32_t sum = 0;
@@ -158,9 +159,34 @@ void countEdges(const SurfaceSet& set, std::span<const std::uint32_t> whole_of, 
           first = first && k >= i;
         }
       }
-      wholes[whole].edge_count += first && sum != 0 ? chain.vertex_count - 1 : 0;
+      if (first && sum != 0) {
+        visit(whole, chain, sum);
+      }
     }
   }
+}
+
+// Lists the boundaries of patches, and counts the edges of those of patches and parts. Both: by cluster.
+void findBoundaries(std::span<const std::uint32_t> patch_of, std::span<const std::uint32_t> part_of,
+                    SurfaceSet& set) {
+  const auto edgesOf = [&](std::uint32_t chain) { return set.chains[chain].vertex_count - 1; };
+  visitBoundaries(set, part_of, [&](std::uint32_t part, std::uint32_t chain, std::int32_t) {
+    set.parts[part].edge_count += edgesOf(chain);
+  });
+  visitBoundaries(set, patch_of, [&](std::uint32_t patch, std::uint32_t chain, std::int32_t) {
+    set.patches[patch].edge_count += edgesOf(chain);
+    ++set.patches[patch].chain_count;
+  });
+  std::uint32_t size = 0;
+  for (SurfacePatch& patch : set.patches) {
+    patch.first_chain = size;
+    size += std::exchange(patch.chain_count, 0);
+  }
+  set.patch_chains.resize(size);
+  visitBoundaries(set, patch_of, [&](std::uint32_t number, std::uint32_t chain, std::int32_t value) {
+    SurfacePatch& patch = set.patches[number];
+    set.patch_chains[patch.first_chain + patch.chain_count++] = {chain, value};
+  });
 }
 
 float diameter(const Box& box) {
@@ -269,8 +295,7 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
     patch_of[c] = patches.partOf()[by_cluster[c][0]];
   }
   findAdjoining(part_of, set);
-  countEdges(set, part_of, set.parts);
-  countEdges(set, patch_of, set.patches);
+  findBoundaries(patch_of, part_of, set);
   return set;
 }
 

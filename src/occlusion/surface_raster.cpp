@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <utility>
 
 #include "src/base/rows.h"
 
@@ -47,10 +47,11 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
 
 void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
   stats_ = {};
-  if (set_ != &set || members_.size() != set.clusters.size() || drawn_in_.size() != set.parts.size() ||
-      patch_rests_.size() != set.patches.size()) {
+  if (set_ != &set || members_.size() != set.clusters.size() || last_groups_.size() != set.chains.size() ||
+      drawn_in_.size() != set.parts.size() || patch_rests_.size() != set.patches.size()) {
     set_ = &set;
     members_.assign(set.clusters.size(), {});
+    last_groups_.assign(set.chains.size(), 0);
     group_ = 0;
     view_number_ = 0;
   }
@@ -85,6 +86,7 @@ void SurfaceRaster::drawPart(const PartImage& image) {
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
   std::uint32_t shown = 0;
+  patches_.clear();
   view_.beginPart(part);
   for (std::uint32_t number = part.first_patch; number < part.first_patch + part.patch_count; ++number) {
     const SurfacePatch& source = set_->patches[number];
@@ -94,9 +96,13 @@ void SurfaceRaster::drawPart(const PartImage& image) {
         map_.hides(patch.rectangle, patch.nearest)) {
       continue;
     }
-    view_.addClusters(source, patch);
-    if (patch.count == 0) {
-      continue;
+    if (patch.flat && patch.sign != 0) {
+      patches_.push_back(patch);
+    } else {
+      view_.addClusters(source, patch);
+      if (patch.count == 0) {
+        continue;
+      }
     }
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
@@ -115,65 +121,93 @@ void SurfaceRaster::drawPart(const PartImage& image) {
     }
   }
   if (together && shown > 1 && work() < drawing_.budget) {
-    drawTogether(view_.clusters().subspan(first_cluster), rectangle, part_rests_[image.part]);
+    drawTogether(view_.clusters().subspan(first_cluster), patches_, rectangle, part_rests_[image.part]);
   }
 }
 
 void SurfaceRaster::drawPatch(const PatchImage& patch, Rest& rest) {
   const std::span<const ClusterImage> clusters = view_.clusters().subspan(patch.first, patch.count);
   if (!patch.flat) {
-    drawTogether(clusters, patch.rectangle, rest);
+    drawTogether(clusters, {}, patch.rectangle, rest);
     return;
   }
-  addBoundary(clusters, patch.rectangle);
+  beginGroup(patch.rectangle);
+  if (patch.sign != 0) {
+    for (const PatchChain& chain : set_->chainsOf(set_->patches[patch.patch])) {
+      addEdges(chain.chain, chain.value * patch.sign);
+    }
+  } else {
+    addBoundary(clusters);
+  }
   account(map_.resolve(patch.depth), rest);
 }
 
-void SurfaceRaster::drawTogether(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle,
-                                 Rest& rest) {
-  addBoundary(clusters, rectangle);
+void SurfaceRaster::drawTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
+                                 const PixelRectangle& rectangle, Rest& rest) {
+  beginGroup(rectangle);
+  for (const PatchImage& image : patches) {
+    const SurfacePatch& patch = set_->patches[image.patch];
+    for (std::uint32_t i = 0; i < patch.cluster_count; ++i) {
+      addMember(patch.first_cluster + i, image.sign);
+    }
+  }
+  addBoundary(clusters);
+  for (const PatchImage& image : patches) {
+    for (const PatchChain& chain : set_->chainsOf(set_->patches[image.patch])) {
+      addChain(chain.chain);
+    }
+    map_.addDepth(image.rectangle, image.depth);
+  }
   for (const ClusterImage& image : clusters) {
     view_.addDepth(image, map_);
   }
   account(map_.resolve(), rest);
 }
 
-void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle) {
+void SurfaceRaster::beginGroup(const PixelRectangle& rectangle) {
   work_before_ = work();
   stats_.groups += 1;
   if (++group_ == 0) {
     std::fill(members_.begin(), members_.end(), Membership{});
+    std::fill(last_groups_.begin(), last_groups_.end(), 0u);
     group_ = 1;
   }
-  for (const ClusterImage& image : clusters) {
-    members_[image.cluster] = {group_, image.sign};
-  }
   map_.begin(rectangle);
+}
+
+// Adds clusters to the group and draws the chains at which they end. Patches have been added before them.
+void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters) {
   for (const ClusterImage& image : clusters) {
-    addChains(image);
+    addMember(image.cluster, image.sign);
+  }
+  for (const ClusterImage& image : clusters) {
+    for (const std::uint32_t chain : set_->chainsOf(set_->clusters[image.cluster])) {
+      addChain(chain);
+    }
     if (image.cut) {
       addCuts(image);
     }
   }
 }
 
-// Draws the chains at which the cluster is the first of the group.
-void SurfaceRaster::addChains(const ClusterImage& image) {
-  for (const std::uint32_t number : set_->chainsOf(set_->clusters[image.cluster])) {
-    std::int32_t value = 0;
-    bool first = true;
-    for (const ChainUse& use : set_->usesOf(set_->chains[number])) {
-      const Membership& member = members_[use.cluster];
-      if (member.group == group_) {
-        first = first && use.cluster >= image.cluster;
-        value += use.value * member.sign;
-      }
-    }
-    if (first && value != 0) {
-      const ChainPoints::Edges edges = points_.edges(number);
-      map_.addEdges(edges.points, edges.step, value);
-    }
+// Draws a chain with what is left over of the group's clusters that end at it, once.
+void SurfaceRaster::addChain(std::uint32_t number) {
+  if (std::exchange(last_groups_[number], group_) == group_) {
+    return;
   }
+  std::int32_t value = 0;
+  for (const ChainUse& use : set_->usesOf(set_->chains[number])) {
+    const Membership& member = members_[use.cluster];
+    value += member.group == group_ ? use.value * member.sign : 0;
+  }
+  if (value != 0) {
+    addEdges(number, value);
+  }
+}
+
+void SurfaceRaster::addEdges(std::uint32_t chain, std::int32_t value) {
+  const ChainPoints::Edges edges = points_.edges(chain);
+  map_.addEdges(edges.points, edges.step, value);
 }
 
 // Draws the lines along which the near plane cuts the cluster's triangles.

@@ -40,9 +40,13 @@ class SurfaceRaster {
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
   void drawPart(const PartImage& part);
   void drawPatch(const PatchImage& patch, Rest& rest);
-  void drawTogether(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle, Rest& rest);
-  void addBoundary(std::span<const ClusterImage> clusters, const PixelRectangle& rectangle);
-  void addChains(const ClusterImage& image);
+  void drawTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
+                    const PixelRectangle& rectangle, Rest& rest);
+  void beginGroup(const PixelRectangle& rectangle);
+  void addMember(std::uint32_t cluster, std::int32_t sign) { members_[cluster] = {group_, sign}; }
+  void addBoundary(std::span<const ClusterImage> clusters);
+  void addChain(std::uint32_t chain);
+  void addEdges(std::uint32_t chain, std::int32_t value);
   void addCuts(const ClusterImage& image);
   void account(std::uint32_t nearer, Rest& rest);
   std::uint64_t work() const;  // in this view, as SurfaceDrawing::budget counts it
@@ -55,7 +59,9 @@ class SurfaceRaster {
   SurfaceStats stats_;
   std::uint64_t work_before_ = 0;               // before the group that is drawn
   std::vector<Membership> members_;             // by cluster of the set
+  std::vector<std::uint32_t> last_groups_;      // by chain: the group that it was drawn in most recently
   std::uint32_t group_ = 0;                     // number of the last group
+  std::vector<PatchImage> patches_;             // of a part: those that are drawn as a whole
   std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part of the set
   std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t view_number_ = 0;

@@ -9,7 +9,6 @@ namespace sightline::occlusion {
 namespace {
 
 constexpr double kNearMargin = 1e-6;
-constexpr double kCosineMargin = 1e-5;
 constexpr double kBorder = 2.0 / kGridStep;  // pixels by which rectangles are widened
 // A patch is flat if its thickness is at most this fraction of its depth, and that of a cluster.
 constexpr double kFlat = 1.0 / 64.0;
@@ -123,20 +122,25 @@ float SurfaceView::nearestOf(const BoxExtent& extent) const {
   return static_cast<float>(value + 1e-6 * std::abs(value));
 }
 
-bool SurfaceView::showsBack(std::uint32_t number) const {
+// 1: all of a patch shows its front; -1: its back; 0: neither is sure.
+std::int32_t SurfaceView::shownSide(std::uint32_t number) const {
   const SurfacePatch& patch = set_->patches[number];
-  if (patch.double_sided || !(patch.cone_cosine > 0.0f)) {
-    return false;
+  const double cone = patch.cone_cosine;
+  if (!(cone > 0.0)) {
+    return 0;
   }
+  // On which side of the patch's slab the eye is, and how far from it; and how far away the patch is along
+  // it.
   const Box& bounds = set_->patch_bounds[number];
-  const Vec3d middle = center(bounds) - view_.eye;
-  const double distance = std::max(length(middle), 1e-300);
-  const Vec3d away = view_.orthographic ? view_.forward : middle / distance;
-  const double cosine = dot(patch.support.normal, away), cone = patch.cone_cosine;
-  const double least = cosine * cone - std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) *
-                                           std::sqrt(std::max(0.0, 1.0 - cone * cone));
-  const double spread = view_.orthographic ? 0.0 : 0.5 * length(Vec3d(bounds.extent())) / distance;
-  return least > spread + kCosineMargin;
+  const Vec3d middle = view_.orthographic ? view_.forward : center(bounds) - view_.eye;
+  const double along = dot(patch.support.normal, middle);
+  const double height = view_.orthographic ? -along : patch.support.evaluate(view_.eye);
+  const double thickness = view_.orthographic ? 0.0 : patch.thickness;
+  const double above = std::max(height - thickness, -height);
+  const double radius = view_.orthographic ? 0.0 : 0.5 * length(Vec3d(bounds.extent()));
+  const double beside = std::sqrt(std::max(0.0, dot(middle, middle) - along * along)) + radius;
+  const bool whole = above * cone > beside * std::sqrt(std::max(0.0, 1.0 - cone * cone)) && above > 0.0;
+  return whole ? (height > 0.0 ? 1 : -1) : 0;
 }
 
 void SurfaceView::beginPart(const SurfacePart& part) {
@@ -147,13 +151,23 @@ void SurfaceView::beginPart(const SurfacePart& part) {
 bool SurfaceView::imageOf(std::uint32_t number, double min_pixels, PatchImage& image) const {
   BoxExtent extent;
   if (!extentOf(set_->patch_bounds[number], patch_images_[number - first_patch_], extent) ||
-      extent.rectangle.area() < min_pixels || showsBack(number)) {
+      extent.rectangle.area() < min_pixels) {
+    return false;
+  }
+  const SurfacePatch& patch = set_->patches[number];
+  const std::int32_t side = shownSide(number);
+  if (side < 0 && !patch.double_sided) {
     return false;
   }
   image = {};
+  image.patch = number;
   image.rectangle = extent.rectangle;
   image.nearest = nearestOf(extent);
-  image.flat = set_->patches[number].thickness <= kFlat * std::max(extent.nearest, clip_depth_);
+  image.flat = patch.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
+  image.sign = extent.cut ? 0 : side;
+  if (image.flat && image.sign != 0) {
+    image.depth = boundOf(behind(patch.support, patch.thickness, side), extent.farthest);
+  }
   return true;
 }
 

@@ -36,9 +36,11 @@ struct ClusterImage {
 struct PatchImage {
   std::uint32_t first = 0, count = 0;  // of its clusters in SurfaceView::clusters()
   PixelRectangle rectangle;
-  float nearest = 0.0f;  // reciprocal depth, rounded up
-  bool flat = false;     // `depth` is about as good as those of its clusters
+  float nearest = 0.0f;   // reciprocal depth, rounded up
+  bool flat = false;      // `depth` is about as good as those of its clusters
+  std::int32_t sign = 0;  // 1, or -1 with its other side: all clusters show it, and none is cut; 0 otherwise
   DepthBound depth;
+  std::uint32_t patch = 0;
 };
 
 // A part of a surface that may be drawn.
@@ -61,7 +63,8 @@ class SurfaceView {
 
   // Projects the patches of a part, for imageOf().
   void beginPart(const SurfacePart& part);
-  // False: the patch of that part shows its back, or has fewer pixels. The image has no clusters yet.
+  // False: the patch of that part shows its back, or has fewer pixels. The image has no clusters yet, and a
+  // depth only if it is flat and its sign is not 0.
   bool imageOf(std::uint32_t patch, double min_pixels, PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
@@ -76,7 +79,7 @@ class SurfaceView {
   void listParts(std::span<const ObjectId> candidates);
   double smallestOf(const BoxExtent& object) const;
   void sortParts();
-  bool showsBack(std::uint32_t patch) const;
+  std::int32_t shownSide(std::uint32_t patch) const;
   float nearestOf(const BoxExtent& extent) const;
   // Projects boxes, for the other form of extentOf().
   void project(std::span<const Box> boxes, std::vector<PixelBox>& images) const;

@@ -44,9 +44,16 @@ struct SurfaceCluster {
   bool double_sided = false;
 };
 
+// How often the triangles of a patch run along a chain in its direction, less how often they run back.
+struct PatchChain {
+  std::uint32_t chain = 0;  // into SurfaceSet::chains
+  std::int32_t value = 0;   // not 0; positive: the patch lies to the left, seen from its front
+};
+
 // A patch is a set of connected clusters of similar direction.
 struct SurfacePatch {
   std::uint32_t first_cluster = 0, cluster_count = 0;  // into SurfaceSet::clusters
+  std::uint32_t first_chain = 0, chain_count = 0;      // into SurfaceSet::patch_chains
   std::uint32_t edge_count = 0;                        // of its boundary
   // These have the same meaning as those of a cluster.
   Plane support{};
@@ -85,6 +92,7 @@ struct SurfaceSet {
   std::vector<SurfaceChain> chains{};
   std::vector<ChainUse> uses{};
   std::vector<std::uint32_t> cluster_chains{};  // numbers of chains, by cluster
+  std::vector<PatchChain> patch_chains{};       // the boundaries of patches, by patch
   std::vector<Vec3f> chain_vertices{};          // by chain, scene space
 
   // Numbers of the parts that have triangles of an object, those with the largest boxes first.
@@ -114,6 +122,9 @@ struct SurfaceSet {
   }
   std::span<const std::uint32_t> chainsOf(const SurfaceCluster& c) const {
     return std::span(cluster_chains).subspan(c.first_chain, c.chain_count);
+  }
+  std::span<const PatchChain> chainsOf(const SurfacePatch& p) const {
+    return std::span(patch_chains).subspan(p.first_chain, p.chain_count);
   }
   std::span<const Vec3f> verticesOf(const SurfaceChain& c) const {
     return std::span(chain_vertices).subspan(c.first_vertex, c.vertex_count);
