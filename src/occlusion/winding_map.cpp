@@ -19,6 +19,7 @@ constexpr std::int32_t kWide = WindingTile::kWidth, kHigh = WindingTile::kHeight
 constexpr std::int32_t kLanes = 8;   // most lanes of a vector of pixels
 constexpr double kSteepest = 256.0;  // change of x from row to row that single precision can follow, pixels
 constexpr double kBeyond = 0x1p20;   // so far outside the rectangle, in 256ths of a pixel, nothing matters
+constexpr float kSignificant = 1.125f;  // how much nearer counts as nearer
 constexpr std::int32_t kMostSteps = 2 << WindingTile::kPlanes;  // no winding is known after more of them
 
 // One vector lane for each row of a tile, or of a part of it.
@@ -328,7 +329,7 @@ HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& target, std::uint64_t&
         const auto old = hn::LoadU(d, out + at);
         const auto depth = depth_of(x * kWide + at, y, d);
         const auto gained = hn::And(mask, hn::Gt(depth, old));
-        nearer += hn::CountTrue(d, gained);
+        nearer += hn::CountTrue(d, hn::And(gained, hn::Gt(depth, hn::Mul(old, hn::Set(d, kSignificant)))));
         hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + at);
       }
     }
