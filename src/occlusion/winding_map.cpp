@@ -19,7 +19,7 @@ constexpr std::int32_t kWide = WindingTile::kWidth, kHigh = WindingTile::kHeight
 constexpr std::int32_t kLanes = 8;   // most lanes of a vector of pixels
 constexpr double kSteepest = 256.0;  // change of x from row to row that single precision can follow, pixels
 constexpr double kBeyond = 0x1p20;   // so far outside the rectangle, in 256ths of a pixel, nothing matters
-constexpr float kSignificant = 1.125f;  // how much nearer counts as nearer
+constexpr float kGain = 1.125f;      // a pixel counts as changed if it becomes nearer by this factor
 constexpr std::int32_t kMostSteps = 2 << WindingTile::kPlanes;  // no winding is known after more of them
 
 // One vector lane for each row of a tile, or of a part of it.
@@ -283,7 +283,7 @@ HWY_INLINE bool coverTile(WindingTile& tile, const std::int32_t* outside, std::u
 }
 
 // depth_of(x, y, d): the reciprocal depths of the pixels from x on in row y, counted from the lowest one of
-// the tiles. Returns how many pixels became nearer.
+// the tiles. Returns how many pixels changed.
 template <std::int32_t kMostLanes, typename DepthOf>
 HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& target, std::uint64_t& tiles, DepthOf&& depth_of) {
   const hn::CappedTag<float, kMostLanes> d;
@@ -329,7 +329,7 @@ HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& target, std::uint64_t&
         const auto old = hn::LoadU(d, out + at);
         const auto depth = depth_of(x * kWide + at, y, d);
         const auto gained = hn::And(mask, hn::Gt(depth, old));
-        nearer += hn::CountTrue(d, hn::And(gained, hn::Gt(depth, hn::Mul(old, hn::Set(d, kSignificant)))));
+        nearer += hn::CountTrue(d, hn::And(gained, hn::Gt(depth, hn::Mul(old, hn::Set(d, kGain)))));
         hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + at);
       }
     }

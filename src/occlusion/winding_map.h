@@ -35,15 +35,16 @@ struct DepthBound {
   float floor = 0.0f;
 };
 
-// A tile of a WindingMap: in each row a bit for each pixel, the leftmost one in the lowest bit.
+// A tile of a WindingMap. In each row there is a bit for each pixel, the leftmost one in the lowest bit.
 struct alignas(64) WindingTile {
   static constexpr std::int32_t kWidth = 32, kHeight = 8;  // pixels
   static constexpr std::int32_t kPlanes = 4;               // bits of a winding
-  std::uint32_t planes[kPlanes][kHeight];  // of two's complements, the lowest bit first: lower bounds
-  std::uint32_t unknown[kHeight];          // a winding here went beyond what its bits can hold
-  std::int16_t carry[kHeight];             // what edges to the left of the tile add to all of a row
-  float least;                             // of the target's values, or less
-  bool stale;                              // it may be less
+  // Lower bounds of windings in two's complement, one bit of them after the other, the lowest one first.
+  std::uint32_t planes[kPlanes][kHeight];
+  std::uint32_t unknown[kHeight];  // a winding here went beyond what its bits can hold
+  std::int16_t carry[kHeight];     // what edges to the left of the tile add to all of a row
+  float least;                     // of the target's values, or less
+  bool stale;                      // it may be less
 
   void clear() {
     std::memset(planes, 0, sizeof(planes));
@@ -92,8 +93,8 @@ class WindingMap {
   void addEdges(std::span<const GridPoint> points, std::uint32_t step, std::int32_t value);
   // Some of the group, no farther away than `depth`, may appear in these pixels.
   void addDepth(const PixelRectangle& rectangle, const DepthBound& depth);
-  // Sets covered pixels of the target to the group's depth where that is nearer, and returns how many they
-  // are.
+  // Sets covered pixels of the target to the group's depth where that is nearer, and returns how many of them
+  // become nearer by an eighth or more.
   std::uint32_t resolve();
   // The same for a group that is nowhere farther away than `depth`.
   std::uint32_t resolve(const DepthBound& depth);

@@ -6,6 +6,7 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -110,6 +111,136 @@ TEST(WindingMap, CoversOnlyPixelsInsideAFarQuadAndMostOfThem) {
     EXPECT_EQ(wrong, 0u) << "quad " << n;
     // An edge that leans by many pixels in a row leaves a few at either side open.
     EXPECT_GE(covered + std::size_t{16} * kMapHeight, inside) << "quad " << n;
+  }
+}
+
+// A map of any size whose groups have the depth 1.
+class SmallMap {
+ public:
+  SmallMap(std::uint32_t width, std::uint32_t height)
+      : target_{nullptr, width, height, (width + 15) / 8 * 8}, values_(std::size_t{target_.stride} * height) {
+    target_.reciprocal_depth = values_.data();
+    clear();
+  }
+
+  void clear() {
+    std::fill(values_.begin(), values_.end(), kNoDepth);
+    map_.resize(target_);
+  }
+  // Draws polygons as one group.
+  void draw(std::span<const std::vector<GridPoint>> polygons, std::int32_t value, float depth) {
+    map_.begin({0, 0, static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)});
+    for (const std::vector<GridPoint>& polygon : polygons) {
+      map_.addEdges(polygon, 1, value);
+    }
+    map_.resolve(DepthBound{.at_origin = depth, .floor = depth});
+  }
+  float at(std::uint32_t x, std::uint32_t y) const { return values_[std::size_t{target_.stride} * y + x]; }
+  bool covered(std::uint32_t x, std::uint32_t y) const { return at(x, y) > kNoDepth; }
+  WindingMap& map() { return map_; }
+  const DepthTarget& target() const { return target_; }
+
+ private:
+  DepthTarget target_;
+  std::vector<float> values_;
+  WindingMap map_;
+};
+
+// A rectangle between points in pixels, counter-clockwise.
+std::vector<GridPoint> box(double x0, double y0, double x1, double y1) {
+  const double s = kGridStep;
+  return {{x0 * s, y0 * s}, {x1 * s, y0 * s}, {x1 * s, y1 * s}, {x0 * s, y1 * s}, {x0 * s, y0 * s}};
+}
+
+TEST(WindingMap, CoversAllPixelsInsideARectangleAndNoOthersInAMapOfAnySize) {
+  for (const std::uint32_t width : {1u, 7u, 8u, 31u, 32u, 33u, 100u, 4096u}) {
+    for (const std::uint32_t height : {1u, 7u, 8u, 9u, 40u}) {
+      SmallMap map(width, height);
+      // Its borders lie an eighth of a pixel outside of whole pixels.
+      const double x1 = std::floor(0.75 * width), y1 = std::floor(0.75 * height);
+      map.draw(std::array{box(-0.125, -0.125, x1 + 0.125, y1 + 0.125)}, 1, 1.0f);
+      std::size_t wrong = 0;
+      for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+          wrong += map.covered(x, y) != (x < x1 && y < y1) ? 1 : 0;
+        }
+      }
+      EXPECT_EQ(wrong, 0u) << width << " x " << height;
+    }
+  }
+}
+
+TEST(WindingMap, SumsUpEdgesOfAnyValueAsFarAsItCanHold) {
+  // Sheets over each other, of which one or all face away.
+  for (const int sheets : {1, 2, 7, 8, 15, 16, 40}) {
+    const std::vector<std::vector<GridPoint>> polygons(static_cast<std::size_t>(sheets),
+                                                       box(3.5, 1.5, 70.5, 20.5));
+    SmallMap map(100, 24);
+    map.draw(polygons, -1, 1.0f);
+    EXPECT_FALSE(map.covered(40, 10)) << sheets;
+    EXPECT_FALSE(map.covered(80, 10)) << sheets;
+    map.draw(polygons, 1, 1.0f);
+    EXPECT_TRUE(map.covered(40, 10)) << sheets << ", in a tile to the right of the edges";
+    EXPECT_EQ(map.covered(10, 10), sheets < 8) << sheets << ", in the tile of the edges";
+    EXPECT_FALSE(map.covered(80, 10)) << sheets;
+    EXPECT_FALSE(map.covered(3, 10)) << sheets;
+    EXPECT_FALSE(map.covered(70, 10)) << sheets;
+    // What was not known is forgotten with the group.
+    map.draw(std::array{box(3.5, 1.5, 70.5, 20.5)}, 1, 2.0f);
+    EXPECT_EQ(map.at(10, 10), 2.0f) << sheets;
+    // One polygon of that value is as many polygons.
+    SmallMap once(100, 24);
+    once.draw(std::array{box(3.5, 1.5, 70.5, 20.5)}, sheets, 1.0f);
+    for (std::uint32_t x = 0; x < 100; ++x) {
+      EXPECT_EQ(once.covered(x, 10), x > 3 && x < 70 && (sheets < 8 || x >= 32)) << sheets << ", pixel " << x;
+    }
+  }
+}
+
+TEST(WindingMap, CoversTheBarsOfAGrilleAndNotWhatIsBetweenThem) {
+  SmallMap map(200, 30);
+  std::vector<std::vector<GridPoint>> bars;
+  for (int i = 0; i < 40; ++i) {
+    bars.push_back(box(5.0 * i + 0.5, -3.0, 5.0 * i + 3.5, 40.0));
+  }
+  map.draw(bars, 1, 1.0f);
+  for (std::uint32_t x = 0; x < 200; ++x) {
+    EXPECT_EQ(map.covered(x, 17), x % 5 == 1 || x % 5 == 2) << x;
+  }
+}
+
+TEST(WindingMap, HidesARectangleIfAllItsValuesAreNearer) {
+  std::mt19937 random(5);
+  const auto number = test::numbersFrom<double>(random);
+  for (int n = 0; n < 60; ++n) {
+    SmallMap map(static_cast<std::uint32_t>(number(1.0, 150.0)),
+                 static_cast<std::uint32_t>(number(1.0, 60.0)));
+    const double width = map.target().width, height = map.target().height;
+    std::size_t hidden = 0;
+    for (int step = 0; step < 40; ++step) {
+      const double x0 = number(-20.0, width), y0 = number(-20.0, height);
+      map.draw(std::array{box(std::floor(x0), std::floor(y0), std::ceil(x0 + number(1.0, 90.0)),
+                              std::ceil(y0 + number(1.0, 60.0)))},
+               1, static_cast<float>(number(1.0, 3.0)));
+      for (int query = 0; query < 5; ++query) {
+        const auto from_x = static_cast<std::int32_t>(number(0.0, width)),
+                   from_y = static_cast<std::int32_t>(number(0.0, height));
+        const PixelRectangle r{from_x, from_y, static_cast<std::int32_t>(number(from_x + 1.0, width + 1.0)),
+                               static_cast<std::int32_t>(number(from_y + 1.0, height + 1.0))};
+        const auto than = static_cast<float>(number(0.9, 2.0));
+        bool all = true;
+        for (std::int32_t y = r.y0; y < r.y1; ++y) {
+          for (std::int32_t x = r.x0; x < r.x1; ++x) {
+            all = all && map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) > than;
+          }
+        }
+        hidden += all ? 1 : 0;
+        ASSERT_EQ(map.map().hides(r, than), all) << "map " << n << ", step " << step;
+      }
+    }
+    EXPECT_GT(hidden, 0u) << n;
+    map.clear();
+    EXPECT_FALSE(map.map().hides({0, 0, 1, 1}, 0.5f)) << n;
   }
 }
 

@@ -77,7 +77,7 @@ struct SurfaceDrawing {
   double pixels_per_edge = 4.0;
   bool seams = true;  // each part is drawn together with what adjoins it too
   // Surfaces are drawn, the nearest ones first, until they have cost so much: 1 for each edge of their
-  // boundaries, for each 256 pixels within them, and 8 for each time that some are drawn together.
+  // boundaries, 1 for each tile of 32 x 8 pixels, and 8 for each time that some are drawn together.
   std::uint32_t budget = 60000;
   ViewStep step = ViewStep::kJump;  // from the view in which this set was drawn last
 };
