@@ -79,13 +79,13 @@ class EdgeRows {
     rises_ = (dy < 0.0) == (value > 0);
     first_crossed_ = rowAfter(std::min(from.y, to.y));
     end_crossed_ = rowAfter(std::max(from.y, to.y));
-    const double widest = 2.0 * kBeyond + (r.x1 - r.x0) * kPixel;
+    widest_ = 2.0 * kBeyond + (r.x1 - r.x0) * kPixel;
     // A level edge crosses no border of a row.
-    spread_ = level_ ? widest : std::min(widest, (std::abs(slope_) + 3.0) * kMargin);
+    spread_ = level_ ? 4.0 * kLargestGrid : (std::abs(slope_) + 3.0) * kMargin;
     // So near to the edge, along a row, it is unknown on which side a pixel's centre is: see "The pixel".
     doubt_ = level_
                  ? 0.0
-                 : std::min(widest, (std::abs(slope_) + 1.0 + 4.0 * kPixel / std::abs(dy)) * kMargin + 2.0);
+                 : std::min(widest_, (std::abs(slope_) + 1.0 + 4.0 * kPixel / std::abs(dy)) * kMargin + 2.0);
     above_inner_ = (dx > 0.0) == (value > 0);
     level_doubt_ = level_ ? kMargin * (1.0 + 4.0 * kPixel / std::max(std::abs(dx), 1.0)) : 0.0;
   }
@@ -158,7 +158,7 @@ class EdgeRows {
         const double height = (row + i + 0.5) * kPixel - from_.y;
         const bool inner = (height > 0.0) == above_inner_;
         middle[i] = place(inner == rises_ ? r.x0 * kPixel - kBeyond : r.x1 * kPixel + kBeyond);
-        doubt[i] = std::abs(height) <= level_doubt_ ? static_cast<float>(2.0 * spread_) : 0.0f;
+        doubt[i] = std::abs(height) <= level_doubt_ ? static_cast<float>(2.0 * widest_) : 0.0f;
       }
     }
     for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kPlaces))) {
@@ -179,7 +179,7 @@ class EdgeRows {
     const auto crossed = hn::And(hn::Gt(rows, hn::Set(kNumbers, first_crossed_ - 1)),
                                  hn::Lt(rows, hn::Set(kNumbers, end_crossed_)));
     const auto pixel = hn::Set(kPlaces, 1.0f / kGridStep), half = hn::Set(kPlaces, 0.5f),
-               reach = hn::Set(kPlaces, static_cast<float>(spread_));
+               reach = hn::Set(kPlaces, static_cast<float>(std::min(spread_, widest_)));
     const auto x0 = hn::Set(kPlaces, static_cast<float>(r.x0 * kPixel)),
                x1 = hn::Set(kPlaces, static_cast<float>(r.x1 * kPixel - 1.0));
     const auto from_x = hn::Max(hn::Sub(hn::Min(below, above), reach), hn::Set(kPlaces, place(left_))),
@@ -233,7 +233,7 @@ class EdgeRows {
   const WindingEdges& target_;
   GridPoint from_;
   std::int32_t size_, first_row_, last_row_, first_crossed_, end_crossed_;
-  double left_, right_, slope_, spread_, doubt_, level_doubt_;
+  double left_, right_, slope_, widest_, spread_, doubt_, level_doubt_;
   bool level_, steep_, rises_, above_inner_;
 };
 

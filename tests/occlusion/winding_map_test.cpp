@@ -209,6 +209,115 @@ TEST(WindingMap, CoversTheBarsOfAGrilleAndNotWhatIsBetweenThem) {
   }
 }
 
+struct Polygon {
+  std::vector<GridPoint> points;
+  std::int32_t value = 0;
+};
+
+// A closed polygon of any form, from a tenth of a pixel to a million pixels wide and high, some of whose
+// corners lie on borders and middles of rows and columns.
+Polygon anyPolygon(std::mt19937& random, double width, double height) {
+  const auto number = test::numbersFrom<double>(random);
+  const auto size = [&] { return kGridStep * std::pow(10.0, number(-1.0, random() % 3 == 0 ? 6.0 : 3.0)); };
+  const double x = number(0.0, width * kGridStep), y = number(0.0, height * kGridStep), size_x = size(),
+               size_y = size();
+  const auto near = [&](double middle, double reach, double unit) {
+    const double at = std::nearbyint(middle + number(-reach, reach));
+    return random() % 3 == 0 ? std::nearbyint(at / unit) * unit : at;
+  };
+  Polygon polygon;
+  const std::size_t corners = 3 + random() % 3;
+  for (std::size_t i = 0; i < corners; ++i) {
+    polygon.points.push_back({near(x, size_x, kGridStep), near(y, size_y, 0.5 * kGridStep)});
+  }
+  polygon.points.push_back(polygon.points.front());
+  polygon.value = random() % 4 == 0 ? -1 : random() % 4 == 0 ? 2 : 1;
+  return polygon;
+}
+
+// The winding of polygons about a point halfway between grid points, exactly.
+std::int32_t windingOf(std::span<const Polygon> polygons, std::int64_t x, std::int64_t y) {
+  std::int32_t winding = 0;
+  for (const Polygon& polygon : polygons) {
+    for (std::size_t i = 1; i < polygon.points.size(); ++i) {
+      // In halves of grid units, from the point.
+      const std::int64_t ax = 2 * static_cast<std::int64_t>(polygon.points[i - 1].x) - (2 * x + 1),
+                         ay = 2 * static_cast<std::int64_t>(polygon.points[i - 1].y) - (2 * y + 1),
+                         bx = 2 * static_cast<std::int64_t>(polygon.points[i].x) - (2 * x + 1),
+                         by = 2 * static_cast<std::int64_t>(polygon.points[i].y) - (2 * y + 1);
+      if ((ay < 0) != (by < 0)) {
+        // The edge passes the point's row to its left.
+        const bool left = (ax * by - bx * ay < 0) == (by > 0);
+        winding += left ? (by < 0 ? polygon.value : -polygon.value) : 0;
+      }
+    }
+  }
+  return winding;
+}
+
+TEST(WindingMap, CoversOnlyPixelsInWhichTheWindingOfAnyPolygonsIsPositive) {
+  std::mt19937 random(3);
+  std::size_t covered = 0, wrong = 0;
+  for (int n = 0; n < 30'000; ++n) {
+    const auto width = static_cast<std::uint32_t>(1 + random() % 70),
+               height = static_cast<std::uint32_t>(1 + random() % 12);
+    SmallMap map(width, height);
+    std::vector<Polygon> polygons;
+    for (std::size_t k = 1 + random() % 3; k > 0; --k) {
+      polygons.push_back(anyPolygon(random, width, height));
+    }
+    map.map().begin({0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)});
+    for (const Polygon& polygon : polygons) {
+      map.map().addEdges(polygon.points, 1, polygon.value);
+    }
+    map.map().resolve(DepthBound{.floor = 1.0f});
+    for (std::uint32_t y = 0; y < height; ++y) {
+      for (std::uint32_t x = 0; x < width; ++x) {
+        if (!map.covered(x, y)) {
+          continue;
+        }
+        ++covered;
+        for (const std::int64_t within_x : {0, 60, 127, 200, 255}) {
+          for (const std::int64_t within_y : {0, 60, 127, 200, 255}) {
+            wrong += windingOf(polygons, std::int64_t{kGridStep} * x + within_x,
+                               std::int64_t{kGridStep} * y + within_y) < 1
+                         ? 1
+                         : 0;
+          }
+        }
+      }
+    }
+    ASSERT_EQ(wrong, 0u) << "map " << n;
+  }
+  EXPECT_GT(covered, 100'000u);
+}
+
+TEST(WindingMap, HasTheSameBitsOfAnyPolygonsWithEveryInstructionSet) {
+  std::mt19937 random(4);
+  for (int n = 0; n < 3'000; ++n) {
+    const auto width = static_cast<std::uint32_t>(1 + random() % 70),
+               height = static_cast<std::uint32_t>(1 + random() % 12);
+    const std::array polygons{anyPolygon(random, width, height), anyPolygon(random, width, height)};
+    std::vector<float> first;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      SmallMap map(width, height);
+      map.map().begin({0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)});
+      for (const Polygon& polygon : polygons) {
+        map.map().addEdges(polygon.points, 1, polygon.value);
+      }
+      map.map().resolve(DepthBound{.along_x = 0.1f, .along_y = -0.3f, .at_origin = 1.0f, .floor = 0.5f});
+      hwy::SetSupportedTargetsForTest(0);
+      std::vector<float> values;
+      for (std::uint32_t i = 0; i < width * height; ++i) {
+        values.push_back(map.at(i % width, i / width));
+      }
+      first = first.empty() ? values : first;
+      ASSERT_EQ(values, first) << "map " << n << ", " << hwy::TargetName(target);
+    }
+  }
+}
+
 TEST(WindingMap, HidesARectangleIfAllItsValuesAreNearer) {
   std::mt19937 random(5);
   const auto number = test::numbersFrom<double>(random);
