@@ -257,7 +257,8 @@ const std::vector<Option>& allOptions() {
        "surfaces whose rectangle has fewer pixels are not drawn",
        decimal(+[](Setting& s) -> double& { return s.surface_drawing.min_pixels; })},
       {"surface-budget", kOwn, drawsSurfaces, kList, kWhenChanged,
-       "surfaces are drawn until they have cost so much: 1 for an edge, 1 for a tile of 256 pixels, 8 for a group",
+       "surfaces are drawn until they have cost so much: 1 for an edge, 1 for a tile of 256 pixels, 8 for a "
+       "group",
        whole(
            0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.surface_drawing.budget; })},
       {"occluder-count", kAny, choosesOccluders, kList, kHeadline, "most occluders in a frame",
