@@ -96,7 +96,7 @@ void SurfaceRaster::drawPart(const PartImage& image) {
         map_.hides(patch.rectangle, patch.nearest)) {
       continue;
     }
-    if (patch.flat && patch.sign != 0) {
+    if (patch.sign != 0) {
       patches_.push_back(patch);
     } else {
       view_.addClusters(source, patch);
@@ -132,12 +132,12 @@ void SurfaceRaster::drawPatch(const PatchImage& patch, Rest& rest) {
     return;
   }
   beginGroup(patch.rectangle);
-  if (patch.sign != 0) {
+  if (patch.sign == 0) {
+    addBoundary(clusters);
+  } else {
     for (const PatchChain& chain : set_->chainsOf(set_->patches[patch.patch])) {
       addEdges(chain.chain, chain.value * patch.sign);
     }
-  } else {
-    addBoundary(clusters);
   }
   account(map_.resolve(patch.depth), rest);
 }

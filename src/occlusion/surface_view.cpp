@@ -164,8 +164,8 @@ bool SurfaceView::imageOf(std::uint32_t number, double min_pixels, PatchImage& i
   image.rectangle = extent.rectangle;
   image.nearest = nearestOf(extent);
   image.flat = patch.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
-  image.sign = extent.cut ? 0 : side;
-  if (image.flat && image.sign != 0) {
+  image.sign = image.flat && !extent.cut ? side : 0;
+  if (image.sign != 0) {
     image.depth = boundOf(behind(patch.support, patch.thickness, side), extent.farthest);
   }
   return true;

@@ -36,11 +36,13 @@ struct ClusterImage {
 struct PatchImage {
   std::uint32_t first = 0, count = 0;  // of its clusters in SurfaceView::clusters()
   PixelRectangle rectangle;
-  float nearest = 0.0f;   // reciprocal depth, rounded up
-  bool flat = false;      // `depth` is about as good as those of its clusters
-  std::int32_t sign = 0;  // 1, or -1 with its other side: all clusters show it, and none is cut; 0 otherwise
+  float nearest = 0.0f;  // reciprocal depth, rounded up
+  bool flat = false;     // `depth` is about as good as those of its clusters
+  // Not 0: the patch is flat, not cut by the near plane, and all of it shows its front (1) or its other side
+  // (-1). It may be drawn as a whole, without its clusters.
+  std::int32_t sign = 0;
   DepthBound depth;
-  std::uint32_t patch = 0;
+  std::uint32_t patch = 0;  // into SurfaceSet::patches
 };
 
 // A part of a surface that may be drawn.
@@ -64,7 +66,7 @@ class SurfaceView {
   // Projects the patches of a part, for imageOf().
   void beginPart(const SurfacePart& part);
   // False: the patch of that part shows its back, or has fewer pixels. The image has no clusters yet, and a
-  // depth only if it is flat and its sign is not 0.
+  // depth only if it may be drawn as a whole.
   bool imageOf(std::uint32_t patch, double min_pixels, PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
