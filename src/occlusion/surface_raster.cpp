@@ -7,8 +7,6 @@
 #include <array>
 #include <utility>
 
-#include "src/base/rows.h"
-
 namespace sightline::occlusion {
 namespace {
 

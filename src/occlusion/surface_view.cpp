@@ -17,7 +17,8 @@ constexpr std::int32_t kSmall = 64;  // pixels of the rectangle of a cluster who
 // A bound of the coordinates of what lies in a box and is projected in batches: metres in an orthographic
 // view, divided by their depth in a perspective one.
 double reachOf(const Box& box, const PixelView& view) {
-  constexpr double kLargestSlope = 0x1p15;  // what is seen at a larger one is too near for single precision
+  // Boxes seen at a larger slope are too near for single precision, and pixel_boxes gives them no rectangle.
+  constexpr double kLargestSlope = 0x1p15;
   const Vec3d far = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
   return view.orthographic ? far.x + far.y + far.z : kLargestSlope;
 }
@@ -132,7 +133,7 @@ std::int32_t SurfaceView::shownSide(std::uint32_t number) const {
   // On which side of the patch's slab the eye is, and how far from it; and how far away the patch is along
   // it.
   const Box& bounds = set_->patch_bounds[number];
-  const Vec3d middle = view_.orthographic ? view_.forward : center(bounds) - view_.eye;
+  const Vec3d middle = view_.orthographic ? view_.unit_z : center(bounds) - view_.eye;
   const double along = dot(patch.support.normal, middle);
   const double height = view_.orthographic ? -along : patch.support.evaluate(view_.eye);
   const double thickness = view_.orthographic ? 0.0 : patch.thickness;
@@ -217,7 +218,7 @@ void SurfaceView::addClusters(std::span<const std::uint32_t> numbers) {
 bool SurfaceView::chooseCluster(std::uint32_t number, const PixelBox& box, ClusterImage& image,
                                 double& farthest) const {
   const SurfaceCluster& cluster = set_->clusters[number];
-  const double height = view_.orthographic ? -dot(cluster.support.normal, view_.forward)
+  const double height = view_.orthographic ? -dot(cluster.support.normal, view_.unit_z)
                                            : cluster.support.evaluate(view_.eye) - 0.5 * cluster.thickness;
   image.sign = height > 0.0 ? 1 : cluster.double_sided ? -1 : 0;
   BoxExtent extent;
@@ -228,8 +229,6 @@ bool SurfaceView::chooseCluster(std::uint32_t number, const PixelBox& box, Clust
   image.cluster = number;
   image.cut = extent.cut;
   image.rectangle = extent.rectangle;
-  image.middle_depth = static_cast<float>(
-      std::max(clip_depth_, 0.5 * (std::max(extent.nearest, clip_depth_) + extent.farthest)));
   image.flat = cluster.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
   image.depth = boundOf(behind(cluster.support, cluster.thickness, image.sign), extent.farthest);
   return true;
@@ -253,7 +252,12 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) {
   project(boxes_, images_);
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     BoxExtent extent;
-    if (!extentOf(boxes_[i / 3], images_[i / 3], extent)) {
+    // What lies beyond the far plane has a depth too, although it is outside the view.
+    const PixelBox& image_of_box = images_[i / 3];
+    const bool known = image_of_box.place == BoxPlace::kOutside
+                           ? extentOf(boxes_[i / 3], extent)
+                           : extentOf(boxes_[i / 3], image_of_box, extent);
+    if (!known) {
       if (extent.inexact) {
         map.addDepth(image.rectangle, image.depth);
       }
@@ -266,7 +270,7 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) {
     const double size = length(u) * length(v),
                  reach = maxComponent(abs(p)) + maxComponent(abs(u)) + maxComponent(abs(v));
     // The value of the plane through the triangle at the eye.
-    const double height = view_.orthographic ? -dot(normal, view_.forward) : -dot(normal, p);
+    const double height = view_.orthographic ? -dot(normal, view_.unit_z) : -dot(normal, p);
     if (height < -1e-9 * size * (view_.orthographic ? 1.0 : reach)) {
       continue;
     }
@@ -280,7 +284,8 @@ void SurfaceView::project(std::span<const Box> boxes, std::vector<PixelBox>& ima
   projectBoxes(projection_, boxes, images);
 }
 
-// False: outside the buffer, or its image cannot be computed exactly enough.
+// False: outside the view, or its image cannot be computed exactly enough. What lies beyond the far plane is
+// outside too: it may be left out of a surface, but not out of the depth of one.
 bool SurfaceView::extentOf(const Box& box, const PixelBox& image, BoxExtent& extent) const {
   if (image.place == BoxPlace::kOutside) {
     return false;

@@ -28,7 +28,6 @@ struct ClusterImage {
   bool cut = false;       // by the near plane
   bool flat = false;      // `depth` is about as good as those of its triangles
   PixelRectangle rectangle;
-  float middle_depth = 0.0f;  // metres, above 0
   DepthBound depth;
 };
 

@@ -79,7 +79,9 @@ struct PixelView {
     const auto unit = [](const Vec3d& v) { return std::abs(dot(v, v) - 1.0) < kRigid; };
     const double volume = dot(x, cross(y, z));
     PixelView moved = *this;
-    moved.valid_ = sane() && isFinite(origin) && unit(x) && unit(y) && unit(z) &&
+    const bool affine = scene_from_space(3, 0) == 0.0 && scene_from_space(3, 1) == 0.0 &&
+                        scene_from_space(3, 2) == 0.0 && scene_from_space(3, 3) == 1.0;
+    moved.valid_ = sane() && affine && isFinite(origin) && unit(x) && unit(y) && unit(z) &&
                    std::abs(dot(x, y)) < kRigid && std::abs(dot(y, z)) < kRigid &&
                    std::abs(dot(z, x)) < kRigid && volume > 0.0;
     if (!moved.valid_) {
@@ -123,7 +125,7 @@ struct PixelView {
 
  private:
   static constexpr double kLargestScale = 0x1p40;
-  static constexpr double kRigid = 1e-5;  // of the products of the columns of a rotation
+  static constexpr double kRigid = 0x1p-20;  // of the products of the columns of a rotation
   bool valid_ = false;                    // makeUsable() found no fault in the view
 };
 

@@ -96,6 +96,23 @@ Error tiltedBorders() {
   return Error{"clip_from_scene is sheared: the borders of the picture are not at right angles"};
 }
 
+// The depth of the farthest point of the picture's corners on the far plane, which rounding in the matrix may
+// have tilted: its row is the small difference of two large ones. Infinite where a corner's ray never meets
+// it.
+double farOf(const View& view, const Row& plane) {
+  const double up = view.tan_half_fovy, right = up * view.aspect;
+  const double at_eye = dot(plane.normal, view.eye) + plane.offset;
+  double far = 0.0;
+  for (const double x : {view.shift_x - 1.0, view.shift_x + 1.0}) {
+    for (const double y : {view.shift_y - 1.0, view.shift_y + 1.0}) {
+      const Vec3d ray = view.forward + view.right * (x * right) + view.up * (y * up);
+      const double depth = -at_eye / dot(plane.normal, ray);
+      far = depth >= 0.0 ? std::max(far, depth) : std::numeric_limits<double>::infinity();
+    }
+  }
+  return far;
+}
+
 Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
   const double q = rows.w.length();
   const Row depth = rows.w * (1.0 / q);
@@ -121,13 +138,10 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
   view.shift_y = -y->along / q;
   const double b = rows.z.offset - a * depth.offset;
   view.near = b / (range.near * q - a);
-  view.far = b / (range.far * q - a);
+  view.far = farOf(view, rows.z - rows.w * range.far);
   if (!(view.near > 0.0 && std::isfinite(view.near))) {
     return Error{
         "clip_from_scene has no near plane in front of the eye: is ClipSpace::depth that of the matrix?"};
-  }
-  if (!(view.far >= 0.0)) {
-    view.far = std::numeric_limits<double>::infinity();  // the plane lies beyond infinity, behind the eye
   }
   if (!(view.far > view.near)) {
     return Error{"clip_from_scene has its far plane before its near plane: is ClipSpace::depth kOneToZero?"};

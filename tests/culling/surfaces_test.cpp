@@ -435,6 +435,48 @@ TEST(SurfaceProbes, EdgesThatAreNearlyLevelCrossTheirRowsWhereTheyDo) {
 
 // The part of the triangle before the near plane is smaller than what single precision makes of half the size
 // of its box.
+// The second hill of a strip lies partly beyond the far plane and shows above the first one.
+TEST(SurfaceProbes, WhatLiesBeyondTheFarPlaneIsNoNearerThanItIs) {
+  constexpr std::array<std::array<float, 2>, 5> kProfile{{{10.0f, -8.0f},
+                                                          {20.0f, -8.0f},
+                                                          {60.0f, -1.2f},
+                                                          {140.0f, -10.0f},
+                                                          {240.0f, 5.0f}}};  // distance, height
+  Scene scene;
+  std::vector<Vec3f> corners;
+  for (std::size_t i = 0; i + 1 < kProfile.size(); ++i) {
+    const auto at = [&](std::size_t k, float x) { return Vec3f(x, kProfile[k][1], -kProfile[k][0]); };
+    const Vec3f a = at(i, -200), b = at(i, 200), c = at(i + 1, 200), d = at(i + 1, -200);
+    corners.insert(corners.end(), {a, b, c, a, c, d});
+  }
+  addTriangles(scene, addMaterial(scene, Opacity::kOpaque, false), corners);
+  View view = frontView();
+  view.near = 0.1;
+  view.tan_half_fovy = 0.2;
+  view.aspect = 16.0 / 9.0;
+  Rasteriser raster({.width = 320, .height = 180});
+  for (const double far : {130.0, 1000.0}) {
+    view.far = far;
+    raster.begin(view);
+    const SurfaceSet surfaces = findSurfaces(scene.view());
+    raster.draw(surfaces, surfaces.objects, kEverything);
+    const DepthBufferView buffer = raster.depthBuffer();
+    std::size_t covered = 0;
+    for (std::uint32_t y = 0; y < buffer.height; ++y) {
+      // The slope of the rays through the row's upper border, and where they meet the second hill. Only those
+      // that pass over the crest of the first one do.
+      const double slope = view.tan_half_fovy * (2.0 * (y + 1.0) / buffer.height - 1.0);
+      if (slope > -1.2 / 60.0 + 0.005 && slope < 5.0 / 240.0 - 0.005) {
+        ++covered;
+        const double distance = (10.0 + 140.0 * 0.15) / (0.15 - slope);
+        EXPECT_TRUE(!buffer.covered(160, y) || 1.0 / buffer.at(160, y) >= distance * 0.98)
+            << "row " << y << ", far " << far;
+      }
+    }
+    EXPECT_GT(covered, 8u);
+  }
+}
+
 TEST(SurfaceProbes, AVertexJustBeforeTheNearPlaneIsCutOff) {
   const View view = frontView();
   const double clip = view.near * (1.0 + 1e-6);
@@ -729,7 +771,8 @@ TEST(MovingSurfaces, AreDrawnWithRotationsAndTranslationsOnly) {
   };
   const Mat4 rigid = placement({0.2, 0.1, -1.0}, {0.3, 1.0, 0.0}, {0.0, 0.0, -10.0});
   EXPECT_EQ(coveredWith(rigid), 256u);
-  Mat4 scaled = rigid, mirrored = rigid, sheared = rigid, not_a_number = rigid, far = rigid;
+  Mat4 scaled = rigid, mirrored = rigid, sheared = rigid, not_a_number = rigid, far = rigid, halved = rigid,
+       projected = rigid, skewed = rigid;
   for (int row = 0; row < 3; ++row) {
     scaled(row, 0) *= 1.001;
     mirrored(row, 0) *= -1.0;
@@ -737,7 +780,10 @@ TEST(MovingSurfaces, AreDrawnWithRotationsAndTranslationsOnly) {
   }
   not_a_number(1, 3) = std::numeric_limits<double>::quiet_NaN();
   far(0, 3) = 1e18;
-  for (const Mat4& m : {scaled, mirrored, sheared, not_a_number, far}) {
+  halved(3, 3) = 0.5;
+  projected(3, 2) = std::numeric_limits<double>::quiet_NaN();
+  skewed(0, 0) += 5e-6;
+  for (const Mat4& m : {scaled, mirrored, sheared, not_a_number, far, halved, projected, skewed}) {
     EXPECT_EQ(coveredWith(m), 0u);
   }
   raster.begin(frontView());

@@ -360,6 +360,38 @@ TEST(ViewFromClip, HasThePlanesOfTheMatrixEvenInSinglePrecision) {
   EXPECT_GT(compared, 100000);
 }
 
+// The far plane of such a matrix is tilted: it is the difference of two rows that are nearly the same.
+TEST(ViewFromClip, ShowsAllThatAMatrixOfSinglePrecisionShowsBeforeItsFarPlane) {
+  std::size_t shown = 0;
+  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+    Random random(seed);
+    View view;
+    view.eye = random.point(100.0);
+    setOrientation(view, random.point(1.0), {0, 1, 0});
+    view.tan_half_fovy = 0.7;
+    view.aspect = 16.0 / 9.0;
+    view.near = 0.1;
+    view.far = 0.1 * std::pow(10.0, 3 + static_cast<int>(seed % 4));
+    const ClipDepth depth = seed % 2 == 0 ? ClipDepth::kMinusOneToOne : ClipDepth::kZeroToOne;
+    const Mat4 clip = inSinglePrecision(withDepth(clipFromScene(view), depth));
+    const Result<View> found = viewFromClip(clip, {.depth = depth});
+    ASSERT_TRUE(found) << "seed " << seed << ": " << found.error().message;
+    const double up = found->tan_half_fovy, right = up * found->aspect;
+    for (int i = 0; i < 40; ++i) {
+      const double x = random.in(-0.999, 0.999), y = random.in(-0.999, 0.999);
+      const double distance = view.far * random.in(0.8, 1.2);
+      const Vec3d point =
+          found->eye + (found->forward + found->right * (x * right) + found->up * (y * up)) * distance;
+      const auto margin = margins(clip, depth, point);
+      if (margin[5] > 0.0L) {
+        ++shown;
+        EXPECT_LE(dot(point - found->eye, found->forward), found->far * (1.0 + 1e-6)) << "seed " << seed;
+      }
+    }
+  }
+  EXPECT_GT(shown, 5000u);
+}
+
 // ---- Errors.
 
 void expectError(const Mat4& clip, const ClipSpace& space, const std::string& word) {

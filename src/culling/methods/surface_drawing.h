@@ -42,20 +42,13 @@ class SurfaceDrawer {
   // follows: the view follows the last one for which this buffer was drawn.
   template <typename Buffer>
   void draw(Buffer& buffer, const CullingFrame& frame, bool follows) const {
-    if (draws()) {
-      SurfaceDrawing drawing = drawing_;
-      drawing.step = follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump;
-      buffer.draw(*surfaces_, frame.jumped ? in_frustum_ : frame.last_visible, drawing);
-    }
+    draw(buffer, frame.jumped ? std::span<const ObjectId>(in_frustum_) : frame.last_visible,
+         follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump);
   }
   // Draws the surfaces of some of the objects, in a view that follows no other.
   template <typename Buffer>
   void drawOf(Buffer& buffer, std::span<const ObjectId> objects) const {
-    if (draws()) {
-      SurfaceDrawing drawing = drawing_;
-      drawing.step = ViewStep::kJump;
-      buffer.draw(*surfaces_, objects, drawing);
-    }
+    draw(buffer, objects, ViewStep::kJump);
   }
   // Draws the surfaces that move.
   template <typename Buffer>
@@ -70,12 +63,19 @@ class SurfaceDrawer {
   // Draws the surfaces of further objects in the same view.
   template <typename Buffer>
   void drawMore(Buffer& buffer, std::span<const ObjectId> objects) const {
-    SurfaceDrawing drawing = drawing_;
-    drawing.step = ViewStep::kSame;
-    buffer.draw(*surfaces_, objects, drawing);
+    draw(buffer, objects, ViewStep::kSame);
   }
 
  private:
+  template <typename Buffer>
+  void draw(Buffer& buffer, std::span<const ObjectId> objects, ViewStep step) const {
+    if (draws()) {
+      SurfaceDrawing drawing = drawing_;
+      drawing.step = step;
+      buffer.draw(*surfaces_, objects, drawing);
+    }
+  }
+
   SurfaceUse use_;
   SurfaceDrawing drawing_;
   const SurfaceSet* surfaces_ = nullptr;
