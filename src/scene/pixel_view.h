@@ -126,7 +126,7 @@ struct PixelView {
  private:
   static constexpr double kLargestScale = 0x1p40;
   static constexpr double kRigid = 0x1p-20;  // of the products of the columns of a rotation
-  bool valid_ = false;                    // makeUsable() found no fault in the view
+  bool valid_ = false;                       // makeUsable() found no fault in the view
 };
 
 }  // namespace sightline

@@ -31,12 +31,12 @@ struct ClipSpace {
 //
 // The matrix is taken as exact; so are matrices of single precision. The sides of the frustum are those of
 // the matrix to within 1e-12 of the distance from the eye and of the eye's coordinates. The far plane is
-// where the depth range of the matrix ends. Rounding in the matrix tilts it, by the more the larger far / near
-// is; far is the depth of its farthest corner, known to a fraction of 1e-15 (far + |eye|) / near of itself,
-// and infinite where a corner lies at infinity or beyond. That the near plane is tilted, by less than 1e-6, is
-// left out of account. In an orthographic view the
-// matrix does not tell where the eye is: it is put on the middle of the near plane, so that near and both
-// shifts are 0. Otherwise the result is the inverse of clipFromScene().
+// where the depth range of the matrix ends. Rounding in the matrix tilts it, by the more the larger far /
+// near is; far is the depth of its farthest corner, known to a fraction of 1e-15 (far + |eye|) / near of
+// itself, and infinite where a corner lies at infinity or beyond. That the near plane is tilted, by less than
+// 1e-6, is left out of account. In an orthographic view the matrix does not tell where the eye is: it is put
+// on the middle of the near plane, so that near and both shifts are 0. Otherwise the result is the inverse of
+// clipFromScene().
 //
 // Give the right ClipSpace::depth: only planes in the wrong order are noticed. A matrix of OpenGL that is
 // read as kZeroToOne, for example, is that of another view, with a near plane farther away.
