@@ -563,7 +563,8 @@ inline void HostileSceneMaker::addViews(HostileScene& made) {
   view.ortho_height = scale_ * in(2, 20);
   view.aspect = chance(2) ? 1.0 : in(0.3, 3);
   view.near = scale_ * (chance(3) ? in(0.001, 0.1) : 0.1);
-  view.far = chance(4) ? std::numeric_limits<double>::infinity() : scale_ * (chance(3) ? in(4, 20) : in(20, 1000));
+  view.far =
+      chance(4) ? std::numeric_limits<double>::infinity() : scale_ * (chance(3) ? in(4, 20) : in(20, 1000));
   const auto depthOf = [&](const Vec3f& p) { return dot(Vec3d(p) - view.eye, view.forward); };
   if (!made.scene.positions.empty() && chance(3)) {
     const double depth = depthOf(made.scene.positions[std::size_t(below(int(made.scene.positions.size())))]);
