@@ -127,10 +127,9 @@ class EdgeRows {
                        last = high < x0 ? r.x0 / kWide - 1
                                         : static_cast<std::int32_t>(std::min(high, x1 - 1.0) * (1.0 / kTile));
     WindingTile* tiles = target_.tiles + std::ptrdiff_t{target_.stride} * tile_row;
-    const std::int32_t next = last + 1;
     WindingExtent& extent = target_.extents[tile_row];
     extent.first = std::min(extent.first, first);
-    extent.last = std::max(extent.last, std::min(next, r.x1 / kWide - 1));
+    extent.last = std::max(extent.last, std::min(last + 1, r.x1 / kWide - 1));
 
     // Where the edge crosses the lower and upper borders of a row, and its middle.
     const std::int32_t row = tile_row * kHigh;
@@ -146,7 +145,8 @@ class EdgeRows {
       }
       return;
     }
-    // Of a flat edge the places at the borders may be clamped, and what is between them means nothing.
+    // The places at which a flat edge crosses the borders may be clamped, so its middle is computed by
+    // itself.
     HWY_ALIGN float below[kHigh], above[kHigh], middle[kHigh], doubt[kHigh];
     for (std::int32_t i = 0; i < kHigh; ++i) {
       const double at = x + i * kPixel * slope_;
