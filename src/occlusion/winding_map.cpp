@@ -311,7 +311,7 @@ HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& target, std::uint64_t&
     if (!coverTile(tile, outside, covered)) {
       continue;
     }
-    const std::size_t nearer_before = nearer;
+    tile.stale = true;
     const std::int32_t width = std::min(row.width - x * kWide, kWide);
     const std::uint32_t valid = width < kWide ? (1u << width) - 1u : ~0u;
     for (std::int32_t y = 0; y < row.rows; ++y) {
@@ -333,21 +333,20 @@ HWY_INLINE std::uint32_t resolveTilesOf(const WindingRow& target, std::uint64_t&
         hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + at);
       }
     }
-    if (nearer != nearer_before) {
-      tile.stale = true;
-    }
   }
   return static_cast<std::uint32_t>(nearer);
 }
 
-// far: least reciprocal depths of 8 x 4 pixels, `stride` for each four rows.
+// far: least reciprocal depths of blocks of pixels, `stride` for each row of them.
 std::uint32_t resolveFar(const WindingRow& row, std::uint64_t& tiles, const float* far,
                          std::uint32_t stride) {
-  return resolveTilesOf<8>(row, tiles, [far, stride](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
-    constexpr float kMax = std::numeric_limits<float>::max();
-    const float depth = far[stride * static_cast<std::uint32_t>(y / 4) + static_cast<std::uint32_t>(x / 8)];
-    return hn::Set(d, depth <= kMax ? depth : -kMax);
-  });
+  return resolveTilesOf<kFarWidth>(
+      row, tiles, [far, stride](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
+        constexpr float kMax = std::numeric_limits<float>::max();
+        const float depth = far[stride * static_cast<std::uint32_t>(y / kFarHeight) +
+                                static_cast<std::uint32_t>(x / kFarWidth)];
+        return hn::Set(d, depth <= kMax ? depth : -kMax);
+      });
 }
 
 // first_row: the number of the lowest row in the target.
@@ -450,8 +449,7 @@ HWY_EXPORT(lowerTiles);
 HWY_EXPORT(resolveFar);
 HWY_EXPORT(resolvePlane);
 
-constexpr std::int32_t kFarWidth = 8, kFarHeight = 4;
-constexpr std::uint64_t kLargestSum = 16000;  // of edges' values in a group: windings are single words
+constexpr std::uint64_t kLargestSum = 16000;  // of edges' values in a group: WindingTile::carry is a word
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace

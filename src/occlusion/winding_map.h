@@ -53,6 +53,9 @@ struct alignas(64) WindingTile {
   }
 };
 
+// The depth of a group is kept for blocks of so many pixels; a tile has whole ones.
+inline constexpr std::int32_t kFarWidth = 8, kFarHeight = 4;
+
 // Which tiles of a row of them edges have changed; last < first: none.
 struct WindingExtent {
   std::int32_t first = 0, last = -1;
@@ -113,7 +116,7 @@ class WindingMap {
   std::vector<WindingTile> tiles_;      // all zero between groups
   std::vector<WindingExtent> extents_;  // by row of tiles
   std::uint32_t far_stride_ = 0;
-  std::vector<float> far_;  // by 8 x 4 pixels: the least reciprocal depth of the group
+  std::vector<float> far_;  // by block: the least reciprocal depth of the group
   std::uint64_t edges_ = 0, pixels_ = 0;
   std::uint64_t sum_ = 0;  // of the values of the group's edges
 };
