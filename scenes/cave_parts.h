@@ -47,6 +47,10 @@ std::vector<Vec3d> walkLine(const Plan& plan);
 // about this many triangles.
 ValueGrid hollow(const Plan& plan, std::uint32_t triangles, std::uint64_t seed);
 
+// The same for cubes of 1 m whose corners have whole coordinates: a point of the grid is the middle of a
+// cube.
+ValueGrid hollowCubes(const Plan& plan, std::uint64_t seed);
+
 // The surface, an object for each cube of 12 m.
 void addRock(MeshBuilder& mesh, const ValueGrid& grid);
 // Dripstone, boulders, crates, barrels and lamps, off the walk.

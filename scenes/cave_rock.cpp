@@ -113,7 +113,13 @@ void carve(ValueGrid& grid, const Extent& extent, const Depth& depth) {
   }
 }
 
-ValueGrid hollowWithCells(const Plan& plan, double cell, std::uint64_t seed) {
+Vec3d halfway(const Vec3d& low) {
+  return Vec3d(std::floor(low.x) + 0.5, std::floor(low.y) + 0.5, std::floor(low.z) + 0.5);
+}
+
+enum class Origin { kAnywhere, kHalfway };  // kHalfway: between whole coordinates
+
+ValueGrid hollowWithCells(const Plan& plan, double cell, Origin origin, std::uint64_t seed) {
   Extent whole{plan.halls.front().eye, plan.halls.front().eye};
   const auto include = [&](const Extent& extent) {
     whole = {min(whole.min, extent.min), max(whole.max, extent.max)};
@@ -127,7 +133,7 @@ ValueGrid hollowWithCells(const Plan& plan, double cell, std::uint64_t seed) {
     include(extentOf(lines.back(), Vec3d(1, 1, 1) * tunnel.radius));
   }
   ValueGrid grid;
-  grid.origin = whole.min;
+  grid.origin = origin == Origin::kHalfway ? halfway(whole.min) : whole.min;
   grid.cell = cell;
   for (int axis = 0; axis < 3; ++axis) {
     grid.points[axis] = static_cast<std::uint32_t>((whole.max - whole.min)[axis] / cell) + 2;
@@ -152,9 +158,14 @@ ValueGrid hollowWithCells(const Plan& plan, double cell, std::uint64_t seed) {
 }  // namespace
 
 ValueGrid hollow(const Plan& plan, std::uint32_t triangles, std::uint64_t seed) {
-  const auto coarse = static_cast<double>(surfaceNet(hollowWithCells(plan, kCoarseCell, seed)).quads.size());
+  const auto coarse = static_cast<double>(
+      surfaceNet(hollowWithCells(plan, kCoarseCell, Origin::kAnywhere, seed)).quads.size());
   const double cell = kCoarseCell * std::sqrt(2.0 * coarse / triangles);
-  return hollowWithCells(plan, std::max(cell, kFinestCell), seed);
+  return hollowWithCells(plan, std::max(cell, kFinestCell), Origin::kAnywhere, seed);
+}
+
+ValueGrid hollowCubes(const Plan& plan, std::uint64_t seed) {
+  return hollowWithCells(plan, 1.0, Origin::kHalfway, seed);
 }
 
 void addRock(MeshBuilder& mesh, const ValueGrid& grid) {

@@ -28,6 +28,16 @@ struct CaveOptions {
 // Camera path: "tunnels" (400 frames through the halls).
 Scene makeCave(const CaveOptions& options);
 
+struct VoxelOptions {
+  std::uint32_t halls = 24;  // number of halls, joined by tunnels
+  std::uint32_t seed = 1;
+};
+// Halls and tunnels in cubes of 1 m of three kinds of rock. In each chunk of 16 x 16 x 16 cubes the faces of
+// a kind are one object, merged to rectangles, so that corners lie in the middle of others' edges
+// (T-junctions), at whole coordinates. Crates and lamps stand on the floors. Camera path: "tunnels" (400
+// frames through the halls).
+Scene makeVoxels(const VoxelOptions& options);
+
 struct VillageOptions {
   std::uint32_t houses = 160;  // at most this many; limited by the places beside the streets
   std::uint32_t seed = 1;

@@ -156,6 +156,13 @@ Result<Scene> makeDemoCave(std::string_view query) {
   return status ? Result<Scene>(makeCave(options)) : status.error();
 }
 
+Result<Scene> makeDemoVoxels(std::string_view query) {
+  VoxelOptions options;
+  Key keys[] = {{"halls", 4, 100, &options.halls}, {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "voxels", keys);
+  return status ? Result<Scene>(makeVoxels(options)) : status.error();
+}
+
 Result<Scene> makeDemoVillage(std::string_view query) {
   VillageOptions options;
   Key keys[] = {{"houses", 1, 1000, &options.houses}, {"seed", 0, kAnySeed, &options.seed}};
@@ -196,10 +203,11 @@ struct Maker {
   std::string_view name;
   Result<S> (*make)(std::string_view query);
 };
-constexpr Maker<Scene> kStillScenes[] = {
-    {"city", makeDemoCity}, {"building", makeDemoBuilding}, {"boxes", makeDemoBoxes},
-    {"ship", makeDemoShip}, {"glass", makeDemoGlass},       {"terrain", makeDemoTerrain},
-    {"cave", makeDemoCave}, {"village", makeDemoVillage},   {"jungle", makeDemoJungle}};
+constexpr Maker<Scene> kStillScenes[] = {{"city", makeDemoCity},     {"building", makeDemoBuilding},
+                                         {"boxes", makeDemoBoxes},   {"ship", makeDemoShip},
+                                         {"glass", makeDemoGlass},   {"terrain", makeDemoTerrain},
+                                         {"cave", makeDemoCave},     {"village", makeDemoVillage},
+                                         {"jungle", makeDemoJungle}, {"voxels", makeDemoVoxels}};
 constexpr Maker<MovingScene> kMovingScenes[] = {{"toothpicks", makeDemoToothpicks},
                                                 {"canyon", makeDemoCanyon}};
 

@@ -57,8 +57,8 @@ Scene makeShip(const ShipOptions& options);
 // "demo:city?copies=30&seed=1", "demo:building?floors=4&plants=100",
 // "demo:boxes?buildings=10000&boxes=50000", "demo:ship?decks=6&rooms=7&machinery=60",
 // "demo:glass?panes=18&bottles=12" (scenes/glass.h), "demo:terrain?triangles=100000",
-// "demo:cave?halls=24&triangles=100000", "demo:village?houses=160", "demo:jungle?buttes=45&trees=1500"
-// (scenes/landscapes.h), and frame 0 of the scenes with moving parts
+// "demo:cave?halls=24&triangles=100000", "demo:village?houses=160", "demo:jungle?buttes=45&trees=1500",
+// "demo:voxels?halls=24" (scenes/landscapes.h), and frame 0 of the scenes with moving parts
 // (scenes/moving_scene.h): "demo:toothpicks?n=200&scaling=ud", "demo:canyon?grid=14". An unknown scene or
 // key, or a value out of range, is an error that lists the valid ones.
 bool isDemoUrl(std::string_view url);
