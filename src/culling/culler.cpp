@@ -9,6 +9,7 @@
 #include "src/culling/occluder_choice.h"
 #include "src/culling/scene_fit.h"
 #include "src/culling/set_filter.h"
+#include "src/culling/several_boxes.h"
 #include "src/scene/usable_view.h"
 
 namespace sightline {
@@ -74,6 +75,9 @@ struct Culler::Impl {
     }
     if (traits.occluders) {
       choice.emplace(checked, settings.occluders);
+    }
+    if (scene.object_boxes != nullptr && settings.test_objects) {
+      several_boxes.emplace(*scene.object_boxes, scene.object_bounds);
     }
     takeStatistics();
     clearStatistics();
@@ -142,6 +146,9 @@ struct Culler::Impl {
     visible.clear();
     frame.last_visible = {};
     method->traverse(frame, stats, visible);
+    if (several_boxes) {
+      several_boxes->removeHidden(frustum, *method, visible);
+    }
     stats.traverse_us = laps.lap() - stats.detail_us;
   }
 
@@ -194,6 +201,7 @@ struct Culler::Impl {
   SceneSizes sizes;                               // at construction
   std::optional<SetFilter> filter;                // if sets are used
   std::optional<culling::OccluderChoice> choice;  // if the method uses occluders
+  std::optional<culling::SeveralBoxes> several_boxes;
   culling::LastView last_view;
   ParallelFor parallel_for = serialFor;
   std::array<ChosenOccluders, 2> in_use;  // see inUse()

@@ -23,7 +23,7 @@ std::size_t allocationsIn(AnyCuller& culler, std::span<const View> views,
 }
 
 // Returns settings with every structure, with a small budget for relations, and with all uses of the
-// database.
+// database and several boxes an object.
 std::vector<NamedSettings> allSettings() {
   std::vector<NamedSettings> all(std::begin(kStructures), std::end(kStructures));
   all.push_back({"frustum", {.method = AnyMethod::kFrustum}});
@@ -33,6 +33,7 @@ std::vector<NamedSettings> allSettings() {
     NamedSettings with_database = method;
     with_database.settings.use_lists = true;
     with_database.settings.detail_objects = true;
+    with_database.settings.object_boxes = true;
     all.push_back(with_database);
   }
   return all;

@@ -55,6 +55,7 @@ struct DemoScene {
   Hierarchy kd_tree, bvh;
   OccluderSet occluders;
   OccluderDatabase database, detail_database;  // coarse
+  ObjectBoxes object_boxes;
 
   explicit DemoScene(Scene source) : scene(std::move(source)) {
     std::vector<std::uint32_t> triangles;
@@ -65,6 +66,7 @@ struct DemoScene {
     kd_tree = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kKdTree});
     bvh = buildHierarchy(bounds, triangles, {.kind = HierarchyKind::kBvh});
     occluders = findOccluders(scene.view());
+    object_boxes = findObjectBoxes(scene.view());
     OccluderDatabaseSettings coarse{.directions = 16, .occluder_count = 128, .max_bytes = 1u << 20};
     database = OccluderDatabase::build(kd_tree, occluders, coarse);
     coarse.turned_away = true;
@@ -74,7 +76,9 @@ struct DemoScene {
     return kind == HierarchyKind::kKdTree ? kd_tree : bvh;
   }
   AnyCuller culler(HierarchyKind kind, const AnySettings& settings) const {
-    return AnyCuller(hierarchy(kind), bounds, occluders, settings, {&database, &detail_database});
+    return AnyCuller(
+        hierarchy(kind), bounds, occluders, settings,
+        {.from_eye = &database, .from_objects = &detail_database, .object_boxes = &object_boxes});
   }
   // Returns the views of frames first, first + 1, ... of a camera path; fewer at its end.
   std::vector<View> frames(const CameraPath& path, std::size_t first, std::size_t count) const {

@@ -49,6 +49,7 @@ struct AnySettings {
   bool use_lists = false;  // occluders come from AnyLists::from_eye
   bool detail_objects = false;
   std::uint32_t detail_occluder_count = 8;
+  bool object_boxes = false;  // objects are tested by AnyLists::object_boxes too
 };
 
 inline std::unique_ptr<CullingMethod> makeMethod(const AnySettings& settings) {
@@ -83,6 +84,7 @@ struct AnyLists {
   const OccluderLists* from_eye = nullptr;      // with AnySettings::use_lists
   const OccluderLists* from_objects = nullptr;  // with AnySettings::detail_objects
   const SurfaceSet* surfaces = nullptr;         // with AnySettings::surfaces
+  const ObjectBoxes* object_boxes = nullptr;    // with AnySettings::object_boxes
 };
 
 class AnyCuller : public Culler {
@@ -111,6 +113,7 @@ class AnyCuller : public Culler {
                               const AnyLists& lists, VisibleSets* sets) {
     return {.hierarchy = &hierarchy,
             .object_bounds = object_bounds,
+            .object_boxes = settings.object_boxes ? lists.object_boxes : nullptr,
             .occluders = &occluders,
             .surfaces = lists.surfaces,
             .occluder_lists = settings.use_lists ? lists.from_eye : nullptr,

@@ -41,6 +41,7 @@ class CullingJudge {
     static_occluders_ = occludersOf(moves, true);
     moving_occluders_ = moves ? occludersOf(true, false) : OccluderSet{};
     surfaces_ = surfacesOf(moves);
+    object_boxes_ = findObjectBoxes(scene_, {.min_saving = 0.0});
     const std::uint32_t leaf = 1u + below(2);
     kd_tree_ = buildHierarchy(bounds_, {}, {.kind = HierarchyKind::kKdTree, .max_leaf_objects = leaf});
     bvh_ = buildHierarchy(bounds_, {}, {.kind = HierarchyKind::kBvh, .max_leaf_objects = leaf});
@@ -142,23 +143,25 @@ class CullingJudge {
     s.drawing.budget = chance(6) ? 20u : s.drawing.budget;
     s.detail_objects = chance(6);
     s.use_lists = chance(6);
+    s.object_boxes = number % 2 == 1;
     const bool kd = chance(3);
     if (number == 0) {
       s = {.method = AnyMethod::kFrustum};
     }
     constexpr const char* kNames[] = {"frustum",     "occlusion tree", "supporting planes",
                                       "kept planes", "opacity map",    "depth pyramid"};
-    names_.push_back(std::string(kNames[static_cast<std::size_t>(s.method)]) + " (variant " +
-                     std::to_string(static_cast<int>(s.variant)) + ", joint " +
-                     std::to_string(s.supporting_planes.joint_occlusion) + ", map " +
-                     std::to_string(s.raster.width) + " x " + std::to_string(s.raster.height) + ", focus " +
-                     std::to_string(s.focus.magnification > 1.0) + ", coherence " +
-                     std::to_string(s.temporal_coherence) + ", occluders " +
-                     std::to_string(s.occluder_count) + ", detail " + std::to_string(s.detail_objects) +
-                     ", surfaces " + std::to_string(static_cast<int>(s.surfaces)) + ", lists " +
-                     std::to_string(s.use_lists) + (kd ? ", kd-tree" : ", bvh") + ")");
-    cullers_.push_back(std::make_unique<AnyCuller>(kd ? kd_tree_ : bvh_, bounds_, static_occluders_, s,
-                                                   AnyLists{&lists_, &near_lists_, &surfaces_}));
+    names_.push_back(
+        std::string(kNames[static_cast<std::size_t>(s.method)]) + " (variant " +
+        std::to_string(static_cast<int>(s.variant)) + ", joint " +
+        std::to_string(s.supporting_planes.joint_occlusion) + ", map " + std::to_string(s.raster.width) +
+        " x " + std::to_string(s.raster.height) + ", focus " + std::to_string(s.focus.magnification > 1.0) +
+        ", coherence " + std::to_string(s.temporal_coherence) + ", occluders " +
+        std::to_string(s.occluder_count) + ", detail " + std::to_string(s.detail_objects) + ", surfaces " +
+        std::to_string(static_cast<int>(s.surfaces)) + ", lists " + std::to_string(s.use_lists) + ", boxes " +
+        std::to_string(s.object_boxes) + (kd ? ", kd-tree" : ", bvh") + ")");
+    cullers_.push_back(
+        std::make_unique<AnyCuller>(kd ? kd_tree_ : bvh_, bounds_, static_occluders_, s,
+                                    AnyLists{&lists_, &near_lists_, &surfaces_, &object_boxes_}));
   }
 
   // Targets are given as moving boxes too: what either answer leaves out is culled.
@@ -186,6 +189,7 @@ class CullingJudge {
   std::vector<Box> bounds_;
   OccluderSet static_occluders_, moving_occluders_;
   SurfaceSet surfaces_;
+  ObjectBoxes object_boxes_;
   Hierarchy kd_tree_, bvh_;
   OccluderDatabase lists_, near_lists_;
   std::vector<std::string> names_;

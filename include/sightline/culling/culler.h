@@ -80,9 +80,9 @@ class Culler {
   void setParallelFor(ParallelFor parallel_for);
 
   // After any change of scene: boxes that moved, objects that came or went, another hierarchy, other
-  // occluders, lists or sets. The culler is then as new, with the same method and settings: all that it made
-  // of the scene, and of earlier frames, is made anew, which takes as long as the constructor and allocates.
-  // Answers are empty until the next cull().
+  // occluders, surfaces, boxes of objects, lists or sets. The culler is then as new, with the same method and
+  // settings: all that it made of the scene, and of earlier frames, is made anew, which takes as long as the
+  // constructor and allocates. Answers are empty until the next cull().
   //
   // The form without a scene takes the same memory as before, changed in place: for boxes in a vector that
   // has grown, and for other objects, call the other form. A change without reset() is noticed where the

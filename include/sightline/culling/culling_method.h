@@ -19,6 +19,7 @@
 #include "sightline/occlusion/visibility.h"
 #include "sightline/occlusion/visible_sets.h"
 #include "sightline/scene/camera.h"
+#include "sightline/scene/object_boxes.h"
 
 namespace sightline {
 
@@ -32,6 +33,10 @@ class SetFilter;
 struct CullingScene {
   const Hierarchy* hierarchy = nullptr;  // of these boxes
   std::span<const Box> object_bounds{};  // by ObjectId, scene space
+  // Several boxes an object, by which what the method keeps is tested once more; null: no such test. They are
+  // found in the same triangles, and again whenever triangles change: those of an object are not used where
+  // the box around them is not exactly the object's own, but a change within that box cannot be noticed.
+  const ObjectBoxes* object_boxes = nullptr;
   const OccluderSet* occluders = nullptr;
   // Surfaces of the same scene, for methods that draw whole surfaces; null: they draw none.
   const SurfaceSet* surfaces = nullptr;
@@ -119,8 +124,8 @@ struct CullingFrame {
   const ParallelFor* parallel_for = nullptr;  // never null
 };
 
-// A box that moves, and the planes of the frustum that it may cross: bit i is clear where the box is inside
-// of plane i.
+// A box that is tested by itself, as one that moves, and the planes of the frustum that it may cross: bit i
+// is clear where the box is inside of plane i.
 struct MovingBox {
   Box box{};
   std::uint8_t frustum_planes = kAllFrustumPlanes;
@@ -156,7 +161,7 @@ class CullingMethod {
   // For detailObjects(): a method that has supporting planes of the frame's occluders runs the test with them
   // and returns true; others leave it to detailObjects().
   virtual bool testDetail(culling::DetailTest&, std::vector<ObjectId>&) { return false; }
-  // States of boxes in the frustum that are no part of the scene, one for each box.
+  // States of boxes in the frustum, one for each: of boxes that move, and of several boxes an object.
   virtual void classify(std::span<const MovingBox> boxes, std::span<Visibility> states);
   // The frame ends: completes stats and the method's own statistics. stats has the frame's times, but for
   // classify().

@@ -90,8 +90,31 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
+    asked_.clear();
+    for (const MovingBox& box : boxes) {
+      asked_.push_back(box.box);
+    }
+    answers_.resize(std::max(answers_.size(), boxes.size()));
+    const std::span<BoxAnswer> answers = std::span(answers_).first(boxes.size());
+    pyramid_->classify(asked_, answers);
+    fine_boxes_.clear();
+    in_doubt_.clear();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      states[i] = pyramid_->classify(boxes[i].box);
+      states[i] = answers[i].visibility;
+      if (focused_ && states[i] != Visibility::kHidden && answers[i].on_buffer &&
+          window_->mayContain(answers[i].x, answers[i].y)) {
+        fine_boxes_.push_back(boxes[i].box);
+        in_doubt_.push_back(i);
+      }
+    }
+    if (fine_boxes_.empty()) {
+      return;
+    }
+    fine_pyramid_->classify(fine_boxes_, answers.first(fine_boxes_.size()), {.plain_from = 0});
+    for (std::size_t i = 0; i < in_doubt_.size(); ++i) {
+      if (answers[i].within_view && answers[i].visibility == Visibility::kHidden) {
+        states[in_doubt_[i]] = Visibility::kHidden;
+      }
     }
   }
 
@@ -182,6 +205,11 @@ class DepthPyramidMethod final : public CullingMethod {
   std::optional<DepthPyramid> fine_pyramid_;
   bool focused_ = false;                  // this frame has a window
   std::uint64_t groups_ = 0, edges_ = 0;  // of the surfaces in the pyramid
+  // Scratch for one classify() call: all boxes, those that are tested against the finer depth buffer too,
+  // their numbers among all, and answers.
+  std::vector<Box> asked_, fine_boxes_;
+  std::vector<BoxAnswer> answers_;
+  std::vector<std::size_t> in_doubt_;
   OccluderChooser chooser_;
   std::vector<ObjectId> in_window_;
   std::vector<OccluderId> fine_chosen_;

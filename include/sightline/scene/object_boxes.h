@@ -1,0 +1,43 @@
+#pragma once
+
+// Several boxes an object. One box around an L-shaped house, a diagonal beam or a row of lamps is mostly
+// empty, and the object is kept wherever one corner of that box shows.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline {
+
+inline constexpr std::uint32_t kMaxObjectBoxes = 8;
+
+// Made by findObjectBoxes(). Scene space.
+struct ObjectBoxes {
+  std::vector<std::uint32_t> first{};  // by ObjectId: its first box; and one more entry, the number of boxes
+  std::vector<Box> boxes{};
+
+  // Two to kMaxObjectBoxes boxes that together hold all of the object's triangles, each within
+  // Object::bounds. Empty if one box, Object::bounds, serves as well. object: of the scene.
+  std::span<const Box> of(ObjectId object) const {
+    return std::span(boxes).subspan(first[object.value], first[object.value + 1] - first[object.value]);
+  }
+};
+
+struct ObjectBoxesSettings {
+  std::uint32_t max_boxes = kMaxObjectBoxes;  // for one object; more than kMaxObjectBoxes counts as that many
+  // What one more box has to save: a share of the object's own box, by volume. For flat and thin objects each
+  // box counts as if it were a 16th of the object's length thicker, along all axes.
+  double min_saving = 0.005;
+};
+
+// Finds the boxes of all objects, in time linear in the number of triangles. Objects with coordinates that
+// are not finite have one box. The result does not depend on parallel_for.
+ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& settings = {},
+                            const ParallelFor& parallel_for = serialFor);
+
+}  // namespace sightline

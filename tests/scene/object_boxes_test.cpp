@@ -1,0 +1,292 @@
+#include "sightline/scene/object_boxes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <random>
+
+namespace sightline {
+namespace {
+
+// A scene of one object after the other.
+struct Shapes {
+  Scene scene;
+
+  void addTriangle(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+    for (const Vec3f& corner : {a, b, c}) {
+      scene.indices.push_back(static_cast<std::uint32_t>(scene.positions.size()));
+      scene.positions.push_back(corner);
+    }
+  }
+  void addCuboid(const Box& box) {
+    const auto corner = [&](int i) {
+      return Vec3f(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
+                   i & 4 ? box.max.z : box.min.z);
+    };
+    constexpr int kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    for (const auto& f : kFaces) {
+      addTriangle(corner(f[0]), corner(f[1]), corner(f[2]));
+      addTriangle(corner(f[0]), corner(f[2]), corner(f[3]));
+    }
+  }
+  // coordinate() gives the next one.
+  template <typename Coordinate>
+  void addTriangles(int count, const Coordinate& coordinate) {
+    const auto corner = [&] {
+      const float x = coordinate(), y = coordinate(), z = coordinate();
+      return Vec3f(x, y, z);
+    };
+    for (int t = 0; t < count; ++t) {
+      const Vec3f a = corner(), b = corner(), c = corner();
+      addTriangle(a, b, c);
+    }
+  }
+  // Makes an object of what was added since the last call.
+  void endObject() {
+    Object object;
+    object.first_index =
+        scene.objects.empty() ? 0 : scene.objects.back().first_index + scene.objects.back().index_count;
+    object.index_count = static_cast<std::uint32_t>(scene.indices.size()) - object.first_index;
+    object.material = MaterialId(0u);
+    scene.objects.push_back(object);
+    scene.materials.resize(1);
+    updateBounds(scene);
+  }
+};
+
+Shapes shapeOf(std::initializer_list<Box> cuboids) {
+  Shapes shapes;
+  for (const Box& cuboid : cuboids) {
+    shapes.addCuboid(cuboid);
+  }
+  shapes.endObject();
+  return shapes;
+}
+
+std::vector<Box> boxesOf(const Shapes& shapes, const ObjectBoxesSettings& settings = {}) {
+  const ObjectBoxes found = findObjectBoxes(shapes.scene.view(), settings);
+  EXPECT_EQ(found.first.size(), shapes.scene.objects.size() + 1);
+  const std::span<const Box> boxes = found.of(ObjectId(0u));
+  return {boxes.begin(), boxes.end()};
+}
+
+bool holds(const Box& box, const Vec3d& p) {
+  return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
+         p.z <= box.max.z;
+}
+
+// Points of all triangles, exact if coordinates have few bits, lie in the boxes; the boxes lie in the
+// object's.
+void expectHeld(const Shapes& shapes, const ObjectBoxes& found) {
+  const SceneView scene = shapes.scene.view();
+  for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+    const std::span<const Box> boxes = found.of(ObjectId(o));
+    if (boxes.empty()) {
+      continue;
+    }
+    ASSERT_GE(boxes.size(), 2u);
+    ASSERT_LE(boxes.size(), kMaxObjectBoxes);
+    for (const Box& box : boxes) {
+      ASSERT_TRUE(box.wellFormed());
+      ASSERT_TRUE(contains(scene.objects[o].bounds, box));
+    }
+    const std::span<const std::uint32_t> indices = scene.indicesOf(scene.objects[o]);
+    constexpr int kSteps = 16;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+      const Vec3d a(scene.positions[indices[i]]), b(scene.positions[indices[i + 1]]),
+          c(scene.positions[indices[i + 2]]);
+      for (int u = 0; u <= kSteps; ++u) {
+        for (int v = 0; u + v <= kSteps; ++v) {
+          const Vec3d p = (a * (kSteps - u - v) + b * u + c * v) * (1.0 / kSteps);
+          ASSERT_TRUE(std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) { return holds(box, p); }))
+              << "object " << o << ", triangle " << i / 3 << ", (" << p.x << ", " << p.y << ", " << p.z
+              << ")";
+        }
+      }
+    }
+  }
+}
+
+TEST(ObjectBoxes, ACuboidNeedsNoSecondBox) {
+  EXPECT_TRUE(boxesOf(shapeOf({{{-1, -2, -3}, {4, 5, 6}}})).empty());
+  EXPECT_TRUE(boxesOf(shapeOf({{{0, 0, 0}, {100, 0.5f, 3}}})).empty());
+}
+
+TEST(ObjectBoxes, AnLShapeHasTwo) {
+  const std::vector<Box> boxes = boxesOf(shapeOf({{{0, 0, 0}, {2, 10, 4}}, {{2, 0, 0}, {10, 2, 4}}}));
+  ASSERT_EQ(boxes.size(), 2u);
+  EXPECT_EQ(surfaceArea(boxes[0]) + surfaceArea(boxes[1]),
+            surfaceArea(Box{{0, 0, 0}, {2, 10, 4}}) + surfaceArea(Box{{2, 0, 0}, {10, 2, 4}}))
+      << "the wings themselves";
+}
+
+TEST(ObjectBoxes, AFaceInTheDividingPlaneBelongsToTheSideThatItBounds) {
+  // A tower on a wide base and one under a wide roof: what divides best is the top of the base, and the
+  // bottom of the roof, and each face in that plane would make the other box as wide as the whole.
+  const Box base{{0, 0, 0}, {16, 16, 4}}, tower{{6, 6, 4}, {10, 10, 16}};
+  EXPECT_EQ(boxesOf(shapeOf({base, tower})).size(), 2u);
+  const Box roof{{0, 0, 12}, {16, 16, 16}}, column{{6, 6, 0}, {10, 10, 12}};
+  EXPECT_EQ(boxesOf(shapeOf({roof, column})).size(), 2u);
+}
+
+TEST(ObjectBoxes, FindsWhatSavesOnlyAfterASecondDivision) {
+  // A frame: no single plane leaves less than the whole on its two sides.
+  const std::vector<Box> boxes =
+      boxesOf(shapeOf({{{0, 0, 0}, {1, 1, 8}}, {{7, 0, 0}, {8, 1, 8}}, {{1, 0, 7}, {7, 1, 8}}}));
+  EXPECT_GE(boxes.size(), 3u);
+  const Vec3d opening(4.0, 0.5, 3.0);
+  EXPECT_TRUE(std::none_of(boxes.begin(), boxes.end(), [&](const Box& box) { return holds(box, opening); }));
+}
+
+TEST(ObjectBoxes, DividesASingleTriangle) {
+  // A beam across a diagonal, with no vertex within.
+  Shapes shapes;
+  shapes.addTriangle({0, 0, 0}, {64, 64, 64}, {64, 64, 63});
+  shapes.endObject();
+  const std::vector<Box> boxes = boxesOf(shapes);
+  ASSERT_EQ(boxes.size(), kMaxObjectBoxes);
+  double volume = 0.0;
+  for (const Box& box : boxes) {
+    const Vec3d e(box.extent());
+    volume += e.x * e.y * e.z;
+  }
+  EXPECT_LT(volume, 64.0 * 64.0 * 64.0 / 16.0) << "eight cubes of an eighth of the length have a 64th";
+  expectHeld(shapes, findObjectBoxes(shapes.scene.view()));
+}
+
+TEST(ObjectBoxes, KeepsToTheSettings) {
+  Shapes shapes;
+  shapes.addTriangle({0, 0, 0}, {64, 64, 64}, {64, 64, 63});
+  shapes.endObject();
+  for (std::uint32_t most = 2; most <= kMaxObjectBoxes; ++most) {
+    EXPECT_EQ(boxesOf(shapes, {.max_boxes = most}).size(), most);
+  }
+  EXPECT_EQ(boxesOf(shapes, {.max_boxes = 100}).size(), kMaxObjectBoxes);
+  EXPECT_TRUE(boxesOf(shapes, {.max_boxes = 1}).empty());
+  EXPECT_TRUE(boxesOf(shapes, {.max_boxes = 0}).empty());
+  EXPECT_TRUE(boxesOf(shapes, {.min_saving = 1.0}).empty());
+}
+
+TEST(ObjectBoxes, HoldAllOfRandomShapes) {
+  std::size_t boxes = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    Shapes shapes;
+    // Sixteenths up to 64, and triangles of any size: points in steps of a sixteenth of a side are exact.
+    const auto coordinate = [&](int range) {
+      return static_cast<float>(static_cast<int>(random() % static_cast<unsigned>(range)) - range / 2) /
+             16.0f;
+    };
+    for (int o = 0; o < 6; ++o) {
+      const int triangles = 1 + static_cast<int>(random() % 30);
+      for (int t = 0; t < triangles; ++t) {
+        const Vec3f at(coordinate(1024), coordinate(1024), coordinate(1024));
+        const int size = 1 << (random() % 11);
+        const auto corner = [&] { return at + Vec3f(coordinate(size), coordinate(size), coordinate(size)); };
+        const Vec3f a = corner(), b = corner();
+        shapes.addTriangle(a, b, random() % 8 == 0 ? a : corner());
+      }
+      shapes.endObject();
+    }
+    const ObjectBoxes found =
+        findObjectBoxes(shapes.scene.view(), {.min_saving = seed % 2 == 0 ? 0.0 : 0.005});
+    expectHeld(shapes, found);
+    boxes += found.boxes.size();
+  }
+  EXPECT_GT(boxes, 1000u);
+}
+
+TEST(ObjectBoxes, HoldTrianglesThatReachOneFloatBeyondAPlane) {
+  for (std::uint32_t seed = 0; seed < 400; ++seed) {
+    std::mt19937 random(seed);
+    Shapes shapes;
+    const auto coordinate = [&] {
+      const float whole = 16.0f * static_cast<float>(1 + random() % 3);
+      return random() % 2 == 0 ? whole : std::nextafter(whole, 100.0f);
+    };
+    const int triangles = 1 + static_cast<int>(random() % 12);
+    shapes.addTriangles(triangles, coordinate);
+    shapes.endObject();
+    SCOPED_TRACE(seed);
+    expectHeld(shapes, findObjectBoxes(shapes.scene.view(), {.min_saving = 0.0}));
+  }
+}
+
+TEST(ObjectBoxes, ReachAllSidesOfTheObject) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> coordinate(-1e6f, 1e6f);
+  Shapes shapes;
+  for (int o = 0; o < 100; ++o) {
+    shapes.addTriangles(5, [&] { return coordinate(random); });
+    shapes.endObject();
+  }
+  const ObjectBoxes found = findObjectBoxes(shapes.scene.view());
+  for (std::uint32_t o = 0; o < 100; ++o) {
+    Box around;
+    for (const Box& box : found.of(ObjectId(o))) {
+      around.extend(box);
+    }
+    EXPECT_EQ(around, shapes.scene.objects[o].bounds);
+  }
+}
+
+TEST(ObjectBoxes, OneBoxWhereThereIsNothingToDivide) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  Shapes shapes;
+  shapes.endObject();  // without triangles
+  shapes.addTriangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3});
+  shapes.endObject();
+  shapes.addTriangle({0, 0, 0}, {64, 64, 64}, {64, nan, 63});
+  shapes.endObject();
+  shapes.addTriangle({0, 0, 0}, {64, 64, 64}, {64, 64, inf});
+  shapes.endObject();
+  const ObjectBoxes found = findObjectBoxes(shapes.scene.view());
+  EXPECT_EQ(found.first, std::vector<std::uint32_t>(5, 0u));
+  EXPECT_TRUE(found.boxes.empty());
+  EXPECT_EQ(findObjectBoxes(SceneView{}).first, std::vector<std::uint32_t>(1, 0u));
+}
+
+TEST(ObjectBoxes, TakeTheLargestAndTheSmallestNumbers) {
+  const float most = std::numeric_limits<float>::max(), least = std::numeric_limits<float>::denorm_min();
+  for (const float size : {most, least * 4096.0f, 1.0f}) {
+    Shapes shapes;
+    shapes.addTriangle({-size, -size, -size}, {size, size, size}, {size, size, size * 0.75f});
+    shapes.endObject();
+    const ObjectBoxes found = findObjectBoxes(shapes.scene.view());
+    for (const Box& box : found.boxes) {
+      EXPECT_TRUE(box.wellFormed());
+      EXPECT_TRUE(contains(shapes.scene.objects[0].bounds, box));
+    }
+    expectHeld(shapes, found);
+    if (size < 2.0f) {
+      EXPECT_EQ(found.boxes.size(), kMaxObjectBoxes) << size;
+    }
+  }
+}
+
+TEST(ObjectBoxes, DoNotDependOnTheThreads) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> coordinate(-10.0f, 10.0f);
+  Shapes shapes;
+  for (int o = 0; o < 50; ++o) {
+    shapes.addTriangles(20, [&] { return coordinate(random); });
+    shapes.endObject();
+  }
+  const ObjectBoxes serial = findObjectBoxes(shapes.scene.view());
+  const ParallelFor backwards = [](std::uint32_t count, const RangeBody& body) {
+    for (std::uint32_t i = count; i-- > 0;) {
+      body(i, i + 1);
+    }
+  };
+  const ObjectBoxes other = findObjectBoxes(shapes.scene.view(), {}, backwards);
+  EXPECT_FALSE(serial.boxes.empty());
+  EXPECT_EQ(serial.first, other.first);
+  EXPECT_EQ(serial.boxes, other.boxes);
+}
+
+}  // namespace
+}  // namespace sightline
