@@ -51,6 +51,11 @@ TEST(Tool, InfoCountsAddUp) {
     EXPECT_LE(hierarchy["bytes_per_object"], 64);
   }
   EXPECT_EQ(info["hierarchies"]["bvh"]["duplicates"], 0);
+  const std::size_t several = info["object_boxes"]["objects"], boxes = info["object_boxes"]["boxes"];
+  EXPECT_GT(several, 0u);
+  EXPECT_LE(several, id);
+  EXPECT_GE(boxes, 2 * several);
+  EXPECT_LE(boxes, 8 * several);
 }
 
 TEST(Tool, CullListsVisibleObjectsAscending) {

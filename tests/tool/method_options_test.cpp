@@ -27,17 +27,35 @@ std::vector<std::string> keysOf(const json& object) {
 
 TEST(MethodOptions, AMethodShowsItsOwnOptionsOnly) {
   using Keys = std::vector<std::string>;  // as parsed: ascending
-  EXPECT_EQ(keysOf(culled({"--method", "frustum"})["options"]), (Keys{"hierarchy"}));
+  EXPECT_EQ(keysOf(culled({"--method", "frustum"})["options"]), (Keys{"hierarchy", "object_boxes"}));
   EXPECT_EQ(keysOf(culled({})["options"]),
             (Keys{"area_angle", "coherence", "detail_objects", "hierarchy", "lambda_steps", "min_node_cost",
-                  "occluder_count", "occluders", "test_objects", "variant"}));
+                  "object_boxes", "occluder_count", "occluders", "test_objects", "variant"}));
   EXPECT_EQ(keysOf(culled({"--method", "supporting-planes"})["options"]),
             (Keys{"area_angle", "detail_objects", "hierarchy", "joint", "lambda_steps", "min_node_cost",
-                  "occluder_count", "occluders", "planes", "test_objects"}));
+                  "object_boxes", "occluder_count", "occluders", "planes", "test_objects"}));
   EXPECT_EQ(keysOf(culled({"--method", "supporting-planes", "--planes", "through-box"})["options"]),
             (Keys{"area_angle", "coherence", "detail_objects", "hierarchy", "joint", "lambda_steps",
-                  "min_node_cost", "occluder_count", "occluders", "planes", "relation_mib", "tangents",
-                  "test_objects"}));
+                  "min_node_cost", "object_boxes", "occluder_count", "occluders", "planes", "relation_mib",
+                  "tangents", "test_objects"}));
+}
+
+TEST(MethodOptions, ObjectsOfSeveralBoxesAreTheDepthPyramidsUnlessOneIsAskedFor) {
+  const auto of = [](const std::string& method, const std::string& boxes) {
+    const Outcome outcome = runTool({"cull", "demo:building?floors=1", "--frames", "0:400:40", "--method",
+                                     method, "--object-boxes", boxes, "--json", "-"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const json cull = parse(outcome.out);
+    std::size_t sum = 0;
+    for (const json& frame : cull["frames"]) {
+      sum += frame["visible"].size();
+    }
+    return sum;
+  };
+  EXPECT_LT(of("depth-pyramid", "8"), of("depth-pyramid", "1"));
+  EXPECT_EQ(of("depth-pyramid", "0"), of("depth-pyramid", "8"));
+  EXPECT_EQ(of("occlusion-tree", "0"), of("occlusion-tree", "1"));
+  EXPECT_LT(of("occlusion-tree", "8"), of("occlusion-tree", "1"));
 }
 
 TEST(MethodOptions, ValuesComeBackAsTheyWereGiven) {
@@ -245,7 +263,7 @@ class BakedMethods : public ::testing::Test {
 
 TEST_F(BakedMethods, TheOctreeTellsOfItsSets) {
   const json cull = culled({"--method", "visibility-octree", "--frames", "0:400:50"});
-  EXPECT_EQ(keysOf(cull["options"]), (std::vector<std::string>{"hierarchy"}));
+  EXPECT_EQ(keysOf(cull["options"]), (std::vector<std::string>{"hierarchy", "object_boxes"}));
   for (const json& frame : cull["frames"]) {
     EXPECT_GE(frame["sets"]["nodes"], 1);
     EXPECT_GE(frame["sets"]["objects"], frame["visible"].size());

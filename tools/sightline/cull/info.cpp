@@ -107,6 +107,20 @@ Json hierarchyJson(const HierarchyFacts& facts) {
           {"bytes_per_object", facts.bytes_per_object}};
 }
 
+// Objects of several boxes, and all of their boxes.
+struct BoxFacts {
+  std::size_t objects = 0, boxes = 0;
+};
+
+BoxFacts boxFactsOf(const Scene& scene, CullingData& data) {
+  const ObjectBoxes& boxes = data.objectBoxes(kMaxObjectBoxes);
+  BoxFacts facts{.boxes = boxes.boxes.size()};
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    facts.objects += boxes.of(ObjectId(o)).empty() ? 0 : 1;
+  }
+  return facts;
+}
+
 Json headJson(const Scene& scene, CullingData& data) {
   const Box bounds = sceneBounds(scene.view());
   const MaterialUse use = useOf(scene);
@@ -125,6 +139,7 @@ Json headJson(const Scene& scene, CullingData& data) {
   for (const auto& name : kHierarchies) {
     hierarchies[std::string(name.text)] = hierarchyJson(factsOf(data.hierarchy(name.value)));
   }
+  const BoxFacts boxes = boxFactsOf(scene, data);
   return {{"scene", sceneJson(scene)},
           {"triangles", scene.triangleCount()},
           {"vertices", scene.positions.size()},
@@ -134,6 +149,7 @@ Json headJson(const Scene& scene, CullingData& data) {
           {"materials", materials},
           {"paths", paths},
           {"occluders", occludersJson(data.occluders())},
+          {"object_boxes", {{"objects", boxes.objects}, {"boxes", boxes.boxes}}},
           {"hierarchies", hierarchies}};
 }
 
@@ -195,6 +211,8 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
              extent.x, extent.y, extent.z);
   printMaterials(scene);
   printOccluders(scene, data.occluders());
+  const BoxFacts boxes = boxFactsOf(scene, data);
+  fmt::print("boxes         {} objects have several, {} in all\n", boxes.objects, boxes.boxes);
   for (const auto& name : kHierarchies) {
     const HierarchyFacts facts = factsOf(data.hierarchy(name.value));
     fmt::print(

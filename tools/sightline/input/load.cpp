@@ -269,6 +269,14 @@ void CullingData::prepare(const Setting& setting) {
   }
 }
 
+const ObjectBoxes& CullingData::objectBoxes(std::uint32_t most) {
+  std::unique_ptr<ObjectBoxes>& boxes = object_boxes_[most];
+  if (!boxes) {
+    boxes = std::make_unique<ObjectBoxes>(findObjectBoxes(scene_, {.max_boxes = most}, parallel_for_));
+  }
+  return *boxes;
+}
+
 Culler CullingData::makeCuller(const Setting& setting) {
   CullingScene scene{
       .hierarchy = &hierarchy(setting.hierarchy), .object_bounds = bounds_, .occluders = &occluders_};
@@ -277,6 +285,9 @@ Culler CullingData::makeCuller(const Setting& setting) {
       surfaces_ = std::make_unique<SurfaceSet>(findSurfaces(scene_, {}, parallel_for_));
     }
     scene.surfaces = surfaces_.get();
+  }
+  if (const std::uint32_t most = setting.objectBoxes(); most > 1) {
+    scene.object_boxes = &objectBoxes(most);
   }
   if (setting.usesDatabase()) {
     scene.occluder_lists = databaseFor(setting, false, from_eye_);

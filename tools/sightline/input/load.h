@@ -12,6 +12,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/pvs/query/set_query.h"
 #include "sightline/pvs/query/sight_file.h"
+#include "sightline/scene/object_boxes.h"
 #include "sightline/scene/scene.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/output_files.h"
@@ -75,7 +76,8 @@ class CullingData {
   Culler makeCuller(const Setting& setting);
   // Says on stderr how many look-ups in the baked file returned all objects, and why.
   void noteUnknownSets() const;
-  const Hierarchy& hierarchy(HierarchyKind kind);  // built on first use
+  const Hierarchy& hierarchy(HierarchyKind kind);      // built on first use
+  const ObjectBoxes& objectBoxes(std::uint32_t most);  // at most so many an object; found on first use
   // The occluder databases of the first setting that uses them; null until a culler needs them.
   template <typename Database>
   struct Timed {
@@ -109,6 +111,7 @@ class CullingData {
   OccluderSet occluders_;
   SceneView scene_;
   std::unique_ptr<SurfaceSet> surfaces_;
+  std::array<std::unique_ptr<ObjectBoxes>, kMaxObjectBoxes + 1> object_boxes_;  // by the most of an object
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
   std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion

@@ -179,6 +179,9 @@ bool usesAreaAngle(const Setting& setting) {
 bool testsDetail(const Setting& setting) {
   return setting.testsDetailObjects();
 }
+bool testsObjects(const Setting& setting) {
+  return setting.culler.test_objects;
+}
 bool usesDatabase(const Setting& setting) {
   return setting.usesDatabase() || setting.testsDetailObjects();
 }
@@ -290,6 +293,10 @@ const std::vector<Option>& allOptions() {
        "objects of partly visible leaves are tested one by one",
        oneOf(
            kSwitch, +[](Setting& s) -> bool& { return s.culler.test_objects; })},
+      {"object-boxes", kAny, testsObjects, kList, kWhenChanged,
+       "most boxes of an object, by which what was kept is tested again; 0: 8 with the depth pyramid, else 1",
+       whole(
+           0, kMaxObjectBoxes, +[](Setting& s) -> std::uint32_t& { return s.object_box_option; })},
       {"joint", kOwn, always, kList, kWhenChanged,
        "supporting planes: occluders that share edges hide together",
        oneOf(
@@ -425,6 +432,11 @@ SurfaceUse Setting::surfaces() const {
   }
   return method->name == "depth-pyramid" && occluders == OccluderChoice::kAreaAngle ? SurfaceUse::kAlone
                                                                                     : SurfaceUse::kNone;
+}
+
+std::uint32_t Setting::objectBoxes() const {
+  const std::uint32_t usual = method->name == "depth-pyramid" ? kMaxObjectBoxes : 1;
+  return !testsObjects(*this) ? 1 : object_box_option > 0 ? object_box_option : usual;
 }
 
 bool Setting::choosesOccluders() const {

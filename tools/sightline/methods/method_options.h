@@ -42,7 +42,8 @@ struct Setting {
   DetailObjectsSettings detail{};
   SurfaceOption surface_option = SurfaceOption::kAutomatic;
   SurfaceDrawing surface_drawing{};
-  bool temporal_coherence = true;  // for the methods that have it
+  std::uint32_t object_box_option = 0;  // 0: see objectBoxes()
+  bool temporal_coherence = true;       // for the methods that have it
   OcclusionTreeVariant variant = OcclusionTreeMethodSettings{}.variant;
   PlaneForm plane_form = PlaneForm::kThroughEye;
   KeptPlanesSettings kept_planes{};
@@ -52,6 +53,9 @@ struct Setting {
   bool baked = false;  // there is a baked file
 
   SurfaceUse surfaces() const;
+  // The most boxes of an object; if none were asked for, those of the depth pyramid, and one of other
+  // methods.
+  std::uint32_t objectBoxes() const;
   bool choosesOccluders() const;
   bool usesDatabase() const;
   bool usesViewpoints() const;
