@@ -19,6 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<float, kBlock>;
 
+constexpr float kMore = 0x1p-20f;  // more than the rounding of a reciprocal depth, relative
+
 // The first and last cells of a range of a level, at most eight along each axis.
 struct CellRange {
   std::uint32_t x0, y0, x1, y1;
@@ -184,13 +186,42 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const PixelView& view, co
   return !(buffer.min[at] > image.farthest);
 }
 
+// Whether the buffer hides all of a box that reaches the near plane. Such a box has no rectangle, but its
+// outline and its faces hold for those points of it that are before the eye.
+bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box) {
+  constexpr double kLargest = 0x1p60;  // metres; products stay finite
+  const Vec3d low = Vec3d(box.min) - view.eye, high = Vec3d(box.max) - view.eye;
+  const Vec3d size = max(abs(low), abs(high));
+  if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z && maxComponent(size) < kLargest)) {
+    return false;
+  }
+  const DepthLevel &buffer = levels.front(), &top = levels.back();
+  PixelBox image;
+  image.x1 = static_cast<std::uint16_t>(buffer.width - 1);
+  image.y1 = static_cast<std::uint16_t>(buffer.height - 1);
+  image.nearest = static_cast<float>(view.reciprocalDepth(view.frustum_near));
+  image.nearest += std::abs(image.nearest) * kMore;
+  image.farthest = static_cast<float>(view.reciprocalDepth(dot(abs(view.forward), size)));
+  image.farthest -= std::abs(image.farthest) * kMore;
+  const auto level = static_cast<std::uint32_t>(levels.size() - 1);
+  const double reach = std::max(buffer.width, buffer.height) + 2.0 * (1u << (kBlockShift * level));
+  const CellRange all{0, 0, top.width - 1, top.height - 1};
+  const BoxOutline outline = outlineOf(view, box, 0, 0, reach);
+  // An empty buffer hides nothing, not even what lies beside the view.
+  return outline.face_count > 0 && anyNearer(levels, level, image, all, kUncovered) &&
+         !Refinement{levels, image, outline}.anyOpen(level, all);
+}
+
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
                    const PixelBox& image, bool plain, bool quick) {
-  if (image.place != BoxPlace::kOnBuffer) {
-    return image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial;
+  if (image.place == BoxPlace::kOutside) {
+    return Visibility::kHidden;
   }
   if (levels.empty()) {
     return Visibility::kPartial;
+  }
+  if (image.place == BoxPlace::kUnbounded) {
+    return hidesUnbounded(levels, view, box) ? Visibility::kHidden : Visibility::kPartial;
   }
   std::uint32_t level = 0;
   CellRange range = cellsOf(image, 0);

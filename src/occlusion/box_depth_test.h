@@ -15,8 +15,9 @@ namespace sightline::occlusion {
 // Classifies boxes; images and answers: one for each box, of one view and one size of the buffer. A box is
 // hidden where every pixel of its rectangle is nearer than the box's nearest point, or disjoint from the
 // box's outline, or nearer than the box is anywhere in that pixel. A box that is not hidden is visible where
-// no pixel of the rectangle is nearer than its farthest point, and partial otherwise. Without levels no box
-// on the buffer is hidden. Every instruction set gives the same answers.
+// no pixel of the rectangle is nearer than its farthest point, and partial otherwise. The rectangle of a box
+// that reaches the near plane is the whole buffer, and such a box is hidden or partial. Without levels no box
+// is hidden that may be on the buffer. Every instruction set gives the same answers.
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
 

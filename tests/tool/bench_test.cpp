@@ -44,14 +44,14 @@ TEST(BenchAnswers, AreTheSameOnEveryMachineWithAnyNumberOfThreads) {
       "none,with-occluders", "--occluder-count", "16,64"};
   const std::vector<std::string> city{"f93ff134933fb1fa", "f14cea3b36eb9c18", "d2d2cf695dc7a063",
                                       "1de2a4420b725f9c", "9c34d2550b16d4b1", "e86b3200d5db48f2",
-                                      "4acaf4093a7416b7", "dba64ffa68d5fd36"};
-  const std::vector<std::string> city_pyramids{"f93ff134933fb1fa", "665ec89a58f05442", "ed17ca3552356760",
-                                               "5917154b20a89191", "5e107b0291c380d7"};
+                                      "4acaf4093a7416b7", "9092e699b0ac061c"};
+  const std::vector<std::string> city_pyramids{"f93ff134933fb1fa", "5dfa4b38696eba97", "87c1708b585bb053",
+                                               "428254f029131eb3", "4e555ee66b1d417e"};
   const std::vector<std::string> building{"40d83cb56c4b5ca0", "de43e5e7f280b4fa", "65176768266b17de",
                                           "3158f99542937da3", "df79ff0470312c73", "c80bfd7fcd088f8b",
-                                          "933295b24856760f", "6edba605c86193f0"};
-  const std::vector<std::string> building_pyramids{"40d83cb56c4b5ca0", "70c2966da92e28b7", "a8b5a6f58f0941da",
-                                                   "6edba605c86193f0", "3261bb8c841e5540"};
+                                          "933295b24856760f", "db6f7e775b24c104"};
+  const std::vector<std::string> building_pyramids{"40d83cb56c4b5ca0", "88c758a4312cab63", "1f539526d61c93af",
+                                                   "db6f7e775b24c104", "f23f4a4ed2774666"};
   struct Case {
     std::string scene;
     std::vector<std::string> options, golden;

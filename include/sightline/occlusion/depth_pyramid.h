@@ -78,8 +78,8 @@ class DepthPyramid {
   void finish(const ParallelFor& parallel_for = serialFor);
 
   // Classifies boxes in scene space as seen in the last view. answers: as many as boxes. Boxes that are not
-  // well formed, and those that reach the near plane, are kPartial or kVisible. Boxes that are wholly outside
-  // the view are kHidden.
+  // well formed are kPartial or kVisible, those that reach the near plane kHidden or kPartial. Boxes that are
+  // wholly outside the view are kHidden.
   void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers, const BoxHints& hints = {}) const;
   Visibility classify(const Box& box) const;
   // Classifies by the view's volume alone, as if nothing were drawn: kHidden for boxes that are wholly
