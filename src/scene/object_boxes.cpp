@@ -31,14 +31,19 @@ float roundedUp(double v) {
 // Planes across an axis, ascending, at which a box may be divided.
 struct Cuts {
   static constexpr std::uint32_t kMost = 15;
-  std::array<float, kMost> at{};
+  std::array<float, kMost + 1> at{};  // infinite beyond those that there are
   std::uint32_t count = 0;
 
+  Cuts() { at.fill(kInfinity); }
   // Between neighbouring planes lie the slabs 0 to count, the slab i below the plane i. Returns the first one
   // whose plane is not below the value.
-  std::uint32_t slabOf(double value) const {
-    const auto first = std::lower_bound(at.begin(), at.begin() + count, value);
-    return static_cast<std::uint32_t>(first - at.begin());
+  template <typename Number>
+  std::uint32_t slabOf(Number value) const {
+    std::uint32_t below = 0;
+    for (const float plane : at) {
+      below += plane < value ? 1 : 0;
+    }
+    return below;
   }
 };
 
@@ -126,6 +131,8 @@ class Divider {
   const Vec3f& corner(std::uint32_t t, std::uint32_t k) const {
     return scene_.positions[indices_[3 * std::size_t{t} + k]];
   }
+  // Whether triangles fill all sides of the object's box: then no division can save anything.
+  bool fillsItsBox() const;
   // The part of a triangle in the box, or a little more than that.
   // Valid until the next call.
   const Piece& pieceIn(const Box& box, std::uint32_t t);
@@ -151,6 +158,31 @@ class Divider {
   std::array<Node, kMaxNodes> nodes_;
   std::uint32_t node_count_ = 0;
 };
+
+bool Divider::fillsItsBox() const {
+  const Box& box = nodes_[0].box;
+  std::array<double, 6> filled{};  // by side: twice the area of the triangles in it
+  for (std::uint32_t t = 0; t < bounds_.size(); ++t) {
+    const Box& flat = bounds_[t];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (flat.min[axis] != flat.max[axis]) {
+        continue;
+      }
+      const Vec3d a(corner(t, 0));
+      const double area = std::abs(cross(Vec3d(corner(t, 1)) - a, Vec3d(corner(t, 2)) - a)[axis]);
+      filled[2 * axis] += flat.min[axis] == box.min[axis] ? area : 0.0;
+      filled[2 * axis + 1] += flat.min[axis] == box.max[axis] ? area : 0.0;
+    }
+  }
+  const Vec3d extent = Vec3d(box.max) - Vec3d(box.min);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double side = 2.0 * extent[(axis + 1) % 3] * extent[(axis + 2) % 3] * (1.0 - 1e-6);
+    if (filled[2 * axis] < side || filled[2 * axis + 1] < side) {
+      return false;
+    }
+  }
+  return true;
+}
 
 const Piece& Divider::pieceIn(const Box& box, std::uint32_t t) {
   piece_.clear();
@@ -200,7 +232,7 @@ Cuts Divider::cutsOf(const Node& node, int axis) const {
   const bool few = std::all_of(node.triangles.begin(), node.triangles.end(), [&](std::uint32_t t) {
     return add(corner(t, 0)[axis]) && add(corner(t, 1)[axis]) && add(corner(t, 2)[axis]);
   });
-  cuts.count = few ? cuts.count : 0;
+  cuts = few ? cuts : Cuts();
   const std::uint32_t more = Cuts::kMost - cuts.count;
   for (std::uint32_t i = 1; i <= more; ++i) {
     add(static_cast<float>(low + (double{high} - low) * i / (more + 1)));
@@ -392,6 +424,9 @@ void Divider::divide(const SceneView& scene, const Object& object, std::vector<B
     }
     root.box.extend(bounds_[t]);
     root.triangles.push_back(t);
+  }
+  if (fillsItsBox()) {
+    return;
   }
   const Vec3d extent(Vec3d(root.box.max) - Vec3d(root.box.min));
   slack_ = std::ldexp(maxComponent(max(abs(Vec3d(root.box.min)), abs(Vec3d(root.box.max)))), -44);
