@@ -15,6 +15,9 @@ namespace sightline::occluders {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
+// Beyond so many vertices, a polygon grows no further before the others have had their turn. Each merge takes
+// time in proportion to its boundary, and a long strip would grow by a triangle at a time.
+constexpr std::size_t kLongLoop = 512;
 
 std::uint64_t directedEdge(std::uint32_t from, std::uint32_t to) {
   return (static_cast<std::uint64_t>(from) << 32) | to;
@@ -33,8 +36,8 @@ class Merger {
       if (!edgesAreFree(polygon.loop) || !finishPolygon(positions_, tolerance_, max_vertices_, polygon)) {
         continue;  // overlaps another one, or has no inside
       }
+      claimEdges(polygon.loop, static_cast<std::uint32_t>(polygons_.size()));
       polygons_.push_back(std::move(polygon));
-      claimEdges(static_cast<std::uint32_t>(polygons_.size() - 1));
     }
   }
 
@@ -43,7 +46,8 @@ class Merger {
     while (merged) {
       merged = false;
       for (const std::uint32_t p : byArea()) {
-        while (!polygons_[p].loop.empty() && mergeBest(p)) {
+        const std::size_t most = std::max(2 * polygons_[p].loop.size(), kLongLoop);
+        while (!polygons_[p].loop.empty() && polygons_[p].loop.size() <= most && mergeBest(p)) {
           merged = true;
         }
       }
@@ -75,8 +79,7 @@ class Merger {
     return true;
   }
 
-  void claimEdges(std::uint32_t p) {
-    const std::vector<std::uint32_t>& loop = polygons_[p].loop;
+  void claimEdges(std::span<const std::uint32_t> loop, std::uint32_t p) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
       owner_[directedEdge(loop[i], loop[(i + 1) % loop.size()])] = p;
     }
@@ -132,9 +135,10 @@ class Merger {
         turnsRight(b.loop[(end_b + m - 1) % m], chain_end, a.loop[(first + count + 1) % n], a.plane.normal)) {
       return result;
     }
+    const std::uint32_t shorter = n < m ? p : q, longer = n < m ? q : p;
     std::size_t common = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      common += beyond(p, k) == q ? 1 : 0;
+    for (std::size_t k = 0; k < std::min(n, m); ++k) {
+      common += beyond(shorter, k) == longer ? 1 : 0;
     }
     if (common != count || count >= n || count >= m) {
       return result;
@@ -177,9 +181,9 @@ class Merger {
     if (best_partner == kNone) {
       return false;
     }
+    claimEdges(polygons_[best_partner].loop, p);
     polygons_[best_partner].loop.clear();
     polygons_[p] = std::move(best);
-    claimEdges(p);
     return true;
   }
 

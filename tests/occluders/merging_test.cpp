@@ -346,6 +346,24 @@ TEST(MergedPolygons, AreFarFewerThanTheTrianglesOfALargeWall) {
   }
 }
 
+// Pieces with long boundaries take turns to grow.
+TEST(MergedPolygons, OfAVeryLongStripIsOne) {
+  for (const std::uint32_t cells : {250u, 260u, 2000u}) {
+    FlatMesh strip;
+    strip.add({0, 0});
+    strip.add({0, 1});
+    for (std::uint32_t i = 1; i <= cells; ++i) {
+      const std::uint32_t next = strip.add({0.25 * i, 0});
+      strip.add({0.25 * i, 1});
+      strip.addQuad(next - 2, next, next + 1, next - 1, i % 3 == 0);
+    }
+    const OccluderSet set = findOccluders(sceneOf(strip).view());
+    ASSERT_EQ(set.occluders.size(), 1u) << cells;
+    EXPECT_EQ(set.occluders[0].area, 0.25f * static_cast<float>(cells));
+    EXPECT_EQ(set.occluders[0].vertex_count, 4u);
+  }
+}
+
 TEST(MergedPolygons, OfOneMeshCannotBeMergedAnyFurther) {
   // No two of them share a whole side and are convex together.
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
