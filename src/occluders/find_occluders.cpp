@@ -66,41 +66,45 @@ void add(OccluderReport& sum, const OccluderReport& part) {
 // The polygons to keep, largest first; the others are counted as too small.
 std::vector<RankedPolygon> rank(const SceneView& scene, std::vector<ObjectResult>& results,
                                 const OccluderSettings& settings, OccluderReport& report) {
-  std::vector<RankedPolygon> all;
+  // Polygons are large: references to them are sorted, and each is moved once.
+  struct Candidate {
+    FoundPolygon* polygon;
+    double area;
+    ObjectId object;
+  };
+  std::vector<Candidate> all;
   double total_area = 0.0;
   for (std::size_t o = 0; o < results.size(); ++o) {
     for (FoundPolygon& polygon : results[o].polygons) {
       total_area += polygon.area;
-      all.push_back({std::move(polygon), ObjectId(o)});
+      all.push_back({&polygon, polygon.area, ObjectId(o)});
     }
     add(report, results[o].report);
-    results[o].polygons.clear();
   }
-  std::stable_sort(all.begin(), all.end(), [](const RankedPolygon& a, const RankedPolygon& b) {
-    return a.polygon.area > b.polygon.area;
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
   const std::size_t limit = settings.max_occluders != 0 ? settings.max_occluders : all.size();
   double area_before = 0.0;
-  std::size_t kept = 0;
+  std::vector<RankedPolygon> kept;
   std::set<std::pair<std::uint32_t, std::uint32_t>> kept_bodies;  // object, body
-  for (RankedPolygon& candidate : all) {
-    const double area = candidate.polygon.area;
-    const std::pair body(candidate.object.value, candidate.polygon.body);
-    const bool in_body = candidate.polygon.body != FoundPolygon::kNoBody;
-    const bool large = area_before < settings.area_fraction * total_area && area >= settings.min_area;
+  for (const Candidate& candidate : all) {
+    const std::uint32_t body = candidate.polygon->body;
+    const bool in_body = body != FoundPolygon::kNoBody;
+    const bool large =
+        area_before < settings.area_fraction * total_area && candidate.area >= settings.min_area;
     const bool marked = scene.objects[candidate.object.value].mark == OccluderMark::kOccluder;
-    area_before += area;
-    if ((large || marked || (in_body && kept_bodies.contains(body))) && kept < limit) {
+    area_before += candidate.area;
+    if ((large || marked || (in_body && kept_bodies.contains({candidate.object.value, body}))) &&
+        kept.size() < limit) {
       if (in_body) {
-        kept_bodies.insert(body);
+        kept_bodies.insert({candidate.object.value, body});
       }
-      std::swap(all[kept++], candidate);
+      kept.push_back({std::move(*candidate.polygon), candidate.object});
     } else {
-      report.too_small += candidate.polygon.triangle_count;
+      report.too_small += candidate.polygon->triangle_count;
     }
   }
-  all.resize(kept);
-  return all;
+  return kept;
 }
 
 std::uint32_t clampedVertices(std::uint32_t max_vertices) {
@@ -120,6 +124,7 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   });
   OccluderSet set;
   const std::vector<RankedPolygon> ranked = rank(scene, results, settings, set.report);
+  results = {};
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     set.objects.push_back(ObjectId(o));
   }

@@ -8,8 +8,8 @@
 #include "src/occluders/polygon_merge.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
-#include <unordered_map>
 
 namespace sightline::occluders {
 namespace {
@@ -23,10 +23,41 @@ std::uint64_t directedEdge(std::uint32_t from, std::uint32_t to) {
   return (static_cast<std::uint64_t>(from) << 32) | to;
 }
 
+// To which polygon each directed edge belongs, in one block of memory: there are patches of two triangles by
+// the million.
+class EdgeOwners {
+ public:
+  explicit EdgeOwners(std::size_t most_edges) : slots_(std::bit_ceil(2 * most_edges + 1)) {}
+
+  // kNone: to none.
+  std::uint32_t of(std::uint64_t edge) const { return slots_[slotOf(edge)].owner; }
+  void set(std::uint64_t edge, std::uint32_t owner) { slots_[slotOf(edge)] = {edge, owner}; }
+
+ private:
+  struct Slot {
+    std::uint64_t edge = 0;
+    std::uint32_t owner = kNone;
+  };
+
+  // The slot with the edge, or the free one that it would get.
+  std::size_t slotOf(std::uint64_t edge) const {
+    std::size_t slot = static_cast<std::size_t>((edge * 0x9e3779b97f4a7c15u) >> 32);
+    while (slots_[slot &= slots_.size() - 1].owner != kNone && slots_[slot].edge != edge) {
+      ++slot;
+    }
+    return slot;
+  }
+
+  std::vector<Slot> slots_;  // a power of two, at least half of them free
+};
+
 class Merger {
  public:
   Merger(std::span<const Vec3f> positions, const Patch& patch, double tolerance, std::uint32_t max_vertices)
-      : positions_(positions), tolerance_(tolerance), max_vertices_(max_vertices) {
+      : positions_(positions),
+        tolerance_(tolerance),
+        max_vertices_(max_vertices),
+        owners_(3 * patch.triangles.size()) {
     for (const auto& triangle : patch.triangles) {
       FoundPolygon polygon;
       polygon.loop.assign(triangle.begin(), triangle.end());
@@ -72,7 +103,7 @@ class Merger {
 
   bool edgesAreFree(std::span<const std::uint32_t> loop) const {
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      if (owner_.contains(directedEdge(loop[i], loop[(i + 1) % loop.size()]))) {
+      if (owners_.of(directedEdge(loop[i], loop[(i + 1) % loop.size()])) != kNone) {
         return false;
       }
     }
@@ -81,15 +112,15 @@ class Merger {
 
   void claimEdges(std::span<const std::uint32_t> loop, std::uint32_t p) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      owner_[directedEdge(loop[i], loop[(i + 1) % loop.size()])] = p;
+      owners_.set(directedEdge(loop[i], loop[(i + 1) % loop.size()]), p);
     }
   }
 
   // The polygon beyond edge i of p.
   std::uint32_t beyond(std::uint32_t p, std::size_t i) const {
     const std::vector<std::uint32_t>& loop = polygons_[p].loop;
-    const auto found = owner_.find(directedEdge(loop[(i + 1) % loop.size()], loop[i]));
-    return found == owner_.end() || found->second == p ? kNone : found->second;
+    const std::uint32_t owner = owners_.of(directedEdge(loop[(i + 1) % loop.size()], loop[i]));
+    return owner == p ? kNone : owner;
   }
 
   double compactness(const FoundPolygon& polygon) const {
@@ -191,8 +222,7 @@ class Merger {
   double tolerance_;
   std::uint32_t max_vertices_;
   std::vector<FoundPolygon> polygons_;
-  std::unordered_map<std::uint64_t, std::uint32_t>
-      owner_;  // of directed edges; stale entries are inside polygons
+  EdgeOwners owners_;  // stale ones are inside polygons
 };
 
 struct Point2 {
