@@ -81,18 +81,22 @@ void addEdge(const PixelView& view, const Origin& origin, const Vec3d& corner, i
   const Vec3d n = crossedWith(view.orthographic ? view.unit_z : corner, axis) * sign;
   const Vec3d f(dot(n, view.unit_x), dot(n, view.unit_y),
                 view.orthographic ? -dot(n, corner) : dot(n, view.unit_z));
-  // The axes are as good as unit vectors.
-  const double size = l1Norm(n) * (view.orthographic ? 1.0 + l1Norm(corner) : 1.0);
+  // The axes are as good as unit vectors. Orthographic: what they are off by counts by the distance from the
+  // eye, however short the normal is.
+  const double size = view.orthographic ? 2.0 * (1.0 + l1Norm(corner)) : l1Norm(n);
   if (bounded(origin, f, size, outline.edges[outline.edge_count])) {
     ++outline.edge_count;
   }
 }
 
-void addFace(const PixelView& view, const Origin& origin, int axis, double distance, BoxOutline& outline) {
+// farthest: a bound of the distance of the box's corners from the eye, metres.
+void addFace(const PixelView& view, const Origin& origin, int axis, double distance, double farthest,
+             BoxOutline& outline) {
   const double scale = 1.0 / (view.orthographic ? view.unit_z[axis] : distance);
   const Vec3d f =
       Vec3d(view.unit_x[axis], view.unit_y[axis], view.orthographic ? -distance : view.unit_z[axis]) * scale;
-  if (bounded(origin, f, maxComponent(abs(f)), outline.faces[outline.face_count])) {
+  const double size = view.orthographic ? std::abs(scale) * (1.0 + farthest) : maxComponent(abs(f));
+  if (bounded(origin, f, size, outline.faces[outline.face_count])) {
     ++outline.face_count;
   }
 }
@@ -114,7 +118,8 @@ BoxOutline outlineOf(const PixelView& view, const Box& box, std::uint32_t x, std
   }
   for (int axis = 0; axis < 3; ++axis, region /= 3) {
     if (region % 3 != 0) {
-      addFace(view, origin, axis, region % 3 == 1 ? eye_box.min[axis] : eye_box.max[axis], outline);
+      const double distance = region % 3 == 1 ? eye_box.min[axis] : eye_box.max[axis];
+      addFace(view, origin, axis, distance, eye_box.farthest(), outline);
     }
   }
   return outline;
