@@ -16,8 +16,9 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 // Beyond so many vertices, a polygon grows no further before the others have had their turn. Each merge takes
-// time in proportion to its boundary, and a long strip would grow by a triangle at a time.
-constexpr std::size_t kLongLoop = 512;
+// time in proportion to its boundary, and a long strip would grow by a triangle at a time. A row of a wall
+// that stops halfway ends in a slant, so walls with a longer boundary may come out in several polygons.
+constexpr std::size_t kLongLoop = 2048;
 
 std::uint64_t directedEdge(std::uint32_t from, std::uint32_t to) {
   return (static_cast<std::uint64_t>(from) << 32) | to;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "src/occlusion/box_outline.h"
 
@@ -18,8 +19,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<float, kBlock>;
-
-constexpr float kMore = 0x1p-20f;  // more than the rounding of a reciprocal depth, relative
 
 // The first and last cells of a range of a level, at most eight along each axis.
 struct CellRange {
@@ -107,6 +106,7 @@ struct Refinement {
   std::span<const DepthLevel> levels;
   const PixelBox& image;
   const BoxOutline& outline;
+  std::uint32_t rows_left = ~0u;  // of eight cells; then what is left counts as open
 
   // The result for eight cells in a row; bit i is for the cell `from` + i.
   struct Row {
@@ -154,9 +154,12 @@ struct Refinement {
   }
 
   // Whether in some pixel of these cells the box is not surely hidden.
-  bool anyOpen(std::uint32_t level, const CellRange& range) const {
+  bool anyOpen(std::uint32_t level, const CellRange& range) {
     const std::uint32_t from = readFrom(levels[level], range);
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
+      if (rows_left-- == 0) {
+        return true;
+      }
       Row row = ask(level, range, from, y);
       if (row.surely_open || (level == 0 && row.open != 0)) {
         return true;
@@ -189,27 +192,31 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const PixelView& view, co
 // Whether the buffer hides all of a box that reaches the near plane. Such a box has no rectangle, but its
 // outline and its faces hold for those points of it that are before the eye.
 bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box) {
-  constexpr double kLargest = 0x1p60;  // metres; products stay finite
-  const Vec3d low = Vec3d(box.min) - view.eye, high = Vec3d(box.max) - view.eye;
-  const Vec3d size = max(abs(low), abs(high));
-  if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z && maxComponent(size) < kLargest)) {
+  constexpr double kLargest = 0x1p60;           // metres; products stay finite
+  constexpr std::uint32_t kMostRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
+  const Vec3d size = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
+  if (!view.sane() || !box.wellFormed() || !(maxComponent(size) < kLargest)) {
     return false;
   }
   const DepthLevel &buffer = levels.front(), &top = levels.back();
+  const auto level = static_cast<std::uint32_t>(levels.size() - 1);
+  const CellRange all{0, 0, top.width - 1, top.height - 1};
+  const auto rounded = [](double value) {
+    return static_cast<float>(std::min<double>(value, std::numeric_limits<float>::max()));
+  };
   PixelBox image;
   image.x1 = static_cast<std::uint16_t>(buffer.width - 1);
   image.y1 = static_cast<std::uint16_t>(buffer.height - 1);
-  image.nearest = static_cast<float>(view.reciprocalDepth(view.frustum_near));
-  image.nearest += std::abs(image.nearest) * kMore;
-  image.farthest = static_cast<float>(view.reciprocalDepth(dot(abs(view.forward), size)));
-  image.farthest -= std::abs(image.farthest) * kMore;
-  const auto level = static_cast<std::uint32_t>(levels.size() - 1);
-  const double reach = std::max(buffer.width, buffer.height) + 2.0 * (1u << (kBlockShift * level));
-  const CellRange all{0, 0, top.width - 1, top.height - 1};
-  const BoxOutline outline = outlineOf(view, box, 0, 0, reach);
+  image.nearest = rounded(view.reciprocalDepth(view.frustum_near));
+  image.farthest = rounded(view.reciprocalDepth(dot(abs(view.forward), size)));
   // An empty buffer hides nothing, not even what lies beside the view.
-  return outline.face_count > 0 && anyNearer(levels, level, image, all, kUncovered) &&
-         !Refinement{levels, image, outline}.anyOpen(level, all);
+  if (!anyNearer(levels, level, image, all, kUncovered)) {
+    return false;
+  }
+  const double reach = std::max(buffer.width, buffer.height) + 2.0 * (1u << (kBlockShift * level));
+  const BoxOutline outline = outlineOf(view, box, 0, 0, reach);
+  // Without faces the eye is in the box or on it, or nothing is known of them.
+  return outline.face_count > 0 && !Refinement{levels, image, outline, kMostRows}.anyOpen(level, all);
 }
 
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
@@ -244,7 +251,7 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   const std::uint32_t size = 1u << (kBlockShift * level);
   const double reach = std::max(image.x1 - image.x0, image.y1 - image.y0) + 2.0 * size;
   const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reach);
-  const Refinement refinement{levels, image, outline};
+  Refinement refinement{levels, image, outline};
   if (refinement.anyOpen(level, range)) {
     return Visibility::kPartial;
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "src/geometry/clip_convex.h"
@@ -131,7 +132,7 @@ class Divider {
   const Vec3f& corner(std::uint32_t t, std::uint32_t k) const {
     return scene_.positions[indices_[3 * std::size_t{t} + k]];
   }
-  // Whether triangles fill all sides of the object's box: then no division can save anything.
+  // Whether triangles fill all sides of the object's box: then no division saves volume.
   bool fillsItsBox() const;
   // The part of a triangle in the box, or a little more than that.
   // Valid until the next call.
@@ -161,7 +162,9 @@ class Divider {
 
 bool Divider::fillsItsBox() const {
   const Box& box = nodes_[0].box;
-  std::array<double, 6> filled{};  // by side: twice the area of the triangles in it
+  // By side: twice the area of the triangles in it that face one way, and of the others. Both layers of a
+  // panel fill no more than one.
+  std::array<std::array<double, 2>, 6> filled{};
   for (std::uint32_t t = 0; t < bounds_.size(); ++t) {
     const Box& flat = bounds_[t];
     for (int axis = 0; axis < 3; ++axis) {
@@ -169,15 +172,17 @@ bool Divider::fillsItsBox() const {
         continue;
       }
       const Vec3d a(corner(t, 0));
-      const double area = std::abs(cross(Vec3d(corner(t, 1)) - a, Vec3d(corner(t, 2)) - a)[axis]);
-      filled[2 * axis] += flat.min[axis] == box.min[axis] ? area : 0.0;
-      filled[2 * axis + 1] += flat.min[axis] == box.max[axis] ? area : 0.0;
+      const double area = cross(Vec3d(corner(t, 1)) - a, Vec3d(corner(t, 2)) - a)[axis];
+      const std::size_t way = area < 0.0 ? 1 : 0;
+      filled[2 * axis][way] += flat.min[axis] == box.min[axis] ? std::abs(area) : 0.0;
+      filled[2 * axis + 1][way] += flat.min[axis] == box.max[axis] ? std::abs(area) : 0.0;
     }
   }
   const Vec3d extent = Vec3d(box.max) - Vec3d(box.min);
   for (int axis = 0; axis < 3; ++axis) {
     const double side = 2.0 * extent[(axis + 1) % 3] * extent[(axis + 2) % 3] * (1.0 - 1e-6);
-    if (filled[2 * axis] < side || filled[2 * axis + 1] < side) {
+    const auto& [low, high] = std::tie(filled[2 * axis], filled[2 * axis + 1]);
+    if (std::max(low[0], low[1]) < side || std::max(high[0], high[1]) < side) {
       return false;
     }
   }

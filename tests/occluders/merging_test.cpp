@@ -348,7 +348,7 @@ TEST(MergedPolygons, AreFarFewerThanTheTrianglesOfALargeWall) {
 
 // Pieces with long boundaries take turns to grow.
 TEST(MergedPolygons, OfAVeryLongStripIsOne) {
-  for (const std::uint32_t cells : {250u, 260u, 2000u}) {
+  for (const std::uint32_t cells : {250u, 1030u, 3000u}) {
     FlatMesh strip;
     strip.add({0, 0});
     strip.add({0, 1});
@@ -362,6 +362,17 @@ TEST(MergedPolygons, OfAVeryLongStripIsOne) {
     EXPECT_EQ(set.occluders[0].area, 0.25f * static_cast<float>(cells));
     EXPECT_EQ(set.occluders[0].vertex_count, 4u);
   }
+}
+
+TEST(MergedPolygons, OfALongWallIsOne) {
+  Random random(1);
+  std::vector<double> xs, ys;
+  for (int i = 0; i <= 300; ++i) {
+    xs.push_back(i);
+  }
+  ys.assign(xs.begin(), xs.begin() + 41);
+  const FlatMesh wall = grid(xs, ys, random, [](std::uint32_t, std::uint32_t) { return true; });
+  EXPECT_EQ(findOccluders(sceneOf(wall).view()).occluders.size(), 1u);
 }
 
 TEST(MergedPolygons, OfOneMeshCannotBeMergedAnyFurther) {

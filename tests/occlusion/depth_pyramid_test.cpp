@@ -105,6 +105,12 @@ TEST(DepthPyramid, WhatIsNotFiniteIsNotHidden) {
                          Box{{-inf, -inf, -inf}, {inf, inf, inf}}}) {
     EXPECT_EQ(seenPast(walls, box), Visibility::kPartial);
   }
+  // The eye is so far away that subtraction makes a box of one whose sides are the wrong way round.
+  View far_away = kLookingBack;
+  far_away.eye.y = 1e17;
+  const std::vector<OraclePolygon> wide{wall(-1e17f, 1e17f, 0.9e17f, 1.1e17f, -1e15f)};
+  EXPECT_NE(pyramidOf(wide, far_away).classify({{-1e17f, 3, -1e17f}, {1e17f, 2, 1e17f}}),
+            Visibility::kHidden);
   View nowhere = kLookingBack;
   nowhere.eye.x = nan;
   EXPECT_NE(pyramidOf(walls, nowhere).classify({{-1, -1, -9}, {1, 1, -8}}), Visibility::kHidden);

@@ -124,6 +124,20 @@ TEST(ObjectBoxes, AnLShapeHasTwo) {
       << "the wings themselves";
 }
 
+TEST(ObjectBoxes, APanelOfTwoLayersIsAsFullAsOne) {
+  // An L of three quarters of a square, with its back.
+  Shapes panel;
+  for (const Vec3f& at : {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0)}) {
+    const Vec3f b = at + Vec3f(1, 0, 0), c = at + Vec3f(1, 1, 0), d = at + Vec3f(0, 1, 0);
+    panel.addTriangle(at, b, c);
+    panel.addTriangle(at, c, d);
+    panel.addTriangle(at, c, b);
+    panel.addTriangle(at, d, c);
+  }
+  panel.endObject();
+  EXPECT_EQ(boxesOf(panel).size(), 2u);
+}
+
 TEST(ObjectBoxes, AFaceInTheDividingPlaneBelongsToTheSideThatItBounds) {
   // A tower on a wide base and one under a wide roof: what divides best is the top of the base, and the
   // bottom of the roof, and each face in that plane would make the other box as wide as the whole.
