@@ -189,6 +189,10 @@ HWY_INLINE bool seenAtCentre(const DepthLevel& buffer, const PixelView& view, co
   return !(buffer.min[at] > image.farthest);
 }
 
+float rounded(double value) {
+  return static_cast<float>(std::min<double>(value, std::numeric_limits<float>::max()));
+}
+
 // Whether the buffer hides all of a box that reaches the near plane. Such a box has no rectangle, but its
 // outline and its faces hold for those points of it that are before the eye.
 bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box) {
@@ -201,9 +205,6 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, c
   const DepthLevel &buffer = levels.front(), &top = levels.back();
   const auto level = static_cast<std::uint32_t>(levels.size() - 1);
   const CellRange all{0, 0, top.width - 1, top.height - 1};
-  const auto rounded = [](double value) {
-    return static_cast<float>(std::min<double>(value, std::numeric_limits<float>::max()));
-  };
   PixelBox image;
   image.x1 = static_cast<std::uint16_t>(buffer.width - 1);
   image.y1 = static_cast<std::uint16_t>(buffer.height - 1);
