@@ -59,6 +59,70 @@ class Closing {
     return std::move(result_);
   }
 
+  std::vector<NearMiss> findNearMisses() {
+    std::vector<NearMiss> misses;
+    if (!(width_ > 0.0) || !std::isfinite(width_)) {
+      return misses;
+    }
+    findOpenEdges();
+    base::Rows<std::uint32_t> next_to;  // by vertex: those at the other ends of its open edges
+    next_to.group(input_.vertices.size(), [&](auto&& pair) {
+      for (const OpenEdge& edge : open_) {
+        pair(edge.low, edge.high);
+        pair(edge.high, edge.low);
+      }
+    });
+    struct Found {
+      std::uint32_t place, edge;
+      double distance;
+    };
+    const auto edges = static_cast<std::uint32_t>(open_.size());
+    const BoxPairs pairs = edgesAndVertices();
+    std::vector<std::vector<Found>> parts(pairs.partCount());
+    forPairs(pairs, parallel_for_, [&](std::uint32_t part, std::uint32_t a, std::uint32_t b) {
+      const std::uint32_t edge = std::min(a, b), place = std::max(a, b) - edges;
+      if (edge >= edges || std::max(a, b) < edges) {
+        return;
+      }
+      const std::uint32_t v = vertices_[place];
+      const auto [low, high] = open_[edge];
+      if (v == low || v == high) {
+        return;
+      }
+      const double at_part = std::clamp(partOfEdge(open_[edge], v), 0.0, 1.0);
+      const std::uint32_t end = at_part == 0.0 ? low : high;
+      const std::span<const std::uint32_t> own = next_to[v];
+      if ((at_part == 0.0 || at_part == 1.0) && std::find(own.begin(), own.end(), end) != own.end()) {
+        return;
+      }
+      const double distance = length(at(v) - at(low) - (at(high) - at(low)) * at_part);
+      if (distance < width_) {
+        parts[part].push_back({place, edge, distance});
+      }
+    });
+    std::vector<Found> nearest(vertices_.size(), {0, 0, width_});
+    for (const std::vector<Found>& part : parts) {
+      for (const Found& found : part) {
+        Found& best = nearest[found.place];
+        if (std::tie(found.distance, found.edge) < std::tie(best.distance, best.edge)) {
+          best = found;
+        }
+      }
+    }
+    std::vector<std::uint32_t> triangle_of(input_.vertices.size());
+    for (std::uint32_t i = static_cast<std::uint32_t>(input_.triangles.size()); i-- > 0;) {
+      triangle_of[input_.triangles[i]] = i / 3;
+    }
+    for (std::uint32_t place = 0; place < nearest.size(); ++place) {
+      const auto [own, edge, distance] = nearest[place];
+      const std::uint32_t v = vertices_[place];
+      if (distance < width_ && distance > kRounded * maxComponent(abs(at(v)))) {
+        misses.push_back({v, distance, triangle_of[v], triangle_at_[edge]});
+      }
+    }
+    return misses;
+  }
+
  private:
   const Vec3d& at(std::uint32_t vertex) const { return input_.vertices[vertex]; }
 
@@ -67,26 +131,32 @@ class Closing {
     struct Half {
       OpenEdge edge;
       int value;
+      std::uint32_t triangle;
     };
     std::vector<Half> halves;
     halves.reserve(triangles_.size());
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const std::uint32_t a = triangles_[i], b = triangles_[i % 3 == 2 ? i - 2 : i + 1];
       if (a != b) {
-        halves.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1});
+        halves.push_back(
+            {{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1, static_cast<std::uint32_t>(i / 3)});
       }
     }
-    std::sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) { return a.edge < b.edge; });
+    std::sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
+      return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
+    });
     open_.clear();
+    triangle_at_.clear();
     for (std::size_t i = 0; i < halves.size();) {
       int value = 0;
-      const OpenEdge edge = halves[i].edge;
+      const auto [edge, own_value, triangle] = halves[i];
       for (; i < halves.size() && halves[i].edge == edge; ++i) {
         value += halves[i].value;
       }
       if (value != 0 && geometry::Lattice::allowed(at(edge.low)) &&
           geometry::Lattice::allowed(at(edge.high))) {
         open_.push_back(edge);
+        triangle_at_.push_back(triangle);
       }
     }
     vertices_.clear();
@@ -166,8 +236,8 @@ class Closing {
     }
   }
 
-  void bendEdges() {
-    const auto edges = static_cast<std::uint32_t>(open_.size());
+  // The boxes of open edges and then those of their vertices, which meet if they are closer than the width.
+  BoxPairs edgesAndVertices() const {
     std::vector<Box> boxes;
     for (const OpenEdge& edge : open_) {
       boxes.push_back(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_));
@@ -175,7 +245,18 @@ class Closing {
     for (const std::uint32_t v : vertices_) {
       boxes.push_back(grown(at(v), at(v), 0.0));
     }
-    const BoxPairs pairs(boxes, numbersTo(boxes.size()));
+    return {boxes, numbersTo(boxes.size())};
+  }
+
+  // Where on the line of the edge the vertex's nearest point is: 0 at its lower end, 1 at its higher one.
+  double partOfEdge(const OpenEdge& edge, std::uint32_t v) const {
+    const Vec3d along = at(edge.high) - at(edge.low);
+    return dot(at(v) - at(edge.low), along) / dot(along, along);
+  }
+
+  void bendEdges() {
+    const auto edges = static_cast<std::uint32_t>(open_.size());
+    const BoxPairs pairs = edgesAndVertices();
     struct Found {
       std::uint32_t edge;
       Beside beside;
@@ -189,9 +270,8 @@ class Closing {
       }
       const std::uint32_t v = vertices_[place - edges];
       const auto [low, high] = open_[edge];
-      const Vec3d along = at(high) - at(low), to = at(v) - at(low);
-      const double part_of_edge = dot(to, along) / dot(along, along);
-      const double distance = length(to - along * part_of_edge);
+      const double part_of_edge = partOfEdge(open_[edge], v);
+      const double distance = length(at(v) - at(low) - (at(high) - at(low)) * part_of_edge);
       if (v != low && v != high && part_of_edge > 0.0 && part_of_edge < 1.0 && distance < width_) {
         parts[part].push_back({edge, {part_of_edge, v}, distance});
       }
@@ -287,10 +367,11 @@ class Closing {
   const ConformInput& input_;
   const double width_;
   const ParallelFor& parallel_for_;
-  std::vector<std::uint32_t> triangles_;  // as the input's, of the vertices that stay
-  std::vector<OpenEdge> open_;            // ascending
-  std::vector<std::uint32_t> vertices_;   // of open edges, by place
-  base::Rows<Beside> beside_;             // by open edge, along it
+  std::vector<std::uint32_t> triangles_;    // as the input's, of the vertices that stay
+  std::vector<OpenEdge> open_;              // ascending
+  std::vector<std::uint32_t> triangle_at_;  // by open edge: one that has it
+  std::vector<std::uint32_t> vertices_;     // of open edges, by place
+  base::Rows<Beside> beside_;               // by open edge, along it
   std::vector<std::uint32_t> ways_[3];
   double merging_ = 0.0, bending_ = 0.0;  // how far each step moves a point at most
   ClosedCracks result_;
@@ -300,6 +381,11 @@ class Closing {
 
 ClosedCracks closeCracks(const ConformInput& input, double width, const ParallelFor& parallel_for) {
   return Closing(input, width, parallel_for).run();
+}
+
+std::vector<NearMiss> findNearMisses(const ConformInput& input, double width,
+                                     const ParallelFor& parallel_for) {
+  return Closing(input, width, parallel_for).findNearMisses();
 }
 
 }  // namespace sightline::occluders

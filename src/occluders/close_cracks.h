@@ -29,4 +29,17 @@ struct ClosedCracks {
 ClosedCracks closeCracks(const ConformInput& input, double width,
                          const ParallelFor& parallel_for = serialFor);
 
+// A vertex beside an edge, both left after cancelling.
+struct NearMiss {
+  std::uint32_t vertex = 0;
+  double distance = 0.0;                                 // metres, above 0
+  std::uint32_t vertex_triangle = 0, edge_triangle = 0;  // one that has the vertex, one that has the edge
+};
+
+// For each vertex that is left after cancelling, the nearest edge that is left and closer than `width`
+// metres, if it is neither the vertex's own nor next to one of its own; none if the vertex lies on one
+// exactly. In order of the vertices' places.
+std::vector<NearMiss> findNearMisses(const ConformInput& input, double width,
+                                     const ParallelFor& parallel_for = serialFor);
+
 }  // namespace sightline::occluders

@@ -7,6 +7,7 @@
 #include "src/occluders/conform.h"
 
 namespace sightline::occluders {
+
 namespace {
 
 constexpr Vec3f kZero{0.0f, 0.0f, 0.0f};  // added, it makes 0 of -0
@@ -20,22 +21,28 @@ template <typename Use>
 void forOpaqueTriangles(const SceneView& scene, Use&& use) {
   for (std::uint32_t number = 0; number < scene.objects.size(); ++number) {
     const Object& object = scene.objects[number];
-    const Material& material = scene.materialOf(object);
-    if (!material.opaque() || object.mark == OccluderMark::kNever) {
+    if (!mayOcclude(scene, object)) {
       continue;
     }
+    const bool double_sided = scene.materialOf(object).double_sided;
     const std::span<const std::uint32_t> indices = scene.indicesOf(object);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
       if (isFinite(scene.positions[indices[i]]) && isFinite(scene.positions[indices[i + 1]]) &&
           isFinite(scene.positions[indices[i + 2]])) {
-        use(indices.subspan(i, 3), number, material.double_sided);
+        use(indices.subspan(i, 3), number, double_sided);
       }
     }
   }
 }
 
-// Fills the mesh's vertices and returns the number of each of the scene's positions that triangles use.
-std::vector<std::uint32_t> weldVertices(const SceneView& scene, SurfaceMesh& mesh) {
+struct WeldedVertices {
+  std::vector<Vec3f> vertices;             // ascending by x, y and z
+  std::vector<std::uint32_t> position_of;  // by vertex: one of the scene's positions there
+  std::vector<std::uint32_t> vertex_of;    // by position, where opaque triangles use it
+};
+
+WeldedVertices weldVertices(const SceneView& scene) {
+  WeldedVertices welded;
   std::vector<bool> used(scene.positions.size());
   forOpaqueTriangles(scene, [&](std::span<const std::uint32_t> corners, std::uint32_t, bool) {
     for (const std::uint32_t corner : corners) {
@@ -54,14 +61,15 @@ std::vector<std::uint32_t> weldVertices(const SceneView& scene, SurfaceMesh& mes
   }
   std::sort(places.begin(), places.end(),
             [](const Place& a, const Place& b) { return precedes(a.position, b.position); });
-  std::vector<std::uint32_t> vertex_of(scene.positions.size());
+  welded.vertex_of.resize(scene.positions.size());
   for (const Place& place : places) {
-    if (mesh.vertices.empty() || !(mesh.vertices.back() == place.position)) {
-      mesh.vertices.push_back(place.position);
+    if (welded.vertices.empty() || !(welded.vertices.back() == place.position)) {
+      welded.vertices.push_back(place.position);
+      welded.position_of.push_back(place.source);
     }
-    vertex_of[place.source] = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    welded.vertex_of[place.source] = static_cast<std::uint32_t>(welded.vertices.size() - 1);
   }
-  return vertex_of;
+  return welded;
 }
 
 // Numbers the edges, ascending by their lower and then their higher vertex, and finds the triangles beside
@@ -125,9 +133,29 @@ std::vector<std::uint8_t> openEdges(const SurfaceMesh& mesh) {
 
 }  // namespace
 
+bool mayOcclude(const SceneView& scene, const Object& object) {
+  return scene.materialOf(object).opaque() && object.mark != OccluderMark::kNever;
+}
+
+OpaqueTriangles opaqueTriangles(const SceneView& scene) {
+  WeldedVertices welded = weldVertices(scene);
+  OpaqueTriangles opaque;
+  forOpaqueTriangles(scene, [&](std::span<const std::uint32_t> corners, std::uint32_t object, bool) {
+    for (const std::uint32_t corner : corners) {
+      opaque.corners.push_back(welded.vertex_of[corner]);
+    }
+    opaque.objects.push_back(object);
+  });
+  opaque.vertices = std::move(welded.vertices);
+  opaque.position_of = std::move(welded.position_of);
+  return opaque;
+}
+
 SurfaceMesh weld(const SceneView& scene) {
   SurfaceMesh mesh;
-  const std::vector<std::uint32_t> vertex_of = weldVertices(scene, mesh);
+  WeldedVertices welded = weldVertices(scene);
+  mesh.vertices = std::move(welded.vertices);
+  const std::vector<std::uint32_t>& vertex_of = welded.vertex_of;
   forOpaqueTriangles(
       scene, [&](std::span<const std::uint32_t> corners, std::uint32_t object, bool double_sided) {
         const std::uint32_t a = vertex_of[corners[0]], b = vertex_of[corners[1]], c = vertex_of[corners[2]];

@@ -29,6 +29,18 @@ struct SurfaceMesh {
   std::size_t edgeCount() const { return edge_vertices.size() / 2; }
 };
 
+// Whether the object's triangles may be occluders: its material is opaque, and it is not marked kNever.
+bool mayOcclude(const SceneView& scene, const Object& object);
+
+// The opaque triangles of a scene that are finite, with equal positions as one vertex.
+struct OpaqueTriangles {
+  std::vector<Vec3f> vertices;             // ascending by x, y and z
+  std::vector<std::uint32_t> position_of;  // by vertex: one of the scene's positions there
+  std::vector<std::uint32_t> corners;      // three for each triangle
+  std::vector<std::uint32_t> objects;      // by triangle, ascending
+};
+OpaqueTriangles opaqueTriangles(const SceneView& scene);
+
 // Leaves out triangles that are not finite, and those with two equal corners.
 SurfaceMesh weld(const SceneView& scene);
 

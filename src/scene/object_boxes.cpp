@@ -476,7 +476,9 @@ ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& s
   found.first.reserve(std::size_t{count} + 1);
   found.first.push_back(0);
   for (const std::vector<Box>& boxes : of_object) {
-    found.boxes.insert(found.boxes.end(), boxes.begin(), boxes.end());
+    for (const Box& box : boxes) {
+      found.boxes.push_back(widened(box, settings.margin));
+    }
     found.first.push_back(static_cast<std::uint32_t>(found.boxes.size()));
   }
   return found;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "sightline/math/vec3.h"
@@ -43,6 +44,17 @@ constexpr Box intersection(const Box& a, const Box& b) {
 }
 constexpr bool overlaps(const Box& a, const Box& b) {
   return !intersection(a, b).empty();
+}
+// The box moved outwards on all sides by at least this much, and by the next number of single precision at
+// most more; the same box for 0 or an empty one. What contains another box does so afterwards.
+inline Box widened(const Box& box, double by) {
+  Box wide = box;
+  for (int axis = 0; by > 0.0 && !box.empty() && axis < 3; ++axis) {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    wide.min[axis] = std::nextafterf(static_cast<float>(box.min[axis] - by), -kFar);
+    wide.max[axis] = std::nextafterf(static_cast<float>(box.max[axis] + by), kFar);
+  }
+  return wide;
 }
 constexpr bool contains(const Box& a, const Box& b) {
   return a.min.x <= b.min.x && a.min.y <= b.min.y && a.min.z <= b.min.z && a.max.x >= b.max.x &&

@@ -33,6 +33,9 @@ struct ObjectBoxesSettings {
   // What one more box has to save: a share of the object's own box, by volume. For flat and thin objects each
   // box counts as if it were a 16th of the object's length thicker, along all axes.
   double min_saving = 0.005;
+  // Metres by which all boxes are wider than what they hold, as Object::bounds then has to be as well: see
+  // ClosedScene::margin().
+  double margin = 0.0;
 };
 
 // Finds the boxes of all objects, in time linear in the number of triangles. Objects with coordinates that

@@ -79,8 +79,9 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!scene) {
     return scene.error();
   }
-  const double load_us = watch.lap();
   const Threads threads(options.common.threads);
+  closeCracksOf(*scene, options.crack_width, threads.parallelFor());
+  const double load_us = watch.lap();
   const BakeSettings settings = bakeSettings(options, *scene);
   const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
   Result<Bake> bake = Bake::plan(scene->view(), occluders, settings);
@@ -98,7 +99,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
     return baked.error();
   }
   parts = {};
-  baked->record.settings = dump(settingsJson(planned.bake, planned.scene.origin));
+  baked->record.settings = dump(settingsJson(planned.bake, planned.scene.origin, options.crack_width));
   Stopwatch watch;
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());

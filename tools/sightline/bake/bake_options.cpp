@@ -94,6 +94,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   addDecimal(command, "--near-distance", settings.near_distance, kMinNear, kMax,
              "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
              "tan(fovy / 2)^2 * (1 + aspect^2))");
+  addCrackWidthOption(command, options.crack_width);
   command.add_option("--region", options.region,
                      "viewers are in this box, world space: MINX,MINY,MINZ,MAXX,MAXY,MAXZ (default: the "
                      "scene's bounds)");
@@ -169,27 +170,31 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene) {
   return settings;
 }
 
-Json settingsJson(const Bake& bake, const Vec3d& origin) {
+Json settingsJson(const Bake& bake, const Vec3d& origin, double crack_width) {
   const BakeSettings& settings = bake.settings();
   const OccluderCounts& occluders = bake.occluders();
   const Box& region = settings.region;
   const Vec3d min = Vec3d(region.min) + origin, max = Vec3d(region.max) + origin;
-  return {{"triangle_budget", settings.triangle_budget},
-          {"depth", settings.max_depth},
-          {"base_depth", bake.baseDepth()},
-          {"near_distance", settings.near_distance},
-          {"region", region.empty() ? Json() : Json({min.x, min.y, min.z, max.x, max.y, max.z})},
-          {"search_distance", settings.search_distance},
-          {"occluder_size", settings.occluder_size},
-          {"similarity", settings.similarity},
-          {"least_gain", settings.min_gain},
-          {"merge_tolerance", settings.merge_tolerance},
-          {"occluders",
-           {{"all", occluders.all},
-            {"inner", occluders.inner},
-            {"of_use", occluders.of_use},
-            {"largest_area", occluders.largest_area}}},
-          {"origin", {origin.x, origin.y, origin.z}}};
+  Json json = {{"triangle_budget", settings.triangle_budget},
+               {"depth", settings.max_depth},
+               {"base_depth", bake.baseDepth()},
+               {"near_distance", settings.near_distance},
+               {"region", region.empty() ? Json() : Json({min.x, min.y, min.z, max.x, max.y, max.z})},
+               {"search_distance", settings.search_distance},
+               {"occluder_size", settings.occluder_size},
+               {"similarity", settings.similarity},
+               {"least_gain", settings.min_gain},
+               {"merge_tolerance", settings.merge_tolerance},
+               {"occluders",
+                {{"all", occluders.all},
+                 {"inner", occluders.inner},
+                 {"of_use", occluders.of_use},
+                 {"largest_area", occluders.largest_area}}},
+               {"origin", {origin.x, origin.y, origin.z}}};
+  if (crack_width > 0.0) {
+    json["crack_width"] = crack_width;
+  }
+  return json;
 }
 
 }  // namespace sightline::tool

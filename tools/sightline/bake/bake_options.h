@@ -16,8 +16,9 @@ namespace sightline::tool {
 struct BakeOptions {
   CommonOptions common;
   std::string output;
-  BakeSettings settings{};  // complete except for what depends on the scene or the threads:
-  std::string region;       // six numbers, world space; empty: the scene's bounds
+  BakeSettings settings{};   // complete except for what depends on the scene or the threads:
+  double crack_width = 0.0;  // metres
+  std::string region;        // six numbers, world space; empty: the scene's bounds
   std::uint32_t sample_mib = 1024;
   std::string databases;  // names, separated by commas
   bool resume = false, restart = false;
@@ -39,6 +40,6 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene);
 // The text of BakeRecord::settings: everything that the parts depend on, the scene's origin (so that queries
 // can use world space), and facts about the occluders. It holds neither the threads nor the limit of their
 // memory.
-Json settingsJson(const Bake& bake, const Vec3d& origin);
+Json settingsJson(const Bake& bake, const Vec3d& origin, double crack_width);
 
 }  // namespace sightline::tool

@@ -59,7 +59,8 @@ Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
   std::vector<BenchInput> inputs;
   for (const std::string& scene : options.scenes) {
     Stopwatch watch;
-    Result<SceneAndWalk> input = loadSceneAndWalk(scene, options.path, options.method.baked);
+    Result<SceneAndWalk> input =
+        loadSceneAndWalk(scene, options.path, options.method.baked, options.method.crack_width);
     if (!input) {
       return input.error();
     }

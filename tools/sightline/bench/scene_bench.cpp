@@ -41,7 +41,7 @@ BenchRecord SceneBench::measure(const std::string& name, BenchInput& input) {
   const Scene& scene = input.data.scene;
   const Walk& walk = input.data.walk;
   const std::vector<View> views = viewsOf(walk, scene);
-  BenchRecord record{.scene_name = name,
+  BenchRecord record{.scene_name = name + crackText(input.data.closing),
                      .path_name = walk.path.name.empty() ? "unnamed" : walk.path.name,
                      .scene = sceneId(scene.view()),
                      .views = hashOf(views),
@@ -98,7 +98,7 @@ void SceneBench::run(BenchInput& input, const std::vector<View>& views,
                      BenchRecord& record) {
   const HeapGrowth growth;
   Stopwatch watch;
-  CullingData data(input.data.scene, threads_.parallelFor(), input.data.walk, std::move(input.data.baked));
+  CullingData data(input.data, threads_.parallelFor());
   const PartCost occluders{watch.lap(), growth.bytes()};
   std::vector<BenchRun> runs = makeBenchRuns(methods_, data, occluders);
   warmUp(runs, views, exact);
@@ -109,7 +109,7 @@ void SceneBench::run(BenchInput& input, const std::vector<View>& views,
     measureCulling(runs, views, settings_.rounds, [&](double done) { progress.update(done); });
   }
   if (settings_.draw) {
-    draw(input.data.scene, runs, views, size, record);
+    draw(input.data.given(), runs, views, size, record);
   }
   data.noteUnknownSets();
   for (BenchRun& run : runs) {
@@ -117,9 +117,9 @@ void SceneBench::run(BenchInput& input, const std::vector<View>& views,
   }
 }
 
-void SceneBench::draw(const Scene& scene, std::vector<BenchRun>& runs, const std::vector<View>& views,
+void SceneBench::draw(const SceneView& scene, std::vector<BenchRun>& runs, const std::vector<View>& views,
                       const PictureOptions& size, BenchRecord& record) const {
-  Result<Renderer> renderer = Renderer::create(scene.view(), size.width, size.height);
+  Result<Renderer> renderer = Renderer::create(scene, size.width, size.height);
   if (!renderer) {
     fmt::print(stderr, "sightline: nothing is drawn: {}\n", renderer.error().message);
     return;

@@ -43,7 +43,7 @@ class SceneBench {
   void keep(const ExactKey& key, const ExactObjects& frame);
   void run(BenchInput& input, const std::vector<View>& views, const std::vector<ExactObjects>& exact,
            const PictureOptions& size, BenchRecord& record);
-  void draw(const Scene& scene, std::vector<BenchRun>& runs, const std::vector<View>& views,
+  void draw(const SceneView& scene, std::vector<BenchRun>& runs, const std::vector<View>& views,
             const PictureOptions& size, BenchRecord& record) const;
 
   std::vector<Setting> methods_;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <optional>
 
 #include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/command_line/suggest.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t kMaxThreads = 256;
 constexpr std::uint32_t kMaxPixels = 16384;
+constexpr double kMaxCrackWidth = 1.0;  // metres
 
 }  // namespace
 
@@ -88,6 +90,22 @@ void addPathOptions(CLI::App& command, PathOptions& options) {
       ->type_name(kFileType);
   command.add_option("--frames", options.frames,
                      "only frames A, A+STEP, ... before B, as A:B[:STEP]; or one frame's number");
+}
+
+void addCrackWidthOption(CLI::App& command, double& width) {
+  command
+      .add_option("--crack-width", width,
+                  "cracks between surfaces that are narrower, in metres, count as closed: what shows only "
+                  "through them, or beside an edge within this width, may be culled")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const std::optional<double> value = parseDecimal(text);
+            return value && *value >= 0.0 && *value <= kMaxCrackWidth
+                       ? std::string()
+                       : fmt::format("'{}' is not a number of metres from 0 to {}", text, kMaxCrackWidth);
+          },
+          fmt::format("[0 - {}]", kMaxCrackWidth)))
+      ->capture_default_str();
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options) {

@@ -64,6 +64,9 @@ struct PathOptions {
 };
 void addPathOptions(CLI::App& command, PathOptions& options);
 
+// The width in metres below which cracks count as closed (closeCracks); 0: all stay open.
+void addCrackWidthOption(CLI::App& command, double& width);
+
 // Options of commands that draw pictures.
 struct PictureOptions {
   std::uint32_t width = 0, height = 0;  // pixels; 0: the camera path's

@@ -57,9 +57,11 @@ std::string frameJson(std::uint32_t frame, const CullRun& run, const std::vector
   return dump(json);
 }
 
-void print(const Setting& setting, const CullingData& data, std::size_t frames, const Totals& sum) {
+void print(const Setting& setting, const CullingData& data, const CrackClosing& closing, std::size_t frames,
+           const Totals& sum) {
   const double n = static_cast<double>(frames);
-  fmt::print("{} ({}), {} frames, means of a frame:\n", methodName(setting), optionsText(setting), frames);
+  fmt::print("{} ({}){}, {} frames, means of a frame:\n", methodName(setting), optionsText(setting),
+             crackText(closing), frames);
   fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n, data.bounds().size());
   fmt::print("  their triangles   {:12.1f}\n", sum.triangles / n);
   fmt::print("  cull time         {:12.1f} us\n", sum.cull_us / n);
@@ -84,9 +86,10 @@ Result<Setting> singleSetting(const MethodOptions& options) {
 }
 
 Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, const SceneAndWalk& input) {
-  const auto& [scene, walk, baked] = input;
+  const Scene& scene = input.scene;
+  const Walk& walk = input.walk;
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor(), walk, baked);
+  CullingData data(input, threads.parallelFor());
   CullRun run{data.makeCuller(setting)};
   std::vector<std::string> frames;
   const std::vector<Statistic> statistics = statisticsOf(setting);
@@ -113,14 +116,15 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
   }
   data.noteUnknownSets();
-  Json head = {
-      {"scene", sceneJson(scene)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
+  Json head = {{"scene", sceneJson(scene, input.closing)},
+               {"method", methodName(setting)},
+               {"options", optionsJson(setting)}};
   addDatabases(head, data, !options.no_times);
   if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", frames)); !ok) {
     return ok.error();
   }
   if (options.common.textOnStdout()) {
-    print(setting, data, walk.frames.size(), sum);
+    print(setting, data, input.closing, walk.frames.size(), sum);
   }
   return kOk;
 }
@@ -130,7 +134,7 @@ Result<ExitCode> runCull(const CullOptions& options) {
   if (!setting) {
     return setting.error();
   }
-  const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method.baked);
+  const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method);
   if (!input) {
     return input.error();
   }

@@ -10,6 +10,7 @@
 #include "tools/sightline/command_line/output_files.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/cull/info_cracks.h"
 #include "tools/sightline/cull/info_sight.h"
 #include "tools/sightline/input/load.h"
 
@@ -18,6 +19,8 @@ namespace {
 
 struct InfoOptions {
   CommonOptions common;
+  PathOptions path;
+  double crack_width = 0.0;
 };
 
 Json pointJson(const Vec3d& p) {
@@ -121,7 +124,7 @@ BoxFacts boxFactsOf(const Scene& scene, CullingData& data) {
   return facts;
 }
 
-Json headJson(const Scene& scene, CullingData& data) {
+Json headJson(const Scene& scene, CullingData& data, const CrackFacts& cracks) {
   const Box bounds = sceneBounds(scene.view());
   const MaterialUse use = useOf(scene);
   Json materials = Json::array(), paths = Json::array(), hierarchies;
@@ -150,10 +153,11 @@ Json headJson(const Scene& scene, CullingData& data) {
           {"paths", paths},
           {"occluders", occludersJson(data.occluders())},
           {"object_boxes", {{"objects", boxes.objects}, {"boxes", boxes.boxes}}},
+          {"cracks", cracksJson(cracks, scene)},
           {"hierarchies", hierarchies}};
 }
 
-std::string toJson(const Scene& scene, CullingData& data) {
+std::string toJson(const Scene& scene, CullingData& data, const CrackFacts& cracks) {
   std::vector<std::string> objects;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const Object& object = scene.objects[o];
@@ -164,7 +168,7 @@ std::string toJson(const Scene& scene, CullingData& data) {
                             {"min", pointJson(toWorld(object.bounds.min, scene))},
                             {"max", pointJson(toWorld(object.bounds.max, scene))}}));
   }
-  return dumpWithList(headJson(scene, data), "objects", objects);
+  return dumpWithList(headJson(scene, data, cracks), "objects", objects);
 }
 
 void printMaterials(const Scene& scene) {
@@ -199,7 +203,7 @@ void printOccluders(const Scene& scene, const OccluderSet& set) {
   }
 }
 
-void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
+void print(const InfoOptions& options, const Scene& scene, CullingData& data, const CrackFacts& cracks) {
   const Box bounds = sceneBounds(scene.view());
   const Vec3d low = toWorld(bounds.min, scene), high = toWorld(bounds.max, scene), extent = high - low;
   fmt::print("scene         {}\n", options.common.scene);
@@ -211,6 +215,7 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
              extent.x, extent.y, extent.z);
   printMaterials(scene);
   printOccluders(scene, data.occluders());
+  printCracks(cracks, scene);
   const BoxFacts boxes = boxFactsOf(scene, data);
   fmt::print("boxes         {} objects have several, {} in all\n", boxes.objects, boxes.boxes);
   for (const auto& name : kHierarchies) {
@@ -228,32 +233,51 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data) {
 }
 
 Result<ExitCode> runInfo(const InfoOptions& options) {
-  if (const Status ok =
-          checkFiles({.scenes = {options.common.scene}, .outputs = {{"--json", options.common.json}}});
+  if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .inputs = walkInputs(options.common.scene, options.path),
+                                    .outputs = {{"--json", options.common.json}}});
       !ok) {
     return ok.error();
+  }
+  if (options.crack_width == 0.0 && !(options.path.path.empty() && options.path.frames.empty())) {
+    return Error{"--path, --frames: a walk shows what closing cracks hides; give --crack-width as well"};
   }
   if (isSightFile(options.common.scene)) {
     if (options.common.threads > 1) {
       return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
                                options.common.threads)};
     }
+    if (options.crack_width > 0.0) {
+      return Error{
+          fmt::format("--crack-width {}: a baked file has no surfaces; leave it out", options.crack_width)};
+    }
     const Status ok = informOnSight(options.common.scene, options.common.json);
     return ok ? Result<ExitCode>(kOk) : ok.error();
   }
-  const Result<Scene> scene = loadScene(options.common.scene);
-  if (!scene) {
-    return scene.error();
+  Result<Scene> loaded = loadScene(options.common.scene);
+  if (!loaded) {
+    return loaded.error();
   }
+  SceneAndWalk input{std::move(*loaded)};
+  const Scene& scene = input.scene;
   const Threads threads(options.common.threads);
-  CullingData data(*scene, threads.parallelFor());
+  CrackFacts cracks = crackFactsOf(scene, threads.parallelFor());
+  if (options.crack_width > 0.0) {
+    Result<Walk> walk = loadWalk(options.path, options.common.scene, scene);
+    if (!walk) {
+      return walk.error();
+    }
+    input.walk = std::move(*walk);
+    cracks.effect = effectOfClosing(input, options.crack_width, threads.parallelFor());
+  }
+  CullingData data(scene, threads.parallelFor());
   if (!options.common.json.empty()) {
-    if (const Status written = writeOutput(options.common.json, toJson(*scene, data)); !written) {
+    if (const Status written = writeOutput(options.common.json, toJson(scene, data, cracks)); !written) {
       return written.error();
     }
   }
   if (options.common.textOnStdout()) {
-    print(options, *scene, data);
+    print(options, scene, data, cracks);
   }
   return kOk;
 }
@@ -267,10 +291,13 @@ void addInfo(CLI::App& app, Command& chosen) {
       "(F.sight in place of SCENE) its cells and sets");
   const auto options = std::make_shared<InfoOptions>();
   addCommonOptions(*command, options->common);
+  addPathOptions(*command, options->path);
+  addCrackWidthOption(*command, options->crack_width);
   command->footer(
       "Examples:\n"
       "  sightline info city.glb\n"
       "  sightline info \"demo:city?copies=30&seed=1\" --json city.json\n"
+      "  sightline info city.glb --crack-width 0.001    what closing cracks hides on the scene's walk\n"
       "  sightline info city.sight");
   command->callback([options, &chosen] { chosen = [options] { return runInfo(*options); }; });
 }

@@ -163,15 +163,18 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
           {"witnesses", witnesses}};
 }
 
-std::string toJson(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene) {
+std::string toJson(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene,
+                   const CrackClosing& closing) {
   if (runs.size() == 1) {
-    return dump(runJson(runs.front(), verifier, scene));
+    Json json = runJson(runs.front(), verifier, scene);
+    json["scene"] = sceneJson(scene, closing);
+    return dump(json);
   }
   std::vector<std::string> items;
   for (const VerifyRun& run : runs) {
     items.push_back(dump(runJson(run, verifier, scene)));
   }
-  return dumpWithList({{"scene", sceneJson(scene)}}, "runs", items);
+  return dumpWithList({{"scene", sceneJson(scene, closing)}}, "runs", items);
 }
 
 void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
@@ -194,14 +197,16 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
   }
 }
 
-void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene) {
+void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene,
+           const CrackClosing& closing) {
   printFalseCulls(runs, scene);
   const auto a_frame = [&](std::size_t count) {
     return static_cast<double>(count) / static_cast<double>(verifier.of_frame.size());
   };
-  fmt::print("{} frames, {} objects, exactly visible {:.1f} to {:.1f} a frame\n", verifier.of_frame.size(),
+  fmt::print("{} frames, {} objects, exactly visible {:.1f} to {:.1f} a frame{}\n", verifier.of_frame.size(),
              scene.objects.size(), a_frame(verifier.total.visible),
-             a_frame(verifier.total.visible + verifier.total.undecided));
+             a_frame(verifier.total.visible + verifier.total.undecided),
+             closing.width > 0.0 ? ", with" + crackText(closing) : "");
   TextTable table{
       {"method", "options", "kept", "overestimate", "culled", "proved", "undecided", "false culls"}, {}, 2};
   for (const VerifyRun& run : runs) {
@@ -217,9 +222,10 @@ void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const S
 
 Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Setting>& settings,
                             const SceneAndWalk& input) {
-  const auto& [scene, walk, baked] = input;
+  const Scene& scene = input.scene;
+  const Walk& walk = input.walk;
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor(), walk, baked);
+  CullingData data(input, threads.parallelFor());
   std::vector<VerifyRun> runs;
   for (const Setting& setting : settings) {
     runs.push_back({setting, data.makeCuller(setting), {}, {}});
@@ -233,12 +239,13 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
     }
   }
   if (!options.common.json.empty()) {
-    if (const Status ok = writeOutput(options.common.json, toJson(runs, verifier, scene)); !ok) {
+    if (const Status ok = writeOutput(options.common.json, toJson(runs, verifier, scene, input.closing));
+        !ok) {
       return ok.error();
     }
   }
   if (options.common.textOnStdout()) {
-    print(runs, verifier, scene);
+    print(runs, verifier, scene, input.closing);
   }
   data.noteUnknownSets();
   const bool clean =
@@ -252,13 +259,13 @@ Result<ExitCode> runVerify(const VerifyOptions& options, const CLI::App& command
     return regions.error();
   }
   if (*regions) {
-    return verifyRegions(options.common, options.method.baked, options.regions);
+    return verifyRegions(options.common, options.method, options.regions);
   }
   const Result<std::vector<Setting>> settings = settingsOf(options.method);
   if (!settings) {
     return settings.error();
   }
-  const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method.baked);
+  const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method);
   if (!input) {
     return input.error();
   }

@@ -20,8 +20,8 @@ namespace {
 constexpr std::size_t kMaxListedPairs = 20;  // on the terminal; JSON has all
 constexpr std::uint32_t kPairsAtOnce = 64;   // between two steps of the progress bar
 constexpr std::array<std::string_view, 2> kSearchOptions{"--pairs", "--seed"};
-constexpr std::array<std::string_view, 5> kCommonOptions{"SCENE", "--json", "--threads", "--baked",
-                                                         "--proof"};
+constexpr std::array<std::string_view, 6> kCommonOptions{"SCENE",   "--json",  "--threads",
+                                                         "--baked", "--proof", "--crack-width"};
 
 std::string nameOf(FoundBy by) {
   return by == FoundBy::kLine ? "line" : by == FoundBy::kPlane ? "plane" : "eye";
@@ -77,7 +77,7 @@ RegionsReport search(const Scene& scene, const SightFile& baked, HiddenPairs sam
   return report;
 }
 
-std::string toJson(const RegionsReport& report, const Scene& scene) {
+std::string toJson(const RegionsReport& report, const Scene& scene, const CrackClosing& closing) {
   Json witnesses = Json::array();
   for (std::size_t i = 0; i < report.answers.size(); ++i) {
     const RegionAnswer& answer = report.answers[i];
@@ -93,7 +93,7 @@ std::string toJson(const RegionsReport& report, const Scene& scene) {
                            {"by", nameOf(answer.by)}});
     }
   }
-  return dump({{"scene", sceneJson(scene)},
+  return dump({{"scene", sceneJson(scene, closing)},
                {"seed", report.seed},
                {"cells", report.sample.cells.size()},
                {"pairs", report.answers.size()},
@@ -106,7 +106,7 @@ std::string toJson(const RegionsReport& report, const Scene& scene) {
                {"witnesses", witnesses}});
 }
 
-void print(const RegionsReport& report, const Scene& scene) {
+void print(const RegionsReport& report, const Scene& scene, const CrackClosing& closing) {
   if (report.answers.empty()) {
     fmt::print("the sets of the cells hold every object; there is nothing to contradict\n");
     return;
@@ -128,8 +128,9 @@ void print(const RegionsReport& report, const Scene& scene) {
   if (report.falseCulls() > listed) {
     fmt::print("... and {} more false culls; --json lists all\n", report.falseCulls() - listed);
   }
-  fmt::print("{} pairs of a cell and an object that is not in its set; {} false culls\n",
-             report.answers.size(), report.falseCulls());
+  fmt::print("{} pairs of a cell and an object that is not in its set{}; {} false culls\n",
+             report.answers.size(), closing.width > 0.0 ? ", with" + crackText(closing) : "",
+             report.falseCulls());
   fmt::print("searched {} lines, {} planes of lines and {} eyes; exact pictures: {} hidden, {} undecided\n",
              report.sum(&RegionAnswer::lines), report.sum(&RegionAnswer::planes),
              report.sum(&RegionAnswer::eyes), report.sum(&RegionAnswer::hidden_views),
@@ -175,18 +176,20 @@ Result<bool> asksForRegions(const CLI::App& command) {
   return asks;
 }
 
-Result<ExitCode> verifyRegions(const CommonOptions& common, const std::string& baked,
+Result<ExitCode> verifyRegions(const CommonOptions& common, const MethodOptions& method,
                                const RegionOptions& options) {
-  if (const Status ok = checkFiles(
-          {.scenes = {common.scene}, .inputs = {{"--baked", baked}}, .outputs = {{"--json", common.json}}});
+  if (const Status ok = checkFiles({.scenes = {common.scene},
+                                    .inputs = {{"--baked", method.baked}},
+                                    .outputs = {{"--json", common.json}}});
       !ok) {
     return ok.error();
   }
-  const Result<Scene> scene = loadScene(common.scene);
+  Result<Scene> scene = loadScene(common.scene);
   if (!scene) {
     return scene.error();
   }
-  const Result<std::optional<SightFile>> file = loadBaked(baked, *scene);
+  const CrackClosing closing = closeCracksOf(*scene, method.crack_width);
+  const Result<std::optional<SightFile>> file = loadBaked(method.baked, *scene);
   if (!file) {
     return file.error();
   }
@@ -196,11 +199,12 @@ Result<ExitCode> verifyRegions(const CommonOptions& common, const std::string& b
   }
   const Threads threads(common.threads);
   const RegionsReport report = search(*scene, **file, std::move(*sample), options, threads.parallelFor());
-  if (const Status ok = writeOutput(common.json, common.json.empty() ? "" : toJson(report, *scene)); !ok) {
+  if (const Status ok = writeOutput(common.json, common.json.empty() ? "" : toJson(report, *scene, closing));
+      !ok) {
     return ok.error();
   }
   if (common.textOnStdout()) {
-    print(report, *scene);
+    print(report, *scene, closing);
   }
   return report.falseCulls() == 0 ? kOk : kCheckFailed;
 }

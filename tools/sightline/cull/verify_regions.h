@@ -8,6 +8,7 @@
 #include "sightline/base/result.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/methods/method_options.h"
 
 namespace CLI {
 class App;
@@ -27,7 +28,7 @@ Result<bool> asksForRegions(const CLI::App& command);
 
 // Samples pairs of a cell and an object that the file calls hidden from it, and searches an eye in the cell
 // that sees the object. Exit code 1 if one is found.
-Result<ExitCode> verifyRegions(const CommonOptions& common, const std::string& baked,
+Result<ExitCode> verifyRegions(const CommonOptions& common, const MethodOptions& method,
                                const RegionOptions& options);
 
 }  // namespace sightline::tool

@@ -8,6 +8,7 @@
 
 #include "scenes/procedural.h"
 #include "sightline/io/import.h"
+#include "sightline/occluders/closed_scene.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
@@ -79,6 +80,25 @@ Result<Scene> loadScene(const std::string& name) {
   return scene;
 }
 
+CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parallel_for) {
+  CrackClosing closing;
+  if (width > 0.0) {
+    ClosedScene closed = closeCracks(scene.view(), width, parallel_for);
+    closing = {width, closed.slack, closed.margin(), std::move(scene.indices), std::move(scene.objects)};
+    scene.indices = std::move(closed.indices);
+    scene.objects = std::move(closed.objects);
+    fmt::print(stderr,
+               "sightline: cracks narrower than {} m count as closed: {} vertices are joined, edges are led "
+               "through {}, nothing by more than {:.3g} m\n",
+               width, closed.merged, closed.bent, closed.slack);
+  }
+  return closing;
+}
+
+std::string crackText(const CrackClosing& closing) {
+  return closing.width > 0.0 ? fmt::format(" --crack-width {}", closing.width) : "";
+}
+
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene) {
   if (file.empty()) {
     return std::optional<SightFile>();
@@ -88,7 +108,11 @@ Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene&
     return baked.error();
   }
   if (const Status same = baked->matches(sceneId(scene.view())); !same) {
-    return same.error();
+    const Json settings = Json::parse(baked->record().settings, nullptr, false);
+    const double width = settings.is_object() ? settings.value("crack_width", 0.0) : 0.0;
+    return Error{same.error().message +
+                 (width > 0.0 ? fmt::format(", or give the --crack-width {} that it was baked with", width)
+                              : std::string())};
   }
   if (const Status whole = baked->verifyAll(); !whole) {
     return whole.error();
@@ -122,11 +146,12 @@ std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptio
 }
 
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
-                                      const std::string& baked) {
+                                      const std::string& baked, double crack_width) {
   Result<Scene> scene = loadScene(scene_name);
   if (!scene) {
     return scene.error();
   }
+  CrackClosing closing = closeCracksOf(*scene, crack_width);
   Result<std::optional<SightFile>> file = loadBaked(baked, *scene);
   if (!file) {
     return file.error();
@@ -135,18 +160,18 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!walk) {
     return walk.error();
   }
-  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file)};
+  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file), std::move(closing)};
 }
 
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
-                                  const std::string& baked) {
+                                  const MethodOptions& method) {
   if (const Status ok = checkFiles({.scenes = {common.scene},
-                                    .inputs = walkInputs(common.scene, path, baked),
+                                    .inputs = walkInputs(common.scene, path, method.baked),
                                     .outputs = {{"--json", common.json}}});
       !ok) {
     return ok.error();
   }
-  return loadSceneAndWalk(common.scene, path, baked);
+  return loadSceneAndWalk(common.scene, path, method.baked, method.crack_width);
 }
 
 CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk,
@@ -160,6 +185,13 @@ CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, co
   }
   for (const Object& object : scene.objects) {
     bounds_.push_back(object.bounds);
+  }
+  countTriangles(scene.view());
+}
+
+void CullingData::countTriangles(const SceneView& scene) {
+  triangles_.clear();
+  for (const Object& object : scene.objects) {
     triangles_.push_back(object.triangleCount());
   }
 }
@@ -272,7 +304,8 @@ void CullingData::prepare(const Setting& setting) {
 const ObjectBoxes& CullingData::objectBoxes(std::uint32_t most) {
   std::unique_ptr<ObjectBoxes>& boxes = object_boxes_[most];
   if (!boxes) {
-    boxes = std::make_unique<ObjectBoxes>(findObjectBoxes(scene_, {.max_boxes = most}, parallel_for_));
+    boxes = std::make_unique<ObjectBoxes>(
+        findObjectBoxes(scene_, {.max_boxes = most, .margin = box_margin_}, parallel_for_));
   }
   return *boxes;
 }
@@ -334,8 +367,13 @@ std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const 
   return sum;
 }
 
-Json sceneJson(const Scene& scene) {
-  return {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
+Json sceneJson(const Scene& scene, const CrackClosing& closing) {
+  Json json = {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
+  if (closing.width > 0.0) {
+    json["crack_width"] = closing.width;
+    json["crack_slack"] = closing.slack;
+  }
+  return json;
 }
 
 void addDatabases(Json& json, const CullingData& data, bool times) {

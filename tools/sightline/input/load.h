@@ -23,6 +23,19 @@ namespace sightline::tool {
 // Loads a scene from a file, or makes a demo:NAME?... scene.
 Result<Scene> loadScene(const std::string& name);
 
+// What closing the cracks of a scene has done to it; nothing, if the width is 0.
+struct CrackClosing {
+  double width = 0.0, slack = 0.0, margin = 0.0;  // metres: see ClosedScene
+  std::vector<std::uint32_t> given_indices{};     // those of the scene before; empty: the same
+  std::vector<Object> given_objects{};
+};
+// Closes the scene's cracks that are narrower than the width, and says so on stderr. The scene is then that
+// of the command: what is found, culled, baked and exactly visible is so in it; only pictures are drawn of
+// what was given.
+CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parallel_for = serialFor);
+// What an output says of it: " --crack-width 0.001" after the scene's name; empty for a width of 0.
+std::string crackText(const CrackClosing& closing);
+
 // Opens a .sight file. Error if it was baked from another scene. None if `file` is empty.
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene);
 
@@ -52,14 +65,22 @@ struct SceneAndWalk {
   Scene scene;
   Walk walk;
   std::optional<SightFile> baked{};
+  CrackClosing closing{};
+
+  // The triangles as the user gave them, for pictures.
+  SceneView given() const {
+    return closing.given_objects.empty()
+               ? scene.view()
+               : SceneView{scene.positions, closing.given_indices, closing.given_objects, scene.materials};
+  }
 };
 // Loads all of it; baked is the name of a .sight file, or empty.
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
-                                      const std::string& baked = "");
+                                      const std::string& baked = "", double crack_width = 0.0);
 // loadSceneAndWalk for a command that writes no file but --json: checks first that this is none of the
 // inputs.
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
-                                  const std::string& baked);
+                                  const MethodOptions& method);
 
 // What all cullers of one scene share.
 class CullingData {
@@ -68,6 +89,12 @@ class CullingData {
   // settings that use them, and occluder databases.
   CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk = {},
               std::optional<SightFile> baked = {});
+  // The same for what a user asked for.
+  CullingData(const SceneAndWalk& input, const ParallelFor& parallel_for)
+      : CullingData(input.scene, parallel_for, input.walk, input.baked) {
+    box_margin_ = input.closing.margin;
+    countTriangles(input.given());
+  }
 
   // Builds what cullers of the setting share with others, unless it is there: hierarchy and databases. Says
   // on stderr if a database of the baked file cannot be used.
@@ -97,6 +124,7 @@ class CullingData {
   std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
 
  private:
+  void countTriangles(const SceneView& scene);
   const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
                                       std::unique_ptr<TimedDatabase>& database);
   const ViewpointDatabase* viewpointsFor(const Setting& setting);
@@ -105,6 +133,7 @@ class CullingData {
   std::unique_ptr<Timed<Database>> bakedDatabase(const std::string& name) const;
 
   ParallelFor parallel_for_;
+  double box_margin_ = 0.0;  // ObjectBoxesSettings::margin
   std::vector<Vec3d> walk_;  // the walk's viewpoints in scene space
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
@@ -119,7 +148,8 @@ class CullingData {
   std::vector<std::unique_ptr<SetQuery>> queries_;  // one for each culler that uses visible sets
 };
 
-Json sceneJson(const Scene& scene);  // {"objects":n,"triangles":t}
+// {"objects":n,"triangles":t}, and if cracks were closed "crack_width" and "crack_slack"
+Json sceneJson(const Scene& scene, const CrackClosing& closing = {});
 // Adds those that were built of "database" and "detail_database", each
 // {"cells":n,"directions":n,"bytes":n,"build_us":t}, and "viewpoints",
 // {"minimum-sets":{"points":n,"directions":n,"spacing":m,"bytes":n,"build_us":t},...}. Without `times` all

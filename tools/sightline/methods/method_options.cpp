@@ -511,6 +511,7 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
                   "a .sight file of the scene: its visible sets, and its occluder databases in place of "
                   "those that would be built")
       ->type_name(kFileType);
+  addCrackWidthOption(command, options.crack_width);
   if (CLI::Option* path = command.get_option_no_throw("--path")) {
     path->description(path->get_description() +
                       "; cells: a view from each cell of the --baked file, most of them from the cell's "

@@ -271,7 +271,9 @@ Report reportOf(const Measured& measured, const std::vector<Experiment>& experim
       "culling draws.",
       100.0 * best.triangles_share);
   report.command = options.command_line;
-  report.facts = walkFacts({measured.name, measured.input.scene, measured.input.walk, measured.data}, record);
+  report.facts = walkFacts(
+      {measured.name, measured.input.scene, measured.input.walk, measured.data, measured.input.closing},
+      record);
   report.plots = plotsOf(record, measured.input.walk);
   report.plots.push_back(speedPlot(measured.speeds));
   for (const WalkRun& run : record.runs) {

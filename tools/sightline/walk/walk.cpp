@@ -221,11 +221,12 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
 
 Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting>& settings,
                            const SceneAndWalk& input) {
-  const auto& [scene, walk, baked] = input;
+  const Scene& scene = input.scene;
+  const Walk& walk = input.walk;
   const auto [width, height] = pictureSize(options.picture, walk.path);
   std::optional<Renderer> renderer;
   if (!options.no_pictures) {
-    Result<Renderer> created = Renderer::create(scene.view(), width, height);
+    Result<Renderer> created = Renderer::create(input.given(), width, height);
     if (!created) {
       return Error{created.error().message + "; --no-pictures walks without it"};
     }
@@ -235,7 +236,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
     return made.error();
   }
   const Threads threads(options.common.threads);
-  CullingData data(scene, threads.parallelFor(), walk, baked);
+  CullingData data(input, threads.parallelFor());
   Renderer* const drawing = renderer ? &*renderer : nullptr;
   Walker walker(scene, walk, data, drawing, options.folder, makeRuns(settings, data));
   const SignalGuard guard;  // if told to end, the walker stops early and its results are still written
@@ -248,7 +249,8 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   data.noteUnknownSets();
   record->width = width;
   record->height = height;
-  const WalkInput walked{options.common.scene, scene, walk, data};
+  const std::string name = options.common.scene + crackText(input.closing);
+  const WalkInput walked{name, scene, walk, data, input.closing};
   if (const Status written = writeAll(options, walked, *record, drawing); !written) {
     return written.error();
   }
@@ -281,7 +283,7 @@ Result<ExitCode> runWalk(const WalkOptions& options) {
     return ok.error();
   }
   const Result<SceneAndWalk> input =
-      loadSceneAndWalk(options.common.scene, options.path, options.method.baked);
+      loadSceneAndWalk(options.common.scene, options.path, options.method.baked, options.method.crack_width);
   if (!input) {
     return input.error();
   }

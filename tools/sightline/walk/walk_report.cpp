@@ -281,9 +281,12 @@ std::string grouped(std::uint64_t number) {
 }
 
 std::string walkJson(const WalkInput& input, const WalkRecord& record) {
-  Json head = {{"scene", sceneJson(input.scene)}, {"path", pathName(input.walk)},
-               {"width", record.width},           {"height", record.height},
-               {"device", record.device},         {"differing_frames", record.differing()},
+  Json head = {{"scene", sceneJson(input.scene, input.closing)},
+               {"path", pathName(input.walk)},
+               {"width", record.width},
+               {"height", record.height},
+               {"device", record.device},
+               {"differing_frames", record.differing()},
                {"tie_frames", record.ties()}};
   addDatabases(head, input.data);
   std::vector<std::string> runs;

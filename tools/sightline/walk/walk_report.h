@@ -15,6 +15,7 @@ struct WalkInput {
   const Scene& scene;
   const Walk& walk;
   const CullingData& data;
+  const CrackClosing& closing;
 };
 
 // 1104233 -> "1,104,233"
