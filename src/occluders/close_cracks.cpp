@@ -6,9 +6,11 @@
 #include <numeric>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "sightline/math/box.h"
 #include "src/base/rows.h"
+#include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
 #include "src/occluders/conform_pairs.h"
 
@@ -23,9 +25,9 @@ struct OpenEdge {
   friend auto operator<=>(const OpenEdge&, const OpenEdge&) = default;
 };
 
-// A vertex beside an edge, at this part of its length.
+// A vertex beside an edge or on it. The greater `along` is, the farther it is from the edge's lower end.
 struct Beside {
-  double at = 0.0;
+  double along = 0.0;
   std::uint32_t vertex = 0;
 };
 
@@ -48,13 +50,24 @@ class Closing {
         parallel_for_(parallel_for),
         triangles_(input.triangles.begin(), input.triangles.end()) {}
 
-  ClosedCracks run() {
+  ClosedCracks close() {
     if (width_ > 0.0 && std::isfinite(width_)) {
       findOpenEdges();
       mergeVertices();
       findOpenEdges();
-      bendEdges();
+      leadEdges([this](const OpenEdge& edge, std::uint32_t v) {
+        const double part = partOfEdge(edge, v), distance = distanceFrom(edge, v, part);
+        return Place{part > 0.0 && part < 1.0 && distance < width_, part, distance};
+      });
     }
+    assemble();
+    return std::move(result_);
+  }
+
+  ClosedCracks join(std::span<const std::uint8_t> open) {
+    takeOpenEdges(open);
+    lattice_ = geometry::Lattice::of(input_.vertices);
+    leadEdges([this](const OpenEdge& edge, std::uint32_t v) { return placeOn(edge, v); });
     assemble();
     return std::move(result_);
   }
@@ -76,26 +89,16 @@ class Closing {
       std::uint32_t place, edge;
       double distance;
     };
-    const auto edges = static_cast<std::uint32_t>(open_.size());
-    const BoxPairs pairs = edgesAndVertices();
-    std::vector<std::vector<Found>> parts(pairs.partCount());
-    forPairs(pairs, parallel_for_, [&](std::uint32_t part, std::uint32_t a, std::uint32_t b) {
-      const std::uint32_t edge = std::min(a, b), place = std::max(a, b) - edges;
-      if (edge >= edges || std::max(a, b) < edges) {
-        return;
-      }
+    std::vector<std::vector<Found>> parts(edgeParts());
+    forEdgesAndVertices([&](std::uint32_t part, std::uint32_t edge, std::uint32_t place) {
       const std::uint32_t v = vertices_[place];
-      const auto [low, high] = open_[edge];
-      if (v == low || v == high) {
-        return;
-      }
       const double at_part = std::clamp(partOfEdge(open_[edge], v), 0.0, 1.0);
-      const std::uint32_t end = at_part == 0.0 ? low : high;
+      const std::uint32_t end = at_part == 0.0 ? open_[edge].low : open_[edge].high;
       const std::span<const std::uint32_t> own = next_to[v];
       if ((at_part == 0.0 || at_part == 1.0) && std::find(own.begin(), own.end(), end) != own.end()) {
         return;
       }
-      const double distance = length(at(v) - at(low) - (at(high) - at(low)) * at_part);
+      const double distance = distanceFrom(open_[edge], v, at_part);
       if (distance < width_) {
         parts[part].push_back({place, edge, distance});
       }
@@ -124,6 +127,8 @@ class Closing {
   }
 
  private:
+  static constexpr std::uint32_t kEdgesOfPart = 1024;
+
   const Vec3d& at(std::uint32_t vertex) const { return input_.vertices[vertex]; }
 
   // Finds the edges along which more triangles run one way than the other, and their vertices.
@@ -159,6 +164,24 @@ class Closing {
         triangle_at_.push_back(triangle);
       }
     }
+    listVertices();
+  }
+
+  // Takes those that are named: by triangle, bit k for the edge from corner k to the next.
+  void takeOpenEdges(std::span<const std::uint8_t> open) {
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      const std::uint32_t a = triangles_[i], b = triangles_[i % 3 == 2 ? i - 2 : i + 1];
+      if ((open[i / 3] >> (i % 3) & 1) != 0 && a != b && geometry::Lattice::allowed(at(a)) &&
+          geometry::Lattice::allowed(at(b))) {
+        open_.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
+    std::sort(open_.begin(), open_.end());
+    open_.erase(std::unique(open_.begin(), open_.end()), open_.end());
+    listVertices();
+  }
+
+  void listVertices() {
     vertices_.clear();
     for (const OpenEdge& edge : open_) {
       vertices_.insert(vertices_.end(), {edge.low, edge.high});
@@ -171,37 +194,32 @@ class Closing {
     });
   }
 
-  // Calls use(part, a, b) for boxes that meet, on several threads.
-  template <typename Use>
-  static void forPairs(const BoxPairs& pairs, const ParallelFor& parallel_for, const Use& use) {
-    parallel_for(pairs.partCount(), [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t part = begin; part < end; ++part) {
-        pairs.forPairs(part, [&](std::uint32_t a, std::uint32_t b) { use(part, a, b); });
-      }
-    });
-  }
-
-  static std::vector<std::uint32_t> numbersTo(std::size_t count) {
-    std::vector<std::uint32_t> numbers(count);
-    std::iota(numbers.begin(), numbers.end(), 0u);
-    return numbers;
+  // The vertices of open edges by their place in vertices_, each as large as a cube of this width.
+  BoxPairs vertexBoxes(double width) const {
+    std::vector<Box> boxes;
+    for (const std::uint32_t v : vertices_) {
+      boxes.push_back(grown(at(v), at(v), 0.5 * width));
+    }
+    std::vector<std::uint32_t> places(boxes.size());
+    std::iota(places.begin(), places.end(), 0u);
+    return {boxes, places};
   }
 
   // In the order of their places, a vertex becomes the closest earlier one that has stayed and is close
   // enough. So those that stay are farther apart than the width.
   void mergeVertices() {
-    std::vector<Box> boxes;
-    for (const std::uint32_t v : vertices_) {
-      boxes.push_back(grown(at(v), at(v), 0.5 * width_));
-    }
-    const BoxPairs pairs(boxes, numbersTo(boxes.size()));
+    const BoxPairs pairs = vertexBoxes(width_);
     struct Near {
       std::uint32_t later, earlier;
     };
     std::vector<std::vector<Near>> parts(pairs.partCount());
-    forPairs(pairs, parallel_for_, [&](std::uint32_t part, std::uint32_t a, std::uint32_t b) {
-      if (length(at(vertices_[a]) - at(vertices_[b])) < width_) {
-        parts[part].push_back({std::max(a, b), std::min(a, b)});
+    parallel_for_(pairs.partCount(), [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t part = begin; part < end; ++part) {
+        pairs.forPairs(part, [&](std::uint32_t a, std::uint32_t b) {
+          if (length(at(vertices_[a]) - at(vertices_[b])) < width_) {
+            parts[part].push_back({std::max(a, b), std::min(a, b)});
+          }
+        });
       }
     });
     base::Rows<std::uint32_t> near;
@@ -236,16 +254,27 @@ class Closing {
     }
   }
 
-  // The boxes of open edges and then those of their vertices, which meet if they are closer than the width.
-  BoxPairs edgesAndVertices() const {
-    std::vector<Box> boxes;
-    for (const OpenEdge& edge : open_) {
-      boxes.push_back(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_));
-    }
-    for (const std::uint32_t v : vertices_) {
-      boxes.push_back(grown(at(v), at(v), 0.0));
-    }
-    return {boxes, numbersTo(boxes.size())};
+  // Edges are looked at in so many parts, whatever the threads.
+  std::uint32_t edgeParts() const {
+    return (static_cast<std::uint32_t>(open_.size()) + kEdgesOfPart - 1) / kEdgesOfPart;
+  }
+  // Calls use(part, edge, place) for open edges and the places of vertices, other than their ends, that may
+  // be closer to them than the width; those of a part one after the other.
+  template <typename Use>
+  void forEdgesAndVertices(const Use& use) const {
+    const BoxPairs boxes = vertexBoxes(0.0);
+    parallel_for_(edgeParts(), [&](std::uint32_t begin, std::uint32_t end) {
+      const std::size_t last = std::min<std::size_t>(open_.size(), std::size_t{end} * kEdgesOfPart);
+      for (auto edge = begin * kEdgesOfPart; edge < last; ++edge) {
+        const auto [low, high] = open_[edge];
+        boxes.forMeeting(grown(min(at(low), at(high)), max(at(low), at(high)), width_),
+                         [&, low = low, high = high](std::uint32_t place) {
+                           if (vertices_[place] != low && vertices_[place] != high) {
+                             use(edge / kEdgesOfPart, edge, place);
+                           }
+                         });
+      }
+    });
   }
 
   // Where on the line of the edge the vertex's nearest point is: 0 at its lower end, 1 at its higher one.
@@ -253,27 +282,47 @@ class Closing {
     const Vec3d along = at(edge.high) - at(edge.low);
     return dot(at(v) - at(edge.low), along) / dot(along, along);
   }
+  double distanceFrom(const OpenEdge& edge, std::uint32_t v, double part) const {
+    return length(at(v) - at(edge.low) - (at(edge.high) - at(edge.low)) * part);
+  }
 
-  void bendEdges() {
-    const auto edges = static_cast<std::uint32_t>(open_.size());
-    const BoxPairs pairs = edgesAndVertices();
+  // Whether an edge is to be led through a vertex, where along it, and how far the vertex lies beside it.
+  struct Place {
+    bool leads = false;
+    double along = 0.0, distance = 0.0;
+  };
+
+  // Of a vertex exactly on an edge, between its ends.
+  Place placeOn(const OpenEdge& edge, std::uint32_t v) const {
+    const Vec3d &low = at(edge.low), &high = at(edge.high), &p = at(v);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (geometry::orientation(lattice_, axis, low, high, p) != 0) {
+        return {};
+      }
+    }
+    // Points of a line are in the order of any coordinate that is not the same for all of them.
+    int axis = 0;
+    while (low[axis] == high[axis]) {
+      ++axis;
+    }
+    const bool up = low[axis] < high[axis];
+    const double along = up ? p[axis] : -p[axis];
+    return {along > (up ? low[axis] : -low[axis]) && along < (up ? high[axis] : -high[axis]), along, 0.0};
+  }
+
+  // Leads open edges through vertices. place_of(edge, vertex) is a Place.
+  template <typename PlaceOf>
+  void leadEdges(const PlaceOf& place_of) {
     struct Found {
       std::uint32_t edge;
       Beside beside;
       double distance;
     };
-    std::vector<std::vector<Found>> parts(pairs.partCount());
-    forPairs(pairs, parallel_for_, [&](std::uint32_t part, std::uint32_t a, std::uint32_t b) {
-      const std::uint32_t edge = std::min(a, b), place = std::max(a, b);
-      if (edge >= edges || place < edges) {
-        return;
-      }
-      const std::uint32_t v = vertices_[place - edges];
-      const auto [low, high] = open_[edge];
-      const double part_of_edge = partOfEdge(open_[edge], v);
-      const double distance = length(at(v) - at(low) - (at(high) - at(low)) * part_of_edge);
-      if (v != low && v != high && part_of_edge > 0.0 && part_of_edge < 1.0 && distance < width_) {
-        parts[part].push_back({edge, {part_of_edge, v}, distance});
+    std::vector<std::vector<Found>> parts(edgeParts());
+    forEdgesAndVertices([&](std::uint32_t part, std::uint32_t edge, std::uint32_t place) {
+      const std::uint32_t v = vertices_[place];
+      if (const Place found = place_of(open_[edge], v); found.leads) {
+        parts[part].push_back({edge, {found.along, v}, found.distance});
       }
     });
     beside_.group(open_.size(), [&](auto&& pair) {
@@ -287,13 +336,13 @@ class Closing {
       for (const Found& found : part) {
         const OpenEdge& edge = open_[found.edge];
         const double reach = std::max(maxComponent(abs(at(edge.low))), maxComponent(abs(at(edge.high))));
-        bending_ = std::max(bending_, found.distance + kRounded * reach);
+        bending_ = std::max(bending_, width_ > 0.0 ? found.distance + kRounded * reach : 0.0);
       }
     }
     for (std::size_t edge = 0; edge < beside_.count(); ++edge) {
       std::sort(beside_[edge].begin(), beside_[edge].end(), [&](const Beside& a, const Beside& b) {
-        return std::tie(a.at, at(a.vertex).x, at(a.vertex).y, at(a.vertex).z) <
-               std::tie(b.at, at(b.vertex).x, at(b.vertex).y, at(b.vertex).z);
+        return std::tie(a.along, at(a.vertex).x, at(a.vertex).y, at(a.vertex).z) <
+               std::tie(b.along, at(b.vertex).x, at(b.vertex).y, at(b.vertex).z);
       });
       result_.bent += beside_[edge].size();
     }
@@ -332,6 +381,35 @@ class Closing {
     add(point, a, b, source);
   }
 
+  // Whether what is left of a triangle runs back along its own border: its corners lie on a line, or have
+  // come to do so.
+  bool isFolded(const std::uint32_t (&corners)[3]) {
+    loop_.clear();
+    for (std::size_t k = 0; k < 3; ++k) {
+      loop_.push_back(corners[k]);
+      loop_.insert(loop_.end(), ways_[k].begin(), ways_[k].end());
+    }
+    steps_.clear();
+    for (std::size_t i = 0; i < loop_.size(); ++i) {
+      const std::uint32_t a = loop_[i], b = loop_[i + 1 < loop_.size() ? i + 1 : 0];
+      if (a != b) {
+        steps_.push_back({{std::min(a, b), std::max(a, b)}, a < b});
+      }
+    }
+    std::sort(steps_.begin(), steps_.end());
+    for (std::size_t i = 0; i < steps_.size();) {
+      int value = 0;
+      const OpenEdge edge = steps_[i].first;
+      for (; i < steps_.size() && steps_[i].first == edge; ++i) {
+        value += steps_[i].second ? 1 : -1;
+      }
+      if (value != 0) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   // A triangle whose edges are led through vertices is divided as if these lay on the edges: a fan from a
   // corner to the opposite edge, whose first and last triangle are fans to the other edges.
   void addBent(const std::uint32_t (&corners)[3], std::uint32_t source) {
@@ -344,6 +422,9 @@ class Closing {
     }
     if (first == 3) {
       add(corners[0], corners[1], corners[2], source);
+      return;
+    }
+    if (isFolded(corners)) {
       return;
     }
     const std::uint32_t a = corners[first], b = corners[(first + 1) % 3], c = corners[(first + 2) % 3];
@@ -372,15 +453,22 @@ class Closing {
   std::vector<std::uint32_t> triangle_at_;  // by open edge: one that has it
   std::vector<std::uint32_t> vertices_;     // of open edges, by place
   base::Rows<Beside> beside_;               // by open edge, along it
-  std::vector<std::uint32_t> ways_[3];
-  double merging_ = 0.0, bending_ = 0.0;  // how far each step moves a point at most
+  std::vector<std::uint32_t> ways_[3], loop_;
+  std::vector<std::pair<OpenEdge, bool>> steps_;  // along loop_; true: from the lower vertex
+  geometry::Lattice lattice_;                     // if vertices have to lie on edges exactly
+  double merging_ = 0.0, bending_ = 0.0;          // how far each step moves a point at most
   ClosedCracks result_;
 };
 
 }  // namespace
 
 ClosedCracks closeCracks(const ConformInput& input, double width, const ParallelFor& parallel_for) {
-  return Closing(input, width, parallel_for).run();
+  return Closing(input, width, parallel_for).close();
+}
+
+ClosedCracks joinEdges(const ConformInput& input, std::span<const std::uint8_t> open,
+                       const ParallelFor& parallel_for) {
+  return Closing(input, 0.0, parallel_for).join(open);
 }
 
 std::vector<NearMiss> findNearMisses(const ConformInput& input, double width,

@@ -3,6 +3,7 @@
 // Closes narrow cracks before triangles are conformed: boundaries that nearly meet are made to meet.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
@@ -28,6 +29,13 @@ struct ClosedCracks {
 // narrower than twice the width. With a width of 0, or one that is not finite, nothing changes.
 ClosedCracks closeCracks(const ConformInput& input, double width,
                          const ParallelFor& parallel_for = serialFor);
+
+// The same for vertices that lie on edges exactly: nothing moves, and what triangles cover stays the same.
+// open: by triangle, bit k if the edge from corner k to the next may be led through vertices of other such
+// edges; the same for all triangles at an edge. Vertices with coordinates of 2^64 metres and more, or with
+// bits below 2^-149 metres, are left alone.
+ClosedCracks joinEdges(const ConformInput& input, std::span<const std::uint8_t> open,
+                       const ParallelFor& parallel_for = serialFor);
 
 // A vertex beside an edge, both left after cancelling.
 struct NearMiss {

@@ -258,9 +258,7 @@ ConformedMesh conform(const ConformInput& input, const ConformSettings& settings
     return Conforming(input, settings, parallel_for).run();
   }
   const ClosedCracks closed = closeCracks(input, settings.crack_width, parallel_for);
-  ConformSettings of_closed = settings;
-  of_closed.edges = {};  // these are edges of the input's triangles
-  ConformedMesh mesh = Conforming({input.vertices, closed.triangles}, of_closed, parallel_for).run();
+  ConformedMesh mesh = Conforming({input.vertices, closed.triangles}, settings, parallel_for).run();
   for (std::uint32_t& source : mesh.source) {
     source = closed.source[source];
   }

@@ -19,8 +19,10 @@ struct ConformInput {
 
 // What is divided. Each includes those before it.
 enum class Divide : std::uint8_t {
-  // Edges, at vertices that lie on them. No vertex is new, so nothing is rounded. All that surfaces of whole
-  // triangles need: what of a triangle's border cancels does not depend on how it is divided inside.
+  // Edges, at vertices that lie on them. No vertex is new, so nothing is rounded. It is all that surfaces of
+  // whole triangles need, for which joinEdges() does the same faster: what of a triangle's border cancels
+  // does
+  // not depend on how it is divided inside.
   kEdges,
   // Faces, where an edge or a vertex of another triangle lies in them, and overlaps.
   kFaces,
@@ -31,10 +33,6 @@ enum class Divide : std::uint8_t {
 
 struct ConformSettings {
   Divide divide = Divide::kPenetrations;
-  // With kEdges: which edges of each triangle may be divided, bit k for the one from corner k to the next;
-  // empty: all. Give all triangles at an edge the same bit. With a crack_width above 0 they are not looked at
-  // and all edges may be divided, because closing makes other triangles than those of the input.
-  std::span<const std::uint8_t> edges{};
   // Metres. If it is above 0, cracks that are narrower are closed first: see closeCracks(). What is promised
   // then holds of the triangles as that leaves them, and `slack` includes how far it moves them.
   double crack_width = 0.0;

@@ -323,18 +323,12 @@ class Pair {
     for (int i = 0; i < std::min(meetings.count, 2); ++i) {
       const Meeting& meeting = meetings.at[i];
       const int borders = std::popcount(meeting.in[which]);
-      if (only_edges ? borders == 1 && meeting.name.kind == PointName::Kind::kVertex &&
-                           mayDivide(number, meeting.in[which])
-                     : borders < 2) {
+      if (only_edges ? borders == 1 && meeting.name.kind == PointName::Kind::kVertex : borders < 2) {
         contacts_.push_back({number, Contact::Kind::kPoint, {meeting.in[which], 0}, {meeting.name, {}}, {}});
         added = true;
       }
     }
     return added;
-  }
-
-  bool mayDivide(std::uint32_t triangle, Borders edge) const {
-    return settings_.edges.empty() || (settings_.edges[triangle] & edge) != 0;
   }
 
   // Adds what penetrating triangles must know of each other although they are not divided along their common

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pairs of triangles whose boxes meet.
+// Boxes that meet: those of a list with each other, or with a given one.
 
 #include <algorithm>
 #include <cstdint>
@@ -24,6 +24,9 @@ class BoxPairs {
   // Calls use(a, b) once for each pair of boxes that touch, with their numbers; every pair is in one part.
   template <typename Use>
   void forPairs(std::uint32_t part, Use&& use) const;
+  // Calls use(a) for each box that touches the given one, with its number.
+  template <typename Use>
+  void forMeeting(const Box& box, Use&& use) const;
 
  private:
   static constexpr std::uint32_t kWidth = 4, kLeavesOfPart = 256;
@@ -82,6 +85,34 @@ void BoxPairs::forPairs(std::uint32_t part, Use&& use) const {
         const std::uint64_t last_leaf = ((std::uint64_t{node} + 1) << (2 * (at.level - 1))) - 1;
         if (last_leaf >= leaf && meet(box, below[node])) {
           open.push_back({at.level - 1, node});
+        }
+      }
+    }
+  }
+}
+
+template <typename Use>
+void BoxPairs::forMeeting(const Box& box, Use&& use) const {
+  struct Entry {
+    std::uint32_t level, node;  // level 0: leaves
+  };
+  // Each level leaves all but one of its nodes behind at most; 2^32 boxes have 16 levels.
+  Entry open[16 * (kWidth - 1) + 1];
+  std::uint32_t count = 0;
+  if (!levels_.empty()) {
+    open[count++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+  }
+  while (count > 0) {
+    const Entry at = open[--count];
+    const std::vector<Box>& below = at.level == 0 ? boxes_ : levels_[at.level - 1];
+    const auto end =
+        static_cast<std::uint32_t>(std::min<std::size_t>(below.size(), (at.node + 1) * std::size_t{kWidth}));
+    for (std::uint32_t i = at.node * kWidth; i < end; ++i) {
+      if (meet(box, below[i])) {
+        if (at.level == 0) {
+          use(numbers_[i]);
+        } else {
+          open[count++] = {at.level - 1, i};
         }
       }
     }

@@ -19,15 +19,24 @@ class ChainFinder {
 
   void run() {
     collectEdges();
-    std::sort(edges_.begin(), edges_.end(), [this](const BoundaryEdge& a, const BoundaryEdge& b) {
-      const int order = compareUses(a, b);
-      return order != 0 ? order < 0 : std::tie(a.from, a.to) < std::tie(b.from, b.to);
-    });
-    for (std::size_t first = 0, last = 0; first < edges_.size(); first = last) {
-      while (last < edges_.size() && compareUses(edges_[first], edges_[last]) == 0) {
-        ++last;
+    base::Rows<BoundaryEdge> by_cluster;  // by their first cluster
+    by_cluster.group(set_.clusters.size(), [&](auto&& pair) {
+      for (const BoundaryEdge& edge : edges_) {
+        pair(uses_[edge.first_use].cluster, edge);
       }
-      joinEdges(std::span(edges_).subspan(first, last - first));
+    });
+    for (std::size_t c = 0; c < by_cluster.count(); ++c) {
+      const std::span<BoundaryEdge> edges = by_cluster[c];
+      std::sort(edges.begin(), edges.end(), [this](const BoundaryEdge& a, const BoundaryEdge& b) {
+        const int order = compareUses(a, b);
+        return order != 0 ? order < 0 : std::tie(a.from, a.to) < std::tie(b.from, b.to);
+      });
+      for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+        while (last < edges.size() && compareUses(edges[first], edges[last]) == 0) {
+          ++last;
+        }
+        joinEdges(edges.subspan(first, last - first));
+      }
     }
     listByCluster();
   }

@@ -4,17 +4,12 @@
 #include <tuple>
 #include <utility>
 
-#include "src/occluders/conform.h"
+#include "src/occluders/close_cracks.h"
+#include "src/scene/weld.h"
 
 namespace sightline::occluders {
 
 namespace {
-
-constexpr Vec3f kZero{0.0f, 0.0f, 0.0f};  // added, it makes 0 of -0
-
-bool precedes(const Vec3f& a, const Vec3f& b) {
-  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-}
 
 // Calls use(corners, object, double_sided) for the opaque triangles of a scene that are finite.
 template <typename Use>
@@ -36,39 +31,28 @@ void forOpaqueTriangles(const SceneView& scene, Use&& use) {
 }
 
 struct WeldedVertices {
-  std::vector<Vec3f> vertices;             // ascending by x, y and z
-  std::vector<std::uint32_t> position_of;  // by vertex: one of the scene's positions there
+  std::vector<Vec3f> vertices;             // in the order in which opaque triangles use them
+  std::vector<std::uint32_t> position_of;  // by vertex: the first of the scene's positions there
   std::vector<std::uint32_t> vertex_of;    // by position, where opaque triangles use it
 };
 
 WeldedVertices weldVertices(const SceneView& scene) {
+  constexpr std::uint32_t kUnknown = 0xffffffffu;
   WeldedVertices welded;
-  std::vector<bool> used(scene.positions.size());
+  welded.vertex_of.assign(scene.positions.size(), kUnknown);
+  scene::PositionNumbers numbers(scene.positions.size());
   forOpaqueTriangles(scene, [&](std::span<const std::uint32_t> corners, std::uint32_t, bool) {
     for (const std::uint32_t corner : corners) {
-      used[corner] = true;
+      std::uint32_t& vertex = welded.vertex_of[corner];
+      if (vertex == kUnknown) {
+        vertex = numbers.numberOf(scene.positions[corner]);
+        if (vertex == welded.position_of.size()) {
+          welded.position_of.push_back(corner);
+        }
+      }
     }
   });
-  struct Place {
-    Vec3f position;
-    std::uint32_t source;
-  };
-  std::vector<Place> places;
-  for (std::uint32_t i = 0; i < used.size(); ++i) {
-    if (used[i]) {
-      places.push_back({scene.positions[i] + kZero, i});
-    }
-  }
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return precedes(a.position, b.position); });
-  welded.vertex_of.resize(scene.positions.size());
-  for (const Place& place : places) {
-    if (welded.vertices.empty() || !(welded.vertices.back() == place.position)) {
-      welded.vertices.push_back(place.position);
-      welded.position_of.push_back(place.source);
-    }
-    welded.vertex_of[place.source] = static_cast<std::uint32_t>(welded.vertices.size() - 1);
-  }
+  welded.vertices = std::move(numbers).take();
   return welded;
 }
 
@@ -179,8 +163,10 @@ void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
       corners.insert(corners.end(), mesh.triangles[t].vertices, mesh.triangles[t].vertices + 3);
     }
   }
-  const ConformedMesh divided =
-      conform({vertices, corners}, {.divide = Divide::kEdges, .edges = edges}, parallel_for);
+  if (asked.empty()) {
+    return;
+  }
+  const ClosedCracks divided = joinEdges({vertices, corners}, edges, parallel_for);
   std::vector<MeshTriangle> pieces;
   pieces.reserve(mesh.triangles.size());
   std::size_t next = 0, piece = 0;

@@ -21,7 +21,7 @@ struct MeshTriangle {
 };
 
 struct SurfaceMesh {
-  std::vector<Vec3f> vertices;               // ascending by x, y and z
+  std::vector<Vec3f> vertices;               // in the order in which triangles use them
   std::vector<MeshTriangle> triangles;       // by object
   std::vector<std::uint32_t> edge_vertices;  // two for each edge, the lower one first
   base::Rows<std::uint32_t> beside;          // triangles by edge
@@ -34,7 +34,7 @@ bool mayOcclude(const SceneView& scene, const Object& object);
 
 // The opaque triangles of a scene that are finite, with equal positions as one vertex.
 struct OpaqueTriangles {
-  std::vector<Vec3f> vertices;             // ascending by x, y and z
+  std::vector<Vec3f> vertices;             // in the order in which triangles use them
   std::vector<std::uint32_t> position_of;  // by vertex: one of the scene's positions there
   std::vector<std::uint32_t> corners;      // three for each triangle
   std::vector<std::uint32_t> objects;      // by triangle, ascending

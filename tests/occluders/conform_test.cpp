@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "src/occluders/close_cracks.h"
 #include "tests/occluders/conform_judge.h"
 
 namespace sightline::occluders {
@@ -335,7 +336,51 @@ TEST(Conform, EdgesAloneAreDividedAtVerticesThatAreThere) {
   }
 }
 
-TEST(Conform, EdgesThatMayNotBeDividedStayWhole) {
+// As conform() would return it.
+ConformedMesh joined(const Soup& soup, std::span<const std::uint8_t> open) {
+  ClosedCracks joined = joinEdges(soup.input(), open);
+  EXPECT_EQ(joined.slack, 0.0);
+  ConformedMesh mesh;
+  mesh.vertices = soup.vertices;
+  mesh.triangles = std::move(joined.triangles);
+  mesh.source = std::move(joined.source);
+  return mesh;
+}
+
+TEST(JoinEdges, LeavesNoVertexWithinAnEdge) {
+  for (const NamedFamily& family : kFamilies) {
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      SCOPED_TRACE(std::string(family.name) + ", seed " + std::to_string(seed));
+      const Soup soup = family.make(seed);
+      const ConformedMesh mesh = joined(soup, std::vector<std::uint8_t>(soup.count(), 0b111));
+      ConformJudge(soup, mesh).judgeTiling();
+      ConformJudge(soup, mesh).judgeBorders();
+    }
+  }
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Soup voxels = greedyVoxels(seed, 6);
+    EXPECT_GT(boundaryEdges(voxels.triangles), 0u);
+    EXPECT_EQ(boundaryEdges(joined(voxels, std::vector<std::uint8_t>(voxels.count(), 0b111)).triangles), 0u);
+  }
+}
+
+// A unit in the last place beside an edge is beside it, at any scale.
+TEST(JoinEdges, ACornerBesideAnEdgeIsNotOnIt) {
+  for (const double scale : {1e-30, 1.0, 1e15}) {
+    for (const int ulps : {-1, 0, 1}) {
+      Soup soup;
+      const Vec3d a = Vec3d(Vec3f(Vec3d{0.1, 0.2, 0.3} * scale)), b = a * 3.0;
+      Vec3d on = a * 2.0;
+      on.y = ulps == 0 ? on.y : std::nextafterf(static_cast<float>(on.y), ulps < 0 ? 0.0f : 1e30f);
+      soup.add(a, b, Vec3d{0.0, 0.0, 5.0} * scale);
+      soup.add(on, Vec3d{4.0, 0.0, 0.0} * scale, Vec3d{5.0, 1.0, 0.0} * scale);
+      const std::vector<std::uint8_t> open(soup.count(), 0b111);
+      EXPECT_EQ(joined(soup, open).source.size(), ulps == 0 ? 3u : 2u) << scale << " " << ulps;
+    }
+  }
+}
+
+TEST(JoinEdges, EdgesThatMayNotBeDividedStayWhole) {
   Soup soup;
   soup.add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
   soup.add({2, 0, 0}, {1, -3, 0}, {3, -3, 0});  // a corner on edge 0 of the first
@@ -343,7 +388,7 @@ TEST(Conform, EdgesThatMayNotBeDividedStayWhole) {
   using Corners = std::set<std::uint32_t>;
   const auto piecesOfFirst = [&](std::uint8_t bits) {
     const std::uint8_t edges[3] = {bits, 0b111, 0b111};
-    const ConformedMesh mesh = conform(soup.input(), {.divide = Divide::kEdges, .edges = edges});
+    const ConformedMesh mesh = joined(soup, edges);
     ConformJudge(soup, mesh).judgeTiling();
     std::set<Corners> pieces;
     for (std::size_t i = 0; i < mesh.source.size(); ++i) {
@@ -359,20 +404,6 @@ TEST(Conform, EdgesThatMayNotBeDividedStayWhole) {
   EXPECT_EQ(piecesOfFirst(0b001), (std::set<Corners>{{0, on_edge_0, 2}, {on_edge_0, 1, 2}}));
   EXPECT_EQ(piecesOfFirst(0b100), (std::set<Corners>{{0, 1, on_edge_2}, {on_edge_2, 1, 2}}));
   EXPECT_EQ(piecesOfFirst(0b101).size(), 3u);
-}
-
-// Bits for edges of the input say nothing of the triangles that closing cracks makes, which are more.
-TEST(Conform, AfterClosingCracksAllEdgesMayBeDivided) {
-  Soup soup;
-  soup.add({0, 0, 0}, {4, 0, 0}, {0, 4, 0});  // its long edge is bent to the next one's first corner
-  soup.add({2, 2, 0.001}, {4, 0, 0}, {4, 4, 1});
-  soup.add({0, 4, 0}, {2, 2, 0.001}, {0, 4, 7});
-  soup.addQuad({10, 0, 0}, {14, 0, 0}, {14, 4, 0}, {10, 4, 0});
-  soup.add({12, 2, 0}, {12, 2, 3}, {13, 1, 3});  // a corner on the quad's diagonal, which is no crack
-  const std::vector<std::uint8_t> edges(soup.count(), 0);
-  const ConformedMesh mesh =
-      conform(soup.input(), {.divide = Divide::kEdges, .edges = edges, .crack_width = 0.002});
-  EXPECT_EQ(mesh.source, (std::vector<std::uint32_t>{0, 0, 1, 2, 3, 3, 4, 4, 5}));
 }
 
 // What stands on a slab, without a floor of its own, has its lowest edges in common with pieces of the slab.

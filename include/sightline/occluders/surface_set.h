@@ -72,7 +72,7 @@ struct SurfacePart {
 
 // Made by findSurfaces() and not to be changed by hand.
 struct SurfaceSet {
-  // Scene space; no two are equal, and they ascend by x, y and z.
+  // Scene space; no two are equal.
   std::vector<Vec3f> vertices{};
   // Each triangle has three vertices, counter-clockwise as seen from its front; triangles are sorted by
   // cluster.
