@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace sightline::base {
 
@@ -19,8 +18,8 @@ inline std::uint64_t mixBits(std::uint64_t value) {
 // The index of the first slot, from number `hash` on (modulo their number) and past the end to the beginning,
 // for which stop(slot) is true: a key's own slot or the free one where it belongs. There is such a slot, and
 // the number of slots is a power of two.
-template <typename Slot, typename Stop>
-std::size_t probeSlots(const std::vector<Slot>& slots, std::uint64_t hash, Stop&& stop) {
+template <typename Slots, typename Stop>
+std::size_t probeSlots(const Slots& slots, std::uint64_t hash, Stop&& stop) {
   const std::size_t mask = slots.size() - 1;
   std::size_t slot = static_cast<std::size_t>(hash) & mask;
   while (!stop(slots[slot])) {

@@ -9,16 +9,18 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
-#include <vector>
+
+#include "sightline/base/large_vector.h"
 
 namespace sightline::base {
 
 // Groups items by row, keeping their order within a row: afterwards row r has items[first[r]] up to, not
 // including, items[first[r + 1]]; `first` has rows + 1 entries. for_each_pair(body) calls body(row, item) for
 // every pair, row < rows; it is called twice and has to give the same pairs both times.
-template <typename Index, typename Item, typename ForEachPair>
-void groupIntoRows(std::size_t rows, std::vector<Index>& first, std::vector<Item>& items,
-                   ForEachPair&& for_each_pair) {
+// first, items: vectors.
+template <typename Firsts, typename Items, typename ForEachPair>
+void groupIntoRows(std::size_t rows, Firsts& first, Items& items, ForEachPair&& for_each_pair) {
+  using Item = typename Items::value_type;
   first.assign(rows + 1, 0);
   for_each_pair([&](auto row, const Item&) { ++first[row + 1]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -63,8 +65,8 @@ class Rows {
   }
 
  private:
-  std::vector<std::uint32_t> first_ = std::vector<std::uint32_t>(1, 0);
-  std::vector<Item> items_;
+  LargeVector<std::uint32_t> first_ = LargeVector<std::uint32_t>(1, 0);
+  LargeVector<Item> items_;
 };
 
 }  // namespace sightline::base

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "src/occluders/close_cracks.h"
@@ -12,7 +13,7 @@ namespace {
 
 using occluders::OpaqueTriangles;
 
-std::vector<Vec3d> exact(const std::vector<Vec3f>& positions) {
+std::vector<Vec3d> exact(std::span<const Vec3f> positions) {
   return {positions.begin(), positions.end()};
 }
 

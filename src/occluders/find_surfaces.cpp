@@ -19,8 +19,8 @@ using occluders::SurfaceMesh;
 constexpr std::uint32_t kUngathered = 0xffffffffu;
 constexpr double kRounding = 1e-6;  // far above that of cosines, and of a plane through single precision
 
-std::vector<Vec3d> unitNormals(const SurfaceMesh& mesh) {
-  std::vector<Vec3d> normals;
+LargeVector<Vec3d> unitNormals(const SurfaceMesh& mesh) {
+  LargeVector<Vec3d> normals;
   normals.reserve(mesh.triangles.size());
   for (const MeshTriangle& t : mesh.triangles) {
     const Vec3d a(mesh.vertices[t.vertices[0]]);
@@ -89,7 +89,7 @@ class Gathering {
   std::span<const std::uint32_t> within_;
   std::uint32_t max_triangles_;
   double min_cosine_;
-  std::vector<std::uint32_t> part_of_;
+  LargeVector<std::uint32_t> part_of_;
 };
 
 // Sets where some triangles lie and which way they face. Part: a SurfaceCluster or a SurfacePatch. Returns
@@ -231,8 +231,8 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
   if (settings.join_edges) {
     occluders::divideEdges(mesh, parallel_for);
   }
-  const std::vector<Vec3d> normals = unitNormals(mesh);
-  std::vector<std::uint32_t> order(mesh.triangles.size());
+  const LargeVector<Vec3d> normals = unitNormals(mesh);
+  LargeVector<std::uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   Gathering parts(mesh, normals, settings.part_triangles, 180.0, {});
   const base::Rows<std::uint32_t> by_part = parts.gather(order);
@@ -283,13 +283,14 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
     }
     set.bounds.extend(set.part_bounds[p]);
   }
+  set.triangles.reserve(3 * mesh.triangles.size());
   for (const std::uint32_t t : by_cluster.items()) {
     set.triangles.insert(set.triangles.end(), mesh.triangles[t].vertices, mesh.triangles[t].vertices + 3);
   }
   listByObject(mesh, parts.partOf(), scene.objects.size(), set);
   set.vertices = std::move(mesh.vertices);
   occluders::findChains(mesh, clusters.partOf(), set);
-  std::vector<std::uint32_t> part_of(set.clusters.size()), patch_of(set.clusters.size());
+  LargeVector<std::uint32_t> part_of(set.clusters.size()), patch_of(set.clusters.size());
   for (std::size_t c = 0; c < by_cluster.count(); ++c) {
     part_of[c] = parts.partOf()[by_cluster[c][0]];
     patch_of[c] = patches.partOf()[by_cluster[c][0]];

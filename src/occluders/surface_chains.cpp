@@ -25,6 +25,10 @@ class ChainFinder {
         pair(uses_[edge.first_use].cluster, edge);
       }
     });
+    edges_ = {};
+    set_.chains.reserve(by_cluster.items().size());
+    set_.uses.reserve(uses_.size());
+    set_.chain_vertices.reserve(2 * by_cluster.items().size());
     for (std::size_t c = 0; c < by_cluster.count(); ++c) {
       const std::span<BoundaryEdge> edges = by_cluster[c];
       std::sort(edges.begin(), edges.end(), [this](const BoundaryEdge& a, const BoundaryEdge& b) {
@@ -58,6 +62,8 @@ class ChainFinder {
   // Sums up, edge by edge, how the triangles of each cluster run.
   void collectEdges() {
     std::vector<ChainUse> sums;
+    edges_.reserve(mesh_.edgeCount());
+    uses_.reserve(mesh_.beside.items().size());
     for (std::uint32_t e = 0; e < mesh_.edgeCount(); ++e) {
       sums.clear();
       for (const std::uint32_t t : mesh_.beside[e]) {
@@ -137,7 +143,7 @@ class ChainFinder {
   }
 
   void listByCluster() {
-    std::vector<std::uint32_t> first;
+    LargeVector<std::uint32_t> first;
     base::groupIntoRows(set_.clusters.size(), first, set_.cluster_chains, [&](auto&& pair) {
       for (std::uint32_t c = 0; c < set_.chains.size(); ++c) {
         for (const ChainUse& use : set_.usesOf(set_.chains[c])) {
@@ -154,8 +160,8 @@ class ChainFinder {
   const SurfaceMesh& mesh_;
   std::span<const std::uint32_t> cluster_of_;
   SurfaceSet& set_;
-  std::vector<BoundaryEdge> edges_;
-  std::vector<ChainUse> uses_;
+  LargeVector<BoundaryEdge> edges_;
+  LargeVector<ChainUse> uses_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> ends_;
 };

@@ -31,9 +31,9 @@ void forOpaqueTriangles(const SceneView& scene, Use&& use) {
 }
 
 struct WeldedVertices {
-  std::vector<Vec3f> vertices;             // in the order in which opaque triangles use them
-  std::vector<std::uint32_t> position_of;  // by vertex: the first of the scene's positions there
-  std::vector<std::uint32_t> vertex_of;    // by position, where opaque triangles use it
+  LargeVector<Vec3f> vertices;             // in the order in which opaque triangles use them
+  LargeVector<std::uint32_t> position_of;  // by vertex: the first of the scene's positions there
+  LargeVector<std::uint32_t> vertex_of;    // by position, where opaque triangles use it
 };
 
 WeldedVertices weldVertices(const SceneView& scene) {
@@ -72,6 +72,8 @@ void connect(SurfaceMesh& mesh) {
       }
     }
   });
+  mesh.edge_vertices.reserve(6 *
+                             mesh.triangles.size());  // far more than needed; what is not used costs nothing
   for (std::uint32_t low = 0; low < by_low.count(); ++low) {
     const std::span<Side> sides = by_low[low];
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
@@ -98,14 +100,14 @@ void connect(SurfaceMesh& mesh) {
 }
 
 // By triangle, bit k for its edge k: the triangles at that edge do not cancel.
-std::vector<std::uint8_t> openEdges(const SurfaceMesh& mesh) {
-  std::vector<std::int32_t> sums(mesh.edgeCount());
+LargeVector<std::uint8_t> openEdges(const SurfaceMesh& mesh) {
+  LargeVector<std::int32_t> sums(mesh.edgeCount());
   for (const MeshTriangle& triangle : mesh.triangles) {
     for (const std::uint32_t edge : triangle.edges) {
       sums[edge / 2] += edge % 2 == 0 ? 1 : -1;
     }
   }
-  std::vector<std::uint8_t> open(mesh.triangles.size());
+  LargeVector<std::uint8_t> open(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const bool remains = sums[mesh.triangles[t].edges[k] / 2] != 0;
@@ -139,7 +141,8 @@ SurfaceMesh weld(const SceneView& scene) {
   SurfaceMesh mesh;
   WeldedVertices welded = weldVertices(scene);
   mesh.vertices = std::move(welded.vertices);
-  const std::vector<std::uint32_t>& vertex_of = welded.vertex_of;
+  const LargeVector<std::uint32_t>& vertex_of = welded.vertex_of;
+  mesh.triangles.reserve(scene.indices.size() / 3);
   forOpaqueTriangles(
       scene, [&](std::span<const std::uint32_t> corners, std::uint32_t object, bool double_sided) {
         const std::uint32_t a = vertex_of[corners[0]], b = vertex_of[corners[1]], c = vertex_of[corners[2]];
@@ -152,8 +155,7 @@ SurfaceMesh weld(const SceneView& scene) {
 }
 
 void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const std::vector<std::uint8_t> open = openEdges(mesh);
-  const std::vector<Vec3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
+  const LargeVector<std::uint8_t> open = openEdges(mesh);
   std::vector<std::uint32_t> asked, corners;
   std::vector<std::uint8_t> edges;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -166,8 +168,9 @@ void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
   if (asked.empty()) {
     return;
   }
+  const std::vector<Vec3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
   const ClosedCracks divided = joinEdges({vertices, corners}, edges, parallel_for);
-  std::vector<MeshTriangle> pieces;
+  LargeVector<MeshTriangle> pieces;
   pieces.reserve(mesh.triangles.size());
   std::size_t next = 0, piece = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -3,8 +3,8 @@
 // The opaque triangles of a scene as one mesh: equal positions are one vertex, equal pairs of them one edge.
 
 #include <cstdint>
-#include <vector>
 
+#include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/scene/scene.h"
 #include "src/base/rows.h"
@@ -21,9 +21,9 @@ struct MeshTriangle {
 };
 
 struct SurfaceMesh {
-  std::vector<Vec3f> vertices;               // in the order in which triangles use them
-  std::vector<MeshTriangle> triangles;       // by object
-  std::vector<std::uint32_t> edge_vertices;  // two for each edge, the lower one first
+  LargeVector<Vec3f> vertices;               // in the order in which triangles use them
+  LargeVector<MeshTriangle> triangles;       // by object
+  LargeVector<std::uint32_t> edge_vertices;  // two for each edge, the lower one first
   base::Rows<std::uint32_t> beside;          // triangles by edge
 
   std::size_t edgeCount() const { return edge_vertices.size() / 2; }
@@ -34,10 +34,10 @@ bool mayOcclude(const SceneView& scene, const Object& object);
 
 // The opaque triangles of a scene that are finite, with equal positions as one vertex.
 struct OpaqueTriangles {
-  std::vector<Vec3f> vertices;             // in the order in which triangles use them
-  std::vector<std::uint32_t> position_of;  // by vertex: one of the scene's positions there
-  std::vector<std::uint32_t> corners;      // three for each triangle
-  std::vector<std::uint32_t> objects;      // by triangle, ascending
+  LargeVector<Vec3f> vertices;             // in the order in which triangles use them
+  LargeVector<std::uint32_t> position_of;  // by vertex: one of the scene's positions there
+  LargeVector<std::uint32_t> corners;      // three for each triangle
+  LargeVector<std::uint32_t> objects;      // by triangle, ascending
 };
 OpaqueTriangles opaqueTriangles(const SceneView& scene);
 

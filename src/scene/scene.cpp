@@ -22,8 +22,8 @@ void weldPositions(Scene& scene) {
     number = number == kUnknown ? numbers.numberOf(scene.positions[index]) : number;
     index = number;
   }
-  scene.positions = std::move(numbers).take();
-  scene.positions.shrink_to_fit();
+  const LargeVector<Vec3f> kept = std::move(numbers).take();
+  scene.positions.assign(kept.begin(), kept.end());
 }
 
 void updateBounds(Scene& scene) {

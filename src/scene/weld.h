@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
+#include "sightline/base/large_vector.h"
 #include "sightline/math/vec3.h"
 #include "src/base/hash_slots.h"
 
@@ -18,7 +18,9 @@ namespace sightline::scene {
 class PositionNumbers {
  public:
   // most: no more different positions than that are asked for.
-  explicit PositionNumbers(std::size_t most) : slots_(std::bit_ceil(most * 2 + 2), kFree) {}
+  explicit PositionNumbers(std::size_t most) : slots_(std::bit_ceil(most * 2 + 2), kFree) {
+    positions_.reserve(most);
+  }
 
   std::uint32_t numberOf(const Vec3f& position) {
     const Key key = keyOf(position);
@@ -32,7 +34,7 @@ class PositionNumbers {
   }
 
   // The positions by number. Ends the use of this.
-  std::vector<Vec3f> take() && { return std::move(positions_); }
+  LargeVector<Vec3f> take() && { return std::move(positions_); }
 
  private:
   static constexpr std::uint32_t kFree = 0xffffffffu;
@@ -53,8 +55,8 @@ class PositionNumbers {
     return h ^ (h >> 31);
   }
 
-  std::vector<std::uint32_t> slots_;  // numbers of positions
-  std::vector<Vec3f> positions_;
+  LargeVector<std::uint32_t> slots_;  // numbers of positions
+  LargeVector<Vec3f> positions_;
 };
 
 }  // namespace sightline::scene

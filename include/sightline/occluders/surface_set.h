@@ -9,9 +9,9 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "sightline/base/ids.h"
+#include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/math/box.h"
 #include "sightline/math/mat4.h"
@@ -73,27 +73,27 @@ struct SurfacePart {
 // Made by findSurfaces() and not to be changed by hand.
 struct SurfaceSet {
   // Scene space; no two are equal.
-  std::vector<Vec3f> vertices{};
+  LargeVector<Vec3f> vertices{};
   // Each triangle has three vertices, counter-clockwise as seen from its front; triangles are sorted by
   // cluster.
-  std::vector<std::uint32_t> triangles{};
-  std::vector<SurfaceCluster> clusters{};  // by patch
-  std::vector<SurfacePatch> patches{};     // by part
-  std::vector<SurfacePart> parts{};
-  std::vector<Box> cluster_bounds{}, patch_bounds{}, part_bounds{};
+  LargeVector<std::uint32_t> triangles{};
+  LargeVector<SurfaceCluster> clusters{};  // by patch
+  LargeVector<SurfacePatch> patches{};     // by part
+  LargeVector<SurfacePart> parts{};
+  LargeVector<Box> cluster_bounds{}, patch_bounds{}, part_bounds{};
   Box bounds{};  // of all
   // Clusters that adjoin a part and are not of it: by part, and one more, into `adjoining`.
-  std::vector<std::uint32_t> first_adjoining{}, adjoining{};
-  std::vector<std::uint32_t> first_of_object{};  // by ObjectId, and one more; into of_object
-  std::vector<std::uint32_t> of_object{};        // numbers of parts, by object, the largest ones first
-  std::vector<float> sizes_of_object{};          // the diameters of their boxes, metres
-  std::vector<ObjectId> objects{};               // that have parts, ascending
-  std::vector<Box> object_bounds{};              // of all parts of an object, by ObjectId
-  std::vector<SurfaceChain> chains{};
-  std::vector<ChainUse> uses{};
-  std::vector<std::uint32_t> cluster_chains{};  // numbers of chains, by cluster
-  std::vector<PatchChain> patch_chains{};       // the boundaries of patches, by patch
-  std::vector<Vec3f> chain_vertices{};          // by chain, scene space
+  LargeVector<std::uint32_t> first_adjoining{}, adjoining{};
+  LargeVector<std::uint32_t> first_of_object{};  // by ObjectId, and one more; into of_object
+  LargeVector<std::uint32_t> of_object{};        // numbers of parts, by object, the largest ones first
+  LargeVector<float> sizes_of_object{};          // the diameters of their boxes, metres
+  LargeVector<ObjectId> objects{};               // that have parts, ascending
+  LargeVector<Box> object_bounds{};              // of all parts of an object, by ObjectId
+  LargeVector<SurfaceChain> chains{};
+  LargeVector<ChainUse> uses{};
+  LargeVector<std::uint32_t> cluster_chains{};  // numbers of chains, by cluster
+  LargeVector<PatchChain> patch_chains{};       // the boundaries of patches, by patch
+  LargeVector<Vec3f> chain_vertices{};          // by chain, scene space
 
   // Numbers of the parts that have triangles of an object, those with the largest boxes first.
   std::span<const std::uint32_t> partsOf(ObjectId object) const {
