@@ -1,8 +1,9 @@
 #include "src/occluders/bodies.h"
 
 #include <algorithm>
-#include <tuple>
+#include <compare>
 
+#include "sightline/base/large_vector.h"
 #include "src/base/union_find.h"
 
 namespace sightline::occluders {
@@ -86,6 +87,12 @@ bool isConvex(std::span<const Vec3f> positions, std::span<const FoundPolygon* co
   }
   return true;
 }
+
+// A polygon of a body.
+struct BodyFace {
+  std::uint32_t object, body, polygon;
+  friend auto operator<=>(const BodyFace&, const BodyFace&) = default;
+};
 
 // Adds bodies to a set, one after the other.
 class BodyMaker {
@@ -191,24 +198,23 @@ void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const>
 void assembleBodies(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
                     OccluderSet& set) {
   set.body_of.assign(polygons.size(), OccluderSet::kNoBody);
-  std::vector<std::uint32_t> faces;  // polygons of bodies
+  LargeVector<BodyFace> faces;
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
     if (polygons[p].polygon.body != FoundPolygon::kNoBody) {
-      faces.push_back(p);
+      faces.push_back({polygons[p].object.value, polygons[p].polygon.body, p});
     }
   }
-  const auto key = [&](std::uint32_t p) {
-    return std::tuple(polygons[p].object.value, polygons[p].polygon.body);
-  };
-  std::stable_sort(faces.begin(), faces.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::sort(faces.begin(), faces.end());
+  std::vector<std::uint32_t> ids;  // of one body
   BodyMaker maker(positions, set);
   for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
-    while (last < faces.size() && key(faces[last]) == key(faces[first])) {
-      ++last;
+    ids.clear();
+    while (last < faces.size() && faces[last].object == faces[first].object &&
+           faces[last].body == faces[first].body) {
+      ids.push_back(faces[last++].polygon);
     }
-    if (last - first == polygons[faces[first]].polygon.body_size) {
-      maker.add(polygons, std::span(faces).subspan(first, last - first));
+    if (ids.size() == polygons[ids[0]].polygon.body_size) {
+      maker.add(polygons, ids);
     }
   }
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "sightline/occluders/occluder_set.h"
@@ -71,13 +70,19 @@ std::vector<RankedPolygon> rank(const SceneView& scene, std::vector<ObjectResult
     FoundPolygon* polygon;
     double area;
     ObjectId object;
+    std::uint32_t triangles;
+    std::uint32_t body;  // bodies of all objects, numbered one after the other; kNoBody
   };
-  std::vector<Candidate> all;
+  LargeVector<Candidate> all;
   double total_area = 0.0;
-  for (std::size_t o = 0; o < results.size(); ++o) {
+  std::uint32_t first_body = 0, next_body = 0;
+  for (std::size_t o = 0; o < results.size(); ++o, first_body = next_body) {
     for (FoundPolygon& polygon : results[o].polygons) {
       total_area += polygon.area;
-      all.push_back({&polygon, polygon.area, ObjectId(o)});
+      const bool in_body = polygon.body != FoundPolygon::kNoBody;
+      const std::uint32_t body = in_body ? first_body + polygon.body : FoundPolygon::kNoBody;
+      next_body = in_body ? std::max(next_body, body + 1) : next_body;
+      all.push_back({&polygon, polygon.area, ObjectId(o), polygon.triangle_count, body});
     }
     add(report, results[o].report);
   }
@@ -86,22 +91,20 @@ std::vector<RankedPolygon> rank(const SceneView& scene, std::vector<ObjectResult
   const std::size_t limit = settings.max_occluders != 0 ? settings.max_occluders : all.size();
   double area_before = 0.0;
   std::vector<RankedPolygon> kept;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> kept_bodies;  // object, body
+  std::vector<bool> body_is_kept(next_body);
   for (const Candidate& candidate : all) {
-    const std::uint32_t body = candidate.polygon->body;
-    const bool in_body = body != FoundPolygon::kNoBody;
+    const bool in_body = candidate.body != FoundPolygon::kNoBody;
     const bool large =
         area_before < settings.area_fraction * total_area && candidate.area >= settings.min_area;
     const bool marked = scene.objects[candidate.object.value].mark == OccluderMark::kOccluder;
     area_before += candidate.area;
-    if ((large || marked || (in_body && kept_bodies.contains({candidate.object.value, body}))) &&
-        kept.size() < limit) {
+    if ((large || marked || (in_body && body_is_kept[candidate.body])) && kept.size() < limit) {
       if (in_body) {
-        kept_bodies.insert({candidate.object.value, body});
+        body_is_kept[candidate.body] = true;
       }
       kept.push_back({std::move(*candidate.polygon), candidate.object});
     } else {
-      report.too_small += candidate.polygon->triangle_count;
+      report.too_small += candidate.triangles;
     }
   }
   return kept;

@@ -6,7 +6,6 @@
 #include "src/occluders/links.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "src/base/rows.h"
@@ -69,21 +68,28 @@ class Linker {
         mesh_edge_count_.push_back(count);
       }
     }
-    by_edge_ = uses_;
-    std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
-      return std::tie(a.low, a.high, a.edge, a.mesh_edge) < std::tie(b.low, b.high, b.edge, b.mesh_edge);
+    by_vertex_.group(positions_.size(), [this](auto&& pair) {
+      for (const Use& use : uses_) {
+        pair(use.low, use);
+      }
     });
+    for (std::size_t low = 0; low < by_vertex_.count(); ++low) {
+      std::sort(by_vertex_[low].begin(), by_vertex_[low].end(), [](const Use& a, const Use& b) {
+        return std::tie(a.high, a.edge, a.mesh_edge) < std::tie(b.high, b.edge, b.mesh_edge);
+      });
+    }
   }
 
   template <typename Visit>
   void forEachSharedMeshEdge(Visit visit) const {
-    for (std::size_t i = 0; i < uses_.size();) {
+    const std::span<const Use> uses = by_vertex_.items();
+    for (std::size_t i = 0; i < uses.size();) {
       std::size_t end = i + 1;
-      while (end < uses_.size() && uses_[end].low == uses_[i].low && uses_[end].high == uses_[i].high) {
+      while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) {
         ++end;
       }
       if (end - i > 1) {
-        visit(std::span(uses_).subspan(i, end - i));
+        visit(uses.subspan(i, end - i));
       }
       i = end;
     }
@@ -101,7 +107,7 @@ class Linker {
   template <typename Visit>
   void forEachVertex(std::uint32_t edge, Visit visit) const {
     for (std::uint32_t k = 0; k < mesh_edge_count_[edge]; ++k) {
-      const Use& use = by_edge_[first_use_[edge] + k];
+      const Use& use = uses_[first_use_[edge] + k];
       visit(positions_[use.low]);
       visit(positions_[use.high]);
     }
@@ -115,18 +121,16 @@ class Linker {
   }
 
   void chooseLines() {
-    std::vector<std::uint32_t> order(set_.edges.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
-      return classes_.root(a) < classes_.root(b);
-    });
-    for (std::size_t i = 0; i < order.size();) {
-      std::size_t end = i + 1;
-      while (end < order.size() && classes_.root(order[end]) == classes_.root(order[i])) {
-        ++end;
+    base::Rows<std::uint32_t> by_class;
+    by_class.group(set_.edges.size(), [this](auto&& pair) {
+      for (std::uint32_t edge = 0; edge < set_.edges.size(); ++edge) {
+        pair(classes_.root(edge), edge);
       }
-      chooseLine(std::span(order).subspan(i, end - i));
-      i = end;
+    });
+    for (std::size_t c = 0; c < by_class.count(); ++c) {
+      if (!by_class[c].empty()) {
+        chooseLine(by_class[c]);
+      }
     }
   }
 
@@ -190,35 +194,32 @@ class Linker {
   }
 
   void writeNeighbours() {
-    struct Found {
-      std::uint32_t edge;
-      EdgeNeighbour neighbour;
-    };
-    std::vector<Found> found;
-    forEachSharedMeshEdge([&](std::span<const Use> users) {
-      for (const Use& a : users) {
-        for (const Use& b : users) {
-          if (owner_[a.edge] != owner_[b.edge] && set_.edges[a.edge].mesh_edge_count != 0 &&
-              set_.occluders[owner_[b.edge]].watertight_edges) {
-            found.push_back({a.edge, {OccluderId(owner_[b.edge]), a.mesh_edge}});
+    base::Rows<EdgeNeighbour> by_edge;
+    by_edge.group(set_.edges.size(), [this](auto&& pair) {
+      forEachSharedMeshEdge([&](std::span<const Use> users) {
+        for (const Use& a : users) {
+          for (const Use& b : users) {
+            if (owner_[a.edge] != owner_[b.edge] && set_.edges[a.edge].mesh_edge_count != 0 &&
+                set_.occluders[owner_[b.edge]].watertight_edges) {
+              pair(a.edge, EdgeNeighbour{OccluderId(owner_[b.edge]), a.mesh_edge});
+            }
           }
         }
+      });
+    });
+    set_.neighbours.reserve(by_edge.items().size());
+    for (std::size_t e = 0; e < by_edge.count(); ++e) {
+      const std::span<EdgeNeighbour> neighbours = by_edge[e];
+      if (neighbours.empty()) {
+        continue;
       }
-    });
-    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-      return std::tie(a.edge, a.neighbour.mesh_edge, a.neighbour.occluder) <
-             std::tie(b.edge, b.neighbour.mesh_edge, b.neighbour.occluder);
-    });
-    for (std::size_t i = 0; i < found.size();) {
-      std::size_t end = i;
-      OccluderEdge& edge = set_.edges[found[i].edge];
+      std::sort(neighbours.begin(), neighbours.end(), [](const EdgeNeighbour& a, const EdgeNeighbour& b) {
+        return std::tie(a.mesh_edge, a.occluder) < std::tie(b.mesh_edge, b.occluder);
+      });
+      OccluderEdge& edge = set_.edges[e];
       edge.first_neighbour = static_cast<std::uint32_t>(set_.neighbours.size());
-      while (end < found.size() && found[end].edge == found[i].edge) {
-        set_.neighbours.push_back(found[end++].neighbour);
-      }
-      const std::size_t count = end - i;
-      edge.neighbour_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
-      i = end;
+      edge.neighbour_count = static_cast<std::uint16_t>(neighbours.size() <= 0xffff ? neighbours.size() : 0);
+      set_.neighbours.insert(set_.neighbours.end(), neighbours.begin(), neighbours.end());
     }
   }
 
@@ -241,9 +242,10 @@ class Linker {
   std::span<const Vec3f> positions_;
   std::span<const RankedPolygon> polygons_;
   OccluderSet& set_;
-  base::UnionFind classes_;          // of occluder edges along one shared edge
-  std::vector<Use> uses_, by_edge_;  // sorted by mesh edge; in the order of edges
-  std::vector<std::uint32_t> owner_, first_use_, mesh_edge_count_;  // by edge
+  base::UnionFind classes_;    // of occluder edges along one shared edge
+  LargeVector<Use> uses_;      // in the order of edges
+  base::Rows<Use> by_vertex_;  // by their lower vertex, sorted by mesh edge
+  LargeVector<std::uint32_t> owner_, first_use_, mesh_edge_count_;  // by edge
 };
 
 // False where a corner is sharper than three degrees: near it, a neighbour's own boundary would be too close

@@ -74,7 +74,7 @@ class Merger {
   }
 
   std::vector<FoundPolygon> run() {
-    bool merged = true;
+    bool merged = polygons_.size() > 1;
     while (merged) {
       merged = false;
       for (const std::uint32_t p : byArea()) {

@@ -32,6 +32,38 @@ class HierarchyCosts {
   std::array<std::optional<PartCost>, 2> costs_;
 };
 
+// The costs of occluders and of surfaces, each found when the first setting needs them.
+class OccluderCosts {
+ public:
+  PartCost of(const Setting& setting, CullingData& data) {
+    PartCost sum;
+    if (setting.choosesOccluders() || setting.testsDetailObjects()) {
+      add(
+          occluders_, [&] { data.occluders(); }, sum);
+    }
+    if (setting.surfaces() != SurfaceUse::kNone) {
+      add(
+          surfaces_, [&] { data.surfaces(); }, sum);
+    }
+    return sum;
+  }
+
+ private:
+  template <typename Make>
+  static void add(std::optional<PartCost>& cost, Make&& make, PartCost& sum) {
+    if (!cost) {
+      const HeapGrowth growth;
+      Stopwatch watch;
+      make();
+      cost = PartCost{watch.lap(), growth.bytes()};
+    }
+    sum.us += cost->us;
+    sum.bytes = sum.bytes && cost->bytes ? std::optional(*sum.bytes + *cost->bytes) : std::nullopt;
+  }
+
+  std::optional<PartCost> occluders_, surfaces_;
+};
+
 // The costs of the databases that the setting uses. Precondition: they are prepared.
 PartCost databaseCost(const Setting& setting, const CullingData& data) {
   PartCost sum;
@@ -93,16 +125,16 @@ void addAnswer(pvs::Checksum& answers, std::span<const ObjectId> kept) {
 
 }  // namespace
 
-std::vector<BenchRun> makeBenchRuns(const std::vector<Setting>& settings, CullingData& data,
-                                    const PartCost& occluders) {
+std::vector<BenchRun> makeBenchRuns(const std::vector<Setting>& settings, CullingData& data) {
   std::vector<BenchRun> runs;
   HierarchyCosts hierarchies;
+  OccluderCosts occluders;
   for (const Setting& setting : settings) {
     const MethodTraits& traits = setting.method->traits;
     Preparation preparation;
     const PartCost hierarchy = hierarchies.of(setting.hierarchy, data);
     preparation.hierarchy = traits.hierarchy ? hierarchy : PartCost{};
-    preparation.occluders = traits.occluders ? occluders : PartCost{};
+    preparation.occluders = occluders.of(setting, data);
     data.prepare(setting);
     preparation.databases = databaseCost(setting, data);
     const HeapGrowth growth;

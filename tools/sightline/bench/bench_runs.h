@@ -21,8 +21,7 @@ struct BenchRun {
 };
 
 // occluders: what it took to find those of the scene.
-std::vector<BenchRun> makeBenchRuns(const std::vector<Setting>& settings, CullingData& data,
-                                    const PartCost& occluders);
+std::vector<BenchRun> makeBenchRuns(const std::vector<Setting>& settings, CullingData& data);
 
 // Is told the fraction that is done, between two frames.
 using Done = std::function<void(double)>;

@@ -96,11 +96,8 @@ void SceneBench::keep(const ExactKey& key, const ExactObjects& frame) {
 void SceneBench::run(BenchInput& input, const std::vector<View>& views,
                      const std::vector<ExactObjects>& exact, const PictureOptions& size,
                      BenchRecord& record) {
-  const HeapGrowth growth;
-  Stopwatch watch;
   CullingData data(input.data, threads_.parallelFor());
-  const PartCost occluders{watch.lap(), growth.bytes()};
-  std::vector<BenchRun> runs = makeBenchRuns(methods_, data, occluders);
+  std::vector<BenchRun> runs = makeBenchRuns(methods_, data);
   warmUp(runs, views, exact);
   {
     const CorePin pin;

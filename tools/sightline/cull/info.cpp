@@ -124,6 +124,22 @@ BoxFacts boxFactsOf(const Scene& scene, CullingData& data) {
   return facts;
 }
 
+Json surfacesJson(const SurfaceSet& surfaces) {
+  return {{"triangles", surfaces.triangles.size() / 3},
+          {"parts", surfaces.parts.size()},
+          {"patches", surfaces.patches.size()},
+          {"clusters", surfaces.clusters.size()},
+          {"chains", surfaces.chains.size()}};
+}
+
+Json stagesJson(const CullingData& data) {
+  Json stages = Json::array();
+  for (const CullingData::Stage& stage : data.stages()) {
+    stages.push_back({{"stage", stage.name}, {"us", stage.us}});
+  }
+  return stages;
+}
+
 Json headJson(const Scene& scene, CullingData& data, const CrackFacts& cracks) {
   const Box bounds = sceneBounds(scene.view());
   const MaterialUse use = useOf(scene);
@@ -143,18 +159,21 @@ Json headJson(const Scene& scene, CullingData& data, const CrackFacts& cracks) {
     hierarchies[std::string(name.text)] = hierarchyJson(factsOf(data.hierarchy(name.value)));
   }
   const BoxFacts boxes = boxFactsOf(scene, data);
-  return {{"scene", sceneJson(scene)},
-          {"triangles", scene.triangleCount()},
-          {"vertices", scene.positions.size()},
-          {"origin", pointJson(scene.origin)},
-          {"min", pointJson(toWorld(bounds.min, scene))},
-          {"max", pointJson(toWorld(bounds.max, scene))},
-          {"materials", materials},
-          {"paths", paths},
-          {"occluders", occludersJson(data.occluders())},
-          {"object_boxes", {{"objects", boxes.objects}, {"boxes", boxes.boxes}}},
-          {"cracks", cracksJson(cracks, scene)},
-          {"hierarchies", hierarchies}};
+  Json json = {{"scene", sceneJson(scene)},
+               {"triangles", scene.triangleCount()},
+               {"vertices", scene.positions.size()},
+               {"origin", pointJson(scene.origin)},
+               {"min", pointJson(toWorld(bounds.min, scene))},
+               {"max", pointJson(toWorld(bounds.max, scene))},
+               {"materials", materials},
+               {"paths", paths},
+               {"occluders", occludersJson(data.occluders())},
+               {"surfaces", surfacesJson(data.surfaces())},
+               {"object_boxes", {{"objects", boxes.objects}, {"boxes", boxes.boxes}}},
+               {"cracks", cracksJson(cracks, scene)},
+               {"hierarchies", hierarchies}};
+  json["preparation"] = stagesJson(data);  // all has been made by now
+  return json;
 }
 
 std::string toJson(const Scene& scene, CullingData& data, const CrackFacts& cracks) {
@@ -215,6 +234,9 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data, co
              extent.x, extent.y, extent.z);
   printMaterials(scene);
   printOccluders(scene, data.occluders());
+  const SurfaceSet& surfaces = data.surfaces();
+  fmt::print("surfaces      {} parts of {} patches of {} clusters, {} triangles\n", surfaces.parts.size(),
+             surfaces.patches.size(), surfaces.clusters.size(), surfaces.triangles.size() / 3);
   printCracks(cracks, scene);
   const BoxFacts boxes = boxFactsOf(scene, data);
   fmt::print("boxes         {} objects have several, {} in all\n", boxes.objects, boxes.boxes);
@@ -225,6 +247,10 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data, co
         "object\n",
         name.text, facts.nodes, facts.leaves, facts.depth, facts.duplicates, facts.bytes_per_node,
         facts.bytes_per_object);
+  }
+  fmt::print("prepared in  ");
+  for (const CullingData::Stage& stage : data.stages()) {
+    fmt::print(" {} {:.2f} s{}", stage.name, 1e-6 * stage.us, &stage == &data.stages().back() ? "\n" : ",");
   }
   fmt::print("walks         {}\n", scene.paths.empty() ? "none" : "");
   for (const CameraPath& path : scene.paths) {

@@ -13,6 +13,7 @@
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/progress_bar.h"
+#include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/input/camera_path_file.h"
 #include "tools/sightline/input/cell_path.h"
 
@@ -176,10 +177,7 @@ Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions
 
 CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk,
                          std::optional<SightFile> baked)
-    : parallel_for_(parallel_for),
-      occluders_(findOccluders(scene.view(), {}, parallel_for)),
-      scene_(scene.view()),
-      baked_(std::move(baked)) {
+    : parallel_for_(parallel_for), scene_(scene.view()), baked_(std::move(baked)) {
   for (const std::uint32_t frame : walk.frames) {
     walk_.push_back(walk.view(frame, scene).eye);
   }
@@ -196,14 +194,37 @@ void CullingData::countTriangles(const SceneView& scene) {
   }
 }
 
-const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
-  std::unique_ptr<Hierarchy>& hierarchy = hierarchies_[static_cast<std::size_t>(kind)];
-  if (!hierarchy) {
-    HierarchySettings settings;
-    settings.kind = kind;
-    hierarchy = std::make_unique<Hierarchy>(buildHierarchy(bounds_, triangles_, settings));
+template <typename Made, typename Make>
+const Made& CullingData::makeOnce(std::unique_ptr<Made>& made, const std::string& name, Make&& make) const {
+  if (!made) {
+    Stopwatch watch;
+    made = std::make_unique<Made>(make());
+    stages_.push_back({name, watch.lap()});
   }
-  return *hierarchy;
+  return *made;
+}
+
+const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
+  return makeOnce(hierarchies_[static_cast<std::size_t>(kind)], "hierarchy " + nameOf(kHierarchies, kind),
+                  [&] {
+                    HierarchySettings settings;
+                    settings.kind = kind;
+                    return buildHierarchy(bounds_, triangles_, settings);
+                  });
+}
+
+const OccluderSet& CullingData::occluders() const {
+  return makeOnce(occluders_, "occluders", [&] { return findOccluders(scene_, {}, parallel_for_); });
+}
+
+const SurfaceSet& CullingData::surfaces() {
+  return makeOnce(surfaces_, "surfaces", [&] { return findSurfaces(scene_, {}, parallel_for_); });
+}
+
+const ObjectBoxes& CullingData::objectBoxes(std::uint32_t most) {
+  return makeOnce(object_boxes_[most], "object boxes", [&] {
+    return findObjectBoxes(scene_, {.max_boxes = most, .margin = box_margin_}, parallel_for_);
+  });
 }
 
 namespace {
@@ -222,7 +243,7 @@ std::unique_ptr<CullingData::Timed<Database>> buildTimed(const std::string& what
 }  // namespace
 
 template <typename Database>
-std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const std::string& name) const {
+std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const std::string& name) {
   if (!baked_) {
     return nullptr;
   }
@@ -235,10 +256,10 @@ std::unique_ptr<CullingData::Timed<Database>> CullingData::bakedDatabase(const s
   std::string unusable;
   if (!blob) {
     unusable = blob.error().message;
-  } else if (blob->occluders != occluderSetHash(occluders_)) {
+  } else if (blob->occluders != occluderSetHash(occluders())) {
     unusable = "it was made for other occluders";
   } else {
-    const auto count = static_cast<std::uint32_t>(occluders_.occluders.size());
+    const auto count = static_cast<std::uint32_t>(occluders().occluders.size());
     Result<Database> database = Database::load(blob->bytes, count);
     if (database) {
       const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - start;
@@ -265,7 +286,7 @@ const OccluderDatabase* CullingData::databaseFor(const Setting& setting, bool tu
     timed = buildTimed<OccluderDatabase>(
         turned_away ? "occluder database for detail objects" : "occluder database",
         [&](const Progress& progress) {
-          return OccluderDatabase::build(cells, occluders_, settings, parallel_for_, progress);
+          return OccluderDatabase::build(cells, occluders(), settings, parallel_for_, progress);
         });
   }
   return &timed->database;
@@ -281,7 +302,7 @@ const ViewpointDatabase* CullingData::viewpointsFor(const Setting& setting) {
     const Hierarchy& occludees = hierarchy(HierarchyKind::kBvh);
     timed = buildTimed<ViewpointDatabase>(
         "occluders by " + nameOf(kOccluderChoices, setting.occluders), [&](const Progress& progress) {
-          return ViewpointDatabase::build(occludees, occluders_, walk_, setting.viewpoints, parallel_for_,
+          return ViewpointDatabase::build(occludees, occluders(), walk_, setting.viewpoints, parallel_for_,
                                           progress);
         });
   }
@@ -301,23 +322,13 @@ void CullingData::prepare(const Setting& setting) {
   }
 }
 
-const ObjectBoxes& CullingData::objectBoxes(std::uint32_t most) {
-  std::unique_ptr<ObjectBoxes>& boxes = object_boxes_[most];
-  if (!boxes) {
-    boxes = std::make_unique<ObjectBoxes>(
-        findObjectBoxes(scene_, {.max_boxes = most, .margin = box_margin_}, parallel_for_));
-  }
-  return *boxes;
-}
-
 Culler CullingData::makeCuller(const Setting& setting) {
-  CullingScene scene{
-      .hierarchy = &hierarchy(setting.hierarchy), .object_bounds = bounds_, .occluders = &occluders_};
+  CullingScene scene{.hierarchy = &hierarchy(setting.hierarchy), .object_bounds = bounds_};
+  if (setting.choosesOccluders() || setting.testsDetailObjects()) {
+    scene.occluders = &occluders();
+  }
   if (setting.surfaces() != SurfaceUse::kNone) {
-    if (!surfaces_) {
-      surfaces_ = std::make_unique<SurfaceSet>(findSurfaces(scene_, {}, parallel_for_));
-    }
-    scene.surfaces = surfaces_.get();
+    scene.surfaces = &surfaces();
   }
   if (const std::uint32_t most = setting.objectBoxes(); most > 1) {
     scene.object_boxes = &objectBoxes(most);

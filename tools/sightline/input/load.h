@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -103,8 +104,17 @@ class CullingData {
   Culler makeCuller(const Setting& setting);
   // Says on stderr how many look-ups in the baked file returned all objects, and why.
   void noteUnknownSets() const;
-  const Hierarchy& hierarchy(HierarchyKind kind);      // built on first use
-  const ObjectBoxes& objectBoxes(std::uint32_t most);  // at most so many an object; found on first use
+  // These are made on first use.
+  const Hierarchy& hierarchy(HierarchyKind kind);
+  const OccluderSet& occluders() const;
+  const SurfaceSet& surfaces();
+  const ObjectBoxes& objectBoxes(std::uint32_t most);  // at most so many an object
+  // What was made of these, in order, and how long it took.
+  struct Stage {
+    std::string name;
+    double us = 0.0;
+  };
+  std::span<const Stage> stages() const { return stages_; }
   // The occluder databases of the first setting that uses them; null until a culler needs them.
   template <typename Database>
   struct Timed {
@@ -118,7 +128,6 @@ class CullingData {
   const TimedViewpoints* viewpoints(OccluderCriterion criterion) const {
     return from_viewpoints_[static_cast<std::size_t>(criterion)].get();
   }
-  const OccluderSet& occluders() const { return occluders_; }
   std::span<const Box> bounds() const { return bounds_; }
   std::span<const std::uint32_t> triangles() const { return triangles_; }  // one count for each object
   std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
@@ -130,18 +139,22 @@ class CullingData {
   const ViewpointDatabase* viewpointsFor(const Setting& setting);
   // The baked file's database; null if it has none for these occluders.
   template <typename Database>
-  std::unique_ptr<Timed<Database>> bakedDatabase(const std::string& name) const;
+  std::unique_ptr<Timed<Database>> bakedDatabase(const std::string& name);
+  // Calls make() if there is nothing in `made`, and notes the time.
+  template <typename Made, typename Make>
+  const Made& makeOnce(std::unique_ptr<Made>& made, const std::string& name, Make&& make) const;
 
   ParallelFor parallel_for_;
   double box_margin_ = 0.0;  // ObjectBoxesSettings::margin
   std::vector<Vec3d> walk_;  // the walk's viewpoints in scene space
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;
-  OccluderSet occluders_;
   SceneView scene_;
+  mutable std::unique_ptr<OccluderSet> occluders_;
   std::unique_ptr<SurfaceSet> surfaces_;
   std::array<std::unique_ptr<ObjectBoxes>, kMaxObjectBoxes + 1> object_boxes_;  // by the most of an object
   std::array<std::unique_ptr<Hierarchy>, 2> hierarchies_;
+  mutable std::vector<Stage> stages_;
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
   std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion
   std::optional<SightFile> baked_;
