@@ -7,12 +7,14 @@
 // image about a direction is the number of times that a line of sight crosses the surface, front first.
 // docs/conservative.md, "Surfaces", has the argument.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "sightline/base/ids.h"
 #include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
+#include "sightline/base/result.h"
 #include "sightline/math/box.h"
 #include "sightline/math/mat4.h"
 #include "sightline/math/plane.h"
@@ -159,5 +161,13 @@ struct SurfaceSettings {
 // out. The result does not depend on the threads.
 SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings = {},
                         const ParallelFor& parallel_for = serialFor);
+
+// The surfaces as bytes, to be read again instead of found: on a machine of the same kind, by a program of
+// the same version. They say neither of which scene nor with which settings they were found.
+LargeVector<std::byte> surfaceBytes(const SurfaceSet& set);
+// Error if they are cut off, of another version, or name what they do not have; such a set cannot be read
+// beyond its arrays. Whether coordinates are those that were written is for the caller to check, by a
+// checksum. object_count: of the scene.
+Result<SurfaceSet> surfacesFrom(std::span<const std::byte> bytes, std::uint32_t object_count);
 
 }  // namespace sightline

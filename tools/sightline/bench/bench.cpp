@@ -57,10 +57,13 @@ std::vector<Setting> distinctSettings(const std::vector<Setting>& settings) {
 // Loads all scenes before the work starts, so that errors show early.
 Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
   std::vector<BenchInput> inputs;
+  if (options.scenes.size() > 1 && !options.method.prepared.empty()) {
+    return Error{fmt::format("--prepared {}: a file has the surfaces of one scene; give one scene",
+                             options.method.prepared)};
+  }
   for (const std::string& scene : options.scenes) {
     Stopwatch watch;
-    Result<SceneAndWalk> input =
-        loadSceneAndWalk(scene, options.path, options.method.baked, options.method.crack_width);
+    Result<SceneAndWalk> input = loadSceneAndWalk(scene, options.path, options.method);
     if (!input) {
       return input.error();
     }
@@ -120,7 +123,9 @@ Result<ExitCode> writeResults(const BenchOptions& options, const std::vector<Ben
 
 Status checkFilesOf(const BenchOptions& options) {
   CommandFiles files{.scenes = options.scenes,
-                     .outputs = {{"--json", options.output.json}, {"--csv", options.csv}},
+                     .outputs = {{"--json", options.output.json},
+                                 {"--csv", options.csv},
+                                 {"--prepared", options.method.prepared}},
                      .folder = {"--output", options.folder, {kPage, kBenchJson, kBenchCsv}}};
   for (const std::string& scene : options.scenes) {
     for (const NamedFile& input : walkInputs(scene, options.path, options.method.baked)) {

@@ -147,13 +147,13 @@ std::vector<NamedFile> walkInputs(const std::string& scene_name, const PathOptio
 }
 
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
-                                      const std::string& baked, double crack_width) {
+                                      const MethodOptions& method) {
   Result<Scene> scene = loadScene(scene_name);
   if (!scene) {
     return scene.error();
   }
-  CrackClosing closing = closeCracksOf(*scene, crack_width);
-  Result<std::optional<SightFile>> file = loadBaked(baked, *scene);
+  CrackClosing closing = closeCracksOf(*scene, method.crack_width);
+  Result<std::optional<SightFile>> file = loadBaked(method.baked, *scene);
   if (!file) {
     return file.error();
   }
@@ -161,18 +161,24 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!walk) {
     return walk.error();
   }
-  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file), std::move(closing)};
+  Result<PreparedFile> prepared =
+      openPrepared(method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()));
+  if (!prepared) {
+    return prepared.error();
+  }
+  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file), std::move(closing),
+                      std::move(*prepared)};
 }
 
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
                                   const MethodOptions& method) {
   if (const Status ok = checkFiles({.scenes = {common.scene},
                                     .inputs = walkInputs(common.scene, path, method.baked),
-                                    .outputs = {{"--json", common.json}}});
+                                    .outputs = {{"--json", common.json}, {"--prepared", method.prepared}}});
       !ok) {
     return ok.error();
   }
-  return loadSceneAndWalk(common.scene, path, method.baked, method.crack_width);
+  return loadSceneAndWalk(common.scene, path, method);
 }
 
 CullingData::CullingData(const Scene& scene, const ParallelFor& parallel_for, const Walk& walk,
@@ -218,7 +224,16 @@ const OccluderSet& CullingData::occluders() const {
 }
 
 const SurfaceSet& CullingData::surfaces() {
-  return makeOnce(surfaces_, "surfaces", [&] { return findSurfaces(scene_, {}, parallel_for_); });
+  if (prepared_.surfaces) {
+    return *prepared_.surfaces;
+  }
+  return makeOnce(surfaces_, "surfaces", [&] {
+    SurfaceSet surfaces = findSurfaces(scene_, {}, parallel_for_);
+    if (!prepared_.name.empty()) {
+      keepPrepared(prepared_, surfaces);
+    }
+    return surfaces;
+  });
 }
 
 const ObjectBoxes& CullingData::objectBoxes(std::uint32_t most) {

@@ -17,6 +17,7 @@
 #include "sightline/scene/scene.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/input/prepared_file.h"
 #include "tools/sightline/methods/method_options.h"
 
 namespace sightline::tool {
@@ -67,6 +68,7 @@ struct SceneAndWalk {
   Walk walk;
   std::optional<SightFile> baked{};
   CrackClosing closing{};
+  PreparedFile prepared{};
 
   // The triangles as the user gave them, for pictures.
   SceneView given() const {
@@ -75,9 +77,9 @@ struct SceneAndWalk {
                : SceneView{scene.positions, closing.given_indices, closing.given_objects, scene.materials};
   }
 };
-// Loads all of it; baked is the name of a .sight file, or empty.
+// Loads all of it. Of `method`, its baked and its prepared file, and the width of cracks.
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
-                                      const std::string& baked = "", double crack_width = 0.0);
+                                      const MethodOptions& method = {});
 // loadSceneAndWalk for a command that writes no file but --json: checks first that this is none of the
 // inputs.
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
@@ -94,6 +96,7 @@ class CullingData {
   CullingData(const SceneAndWalk& input, const ParallelFor& parallel_for)
       : CullingData(input.scene, parallel_for, input.walk, input.baked) {
     box_margin_ = input.closing.margin;
+    prepared_ = input.prepared;
     countTriangles(input.given());
   }
 
@@ -146,6 +149,7 @@ class CullingData {
 
   ParallelFor parallel_for_;
   double box_margin_ = 0.0;  // ObjectBoxesSettings::margin
+  PreparedFile prepared_;
   std::vector<Vec3d> walk_;  // the walk's viewpoints in scene space
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;

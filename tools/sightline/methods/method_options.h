@@ -78,6 +78,7 @@ struct MethodOptions {
   std::vector<std::string> texts;
   std::vector<std::string> defaults;  // texts that the user has not given
   std::string baked;                  // a .sight file; empty: none
+  std::string prepared;               // a file for surfaces (openPrepared); empty: none
   double crack_width = 0.0;           // metres
 };
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);

@@ -270,7 +270,7 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
 Status checkFilesOf(const WalkOptions& options, const std::vector<std::string>& in_folder) {
   return checkFiles({.scenes = {options.common.scene},
                      .inputs = walkInputs(options.common.scene, options.path, options.method.baked),
-                     .outputs = {{"--json", options.common.json}},
+                     .outputs = {{"--json", options.common.json}, {"--prepared", options.method.prepared}},
                      .folder = {"--output", options.folder, in_folder}});
 }
 
@@ -282,8 +282,7 @@ Result<ExitCode> runWalk(const WalkOptions& options) {
   if (const Status ok = checkFilesOf(options, filesOfFolder()); !ok) {
     return ok.error();
   }
-  const Result<SceneAndWalk> input =
-      loadSceneAndWalk(options.common.scene, options.path, options.method.baked, options.method.crack_width);
+  const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, options.method);
   if (!input) {
     return input.error();
   }

@@ -1,0 +1,215 @@
+// Surfaces as bytes: a head, then each array of SurfaceSet as its number of elements and their memory, which
+// begins at a multiple of 16 bytes.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "sightline/occluders/surface_set.h"
+
+namespace sightline {
+namespace {
+
+constexpr std::size_t kAlignment = 16;
+
+// What has to be the same where the bytes are read.
+struct Head {
+  char letters[8] = {'S', 'L', 's', 'u', 'r', 'f', '0', '1'};  // the last two: raise with every change of the
+                                                               // arrays or of findSurfaces()
+  std::uint32_t byte_order = 0x01020304;
+  std::uint32_t sizes = sizeof(SurfaceCluster) | sizeof(SurfacePatch) << 8 | sizeof(SurfaceChain) << 16 |
+                        (offsetof(SurfaceCluster, double_sided) ^ offsetof(SurfacePatch, double_sided)) << 24;
+
+  friend bool operator==(const Head&, const Head&) = default;
+};
+static_assert(sizeof(Head) == kAlignment);
+
+// Calls visit(array) for all arrays, always in this order. Set: a SurfaceSet, const or not.
+template <typename Set, typename Visit>
+void forEachArray(Set& set, Visit&& visit) {
+  visit(set.vertices);
+  visit(set.triangles);
+  visit(set.clusters);
+  visit(set.patches);
+  visit(set.parts);
+  visit(set.cluster_bounds);
+  visit(set.patch_bounds);
+  visit(set.part_bounds);
+  visit(set.first_adjoining);
+  visit(set.adjoining);
+  visit(set.first_of_object);
+  visit(set.of_object);
+  visit(set.sizes_of_object);
+  visit(set.objects);
+  visit(set.object_bounds);
+  visit(set.chains);
+  visit(set.uses);
+  visit(set.cluster_chains);
+  visit(set.patch_chains);
+  visit(set.chain_vertices);
+}
+
+std::size_t padded(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+bool isRange(std::uint64_t first, std::uint64_t count, std::size_t size) {
+  return first + count <= size;
+}
+
+// first: where each row of the items begins, and one more.
+bool areRows(std::span<const std::uint32_t> first, std::size_t rows, std::size_t items) {
+  return first.size() == rows + 1 && first.front() == 0 && first.back() == items &&
+         std::is_sorted(first.begin(), first.end());
+}
+
+bool allBelow(std::span<const std::uint32_t> numbers, std::size_t end) {
+  return std::all_of(numbers.begin(), numbers.end(), [end](std::uint32_t n) { return n < end; });
+}
+
+// Whether each range begins where the one before ended, and the last one ends at `size`.
+template <typename Items, typename FirstOf, typename CountOf>
+bool followEachOther(const Items& items, FirstOf&& first, CountOf&& count, std::size_t size) {
+  std::uint64_t end = 0;
+  for (const auto& item : items) {
+    if (first(item) != end || count(item) == 0) {
+      return false;
+    }
+    end += count(item);
+  }
+  return end == size;
+}
+
+// Whether the memory of a bool is 0 or 1: nothing else may be looked at.
+template <typename Item>
+bool hasBool(const Item& item, std::size_t offset) {
+  return reinterpret_cast<const unsigned char*>(&item)[offset] <= 1;
+}
+
+// What is wrong with the numbers of a set; empty if nothing is: no index leaves its array.
+std::string flawOf(const SurfaceSet& set, std::size_t objects) {
+  const auto all = [](const auto& items, auto&& sound) {
+    return std::all_of(items.begin(), items.end(), sound);
+  };
+  if (set.triangles.size() % 3 != 0 || !allBelow(set.triangles, set.vertices.size())) {
+    return "its triangles name vertices that it does not have";
+  }
+  if (!all(set.clusters,
+           [](const SurfaceCluster& c) { return hasBool(c, offsetof(SurfaceCluster, double_sided)); }) ||
+      !followEachOther(
+          set.clusters, [](const SurfaceCluster& c) { return c.first_triangle; },
+          [](const SurfaceCluster& c) { return c.triangle_count; }, set.triangles.size() / 3) ||
+      !all(set.clusters, [&](const SurfaceCluster& c) {
+        return isRange(c.first_chain, c.chain_count, set.cluster_chains.size());
+      })) {
+    return "its clusters are broken";
+  }
+  if (!all(set.patches,
+           [](const SurfacePatch& p) { return hasBool(p, offsetof(SurfacePatch, double_sided)); }) ||
+      !followEachOther(
+          set.patches, [](const SurfacePatch& p) { return p.first_cluster; },
+          [](const SurfacePatch& p) { return p.cluster_count; }, set.clusters.size()) ||
+      !all(set.patches, [&](const SurfacePatch& p) {
+        return isRange(p.first_chain, p.chain_count, set.patch_chains.size());
+      })) {
+    return "its patches are broken";
+  }
+  if (!followEachOther(
+          set.parts, [](const SurfacePart& p) { return p.first_patch; },
+          [](const SurfacePart& p) { return p.patch_count; }, set.patches.size()) ||
+      set.cluster_bounds.size() != set.clusters.size() || set.patch_bounds.size() != set.patches.size() ||
+      set.part_bounds.size() != set.parts.size()) {
+    return "its parts are broken";
+  }
+  if (!areRows(set.first_adjoining, set.parts.size(), set.adjoining.size()) ||
+      !allBelow(set.adjoining, set.clusters.size())) {
+    return "its lists of adjoining clusters are broken";
+  }
+  if (!areRows(set.first_of_object, objects, set.of_object.size()) ||
+      !allBelow(set.of_object, set.parts.size()) || set.sizes_of_object.size() != set.of_object.size() ||
+      set.object_bounds.size() != objects ||
+      !all(set.objects, [objects](ObjectId id) { return id.value < objects; }) ||
+      !std::is_sorted(set.objects.begin(), set.objects.end())) {
+    return "its lists of objects are broken";
+  }
+  if (!all(set.chains,
+           [&](const SurfaceChain& c) {
+             return c.vertex_count >= 2 && c.use_count >= 1 &&
+                    isRange(c.first_vertex, c.vertex_count, set.chain_vertices.size()) &&
+                    isRange(c.first_use, c.use_count, set.uses.size());
+           }) ||
+      !all(set.uses, [&](const ChainUse& use) { return use.cluster < set.clusters.size(); }) ||
+      !allBelow(set.cluster_chains, set.chains.size()) ||
+      !all(set.patch_chains, [&](const PatchChain& c) { return c.chain < set.chains.size(); })) {
+    return "its chains are broken";
+  }
+  return "";
+}
+
+}  // namespace
+
+LargeVector<std::byte> surfaceBytes(const SurfaceSet& set) {
+  std::size_t size = sizeof(Head);
+  forEachArray(set, [&](const auto& array) { size += kAlignment + padded(array.size() * sizeof(array[0])); });
+  LargeVector<std::byte> bytes(size);
+  const Head head;
+  std::memcpy(bytes.data(), &head, sizeof(head));
+  std::size_t at = sizeof(head);
+  forEachArray(set, [&](const auto& array) {
+    using Item = typename std::decay_t<decltype(array)>::value_type;
+    static_assert(std::is_trivially_copyable_v<Item> && alignof(Item) <= kAlignment);
+    const std::uint64_t count = array.size();
+    std::memcpy(&bytes[at], &count, sizeof(count));
+    at += kAlignment;
+    if (count > 0) {
+      std::memcpy(&bytes[at], array.data(), count * sizeof(Item));
+    }
+    at += padded(count * sizeof(Item));
+  });
+  return bytes;
+}
+
+Result<SurfaceSet> surfacesFrom(std::span<const std::byte> bytes, std::uint32_t object_count) {
+  Head head;
+  if (bytes.size() < sizeof(head)) {
+    return Error{"the surfaces are cut off: find them again"};
+  }
+  std::memcpy(&head, bytes.data(), sizeof(head));
+  if (head != Head{}) {
+    return Error{"these are no surfaces, or those of another version or machine: find them again"};
+  }
+  std::size_t at = sizeof(head);
+  bool whole = true;
+  SurfaceSet set;
+  forEachArray(set, [&](auto& array) {
+    using Item = typename std::decay_t<decltype(array)>::value_type;
+    std::uint64_t count = 0;
+    whole = whole && bytes.size() - at >= kAlignment;
+    if (!whole) {
+      return;
+    }
+    std::memcpy(&count, &bytes[at], sizeof(count));
+    at += kAlignment;
+    whole = count <= (bytes.size() - at) / sizeof(Item) &&
+            padded(static_cast<std::size_t>(count) * sizeof(Item)) <= bytes.size() - at;
+    if (whole && count > 0) {
+      array.resize(static_cast<std::size_t>(count));
+      std::memcpy(static_cast<void*>(array.data()), &bytes[at], array.size() * sizeof(Item));
+    }
+    at += whole ? padded(static_cast<std::size_t>(count) * sizeof(Item)) : 0;
+  });
+  if (!whole || at != bytes.size()) {
+    return Error{"the surfaces are cut off, or something follows them: find them again"};
+  }
+  if (const std::string flaw = flawOf(set, object_count); !flaw.empty()) {
+    return Error{"the surfaces are not sound, " + flaw + ": find them again"};
+  }
+  for (const Box& box : set.part_bounds) {
+    set.bounds.extend(box);
+  }
+  return set;
+}
+
+}  // namespace sightline
