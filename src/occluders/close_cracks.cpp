@@ -1,14 +1,17 @@
 #include "src/occluders/close_cracks.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "sightline/math/box.h"
+#include "src/base/hash_slots.h"
 #include "src/base/rows.h"
 #include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
@@ -85,39 +88,36 @@ class Closing {
         pair(edge.high, edge.low);
       }
     });
-    struct Found {
-      std::uint32_t place, edge;
-      double distance;
-    };
-    std::vector<std::vector<Found>> parts(edgeParts());
-    forEdgesAndVertices([&](std::uint32_t part, std::uint32_t edge, std::uint32_t place) {
-      const std::uint32_t v = vertices_[place];
-      const double at_part = std::clamp(partOfEdge(open_[edge], v), 0.0, 1.0);
-      const std::uint32_t end = at_part == 0.0 ? open_[edge].low : open_[edge].high;
-      const std::span<const std::uint32_t> own = next_to[v];
-      if ((at_part == 0.0 || at_part == 1.0) && std::find(own.begin(), own.end(), end) != own.end()) {
-        return;
-      }
-      const double distance = distanceFrom(open_[edge], v, at_part);
-      if (distance < width_) {
-        parts[part].push_back({place, edge, distance});
+    std::vector<Box> boxes;
+    for (const OpenEdge& edge : open_) {
+      boxes.push_back(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_));
+    }
+    std::vector<std::uint32_t> numbers(boxes.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    const BoxPairs edges(boxes, numbers);
+    std::vector<std::pair<double, std::uint32_t>> nearest(vertices_.size(), {width_, 0});  // and its edge
+    parallel_for_(static_cast<std::uint32_t>(vertices_.size()), [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t place = begin; place < end; ++place) {
+        const std::uint32_t v = vertices_[place];
+        edges.forMeeting(grown(at(v), at(v), 0.0), [&](std::uint32_t edge) {
+          const auto [low, high] = open_[edge];
+          const double part = std::clamp(partOfEdge(open_[edge], v), 0.0, 1.0);
+          const std::span<const std::uint32_t> own = next_to[v];
+          const bool next_to_own = part == 0.0   ? std::find(own.begin(), own.end(), low) != own.end()
+                                   : part == 1.0 ? std::find(own.begin(), own.end(), high) != own.end()
+                                                 : false;
+          if (v != low && v != high && !next_to_own) {
+            nearest[place] = std::min(nearest[place], {distanceFrom(open_[edge], v, part), edge});
+          }
+        });
       }
     });
-    std::vector<Found> nearest(vertices_.size(), {0, 0, width_});
-    for (const std::vector<Found>& part : parts) {
-      for (const Found& found : part) {
-        Found& best = nearest[found.place];
-        if (std::tie(found.distance, found.edge) < std::tie(best.distance, best.edge)) {
-          best = found;
-        }
-      }
-    }
     std::vector<std::uint32_t> triangle_of(input_.vertices.size());
     for (std::uint32_t i = static_cast<std::uint32_t>(input_.triangles.size()); i-- > 0;) {
       triangle_of[input_.triangles[i]] = i / 3;
     }
     for (std::uint32_t place = 0; place < nearest.size(); ++place) {
-      const auto [own, edge, distance] = nearest[place];
+      const auto [distance, edge] = nearest[place];
       const std::uint32_t v = vertices_[place];
       if (distance < width_ && distance > kRounded * maxComponent(abs(at(v)))) {
         misses.push_back({v, distance, triangle_of[v], triangle_at_[edge]});
@@ -128,6 +128,7 @@ class Closing {
 
  private:
   static constexpr std::uint32_t kEdgesOfPart = 1024;
+  static constexpr std::size_t kMostBends = 4096;
 
   const Vec3d& at(std::uint32_t vertex) const { return input_.vertices[vertex]; }
 
@@ -194,11 +195,11 @@ class Closing {
     });
   }
 
-  // The vertices of open edges by their place in vertices_, each as large as a cube of this width.
-  BoxPairs vertexBoxes(double width) const {
+  // The vertices of open edges by their place in vertices_.
+  BoxPairs vertexBoxes() const {
     std::vector<Box> boxes;
     for (const std::uint32_t v : vertices_) {
-      boxes.push_back(grown(at(v), at(v), 0.5 * width));
+      boxes.push_back(grown(at(v), at(v), 0.0));
     }
     std::vector<std::uint32_t> places(boxes.size());
     std::iota(places.begin(), places.end(), 0u);
@@ -208,45 +209,26 @@ class Closing {
   // In the order of their places, a vertex becomes the closest earlier one that has stayed and is close
   // enough. So those that stay are farther apart than the width.
   void mergeVertices() {
-    const BoxPairs pairs = vertexBoxes(width_);
-    struct Near {
-      std::uint32_t later, earlier;
-    };
-    std::vector<std::vector<Near>> parts(pairs.partCount());
-    parallel_for_(pairs.partCount(), [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t part = begin; part < end; ++part) {
-        pairs.forPairs(part, [&](std::uint32_t a, std::uint32_t b) {
-          if (length(at(vertices_[a]) - at(vertices_[b])) < width_) {
-            parts[part].push_back({std::max(a, b), std::min(a, b)});
-          }
-        });
-      }
-    });
-    base::Rows<std::uint32_t> near;
-    near.group(vertices_.size(), [&](auto&& pair) {
-      for (const std::vector<Near>& part : parts) {
-        for (const Near& n : part) {
-          pair(n.later, n.earlier);
-        }
-      }
-    });
     std::vector<std::uint32_t> kept(input_.vertices.size());
     std::iota(kept.begin(), kept.end(), 0u);
-    for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
-      const std::uint32_t v = vertices_[i];
-      double closest = width_;
-      std::sort(near[i].begin(), near[i].end());
-      for (const std::uint32_t earlier : near[i]) {
-        const std::uint32_t other = vertices_[earlier];
-        const double distance = length(at(other) - at(v));
-        if (kept[other] == other && distance < closest) {
-          closest = distance;
-          kept[v] = other;
+    std::unordered_multimap<std::uint64_t, std::uint32_t> stayed;  // by cell: places in vertices_
+    for (std::uint32_t place = 0; place < vertices_.size(); ++place) {
+      const std::uint32_t v = vertices_[place];
+      const Vec3d cell = cellOf(at(v));
+      std::pair<double, std::uint32_t> closest{width_, 0};
+      for (int near = 0; near < 27; ++near) {
+        const Vec3d step(near % 3 - 1, near / 3 % 3 - 1, near / 9 - 1);
+        const auto [begin, end] = stayed.equal_range(hashOf(cell + step));
+        for (auto other = begin; other != end; ++other) {
+          closest = std::min(closest, {length(at(vertices_[other->second]) - at(v)), other->second});
         }
       }
-      if (kept[v] != v) {
+      if (closest.first < width_) {
+        kept[v] = vertices_[closest.second];
         ++result_.merged;
-        merging_ = std::max(merging_, closest + kRounded * maxComponent(abs(at(v))));
+        merging_ = std::max(merging_, closest.first + kRounded * maxComponent(abs(at(v))));
+      } else {
+        stayed.emplace(hashOf(cell), place);
       }
     }
     for (std::uint32_t& v : triangles_) {
@@ -254,27 +236,17 @@ class Closing {
     }
   }
 
-  // Edges are looked at in so many parts, whatever the threads.
-  std::uint32_t edgeParts() const {
-    return (static_cast<std::uint32_t>(open_.size()) + kEdgesOfPart - 1) / kEdgesOfPart;
+  // Points that are closer than the width lie in the same cell of a grid or in cells that touch. Where a
+  // quotient is too large for its last digit, numbers of single precision differ by more than the width.
+  Vec3d cellOf(const Vec3d& p) const {
+    return {std::floor(p.x / width_), std::floor(p.y / width_), std::floor(p.z / width_)};
   }
-  // Calls use(part, edge, place) for open edges and the places of vertices, other than their ends, that may
-  // be closer to them than the width; those of a part one after the other.
-  template <typename Use>
-  void forEdgesAndVertices(const Use& use) const {
-    const BoxPairs boxes = vertexBoxes(0.0);
-    parallel_for_(edgeParts(), [&](std::uint32_t begin, std::uint32_t end) {
-      const std::size_t last = std::min<std::size_t>(open_.size(), std::size_t{end} * kEdgesOfPart);
-      for (auto edge = begin * kEdgesOfPart; edge < last; ++edge) {
-        const auto [low, high] = open_[edge];
-        boxes.forMeeting(grown(min(at(low), at(high)), max(at(low), at(high)), width_),
-                         [&, low = low, high = high](std::uint32_t place) {
-                           if (vertices_[place] != low && vertices_[place] != high) {
-                             use(edge / kEdgesOfPart, edge, place);
-                           }
-                         });
-      }
-    });
+  static std::uint64_t hashOf(const Vec3d& cell) {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      hash = base::mixBits(hash ^ std::bit_cast<std::uint64_t>(cell[axis] + 0.0));
+    }
+    return hash;
   }
 
   // Where on the line of the edge the vertex's nearest point is: 0 at its lower end, 1 at its higher one.
@@ -310,33 +282,51 @@ class Closing {
     return {along > (up ? low[axis] : -low[axis]) && along < (up ? high[axis] : -high[axis]), along, 0.0};
   }
 
-  // Leads open edges through vertices. place_of(edge, vertex) is a Place.
+  // Leads open edges through vertices. place_of(edge, vertex) is a Place. An edge of more than kMostBends
+  // places stays as it is: many long edges beside many vertices would take their product of memory.
   template <typename PlaceOf>
   void leadEdges(const PlaceOf& place_of) {
-    struct Found {
-      std::uint32_t edge;
-      Beside beside;
-      double distance;
-    };
-    std::vector<std::vector<Found>> parts(edgeParts());
-    forEdgesAndVertices([&](std::uint32_t part, std::uint32_t edge, std::uint32_t place) {
-      const std::uint32_t v = vertices_[place];
-      if (const Place found = place_of(open_[edge], v); found.leads) {
-        parts[part].push_back({edge, {found.along, v}, found.distance});
-      }
-    });
-    beside_.group(open_.size(), [&](auto&& pair) {
-      for (const std::vector<Found>& part : parts) {
-        for (const Found& found : part) {
-          pair(found.edge, found.beside);
-        }
-      }
-    });
-    for (const std::vector<Found>& part : parts) {
-      for (const Found& found : part) {
-        const OpenEdge& edge = open_[found.edge];
+    const BoxPairs boxes = vertexBoxes();
+    const auto count = static_cast<std::uint32_t>(open_.size());
+    const std::uint32_t parts = (count + kEdgesOfPart - 1) / kEdgesOfPart;  // whatever the threads
+    std::vector<base::Rows<Beside>> of_part(parts);
+    std::vector<double> bending(parts, 0.0);
+    parallel_for_(parts, [&](std::uint32_t begin, std::uint32_t end) {
+      std::vector<Beside> found;
+      for (std::uint32_t e = begin * kEdgesOfPart; e < std::min(count, end * kEdgesOfPart); ++e) {
+        const OpenEdge& edge = open_[e];
+        const std::uint32_t part = e / kEdgesOfPart;
         const double reach = std::max(maxComponent(abs(at(edge.low))), maxComponent(abs(at(edge.high))));
-        bending_ = std::max(bending_, width_ > 0.0 ? found.distance + kRounded * reach : 0.0);
+        double farthest = 0.0;
+        found.clear();
+        boxes.forMeeting(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_),
+                         [&](std::uint32_t place) {
+                           const std::uint32_t v = vertices_[place];
+                           if (v == edge.low || v == edge.high || found.size() > kMostBends) {
+                             return;
+                           }
+                           if (const Place at_edge = place_of(edge, v); at_edge.leads) {
+                             found.push_back({at_edge.along, v});
+                             farthest =
+                                 std::max(farthest, width_ > 0.0 ? at_edge.distance + kRounded * reach : 0.0);
+                           }
+                         });
+        if (found.size() <= kMostBends) {
+          bending[part] = std::max(bending[part], farthest);
+          for (const Beside& beside : found) {
+            of_part[part].add(beside);
+          }
+        }
+        of_part[part].endRow();
+      }
+    });
+    for (std::uint32_t part = 0; part < parts; ++part) {
+      bending_ = std::max(bending_, bending[part]);
+      for (std::size_t row = 0; row < of_part[part].count(); ++row) {
+        for (const Beside& beside : of_part[part][row]) {
+          beside_.add(beside);
+        }
+        beside_.endRow();
       }
     }
     for (std::size_t edge = 0; edge < beside_.count(); ++edge) {
@@ -368,6 +358,9 @@ class Closing {
     if (a != b && b != c && c != a) {
       result_.triangles.insert(result_.triangles.end(), {a, b, c});
       result_.source.push_back(source);
+    } else {
+      result_.collapsed.insert(result_.collapsed.end(), {a, b, c});
+      result_.collapsed_source.push_back(source);
     }
   }
 
@@ -425,6 +418,10 @@ class Closing {
       return;
     }
     if (isFolded(corners)) {
+      for (std::size_t i = 0; i < loop_.size(); ++i) {
+        const std::uint32_t next = loop_[i + 1 < loop_.size() ? i + 1 : 0];
+        add(loop_[i], next, next, source);
+      }
       return;
     }
     const std::uint32_t a = corners[first], b = corners[(first + 1) % 3], c = corners[(first + 2) % 3];

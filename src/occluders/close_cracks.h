@@ -14,6 +14,9 @@ namespace sightline::occluders {
 struct ClosedCracks {
   std::vector<std::uint32_t> triangles;  // three vertices of the input each, by source
   std::vector<std::uint32_t> source;     // of each triangle: the one of the input that it comes from
+  // What has collapsed to a line or a point, as triangles of which two corners or all are the same. With
+  // these, all of a triangle of the input is where it was, within the slack.
+  std::vector<std::uint32_t> collapsed, collapsed_source;
   // No point of a triangle of the input is farther than this from where it is now, metres; at most twice the
   // width.
   double slack = 0.0;
@@ -24,9 +27,9 @@ struct ClosedCracks {
 // Of vertices at edges that are left after cancelling, those closer to each other than `width` metres become
 // one of them. Then such an edge is led through all such vertices that are closer to it. Vertices do not
 // move, edges are bent and triangles with them; what is connected stays connected. Edges that cancel are not
-// looked at, and neither are vertices beside a face. Triangles that have collapsed to a line or a point are
-// left out. A line of sight through a crack that was closed is then taken to be blocked: the crack was
-// narrower than twice the width. With a width of 0, or one that is not finite, nothing changes.
+// looked at, and neither are vertices beside a face, nor edges that more than 4,096 vertices lie beside. A
+// line of sight through a crack that was closed is then taken to be blocked: the crack was narrower than
+// twice the width. With a width of 0, or one that is not finite, nothing changes.
 ClosedCracks closeCracks(const ConformInput& input, double width,
                          const ParallelFor& parallel_for = serialFor);
 

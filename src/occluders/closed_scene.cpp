@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -30,29 +31,53 @@ ClosedScene closeCracks(const SceneView& scene, double width, const ParallelFor&
   const std::vector<Vec3d> vertices = exact(opaque.vertices);
   const occluders::ClosedCracks cracks =
       occluders::closeCracks({vertices, opaque.corners}, width, parallel_for);
+  // Indices have 32 bits; a scene that would need more stays as it is.
+  if (scene.indices.size() + cracks.triangles.size() + cracks.collapsed.size() >
+      std::numeric_limits<std::uint32_t>::max()) {
+    return closeCracks(scene, 0.0);
+  }
   closed.slack = cracks.slack;
   closed.merged = cracks.merged;
   closed.bent = cracks.bent;
-  // An object keeps its triangles, or has those that were made of them.
-  std::size_t triangle = 0;
-  for (std::uint32_t number = 0; number < closed.objects.size(); ++number) {
-    Object& object = closed.objects[number];
-    const std::span<const std::uint32_t> given = scene.indicesOf(scene.objects[number]);
-    object.first_index = static_cast<std::uint32_t>(closed.indices.size());
-    if (!occluders::mayOcclude(scene, scene.objects[number])) {
-      closed.indices.insert(closed.indices.end(), given.begin(), given.end());
+  // An object has what was made of its triangles, what of them has collapsed, and those that were passed on.
+  std::size_t triangle = 0, collapsed = 0;
+  const auto append = [&](std::span<const std::uint32_t> corners) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      closed.indices.push_back(opaque.position_of[corners[k]]);
     }
-    for (; triangle < cracks.source.size() && opaque.objects[cracks.source[triangle]] == number; ++triangle) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        closed.indices.push_back(opaque.position_of[cracks.triangles[3 * triangle + k]]);
+  };
+  for (std::uint32_t number = 0; number < closed.objects.size(); ++number) {
+    const Object& given = scene.objects[number];
+    const std::span<const std::uint32_t> indices = scene.indicesOf(given);
+    Object& object = closed.objects[number];
+    object.first_index = static_cast<std::uint32_t>(closed.indices.size());
+    const auto isOf = [&](std::uint32_t source) { return opaque.objects[source] == number; };
+    for (; triangle < cracks.source.size() && isOf(cracks.source[triangle]); ++triangle) {
+      append(std::span(cracks.triangles).subspan(3 * triangle, 3));
+    }
+    for (; collapsed < cracks.collapsed_source.size() && isOf(cracks.collapsed_source[collapsed]);
+         ++collapsed) {
+      append(std::span(cracks.collapsed).subspan(3 * collapsed, 3));
+    }
+    Box before, after;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+      const std::span<const std::uint32_t> corners = indices.subspan(i, 3);
+      if (!occluders::mayOcclude(scene, given) || !occluders::isFiniteTriangle(scene, corners)) {
+        closed.indices.insert(closed.indices.end(), corners.begin(), corners.end());
+      }
+      for (const std::uint32_t corner : corners) {
+        before.extend(scene.positions[corner]);
       }
     }
     object.index_count = static_cast<std::uint32_t>(closed.indices.size()) - object.first_index;
-    Box bounds = object.index_count > 0 ? Box{} : object.bounds;
-    for (const std::uint32_t index : closed.view(scene).indicesOf(object)) {
-      bounds.extend(scene.positions[index]);
+    for (const std::uint32_t index : std::span(closed.indices).subspan(object.first_index)) {
+      after.extend(scene.positions[index]);
     }
-    object.bounds = widened(bounds, closed.margin());
+    // Bounds that are wider than the triangles, or not finite, stay so.
+    if (!(given.bounds == before)) {
+      after.extend(given.bounds);
+    }
+    object.bounds = given.bounds.wellFormed() ? widened(after, closed.margin()) : given.bounds;
   }
   return closed;
 }

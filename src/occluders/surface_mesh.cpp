@@ -22,8 +22,7 @@ void forOpaqueTriangles(const SceneView& scene, Use&& use) {
     const bool double_sided = scene.materialOf(object).double_sided;
     const std::span<const std::uint32_t> indices = scene.indicesOf(object);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      if (isFinite(scene.positions[indices[i]]) && isFinite(scene.positions[indices[i + 1]]) &&
-          isFinite(scene.positions[indices[i + 2]])) {
+      if (isFiniteTriangle(scene, indices.subspan(i, 3))) {
         use(indices.subspan(i, 3), number, double_sided);
       }
     }
@@ -121,6 +120,11 @@ LargeVector<std::uint8_t> openEdges(const SurfaceMesh& mesh) {
 
 bool mayOcclude(const SceneView& scene, const Object& object) {
   return scene.materialOf(object).opaque() && object.mark != OccluderMark::kNever;
+}
+
+bool isFiniteTriangle(const SceneView& scene, std::span<const std::uint32_t> corners) {
+  return isFinite(scene.positions[corners[0]]) && isFinite(scene.positions[corners[1]]) &&
+         isFinite(scene.positions[corners[2]]);
 }
 
 OpaqueTriangles opaqueTriangles(const SceneView& scene) {

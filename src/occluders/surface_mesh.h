@@ -3,6 +3,7 @@
 // The opaque triangles of a scene as one mesh: equal positions are one vertex, equal pairs of them one edge.
 
 #include <cstdint>
+#include <span>
 
 #include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
@@ -31,6 +32,8 @@ struct SurfaceMesh {
 
 // Whether the object's triangles may be occluders: its material is opaque, and it is not marked kNever.
 bool mayOcclude(const SceneView& scene, const Object& object);
+// corners: three, into the scene's positions.
+bool isFiniteTriangle(const SceneView& scene, std::span<const std::uint32_t> corners);
 
 // The opaque triangles of a scene that are finite, with equal positions as one vertex.
 struct OpaqueTriangles {

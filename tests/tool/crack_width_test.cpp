@@ -93,6 +93,9 @@ TEST(CrackWidth, ABakedFileBelongsToItsWidth) {
   EXPECT_NE(without.err.find("--crack-width 0.001"), std::string::npos) << without.err;
   cull.insert(cull.end(), {"--crack-width", "0.001"});
   EXPECT_EQ(runTool(cull).code, 0);
+  const Outcome info = runTool({"info", sight, "--crack-width", "0.001"});
+  EXPECT_EQ(info.code, 2);
+  EXPECT_NE(info.err.find("leave them out"), std::string::npos) << info.err;
   const json pairs =
       of({"verify", slit.scene, "--baked", sight, "--proof", "--pairs", "10", "--crack-width", "0.001"});
   EXPECT_EQ(pairs["scene"]["crack_width"], 0.001);

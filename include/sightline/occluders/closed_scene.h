@@ -15,10 +15,12 @@ namespace sightline {
 // A scene whose occluders have no cracks narrower than a width. Find occluders, surfaces and boxes in view(),
 // take objects' bounds from it too, and draw the scene that was given.
 struct ClosedScene {
-  std::vector<std::uint32_t> indices{};  // into the positions of the scene that was given
-  std::vector<Object> objects{};         // by the same ObjectId; their bounds are wider by margin()
+  // Into the positions of the scene that was given. Triangles that have collapsed are among them, with equal
+  // corners: they hide nothing, and boxes are to hold them.
+  std::vector<std::uint32_t> indices{};
+  std::vector<Object> objects{};  // by the same ObjectId; their bounds are wider by margin()
   // No point of the given triangles is farther than this from where it is now, metres; at most twice the
-  // width.
+  // width, but for rounding.
   double slack = 0.0;
   std::uint64_t merged = 0;  // vertices in whose place another one is used
   std::uint64_t bent = 0;    // places at which an edge is led through a vertex
@@ -38,9 +40,9 @@ struct ClosedScene {
 // apart.
 //
 // A culler with such a scene hides nothing that is visible among its triangles. Of the given triangles it may
-// hide what is seen only along lines of sight that pass within `slack` of an edge where they do not cancel,
-// or that begin within `slack` of a triangle (docs/conservative.md, "Contacts"). With a width of 0, or one
-// that is not finite, nothing changes. The result does not depend on the threads.
+// hide what is seen only along lines of sight that pass within `slack` of an edge of one of them, begin
+// within `slack` of one, or end within `slack` of one of another object (docs/conservative.md, "Contacts").
+// With a width of 0, or one that is not finite, nothing changes. The result does not depend on the threads.
 ClosedScene closeCracks(const SceneView& scene, double width, const ParallelFor& parallel_for = serialFor);
 
 // A vertex that nearly meets an edge, where the triangles at neither of them cancel.

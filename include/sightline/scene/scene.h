@@ -31,7 +31,7 @@ struct Object {
   std::uint32_t index_count = 0;  // three per triangle
   MaterialId material{};
   OccluderMark mark = OccluderMark::kAutomatic;
-  Box bounds{};  // exact bounds of its vertices, scene space
+  Box bounds{};  // of its vertices, scene space; may be wider, as in a ClosedScene
 
   std::uint32_t triangleCount() const { return index_count / 3; }
 };

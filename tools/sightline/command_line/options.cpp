@@ -96,7 +96,7 @@ void addCrackWidthOption(CLI::App& command, double& width) {
   command
       .add_option("--crack-width", width,
                   "cracks between surfaces that are narrower, in metres, count as closed: what shows only "
-                  "through them, or beside an edge within this width, may be culled")
+                  "through them, or within twice this width beside an edge, may be culled")
       ->check(CLI::Validator(
           [](const std::string& text) {
             const std::optional<double> value = parseDecimal(text);

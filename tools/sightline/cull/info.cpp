@@ -265,20 +265,20 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
       !ok) {
     return ok.error();
   }
-  if (options.crack_width == 0.0 && !(options.path.path.empty() && options.path.frames.empty())) {
-    return Error{"--path, --frames: a walk shows what closing cracks hides; give --crack-width as well"};
-  }
   if (isSightFile(options.common.scene)) {
     if (options.common.threads > 1) {
       return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
                                options.common.threads)};
     }
-    if (options.crack_width > 0.0) {
+    if (options.crack_width > 0.0 || !options.path.path.empty() || !options.path.frames.empty()) {
       return Error{
-          fmt::format("--crack-width {}: a baked file has no surfaces; leave it out", options.crack_width)};
+          "--crack-width, --path, --frames: a baked file has no surfaces to walk past; leave them out"};
     }
     const Status ok = informOnSight(options.common.scene, options.common.json);
     return ok ? Result<ExitCode>(kOk) : ok.error();
+  }
+  if (options.crack_width == 0.0 && !(options.path.path.empty() && options.path.frames.empty())) {
+    return Error{"--path, --frames: a walk shows what closing cracks hides; give --crack-width as well"};
   }
   Result<Scene> loaded = loadScene(options.common.scene);
   if (!loaded) {

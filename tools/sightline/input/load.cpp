@@ -110,7 +110,9 @@ Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene&
   }
   if (const Status same = baked->matches(sceneId(scene.view())); !same) {
     const Json settings = Json::parse(baked->record().settings, nullptr, false);
-    const double width = settings.is_object() ? settings.value("crack_width", 0.0) : 0.0;
+    const bool closed =
+        settings.is_object() && settings.contains("crack_width") && settings["crack_width"].is_number();
+    const double width = closed ? settings["crack_width"].get<double>() : 0.0;
     return Error{same.error().message +
                  (width > 0.0 ? fmt::format(", or give the --crack-width {} that it was baked with", width)
                               : std::string())};
