@@ -217,8 +217,10 @@ class Closing {
       const Vec3d cell = cellOf(at(v));
       std::pair<double, std::uint32_t> closest{width_, 0};
       for (int near = 0; near < 27; ++near) {
-        const Vec3d step(near % 3 - 1, near / 3 % 3 - 1, near / 9 - 1);
-        const auto [begin, end] = stayed.equal_range(hashOf(cell + step));
+        const int x = near % 3 - 1;
+        const int y = near / 3 % 3 - 1;
+        const int z = near / 9 - 1;
+        const auto [begin, end] = stayed.equal_range(hashOf(cell + Vec3d(x, y, z)));
         for (auto other = begin; other != end; ++other) {
           closest = std::min(closest, {length(at(vertices_[other->second]) - at(v)), other->second});
         }

@@ -2,6 +2,7 @@
 #include <map>
 #include <utility>
 
+#include "sightline/base/large_vector.h"
 #include "sightline/occluders/occluder_set.h"
 #include "src/occluders/bodies.h"
 #include "src/occluders/links.h"
