@@ -19,8 +19,8 @@ using namespace pvs;
 
 struct Bake::Data {
   Data(const SceneView& view, const OccluderSet& occluders, const BakeSettings& settings,
-       const CellBox& region)
-      : scene(view, occluders, settings, region), scene_id(sceneId(view)) {}
+       const CellBox& region, const ParallelFor& parallel_for)
+      : scene(view, occluders, settings, region, parallel_for), scene_id(sceneId(view)) {}
 
   BakeScene scene;
   SceneId scene_id;
@@ -30,7 +30,8 @@ struct Bake::Data {
 namespace {
 
 // Version of the bake method; increase it whenever the same input would give other cells.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kMaxDivisions = 16;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
 // Cells above this level are divided into parts. Below it, a part has at most 73 cells, so an interrupted
@@ -62,6 +63,9 @@ std::string problemWith(const BakeSettings& s) {
   if (!usable(s.similarity, 0.0, 1.0) || !usable(s.min_gain, 0.0, 1.0) ||
       !usable(s.merge_tolerance, 0.0, 1e6)) {
     return "similarity and least_gain are from 0 to 1, merge_tolerance is 0 or greater";
+  }
+  if (s.divisions > kMaxDivisions) {
+    return "divisions is " + std::to_string(s.divisions) + "; at most " + std::to_string(kMaxDivisions);
   }
   if (!s.region.empty() && !s.region.wellFormed()) {
     return "the region is not finite";
@@ -95,7 +99,8 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   base::ByteWriter bytes;
   for (const std::uint64_t number :
        {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
-        s.triangle_budget, std::uint64_t{s.max_depth}, std::uint64_t{base_depth}}) {
+        static_cast<std::uint64_t>(s.occlusion), s.triangle_budget, std::uint64_t{s.max_depth},
+        std::uint64_t{base_depth}, std::uint64_t{s.divisions}}) {
     bytes.add(number);
   }
   for (const double number :
@@ -120,7 +125,8 @@ double shareOf(const BakeScene& scene, const OctreeCell& cell) {
 
 }  // namespace
 
-Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, const BakeSettings& settings) {
+Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, const BakeSettings& settings,
+                        const ParallelFor& parallel_for) {
   if (const std::string problem = problemWith(settings); !problem.empty()) {
     return Error{"bake: " + problem};
   }
@@ -137,7 +143,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
                    " objects; give the occluders that findOccluders finds in it"};
     }
   }
-  const auto data = std::make_shared<Data>(scene, occluders, settings, *region);
+  const auto data = std::make_shared<Data>(scene, occluders, settings, *region, parallel_for);
   data->hash = hashOf(data->scene_id, occluders, data->scene.settings, data->scene.baseDepth(), *region);
   Bake bake;
   bake.data_ = data;
@@ -220,9 +226,36 @@ PartHead readHead(base::ByteReader& bytes) {
 
 }  // namespace
 
+namespace {
+
+// What is left of a divided part's bytes: PartTask::seen.
+std::vector<std::uint64_t> readSeen(base::ByteReader& bytes) {
+  std::vector<std::uint64_t> seen;
+  while (bytes.ok() && !bytes.atEnd()) {
+    seen.push_back(bytes.read<std::uint64_t>());
+  }
+  return seen;
+}
+
+// Empty, which stands for all objects, if they are not runs of so many.
+Runs runsOf(std::span<const std::uint64_t> seen, std::uint32_t object_count) {
+  Runs runs;
+  for (const std::uint64_t word : seen) {
+    const ObjectRun run{static_cast<std::uint32_t>(word >> 32), static_cast<std::uint32_t>(word)};
+    if (run.begin >= run.end || run.end > object_count || (!runs.empty() && run.begin <= runs.back().end)) {
+      return {};
+    }
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+}  // namespace
+
 BakedPart Bake::Worker::bake(const PartTask& part) {
   const BakeScene& scene = impl_->data->scene;
-  const CellTask task{cellOf(part.id), part.search_distance};
+  const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
+  const CellTask task{cellOf(part.id), part.search_distance, runsOf(part.seen, objects)};
   PartHead head{.plan = impl_->data->hash, .id = part.id, .summary = {}};
   base::ByteWriter bytes;
   BakedCell cell;
@@ -232,6 +265,9 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
     if (outcome.divide) {
       write(head, bytes);
       bytes.add(outcome.search_distance);
+      for (const ObjectRun& run : outcome.seen) {
+        bytes.add(std::uint64_t{run.begin} << 32 | run.end);
+      }
       return bytes.take();
     }
     cell = std::move(outcome.leaf);
@@ -262,8 +298,9 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
   std::vector<PartTask> below;
   if (head.summary.leaves == 0) {
     const auto search_distance = bytes.read<double>();
+    const std::vector<std::uint64_t> seen = readSeen(bytes);
     for (std::uint64_t i = 0; i < 8; ++i) {
-      below.push_back({8 * head.id + i, search_distance});
+      below.push_back({8 * head.id + i, search_distance, seen});
     }
   }
   return below;
@@ -343,7 +380,8 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
     return bytes.atEnd() ? std::move(cell) : std::nullopt;
   }
   bytes.read<double>();
-  if (!bytes.ok() || !bytes.atEnd() || level >= partLevel(scene.settings)) {
+  readSeen(bytes);
+  if (!bytes.ok() || level >= partLevel(scene.settings)) {
     return std::nullopt;
   }
   BakedCell cell;
@@ -380,7 +418,7 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
 
 Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet& occluders,
                                        const BakeSettings& settings, const ParallelFor& parallel_for) {
-  const Result<Bake> bake = Bake::plan(scene, occluders, settings);
+  const Result<Bake> bake = Bake::plan(scene, occluders, settings, parallel_for);
   if (!bake) {
     return bake.error();
   }

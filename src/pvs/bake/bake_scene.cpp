@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sightline::pvs {
 namespace {
@@ -125,7 +126,7 @@ std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox
 }  // namespace
 
 BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& s,
-                     const CellBox& viewers)
+                     const CellBox& viewers, const ParallelFor& parallel_for)
     : settings(s),
       region(viewers),
       root(cubeAround(viewers)),
@@ -134,11 +135,18 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       triangles(boxes.view()),
       position_of(scene.objects.size()),
       occluders(set),
+      panels(s.occlusion == BakeOcclusion::kFused ? findPanels(scene, parallel_for) : Panels{}),
       side_margin(sideMargin(root)),
       diagonal(diagonalOf(scene, region)),
       reach(1.01 * diagonalOf(scene, root)) {
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
+  }
+  leaf_of_.resize(boxes.objects.size());
+  for (std::uint32_t n = 0; n < boxes.nodes.size(); ++n) {
+    if (boxes.view().leaf(n)) {
+      leaf_of_[boxes.nodes[n].first_object] = n;
+    }
   }
   chooseDepth();
   countOccluders();

@@ -10,6 +10,7 @@
 #include "sightline/pvs/bake/bake.h"
 #include "src/pvs/bake/cell_region.h"
 #include "src/pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/panels.h"
 #include "src/pvs/bake/runs.h"
 #include "src/pvs/bake/shadow_tree.h"
 
@@ -18,7 +19,7 @@ namespace sightline::pvs {
 struct BakeScene {
   // settings: must be valid. region: where viewers are.
   BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& settings,
-            const CellBox& region);
+            const CellBox& region, const ParallelFor& parallel_for);
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
@@ -30,11 +31,14 @@ struct BakeScene {
   TriangleCounts triangles;
   std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
   ConvexOccluders occluders;
+  Panels panels;  // none if only convex occluders hide
   OccluderCounts counts;
   double side_margin = 0.0;  // sideMargin of the root, metres
   double diagonal = 0.0;     // diagonal of the region and all objects, metres
   double reach = 0.0;        // maximum distance from any viewer to any box, metres
 
+  // The leaf of an object, by its place in BoxTree::objects.
+  const BoxNode& leafOf(std::uint32_t position) const { return boxes.nodes[leaf_of_[position]]; }
   CellBox boxOf(const OctreeCell& cell) const {
     return {cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
   }
@@ -53,6 +57,7 @@ struct BakeScene {
   bool holdsAllOccluders(const CellBox& box) const;
 
  private:
+  std::vector<std::uint32_t> leaf_of_;  // into BoxTree::nodes
   // Below base_depth_, down to settings.max_depth, only cells that intersect one of these boxes are divided.
   std::uint32_t base_depth_ = 0;
   BoxTree reach_tree_;

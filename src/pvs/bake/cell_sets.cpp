@@ -47,6 +47,15 @@ void ObjectMask::addRun(const ObjectRun& run) {
   words_[last] |= high;
 }
 
+bool ObjectMask::containsAll(const ObjectRun& run) const {
+  std::uint32_t i = run.begin;
+  while (i < run.end && contains(i)) {
+    // Whole words at once.
+    i += i % 64 == 0 && i + 64 <= run.end && words_[i / 64] == ~std::uint64_t{0} ? 64 : 1;
+  }
+  return i >= run.end;
+}
+
 void ObjectMask::complement(Runs& out) const {
   out.clear();
   for (std::uint32_t i = 0; i < count_; ++i) {
@@ -66,8 +75,21 @@ void ObjectMask::complement(Runs& out) const {
 // unless it is as large as the cell.
 constexpr double kNearInEdges = 0.5;
 
+// A bound of the absolute coordinates of all cells and all objects that may be hidden.
+double reachOf(const BakeScene& scene) {
+  double reach = maxComponent(max(abs(scene.root.min), abs(scene.root.max)));
+  for (const BoxNode& node : scene.boxes.nodes) {
+    if (node.bounds.wellFormed()) {
+      reach = std::max(reach, maxComponent(max(abs(Vec3d(node.bounds.min)), abs(Vec3d(node.bounds.max)))));
+    }
+  }
+  return reach;
+}
+
 CellBaker::CellBaker(const BakeScene& scene)
-    : scene_(scene), samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes) {}
+    : scene_(scene),
+      samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
+      fused_(scene.panels, scene.settings.near_distance, reachOf(scene)) {}
 
 CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) const {
   const CellBox box = scene_.boxOf(cell);
@@ -100,20 +122,25 @@ void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, 
   std::transform(ranked_.begin(), ranked_.end(), chosen_.begin(), [](const auto& r) { return r.second; });
 }
 
-CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance) {
+CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen) {
   const CellBox box = scene_.boxOf(cell);
   const double near = 2.0 * scene_.settings.near_distance;
   faces_.clear();
   scene_.findFaces({box.min - Vec3d{near, near, near}, box.max + Vec3d{near, near, near}}, faces_);
   CellSets sets;
-  const Runs everything{{0, static_cast<std::uint32_t>(scene_.boxes.objects.size())}};
-  sets.whole = everything;
+  sets.whole = seen;
+  if (seen.empty()) {
+    sets.whole = {{0, static_cast<std::uint32_t>(scene_.boxes.objects.size())}};
+  }
   sets.plane = dividingPlane(box, faces_, scene_.settings.near_distance, scene_.side_margin);
   if (sets.plane) {
-    sets.front = sets.back = everything;
+    sets.front = sets.back = sets.whole;
   }
   chooseOccluders(cell, search_distance, cell.level);
   removeHidden(box, sets);
+  if (fused()) {
+    removeFused(box, sets);
+  }
   return sets;
 }
 
@@ -131,6 +158,55 @@ void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
     const double margin = 2.0 * scene_.side_margin;
     removeHiddenFrom(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
     removeHiddenFrom(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
+  }
+}
+
+void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
+  removeFusedFrom(cornersOf(box), sets.whole);
+  if (sets.plane) {
+    const CellPlane& plane = *sets.plane;
+    const double margin = 2.0 * scene_.side_margin;
+    for (Runs* side : {&sets.front, &sets.back}) {
+      intersect(*side, sets.whole, scratch_);
+      side->swap(scratch_);
+    }
+    removeFusedFrom(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
+    removeFusedFrom(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
+  }
+}
+
+void CellBaker::removeFusedFrom(std::span<const Vec3d> corners, Runs& seen) {
+  if (corners.empty() || seen.empty()) {
+    return;
+  }
+  CellBox region{corners[0], corners[0]};
+  for (const Vec3d& corner : corners) {
+    region.min = min(region.min, corner);
+    region.max = max(region.max, corner);
+  }
+  hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
+  removeFusedBelow(0, region);
+  hidden_.complement(seen);
+}
+
+void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
+  const BoxTreeView boxes = scene_.boxes.view();
+  const BoxNode& node = boxes.nodes[number];
+  const ObjectRun objects{node.first_object, node.first_object + node.object_count};
+  if (hidden_.containsAll(objects)) {
+    return;
+  }
+  const bool leaf = boxes.leaf(number);
+  if (node.bounds.wellFormed() && !intersects(region, node.bounds) &&
+      fused_.hides(region,
+                   {.box = {Vec3d(node.bounds.min), Vec3d(node.bounds.max)},
+                    .object = leaf ? boxes.objects[node.first_object].value : kNoObject},
+                   leaf ? scene_.settings.divisions : 0)) {
+    hidden_.add(std::span(&objects, 1));
+    return;
+  }
+  for (std::uint32_t child = number + 1; child < node.end; child = boxes.nodes[child].end) {
+    removeFusedBelow(child, region);
   }
 }
 
@@ -190,6 +266,38 @@ std::uint64_t CellBaker::trianglesSeenFrom(const Vec3d& eye) {
   return scene_.triangles.of(scratch_);
 }
 
+double CellBaker::shareSeenFrom(const Vec3d& point, const Runs& seen) {
+  constexpr std::uint64_t kObjects = 128;  // that are asked about
+  constexpr int kLines = 3;                // to each
+  std::uint64_t count = 0, at = 0;
+  for (const ObjectRun& run : seen) {
+    count += run.end - run.begin;
+  }
+  const std::uint64_t step = count / kObjects + 1;
+  double all = 0.0, clear = 0.0;
+  std::uint32_t random = 1;
+  for (const ObjectRun& run : seen) {
+    for (std::uint64_t i = (step - at % step) % step; i < run.end - run.begin; i += step) {
+      const auto position = static_cast<std::uint32_t>(run.begin + i);
+      const BoxNode& leaf = scene_.leafOf(position);
+      all += leaf.triangles;
+      for (int line = 0; line < kLines; ++line) {
+        Vec3d to(leaf.bounds.min);
+        for (int axis = 0; axis < 3; ++axis) {
+          random = random * 1664525u + 1013904223u;
+          to[axis] += double{leaf.bounds.max[axis] - leaf.bounds.min[axis]} * (random >> 8) * 0x1p-24;
+        }
+        if (fused_.isClear(point, to)) {
+          clear += leaf.triangles;
+          break;
+        }
+      }
+    }
+    at += run.end - run.begin;
+  }
+  return all > 0.0 ? clear / all : 1.0;
+}
+
 bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets) {
   const CellBox box = scene_.boxOf(cell);
   chooseOccluders(cell, search_distance, scene_.settings.max_depth);
@@ -207,6 +315,9 @@ bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, co
     }
     if (side == nullptr) {
       return false;
+    }
+    if (fused()) {
+      return shareSeenFrom(point, *side) < 1.0 - scene_.settings.similarity;
     }
     const double cell_triangles = static_cast<double>(scene_.triangles.of(*side));
     return static_cast<double>(trianglesSeenFrom(point)) <

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/fused_occlusion.h"
 #include "src/pvs/bake/samples.h"
 
 namespace sightline::pvs {
@@ -32,6 +33,7 @@ class ObjectMask {
   void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
   void add(std::span<const ObjectRun> runs);
   bool contains(std::uint32_t position) const { return (words_[position / 64] >> position % 64 & 1) != 0; }
+  bool containsAll(const ObjectRun& run) const;
   // out: the objects that are not set.
   void complement(Runs& out) const;
 
@@ -46,8 +48,10 @@ class CellBaker {
  public:
   explicit CellBaker(const BakeScene& scene);
 
-  // Sets of the cell. Occluders count that intersect the cell grown by search_distance metres on all sides.
-  CellSets seenFrom(const OctreeCell& cell, double search_distance);
+  // Sets of the cell. Convex occluders count that intersect the cell grown by search_distance metres on all
+  // sides, surfaces wherever they are. seen: from anywhere in the parent, of which the sets are a part; empty
+  // if not known.
+  CellSets seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen);
   // Updates the sets, computed with the smaller distance `searched`, to the greater search_distance.
   void lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets);
   // True if cells within this one are likely to see clearly less: if a corner or the centre of the cell, or a
@@ -64,6 +68,7 @@ class CellBaker {
   const BakeStats& stats() const { return samples_.stats(); }
 
  private:
+  bool fused() const { return scene_.settings.occlusion == BakeOcclusion::kFused; }
   CellBox searchBox(const OctreeCell& cell, double search_distance) const;
   // Fills chosen_ with the occluders in the search box that are useful to cells of this level, those that
   // look largest from the cell first.
@@ -71,11 +76,19 @@ class CellBaker {
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen);
+  // The same by surfaces, of what lies in the boxes of the tree.
+  void removeFused(const CellBox& box, CellSets& sets);
+  void removeFusedFrom(std::span<const Vec3d> corners, Runs& seen);
+  void removeFusedBelow(std::uint32_t node, const CellBox& region);
+  // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
+  // them.
+  double shareSeenFrom(const Vec3d& point, const Runs& seen);
   bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
 
   const BakeScene& scene_;
   SampleStore samples_;
+  FusedOcclusion fused_;
   // Scratch for the current cell.
   std::vector<std::uint32_t> chosen_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;

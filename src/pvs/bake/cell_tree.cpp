@@ -26,17 +26,17 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   if (!intersects(scene.boxOf(task.cell), scene.region)) {
     CellSets everything;
     everything.whole = {{0, static_cast<std::uint32_t>(scene.boxes.objects.size())}};
-    return {false, 0.0, leafOf(task.cell, std::move(everything), StopReason::kOutside)};
+    return {false, 0.0, {}, leafOf(task.cell, std::move(everything), StopReason::kOutside)};
   }
-  CellSets sets = baker.seenFrom(task.cell, distance);
+  CellSets sets = baker.seenFrom(task.cell, distance, task.seen);
   for (;;) {
     const std::uint64_t triangles = trianglesOf(scene, sets);
     if (triangles <= settings.triangle_budget) {
-      return {false, 0.0, leafOf(task.cell, std::move(sets), StopReason::kBudgetMet)};
+      return {false, 0.0, {}, leafOf(task.cell, std::move(sets), StopReason::kBudgetMet)};
     }
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
-      return {true, distance, {}};
+      return {true, distance, std::move(sets.whole), {}};
     }
     bool gained = false;
     if (!baker.searchedAll(task.cell, distance)) {
@@ -47,7 +47,9 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
     }
     if (!gained) {
       return {
-          false, 0.0,
+          false,
+          0.0,
+          {},
           leafOf(task.cell, std::move(sets), deepest ? StopReason::kMaxDepth : StopReason::kNothingGained)};
     }
   }
@@ -62,7 +64,8 @@ BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(task.cell.level);
   for (std::uint32_t i = 0; i < 8; ++i) {
-    cell.children.push_back(bakeCell(baker, scene, {task.cell.child(i), outcome.search_distance}));
+    cell.children.push_back(
+        bakeCell(baker, scene, {task.cell.child(i), outcome.search_distance, outcome.seen}));
   }
   mergeChildren(scene, cell);
   return cell;

@@ -20,17 +20,19 @@ struct BakedCell {
   bool leaf() const { return children.empty(); }
 };
 
-// A cell to be decided, and the search distance used for its parent.
+// A cell to be decided, and what is known of its parent.
 struct CellTask {
   OctreeCell cell;
   double search_distance = 0.0;  // metres
+  Runs seen{};                   // from anywhere in the parent; empty: not known
 };
 
-// The result for a cell: a leaf, or the search distance for its children.
+// The result for a cell: a leaf, or what is handed to its children.
 struct CellOutcome {
   bool divide = false;
   double search_distance = 0.0;
-  BakedCell leaf;
+  Runs seen{};  // from anywhere in a cell that is divided
+  BakedCell leaf{};
 };
 // Decides the cell by the four cases of the paper, section 3.2.
 CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task);

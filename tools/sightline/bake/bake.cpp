@@ -84,7 +84,7 @@ Result<Planned> planBake(const BakeOptions& options) {
   const double load_us = watch.lap();
   const BakeSettings settings = bakeSettings(options, *scene);
   const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
-  Result<Bake> bake = Bake::plan(scene->view(), occluders, settings);
+  Result<Bake> bake = Bake::plan(scene->view(), occluders, settings, threads.parallelFor());
   if (!bake) {
     return bake.error();
   }

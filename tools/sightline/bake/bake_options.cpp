@@ -95,6 +95,18 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
              "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
              "tan(fovy / 2)^2 * (1 + aspect^2))");
   addCrackWidthOption(command, options.crack_width);
+  command
+      .add_option("--occlusion", options.occlusion,
+                  "fused: surfaces of any number of triangles hide together; convex: each convex occluder by "
+                  "itself, as in the paper")
+      ->check(isOneOf({"fused", "convex"}, false))
+      ->capture_default_str();
+  command
+      .add_option("--divisions", settings.divisions,
+                  "where surfaces do not hide an object from a whole cell for sure, the cell or the object's "
+                  "box is halved so often at most, and each half tested")
+      ->check(CLI::Range(0u, 16u))
+      ->capture_default_str();
   command.add_option("--region", options.region,
                      "viewers are in this box, world space: MINX,MINY,MINZ,MAXX,MAXY,MAXZ (default: the "
                      "scene's bounds)");
@@ -158,6 +170,7 @@ Status checkOptions(const BakeOptions& options) {
 
 BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene) {
   BakeSettings settings = options.settings;
+  settings.occlusion = options.occlusion == "fused" ? BakeOcclusion::kFused : BakeOcclusion::kConvex;
   if (settings.triangle_budget == 0) {
     settings.triangle_budget = std::max(scene.triangleCount() / kBudgetShare, kMinBudget);
   }
@@ -180,6 +193,8 @@ Json settingsJson(const Bake& bake, const Vec3d& origin, double crack_width) {
                {"base_depth", bake.baseDepth()},
                {"near_distance", settings.near_distance},
                {"region", region.empty() ? Json() : Json({min.x, min.y, min.z, max.x, max.y, max.z})},
+               {"occlusion", settings.occlusion == BakeOcclusion::kFused ? "fused" : "convex"},
+               {"divisions", settings.divisions},
                {"search_distance", settings.search_distance},
                {"occluder_size", settings.occluder_size},
                {"similarity", settings.similarity},

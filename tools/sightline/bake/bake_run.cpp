@@ -186,8 +186,8 @@ class FirstBaker {
       MessageWriter message;
       for (const PartTask& task : tasks) {
         message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
+        message.number(task.seen.size()).rest(std::as_bytes(std::span(task.seen)));
       }
-      // The message is so short that MPI does not wait for the receiver, which may be sending too.
       world_.send(other, kParts, message.bytes());
       wanted = 0;
     }
@@ -340,15 +340,20 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
       world.send(0, kWant, MessageWriter().number(asked).bytes());
     }
     while (const std::optional<MpiWorld::Message> message = world.receive()) {
-      const std::size_t given = message->bytes.size() / (2 * sizeof(std::uint64_t));
       MessageReader reader(message->bytes);
-      more = given > 0;
-      for (std::size_t i = 0; i < given; ++i) {
-        const std::uint64_t id = reader.number();
-        const PartTask part{id, std::bit_cast<double>(reader.number())};
-        queue.add(static_cast<std::uint32_t>(i % threads), std::span(&part, 1));
+      std::uint32_t given = 0;
+      for (; !reader.rest().empty(); ++given) {
+        PartTask part{.id = reader.number()};
+        part.search_distance = std::bit_cast<double>(reader.number());
+        part.seen.resize(
+            std::min<std::size_t>(reader.number(), reader.rest().size() / sizeof(std::uint64_t)));
+        for (std::uint64_t& run : part.seen) {
+          run = reader.number();
+        }
+        queue.add(given % threads, std::span(&part, 1));
       }
-      out += static_cast<std::uint32_t>(given);
+      more = given > 0;
+      out += given;
       asked = 0;
     }
   }

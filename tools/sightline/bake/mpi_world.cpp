@@ -30,6 +30,11 @@ const char* rankOfLauncher() {
 
 }  // namespace
 
+struct MpiWorld::Sending {
+  std::vector<std::byte> bytes;
+  MPI_Request request{};
+};
+
 bool isOtherMpiProcess() {
   const char* rank = rankOfLauncher();
   return rank != nullptr && std::strcmp(rank, "0") != 0;
@@ -56,6 +61,9 @@ MpiWorld::~MpiWorld() {
   }
   while (!first() && wait().tag != kFarewell) {
   }
+  while (!sending_.empty()) {
+    forgetSent();
+  }
   MPI_Finalize();
 }
 
@@ -63,14 +71,26 @@ bool MpiWorld::send(int to, int tag, std::span<const std::byte> bytes) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     return false;
   }
-  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD);
+  Sending& sending = sending_.emplace_back();
+  sending.bytes.assign(bytes.begin(), bytes.end());
+  MPI_Isend(sending.bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, MPI_COMM_WORLD,
+            &sending.request);
   return true;
+}
+
+void MpiWorld::forgetSent() {
+  std::erase_if(sending_, [](Sending& sending) {
+    int sent = 0;
+    MPI_Test(&sending.request, &sent, MPI_STATUS_IGNORE);
+    return sent != 0;
+  });
 }
 
 std::optional<MpiWorld::Message> MpiWorld::receive() {
   if (size_ == 1) {
     return std::nullopt;
   }
+  forgetSent();
   int here = 0, count = 0;
   MPI_Status status;
   MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &here, &status);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <list>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,8 +15,8 @@ namespace sightline::tool {
 // Whether an MPI launcher started this process and it is not the first one. Such a process prints nothing.
 bool isOtherMpiProcess();
 
-// Sends messages between processes. For the main thread only; there is one MpiWorld at a time. Sending may
-// wait for the receiver. Receiving polls, so that waiting for a message costs no core.
+// Sends messages between processes. For the main thread only; there is one MpiWorld at a time. Sending does
+// not wait for the receiver. Receiving polls, so that waiting for a message costs no core.
 class MpiWorld {
  public:
   // Calls MPI only if a launcher started the process.
@@ -41,6 +42,10 @@ class MpiWorld {
   [[noreturn]] void abort(int exit_code);
 
  private:
+  struct Sending;
+  void forgetSent();
+
+  std::list<Sending> sending_;  // messages that may not have been received yet
   bool started_ = false;
   int rank_ = 0, size_ = 1;
 };

@@ -19,7 +19,14 @@
 
 namespace sightline {
 
+// What hides objects from a cell.
+enum class BakeOcclusion : std::uint8_t {
+  kConvex,  // each convex occluder by itself, as in the paper
+  kFused,   // and surfaces of any number of triangles together
+};
+
 struct BakeSettings {
+  BakeOcclusion occlusion = BakeOcclusion::kFused;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
   // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
   // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders.
@@ -42,6 +49,9 @@ struct BakeSettings {
   double min_gain = 0.02;  // doubling the search box helped if it hid this fraction of the triangles
   // Siblings are merged if their union sees at most this fraction more than each of them.
   double merge_tolerance = 0.05;
+  // Where surfaces do not hide an object from a whole cell for sure, the cell or the object's box, whichever
+  // is larger, is halved up to this many times, 0 to 16, and each half tested.
+  std::uint32_t divisions = 2;
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
 };
@@ -51,6 +61,9 @@ struct BakeSettings {
 struct PartTask {
   std::uint64_t id = 1;          // 1: the root; 8 * id + i: child number i of it
   double search_distance = 0.0;  // metres; set by the parent part
+  // The runs of objects that the parent sees, as begin << 32 | end; set by the parent part. None: all
+  // objects.
+  std::vector<std::uint64_t> seen{};
   friend bool operator==(const PartTask&, const PartTask&) = default;
 };
 
@@ -92,7 +105,7 @@ class Bake {
   // 1 omits none. Returns an error if settings are out of range, if there is neither a region nor an object
   // with a finite box, or if an occluder belongs to no object of the scene.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
-                           const BakeSettings& settings = {});
+                           const BakeSettings& settings = {}, const ParallelFor& parallel_for = serialFor);
 
   const BakeSettings& settings() const;  // including the chosen depth
   // Any cell may be divided down to this level. Below it, down to settings().max_depth, only cells near

@@ -1,0 +1,348 @@
+// The theorem is in docs/conservative.md, "Sets from regions". In short: a set of sheets whose boundary is
+// outside the shaft is crossed by all lines of sight as often as by one of them, fronts counted 1 and backs
+// -1, but for what the ends of the lines pass through. So one line decides for all.
+
+#include "src/pvs/bake/fused_occlusion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sightline/geometry/tolerance.h"
+
+namespace sightline::pvs {
+namespace {
+
+constexpr std::uint32_t kMostMembers = 512;       // of a component; larger ones are taken for open
+constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
+// Boxes are widened by this fraction of the reach, so that lines may end beside what is flat.
+constexpr double kWidening = 0x1p-18;
+
+// Places of ends of lines in a box, in fractions of it. They are no round numbers, because those of edges
+// are.
+constexpr Vec3d kStart{0.5127, 0.4861, 0.5073};
+constexpr std::array<Vec3d, 9> kEnds{
+    Vec3d{0.4893, 0.5131, 0.4937}, Vec3d{0.0213, 0.9791, 0.0237}, Vec3d{0.9763, 0.9817, 0.0251},
+    Vec3d{0.0229, 0.9773, 0.9759}, Vec3d{0.9781, 0.9807, 0.9743}, Vec3d{0.0241, 0.0197, 0.0219},
+    Vec3d{0.9777, 0.0221, 0.0203}, Vec3d{0.0217, 0.0233, 0.9769}, Vec3d{0.9787, 0.0239, 0.9771}};
+
+Vec3d pointIn(const CellBox& box, const Vec3d& part) {
+  const Vec3d extent = box.extent();
+  return {box.min.x + extent.x * part.x, box.min.y + extent.y * part.y, box.min.z + extent.z * part.z};
+}
+
+// A number with an unknown error of at most `doubt`.
+struct Determinant {
+  double value = 0.0, doubt = 0.0;
+  bool positive() const { return value > doubt; }
+  bool negative() const { return value < -doubt; }
+};
+
+// Of a determinant of three vectors, from bounds of the sums of their coordinates. error: of each coordinate.
+double doubtOf(double a, double b, double c, double error) {
+  return kDeterminantRounding * a * b * c + 4.0 * error * (a * b + b * c + c * a);
+}
+
+struct Sheet {
+  Vec3d a, b, c;
+
+  // Positive where the point is in front.
+  Determinant sideOf(const Vec3d& point, double error) const {
+    const Vec3d pa = a - point, pb = b - point, pc = c - point;
+    return {dot(pc, cross(pb, pa)),
+            doubtOf(l1Norm(pa) + error, l1Norm(pb) + error, l1Norm(pc) + error, error)};
+  }
+  Box bounds(double margin) const {
+    Box box;
+    for (const Vec3d& corner : {a, b, c}) {
+      box.extend(Vec3f(corner));
+    }
+    return widened(box, margin);
+  }
+};
+
+// Calls visit(sheet) for those of the panel until it returns true; returns whether it did.
+template <typename Visit>
+bool anySheet(const Panels& panels, std::uint32_t number, Visit&& visit) {
+  const std::span<const std::uint32_t> corners = panels.sheetsOf(panels.panels[number]);
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    if (visit(Sheet{panels.vertices[corners[i]], panels.vertices[corners[i + 1]],
+                    panels.vertices[corners[i + 2]]})) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// True only if the segment does not come closer to the box than the margin.
+bool misses(const Vec3d& from, const Vec3d& along, const Box& box, double margin) {
+  double begin = 0.0, end = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = double{box.min[axis]} - margin - from[axis],
+                 high = double{box.max[axis]} + margin - from[axis];
+    if (along[axis] == 0.0) {
+      if (low > 0.0 || high < 0.0) {
+        return true;
+      }
+      continue;
+    }
+    const double inverse = 1.0 / along[axis];
+    begin = std::max(begin, std::min(low * inverse, high * inverse));
+    end = std::min(end, std::max(low * inverse, high * inverse));
+  }
+  return begin > end + 0x1p-40;
+}
+
+double distance(const CellBox& region, const Box& box) {
+  return length(max(max(Vec3d(box.min) - region.max, region.min - Vec3d(box.max)), Vec3d{}));
+}
+
+}  // namespace
+
+FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, double reach)
+    : panels_(panels), near_distance_(near_distance), reach_(reach), places_(panels.panels.size()) {
+  for (const Vec3d& vertex : panels.vertices) {
+    reach_ = std::max(reach_, maxComponent(abs(vertex)));
+  }
+  reach_ *= 1.0 + 2.0 * kWidening;
+  error_ = 0x1p-51 * reach_ + panels.slack;
+}
+
+bool FusedOcclusion::hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions) {
+  // What the object joins is closed where it is left out, or where it is not; mostly the first.
+  Answer answer = answerFor(region, target.box, target.object);
+  if (answer != Answer::kHidden && target.object != kNoObject) {
+    answer = answerFor(region, target.box, kNoObject);
+  }
+  if (answer != Answer::kUndecided || divisions == 0) {
+    return answer == Answer::kHidden;
+  }
+  const bool of_region = maxComponent(region.extent()) >= maxComponent(target.box.extent());
+  const CellBox& larger = of_region ? region : target.box;
+  const Vec3d extent = larger.extent();
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  CellBox low = larger, high = larger;
+  low.max[axis] = high.min[axis] = larger.centre()[axis];
+  const auto hidesHalf = [&](const CellBox& half) {
+    return of_region ? hides(half, target, divisions - 1)
+                     : hides(region, {half, target.object}, divisions - 1);
+  };
+  return hidesHalf(low) && hidesHalf(high);
+}
+
+bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to) {
+  left_out_ = kNoObject;
+  findCrossings(from, to, true);
+  return clear();
+}
+
+FusedOcclusion::Answer FusedOcclusion::answerFor(const CellBox& region, const CellBox& target,
+                                                 std::uint32_t left_out) {
+  const double widening = kWidening * reach_;
+  const Vec3d by{widening, widening, widening};
+  region_ = region;
+  target_ = {target.min - by, target.max + by};
+  left_out_ = left_out;
+  shaft_ = Shaft(region_, target_, reach_, panels_.slack);
+  components_.clear();
+  members_.clear();
+  if (++question_ == 0) {
+    std::fill(places_.begin(), places_.end(), Place{});
+    question_ = 1;
+  }
+  for (const Vec3d& end : kEnds) {
+    const Vec3d to = pointIn(target_, end);
+    findCrossings(pointIn(region_, kStart), to, false);
+    if (clear()) {
+      return Answer::kSeen;
+    }
+    if (hiddenBehind(to)) {
+      return Answer::kHidden;
+    }
+    // Another end of the line helps only if this one is all that is wrong.
+    if (std::none_of(components_.begin(), components_.end(),
+                     [](const Component& c) { return c.closed && (c.crossings > 0 || c.in_doubt); })) {
+      break;
+    }
+  }
+  return Answer::kUndecided;
+}
+
+// Whether the line of sight that was crossed last shows that the target is hidden. to: its end.
+bool FusedOcclusion::hiddenBehind(const Vec3d& to) {
+  for (Component& component : components_) {
+    component.crossings = 0;
+    component.in_doubt = false;
+  }
+  // What no front was crossed of cannot hide. But backs count in the components of fronts.
+  for (const Crossing& crossing : crossings_) {
+    if (crossing.front) {
+      addToComponent(crossing);
+    }
+  }
+  for (const Crossing& crossing : crossings_) {
+    if (!crossing.front && places_[crossing.panel].question == question_) {
+      addToComponent(crossing);
+    }
+  }
+  return std::any_of(components_.begin(), components_.end(), [&](const Component& component) {
+    return component.closed && !component.in_doubt && component.crossings > 0 &&
+           component.crossings > mostBehind(component, to);
+  });
+}
+
+// Sets crossings_ to those of a line of sight, or to some of them that show that it is not clear.
+void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked) {
+  crossings_.clear();
+  const BoxTree& tree = panels_.tree;
+  const Vec3d along = to - from;
+  for (std::uint32_t n = 0; n < tree.nodes.size();) {
+    const BoxNode& node = tree.nodes[n];
+    if (misses(from, along, node.bounds, error_)) {
+      n = node.end;
+      continue;
+    }
+    if (node.end == n + 1) {
+      crossPanel(tree.objects[node.first_object].value, from, to);
+      if (until_blocked && !clear()) {
+        return;
+      }
+    }
+    n += 1;
+  }
+}
+
+void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const Vec3d& to) {
+  if (panels_.panels[number].object == left_out_) {
+    return;
+  }
+  const Vec3d along = to - from;
+  // One bound for all of the panel.
+  const Box& bounds = panels_.bounds[number];
+  const double far = l1Norm(max(abs(Vec3d(bounds.min) - from), abs(Vec3d(bounds.max) - from))) + error_,
+               doubt = doubtOf(l1Norm(along) + error_, far, far, error_);
+  Crossing crossing{.panel = number};
+  anySheet(panels_, number, [&](const Sheet& sheet) {
+    // On which side of its three edges the line passes.
+    const Vec3d a = sheet.a - from, b = sheet.b - from, c = sheet.c - from;
+    const double ab = dot(along, cross(a, b)), bc = dot(along, cross(b, c)), ca = dot(along, cross(c, a));
+    const double least = std::min({ab, bc, ca}), most = std::max({ab, bc, ca});
+    if (least < -doubt && most > doubt) {
+      return false;
+    }
+    const Determinant start = sheet.sideOf(from, error_), end = sheet.sideOf(to, error_);
+    if ((start.positive() && end.positive()) || (start.negative() && end.negative())) {
+      return false;
+    }
+    const bool within = least > doubt || most < -doubt;
+    const bool forward = start.positive() && end.negative(), backward = start.negative() && end.positive();
+    crossing.in_doubt = crossing.in_doubt || !within || !(forward || backward);
+    crossing.front = crossing.front || forward;
+    crossing.sum += !within ? 0 : forward ? 1 : backward ? -1 : 0;
+    return false;
+  });
+  if (crossing.front || crossing.in_doubt || crossing.sum != 0) {
+    crossings_.push_back(crossing);
+  }
+}
+
+bool FusedOcclusion::clear() const {
+  return std::none_of(crossings_.begin(), crossings_.end(),
+                      [](const Crossing& c) { return c.front || c.in_doubt; });
+}
+
+// Adds the crossing to the component of its panel, which is gathered if it is not known.
+void FusedOcclusion::addToComponent(const Crossing& crossing) {
+  Place& place = places_[crossing.panel];
+  if (place.question != question_) {
+    const auto number = static_cast<std::uint32_t>(components_.size());
+    const auto first = static_cast<std::uint32_t>(members_.size());
+    components_.push_back({.first = first});
+    place = {question_, number};
+    members_.push_back(crossing.panel);
+    components_[number].closed = gather(number);
+    components_[number].count = static_cast<std::uint32_t>(members_.size()) - first;
+  }
+  Component& component = components_[place.component];
+  component.crossings += crossing.sum;
+  component.in_doubt = component.in_doubt || crossing.in_doubt;
+}
+
+// Adds all panels that are joined with the component's first one within the shaft. False as soon as it is not
+// closed; some may be missing then.
+bool FusedOcclusion::gather(std::uint32_t component) {
+  const std::size_t first = members_.size() - 1;
+  for (std::size_t i = first; i < members_.size(); ++i) {
+    if (i - first >= kMostMembers || tooNear(members_[i])) {
+      return false;
+    }
+    for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[members_[i]])) {
+      std::uint32_t beyond = edge.beyond;
+      if (beyond != kNoPanel && panels_.panels[beyond].object == left_out_) {
+        beyond = edge.instead;
+      }
+      if (beyond != kNoPanel && places_[beyond].question == question_ &&
+          places_[beyond].component == component) {
+        continue;
+      }
+      if (shaft_.misses(panels_.vertices[edge.from], panels_.vertices[edge.to])) {
+        continue;
+      }
+      if (beyond == kNoPanel || places_[beyond].question == question_) {
+        return false;  // the boundary, or a component that was not closed
+      }
+      places_[beyond] = {question_, component};
+      members_.push_back(beyond);
+    }
+  }
+  return true;
+}
+
+// Whether some sheet in the shaft is too near to hide anything, and its front may be seen.
+bool FusedOcclusion::tooNear(std::uint32_t number) const {
+  const double near = near_distance_ + error_ + 0x1p-40 * reach_;
+  if (distance(region_, panels_.bounds[number]) > near) {
+    return false;
+  }
+  return anySheet(panels_, number, [&](const Sheet& sheet) {
+    const Box bounds = sheet.bounds(panels_.slack + 0x1p-24 * reach_);
+    if (distance(region_, bounds) > near || shaft_.misses(bounds)) {
+      return false;
+    }
+    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+      if (!sheet.sideOf(region_.corner(corner), error_).negative()) {
+        return true;
+      }
+    }
+    return false;
+  });
+}
+
+// How many sheets of the component may lie between the end of the line of sight, on their back, and another
+// point of the target, on their front: a line that ends there does not cross them.
+std::int32_t FusedOcclusion::mostBehind(const Component& component, const Vec3d& point) const {
+  std::int32_t count = 0;
+  for (std::uint32_t i = component.first; i < component.first + component.count; ++i) {
+    if (!intersects(target_, panels_.bounds[members_[i]])) {
+      continue;
+    }
+    anySheet(panels_, members_[i], [&](const Sheet& sheet) {
+      if (!intersects(target_, sheet.bounds(panels_.slack + 0x1p-24 * reach_)) ||
+          sheet.sideOf(point, error_).positive()) {
+        return false;
+      }
+      // With all of the target on one side of its plane, it does not meet the target.
+      std::uint32_t before = 0, after = 0;
+      for (std::uint32_t corner = 0; corner < 8; ++corner) {
+        const Determinant side = sheet.sideOf(target_.corner(corner), error_);
+        before += side.positive() ? 1 : 0;
+        after += side.negative() ? 1 : 0;
+      }
+      count += before == 8 || after == 8 ? 0 : 1;
+      return false;
+    });
+  }
+  return count;
+}
+
+}  // namespace sightline::pvs

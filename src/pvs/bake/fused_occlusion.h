@@ -1,0 +1,78 @@
+#pragma once
+
+// What surfaces of any number of triangles hide from a whole region together. docs/conservative.md, "Sets
+// from regions", says why it is safe.
+
+#include <cstdint>
+#include <vector>
+
+#include "src/pvs/bake/panels.h"
+#include "src/pvs/bake/shaft.h"
+
+namespace sightline::pvs {
+
+// What may be hidden.
+struct FusedTarget {
+  CellBox box;
+  std::uint32_t object = kNoObject;  // the only one in the box, or kNoObject
+};
+
+// For use by one thread at a time.
+class FusedOcclusion {
+ public:
+  // near_distance: what is closer to a viewer, in metres, hides nothing. reach: an upper bound of the
+  // absolute coordinates of all regions and boxes that are asked about. The panels must outlive this.
+  FusedOcclusion(const Panels& panels, double near_distance, double reach);
+
+  // True only if no point of the box can be seen from any point of the region. divisions: how often the
+  // region or the box, whichever is larger, is halved where that is not yet sure.
+  bool hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions);
+  // True if the line of sight between the points surely meets the front of no sheet.
+  bool isClear(const Vec3d& from, const Vec3d& to);
+
+ private:
+  enum class Answer { kHidden, kSeen, kUndecided };
+  // How the line of sight meets a panel.
+  struct Crossing {
+    std::uint32_t panel = 0;
+    std::int32_t sum = 0;   // of crossings from the front, less those from the back
+    bool front = false;     // some are from the front
+    bool in_doubt = false;  // rounding does not tell
+  };
+  // Panels that are joined within the shaft.
+  struct Component {
+    bool closed = false;  // no part of its boundary is in the shaft, and nothing of it too near
+    std::uint32_t first = 0, count = 0;  // into members_
+    std::int32_t crossings = 0;          // of the line of sight
+    bool in_doubt = false;
+  };
+
+  Answer answerFor(const CellBox& region, const CellBox& target, std::uint32_t left_out);
+  bool hiddenBehind(const Vec3d& to);
+  void findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked);
+  void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
+  bool clear() const;
+  void addToComponent(const Crossing& crossing);
+  bool gather(std::uint32_t component);
+  bool tooNear(std::uint32_t panel) const;
+  std::int32_t mostBehind(const Component& component, const Vec3d& point) const;
+
+  const Panels& panels_;
+  double near_distance_, reach_;
+  double error_;  // of a coordinate relative to another point, metres
+
+  // Of the last question.
+  CellBox region_, target_;
+  std::uint32_t left_out_ = kNoObject;  // its sheets hide nothing
+  Shaft shaft_;
+  std::vector<Crossing> crossings_;
+  std::vector<Component> components_;
+  std::vector<std::uint32_t> members_;  // panels, by component
+  struct Place {
+    std::uint32_t question = 0, component = 0;
+  };
+  std::vector<Place> places_;  // by panel: the component that it was found in
+  std::uint32_t question_ = 0;
+};
+
+}  // namespace sightline::pvs

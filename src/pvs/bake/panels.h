@@ -1,0 +1,63 @@
+#pragma once
+
+// The surfaces of a scene as a baker asks for them: one-sided, divided wherever they touch, and joined along
+// what a viewer before them sees as one surface.
+//
+// A sheet is one side of an opaque triangle, or of a piece of one: double-sided triangles have two sheets.
+// Around an edge at which several sheets end, each is joined with the next one that faces it across the space
+// between them: a wall with the floor before it, not with the floor below the wall. A sheet at the border of
+// what is double-sided is joined with its own back. In the direction of the edge the two cancel each other,
+// so whatever sheets are taken, if the joined ones are among them, their boundary is not there.
+//
+// A panel is a set of joined sheets of one object and of similar direction, which are taken together.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/base/large_vector.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/hierarchy/box_tree.h"
+#include "sightline/scene/scene.h"
+
+namespace sightline::pvs {
+
+inline constexpr std::uint32_t kNoPanel = 0xffffffffu;
+inline constexpr std::uint32_t kNoObject = 0xffffffffu;
+
+// An edge at the border of a panel.
+struct PanelEdge {
+  std::uint32_t from = 0, to = 0;  // into Panels::vertices
+  std::uint32_t beyond = 0;        // the panel that is joined with it there, or kNoPanel
+  std::uint32_t instead = 0;       // the one that is joined if the object of `beyond` is left out
+};
+
+struct Panel {
+  std::uint32_t first_sheet = 0, sheet_count = 0;  // into Panels::sheets
+  std::uint32_t first_edge = 0, edge_count = 0;    // into Panels::edges
+  std::uint32_t object = 0;
+};
+
+struct Panels {
+  // Scene space. None is farther than `slack` metres from where it would be without rounding; there, the
+  // sheets of an object are its triangles exactly.
+  LargeVector<Vec3d> vertices{};
+  LargeVector<std::uint32_t> sheets{};  // three vertices each, counter-clockwise as seen from its front
+  LargeVector<PanelEdge> edges{};
+  LargeVector<Panel> panels{};
+  LargeVector<Box> bounds{};  // by panel, also of what was not rounded
+  BoxTree tree{};             // its objects are numbers of panels
+  double slack = 0.0;
+
+  std::span<const std::uint32_t> sheetsOf(const Panel& p) const {
+    return std::span(sheets).subspan(std::size_t{3} * p.first_sheet, std::size_t{3} * p.sheet_count);
+  }
+  std::span<const PanelEdge> edgesOf(const Panel& p) const {
+    return std::span(edges).subspan(p.first_edge, p.edge_count);
+  }
+};
+
+// Of all opaque triangles that may be occluders and are finite. The result does not depend on the threads.
+Panels findPanels(const SceneView& scene, const ParallelFor& parallel_for = serialFor);
+
+}  // namespace sightline::pvs

@@ -1,0 +1,339 @@
+#include "src/pvs/bake/fused_occlusion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/pvs/bake_scenes.h"
+
+namespace sightline::pvs {
+namespace {
+
+using test::block;
+using test::dicedBlock;
+using test::sceneOf;
+using test::Solid;
+
+constexpr double kNear = 0.1;
+
+// Independent of the code under test: whether a line of sight is free, by a test of each triangle. A triangle
+// that the line nearly misses does not block it.
+bool seesByLine(const Scene& scene, const Vec3d& eye, const Vec3d& point, double near) {
+  const Vec3d along = point - eye;
+  const double size = length(along);
+  for (const Object& object : scene.objects) {
+    const Material& material = scene.materials[object.material.value];
+    for (std::uint32_t i = object.first_index; i < object.first_index + object.index_count; i += 3) {
+      const Vec3d a(scene.positions[scene.indices[i]]), u = Vec3d(scene.positions[scene.indices[i + 1]]) - a,
+                                                        v = Vec3d(scene.positions[scene.indices[i + 2]]) - a;
+      const double facing = dot(cross(u, v), along);
+      if (facing == 0.0 || (facing > 0.0 && !material.double_sided)) {
+        continue;
+      }
+      const Vec3d from = eye - a;
+      const double s = dot(cross(from, v), along) / facing, t = dot(cross(u, from), along) / facing,
+                   at = -dot(cross(u, v), from) / facing;
+      if (s >= 0.0 && t >= 0.0 && s + t <= 1.0 && at * size > near && at < 1.0 - 1e-9) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+// A point of a box, often on its border.
+Vec3d placeIn(const CellBox& box, std::mt19937& random) {
+  Vec3d place;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double t = std::uniform_real_distribution<double>(0.0, 1.0)(random);
+    const auto border = random() % 6;
+    place[axis] = border == 0   ? box.min[axis]
+                  : border == 1 ? box.max[axis]
+                                : box.min[axis] + (box.max[axis] - box.min[axis]) * t;
+  }
+  return place;
+}
+
+bool seesByLines(const Scene& scene, const CellBox& region, const CellBox& target, int lines,
+                 std::mt19937& random, double near = kNear) {
+  for (int i = 0; i < lines; ++i) {
+    if (seesByLine(scene, placeIn(region, random), placeIn(target, random), near)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool hides(const Scene& scene, const CellBox& region, const FusedTarget& target, std::uint32_t divisions = 0,
+           double near = kNear) {
+  const Panels panels = findPanels(scene.view());
+  FusedOcclusion fused(panels, near, 100.0);
+  const bool hidden = fused.hides(region, target, divisions);
+  std::mt19937 random(11);
+  EXPECT_FALSE(hidden && seesByLines(scene, region, target.box, 2000, random, near));
+  return hidden;
+}
+
+// A wall across x = 0 of many rectangles, 8 metres wide and high, with its front towards -x. `without` is one
+// that is left out, counted along z and then y.
+Solid wallOfTiles(int count, int without = -1, bool reversed = false) {
+  Solid solid;
+  const auto at = [&](int i) { return -4.0f + 8.0f * static_cast<float>(i) / static_cast<float>(count); };
+  for (int y = 0; y <= count; ++y) {
+    for (int z = 0; z <= count; ++z) {
+      solid.points.emplace_back(0.0f, at(y), at(z));
+    }
+  }
+  for (int y = 0; y < count; ++y) {
+    for (int z = 0; z < count; ++z) {
+      if (y * count + z != without) {
+        const auto first = static_cast<std::uint32_t>(y * (count + 1) + z);
+        const auto row = static_cast<std::uint32_t>(count + 1);
+        std::vector<std::uint32_t> face{first, first + 1, first + row + 1, first + row};
+        if (reversed) {
+          std::reverse(face.begin(), face.end());
+        }
+        solid.faces.push_back(face);
+      }
+    }
+  }
+  return solid;
+}
+
+const CellBox kViewers{{-6, -0.5, -0.5}, {-5, 0.5, 0.5}};
+const FusedTarget kBehind{.box = {{3, -1, -1}, {4, 1, 1}}};
+
+TEST(FusedOcclusion, ManySmallTrianglesHideTogether) {
+  EXPECT_TRUE(hides(sceneOf({wallOfTiles(20)}), kViewers, kBehind));
+}
+
+TEST(FusedOcclusion, AHoleInTheShaftIsSeenThroughAndOneBesideItIsNot) {
+  EXPECT_FALSE(hides(sceneOf({wallOfTiles(20, 10 * 20 + 10)}), kViewers, kBehind));
+  EXPECT_TRUE(hides(sceneOf({wallOfTiles(20, 0)}), kViewers, kBehind));
+}
+
+TEST(FusedOcclusion, BacksHideNothingButDoubleSidedTrianglesDo) {
+  Scene scene = sceneOf({wallOfTiles(5, -1, true)});
+  EXPECT_FALSE(hides(scene, kViewers, kBehind));
+  EXPECT_TRUE(hides(scene, kBehind.box, {.box = kViewers})) << "from the other side";
+  scene.materials[0].double_sided = true;
+  EXPECT_TRUE(hides(scene, kViewers, kBehind));
+}
+
+TEST(FusedOcclusion, WhatTheNearPlaneMayClipHidesNothing) {
+  const Scene scene = sceneOf({wallOfTiles(5)});
+  const CellBox close{{-1, -0.5, -0.5}, {-0.05, 0.5, 0.5}};
+  EXPECT_FALSE(hides(scene, close, kBehind, 3, 0.1));
+  EXPECT_TRUE(hides(scene, close, kBehind, 0, 0.01));
+}
+
+TEST(FusedOcclusion, ASlitIsSeenThroughAndATouchIsNot) {
+  const auto halves = [](float slit) {
+    return sceneOf({block({0, -4, -4}, {0.5f, 4, 0}), block({0, -4, slit}, {0.5f, 4, 4})});
+  };
+  EXPECT_FALSE(hides(halves(1e-4f), kViewers, kBehind, 4));
+  EXPECT_FALSE(hides(halves(std::nextafter(0.0f, 1.0f)), kViewers, kBehind, 4));
+  EXPECT_TRUE(hides(halves(0.0f), kViewers, kBehind));
+}
+
+TEST(FusedOcclusion, WhatTouchesOrPenetratesIsOneSurface) {
+  // Boards on each other's edges, a post pushed into them, and a wall that stands on a slab.
+  EXPECT_TRUE(hides(sceneOf({block({0, -4, -4}, {0.5f, 0.25f, 0.25f}),
+                             block({0, -4, 0.25f}, {0.5f, 0.25f, 4}), block({0, 0.25f, -4}, {0.5f, 4, 4})}),
+                    kViewers, kBehind));
+  EXPECT_TRUE(hides(sceneOf({block({0, -4, -4}, {0.5f, 4, -0.1f}), block({0, -4, 0.1f}, {0.5f, 4, 4}),
+                             block({-0.25f, -4, -0.3f}, {0.25f, 4, 0.3f})}),
+                    kViewers, kBehind));
+  const Scene standing = sceneOf({block({-8, -2, -8}, {8, -1, 8}), block({0, -1, -4}, {0.5f, 4, 4})});
+  EXPECT_TRUE(hides(standing, kViewers, {.box = {{3, -1, -1}, {4, 1, 1}}}));
+}
+
+TEST(FusedOcclusion, ATargetMayStandOnWhatHidesIt) {
+  // The floor and the wall are one mesh; the target's lower face lies on the floor.
+  Solid solid = wallOfTiles(4);
+  const auto first = static_cast<std::uint32_t>(solid.points.size());
+  for (const Vec3f& point : {Vec3f(0, -4, -4), Vec3f(0, -4, 4), Vec3f(8, -4, 4), Vec3f(8, -4, -4)}) {
+    solid.points.push_back(point);
+  }
+  solid.faces.push_back({first, first + 1, first + 2, first + 3});
+  const Scene scene = sceneOf({solid});
+  EXPECT_TRUE(hides(scene, kViewers, {.box = {{3, -4, -1}, {4, -3, 1}}}));
+}
+
+TEST(FusedOcclusion, ATargetThatTouchesTheWallIsLeftOut) {
+  const Scene scene = sceneOf({block({0, -4, -4}, {0.5f, 4, 4}), block({0.5f, -1, -1}, {1, 1, 1}),
+                               block({-0.5f, -1, -1}, {0, 1, 1})});
+  EXPECT_TRUE(hides(scene, kViewers, {.box = {{0.5, -1, -1}, {1, 1, 1}}, .object = 1}));
+  EXPECT_FALSE(hides(scene, kViewers, {.box = {{-0.5, -1, -1}, {0, 1, 1}}, .object = 2}, 4))
+      << "in front of the wall";
+}
+
+TEST(FusedOcclusion, AFlatTargetOnTheBackOfAWallIsHidden) {
+  const Scene scene = sceneOf({block({0, -4, -4}, {0.5f, 4, 4})});
+  EXPECT_TRUE(hides(scene, kViewers, {.box = {{0.5, -1, -1}, {0.5, 1, 1}}}));
+  EXPECT_FALSE(hides(scene, kViewers, {.box = {{0, -1, -1}, {0, 1, 1}}}, 4)) << "on its front";
+}
+
+TEST(FusedOcclusion, ARoomIsClosedFromInsideAndOpenFromOutside) {
+  // A box with its fronts inwards.
+  Solid room = dicedBlock({-4, -4, -4}, {4, 4, 4}, 3);
+  for (std::vector<std::uint32_t>& face : room.faces) {
+    std::reverse(face.begin(), face.end());
+  }
+  const Scene scene = sceneOf({room});
+  const CellBox inside{{-1, -1, -1}, {1, 1, 1}};
+  const FusedTarget outside{.box = {{9, -2, 3}, {11, 2, 7}}};
+  EXPECT_TRUE(hides(scene, inside, outside));
+  EXPECT_FALSE(hides(scene, outside.box, {.box = inside}, 4));
+}
+
+TEST(FusedOcclusion, DividingShowsWhatNoSurfaceHidesByItself) {
+  // Two walls with an edge each in the shaft, one behind the other.
+  const Scene scene = sceneOf({block({0, -4, -4}, {0.25f, 4, 0.5f}), block({1, -4, -0.5f}, {1.25f, 4, 4})});
+  const CellBox viewers{{-12, -0.5, -0.125}, {-11, 0.5, 0.125}};
+  const FusedTarget target{.box = {{3, -0.5, -0.125}, {3.25, 0.5, 0.125}}};
+  EXPECT_TRUE(hides(scene, viewers, target, 3));
+}
+
+TEST(FusedOcclusion, WithoutSurfacesNothingIsHidden) {
+  Scene scene = sceneOf({wallOfTiles(2)});
+  scene.materials[0].opacity = Opacity::kBlended;
+  EXPECT_FALSE(hides(scene, kViewers, kBehind, 2));
+  const Panels none;
+  FusedOcclusion fused(none, kNear, 100.0);
+  EXPECT_FALSE(fused.hides(kViewers, kBehind, 2));
+}
+
+// Walls, boards and crates on a grid of half metres, so that most of them touch, with coordinates a unit in
+// the last place off here and there, some of them double-sided or with reversed triangles.
+Scene untidyScene(std::mt19937& random) {
+  const auto whole = [&](int low, int high) {
+    return 0.5f * static_cast<float>(std::uniform_int_distribution<int>(low, high)(random));
+  };
+  std::vector<Solid> solids;
+  for (int i = 0; i < 14; ++i) {
+    Vec3f low(whole(-8, 6), whole(-6, 2), whole(-8, 6)), size(whole(1, 3), whole(1, 8), whole(1, 12));
+    if (random() % 2 != 0) {
+      std::swap(size.x, size.z);
+    }
+    Solid solid = random() % 3 == 0 ? dicedBlock(low, low + size, 2) : block(low, low + size);
+    for (Vec3f& point : solid.points) {
+      if (random() % 64 == 0) {
+        point.x = std::nextafter(point.x, random() % 2 != 0 ? 100.0f : -100.0f);
+      }
+    }
+    if (random() % 8 == 0) {
+      solid.faces.erase(solid.faces.begin() + static_cast<std::ptrdiff_t>(random() % solid.faces.size()));
+    }
+    if (random() % 8 == 0) {
+      std::reverse(solid.faces[0].begin(), solid.faces[0].end());
+    }
+    solids.push_back(solid);
+  }
+  Scene scene = sceneOf(solids);
+  scene.materials.push_back({.double_sided = true});
+  for (Object& object : scene.objects) {
+    object.material = MaterialId(random() % 4 == 0 ? 1u : 0u);
+  }
+  return scene;
+}
+
+TEST(FusedOcclusion, HidesNothingThatALineSees) {
+  std::size_t hidden = 0, asked = 0;
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    std::mt19937 random(seed);
+    const Scene scene = untidyScene(random);
+    const Panels panels = findPanels(scene.view());
+    FusedOcclusion fused(panels, kNear, 100.0);
+    for (int i = 0; i < 40; ++i) {
+      const auto place = [&] { return std::uniform_real_distribution<double>(-5.0, 5.0)(random); };
+      const Vec3d at{place(), place(), place()};
+      const double half = random() % 2 != 0 ? 0.25 : 0.0;
+      const CellBox region{at - Vec3d{half, half, half}, at + Vec3d{half, half, half}};
+      for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
+        const Box& box = scene.objects[object].bounds;
+        const FusedTarget target{.box = {Vec3d(box.min), Vec3d(box.max)},
+                                 .object = random() % 2 != 0 ? object : kNoObject};
+        ++asked;
+        if (!intersects(region, box) && fused.hides(region, target, random() % 4)) {
+          ++hidden;
+          ASSERT_FALSE(seesByLines(scene, region, target.box, 60, random))
+              << "seed " << seed << ", object " << object << ", region at " << at.x << " " << at.y << " "
+              << at.z;
+        }
+      }
+    }
+  }
+  EXPECT_GT(hidden, asked / 20) << "the test would prove little";
+}
+
+// The shaft against points of the hull, and against lines that lie beside it.
+TEST(Shaft, HoldsTheHullOfBothBoxesAndLittleMore) {
+  std::mt19937 random(5);
+  const auto whole = [&](int low, int high) {
+    return static_cast<double>(std::uniform_int_distribution<int>(low, high)(random));
+  };
+  int outside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d a(whole(-9, 9), whole(-9, 9), whole(-9, 9)), b(whole(-9, 9), whole(-9, 9), whole(-9, 9));
+    const CellBox region{a, a + Vec3d(whole(0, 4), whole(0, 4), whole(0, 4))},
+        target{b, b + Vec3d(whole(0, 4), whole(0, 4), whole(0, 4))};
+    const Shaft shaft(region, target, 20.0, 0.0);
+    const double t = whole(0, 8) / 8.0;
+    const Vec3d from = placeIn(region, random), to = placeIn(target, random), in = from * (1.0 - t) + to * t;
+    const Vec3d beside(whole(-3, 3), whole(-3, 3), whole(-3, 3));
+    ASSERT_FALSE(shaft.misses(in + beside, in - beside));
+    ASSERT_FALSE(shaft.misses(from, to));
+    // A point beside a plane that touches both boxes from the other side.
+    const Vec3d normal(whole(-3, 3), whole(-3, 3), whole(-3, 3)),
+        point(whole(-9, 9), whole(-9, 9), whole(-9, 9));
+    double most = -1e9;
+    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+      most = std::max({most, dot(normal, region.corner(corner)), dot(normal, target.corner(corner))});
+    }
+    if (dot(normal, point) > most + 1e-6) {
+      ++outside;
+      EXPECT_TRUE(shaft.misses(point, point));
+      EXPECT_TRUE(shaft.misses(Box{Vec3f(point), Vec3f(point)}));
+    }
+  }
+  EXPECT_GT(outside, 200);
+}
+
+std::size_t bareEdges(const Panels& panels) {
+  return static_cast<std::size_t>(std::count_if(panels.edges.begin(), panels.edges.end(),
+                                                [](const PanelEdge& e) { return e.beyond == kNoPanel; }));
+}
+
+TEST(Panels, JoinWhatAViewerSeesAsOneSurface) {
+  EXPECT_EQ(bareEdges(findPanels(sceneOf({block({0, 0, 0}, {1, 1, 1})}).view())), 0u);
+  EXPECT_EQ(bareEdges(findPanels(sceneOf({wallOfTiles(3)}).view())), 12u) << "the border";
+  Scene two_sided = sceneOf({wallOfTiles(3)});
+  two_sided.materials[0].double_sided = true;
+  EXPECT_EQ(bareEdges(findPanels(two_sided.view())), 0u) << "fronts go on on backs";
+  // A wall without a bottom on a floor: it is joined with the floor before it. Of the floor below it, the
+  // border is left.
+  Solid wall = block({-1, 0, -1}, {1, 2, 1});
+  wall.faces.erase(wall.faces.begin() + 2);
+  const Scene scene = sceneOf({block({-4, -1, -4}, {4, 0, 4}), wall});
+  const Panels panels = findPanels(scene.view());
+  int joined = 0;
+  for (const Panel& panel : panels.panels) {
+    for (const PanelEdge& edge : panels.edgesOf(panel)) {
+      if (edge.beyond != kNoPanel && panels.panels[edge.beyond].object != panel.object) {
+        ++joined;
+        // Without the other object the floor goes on below the wall, and the wall ends.
+        EXPECT_EQ(edge.instead != kNoPanel, false);
+      }
+    }
+  }
+  EXPECT_EQ(joined, 8) << "four sides of the wall, and the floor around them";
+  EXPECT_EQ(bareEdges(panels), 4u);
+}
+
+}  // namespace
+}  // namespace sightline::pvs
