@@ -2,7 +2,10 @@
 // begins at a multiple of 16 bytes.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -16,7 +19,7 @@ constexpr std::size_t kAlignment = 16;
 
 // What has to be the same where the bytes are read.
 struct Head {
-  char letters[8] = {'S', 'L', 's', 'u', 'r', 'f', '0', '1'};  // the last two: raise with every change of the
+  char letters[8] = {'S', 'L', 's', 'u', 'r', 'f', '0', '2'};  // the last two: raise with every change of the
                                                                // arrays or of findSurfaces()
   std::uint32_t byte_order = 0x01020304;
   std::uint32_t sizes = sizeof(SurfaceCluster) | sizeof(SurfacePatch) << 8 | sizeof(SurfaceChain) << 16 |
@@ -88,6 +91,46 @@ bool hasBool(const Item& item, std::size_t offset) {
   return reinterpret_cast<const unsigned char*>(&item)[offset] <= 1;
 }
 
+bool isSound(const Plane& support, double thickness) {
+  return isFinite(support.normal) && std::isfinite(support.offset) && std::isfinite(thickness) &&
+         thickness >= 0.0;
+}
+
+// Whether all coordinates are such that drawing can compute with them.
+bool isFiniteSet(const SurfaceSet& set) {
+  const auto all = [](const auto& items, auto&& sound) {
+    return std::all_of(items.begin(), items.end(), sound);
+  };
+  const auto finite = [](const Vec3f& point) { return isFinite(point); };
+  const auto well_formed = [](const Box& box) { return box.wellFormed(); };
+  return all(set.vertices, finite) && all(set.chain_vertices, finite) &&
+         all(set.cluster_bounds, well_formed) && all(set.patch_bounds, well_formed) &&
+         all(set.part_bounds, well_formed) &&
+         all(set.object_bounds, [](const Box& box) { return box.wellFormed() || box == Box{}; }) &&
+         all(set.sizes_of_object, [](float size) { return std::isfinite(size); }) &&
+         all(set.clusters, [](const SurfaceCluster& c) { return isSound(c.support, c.thickness); }) &&
+         all(set.patches, [](const SurfacePatch& p) {
+           return isSound(p.support, p.thickness) && p.cone_cosine >= -1.0f && p.cone_cosine <= 1.0f;
+         });
+}
+
+// Whether sums of the values at any chain stay far from what a number can hold. A cluster has less than
+// 65,536 triangles, each of which may run along a chain once on each of its edges.
+bool haveSmallValues(const SurfaceSet& set) {
+  constexpr std::int64_t kMost = 3 * 65536, kMostSum = 1 << 30;
+  const auto small = [](std::int32_t value) { return value != 0 && std::abs(std::int64_t{value}) <= kMost; };
+  return std::all_of(set.patch_chains.begin(), set.patch_chains.end(),
+                     [&](const PatchChain& c) { return small(c.value); }) &&
+         std::all_of(set.chains.begin(), set.chains.end(), [&](const SurfaceChain& chain) {
+           std::int64_t sum = 0;
+           const std::span<const ChainUse> uses = set.usesOf(chain);
+           return std::all_of(uses.begin(), uses.end(), [&](const ChainUse& use) {
+             sum += std::abs(std::int64_t{use.value});
+             return small(use.value) && sum <= kMostSum;
+           });
+         });
+}
+
 // What is wrong with the numbers of a set; empty if nothing is: no index leaves its array.
 std::string flawOf(const SurfaceSet& set, std::size_t objects) {
   const auto all = [](const auto& items, auto&& sound) {
@@ -144,6 +187,12 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
       !allBelow(set.cluster_chains, set.chains.size()) ||
       !all(set.patch_chains, [&](const PatchChain& c) { return c.chain < set.chains.size(); })) {
     return "its chains are broken";
+  }
+  if (!haveSmallValues(set)) {
+    return "its edges count for more than they can";
+  }
+  if (!isFiniteSet(set)) {
+    return "some of its numbers are not finite";
   }
   return "";
 }

@@ -243,7 +243,7 @@ HWY_INLINE bool drawEdge(const WindingEdges& target, GridPoint from, GridPoint t
   const double low = std::min(from.y, to.y), high = std::max(from.y, to.y);
   const double left = std::min(from.x, to.x) - kMargin;
   const PixelRectangle& r = target.rectangle;
-  if (high + kMargin < r.y0 * kPixel || low - kMargin >= r.y1 * kPixel || left >= r.x1 * kPixel) {
+  if (!(high + kMargin >= r.y0 * kPixel && low - kMargin < r.y1 * kPixel && left < r.x1 * kPixel)) {
     return false;
   }
   const double bottom_row = r.y0, top_row = r.y1 - 0.5;

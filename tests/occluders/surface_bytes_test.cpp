@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include "scenes/procedural.h"
@@ -99,6 +100,26 @@ TEST(SurfaceBytes, WithAnyBytesChangedTheyAreRefusedOrHarmless) {
     }
   }
   EXPECT_GT(refused, 300u);
+}
+
+TEST(SurfaceBytes, WithNumbersThatDrawingCannotComputeWithTheyAreRefused) {
+  const Village village;
+  const auto refuses = [&](auto&& change) {
+    SurfaceSet set = village.surfaces;
+    change(set);
+    return !surfacesFrom(surfaceBytes(set), village.objects);
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  EXPECT_FALSE(refuses([](SurfaceSet&) {}));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.chain_vertices.back().x = kNan; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.vertices[0].y = -1.0f / 0.0f; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.part_bounds[0].max.z = kNan; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.clusters[0].support.offset = double{kNan}; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.patches[0].cone_cosine = 2.0f; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.uses[0].value = kLeast; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.patch_chains[0].value = 0; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.patch_chains[0].value = 1 << 20; }));
 }
 
 }  // namespace

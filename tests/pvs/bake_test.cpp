@@ -389,6 +389,36 @@ TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   EXPECT_TRUE(same(*a, baked(scene, settings)));
 }
 
+TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
+  const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
+  BakeSettings settings{.max_depth = 3, .near_distance = 0.1};
+  const BakedVisibility convex = baked(scene, settings);
+  settings.occlusion = BakeOcclusion::kFused;
+  const BakedVisibility fused = baked(scene, settings);
+  BakeJudge judge_convex(scene, convex), judge(scene, fused);
+  judge_convex.judge(1, 3, 0.1, 21);
+  judge.judge(1, 3, 0.1, 21);
+  EXPECT_GT(judge.hidden, judge_convex.hidden + judge_convex.hidden / 10);
+}
+
+TEST(Bake, FusedSetsAreTheSameWhoeverBakesTheParts) {
+  const Scene scene = randomScene(3);
+  const BakeSettings settings{
+      .occlusion = BakeOcclusion::kFused, .max_depth = 3, .near_distance = 0.05, .divisions = 1};
+  const Result<Bake> bake = Bake::plan(scene.view(), allOccluders(scene), settings);
+  ASSERT_TRUE(bake);
+  Bake::Worker one(*bake);
+  const BakedParts alone = partsOf(*bake, [&](const PartTask& part) { return one.bake(part); });
+  const BakedParts anew =
+      partsOf(*bake, [&](const PartTask& part) { return Bake::Worker(*bake).bake(part); });
+  EXPECT_EQ(alone, anew);
+  const Result<BakedVisibility> result = bake->assemble(alone);
+  ASSERT_TRUE(result);
+  BakeJudge judge(scene, *result);
+  judge.judge(2, 5, 0.05, 3);
+  EXPECT_GT(judge.hidden, judge.seen);
+}
+
 TEST(Bake, RefusesPartsOfAnotherPlanAndBrokenOnes) {
   const Scene scene = randomScene(1);
   const OccluderSet occluders = allOccluders(scene);
@@ -431,6 +461,7 @@ TEST(Bake, RefusesSettingsThatMakeNoSense) {
       {.near_distance = -1.0},
       {.near_distance = kNan},
       {.search_distance = -1.0},
+      {.divisions = 17},
       {.occluder_size = kNan},
       {.similarity = 2.0},
       {.min_gain = -0.1},

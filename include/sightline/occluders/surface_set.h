@@ -166,8 +166,9 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings 
 // the same version. They say neither of which scene nor with which settings they were found.
 LargeVector<std::byte> surfaceBytes(const SurfaceSet& set);
 // Error if they are cut off, of another version, or name what they do not have; such a set cannot be read
-// beyond its arrays. Whether coordinates are those that were written is for the caller to check, by a
-// checksum. object_count: of the scene.
+// beyond its arrays, and all of its numbers are finite. Whether they are those that were written, of this
+// scene, is for the caller to check, by a checksum: surfaces of another scene hide what is visible.
+// object_count: of the scene.
 Result<SurfaceSet> surfacesFrom(std::span<const std::byte> bytes, std::uint32_t object_count);
 
 }  // namespace sightline

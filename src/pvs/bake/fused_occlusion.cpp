@@ -13,7 +13,8 @@
 namespace sightline::pvs {
 namespace {
 
-constexpr std::uint32_t kMostMembers = 512;       // of a component; larger ones are taken for open
+// Of a component; larger ones are taken for open. What holds several objects is rarely hidden as a whole.
+constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
 constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
 // Boxes are widened by this fraction of the reach, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
@@ -109,6 +110,7 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, doubl
 }
 
 bool FusedOcclusion::hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions) {
+  most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
   // What the object joins is closed where it is left out, or where it is not; mostly the first.
   Answer answer = answerFor(region, target.box, target.object);
   if (answer != Answer::kHidden && target.object != kNoObject) {
@@ -273,7 +275,7 @@ void FusedOcclusion::addToComponent(const Crossing& crossing) {
 bool FusedOcclusion::gather(std::uint32_t component) {
   const std::size_t first = members_.size() - 1;
   for (std::size_t i = first; i < members_.size(); ++i) {
-    if (i - first >= kMostMembers || tooNear(members_[i])) {
+    if (i - first >= most_members_ || tooNear(members_[i])) {
       return false;
     }
     for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[members_[i]])) {

@@ -64,6 +64,7 @@ class FusedOcclusion {
   // Of the last question.
   CellBox region_, target_;
   std::uint32_t left_out_ = kNoObject;  // its sheets hide nothing
+  std::uint32_t most_members_ = 0;      // of a component
   Shaft shaft_;
   std::vector<Crossing> crossings_;
   std::vector<Component> components_;

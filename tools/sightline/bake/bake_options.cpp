@@ -96,9 +96,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
              "tan(fovy / 2)^2 * (1 + aspect^2))");
   addCrackWidthOption(command, options.crack_width);
   command
-      .add_option("--occlusion", options.occlusion,
-                  "fused: surfaces of any number of triangles hide together; convex: each convex occluder by "
-                  "itself, as in the paper")
+      .add_option(
+          "--occlusion", options.occlusion,
+          "convex: each convex occluder hides by itself, as in the paper; fused: surfaces of any number of "
+          "triangles hide together as well, for smaller sets in a much longer time")
       ->check(isOneOf({"fused", "convex"}, false))
       ->capture_default_str();
   command

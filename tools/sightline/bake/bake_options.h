@@ -18,7 +18,7 @@ struct BakeOptions {
   std::string output;
   BakeSettings settings{};   // complete except for what depends on the scene or the threads:
   double crack_width = 0.0;  // metres
-  std::string occlusion = "fused";
+  std::string occlusion = "convex";
   std::string region;  // six numbers, world space; empty: the scene's bounds
   std::uint32_t sample_mib = 1024;
   std::string databases;  // names, separated by commas

@@ -26,7 +26,8 @@ enum class BakeOcclusion : std::uint8_t {
 };
 
 struct BakeSettings {
-  BakeOcclusion occlusion = BakeOcclusion::kFused;
+  // Fused sets are smaller, and take a hundred times as long to bake.
+  BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
   // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
   // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders.
@@ -51,7 +52,7 @@ struct BakeSettings {
   double merge_tolerance = 0.05;
   // Where surfaces do not hide an object from a whole cell for sure, the cell or the object's box, whichever
   // is larger, is halved up to this many times, 0 to 16, and each half tested.
-  std::uint32_t divisions = 2;
+  std::uint32_t divisions = 0;
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
 };
