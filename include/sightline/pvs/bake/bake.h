@@ -26,7 +26,7 @@ enum class BakeOcclusion : std::uint8_t {
 };
 
 struct BakeSettings {
-  // Fused sets are smaller, and take a hundred times as long to bake.
+  // Fused sets are smaller, and take some hundred times as long to bake.
   BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
   // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
