@@ -12,7 +12,7 @@ namespace {
 
 // Pixels that a group must change for each unit of work, or it rests.
 constexpr double kMinGain = 0.3;
-constexpr std::uint32_t kLongestRest = 15;  // views
+constexpr std::uint32_t kLongestRest = 15;  // views, before up to half as many are added
 
 constexpr PixelRectangle kNoPixels{1 << 30, 1 << 30, 0, 0};
 
@@ -40,6 +40,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
   }
   stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
   stats_.edges = static_cast<std::uint32_t>(map_.edges());
+  stats_.work = static_cast<std::uint32_t>(work());
   stats_.complete = work() < drawing.budget;
 }
 
@@ -223,11 +224,14 @@ std::uint64_t SurfaceRaster::work() const {
   return map_.edges() + map_.pixels() / 256 + std::uint64_t{8} * stats_.groups;
 }
 
-// A group that changed too few pixels for what it cost rests, twice as long as the last time.
+// A group that changed too few pixels for what it cost rests, twice as long as the last time. Groups that
+// began to rest in the same view come back in different ones, or drawing them all would make one view slow.
 void SurfaceRaster::account(std::uint32_t nearer, Rest& rest) {
   if (nearer < kMinGain * static_cast<double>(work() - work_before_)) {
-    const std::uint32_t last = rest.since >= first_view_ ? rest.length : 0;
-    rest = {view_number_, std::min(2 * last + 1, kLongestRest)};
+    const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
+    const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;
+    const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
+    rest = {view_number_, length + stats_.groups % (length / 2 + 1)};
   } else {
     rest = {};
   }

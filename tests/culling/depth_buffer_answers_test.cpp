@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "sightline/culling/culler.h"
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/culling/opacity_map_method.h"
@@ -13,18 +19,14 @@ namespace {
 
 using namespace hand_made;
 
-// Two walls before the eye: one straight ahead, one to the right, beyond the border of frontView().
-struct Walls {
+struct CulledScene {
   Scene scene;
   std::vector<Box> bounds;
   Hierarchy hierarchy;
   OccluderSet occluders;
   SurfaceSet surfaces;
 
-  Walls() {
-    const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
-    addWall(scene, material, -10.0f, -4.0f, 4.0f, -4.0f, 4.0f);
-    addWall(scene, material, -10.0f, 11.0f, 14.0f, -4.0f, 4.0f);
+  explicit CulledScene(Scene made) : scene(std::move(made)) {
     for (const Object& object : scene.objects) {
       bounds.push_back(object.bounds);
     }
@@ -38,6 +40,15 @@ struct Walls {
   }
 };
 
+// Two walls before the eye: one straight ahead, one to the right, beyond the border of frontView().
+CulledScene twoWalls() {
+  Scene scene;
+  const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
+  addWall(scene, material, -10.0f, -4.0f, 4.0f, -4.0f, 4.0f);
+  addWall(scene, material, -10.0f, 11.0f, 14.0f, -4.0f, 4.0f);
+  return CulledScene(std::move(scene));
+}
+
 View turnedToTheRight() {
   View view = frontView();
   setOrientation(view, {0.5, 0, -1}, {0, 1, 0});
@@ -45,7 +56,7 @@ View turnedToTheRight() {
 }
 
 TEST(DepthBufferAnswers, SurfacesOfObjectsThatComeIntoViewAreCountedWithTheOthers) {
-  const Walls walls;
+  const CulledScene walls = twoWalls();
   Culler culler(walls.parts(), depthPyramid());
   culler.cull(frontView());
   EXPECT_EQ(culler.visible().size(), 1u);
@@ -59,7 +70,7 @@ TEST(DepthBufferAnswers, SurfacesOfObjectsThatComeIntoViewAreCountedWithTheOther
 }
 
 TEST(DepthBufferAnswers, TheOpacityMapCountsItsSurfacesToo) {
-  const Walls walls;
+  const CulledScene walls = twoWalls();
   Culler with(walls.parts(), opacityMap({.surfaces = SurfaceUse::kAlone}));
   with.cull(turnedToTheRight());
   EXPECT_EQ(with.statistic("surfaces", "edges"), 8u);
@@ -71,8 +82,74 @@ TEST(DepthBufferAnswers, TheOpacityMapCountsItsSurfacesToo) {
   }
 }
 
+constexpr std::size_t kGridPlaces = 96;
+
+// What add(scene, material, x, y) adds at places before the eye of frontView(), in rows and columns.
+template <typename Add>
+CulledScene atPlaces(Add&& add) {
+  Scene scene;
+  const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
+  for (std::size_t i = 0; i < kGridPlaces; ++i) {
+    const std::size_t column = i % 12, row = i / 12;
+    add(scene, material, 3.0f * static_cast<float>(column) - 16.5f, 3.0f * static_cast<float>(row) - 10.5f);
+  }
+  return CulledScene(std::move(scene));
+}
+
+TEST(DepthBufferAnswers, ACutToAnotherCameraDrawsWhatIsSmallInTheViewsAfterIt) {
+  // Small discs, each of which hides a still smaller wall.
+  const CulledScene scene = atPlaces([](Scene& made, MaterialId material, float x, float y) {
+    std::vector<Vec3f> corners;
+    const auto rim = [&](int i) {
+      const float angle = 0.3926990817f * static_cast<float>(i % 16);
+      return Vec3f(x + 1.3f * std::cos(angle), y + 1.3f * std::sin(angle), -20.0f);
+    };
+    for (int i = 0; i < 16; ++i) {
+      corners.insert(corners.end(), {Vec3f(x, y, -20.0f), rim(i), rim(i + 1)});
+    }
+    addTriangles(made, material, corners);
+    const float beyond = 20.5f / 20.0f;
+    addWall(made, material, -20.5f, x * beyond - 0.1f, x * beyond + 0.1f, y * beyond - 0.1f,
+            y * beyond + 0.1f);
+  });
+  Culler culler(scene.parts(), depthPyramid({.focus = {.magnification = 0.0}}));
+  culler.cull(frontView());
+  const std::uint64_t all = culler.statistic("surfaces", "edges");
+  EXPECT_EQ(culler.visible().size(), kGridPlaces);
+  View away = frontView();
+  setOrientation(away, {0, 0, 1}, {0, 1, 0});
+  culler.cull(away);
+  EXPECT_TRUE(culler.visible().empty());
+  culler.cull(frontView());
+  EXPECT_LT(culler.statistic("surfaces", "edges"), all / 4);
+  culler.cull(frontView());
+  EXPECT_EQ(culler.visible().size(), kGridPlaces);
+}
+
+TEST(DepthBufferAnswers, SurfacesOfNoUseAreTriedAgainInDifferentViews) {
+  // Strips far narrower than a pixel.
+  const CulledScene scene = atPlaces([](Scene& made, MaterialId material, float x, float y) {
+    const float z = -20.0f;
+    const std::array<Vec3f, 3> strip{
+        {{x - 1.3f, y - 1.3f, z}, {x + 1.3f, y + 1.3f, z}, {x + 1.3f, y + 1.301f, z}}};
+    addTriangles(made, material, strip);
+  });
+  Culler culler(scene.parts(), depthPyramid());
+  culler.cull(frontView());
+  const std::uint64_t all = culler.statistic("surfaces", "edges");
+  EXPECT_EQ(all, 3 * kGridPlaces);
+  std::uint64_t most = 0, sum = 0;
+  for (int i = 0; i < 100; ++i) {
+    culler.cull(frontView());
+    most = std::max(most, culler.statistic("surfaces", "edges"));
+    sum += culler.statistic("surfaces", "edges");
+  }
+  EXPECT_LE(most, all / 2) << "never all in one view";
+  EXPECT_GT(sum, 4 * all) << "but they are tried";
+}
+
 TEST(DepthBufferAnswers, AFrameWithoutOcclusionCullingHasNoDepthBuffer) {
-  const Walls walls;
+  const CulledScene walls = twoWalls();
   // Nothing is ever saved, so that culling by occlusion is soon suspended.
   Culler culler(walls.parts(), opacityMap({.triangle_us = 1e-12}));
   int suspended = 0, others = 0;

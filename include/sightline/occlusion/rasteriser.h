@@ -87,6 +87,7 @@ struct SurfaceStats {
   std::uint32_t patches = 0, clusters = 0;  // that were looked at closely
   std::uint32_t groups = 0;                 // of clusters that were drawn together
   std::uint32_t edges = 0;                  // of their boundaries
+  std::uint32_t work = 0;                   // what they cost, as SurfaceDrawing::budget counts it
   bool complete = true;                     // the budget was enough
 };
 

@@ -2,6 +2,7 @@
 
 // What all methods that draw whole surfaces have in common.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,6 +21,7 @@ class SurfaceDrawer {
 
   void prepare(const CullingScene& scene) {
     surfaces_ = use_ != SurfaceUse::kNone ? scene.surfaces : nullptr;
+    usual_work_ = 0.0;
     search_.reset();
     if (surfaces_ != nullptr) {
       search_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -40,15 +42,26 @@ class SurfaceDrawer {
     }
   }
   // follows: the view follows the last one for which this buffer was drawn.
+  //
+  // After a jump nothing is known of what hides what, and all that is in the frustum may be drawn. So that a
+  // cut to another camera is no hitch, only what has few edges for its size is drawn in that view, and the
+  // work of a view does not grow to many times what is usual within one step.
   template <typename Buffer>
-  void draw(Buffer& buffer, const CullingFrame& frame, bool follows) const {
+  void draw(Buffer& buffer, const CullingFrame& frame, bool follows) {
+    SurfaceDrawing drawing = drawing_;
+    if (usual_work_ > 0.0) {
+      drawing.pixels_per_edge *= frame.jumped ? kJumpedPixels : 1.0;
+      drawing.budget = static_cast<std::uint32_t>(
+          std::min<double>(drawing.budget, std::max(kLeastWork, kGrowth * usual_work_)));
+    }
     draw(buffer, frame.jumped ? std::span<const ObjectId>(in_frustum_) : frame.last_visible,
-         follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump);
+         follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump, drawing);
+    usual_work_ += (buffer.surfaceStats().work - usual_work_) / (usual_work_ > 0.0 ? kMemory : 1.0);
   }
   // Draws the surfaces of some of the objects, in a view that follows no other.
   template <typename Buffer>
   void drawOf(Buffer& buffer, std::span<const ObjectId> objects) const {
-    draw(buffer, objects, ViewStep::kJump);
+    draw(buffer, objects, ViewStep::kJump, drawing_);
   }
   // Draws the surfaces that move.
   template <typename Buffer>
@@ -63,21 +76,24 @@ class SurfaceDrawer {
   // Draws the surfaces of further objects in the same view.
   template <typename Buffer>
   void drawMore(Buffer& buffer, std::span<const ObjectId> objects) const {
-    draw(buffer, objects, ViewStep::kSame);
+    draw(buffer, objects, ViewStep::kSame, drawing_);
   }
 
  private:
   template <typename Buffer>
-  void draw(Buffer& buffer, std::span<const ObjectId> objects, ViewStep step) const {
+  void draw(Buffer& buffer, std::span<const ObjectId> objects, ViewStep step, SurfaceDrawing drawing) const {
     if (draws()) {
-      SurfaceDrawing drawing = drawing_;
       drawing.step = step;
       buffer.draw(*surfaces_, objects, drawing);
     }
   }
 
+  static constexpr double kJumpedPixels = 8.0;  // times SurfaceDrawing::pixels_per_edge
+  static constexpr double kGrowth = 16.0, kLeastWork = 6000.0, kMemory = 8.0;  // views, of usual_work_
+
   SurfaceUse use_;
   SurfaceDrawing drawing_;
+  double usual_work_ = 0.0;  // of a view, SurfaceStats::work; 0: nothing has been drawn
   const SurfaceSet* surfaces_ = nullptr;
   std::optional<HierarchicalTraversal> search_;
   std::vector<ObjectId> in_frustum_;
