@@ -14,11 +14,16 @@ constexpr double kHopeless = 4.0;
 
 }  // namespace
 
-AdaptiveCoverage::AdaptiveCoverage(double ratio)
-    : min_ratio_(std::isnan(ratio) ? 0.0 : std::clamp(ratio, 0.0, 1.0)) {}
+AdaptiveCoverage::AdaptiveCoverage(double ratio, std::uint32_t longest_delay)
+    : min_ratio_(std::isnan(ratio) ? 0.0 : std::clamp(ratio, 0.0, 1.0)), longest_delay_(longest_delay) {}
 
 double AdaptiveCoverage::ratio() const {
   return min_ratio_ + (1.0 - min_ratio_) * step_ / kSteps;
+}
+
+void AdaptiveCoverage::tryAgain() {
+  next_delay_ = kRetestDelay;
+  retest_delay_ = std::min(retest_delay_, 1u);
 }
 
 void AdaptiveCoverage::frame(double culling_us, double saved_us) {
@@ -52,6 +57,7 @@ void AdaptiveCoverage::endTrial(bool pays) {
     return;
   }
   startWindow();
+  next_delay_ = kRetestDelay;
   wait_ = 1;
   good_ = 0;
   lowered_ = false;
@@ -76,7 +82,7 @@ void AdaptiveCoverage::raise() {
   wait_ = lowered_ ? std::min(2 * wait_, kMaxWait) : wait_;
   lowered_ = false;
   good_ = 0;
-  if (step_ == kSteps) {
+  if (step_ == kSteps || min_ratio_ == 1.0) {
     suspend();
   } else {
     ++step_;
@@ -90,7 +96,8 @@ void AdaptiveCoverage::lower() {
 }
 
 void AdaptiveCoverage::suspend() {
-  retest_delay_ = kRetestDelay;
+  retest_delay_ = next_delay_;
+  next_delay_ = std::min(2 * next_delay_, longest_delay_);
   step_ = kSteps;
   lowered_ = false;
   good_ = 0;

@@ -46,6 +46,7 @@ inline const std::map<std::string, std::string>& sharedObjects() {
                                                           {"relations", "### statistics of a method"},
                                                           {"surfaces", "### statistics of a method"},
                                                           {"detail", "### statistics of a method"},
+                                                          {"renderer", "### statistics of a method"},
                                                           {"database", "### databases"},
                                                           {"detail_database", "### databases"},
                                                           {"viewpoints", "### databases"},

@@ -56,7 +56,8 @@ TEST(Formats, TheKeysOfCullAreDescribedWhateverTheMethod) {
                                              {"supporting-planes"},
                                              {"supporting-planes", "--planes", "through-box"},
                                              {"opacity-map", "--triangle-us", "1"},
-                                             {"depth-pyramid"}}) {
+                                             {"depth-pyramid"},
+                                             {"depth-pyramid", "--draw-object-us", "1"}}) {
     expectDocumented(written(joined({"cull", kCity, "--frames", "0:2", "--method"}, method)), {"cull"});
   }
 }

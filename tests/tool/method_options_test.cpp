@@ -29,15 +29,17 @@ TEST(MethodOptions, AMethodShowsItsOwnOptionsOnly) {
   using Keys = std::vector<std::string>;  // as parsed: ascending
   EXPECT_EQ(keysOf(culled({"--method", "frustum"})["options"]), (Keys{"hierarchy", "object_boxes"}));
   EXPECT_EQ(keysOf(culled({})["options"]),
-            (Keys{"area_angle", "coherence", "detail_objects", "hierarchy", "lambda_steps", "min_node_cost",
-                  "object_boxes", "occluder_count", "occluders", "test_objects", "variant"}));
+            (Keys{"area_angle", "coherence", "detail_objects", "draw_object_us", "draw_triangle_us",
+                  "hierarchy", "lambda_steps", "min_node_cost", "object_boxes", "occluder_count", "occluders",
+                  "test_objects", "variant"}));
   EXPECT_EQ(keysOf(culled({"--method", "supporting-planes"})["options"]),
-            (Keys{"area_angle", "detail_objects", "hierarchy", "joint", "lambda_steps", "min_node_cost",
-                  "object_boxes", "occluder_count", "occluders", "planes", "test_objects"}));
+            (Keys{"area_angle", "detail_objects", "draw_object_us", "draw_triangle_us", "hierarchy", "joint",
+                  "lambda_steps", "min_node_cost", "object_boxes", "occluder_count", "occluders", "planes",
+                  "test_objects"}));
   EXPECT_EQ(keysOf(culled({"--method", "supporting-planes", "--planes", "through-box"})["options"]),
-            (Keys{"area_angle", "coherence", "detail_objects", "hierarchy", "joint", "lambda_steps",
-                  "min_node_cost", "object_boxes", "occluder_count", "occluders", "planes", "relation_mib",
-                  "tangents", "test_objects"}));
+            (Keys{"area_angle", "coherence", "detail_objects", "draw_object_us", "draw_triangle_us",
+                  "hierarchy", "joint", "lambda_steps", "min_node_cost", "object_boxes", "occluder_count",
+                  "occluders", "planes", "relation_mib", "tangents", "test_objects"}));
 }
 
 TEST(MethodOptions, ObjectsOfSeveralBoxesAreTheDepthPyramidsUnlessOneIsAskedFor) {
@@ -56,6 +58,24 @@ TEST(MethodOptions, ObjectsOfSeveralBoxesAreTheDepthPyramidsUnlessOneIsAskedFor)
   EXPECT_EQ(of("depth-pyramid", "0"), of("depth-pyramid", "8"));
   EXPECT_EQ(of("occlusion-tree", "0"), of("occlusion-tree", "1"));
   EXPECT_LT(of("occlusion-tree", "8"), of("occlusion-tree", "1"));
+}
+
+TEST(MethodOptions, WhereDrawingCostsNothingFramesAreCulledByTheFrustumAlone) {
+  const auto givenUp = [](const std::string& option, const std::string& us) {
+    const Outcome outcome = runTool({"cull", "demo:building?floors=1", "--method", "depth-pyramid", option,
+                                     us, "--frames", "0:200", "--json", "-"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const json cull = parse(outcome.out);
+    int sum = 0;
+    for (const json& frame : cull["frames"]) {
+      sum += frame["renderer"]["given_up"].get<int>();
+    }
+    return sum;
+  };
+  for (const std::string option : {"--draw-object-us", "--draw-triangle-us"}) {
+    EXPECT_GT(givenUp(option, "1e-9"), 100) << option;
+    EXPECT_EQ(givenUp(option, "1e9"), 0) << option;
+  }
 }
 
 TEST(MethodOptions, ValuesComeBackAsTheyWereGiven) {

@@ -314,6 +314,12 @@ const std::vector<Option>& allOptions() {
       {"detail-occluder-count", kAny, testsDetail, kOne, kWhenChanged, "most occluders in that second test",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.detail.occluder_count; })},
+      {"draw-object-us", kAny, usesOccluders, kOne, kWhenChanged,
+       "microseconds that the renderer takes for an object; where culling takes longer than it saves, frames "
+       "are culled by the frustum alone",
+       decimal(+[](Setting& s) -> double& { return s.renderer.object_us; })},
+      {"draw-triangle-us", kAny, usesOccluders, kOne, kWhenChanged, "the same for each of its triangles",
+       decimal(+[](Setting& s) -> double& { return s.renderer.triangle_us; })},
       {"database-directions", kAny, usesDatabase, kOne, kWhenChanged,
        "occluder database: directions of a cell",
        whole(
@@ -467,6 +473,10 @@ bool Setting::testsDetailObjects() const {
   return usesOccluders(*this) && detail_objects;
 }
 
+bool Setting::knowsRendererCost() const {
+  return usesOccluders(*this) && (renderer.object_us > 0.0 || renderer.triangle_us > 0.0);
+}
+
 bool Setting::usesVisibleSets() const {
   const SetUse use = method->traits.sets;
   return use == SetUse::kAlways || (use == SetUse::kIfAsked && culler.visible_sets);
@@ -474,13 +484,13 @@ bool Setting::usesVisibleSets() const {
 
 std::unique_ptr<CullingMethod> makeMethod(const Setting& setting) {
   std::unique_ptr<CullingMethod> method = setting.method->make(setting);
-  if (!setting.testsDetailObjects()) {
-    return method;
+  if (setting.testsDetailObjects()) {
+    DetailObjectsSettings detail = setting.detail;
+    detail.planes.joint_occlusion =
+        !optionNamed("joint").belongs(setting) || setting.kept_planes.joint_occlusion;
+    method = detailObjects(std::move(method), detail);
   }
-  DetailObjectsSettings detail = setting.detail;
-  detail.planes.joint_occlusion =
-      !optionNamed("joint").belongs(setting) || setting.kept_planes.joint_occlusion;
-  return detailObjects(std::move(method), detail);
+  return setting.knowsRendererCost() ? whileItPays(std::move(method), setting.renderer) : std::move(method);
 }
 
 MethodOptions::MethodOptions() {

@@ -17,6 +17,7 @@
 #include "sightline/culling/detail_objects.h"
 #include "sightline/culling/occlusion_tree_method.h"
 #include "sightline/culling/opacity_map_method.h"
+#include "sightline/culling/while_it_pays.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occluders/occluder_database.h"
 #include "tools/sightline/methods/method.h"
@@ -40,6 +41,7 @@ struct Setting {
   ViewpointDatabaseSettings viewpoints{};
   bool detail_objects = false;
   DetailObjectsSettings detail{};
+  RendererCost renderer{};
   SurfaceOption surface_option = SurfaceOption::kAutomatic;
   SurfaceDrawing surface_drawing{};
   std::uint32_t object_box_option = 0;  // 0: see objectBoxes()
@@ -62,10 +64,12 @@ struct Setting {
   bool usesDepthBuffer() const;
   bool approximate() const;  // may cull visible objects
   bool testsDetailObjects() const;
+  bool knowsRendererCost() const;
   bool usesVisibleSets() const;
 };
 
-// Makes the method of the setting, with the second test of detail objects if the setting has it.
+// Makes the method of the setting, with the second test of detail objects if the setting has it, and for as
+// long as it pays if the renderer's cost is known.
 std::unique_ptr<CullingMethod> makeMethod(const Setting& setting);
 
 // The options as text, one element per option; several values are separated by commas.
