@@ -96,9 +96,9 @@ CulledScene atPlaces(Add&& add) {
   return CulledScene(std::move(scene));
 }
 
-TEST(DepthBufferAnswers, ACutToAnotherCameraDrawsWhatIsSmallInTheViewsAfterIt) {
-  // Small discs, each of which hides a still smaller wall.
-  const CulledScene scene = atPlaces([](Scene& made, MaterialId material, float x, float y) {
+// Small discs, each of which hides a still smaller wall.
+CulledScene discsBeforeWalls() {
+  return atPlaces([](Scene& made, MaterialId material, float x, float y) {
     std::vector<Vec3f> corners;
     const auto rim = [&](int i) {
       const float angle = 0.3926990817f * static_cast<float>(i % 16);
@@ -112,6 +112,10 @@ TEST(DepthBufferAnswers, ACutToAnotherCameraDrawsWhatIsSmallInTheViewsAfterIt) {
     addWall(made, material, -20.5f, x * beyond - 0.1f, x * beyond + 0.1f, y * beyond - 0.1f,
             y * beyond + 0.1f);
   });
+}
+
+TEST(DepthBufferAnswers, ACutToAnotherCameraDrawsWhatIsSmallInTheViewsAfterIt) {
+  const CulledScene scene = discsBeforeWalls();
   Culler culler(scene.parts(), depthPyramid({.focus = {.magnification = 0.0}}));
   culler.cull(frontView());
   const std::uint64_t all = culler.statistic("surfaces", "edges");
@@ -124,6 +128,27 @@ TEST(DepthBufferAnswers, ACutToAnotherCameraDrawsWhatIsSmallInTheViewsAfterIt) {
   EXPECT_LT(culler.statistic("surfaces", "edges"), all / 4);
   culler.cull(frontView());
   EXPECT_EQ(culler.visible().size(), kGridPlaces);
+}
+
+// No frame takes as little as the one time, or as much as the other.
+TEST(DepthBufferAnswers, ABudgetOfTimeSetsHowMuchIsDrawn) {
+  const CulledScene scene = discsBeforeWalls();
+  Culler all(scene.parts(), depthPyramid());
+  all.cull(frontView());
+  const std::uint64_t edges = all.statistic("surfaces", "edges");
+  Culler ample(scene.parts(), depthPyramid({.budget_us = 1e9}));
+  Culler scant(scene.parts(), depthPyramid({.budget_us = 1e-3}));
+  for (int i = 0; i < 10; ++i) {
+    all.cull(frontView());
+    ample.cull(frontView());
+    scant.cull(frontView());
+    EXPECT_EQ(ample.statistic("surfaces", "edges"), all.statistic("surfaces", "edges")) << i;
+    EXPECT_EQ(ample.visible().size(), kGridPlaces) << i;
+    if (i > 0) {
+      EXPECT_LT(scant.statistic("surfaces", "edges"), edges / 4) << i;
+      EXPECT_GT(scant.visible().size(), kGridPlaces) << i;
+    }
+  }
 }
 
 TEST(DepthBufferAnswers, SurfacesOfNoUseAreTriedAgainInDifferentViews) {

@@ -56,6 +56,7 @@ TEST(Formats, TheKeysOfCullAreDescribedWhateverTheMethod) {
                                              {"supporting-planes"},
                                              {"supporting-planes", "--planes", "through-box"},
                                              {"opacity-map", "--triangle-us", "1"},
+                                             {"opacity-map", "--surfaces", "alone", "--budget-us", "100"},
                                              {"depth-pyramid"},
                                              {"depth-pyramid", "--draw-object-us", "1"}}) {
     expectDocumented(written(joined({"cull", kCity, "--frames", "0:2", "--method"}, method)), {"cull"});

@@ -26,6 +26,10 @@ struct DepthPyramidMethodSettings {
   bool temporal_coherence = true;
   SurfaceUse surfaces = SurfaceUse::kAlone;
   SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame
+  // More than 0: so many surfaces are drawn that a frame takes about so many microseconds, as far as drawing
+  // less can do that; at most those of drawing.budget. Then what is kept, always conservative, depends on
+  // measured times.
+  double budget_us = 0.0;
 };
 
 inline constexpr MethodTraits kDepthPyramidTraits{.occluders = true};

@@ -15,6 +15,7 @@ struct OpacityMapMethodSettings {
   double triangle_us = 0.0;
   SurfaceUse surfaces = SurfaceUse::kNone;
   SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame
+  double budget_us = 0.0;    // see DepthPyramidMethodSettings
 };
 
 inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};

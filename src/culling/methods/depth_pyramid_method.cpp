@@ -19,7 +19,8 @@ namespace {
 class DepthPyramidMethod final : public CullingMethod {
  public:
   explicit DepthPyramidMethod(const DepthPyramidMethodSettings& settings)
-      : settings_(settings), surfaces_(settings.surfaces, settings.drawing, settings.raster.coverage) {}
+      : settings_(settings),
+        surfaces_(settings.surfaces, settings.drawing, settings.budget_us, settings.raster.coverage) {}
 
   MethodTraits traits() const override { return kDepthPyramidTraits; }
   bool wantsOccluders() const override { return surfaces_.wantsOccluders(); }
@@ -81,6 +82,7 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void finish(CullStats& stats) override {
+    surfaces_.finish(stats);
     const RasterStats& raster = pyramid_->stats().raster;
     stats.occluders = raster.occluders;
     statistics_[0].value = raster.hidden;

@@ -17,7 +17,8 @@ using culling::TraversalBox;
 class OpacityMapMethod final : public CullingMethod {
  public:
   explicit OpacityMapMethod(const OpacityMapMethodSettings& settings)
-      : settings_(settings), surfaces_(settings.surfaces, settings.drawing, settings.map.raster.coverage) {
+      : settings_(settings),
+        surfaces_(settings.surfaces, settings.drawing, settings.budget_us, settings.map.raster.coverage) {
     if (settings.surfaces != SurfaceUse::kNone) {
       surface_statistics_ = statistics_.size();
       statistics_.push_back({"surfaces", "groups", "groups of surfaces drawn"});
@@ -67,6 +68,9 @@ class OpacityMapMethod final : public CullingMethod {
   }
 
   void finish(CullStats& stats) override {
+    if (!suspended_) {
+      surfaces_.finish(stats);
+    }
     const OpacityMapStats counts = suspended_ ? OpacityMapStats{} : map_->stats();
     stats.occluders = counts.raster.occluders;
     statistics_[0].value = counts.raster.hidden;

@@ -3,6 +3,7 @@
 // What all methods that draw whole surfaces have in common.
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,15 +14,44 @@
 
 namespace sightline::culling {
 
+// How much may be drawn in a frame that is to take so many microseconds in all, from what the last frames
+// took.
+class TimedBudget {
+ public:
+  explicit TimedBudget(double frame_us) : frame_us_(frame_us) {}
+
+  bool limits() const { return frame_us_ > 0.0; }
+  // As SurfaceDrawing::budget counts.
+  double work() const { return std::max(frame_us_ - rest_us_, 0.0) * (drawn_ / drawing_us_); }
+
+  // Reports a frame: what was drawn, how long that took, and how long all the rest did.
+  void frame(double drawn, double drawing_us, double rest_us) {
+    if (drawn > 0.0 && drawing_us > 0.0) {
+      drawn_ = kMemory * drawn_ + drawn;
+      drawing_us_ = kMemory * drawing_us_ + drawing_us;
+    }
+    rest_us_ = kMemory * rest_us_ + (1.0 - kMemory) * rest_us;
+  }
+
+ private:
+  static constexpr double kMemory = 0.75;
+
+  double frame_us_;
+  double drawn_ = 100.0, drawing_us_ = 10.0;  // of the last frames, fading; at first about what is usual
+  double rest_us_ = 0.0;                      // of a frame
+};
+
 // Draws the surfaces of the objects that the last frame kept, or, after a jump, of those in the frustum.
 class SurfaceDrawer {
  public:
-  SurfaceDrawer(SurfaceUse use, const SurfaceDrawing& drawing, const CoverageRule* coverage)
-      : use_(coverage == nullptr ? use : SurfaceUse::kNone), drawing_(drawing) {}
+  // budget_us: see DepthPyramidMethodSettings.
+  SurfaceDrawer(SurfaceUse use, const SurfaceDrawing& drawing, double budget_us, const CoverageRule* coverage)
+      : use_(coverage == nullptr ? use : SurfaceUse::kNone), drawing_(drawing), budget_us_(budget_us) {}
 
   void prepare(const CullingScene& scene) {
     surfaces_ = use_ != SurfaceUse::kNone ? scene.surfaces : nullptr;
-    usual_work_ = 0.0;
+    usual_work_ = work_ = 0.0;
+    timed_ = TimedBudget(budget_us_);
     search_.reset();
     if (surfaces_ != nullptr) {
       search_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -54,10 +84,19 @@ class SurfaceDrawer {
       drawing.budget = static_cast<std::uint32_t>(
           std::min<double>(drawing.budget, std::max(kLeastWork, kGrowth * usual_work_)));
     }
+    if (timed_.limits()) {
+      drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, timed_.work()));
+    }
     draw(buffer, frame.jumped ? std::span<const ObjectId>(in_frustum_) : frame.last_visible,
          follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump, drawing);
-    usual_work_ += (buffer.surfaceStats().work - usual_work_) / (usual_work_ > 0.0 ? kMemory : 1.0);
+    work_ = buffer.surfaceStats().work;
+    usual_work_ += (work_ - usual_work_) / (usual_work_ > 0.0 ? kMemory : 1.0);
   }
+  // The frame ends: stats has its times.
+  void finish(const CullStats& stats) {
+    timed_.frame(work_, stats.build_us, stats.totalUs() - stats.build_us);
+  }
+
   // Draws the surfaces of some of the objects, in a view that follows no other.
   template <typename Buffer>
   void drawOf(Buffer& buffer, std::span<const ObjectId> objects) const {
@@ -93,7 +132,10 @@ class SurfaceDrawer {
 
   SurfaceUse use_;
   SurfaceDrawing drawing_;
-  double usual_work_ = 0.0;  // of a view, SurfaceStats::work; 0: nothing has been drawn
+  double budget_us_;
+  TimedBudget timed_{0.0};
+  double work_ = 0.0;        // of the last view, SurfaceStats::work
+  double usual_work_ = 0.0;  // of a view; 0: nothing has been drawn
   const SurfaceSet* surfaces_ = nullptr;
   std::optional<HierarchicalTraversal> search_;
   std::vector<ObjectId> in_frustum_;

@@ -44,9 +44,10 @@ const std::vector<Method>& methods() {
          settings.map.raster = s.raster;
          settings.surfaces = s.surfaces();
          settings.drawing = s.surface_drawing;
+         settings.budget_us = s.budget_us;
          return opacityMap(settings);
        },
-       {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "tolerance",
+       {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "budget-us", "tolerance",
         "coverage-ratio", "depth-comparison", "triangle-us"},
        /*hidden_statistics=*/{"coverage"}},
       {"depth-pyramid",
@@ -56,10 +57,11 @@ const std::vector<Method>& methods() {
                               .focus = s.focus,
                               .temporal_coherence = s.temporal_coherence,
                               .surfaces = s.surfaces(),
-                              .drawing = s.surface_drawing});
+                              .drawing = s.surface_drawing,
+                              .budget_us = s.budget_us});
        },
-       {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "coherence", "focus",
-        "focus-resolution", "focus-occluder-count", "focus-objects"}},
+       {"resolution", "coverage", "surfaces", "surface-pixels", "surface-budget", "budget-us", "coherence",
+        "focus", "focus-resolution", "focus-occluder-count", "focus-objects"}},
       {"visibility-octree", kVisibilityOctreeTraits, [](const Setting&) { return visibilityOctree(); }, {}},
   };
   return kMethods;

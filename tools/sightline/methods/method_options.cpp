@@ -264,6 +264,10 @@ const std::vector<Option>& allOptions() {
        "group",
        whole(
            0, kMaxTriangles, +[](Setting& s) -> std::uint32_t& { return s.surface_drawing.budget; })},
+      {"budget-us", kOwn, drawsSurfaces, kList, kWhenChanged,
+       "surfaces are drawn as far as a frame takes about so many microseconds; what is kept then depends on "
+       "measured times; 0: off",
+       decimal(+[](Setting& s) -> double& { return s.budget_us; })},
       {"occluder-count", kAny, choosesOccluders, kList, kHeadline, "most occluders in a frame",
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluders.count; })},
