@@ -30,7 +30,7 @@ struct Bake::Data {
 namespace {
 
 // Version of the bake method; increase it whenever the same input would give other cells.
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kMaxDivisions = 16;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
@@ -197,8 +197,8 @@ void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& lea
   }
 }
 
-// The header of a part. After it comes the search distance for the child parts if the part was divided, else
-// the cells.
+// The header of a part. After it come the search distance for the child parts and what this one sees, if the
+// part was divided, else the cells.
 struct PartHead {
   std::uint64_t magic = kPartMagic, plan = 0, id = 0;
   PartSummary summary;
@@ -224,30 +224,11 @@ PartHead readHead(base::ByteReader& bytes) {
   return head;
 }
 
-}  // namespace
-
-namespace {
-
-// What is left of a divided part's bytes: PartTask::seen.
-std::vector<std::uint64_t> readSeen(base::ByteReader& bytes) {
-  std::vector<std::uint64_t> seen;
-  while (bytes.ok() && !bytes.atEnd()) {
-    seen.push_back(bytes.read<std::uint64_t>());
-  }
-  return seen;
-}
-
-// Empty, which stands for all objects, if they are not runs of so many.
-Runs runsOf(std::span<const std::uint64_t> seen, std::uint32_t object_count) {
+// The runs of PartTask::seen. Empty, which stands for all objects, if they are not runs of so many.
+Runs runsOf(std::span<const std::byte> seen, std::uint32_t object_count) {
+  base::ByteReader bytes(seen);
   Runs runs;
-  for (const std::uint64_t word : seen) {
-    const ObjectRun run{static_cast<std::uint32_t>(word >> 32), static_cast<std::uint32_t>(word)};
-    if (run.begin >= run.end || run.end > object_count || (!runs.empty() && run.begin <= runs.back().end)) {
-      return {};
-    }
-    runs.push_back(run);
-  }
-  return runs;
+  return read(bytes, object_count, runs) && bytes.atEnd() ? runs : Runs();
 }
 
 }  // namespace
@@ -262,15 +243,13 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
   if (task.cell.level < partLevel(scene.settings)) {
     CellOutcome outcome = decide(impl_->baker, scene, task);
     impl_->baker.forgetOldest();
-    if (outcome.divide) {
+    if (!outcome.leaf) {
       write(head, bytes);
       bytes.add(outcome.search_distance);
-      for (const ObjectRun& run : outcome.seen) {
-        bytes.add(std::uint64_t{run.begin} << 32 | run.end);
-      }
+      write(outcome.seen, bytes);
       return bytes.take();
     }
-    cell = std::move(outcome.leaf);
+    cell = std::move(*outcome.leaf);
   } else {
     cell = bakeCell(impl_->baker, scene, task);
   }
@@ -298,9 +277,9 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
   std::vector<PartTask> below;
   if (head.summary.leaves == 0) {
     const auto search_distance = bytes.read<double>();
-    const std::vector<std::uint64_t> seen = readSeen(bytes);
+    const std::span<const std::byte> seen = bytes.readBytes(bytes.remaining());
     for (std::uint64_t i = 0; i < 8; ++i) {
-      below.push_back({8 * head.id + i, search_distance, seen});
+      below.push_back({8 * head.id + i, search_distance, {seen.begin(), seen.end()}});
     }
   }
   return below;
@@ -380,8 +359,9 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
     return bytes.atEnd() ? std::move(cell) : std::nullopt;
   }
   bytes.read<double>();
-  readSeen(bytes);
-  if (!bytes.ok() || level >= partLevel(scene.settings)) {
+  Runs seen;
+  if (!read(bytes, static_cast<std::uint32_t>(scene.boxes.objects.size()), seen) || !bytes.atEnd() ||
+      level >= partLevel(scene.settings)) {
     return std::nullopt;
   }
   BakedCell cell;

@@ -179,6 +179,15 @@ std::vector<Vec3d> cornersOf(const CellBox& cell) {
   return corners;
 }
 
+CellBox boundsOf(std::span<const Vec3d> points) {
+  CellBox box{points[0], points[0]};
+  for (const Vec3d& point : points) {
+    box.min = min(box.min, point);
+    box.max = max(box.max, point);
+  }
+  return box;
+}
+
 std::vector<Vec3d> cornersBefore(const CellBox& cell, const Vec3d& normal, double level) {
   std::vector<Vec3d> corners;
   for (std::uint32_t i = 0; i < 8; ++i) {

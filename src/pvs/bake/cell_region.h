@@ -34,7 +34,14 @@ inline bool intersects(const CellBox& a, const Box& b) {
   return intersects(a, CellBox{Vec3d(b.min), Vec3d(b.max)});
 }
 
+// The least distance between the boxes along each axis, 0 where they overlap.
+inline Vec3d gapBetween(const CellBox& a, const Box& b) {
+  return max(max(Vec3d(b.min) - a.max, a.min - Vec3d(b.max)), Vec3d{});
+}
+
 std::vector<Vec3d> cornersOf(const CellBox& cell);
+// The box around the points, at least one.
+CellBox boundsOf(std::span<const Vec3d> points);
 
 // The corners of the part of the cell with dot(normal, x) >= level: corners of the cell and points on its
 // edges. Every point of the cell with dot(normal, x) >= level + sideMargin(cell) is within their convex hull,

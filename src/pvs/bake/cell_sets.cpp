@@ -9,6 +9,34 @@
 #include <algorithm>
 
 namespace sightline::pvs {
+namespace {
+
+// An occluder is near a cell within this distance, in edge lengths of the cell. Farther away it looks small,
+// unless it is as large as the cell.
+constexpr double kNearInEdges = 0.5;
+
+// A bound of the absolute coordinates of all cells and all objects that may be hidden.
+double magnitudeOf(const BakeScene& scene) {
+  double magnitude = maxComponent(max(abs(scene.root.min), abs(scene.root.max)));
+  for (const BoxNode& node : scene.boxes.nodes) {
+    if (node.bounds.wellFormed()) {
+      magnitude =
+          std::max(magnitude, maxComponent(max(abs(Vec3d(node.bounds.min)), abs(Vec3d(node.bounds.max)))));
+    }
+  }
+  return magnitude;
+}
+
+// The corners of the regions in front of a cell's plane and behind it, as far as they are for viewers.
+struct SideCorners {
+  std::vector<Vec3d> front, back;
+
+  SideCorners(const CellBox& box, const CellPlane& plane, double side_margin)
+      : front(cornersBefore(box, plane.normal, plane.front - 2.0 * side_margin)),
+        back(cornersBefore(box, -plane.normal, -plane.back - 2.0 * side_margin)) {}
+};
+
+}  // namespace
 
 void ObjectMask::reset(std::uint32_t count) {
   count_ = count;
@@ -71,25 +99,10 @@ void ObjectMask::complement(Runs& out) const {
   }
 }
 
-// An occluder is near a cell within this distance, in edge lengths of the cell. Farther away it looks small,
-// unless it is as large as the cell.
-constexpr double kNearInEdges = 0.5;
-
-// A bound of the absolute coordinates of all cells and all objects that may be hidden.
-double reachOf(const BakeScene& scene) {
-  double reach = maxComponent(max(abs(scene.root.min), abs(scene.root.max)));
-  for (const BoxNode& node : scene.boxes.nodes) {
-    if (node.bounds.wellFormed()) {
-      reach = std::max(reach, maxComponent(max(abs(Vec3d(node.bounds.min)), abs(Vec3d(node.bounds.max)))));
-    }
-  }
-  return reach;
-}
-
 CellBaker::CellBaker(const BakeScene& scene)
     : scene_(scene),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
-      fused_(scene.panels, scene.settings.near_distance, reachOf(scene)) {}
+      fused_(scene.panels, scene.settings.near_distance, magnitudeOf(scene)) {}
 
 CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) const {
   const CellBox box = scene_.boxOf(cell);
@@ -114,8 +127,7 @@ void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, 
   ranked_.clear();
   for (const std::uint32_t i : chosen_) {
     const ConvexOccluder& occluder = scene_.occluders[i];
-    const Vec3d gap =
-        max(max(Vec3d(occluder.bounds.min) - box.max, box.min - Vec3d(occluder.bounds.max)), {});
+    const Vec3d gap = gapBetween(box, occluder.bounds);
     ranked_.emplace_back(-occluder.area / (dot(gap, gap) + dot(extent, extent)), i);
   }
   std::sort(ranked_.begin(), ranked_.end());
@@ -154,35 +166,36 @@ void CellBaker::lookFarther(const OctreeCell& cell, double searched, double sear
 void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
   removeHiddenFrom(cornersOf(box), sets.whole);
   if (sets.plane) {
-    const CellPlane& plane = *sets.plane;
-    const double margin = 2.0 * scene_.side_margin;
-    removeHiddenFrom(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
-    removeHiddenFrom(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
+    const SideCorners sides(box, *sets.plane, scene_.side_margin);
+    removeHiddenFrom(sides.front, sets.front);
+    removeHiddenFrom(sides.back, sets.back);
   }
 }
 
 void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
-  removeFusedFrom(cornersOf(box), sets.whole);
-  if (sets.plane) {
-    const CellPlane& plane = *sets.plane;
-    const double margin = 2.0 * scene_.side_margin;
-    for (Runs* side : {&sets.front, &sets.back}) {
-      intersect(*side, sets.whole, scratch_);
-      side->swap(scratch_);
-    }
-    removeFusedFrom(cornersBefore(box, plane.normal, plane.front - margin), sets.front);
-    removeFusedFrom(cornersBefore(box, -plane.normal, -plane.back - margin), sets.back);
-  }
-}
-
-void CellBaker::removeFusedFrom(std::span<const Vec3d> corners, Runs& seen) {
-  if (corners.empty() || seen.empty()) {
+  removeFusedFrom(box, sets.whole);
+  if (!sets.plane) {
     return;
   }
-  CellBox region{corners[0], corners[0]};
-  for (const Vec3d& corner : corners) {
-    region.min = min(region.min, corner);
-    region.max = max(region.max, corner);
+  const SideCorners sides(box, *sets.plane, scene_.side_margin);
+  const auto removeFrom = [&](std::span<const Vec3d> corners, Runs& side) {
+    intersect(side, sets.whole, scratch_);
+    side.swap(scratch_);
+    // From the box around a side; that of a slanted plane is often the cell, which has been asked about.
+    if (corners.empty()) {
+      return;
+    }
+    if (const CellBox around = boundsOf(corners); around.extent() != box.extent()) {
+      removeFusedFrom(around, side);
+    }
+  };
+  removeFrom(sides.front, sets.front);
+  removeFrom(sides.back, sets.back);
+}
+
+void CellBaker::removeFusedFrom(const CellBox& region, Runs& seen) {
+  if (seen.empty()) {
+    return;
   }
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
   removeFusedBelow(0, region);
@@ -210,8 +223,8 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
   }
 }
 
-// Skips an occluder whose object is already hidden: it hides nothing more, because its shadow lies within
-// that of the hiding occluder, from every viewpoint.
+// Skips an occluder whose object is already hidden. Its shadow lies within that of what hides it, from every
+// viewpoint, so little is lost: nothing where one of these occluders does.
 void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen) {
   if (corners.empty()) {
     seen.clear();  // there are no viewers

@@ -78,7 +78,7 @@ class CellBaker {
   void removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen);
   // The same by surfaces, of what lies in the boxes of the tree.
   void removeFused(const CellBox& box, CellSets& sets);
-  void removeFusedFrom(std::span<const Vec3d> corners, Runs& seen);
+  void removeFusedFrom(const CellBox& region, Runs& seen);
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
   // them.

@@ -26,17 +26,17 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   if (!intersects(scene.boxOf(task.cell), scene.region)) {
     CellSets everything;
     everything.whole = {{0, static_cast<std::uint32_t>(scene.boxes.objects.size())}};
-    return {false, 0.0, {}, leafOf(task.cell, std::move(everything), StopReason::kOutside)};
+    return {.leaf = leafOf(task.cell, std::move(everything), StopReason::kOutside)};
   }
   CellSets sets = baker.seenFrom(task.cell, distance, task.seen);
   for (;;) {
     const std::uint64_t triangles = trianglesOf(scene, sets);
     if (triangles <= settings.triangle_budget) {
-      return {false, 0.0, {}, leafOf(task.cell, std::move(sets), StopReason::kBudgetMet)};
+      return {.leaf = leafOf(task.cell, std::move(sets), StopReason::kBudgetMet)};
     }
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
-      return {true, distance, std::move(sets.whole), {}};
+      return {.search_distance = distance, .seen = std::move(sets.whole)};
     }
     bool gained = false;
     if (!baker.searchedAll(task.cell, distance)) {
@@ -46,11 +46,8 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
       gained = less > 0.0 && less >= settings.min_gain * static_cast<double>(triangles);
     }
     if (!gained) {
-      return {
-          false,
-          0.0,
-          {},
-          leafOf(task.cell, std::move(sets), deepest ? StopReason::kMaxDepth : StopReason::kNothingGained)};
+      const StopReason reason = deepest ? StopReason::kMaxDepth : StopReason::kNothingGained;
+      return {.leaf = leafOf(task.cell, std::move(sets), reason)};
     }
   }
 }
@@ -58,8 +55,8 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
   CellOutcome outcome = decide(baker, scene, task);
   baker.forgetOldest();
-  if (!outcome.divide) {
-    return std::move(outcome.leaf);
+  if (outcome.leaf) {
+    return std::move(*outcome.leaf);
   }
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(task.cell.level);
@@ -120,11 +117,6 @@ void mergeChildren(const BakeScene& scene, BakedCell& cell) {
   }
 }
 
-namespace {
-
-// First byte of an encoded cell.
-constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2;
-
 void write(const Runs& runs, base::ByteWriter& bytes) {
   bytes.add(static_cast<std::uint32_t>(runs.size()));
   for (const ObjectRun& run : runs) {
@@ -146,6 +138,11 @@ bool read(base::ByteReader& bytes, std::uint32_t object_count, Runs& runs) {
   }
   return bytes.ok();
 }
+
+namespace {
+
+// First byte of an encoded cell.
+constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2;
 
 }  // namespace
 

@@ -29,10 +29,9 @@ struct CellTask {
 
 // The result for a cell: a leaf, or what is handed to its children.
 struct CellOutcome {
-  bool divide = false;
+  std::optional<BakedCell> leaf{};  // nothing if the cell is divided
   double search_distance = 0.0;
-  Runs seen{};  // from anywhere in a cell that is divided
-  BakedCell leaf{};
+  Runs seen{};  // from anywhere in the cell
 };
 // Decides the cell by the four cases of the paper, section 3.2.
 CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task);
@@ -42,6 +41,10 @@ BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 
 // Turns a cell whose children are leaves with similar sets into a leaf.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
+
+void write(const Runs& runs, base::ByteWriter& bytes);
+// False if the bytes are not runs of object_count objects.
+bool read(base::ByteReader& bytes, std::uint32_t object_count, Runs& runs);
 
 void write(const BakedCell& cell, base::ByteWriter& bytes);
 // Returns nothing if the bytes are not a cell of this level in a tree of object_count objects.

@@ -224,7 +224,7 @@ double minHeight(const Plane& plane, double size, std::span<const Vec3d> points)
   return minimum;
 }
 
-// Distance of the points from a box along each axis; negative where they overlap.
+// Distance of the points from a box along each axis, here negative where they overlap.
 Vec3d gapsBetween(const Box& box, std::span<const Vec3d> points) {
   Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
   for (const Vec3d& point : points) {

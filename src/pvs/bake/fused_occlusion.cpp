@@ -13,10 +13,11 @@
 namespace sightline::pvs {
 namespace {
 
-// Of a component; larger ones are taken for open. What holds several objects is rarely hidden as a whole.
+// A component of more panels is taken for open, which bounds the time. A box of several objects is rarely
+// hidden as a whole.
 constexpr std::uint32_t kMostMembers = 512, kMostMembersOfNodes = 64;
 constexpr double kDeterminantRounding = 0x1p-44;  // as a fraction of the product of its vectors' sizes
-// Boxes are widened by this fraction of the reach, so that lines may end beside what is flat.
+// Boxes are widened by this fraction of the magnitude, so that lines may end beside what is flat.
 constexpr double kWidening = 0x1p-18;
 
 // Places of ends of lines in a box, in fractions of it. They are no round numbers, because those of edges
@@ -91,29 +92,27 @@ bool misses(const Vec3d& from, const Vec3d& along, const Box& box, double margin
     begin = std::max(begin, std::min(low * inverse, high * inverse));
     end = std::min(end, std::max(low * inverse, high * inverse));
   }
-  return begin > end + 0x1p-40;
-}
-
-double distance(const CellBox& region, const Box& box) {
-  return length(max(max(Vec3d(box.min) - region.max, region.min - Vec3d(box.max)), Vec3d{}));
+  return begin > end + kAlongSegment;
 }
 
 }  // namespace
 
-FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, double reach)
-    : panels_(panels), near_distance_(near_distance), reach_(reach), places_(panels.panels.size()) {
+FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, double magnitude)
+    : panels_(panels), near_distance_(near_distance), magnitude_(magnitude), places_(panels.panels.size()) {
   for (const Vec3d& vertex : panels.vertices) {
-    reach_ = std::max(reach_, maxComponent(abs(vertex)));
+    magnitude_ = std::max(magnitude_, maxComponent(abs(vertex)));
   }
-  reach_ *= 1.0 + 2.0 * kWidening;
-  error_ = 0x1p-51 * reach_ + panels.slack;
+  magnitude_ *= 1.0 + 2.0 * kWidening;
+  error_ = 0x1p-51 * magnitude_ + panels.slack;
+  sheet_margin_ = 0x1p-24 * magnitude_ + panels.slack;
 }
 
 bool FusedOcclusion::hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions) {
   most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
-  // What the object joins is closed where it is left out, or where it is not; mostly the first.
+  // What the object joins is closed where it is left out, or where it is not; mostly the first. Where a line
+  // is clear without the object, only the object itself could hide its box.
   Answer answer = answerFor(region, target.box, target.object);
-  if (answer != Answer::kHidden && target.object != kNoObject) {
+  if (answer == Answer::kUndecided && target.object != kNoObject) {
     answer = answerFor(region, target.box, kNoObject);
   }
   if (answer != Answer::kUndecided || divisions == 0) {
@@ -140,12 +139,12 @@ bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to) {
 
 FusedOcclusion::Answer FusedOcclusion::answerFor(const CellBox& region, const CellBox& target,
                                                  std::uint32_t left_out) {
-  const double widening = kWidening * reach_;
+  const double widening = kWidening * magnitude_;
   const Vec3d by{widening, widening, widening};
   region_ = region;
   target_ = {target.min - by, target.max + by};
   left_out_ = left_out;
-  shaft_ = Shaft(region_, target_, reach_, panels_.slack);
+  shaft_ = Shaft(region_, target_, magnitude_, panels_.slack);
   components_.clear();
   members_.clear();
   if (++question_ == 0) {
@@ -156,7 +155,7 @@ FusedOcclusion::Answer FusedOcclusion::answerFor(const CellBox& region, const Ce
     const Vec3d to = pointIn(target_, end);
     findCrossings(pointIn(region_, kStart), to, false);
     if (clear()) {
-      return Answer::kSeen;
+      return Answer::kClear;
     }
     if (hiddenBehind(to)) {
       return Answer::kHidden;
@@ -193,7 +192,8 @@ bool FusedOcclusion::hiddenBehind(const Vec3d& to) {
   });
 }
 
-// Sets crossings_ to those of a line of sight, or to some of them that show that it is not clear.
+// Sets crossings_ to those of a line of sight, or to the first ones up to one that shows that it is not
+// clear.
 void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked) {
   crossings_.clear();
   const BoxTree& tree = panels_.tree;
@@ -206,7 +206,7 @@ void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool unti
     }
     if (node.end == n + 1) {
       crossPanel(tree.objects[node.first_object].value, from, to);
-      if (until_blocked && !clear()) {
+      if (until_blocked && !crossings_.empty() && crossings_.back().blocks()) {
         return;
       }
     }
@@ -249,8 +249,7 @@ void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const V
 }
 
 bool FusedOcclusion::clear() const {
-  return std::none_of(crossings_.begin(), crossings_.end(),
-                      [](const Crossing& c) { return c.front || c.in_doubt; });
+  return std::none_of(crossings_.begin(), crossings_.end(), [](const Crossing& c) { return c.blocks(); });
 }
 
 // Adds the crossing to the component of its panel, which is gathered if it is not known.
@@ -302,13 +301,13 @@ bool FusedOcclusion::gather(std::uint32_t component) {
 
 // Whether some sheet in the shaft is too near to hide anything, and its front may be seen.
 bool FusedOcclusion::tooNear(std::uint32_t number) const {
-  const double near = near_distance_ + error_ + 0x1p-40 * reach_;
-  if (distance(region_, panels_.bounds[number]) > near) {
+  const double near = near_distance_ + error_ + 0x1p-40 * magnitude_;
+  if (length(gapBetween(region_, panels_.bounds[number])) > near) {
     return false;
   }
   return anySheet(panels_, number, [&](const Sheet& sheet) {
-    const Box bounds = sheet.bounds(panels_.slack + 0x1p-24 * reach_);
-    if (distance(region_, bounds) > near || shaft_.misses(bounds)) {
+    const Box bounds = sheet.bounds(sheet_margin_);
+    if (length(gapBetween(region_, bounds)) > near || shaft_.misses(bounds)) {
       return false;
     }
     for (std::uint32_t corner = 0; corner < 8; ++corner) {
@@ -329,8 +328,7 @@ std::int32_t FusedOcclusion::mostBehind(const Component& component, const Vec3d&
       continue;
     }
     anySheet(panels_, members_[i], [&](const Sheet& sheet) {
-      if (!intersects(target_, sheet.bounds(panels_.slack + 0x1p-24 * reach_)) ||
-          sheet.sideOf(point, error_).positive()) {
+      if (!intersects(target_, sheet.bounds(sheet_margin_)) || sheet.sideOf(point, error_).positive()) {
         return false;
       }
       // With all of the target on one side of its plane, it does not meet the target.

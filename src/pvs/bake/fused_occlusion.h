@@ -14,15 +14,15 @@ namespace sightline::pvs {
 // What may be hidden.
 struct FusedTarget {
   CellBox box;
-  std::uint32_t object = kNoObject;  // the only one in the box, or kNoObject
+  std::uint32_t object = kNoObject;  // the only one that is asked about, or kNoObject
 };
 
 // For use by one thread at a time.
 class FusedOcclusion {
  public:
-  // near_distance: what is closer to a viewer, in metres, hides nothing. reach: an upper bound of the
-  // absolute coordinates of all regions and boxes that are asked about. The panels must outlive this.
-  FusedOcclusion(const Panels& panels, double near_distance, double reach);
+  // near_distance: what is closer to a viewer, in metres, hides nothing. magnitude: an upper bound
+  // of the absolute coordinates of all regions and boxes that are asked about. The panels must outlive this.
+  FusedOcclusion(const Panels& panels, double near_distance, double magnitude);
 
   // True only if no point of the box can be seen from any point of the region. divisions: how often the
   // region or the box, whichever is larger, is halved where that is not yet sure.
@@ -31,13 +31,15 @@ class FusedOcclusion {
   bool isClear(const Vec3d& from, const Vec3d& to);
 
  private:
-  enum class Answer { kHidden, kSeen, kUndecided };
+  // kClear: a line of sight is clear.
+  enum class Answer { kHidden, kClear, kUndecided };
   // How the line of sight meets a panel.
   struct Crossing {
     std::uint32_t panel = 0;
     std::int32_t sum = 0;   // of crossings from the front, less those from the back
     bool front = false;     // some are from the front
     bool in_doubt = false;  // rounding does not tell
+    bool blocks() const { return front || in_doubt; }
   };
   // Panels that are joined within the shaft.
   struct Component {
@@ -58,8 +60,9 @@ class FusedOcclusion {
   std::int32_t mostBehind(const Component& component, const Vec3d& point) const;
 
   const Panels& panels_;
-  double near_distance_, reach_;
-  double error_;  // of a coordinate relative to another point, metres
+  double near_distance_, magnitude_;
+  double error_;         // of a coordinate relative to another point, metres
+  double sheet_margin_;  // around the corners of a sheet in single precision, metres
 
   // Of the last question.
   CellBox region_, target_;

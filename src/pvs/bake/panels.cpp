@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -19,19 +17,27 @@ constexpr std::uint32_t kMostSheets = 32;  // of a panel
 constexpr double kLeastCosine = 0.98;      // of the angle between normals of a panel
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-// A side of a sheet, at the edge between two vertices.
-struct Use {
+// Each sheet has three half-edges: number 3 s + k runs from corner k of sheet s to the next one.
+constexpr std::uint32_t sheetOf(std::uint32_t half_edge) {
+  return half_edge / 3;
+}
+constexpr std::uint32_t nextInSheet(std::uint32_t half_edge) {
+  return half_edge % 3 == 2 ? half_edge - 2 : half_edge + 1;
+}
+
+// A half-edge at the edge between two vertices.
+struct HalfEdge {
   std::uint32_t low = 0, high = 0;  // vertices of the edge
-  std::uint32_t half = 0;           // three times the sheet, plus the number of the side
-  bool rises = false;               // from the lower to the higher vertex
+  std::uint32_t number = 0;
+  bool rises = false;  // from the lower to the higher vertex
 };
 
-// The use that each of some uses of one edge is joined with, or kNone. `uses` are in the order of their
-// angles around the edge. A sheet that rises has its front towards greater angles, one that falls towards
-// smaller ones. So the pairs are those of brackets, all around.
-template <typename Uses, typename LeftOut>
-void joinAround(const Uses& uses, LeftOut&& left_out, std::vector<std::uint32_t>& joined) {
-  const auto count = static_cast<std::uint32_t>(uses.size());
+// The one that each of some half-edges at one edge is joined with, or kNone. They are in the order of their
+// sheets' angles around the edge. A sheet whose half-edge rises has its front towards greater angles, one
+// whose falls towards smaller ones. So the pairs are those of brackets, all around.
+template <typename LeftOut>
+void joinAround(std::span<const HalfEdge> around, LeftOut&& left_out, std::vector<std::uint32_t>& joined) {
+  const auto count = static_cast<std::uint32_t>(around.size());
   joined.assign(count, kNone);
   std::vector<std::uint32_t> open;
   for (std::uint32_t k = 0; k < 2 * count; ++k) {
@@ -39,7 +45,7 @@ void joinAround(const Uses& uses, LeftOut&& left_out, std::vector<std::uint32_t>
     if (left_out(i) || joined[i] != kNone) {
       continue;
     }
-    if (uses[i].rises) {
+    if (around[i].rises) {
       if (k < count) {
         open.push_back(i);
       }
@@ -53,11 +59,8 @@ void joinAround(const Uses& uses, LeftOut&& left_out, std::vector<std::uint32_t>
 
 class PanelMaker {
  public:
-  explicit PanelMaker(const SceneView& scene, const ParallelFor& parallel_for) {
-    divide(scene, parallel_for);
-  }
-
-  Panels make() && {
+  Panels make(const SceneView& scene, const ParallelFor& parallel_for) && {
+    divideTriangles(scene, parallel_for);
     join();
     gather();
     return std::move(panels_);
@@ -65,21 +68,20 @@ class PanelMaker {
 
  private:
   std::uint32_t sheetCount() const { return static_cast<std::uint32_t>(panels_.sheets.size() / 3); }
-  const Vec3d& corner(std::uint32_t sheet, std::uint32_t k) const {
-    return panels_.vertices[panels_.sheets[3 * sheet + k % 3]];
-  }
+  // Where a half-edge begins.
+  const Vec3d& startOf(std::uint32_t half_edge) const { return panels_.vertices[panels_.sheets[half_edge]]; }
 
-  void divide(const SceneView& scene, const ParallelFor& parallel_for) {
+  void divideTriangles(const SceneView& scene, const ParallelFor& parallel_for) {
     const occluders::OpaqueTriangles given = occluders::opaqueTriangles(scene);
     std::vector<Vec3d> vertices;
     vertices.reserve(given.vertices.size());
     for (const Vec3f& vertex : given.vertices) {
       vertices.emplace_back(vertex);
     }
-    const auto divide = given.objects.size() > kMostPenetrating ? occluders::Divide::kFaces
-                                                                : occluders::Divide::kPenetrations;
-    const occluders::ConformedMesh mesh =
-        occluders::conform({vertices, given.corners}, {.divide = divide}, parallel_for);
+    const bool many = given.objects.size() > kMostPenetrating;
+    const occluders::ConformedMesh mesh = occluders::conform(
+        {vertices, given.corners},
+        {.divide = many ? occluders::Divide::kFaces : occluders::Divide::kPenetrations}, parallel_for);
     panels_.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
     panels_.slack = mesh.slack;
     for (std::size_t i = 0; i < mesh.source.size(); ++i) {
@@ -96,74 +98,74 @@ class PanelMaker {
 
   // Sets joined_ and instead_.
   void join() {
-    std::vector<Use> uses;
-    uses.reserve(panels_.sheets.size());
-    for (std::uint32_t half = 0; half < panels_.sheets.size(); ++half) {
-      const std::uint32_t from = panels_.sheets[half],
-                          to = panels_.sheets[half % 3 == 2 ? half - 2 : half + 1];
-      uses.push_back({std::min(from, to), std::max(from, to), half, from < to});
+    std::vector<HalfEdge> all;
+    all.reserve(panels_.sheets.size());
+    for (std::uint32_t number = 0; number < panels_.sheets.size(); ++number) {
+      const std::uint32_t from = panels_.sheets[number], to = panels_.sheets[nextInSheet(number)];
+      all.push_back({std::min(from, to), std::max(from, to), number, from < to});
     }
-    std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
-      return std::tie(a.low, a.high, a.half) < std::tie(b.low, b.high, b.half);
+    std::sort(all.begin(), all.end(), [](const HalfEdge& a, const HalfEdge& b) {
+      return std::tie(a.low, a.high, a.number) < std::tie(b.low, b.high, b.number);
     });
     joined_.assign(panels_.sheets.size(), kNone);
     instead_.assign(panels_.sheets.size(), kNone);
-    for (std::size_t first = 0, end = 0; first < uses.size(); first = end) {
-      while (end < uses.size() && uses[end].low == uses[first].low && uses[end].high == uses[first].high) {
+    for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
+      while (end < all.size() && all[end].low == all[first].low && all[end].high == all[first].high) {
         ++end;
       }
-      joinEdge(std::span(uses).subspan(first, end - first));
+      joinEdge(std::span(all).subspan(first, end - first));
     }
   }
 
-  void joinEdge(std::span<Use> uses) {
-    sortAround(uses);
+  // The half-edges at one edge.
+  void joinEdge(std::span<HalfEdge> around) {
+    sortAround(around);
     joinAround(
-        uses, [](std::uint32_t) { return false; }, pairs_);
-    for (std::uint32_t i = 0; i < uses.size(); ++i) {
-      joined_[uses[i].half] = pairs_[i] == kNone ? kNone : uses[pairs_[i]].half;
+        around, [](std::uint32_t) { return false; }, pairs_);
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
+      joined_[around[i].number] = pairs_[i] == kNone ? kNone : around[pairs_[i]].number;
     }
-    const auto objectAt = [&](std::uint32_t i) { return object_of_[uses[i].half / 3]; };
+    const auto objectAt = [&](std::uint32_t i) { return object_of_[sheetOf(around[i].number)]; };
     const auto objectBeyond = [&](std::uint32_t i) {
-      return pairs_[i] == kNone ? kNone : objectAt(pairs_[i]);
+      return pairs_[i] == kNone ? kNoObject : objectAt(pairs_[i]);
     };
-    for (std::uint32_t i = 0; i < uses.size(); ++i) {
+    for (std::uint32_t i = 0; i < around.size(); ++i) {
       const std::uint32_t out = objectBeyond(i);
-      if (out == kNone || out == objectAt(i) || instead_[uses[i].half] != kNone) {
+      if (out == kNoObject || out == objectAt(i) || instead_[around[i].number] != kNone) {
         continue;
       }
       // Only those are joined anew that lose the one that they are joined with.
       joinAround(
-          uses, [&](std::uint32_t k) { return objectAt(k) == out || objectBeyond(k) != out; }, others_);
-      for (std::uint32_t k = 0; k < uses.size(); ++k) {
+          around, [&](std::uint32_t k) { return objectAt(k) == out || objectBeyond(k) != out; }, others_);
+      for (std::uint32_t k = 0; k < around.size(); ++k) {
         if (others_[k] != kNone) {
-          instead_[uses[k].half] = uses[others_[k]].half;
+          instead_[around[k].number] = around[others_[k]].number;
         }
       }
     }
   }
 
-  // By their angles around the edge, and of one triangle's two sides the falling one first: its front is
-  // towards smaller angles.
-  void sortAround(std::span<Use> uses) {
-    if (uses.size() < 3) {
+  // By their sheets' angles around the edge, and of the two sheets of one triangle the falling one first: its
+  // front is towards smaller angles.
+  void sortAround(std::span<HalfEdge> around) {
+    if (around.size() < 3) {
       return;
     }
-    const Vec3d origin = panels_.vertices[uses[0].low],
-                axis = normalized(panels_.vertices[uses[0].high] - origin);
+    const Vec3d origin = panels_.vertices[around[0].low],
+                axis = normalized(panels_.vertices[around[0].high] - origin);
     Vec3d zero;
     angles_.clear();
-    for (const Use& use : uses) {
-      const Vec3d towards = corner(use.half / 3, use.half + 2 - use.half / 3 * 3) - origin;
+    for (const HalfEdge& half_edge : around) {
+      const Vec3d towards = startOf(nextInSheet(nextInSheet(half_edge.number))) - origin;
       const Vec3d across = towards - axis * dot(towards, axis);
       zero = angles_.empty() ? across : zero;
-      angles_.emplace_back(std::atan2(dot(axis, cross(zero, across)), dot(zero, across)), use);
+      angles_.emplace_back(std::atan2(dot(axis, cross(zero, across)), dot(zero, across)), half_edge);
     }
     std::sort(angles_.begin(), angles_.end(), [](const auto& a, const auto& b) {
-      return std::tuple(a.first, a.second.rises, a.second.half) <
-             std::tuple(b.first, b.second.rises, b.second.half);
+      return std::tuple(a.first, a.second.rises, a.second.number) <
+             std::tuple(b.first, b.second.rises, b.second.number);
     });
-    std::transform(angles_.begin(), angles_.end(), uses.begin(), [](const auto& a) { return a.second; });
+    std::transform(angles_.begin(), angles_.end(), around.begin(), [](const auto& a) { return a.second; });
   }
 
   // Makes panels of sheets that are joined, from the first sheet on.
@@ -171,12 +173,13 @@ class PanelMaker {
     const std::uint32_t count = sheetCount();
     std::vector<Vec3d> normals(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      normals[i] = normalized(cross(corner(i, 1) - corner(i, 0), corner(i, 2) - corner(i, 0)));
+      const Vec3d &a = startOf(3 * i), &b = startOf(3 * i + 1), &c = startOf(3 * i + 2);
+      normals[i] = normalized(cross(b - a, c - a));
     }
-    std::vector<std::uint32_t> panel_of(count, kNone), order;
+    std::vector<std::uint32_t> panel_of(count, kNoPanel), order;
     order.reserve(count);
     for (std::uint32_t seed = 0; seed < count; ++seed) {
-      if (panel_of[seed] != kNone) {
+      if (panel_of[seed] != kNoPanel) {
         continue;
       }
       const auto number = static_cast<std::uint32_t>(panels_.panels.size());
@@ -187,9 +190,12 @@ class PanelMaker {
       };
       take(seed);
       for (std::size_t next = first; next < order.size(); ++next) {
-        for (std::uint32_t half = 3 * order[next]; half < 3 * order[next] + 3; ++half) {
-          const std::uint32_t other = joined_[half] == kNone ? kNone : joined_[half] / 3;
-          if (other != kNone && panel_of[other] == kNone && object_of_[other] == object_of_[seed] &&
+        for (std::uint32_t half_edge = 3 * order[next]; half_edge < 3 * order[next] + 3; ++half_edge) {
+          if (joined_[half_edge] == kNone) {
+            continue;
+          }
+          const std::uint32_t other = sheetOf(joined_[half_edge]);
+          if (panel_of[other] == kNoPanel && object_of_[other] == object_of_[seed] &&
               dot(normals[other], normals[seed]) >= kLeastCosine && order.size() - first < kMostSheets) {
             take(other);
           }
@@ -211,15 +217,16 @@ class PanelMaker {
   }
 
   void addEdges(std::span<const std::uint32_t> panel_of, std::span<const std::uint32_t> order) {
-    const auto panelOf = [&](std::uint32_t half) { return half == kNone ? kNoPanel : panel_of[half / 3]; };
+    const auto panelAt = [&](std::uint32_t half_edge) {
+      return half_edge == kNone ? kNoPanel : panel_of[sheetOf(half_edge)];
+    };
     for (Panel& panel : panels_.panels) {
       panel.first_edge = static_cast<std::uint32_t>(panels_.edges.size());
       for (const std::uint32_t sheet : order.subspan(panel.first_sheet, panel.sheet_count)) {
-        for (std::uint32_t k = 0; k < 3; ++k) {
-          const std::uint32_t half = 3 * sheet + k;
-          if (joined_[half] == kNone || panelOf(joined_[half]) != panel_of[sheet]) {
-            panels_.edges.push_back({panels_.sheets[half], panels_.sheets[3 * sheet + (k + 1) % 3],
-                                     panelOf(joined_[half]), panelOf(instead_[half])});
+        for (std::uint32_t number = 3 * sheet; number < 3 * sheet + 3; ++number) {
+          if (panelAt(joined_[number]) != panel_of[sheet]) {
+            panels_.edges.push_back({panels_.sheets[number], panels_.sheets[nextInSheet(number)],
+                                     panelAt(joined_[number]), panelAt(instead_[number])});
           }
         }
       }
@@ -242,15 +249,16 @@ class PanelMaker {
 
   Panels panels_;
   std::vector<std::uint32_t> object_of_;         // by sheet
-  std::vector<std::uint32_t> joined_, instead_;  // by side of a sheet: a side of another one
+  std::vector<std::uint32_t> joined_, instead_;  // by half-edge: one of another sheet, or kNone
+  // Scratch for one edge.
   std::vector<std::uint32_t> pairs_, others_;
-  std::vector<std::pair<double, Use>> angles_;
+  std::vector<std::pair<double, HalfEdge>> angles_;
 };
 
 }  // namespace
 
 Panels findPanels(const SceneView& scene, const ParallelFor& parallel_for) {
-  return PanelMaker(scene, parallel_for).make();
+  return PanelMaker().make(scene, parallel_for);
 }
 
 }  // namespace sightline::pvs

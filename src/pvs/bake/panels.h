@@ -6,8 +6,8 @@
 // A sheet is one side of an opaque triangle, or of a piece of one: double-sided triangles have two sheets.
 // Around an edge at which several sheets end, each is joined with the next one that faces it across the space
 // between them: a wall with the floor before it, not with the floor below the wall. A sheet at the border of
-// what is double-sided is joined with its own back. In the direction of the edge the two cancel each other,
-// so whatever sheets are taken, if the joined ones are among them, their boundary is not there.
+// what is double-sided is joined with its own back. Joined sheets run along their edge in opposite
+// directions, so a set that holds both sheets of each pair has no boundary at that edge.
 //
 // A panel is a set of joined sheets of one object and of similar direction, which are taken together.
 

@@ -17,12 +17,11 @@ namespace sightline::pvs {
 namespace {
 
 constexpr double kProductRounding = 0x1p-48;  // as a fraction of the normal and the point, 32 u
-constexpr double kAlongSegment = 0x1p-40;     // of a place on a segment, from 0 to 1
 
 }  // namespace
 
-Shaft::Shaft(const CellBox& region, const CellBox& target, double reach, double slack)
-    : rounding_(kProductRounding * reach + slack) {
+Shaft::Shaft(const CellBox& region, const CellBox& target, double magnitude, double slack)
+    : rounding_(kProductRounding * magnitude + slack) {
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d normal;
     normal[axis] = 1.0;

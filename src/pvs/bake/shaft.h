@@ -9,12 +9,15 @@
 
 namespace sightline::pvs {
 
+// How far rounding may move a place on a segment, from 0 to 1.
+inline constexpr double kAlongSegment = 0x1p-40;
+
 class Shaft {
  public:
   Shaft() = default;
-  // reach: an upper bound of the absolute coordinates of both boxes and of whatever is asked about, metres.
-  // slack: how far what is asked about may be off.
-  Shaft(const CellBox& region, const CellBox& target, double reach, double slack);
+  // magnitude: an upper bound of the absolute coordinates of both boxes and of whatever is asked about,
+  // metres. slack: how far what is asked about may be off.
+  Shaft(const CellBox& region, const CellBox& target, double magnitude, double slack);
 
   // True only if no point of the closed box, or of the closed segment, is in the shaft.
   bool misses(const Box& box) const;

@@ -186,9 +186,11 @@ class FirstBaker {
       MessageWriter message;
       for (const PartTask& task : tasks) {
         message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
-        message.number(task.seen.size()).rest(std::as_bytes(std::span(task.seen)));
+        message.block(task.seen);
       }
-      world_.send(other, kParts, message.bytes());
+      if (!world_.send(other, kParts, message.bytes())) {
+        queue_.fail("what cells see takes more than 2 GiB; bake in one process");
+      }
       wanted = 0;
     }
   }
@@ -345,11 +347,8 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
       for (; !reader.rest().empty(); ++given) {
         PartTask part{.id = reader.number()};
         part.search_distance = std::bit_cast<double>(reader.number());
-        part.seen.resize(
-            std::min<std::size_t>(reader.number(), reader.rest().size() / sizeof(std::uint64_t)));
-        for (std::uint64_t& run : part.seen) {
-          run = reader.number();
-        }
+        const std::span<const std::byte> seen = reader.block();
+        part.seen.assign(seen.begin(), seen.end());
         queue.add(given % threads, std::span(&part, 1));
       }
       more = given > 0;

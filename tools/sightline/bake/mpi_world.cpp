@@ -61,8 +61,8 @@ MpiWorld::~MpiWorld() {
   }
   while (!first() && wait().tag != kFarewell) {
   }
-  while (!sending_.empty()) {
-    forgetSent();
+  for (Sending& sending : sending_) {
+    MPI_Wait(&sending.request, MPI_STATUS_IGNORE);
   }
   MPI_Finalize();
 }
@@ -125,8 +125,11 @@ MessageWriter& MessageWriter::number(std::uint64_t value) {
 }
 
 MessageWriter& MessageWriter::text(const std::string& value) {
-  number(value.size());
-  return rest(std::as_bytes(std::span(value)));
+  return block(std::as_bytes(std::span(value)));
+}
+
+MessageWriter& MessageWriter::block(std::span<const std::byte> value) {
+  return number(value.size()).rest(value);
 }
 
 MessageWriter& MessageWriter::rest(std::span<const std::byte> value) {
@@ -146,9 +149,14 @@ std::uint64_t MessageReader::number() {
 }
 
 std::string MessageReader::text() {
-  const std::size_t length = std::min<std::size_t>(number(), left_.size());
-  std::string value(reinterpret_cast<const char*>(left_.data()), length);
-  left_ = left_.subspan(length);
+  const std::span<const std::byte> value = block();
+  return {reinterpret_cast<const char*>(value.data()), value.size()};
+}
+
+std::span<const std::byte> MessageReader::block() {
+  const std::uint64_t size = number();
+  const std::span<const std::byte> value = left_.first(std::min<std::size_t>(size, left_.size()));
+  left_ = left_.subspan(value.size());
   return value;
 }
 

@@ -56,6 +56,7 @@ class MessageWriter {
  public:
   MessageWriter& number(std::uint64_t value);
   MessageWriter& text(const std::string& value);
+  MessageWriter& block(std::span<const std::byte> value);  // with its size
   MessageWriter& rest(std::span<const std::byte> value);
   std::span<const std::byte> bytes() const { return bytes_; }
 
@@ -67,6 +68,7 @@ class MessageReader {
   explicit MessageReader(std::span<const std::byte> bytes) : left_(bytes) {}
   std::uint64_t number();  // 0 beyond the end
   std::string text();
+  std::span<const std::byte> block();  // what is left if it is not as long as it says
   std::span<const std::byte> rest() const { return left_; }
 
  private:

@@ -62,9 +62,8 @@ struct BakeSettings {
 struct PartTask {
   std::uint64_t id = 1;          // 1: the root; 8 * id + i: child number i of it
   double search_distance = 0.0;  // metres; set by the parent part
-  // The runs of objects that the parent sees, as begin << 32 | end; set by the parent part. None: all
-  // objects.
-  std::vector<std::uint64_t> seen{};
+  std::vector<std::byte>
+      seen{};  // the objects that the parent sees, as the parent part wrote them; none: all
   friend bool operator==(const PartTask&, const PartTask&) = default;
 };
 
