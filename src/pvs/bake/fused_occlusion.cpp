@@ -76,29 +76,43 @@ bool anySheet(const Panels& panels, std::uint32_t number, Visit&& visit) {
   return false;
 }
 
-// True only if the segment does not come closer to the box than the margin.
-bool misses(const Vec3d& from, const Vec3d& along, const Box& box, double margin) {
-  double begin = 0.0, end = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = double{box.min[axis]} - margin - from[axis],
-                 high = double{box.max[axis]} + margin - from[axis];
-    if (along[axis] == 0.0) {
-      if (low > 0.0 || high < 0.0) {
-        return true;
-      }
-      continue;
+// A segment, for tests against many boxes.
+class SegmentTest {
+ public:
+  // margin: how close to a box the segment may come without missing it.
+  SegmentTest(const Vec3d& from, const Vec3d& to, double margin)
+      : low_(from + Vec3d{margin, margin, margin}), high_(from - Vec3d{margin, margin, margin}) {
+    // Along an axis on which it stands still, the slope is as good as infinite: all of it is before what lies
+    // beyond its start.
+    for (int axis = 0; axis < 3; ++axis) {
+      const double along = to[axis] - from[axis];
+      inverse_[axis] = std::abs(along) > 1e-290 ? 1.0 / along : 1e290;
     }
-    const double inverse = 1.0 / along[axis];
-    begin = std::max(begin, std::min(low * inverse, high * inverse));
-    end = std::min(end, std::max(low * inverse, high * inverse));
   }
-  return begin > end + kAlongSegment;
-}
+
+  bool misses(const Box& box) const {
+    double begin = 0.0, end = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double low = (double{box.min[axis]} - low_[axis]) * inverse_[axis],
+                   high = (double{box.max[axis]} - high_[axis]) * inverse_[axis];
+      begin = std::max(begin, std::min(low, high));
+      end = std::min(end, std::max(low, high));
+    }
+    return begin > end + kAlongSegment;
+  }
+
+ private:
+  Vec3d low_, high_, inverse_;
+};
 
 }  // namespace
 
 FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, double magnitude)
-    : panels_(panels), near_distance_(near_distance), magnitude_(magnitude), places_(panels.panels.size()) {
+    : panels_(panels),
+      near_distance_(near_distance),
+      magnitude_(magnitude),
+      places_(panels.panels.size()),
+      beyond_(panels.vertices.size()) {
   for (const Vec3d& vertex : panels.vertices) {
     magnitude_ = std::max(magnitude_, maxComponent(abs(vertex)));
   }
@@ -109,12 +123,7 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, doubl
 
 bool FusedOcclusion::hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions) {
   most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
-  // What the object joins is closed where it is left out, or where it is not; mostly the first. Where a line
-  // is clear without the object, only the object itself could hide its box.
-  Answer answer = answerFor(region, target.box, target.object);
-  if (answer == Answer::kUndecided && target.object != kNoObject) {
-    answer = answerFor(region, target.box, kNoObject);
-  }
+  const Answer answer = answerFor(region, target.box, target.object);
   if (answer != Answer::kUndecided || divisions == 0) {
     return answer == Answer::kHidden;
   }
@@ -149,6 +158,7 @@ FusedOcclusion::Answer FusedOcclusion::answerFor(const CellBox& region, const Ce
   members_.clear();
   if (++question_ == 0) {
     std::fill(places_.begin(), places_.end(), Place{});
+    std::fill(beyond_.begin(), beyond_.end(), Beyond{});
     question_ = 1;
   }
   for (const Vec3d& end : kEnds) {
@@ -197,10 +207,10 @@ bool FusedOcclusion::hiddenBehind(const Vec3d& to) {
 void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked) {
   crossings_.clear();
   const BoxTree& tree = panels_.tree;
-  const Vec3d along = to - from;
+  const SegmentTest segment(from, to, error_);
   for (std::uint32_t n = 0; n < tree.nodes.size();) {
     const BoxNode& node = tree.nodes[n];
-    if (misses(from, along, node.bounds, error_)) {
+    if (segment.misses(node.bounds)) {
       n = node.end;
       continue;
     }
@@ -270,14 +280,21 @@ void FusedOcclusion::addToComponent(const Crossing& crossing) {
 }
 
 // Adds all panels that are joined with the component's first one within the shaft. False as soon as it is not
-// closed; some may be missing then.
+// closed; some may be missing then. Most are not, so the way is towards the border of the surface first.
 bool FusedOcclusion::gather(std::uint32_t component) {
   const std::size_t first = members_.size() - 1;
-  for (std::size_t i = first; i < members_.size(); ++i) {
-    if (i - first >= most_members_ || tooNear(members_[i])) {
+  const auto farther = [this](std::uint32_t a, std::uint32_t b) {
+    return panels_.steps_to_border[a] > panels_.steps_to_border[b];
+  };
+  ahead_.assign(1, members_[first]);
+  for (std::uint32_t looked_at = 0; !ahead_.empty(); ++looked_at) {
+    std::pop_heap(ahead_.begin(), ahead_.end(), farther);
+    const std::uint32_t panel = ahead_.back();
+    ahead_.pop_back();
+    if (looked_at == most_members_ || tooNear(panel)) {
       return false;
     }
-    for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[members_[i]])) {
+    for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[panel])) {
       std::uint32_t beyond = edge.beyond;
       if (beyond != kNoPanel && panels_.panels[beyond].object == left_out_) {
         beyond = edge.instead;
@@ -286,7 +303,7 @@ bool FusedOcclusion::gather(std::uint32_t component) {
           places_[beyond].component == component) {
         continue;
       }
-      if (shaft_.misses(panels_.vertices[edge.from], panels_.vertices[edge.to])) {
+      if (misses(edge)) {
         continue;
       }
       if (beyond == kNoPanel || places_[beyond].question == question_) {
@@ -294,20 +311,45 @@ bool FusedOcclusion::gather(std::uint32_t component) {
       }
       places_[beyond] = {question_, component};
       members_.push_back(beyond);
+      ahead_.push_back(beyond);
+      std::push_heap(ahead_.begin(), ahead_.end(), farther);
     }
   }
   return true;
 }
 
+// Whether the edge is outside the shaft.
+bool FusedOcclusion::misses(const PanelEdge& edge) {
+  const std::uint32_t from = sidesBeyond(edge.from), to = sidesBeyond(edge.to);
+  if ((from & to) != 0 || from == 0 || to == 0) {
+    return (from & to) != 0;
+  }
+  return shaft_.misses(panels_.vertices[edge.from], panels_.vertices[edge.to]);
+}
+
+// A bit for each side of the shaft that a vertex is beyond; computed once a question, since several edges end
+// at each vertex.
+std::uint32_t FusedOcclusion::sidesBeyond(std::uint32_t vertex) {
+  Beyond& known = beyond_[vertex];
+  if (known.question != question_) {
+    known = {question_, shaft_.sidesBeyond(panels_.vertices[vertex])};
+  }
+  return known.sides;
+}
+
 // Whether some sheet in the shaft is too near to hide anything, and its front may be seen.
 bool FusedOcclusion::tooNear(std::uint32_t number) const {
   const double near = near_distance_ + error_ + 0x1p-40 * magnitude_;
-  if (length(gapBetween(region_, panels_.bounds[number])) > near) {
+  const auto isFar = [&](const Box& box) {
+    const Vec3d gap = gapBetween(region_, box);
+    return dot(gap, gap) > near * near;
+  };
+  if (isFar(panels_.bounds[number])) {
     return false;
   }
   return anySheet(panels_, number, [&](const Sheet& sheet) {
     const Box bounds = sheet.bounds(sheet_margin_);
-    if (length(gapBetween(region_, bounds)) > near || shaft_.misses(bounds)) {
+    if (isFar(bounds) || shaft_.misses(bounds)) {
       return false;
     }
     for (std::uint32_t corner = 0; corner < 8; ++corner) {

@@ -56,6 +56,8 @@ class FusedOcclusion {
   bool clear() const;
   void addToComponent(const Crossing& crossing);
   bool gather(std::uint32_t component);
+  bool misses(const PanelEdge& edge);
+  std::uint32_t sidesBeyond(std::uint32_t vertex);
   bool tooNear(std::uint32_t panel) const;
   std::int32_t mostBehind(const Component& component, const Vec3d& point) const;
 
@@ -72,10 +74,15 @@ class FusedOcclusion {
   std::vector<Crossing> crossings_;
   std::vector<Component> components_;
   std::vector<std::uint32_t> members_;  // panels, by component
+  std::vector<std::uint32_t> ahead_;    // members whose edges have not been looked at; a heap
   struct Place {
     std::uint32_t question = 0, component = 0;
   };
   std::vector<Place> places_;  // by panel: the component that it was found in
+  struct Beyond {
+    std::uint32_t question = 0, sides = 0;
+  };
+  std::vector<Beyond> beyond_;  // by vertex: the sides of the shaft that it is beyond
   std::uint32_t question_ = 0;
 };
 

@@ -206,6 +206,7 @@ class PanelMaker {
                                 .object = object_of_[seed]});
     }
     addEdges(panel_of, order);
+    countSteps();
     LargeVector<std::uint32_t> sheets;
     sheets.reserve(panels_.sheets.size());
     for (const std::uint32_t sheet : order) {
@@ -231,6 +232,32 @@ class PanelMaker {
         }
       }
       panel.edge_count = static_cast<std::uint32_t>(panels_.edges.size()) - panel.first_edge;
+    }
+  }
+
+  // From the borders inwards.
+  void countSteps() {
+    panels_.steps_to_border.assign(panels_.panels.size(), kNone);
+    std::vector<std::uint32_t> reached;
+    const auto reach = [&](std::uint32_t panel, std::uint32_t steps) {
+      if (panels_.steps_to_border[panel] == kNone) {
+        panels_.steps_to_border[panel] = steps;
+        reached.push_back(panel);
+      }
+    };
+    for (std::uint32_t i = 0; i < panels_.panels.size(); ++i) {
+      for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[i])) {
+        if (edge.beyond == kNoPanel) {
+          reach(i, 0);
+        }
+      }
+    }
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+      for (const PanelEdge& edge : panels_.edgesOf(panels_.panels[reached[next]])) {
+        if (edge.beyond != kNoPanel) {
+          reach(edge.beyond, panels_.steps_to_border[reached[next]] + 1);
+        }
+      }
     }
   }
 

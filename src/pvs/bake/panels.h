@@ -47,6 +47,8 @@ struct Panels {
   LargeVector<Panel> panels{};
   LargeVector<Box> bounds{};  // by panel, also of what was not rounded
   BoxTree tree{};             // its objects are numbers of panels
+  // By panel: over how many joined edges the way to a border of the surface leads.
+  std::vector<std::uint32_t> steps_to_border{};
   double slack = 0.0;
 
   std::span<const std::uint32_t> sheetsOf(const Panel& p) const {

@@ -66,6 +66,14 @@ bool Shaft::misses(const Box& box) const {
   return false;
 }
 
+std::uint32_t Shaft::sidesBeyond(const Vec3d& point) const {
+  std::uint32_t beyond = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    beyond |= (dot(sides_[i].normal, point) > sides_[i].level ? 1u : 0u) << i;
+  }
+  return beyond;
+}
+
 // What is left of the segment within all sides. The levels are farther out than the products are off, so
 // rounding leaves too much rather than too little.
 bool Shaft::misses(const Vec3d& from, const Vec3d& to) const {

@@ -22,6 +22,9 @@ class Shaft {
   // True only if no point of the closed box, or of the closed segment, is in the shaft.
   bool misses(const Box& box) const;
   bool misses(const Vec3d& from, const Vec3d& to) const;
+  // A bit for each side that the point is surely beyond. A segment misses the shaft where both of its ends
+  // are beyond the same one, and does not where there is none for one of them.
+  std::uint32_t sidesBeyond(const Vec3d& point) const;
 
  private:
   // All of the shaft has dot(normal, x) <= level, however the product is rounded.
