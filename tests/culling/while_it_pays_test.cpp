@@ -11,6 +11,7 @@
 #include "sightline/culling/depth_pyramid_method.h"
 #include "sightline/culling/frustum_method.h"
 #include "sightline/culling/occlusion_tree_method.h"
+#include "sightline/culling/visibility_octree_method.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "tests/oracle/hand_made.h"
 
@@ -53,13 +54,13 @@ std::unique_ptr<CullingMethod> anyMethod(bool pyramid) {
   return pyramid ? depthPyramid() : occlusionTree();
 }
 
-class WhileItPays : public testing::TestWithParam<bool> {};
+class WhileItPaysAny : public testing::TestWithParam<bool> {};
 
 std::vector<ObjectId> visibleIn(const Culler& culler) {
   return {culler.visible().begin(), culler.visible().end()};
 }
 
-TEST_P(WhileItPays, AnExpensiveRendererIsNeverGivenMoreThanTheMethodKeeps) {
+TEST_P(WhileItPaysAny, AnExpensiveRendererIsNeverGivenMoreThanTheMethodKeeps) {
   const WallAndHidden scene;
   for (const RendererCost cost : {RendererCost{1e6, 0.0}, RendererCost{0.0, 1e6}}) {
     Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), cost));
@@ -79,7 +80,7 @@ TEST_P(WhileItPays, AnExpensiveRendererIsNeverGivenMoreThanTheMethodKeeps) {
   }
 }
 
-TEST_P(WhileItPays, WhereDrawingCostsNothingTheFrustumCulls) {
+TEST_P(WhileItPaysAny, WhereDrawingCostsNothingTheFrustumCulls) {
   const WallAndHidden scene;
   Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), {1e-9, 0.0}));
   Culler frustum(scene.parts(), frustumCulling());
@@ -106,7 +107,7 @@ TEST_P(WhileItPays, WhereDrawingCostsNothingTheFrustumCulls) {
   EXPECT_LT(given_up, 1000) << "it is tried again";
 }
 
-TEST_P(WhileItPays, AfterAJumpTheMethodIsTriedAgain) {
+TEST_P(WhileItPaysAny, AfterAJumpTheMethodIsTriedAgain) {
   const WallAndHidden scene;
   Culler culler(scene.parts(), whileItPays(anyMethod(GetParam()), {1e-9, 0.0}));
   int in_a_row = 0;
@@ -123,7 +124,7 @@ TEST_P(WhileItPays, AfterAJumpTheMethodIsTriedAgain) {
   EXPECT_LT(culler.visible().size(), WallAndHidden::kHidden / 2);
 }
 
-TEST_P(WhileItPays, CostsThatAreNoNumbersCountAsNothing) {
+TEST_P(WhileItPaysAny, CostsThatAreNoNumbersCountAsNothing) {
   const WallAndHidden scene;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double us : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, -1.0, 1e300}) {
@@ -135,7 +136,18 @@ TEST_P(WhileItPays, CostsThatAreNoNumbersCountAsNothing) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, WhileItPays, testing::Bool(),
+TEST(WhileItPays, WithoutAHierarchyEverythingIsKept) {
+  const WallAndHidden scene;
+  CullingScene parts = scene.parts();
+  parts.hierarchy = nullptr;
+  Culler culler(parts, whileItPays(visibilityOctree(), {1e-9, 0.0}));
+  for (int frame = 0; frame < 100; ++frame) {
+    culler.cull(frontView());
+    ASSERT_EQ(culler.visible().size(), scene.bounds.size()) << frame;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, WhileItPaysAny, testing::Bool(),
                          [](const auto& method) { return method.param ? "DepthPyramid" : "OcclusionTree"; });
 
 }  // namespace

@@ -21,7 +21,12 @@ class WhileItPays final : public CullingMethod {
     collectStatistics();
   }
 
-  MethodTraits traits() const override { return method_->traits(); }
+  // By itself it needs a hierarchy to cull by the frustum.
+  MethodTraits traits() const override {
+    MethodTraits traits = method_->traits();
+    traits.hierarchy = true;
+    return traits;
+  }
   bool wantsOccluders() const override { return !pays_.suspended() && method_->wantsOccluders(); }
   bool drawsBodies() const override { return method_->drawsBodies(); }
 
