@@ -17,9 +17,10 @@ struct RendererCost {
 // does not, as in a wood of leaves with holes, frames are culled by the frustum alone, and the method is
 // tried again after 16 frames, then after ever more up to 128, or when the camera jumps. What is kept depends
 // on measured times then, and is conservative always. Gain and cost are compared in every fourth frame, in
-// which the frustum culls once more. Statistics: those of the method, and "renderer" with given_up, 1 in
-// frames without occlusion culling, and saved_us, what drawing the removed objects would have taken when it
-// was last estimated.
+// which the frustum culls once more. The scene needs a hierarchy, whatever the method.
+//
+// Statistics: those of the method, and "renderer" with given_up, 1 in frames without occlusion culling, and
+// saved_us, what drawing the removed objects would have taken when it was last estimated.
 std::unique_ptr<CullingMethod> whileItPays(std::unique_ptr<CullingMethod> method, const RendererCost& cost);
 
 }  // namespace sightline
