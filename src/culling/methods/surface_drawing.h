@@ -24,17 +24,20 @@ class TimedBudget {
   // As SurfaceDrawing::budget counts.
   double work() const { return std::max(frame_us_ - rest_us_, 0.0) * (drawn_ / drawing_us_); }
 
-  // Reports a frame: what was drawn, how long that took, and how long all the rest did.
-  void frame(double drawn, double drawing_us, double rest_us) {
-    if (drawn > 0.0 && drawing_us > 0.0) {
+  // Reports a frame: what was drawn, how long building the frame's structure took, most of which is drawing,
+  // and how long all the rest did. What a frame took far beyond expectation, as when the thread had to wait,
+  // says little about the next one.
+  void frame(double drawn, double building_us, double rest_us) {
+    if (drawn > 0.0 && building_us > 0.0) {
+      const double expected_us = drawn * (drawing_us_ / drawn_);
       drawn_ = kMemory * drawn_ + drawn;
-      drawing_us_ = kMemory * drawing_us_ + drawing_us;
+      drawing_us_ = kMemory * drawing_us_ + std::min(building_us, kOutlier * expected_us);
     }
-    rest_us_ = kMemory * rest_us_ + (1.0 - kMemory) * rest_us;
+    rest_us_ = kMemory * rest_us_ + (1.0 - kMemory) * std::min(rest_us, frame_us_);
   }
 
  private:
-  static constexpr double kMemory = 0.75;
+  static constexpr double kMemory = 0.75, kOutlier = 2.0;
 
   double frame_us_;
   double drawn_ = 100.0, drawing_us_ = 10.0;  // of the last frames, fading; at first about what is usual

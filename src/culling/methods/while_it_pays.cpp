@@ -50,7 +50,6 @@ class WhileItPays final : public CullingMethod {
     }
     if (!given_up_) {
       method_->build(forMethod(frame));
-      filter_changed_ = false;
     }
   }
 
@@ -69,6 +68,7 @@ class WhileItPays final : public CullingMethod {
   void finish(CullStats& stats) override {
     if (!given_up_) {
       method_->finish(stats);
+      filter_changed_ = false;
     }
     if (given_up_ || compared_) {
       // Without the method the frustum would have culled once, for the comparison it did so once more.
@@ -84,6 +84,9 @@ class WhileItPays final : public CullingMethod {
       method_->classify(boxes, states);
     }
   }
+  bool testDetail(culling::DetailTest& test, std::vector<ObjectId>& visible) override {
+    return !given_up_ && method_->testDetail(test, visible);
+  }
   std::span<const OccluderId> occludersUsed() const override {
     return given_up_ ? std::span<const OccluderId>() : method_->occludersUsed();
   }
@@ -95,9 +98,10 @@ class WhileItPays final : public CullingMethod {
  private:
   static constexpr double kNoSteps = 1.0;
   static constexpr std::uint32_t kLongestDelay = 128;
+  static constexpr double kMostUs = 1e15;          // so that sums are finite
   static constexpr std::uint32_t kComparison = 4;  // frames from one comparison to the next
 
-  static double usable(double us) { return std::isfinite(us) ? std::max(us, 0.0) : 0.0; }
+  static double usable(double us) { return std::isfinite(us) ? std::clamp(us, 0.0, kMostUs) : 0.0; }
 
   // The frame as the method is told about it. After frames that it has not seen, it knows nothing of the last
   // one.
