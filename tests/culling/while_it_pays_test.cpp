@@ -13,6 +13,7 @@
 #include "sightline/culling/occlusion_tree_method.h"
 #include "sightline/culling/visibility_octree_method.h"
 #include "sightline/hierarchy/hierarchy.h"
+#include "tests/culling/fake_sets.h"
 #include "tests/oracle/hand_made.h"
 
 namespace sightline {
@@ -134,6 +135,36 @@ TEST_P(WhileItPaysAny, CostsThatAreNoNumbersCountAsNothing) {
     }
     EXPECT_EQ(culler.statistic("renderer", "saved_us") > 0, us == 1e300) << us;
   }
+}
+
+TEST_P(WhileItPaysAny, ASetThatChangesMeanwhileIsThatOfTheMethodToo) {
+  const WallAndHidden scene;
+  fake_sets::FakeSets sets(scene.bounds);
+  CullingScene parts = scene.parts();
+  parts.sets = &sets;
+  Culler culler(parts, whileItPays(anyMethod(GetParam()), {1e-9, 0.0}), {.visible_sets = true});
+  // The wall is always in the set, and seen; a set without it would be wrong.
+  std::vector<bool> others(scene.bounds.size(), true), wall(scene.bounds.size(), false);
+  others[0] = false;
+  wall[0] = true;
+  int resumed = 0;
+  bool gave_up = false;
+  for (int frame = 0; frame < 1000; ++frame) {
+    // The set changes while frames are culled by the frustum alone.
+    if (gave_up) {
+      sets.use(1, wall);
+    } else {
+      sets.use(0, others);
+    }
+    culler.cull(frontView());
+    const bool now = culler.statistic("renderer", "given_up") != 0;
+    resumed += gave_up && !now ? 1 : 0;
+    if (gave_up) {
+      ASSERT_EQ(visibleIn(culler), std::vector<ObjectId>{ObjectId(0u)}) << frame;
+    }
+    gave_up = now;
+  }
+  EXPECT_GT(resumed, 3);
 }
 
 TEST(WhileItPays, WithoutAHierarchyEverythingIsKept) {
