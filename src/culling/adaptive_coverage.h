@@ -32,7 +32,8 @@ class AdaptiveCoverage {
   // True if the next frame should do without occlusion culling.
   bool suspended() const { return retest_delay_ > 0; }
 
-  // The viewer is at another place: suspended culling is tried in the next frame but one.
+  // The viewer is at another place: suspended culling is tried after one more frame, and delays are short
+  // again.
   void tryAgain();
 
   // Reports the times of a frame that used these settings. culling_us: microseconds that culling took,

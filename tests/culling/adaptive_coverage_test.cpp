@@ -203,6 +203,64 @@ TEST(AdaptiveCoverage, TimesThatAreNotFiniteAreLeftOut) {
   }
 }
 
+// The lengths of the first stretches of frames without culling, in an open place.
+std::vector<int> delays(AdaptiveCoverage& adaptive, std::size_t count) {
+  std::vector<int> lengths;
+  for (bool was = false;;) {
+    const bool suspended = walk(adaptive, kOpen, 1).front().suspended;
+    if (was && !suspended && lengths.size() == count) {
+      return lengths;
+    }
+    if (suspended && !was) {
+      lengths.push_back(0);
+    }
+    if (suspended) {
+      ++lengths.back();
+    }
+    was = suspended;
+  }
+}
+
+TEST(AdaptiveCoverage, EachTrialThatFailsDoublesTheDelayUpToTheLongest) {
+  AdaptiveCoverage adaptive(1.0, 100);
+  walk(adaptive, kOpen, AdaptiveCoverage::kWindow);
+  EXPECT_EQ(delays(adaptive, 5), (std::vector{16, 32, 64, 100, 100}));
+}
+
+TEST(AdaptiveCoverage, ATrialThatSucceedsMakesDelaysShortAgain) {
+  AdaptiveCoverage adaptive(1.0, 100);
+  walk(adaptive, kOpen, AdaptiveCoverage::kWindow);
+  delays(adaptive, 3);
+  walk(adaptive, kDense, 200);
+  ASSERT_FALSE(adaptive.suspended());
+  walk(adaptive, kOpen, AdaptiveCoverage::kWindow);
+  EXPECT_EQ(delays(adaptive, 2), (std::vector{16, 32}));
+}
+
+TEST(AdaptiveCoverage, AnotherPlaceIsTriedAfterOneFrameAndDelaysAreShortAgain) {
+  AdaptiveCoverage adaptive(1.0, 1000);
+  walk(adaptive, kOpen, AdaptiveCoverage::kWindow);
+  delays(adaptive, 4);
+  walk(adaptive, kOpen, AdaptiveCoverage::kTrial + 10);
+  ASSERT_TRUE(adaptive.suspended());
+  adaptive.tryAgain();
+  EXPECT_EQ(suspendedFrames(walk(adaptive, kOpen, 1 + AdaptiveCoverage::kTrial)), 1);
+  EXPECT_EQ(delays(adaptive, 2), (std::vector{16, 32}));
+}
+
+TEST(AdaptiveCoverage, AnotherPlaceChangesNothingWhileCullingPays) {
+  AdaptiveCoverage adaptive(0.2);
+  walk(adaptive, kDense, 20);
+  adaptive.tryAgain();
+  EXPECT_EQ(suspendedFrames(walk(adaptive, kDense, 50)), 0);
+}
+
+TEST(AdaptiveCoverage, WhereTheConfiguredRatioIsOneALossSuspendsAtOnce) {
+  AdaptiveCoverage adaptive(1.0);
+  walk(adaptive, place(240.0, 200.0), AdaptiveCoverage::kWindow);  // far from hopeless
+  EXPECT_TRUE(adaptive.suspended());
+}
+
 TEST(AdaptiveCoverage, TheRatioIsWithinZeroAndOne) {
   EXPECT_EQ(AdaptiveCoverage(-1.0).ratio(), 0.0);
   EXPECT_EQ(AdaptiveCoverage(2.0).ratio(), 1.0);

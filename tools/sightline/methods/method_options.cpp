@@ -320,9 +320,10 @@ const std::vector<Option>& allOptions() {
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.detail.occluder_count; })},
       {"draw-object-us", kAny, usesOccluders, kOne, kWhenChanged,
        "microseconds that the renderer takes for an object; where culling takes longer than it saves, frames "
-       "are culled by the frustum alone",
+       "are culled by the frustum alone; 0: off",
        decimal(+[](Setting& s) -> double& { return s.renderer.object_us; })},
-      {"draw-triangle-us", kAny, usesOccluders, kOne, kWhenChanged, "the same for each of its triangles",
+      {"draw-triangle-us", kAny, usesOccluders, kOne, kWhenChanged,
+       "the same for each of its triangles; 0: off",
        decimal(+[](Setting& s) -> double& { return s.renderer.triangle_us; })},
       {"database-directions", kAny, usesDatabase, kOne, kWhenChanged,
        "occluder database: directions of a cell",
