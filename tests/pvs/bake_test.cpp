@@ -186,8 +186,9 @@ TEST(Bake, HidesWhatIsBehindAWallFromACellBeforeIt) {
   // The wall is at x = 10, with crates in front of it and behind it.
   const Scene scene = sceneOf(
       {block({10, 0, 0}, {10.5f, 16, 16}), block({3, 1, 7}, {4, 2, 8}), block({14, 7, 7}, {15, 8, 8})});
-  const BakedVisibility result = baked(
-      scene, {.max_depth = 1, .near_distance = 0.1, .region = {{0, 0, 0}, {8, 16, 16}}, .similarity = 0.0});
+  const BakedVisibility result =
+      baked(scene,
+            {.max_depth = 1, .near_distance = 0.1, .viewers = {{{0, 0, 0}, {8, 16, 16}}}, .similarity = 0.0});
   forEachLeaf(result.octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
     if (cell.level > 0 && cell.at[0] == 0) {
       const std::vector<bool> members = membersOf(result, result.octree.leaves[leaf].set);
@@ -204,7 +205,7 @@ TEST(Bake, DoesNotCombineWhatDifferentOccludersHideFromDifferentCorners) {
   const Scene scene = sceneOf({block({10, 0, 0}, {10.25f, 16, 7.5f}), block({10, 0, 8.5f}, {10.25f, 16, 16}),
                                block({15, 7.5f, 7.75f}, {15.5f, 8.5f, 8.25f})});
   const BakedVisibility result =
-      baked(scene, {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {8, 8, 16}}});
+      baked(scene, {.max_depth = 0, .near_distance = 0.1, .viewers = {{{0, 0, 0}, {8, 8, 16}}}});
   ASSERT_EQ(result.octree.leaves.size(), 1u);
   EXPECT_TRUE(membersOf(result, result.octree.leaves[0].set)[2]);
 }
@@ -215,7 +216,7 @@ TEST(Bake, KeepsWhatAViewersNearPlaneMayCutOpen) {
   const Box region{{0, 0, 0}, {8, 8, 8}};
   const auto hides = [&](double near_distance) {
     const BakedVisibility result =
-        baked(scene, {.max_depth = 0, .near_distance = near_distance, .region = region});
+        baked(scene, {.max_depth = 0, .near_distance = near_distance, .viewers = {region}});
     return !membersOf(result, result.octree.leaves[0].set)[1];
   };
   EXPECT_TRUE(hides(0.4));
@@ -226,7 +227,7 @@ TEST(Bake, DividesACellAtAWallThatFillsIt) {
   const Scene scene = sceneOf(
       {block({3, -1, -1}, {3.5f, 9, 9}), block({0.5f, 3, 3}, {1, 4, 4}), block({6, 3, 3}, {7, 4, 4})});
   const BakedVisibility result =
-      baked(scene, {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {8, 8, 8}}});
+      baked(scene, {.max_depth = 0, .near_distance = 0.1, .viewers = {{{0, 0, 0}, {8, 8, 8}}}});
   const OctreeView octree = result.octree.view();
   ASSERT_EQ(octree.leaves.size(), 1u);
   ASSERT_NE(octree.leaves[0].plane, OctreeLeaf::kNoPlane);
@@ -298,16 +299,17 @@ TEST(Bake, MergesSiblingsWithLikeSets) {
 TEST(Bake, OfASmallRegionLooksAsFarAsOfALargeOne) {
   const Scene scene = sceneOf({block({-20, -20, 10}, {20, 20, 10.5f}), block({0, 0, 20}, {1, 1, 21})});
   for (const float size : {8.0f, 0.5f, 0.0f}) {
-    const BakedVisibility result = baked(
-        scene,
-        {.max_depth = 0, .near_distance = 0.1, .region = {{0, 0, 0}, {size, size, size}}, .min_gain = 0.0});
+    const BakedVisibility result = baked(scene, {.max_depth = 0,
+                                                 .near_distance = 0.1,
+                                                 .viewers = {{{0, 0, 0}, {size, size, size}}},
+                                                 .min_gain = 0.0});
     EXPECT_FALSE(membersOf(result, result.octree.leaves[0].set)[1]) << size;
   }
 }
 
 TEST(Bake, CellsThatNoViewerIsInHoldEverything) {
   const Scene scene = randomScene(2);
-  const BakedVisibility result = baked(scene, {.max_depth = 3, .region = {{0, 0, 0}, {32, 2, 4}}});
+  const BakedVisibility result = baked(scene, {.max_depth = 3, .viewers = {{{0, 0, 0}, {32, 2, 4}}}});
   const OctreeView octree = result.octree.view();
   int outside = 0;
   forEachLeaf(octree, [&](std::uint32_t leaf, const OctreeCell& cell) {
@@ -321,6 +323,58 @@ TEST(Bake, CellsThatNoViewerIsInHoldEverything) {
     }
   });
   EXPECT_GT(outside, 0);
+}
+
+TEST(Bake, OfSeveralBoxesOfViewersCoversThoseAndNoOther) {
+  const Scene scene = randomScene(2);
+  const std::vector<Box> viewers{{{1, 1, 1}, {3, 3, 3}}, {{25, 20, 28}, {31, 22, 30}}};
+  const BakedVisibility result = baked(scene, {.max_depth = 4, .viewers = viewers, .merge_tolerance = 0.0});
+  const OctreeView octree = result.octree.view();
+  int outside = 0, small = 0;
+  forEachLeaf(octree, [&](std::uint32_t leaf, const OctreeCell& cell) {
+    const Vec3d low = cellMin(octree.min, octree.max, cell), high = cellMax(octree.min, octree.max, cell);
+    const bool meets = std::any_of(viewers.begin(), viewers.end(), [&](const Box& box) {
+      const Vec3d min(box.min), max(box.max);
+      return low.x <= max.x && low.y <= max.y && low.z <= max.z && high.x >= min.x && high.y >= min.y &&
+             high.z >= min.z;
+    });
+    EXPECT_EQ(octree.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kOutside), !meets);
+    if (!meets) {
+      ++outside;
+      const std::vector<bool> members = membersOf(result, octree.leaves[leaf].set);
+      EXPECT_EQ(std::count(members.begin(), members.end(), true), static_cast<long>(members.size()));
+    }
+    small += meets && cell.level == 4 ? 1 : 0;
+  });
+  EXPECT_GT(outside, 0);
+  EXPECT_GT(small, 0);
+  BakeJudge judge(scene, result);
+  judge.judge(2, 1, 0.25, 4);
+}
+
+TEST(Bake, WithFewerPlacesForViewersChoosesSmallerCells) {
+  const Scene scene = randomScene(2);
+  const OccluderSet occluders = allOccluders(scene);
+  const auto depthOf = [&](std::vector<Box> viewers) {
+    const Result<Bake> bake =
+        Bake::plan(scene.view(), occluders, {.near_distance = 0.01, .viewers = std::move(viewers)});
+    EXPECT_TRUE(bake);
+    return bake->baseDepth();
+  };
+  EXPECT_GT(depthOf({{{0, 0, 0}, {1, 1, 1}}, {{31, 31, 31}, {32, 32, 32}}}),
+            depthOf({{{0, 0, 0}, {32, 32, 32}}}));
+}
+
+TEST(Bake, IsAnotherPlanForOtherViewers) {
+  const Scene scene = randomScene(2);
+  const OccluderSet occluders = allOccluders(scene);
+  const auto hashOf = [&](std::vector<Box> viewers) {
+    return Bake::plan(scene.view(), occluders, {.max_depth = 2, .viewers = std::move(viewers)})->hash();
+  };
+  const Box all{{0, 0, 0}, {32, 32, 32}}, part{{4, 4, 4}, {5, 5, 5}};
+  EXPECT_NE(hashOf({all}), hashOf({all, part}));
+  EXPECT_NE(hashOf({all}), hashOf({part}));
+  EXPECT_EQ(hashOf({all, part}), hashOf({all, part}));
 }
 
 // Depth first: the last known part is baked first.
@@ -466,7 +520,7 @@ TEST(Bake, RefusesSettingsThatMakeNoSense) {
       {.similarity = 2.0},
       {.min_gain = -0.1},
       {.merge_tolerance = -1.0},
-      {.region = {{0, 0, 0}, {std::numeric_limits<float>::infinity(), 1, 1}}}};
+      {.viewers = {{{0, 0, 0}, {std::numeric_limits<float>::infinity(), 1, 1}}}}};
   for (std::size_t i = 0; i < bad.size(); ++i) {
     const Result<Bake> bake = Bake::plan(scene.view(), occluders, bad[i]);
     ASSERT_FALSE(bake) << i;

@@ -17,11 +17,11 @@ using test::Solid;
 
 // A root of 8 m, in which no set is small enough. With so small an occluder size all occluders are of use to
 // it.
-constexpr BakeSettings kRoot{.triangle_budget = 1,
-                             .max_depth = 6,
-                             .near_distance = 0.1,
-                             .region = {{0, 0, 0}, {8, 8, 8}},
-                             .occluder_size = 1e-4};
+const BakeSettings kRoot{.triangle_budget = 1,
+                         .max_depth = 6,
+                         .near_distance = 0.1,
+                         .viewers = {{{0, 0, 0}, {8, 8, 8}}},
+                         .occluder_size = 1e-4};
 
 // What baking the root alone gives.
 struct Root {

@@ -16,7 +16,8 @@ class Samples : public ::testing::Test {
  protected:
   const Scene scene_ = sceneOf({block({0, -9, -9}, {1, 9, 9}), block({20, 0, 0}, {21, 1, 1})});
   const OccluderSet set_ = allOccluders(scene_);
-  const BakeScene bake_{scene_.view(), set_, {.max_depth = 1}, {{-8, -8, -8}, {8, 8, 8}}, serialFor};
+  const BakeScene bake_{
+      scene_.view(), set_, {.max_depth = 1, .viewers = {{{-8, -8, -8}, {8, 8, 8}}}}, serialFor};
 
   SampleStore store(std::size_t bytes) const {
     return {bake_.occluders, bake_.shadow_tree, bake_.reach, bytes};

@@ -251,6 +251,80 @@ TEST(Bake, TakesAndAnswersPointsInWorldSpace) {
   EXPECT_EQ(outside["points"][0]["visible"], json::array({0, 1}));
 }
 
+TEST(Bake, OfAPathHoldsSetsWhereItLeadsAndOfFreeSpaceWhereItCanLead) {
+  const TemporaryFolder folder;
+  const auto facts = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"--force", "--json", "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = runTool(bakeArguments(kShip, folder.file("F.sight"), arguments));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return parse(outcome.out);
+  };
+  const json everywhere = facts({}), path = facts({"--viewers", "path", "--reach", "0.5"});
+  const json free = facts({"--viewers", "free"}), low = facts({"--viewers", "free", "--max-height", "1"});
+  EXPECT_TRUE(everywhere["settings"]["all"]["viewers"].is_null());
+  EXPECT_TRUE(everywhere["settings"]["all"]["region"].is_null());
+  EXPECT_EQ(path["settings"]["all"]["viewers"]["where"], "path");
+  EXPECT_EQ(path["settings"]["all"]["viewers"]["reach"], 0.5);
+  EXPECT_EQ(path["settings"]["all"]["region"].size(), 6u);
+  EXPECT_EQ(free["settings"]["all"]["viewers"]["where"], "free");
+  EXPECT_EQ(free["settings"]["all"]["viewers"]["voxel"], 0.25);
+  EXPECT_EQ(free["settings"]["all"]["viewers"]["max_height"], 0.0);
+  EXPECT_EQ(low["settings"]["all"]["viewers"]["max_height"], 1.0);
+  EXPECT_GT(path["stop_reasons"]["outside"], everywhere["stop_reasons"]["outside"]);
+  EXPECT_NE(low["plan"], free["plan"]);
+  // No eye of the camera path is outside.
+  const Outcome walk = runTool({"verify", kShip, "--method", "visibility-octree", "--baked",
+                                folder.file("F.sight"), "--frames", "0:1000000:50"});
+  EXPECT_EQ(walk.code, 0) << walk.out << walk.err;
+  EXPECT_EQ(walk.err.find("outside"), std::string::npos) << walk.err;
+}
+
+TEST(Bake, TakesSeveralRegionsAndPointsToStartFrom) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls), file = folder.file("F.sight");
+  const auto cellAt = [&](const std::string& point) {
+    return parse(runTool({"query", file, "--points", point, "--json", "-"}).out)["points"][0];
+  };
+  ASSERT_EQ(runTool(bakeArguments(scene, file,
+                                  {"--region", "500000,0,-10,500010,5,-9", "--region",
+                                   "500000,0,9,500010,5,10", "--triangle-budget", "1"}))
+                .code,
+            0);
+  const json report = parse(runTool({"info", file, "--json", "-"}).out);
+  EXPECT_EQ(report["settings"]["all"]["viewers"]["boxes"], 2);
+  EXPECT_GT(report["stop_reasons"]["outside"], 0);
+  EXPECT_EQ(cellAt("500005,2,9.5")["visible"], json::array({0})) << "the wall hides what is behind it";
+  EXPECT_EQ(cellAt("500005,2,0.1")["visible"], json::array({0, 1}));
+  const Outcome free = runTool(bakeArguments(scene, file,
+                                             {"--viewers", "free", "--from", "500005,2,3", "--region",
+                                              "500000,0,-10,500010,5,10", "--voxel", "0.5", "--json", "-"}));
+  ASSERT_EQ(free.code, 0) << free.err;
+  EXPECT_EQ(parse(free.out)["settings"]["all"]["viewers"]["voxel"], 0.5);
+}
+
+TEST(Bake, RefusesOptionsOfViewersThatDoNotGoTogether) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("walls.obj", kWalls);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> bad = {
+      {"--reach", {"--reach", "2"}},
+      {"--from", {"--from", "1,2,3"}},
+      {"--from", {"--viewers", "path", "--from", "1,2,3"}},
+      {"--voxel", {"--viewers", "path", "--voxel", "1"}},
+      {"--max-height", {"--max-height", "2"}},
+      {"--path", {"--path", "x.json"}},
+      {"--frames", {"--frames", "1:2"}},
+      {"--path", {"--viewers", "free", "--from", "1,2,3", "--path", "x.json"}},
+      {"camera", {"--viewers", "path"}},
+      {"free space", {"--viewers", "free", "--from", "0,0,0"}},
+      {"--region", {"--viewers", "free", "--from", "500005,2,-4", "--region", "1,1,1,0,0,0"}},
+  };
+  for (const auto& [word, more] : bad) {
+    expectRefused(bakeArguments(scene, folder.file("F.sight"), more), word);
+  }
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 TEST(Bake, GoesOnOnlyFromItsOwnCheckpointAndOnlyWhenToldTo) {
   const TemporaryFolder folder;
   const std::string file = folder.file("F.sight"), parts = file + ".parts";
@@ -329,6 +403,11 @@ TEST(Bake, RefusesValuesOutOfRange) {
       {"--sample-memory", {"0", "-1", "x"}},
       {"--region",
        {"1,2,3", "0,0,0,0,1,1", "1,1,1,0,0,0", "a,b,c,d,e,f", "0,0,0,1,1,nan", "0,0,0,1,1,inf", ",,,,,"}},
+      {"--viewers", {"", "bogus", "path,free"}},
+      {"--from", {"1,2", "a,b,c", "1,2,nan", ""}},
+      {"--reach", {"-1", "nan", "x"}},
+      {"--voxel", {"0", "-1", "nan"}},
+      {"--max-height", {"-1", "nan", "inf"}},
       {"--databases", {"bogus", "area-angle,,detail", ","}},
       {"--threads", {"0", "-1"}},
   };

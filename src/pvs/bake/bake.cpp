@@ -19,8 +19,8 @@ using namespace pvs;
 
 struct Bake::Data {
   Data(const SceneView& view, const OccluderSet& occluders, const BakeSettings& settings,
-       const CellBox& region, const ParallelFor& parallel_for)
-      : scene(view, occluders, settings, region, parallel_for), scene_id(sceneId(view)) {}
+       const ParallelFor& parallel_for)
+      : scene(view, occluders, settings, parallel_for), scene_id(sceneId(view)) {}
 
   BakeScene scene;
   SceneId scene_id;
@@ -30,7 +30,7 @@ struct Bake::Data {
 namespace {
 
 // Version of the bake method; increase it whenever the same input would give other cells.
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr std::uint32_t kMaxDivisions = 16;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
@@ -67,26 +67,21 @@ std::string problemWith(const BakeSettings& s) {
   if (s.divisions > kMaxDivisions) {
     return "divisions is " + std::to_string(s.divisions) + "; at most " + std::to_string(kMaxDivisions);
   }
-  if (!s.region.empty() && !s.region.wellFormed()) {
-    return "the region is not finite";
+  if (!std::all_of(s.viewers.begin(), s.viewers.end(), [](const Box& box) { return box.wellFormed(); })) {
+    return "a box of viewers is empty or not finite";
   }
   return {};
 }
 
-// The viewing region, or nothing if it is empty.
-std::optional<CellBox> regionOf(const SceneView& scene, const BakeSettings& settings) {
-  Box bounds = settings.region;
-  if (bounds.empty()) {
-    for (const Object& object : scene.objects) {
-      if (object.bounds.wellFormed()) {
-        bounds.extend(object.bounds);
-      }
+// The box around all objects that have a finite one; empty if none has.
+Box boundsOf(const SceneView& scene) {
+  Box bounds;
+  for (const Object& object : scene.objects) {
+    if (object.bounds.wellFormed()) {
+      bounds.extend(object.bounds);
     }
   }
-  if (!bounds.wellFormed()) {
-    return std::nullopt;
-  }
-  return CellBox{Vec3d(bounds.min), Vec3d(bounds.max)};
+  return bounds;
 }
 
 // An eighth of the scene's diagonal, which spans a few rooms or a few streets.
@@ -95,7 +90,7 @@ double firstSearchDistance(const BakeScene& scene) {
 }
 
 std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const BakeSettings& s,
-                     std::uint32_t base_depth, const CellBox& region) {
+                     std::uint32_t base_depth) {
   base::ByteWriter bytes;
   for (const std::uint64_t number :
        {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
@@ -104,9 +99,13 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
     bytes.add(number);
   }
   for (const double number :
-       {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.min_gain, s.merge_tolerance,
-        region.min.x, region.min.y, region.min.z, region.max.x, region.max.y, region.max.z}) {
+       {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.min_gain, s.merge_tolerance}) {
     bytes.add(number);
+  }
+  for (const Box& box : s.viewers) {
+    for (const float number : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}) {
+      bytes.add(number);
+    }
   }
   return pvs::checksumOf(bytes.take());
 }
@@ -130,9 +129,12 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   if (const std::string problem = problemWith(settings); !problem.empty()) {
     return Error{"bake: " + problem};
   }
-  const std::optional<CellBox> region = regionOf(scene, settings);
-  if (!region) {
-    return Error{"bake: the scene has no object with a finite box, so there is nothing to see"};
+  BakeSettings complete = settings;
+  if (complete.viewers.empty()) {
+    complete.viewers = {boundsOf(scene)};
+    if (complete.viewers[0].empty()) {
+      return Error{"bake: the scene has no object with a finite box, so there is nothing to see"};
+    }
   }
   for (const Occluder& occluder : occluders.occluders) {
     if (occluder.object.value >= scene.objects.size()) {
@@ -143,8 +145,8 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
                    " objects; give the occluders that findOccluders finds in it"};
     }
   }
-  const auto data = std::make_shared<Data>(scene, occluders, settings, *region, parallel_for);
-  data->hash = hashOf(data->scene_id, occluders, data->scene.settings, data->scene.baseDepth(), *region);
+  const auto data = std::make_shared<Data>(scene, occluders, complete, parallel_for);
+  data->hash = hashOf(data->scene_id, occluders, data->scene.settings, data->scene.baseDepth());
   Bake bake;
   bake.data_ = data;
   return bake;

@@ -96,21 +96,25 @@ bool isBorder(const Box& box, const CellBox& region) {
          (touches(2) && spans(0) && spans(1));
 }
 
-// Number of cells of a level that intersect the region.
-std::uint64_t cellsOfRegion(const CellBox& root, const CellBox& region, std::uint32_t level) {
-  const double edge = root.extent().x / std::ldexp(1.0, static_cast<int>(level));
-  std::uint64_t count = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    count *= 1 + static_cast<std::uint64_t>(region.extent()[axis] / edge);
-  }
-  return count;
+bool anyIntersecting(const BoxTree& tree, const CellBox& box) {
+  return anyIntersecting(tree, box, [](std::uint32_t) { return true; });
 }
 
-// Number of these cells that intersect one of the boxes; counting stops at the limit.
-std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox& region,
-                        const OctreeCell& cell, std::uint32_t level, std::uint64_t limit) {
-  const CellBox box{cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
-  if (!intersects(box, region) || !anyIntersecting(boxes, box, [](std::uint32_t) { return true; })) {
+// The box around all of these, of which one at least is finite and not empty.
+CellBox regionAround(std::span<const Box> boxes) {
+  Box around;
+  for (const Box& box : boxes) {
+    around.extend(box);
+  }
+  return {Vec3d(around.min), Vec3d(around.max)};
+}
+
+// Number of cells of a level below `cell` for whose boxes, and for those of all cells above them, test(box)
+// holds. Counting stops at the limit.
+template <typename Test>
+std::uint64_t countCells(const CellBox& root, const OctreeCell& cell, std::uint32_t level,
+                         std::uint64_t limit, const Test& test) {
+  if (!test(CellBox{cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)})) {
     return 0;
   }
   if (cell.level == level) {
@@ -118,7 +122,7 @@ std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox
   }
   std::uint64_t count = 0;
   for (std::uint32_t i = 0; i < 8 && count < limit; ++i) {
-    count += cellsNear(boxes, root, region, cell.child(i), level, limit - count);
+    count += countCells(root, cell.child(i), level, limit - count, test);
   }
   return count;
 }
@@ -126,10 +130,10 @@ std::uint64_t cellsNear(const BoxTree& boxes, const CellBox& root, const CellBox
 }  // namespace
 
 BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& s,
-                     const CellBox& viewers, const ParallelFor& parallel_for)
+                     const ParallelFor& parallel_for)
     : settings(s),
-      region(viewers),
-      root(cubeAround(viewers)),
+      region(regionAround(s.viewers)),
+      root(cubeAround(region)),
       boxes(buildBoxTree(boundsOf(scene), trianglesOf(scene))),
       shadow_tree(boxes.view()),
       triangles(boxes.view()),
@@ -138,7 +142,8 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       panels(s.occlusion == BakeOcclusion::kFused ? findPanels(scene, parallel_for) : Panels{}),
       side_margin(sideMargin(root)),
       diagonal(diagonalOf(scene, region)),
-      reach(1.01 * diagonalOf(scene, root)) {
+      reach(1.01 * diagonalOf(scene, root)),
+      viewer_tree_(buildBoxTree(s.viewers, {})) {
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
   }
@@ -182,13 +187,16 @@ void BakeScene::chooseDepth() {
   };
   base_depth_ = kMinChosenDepth;
   while (base_depth_ < kMaxOctreeDepth && !small(base_depth_ + 1) &&
-         cellsOfRegion(root, region, base_depth_ + 1) <= kMaxChosenCells) {
+         countCells(root, {}, base_depth_ + 1, kMaxChosenCells + 1,
+                    [&](const CellBox& box) { return holdsViewers(box); }) <= kMaxChosenCells) {
     ++base_depth_;
   }
   settings.max_depth = base_depth_;
   for (std::uint32_t level = base_depth_ + 1; level <= kMaxOctreeDepth && !small(level); ++level) {
     BoxTree near = reachOfOccluders(level);
-    const std::uint64_t count = cellsNear(near, root, region, {}, level, kMaxChosenCells + 1);
+    const std::uint64_t count = countCells(root, {}, level, kMaxChosenCells + 1, [&](const CellBox& box) {
+      return holdsViewers(box) && anyIntersecting(near, box);
+    });
     if (count > kMaxChosenCells) {
       break;
     }
@@ -228,8 +236,11 @@ void BakeScene::countOccluders() {
 
 bool BakeScene::mayDivide(const OctreeCell& cell) const {
   return cell.level < base_depth_ ||
-         (cell.level < settings.max_depth &&
-          anyIntersecting(reach_tree_, boxOf(cell), [](std::uint32_t) { return true; }));
+         (cell.level < settings.max_depth && anyIntersecting(reach_tree_, boxOf(cell)));
+}
+
+bool BakeScene::holdsViewers(const CellBox& box) const {
+  return anyIntersecting(viewer_tree_, box);
 }
 
 bool BakeScene::ofUse(const ConvexOccluder& occluder, std::uint32_t level) const {

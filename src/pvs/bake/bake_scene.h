@@ -17,16 +17,16 @@
 namespace sightline::pvs {
 
 struct BakeScene {
-  // settings: must be valid. region: where viewers are.
+  // settings: must be valid, with at least one box of viewers.
   BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& settings,
-            const CellBox& region, const ParallelFor& parallel_for);
+            const ParallelFor& parallel_for);
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
   BakeSettings settings;  // including the chosen max_depth
-  CellBox region;
-  CellBox root;   // a cube
-  BoxTree boxes;  // of the objects; sets are expressed in terms of its nodes
+  CellBox region;         // around all boxes of viewers
+  CellBox root;           // a cube
+  BoxTree boxes;          // of the objects; sets are expressed in terms of its nodes
   ShadowTree shadow_tree;
   TriangleCounts triangles;
   std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
@@ -42,6 +42,8 @@ struct BakeScene {
   CellBox boxOf(const OctreeCell& cell) const {
     return {cellMin(root.min, root.max, cell), cellMax(root.min, root.max, cell)};
   }
+  // True if viewers can be in the box.
+  bool holdsViewers(const CellBox& box) const;
   // Any cell down to this level may be divided; below it, only cells near occluders.
   std::uint32_t baseDepth() const { return base_depth_; }
   // True if the cell's depth allows dividing it.
@@ -57,6 +59,7 @@ struct BakeScene {
   bool holdsAllOccluders(const CellBox& box) const;
 
  private:
+  BoxTree viewer_tree_;
   std::vector<std::uint32_t> leaf_of_;  // into BoxTree::nodes
   // Below base_depth_, down to settings.max_depth, only cells that intersect one of these boxes are divided.
   std::uint32_t base_depth_ = 0;

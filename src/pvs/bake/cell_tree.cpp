@@ -23,7 +23,7 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   const BakeSettings& settings = scene.settings;
   const bool deepest = !scene.mayDivide(task.cell);
   double distance = task.search_distance;
-  if (!intersects(scene.boxOf(task.cell), scene.region)) {
+  if (!scene.holdsViewers(scene.boxOf(task.cell))) {
     CellSets everything;
     everything.whole = {{0, static_cast<std::uint32_t>(scene.boxes.objects.size())}};
     return {.leaf = leafOf(task.cell, std::move(everything), StopReason::kOutside)};

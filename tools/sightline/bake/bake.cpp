@@ -30,6 +30,7 @@ namespace {
 // The plan of a bake and what it was made from; every process of the bake makes its own.
 struct Planned {
   Scene scene;
+  ViewerSpace viewers;
   Bake bake;
   double load_us = 0.0, plan_us = 0.0;
 };
@@ -52,6 +53,9 @@ Result<Checkpoint> openOutputs(const BakeOptions& options) {
     return Error{"--output: give the name of a file, F.sight"};
   }
   if (const Status ok = checkFiles({.scenes = {options.common.scene},
+                                    .inputs = options.viewers.usesPath()
+                                                  ? walkInputs(options.common.scene, options.viewers.path)
+                                                  : std::vector<NamedFile>{},
                                     .outputs = {{"--output", options.output},
                                                 {"--output, for its parts,", options.partsFile()},
                                                 {"--json", options.common.json}}});
@@ -82,13 +86,18 @@ Result<Planned> planBake(const BakeOptions& options) {
   const Threads threads(options.common.threads);
   closeCracksOf(*scene, options.crack_width, threads.parallelFor());
   const double load_us = watch.lap();
-  const BakeSettings settings = bakeSettings(options, *scene);
+  Result<ViewerSpace> viewers =
+      findViewers(options.viewers, options.common.scene, *scene, threads.parallelFor());
+  if (!viewers) {
+    return viewers.error();
+  }
+  const BakeSettings settings = bakeSettings(options, *scene, *viewers);
   const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
   Result<Bake> bake = Bake::plan(scene->view(), occluders, settings, threads.parallelFor());
   if (!bake) {
     return bake.error();
   }
-  return Planned{std::move(*scene), std::move(*bake), load_us, watch.lap()};
+  return Planned{std::move(*scene), std::move(*viewers), std::move(*bake), load_us, watch.lap()};
 }
 
 // Assembles all parts, writes the file and reports what is in it.
@@ -99,7 +108,8 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
     return baked.error();
   }
   parts = {};
-  baked->record.settings = dump(settingsJson(planned.bake, planned.scene.origin, options.crack_width));
+  baked->record.settings =
+      dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, options.crack_width));
   Stopwatch watch;
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());

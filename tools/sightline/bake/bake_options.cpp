@@ -4,10 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
-#include <optional>
 
 #include "tools/sightline/bake/bake_databases.h"
 #include "tools/sightline/command_line/parse_text.h"
@@ -19,57 +16,6 @@ constexpr double kMax = 1e6;       // largest distance in metres, largest factor
 constexpr double kMinNear = 1e-6;  // metres
 constexpr std::uint32_t kMaxMib = 1u << 20;
 constexpr std::uint64_t kMinBudget = 100, kBudgetShare = 50;
-
-// Accepts finite numbers from min to max. CLI::Range would accept "nan".
-CLI::Validator decimal(double min, double max) {
-  return CLI::Validator(
-      [min, max](const std::string& text) {
-        const std::optional<double> value = parseDecimal(text);
-        return value && *value >= min && *value <= max
-                   ? std::string()
-                   : fmt::format("'{}' is not a number from {} to {}", text, min, max);
-      },
-      fmt::format("[{} - {}]", min, max));
-}
-
-void addDecimal(CLI::App& command, const std::string& name, double& value, double min, double max,
-                const std::string& help) {
-  command.add_option(name, value, help)->check(decimal(min, max))->capture_default_str();
-}
-
-Result<std::array<double, 6>> parseRegion(const std::string& text) {
-  const std::vector<std::string> words = splitAt(text, ',');
-  std::array<double, 6> numbers{};
-  bool good = words.size() == 6;
-  for (std::size_t i = 0; good && i < 6; ++i) {
-    const std::optional<double> number = parseDecimal(words[i]);
-    good = number.has_value();
-    numbers[i] = number.value_or(0.0);
-  }
-  for (std::size_t axis = 0; good && axis < 3; ++axis) {
-    good = numbers[axis] < numbers[axis + 3];
-  }
-  if (!good) {
-    return Error{fmt::format(
-        "--region {}: give MINX,MINY,MINZ,MAXX,MAXY,MAXZ in metres, each MIN less than its MAX", text)};
-  }
-  return numbers;
-}
-
-// The smallest box in single precision that encloses the box.
-Box enclosing(const Vec3d& min, const Vec3d& max) {
-  Box box{Vec3f(min), Vec3f(max)};
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    if (static_cast<double>(box.min[axis]) > min[axis]) {
-      box.min[axis] = std::nextafter(box.min[axis], -kInfinity);
-    }
-    if (static_cast<double>(box.max[axis]) < max[axis]) {
-      box.max[axis] = std::nextafter(box.max[axis], kInfinity);
-    }
-  }
-  return box;
-}
 
 }  // namespace
 
@@ -91,9 +37,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "--depth", settings.max_depth,
           "of the octree: a cell is halved so often at most (default: chosen by the scene, at least 6)")
       ->check(CLI::Range(0u, kMaxOctreeDepth));
-  addDecimal(command, "--near-distance", settings.near_distance, kMinNear, kMax,
-             "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
-             "tan(fovy / 2)^2 * (1 + aspect^2))");
+  addDecimalOption(
+      command, "--near-distance", settings.near_distance, kMinNear, kMax,
+      "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
+      "tan(fovy / 2)^2 * (1 + aspect^2))");
   addCrackWidthOption(command, options.crack_width);
   command
       .add_option(
@@ -108,21 +55,19 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                   "box is halved so often at most, and each half tested")
       ->check(CLI::Range(0u, 16u))
       ->capture_default_str();
-  command.add_option("--region", options.region,
-                     "viewers are in this box, world space: MINX,MINY,MINZ,MAXX,MAXY,MAXZ (default: the "
-                     "scene's bounds)");
-  addDecimal(command, "--search-distance", settings.search_distance, 0.0, kMax,
-             "occluders are looked for within so many metres at first; 0: chosen");
-  addDecimal(
+  addViewerOptions(command, options.viewers);
+  addDecimalOption(command, "--search-distance", settings.search_distance, 0.0, kMax,
+                   "occluders are looked for within so many metres at first; 0: chosen");
+  addDecimalOption(
       command, "--occluder-size", settings.occluder_size, 0.0, kMax,
       "an occluder is of use to a cell when its area is so many times that of the cell's smallest face, or "
       "its volume so many times the cell's");
-  addDecimal(command, "--similarity", settings.similarity, 0.0, 1.0,
-             "a cell is divided where some point of it sees less than the cell by this part");
-  addDecimal(command, "--least-gain", settings.min_gain, 0.0, 1.0,
-             "occluders are looked for twice as far as long as that hides this part of the triangles");
-  addDecimal(command, "--merge-tolerance", settings.merge_tolerance, 0.0, kMax,
-             "eight cells become one that sees at most this part more than each");
+  addDecimalOption(command, "--similarity", settings.similarity, 0.0, 1.0,
+                   "a cell is divided where some point of it sees less than the cell by this part");
+  addDecimalOption(command, "--least-gain", settings.min_gain, 0.0, 1.0,
+                   "occluders are looked for twice as far as long as that hides this part of the triangles");
+  addDecimalOption(command, "--merge-tolerance", settings.merge_tolerance, 0.0, kMax,
+                   "eight cells become one that sees at most this part more than each");
   command
       .add_option("--sample-memory", options.sample_mib,
                   "MiB for what was seen from the corners of cells, of each process; more is faster")
@@ -161,39 +106,29 @@ Status checkOptions(const BakeOptions& options) {
   if (const auto names = databaseNames(options); !names) {
     return names.error();
   }
-  if (!options.region.empty()) {
-    if (const auto region = parseRegion(options.region); !region) {
-      return region.error();
-    }
-  }
-  return Success{};
+  return checkViewerOptions(options.viewers);
 }
 
-BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene) {
+BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const ViewerSpace& viewers) {
   BakeSettings settings = options.settings;
   settings.occlusion = options.occlusion == "fused" ? BakeOcclusion::kFused : BakeOcclusion::kConvex;
   if (settings.triangle_budget == 0) {
     settings.triangle_budget = std::max(scene.triangleCount() / kBudgetShare, kMinBudget);
   }
-  if (const auto region = parseRegion(options.region)) {
-    const std::array<double, 6>& r = *region;
-    settings.region =
-        enclosing(Vec3d(r[0], r[1], r[2]) - scene.origin, Vec3d(r[3], r[4], r[5]) - scene.origin);
-  }
+  settings.viewers = viewers.boxes;
   settings.sample_bytes = (static_cast<std::size_t>(options.sample_mib) << 20) / options.common.threads;
   return settings;
 }
 
-Json settingsJson(const Bake& bake, const Vec3d& origin, double crack_width) {
+Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, double crack_width) {
   const BakeSettings& settings = bake.settings();
   const OccluderCounts& occluders = bake.occluders();
-  const Box& region = settings.region;
-  const Vec3d min = Vec3d(region.min) + origin, max = Vec3d(region.max) + origin;
   Json json = {{"triangle_budget", settings.triangle_budget},
                {"depth", settings.max_depth},
                {"base_depth", bake.baseDepth()},
                {"near_distance", settings.near_distance},
-               {"region", region.empty() ? Json() : Json({min.x, min.y, min.z, max.x, max.y, max.z})},
+               {"region", viewers.regionJson(origin)},
+               {"viewers", viewers.facts},
                {"occlusion", settings.occlusion == BakeOcclusion::kFused ? "fused" : "convex"},
                {"divisions", settings.divisions},
                {"search_distance", settings.search_distance},

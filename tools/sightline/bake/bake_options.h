@@ -8,6 +8,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/pvs/bake/bake.h"
+#include "tools/sightline/bake/viewer_options.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/methods/method_options.h"
 
@@ -19,7 +20,7 @@ struct BakeOptions {
   BakeSettings settings{};   // complete except for what depends on the scene or the threads:
   double crack_width = 0.0;  // metres
   std::string occlusion = "convex";
-  std::string region;  // six numbers, world space; empty: the scene's bounds
+  ViewerOptions viewers;
   std::uint32_t sample_mib = 1024;
   std::string databases;  // names, separated by commas
   bool resume = false, restart = false;
@@ -36,11 +37,11 @@ Result<std::vector<std::string>> databaseNames(const BakeOptions& options);
 Status checkOptions(const BakeOptions& options);
 
 // The settings for a scene. Precondition: checkOptions() succeeded.
-BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene);
+BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const ViewerSpace& viewers);
 
 // The text of BakeRecord::settings: everything that the parts depend on, the scene's origin (so that queries
 // can use world space), and facts about the occluders. It holds neither the threads nor the limit of their
 // memory.
-Json settingsJson(const Bake& bake, const Vec3d& origin, double crack_width);
+Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, double crack_width);
 
 }  // namespace sightline::tool

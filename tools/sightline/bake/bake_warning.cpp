@@ -59,12 +59,14 @@ std::string reasonFor(const SightFile& file, const SightFacts& facts) {
     return fmt::format(
         "the largest occluder has {:.3g} m², too small for the smallest cells, {:.3g} m wide; {}",
         occluders->largest_area, edge,
-        depth > record.max_depth ? fmt::format("give --depth {} or more, or a --region", depth)
+        depth > record.max_depth ? fmt::format("give --depth {} or more, or say where --viewers are", depth)
                                  : "give a smaller --occluder-size");
   }
   if (shareOf(facts, StopReason::kMaxDepth) >= kMaxOfSpace && record.max_depth < kMaxOctreeDepth) {
-    return fmt::format("the smallest cells are {:.3g} m wide; give a --depth greater than {}, or a --region",
-                       edge, record.max_depth);
+    return fmt::format(
+        "the smallest cells are {:.3g} m wide; give a --depth greater than {}, or say where "
+        "--viewers are",
+        edge, record.max_depth);
   }
   return "single convex occluders hide little here: the scene is open, or its walls are of many small pieces";
 }

@@ -17,7 +17,29 @@ constexpr std::uint32_t kMaxThreads = 256;
 constexpr std::uint32_t kMaxPixels = 16384;
 constexpr double kMaxCrackWidth = 1.0;  // metres
 
+// Accepts finite numbers from min to max. CLI::Range would accept "nan".
+CLI::Validator decimal(double min, double max) {
+  return CLI::Validator(
+      [min, max](const std::string& text) {
+        const std::optional<double> value = parseDecimal(text);
+        return value && *value >= min && *value <= max
+                   ? std::string()
+                   : fmt::format("'{}' is not a number from {} to {}", text, min, max);
+      },
+      fmt::format("[{} - {}]", min, max));
+}
+
 }  // namespace
+
+void addDecimalOption(CLI::App& command, const std::string& name, double& value, double min, double max,
+                      const std::string& help) {
+  command.add_option(name, value, help)->check(decimal(min, max))->capture_default_str();
+}
+
+void addDecimalOption(CLI::App& command, const std::string& name, std::optional<double>& value, double min,
+                      double max, const std::string& help) {
+  command.add_option(name, value, help)->check(decimal(min, max));
+}
 
 CLI::Validator isNotEmpty() {
   return {[](std::string& word) { return std::string(word.empty() ? "is empty" : ""); }, ""};
@@ -93,19 +115,9 @@ void addPathOptions(CLI::App& command, PathOptions& options) {
 }
 
 void addCrackWidthOption(CLI::App& command, double& width) {
-  command
-      .add_option("--crack-width", width,
-                  "cracks between surfaces that are narrower, in metres, count as closed: what shows only "
-                  "through them, or within twice this width beside an edge, may be culled")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            const std::optional<double> value = parseDecimal(text);
-            return value && *value >= 0.0 && *value <= kMaxCrackWidth
-                       ? std::string()
-                       : fmt::format("'{}' is not a number of metres from 0 to {}", text, kMaxCrackWidth);
-          },
-          fmt::format("[0 - {}]", kMaxCrackWidth)))
-      ->capture_default_str();
+  addDecimalOption(command, "--crack-width", width, 0.0, kMaxCrackWidth,
+                   "cracks between surfaces that are narrower, in metres, count as closed: what shows only "
+                   "through them, or within twice this width beside an edge, may be culled");
 }
 
 void addPictureOptions(CLI::App& command, PictureOptions& options) {

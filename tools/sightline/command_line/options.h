@@ -3,6 +3,7 @@
 // Options that several commands share, except those of culling methods (method_options.h).
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,12 @@ namespace sightline::tool {
 
 // Refuses an empty word, such as an unset variable of a script.
 CLI::Validator isNotEmpty();
+
+// Adds options of finite numbers from min to max.
+void addDecimalOption(CLI::App& command, const std::string& name, double& value, double min, double max,
+                      const std::string& help);
+void addDecimalOption(CLI::App& command, const std::string& name, std::optional<double>& value, double min,
+                      double max, const std::string& help);
 
 // The types of values, as --help, the manual and the completion name them.
 inline constexpr const char *kFileType = "FILE", *kFolderType = "DIR";

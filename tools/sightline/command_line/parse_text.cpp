@@ -35,4 +35,21 @@ std::optional<double> parseDecimal(const std::string& text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+std::vector<double> parseDecimals(const std::string& text, std::size_t count) {
+  std::vector<double> numbers;
+  for (const std::string& word : splitAt(text, ',')) {
+    if (const std::optional<double> number = parseDecimal(word)) {
+      numbers.push_back(*number);
+    } else {
+      return {};
+    }
+  }
+  return numbers.size() == count ? numbers : std::vector<double>{};
+}
+
+std::optional<Vec3d> parsePoint(const std::string& text) {
+  const std::vector<double> numbers = parseDecimals(text, 3);
+  return numbers.empty() ? std::nullopt : std::optional(Vec3d(numbers[0], numbers[1], numbers[2]));
+}
+
 }  // namespace sightline::tool

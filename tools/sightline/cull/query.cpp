@@ -39,15 +39,6 @@ struct PointAnswer {
   bool outside() const { return place.leaf == CellPlace::kOutside; }
 };
 
-std::optional<Vec3d> pointOfText(const std::string& text) {
-  const std::vector<std::string> words = splitAt(text, ',');
-  if (words.size() != 3) {
-    return std::nullopt;
-  }
-  const auto x = parseDecimal(words[0]), y = parseDecimal(words[1]), z = parseDecimal(words[2]);
-  return x && y && z ? std::optional(Vec3d(*x, *y, *z)) : std::nullopt;
-}
-
 Result<std::vector<Vec3d>> pointsOfFile(const std::string& name) {
   const Result<std::string> text = readFile(name);
   if (!text) {
@@ -82,7 +73,7 @@ Result<std::vector<Vec3d>> pointsOfFile(const std::string& name) {
 Result<std::vector<Vec3d>> allPoints(const std::vector<std::string>& texts) {
   std::vector<Vec3d> points;
   for (const std::string& text : texts) {
-    if (const std::optional<Vec3d> point = pointOfText(text)) {
+    if (const std::optional<Vec3d> point = parsePoint(text)) {
       points.push_back(*point);
       continue;
     }

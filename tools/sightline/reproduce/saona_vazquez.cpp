@@ -64,7 +64,7 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
       bake.settings.near_distance = std::max(bake.settings.near_distance, near);
     }
   }
-  return bakeSettings(bake, scene);
+  return bakeSettings(bake, scene, {});
 }
 
 Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const ParallelFor& parallel_for) {
@@ -84,7 +84,7 @@ Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const 
     return baked.error();
   }
   effort.bake_s = 1e-6 * watch.lap();
-  baked->record.settings = settingsJson(*bake, scene.origin, 0.0).dump();
+  baked->record.settings = settingsJson(*bake, {}, scene.origin, 0.0).dump();
   Result<SightFile> file = written(*baked);
   if (!file) {
     return file.error();

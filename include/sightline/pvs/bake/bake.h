@@ -36,8 +36,10 @@ struct BakeSettings {
   // Maximum distance in metres from a viewer's eye to what its near plane clips (nearDistance). Occluders
   // closer to a cell than this do not count. Viewers with a greater distance get all objects as their set.
   double near_distance = 0.25;
-  // Viewers are in this box, in scene space; if it is empty, in the bounds of the scene.
-  Box region{};
+  // Viewers are in these boxes, in scene space (see viewer_space.h); if there are none, in the bounds of the
+  // scene. Cells that meet none of them are not baked and hold all objects. The octree's root is a cube
+  // around all of them, the viewing region.
+  std::vector<Box> viewers{};
   // Occluders are searched within this distance of a viewpoint at first, in metres; 0 chooses one. It is
   // doubled where that helps.
   double search_distance = 0.0;
@@ -102,12 +104,12 @@ struct OccluderCounts {
 class Bake {
  public:
   // scene and occluders need not outlive the plan. occluders: all that are to be considered; area_fraction =
-  // 1 omits none. Returns an error if settings are out of range, if there is neither a region nor an object
-  // with a finite box, or if an occluder belongs to no object of the scene.
+  // 1 omits none. Returns an error if settings are out of range, if there is neither a box of viewers nor an
+  // object with a finite box, or if an occluder belongs to no object of the scene.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {}, const ParallelFor& parallel_for = serialFor);
 
-  const BakeSettings& settings() const;  // including the chosen depth
+  const BakeSettings& settings() const;  // including the chosen depth and boxes of viewers
   // Any cell may be divided down to this level. Below it, down to settings().max_depth, only cells near
   // occluders are divided.
   std::uint32_t baseDepth() const;
