@@ -77,7 +77,7 @@ TEST(PartExtents, DoNotAllocateAfterTheFirstFrame) {
     for (std::uint32_t part = 0; part < 50; ++part) {
       scene.place(part, randomPlacement(random, random.direction() * 5.0, 1));
     }
-    extents.update(view, scene.store, scene.moved);
+    extents.update(view, scene.store, scene.moved, scene.used);
     std::next_permutation(order.begin(), order.end());
     scan.beginFrame(extents.table(), order);
     for (std::uint32_t part = 0; part < 50; ++part) {

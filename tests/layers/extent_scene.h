@@ -18,7 +18,7 @@ namespace sightline::layers::extent_tests {
 struct ExtentScene {
   PartStore store;
   std::vector<shapes::Points> points;  // input points of each hull
-  std::vector<std::uint8_t> moved;
+  std::vector<std::uint8_t> moved, used;
 
   std::uint32_t addHull(const shapes::Points& of) {
     Result<ConvexHull> hull = buildHull(of);
@@ -32,6 +32,7 @@ struct ExtentScene {
     store.placements.push_back(placement);
     store.finite.push_back(isFinite(placement) ? 1 : 0);
     moved.push_back(1);
+    used.push_back(1);
     return static_cast<std::uint32_t>(moved.size() - 1);
   }
   std::uint32_t addPart(const shapes::Points& of, const Placement& placement = {}) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "sightline/layers/compositing.h"
 #include "tests/layers/made_parts.h"
 #include "tests/layers/sorter_choices.h"
 
@@ -156,6 +157,42 @@ TEST(LayerSorterRules, OverlaysAreFirstAndBackdropsLastByNumber) {
     sorter.setEnabled(PartId(1u), false);
     sorter.setEnabled(PartId(3u), false);
     EXPECT_EQ(groupsOf(sorter.update(scene.view)), (std::vector<Group>{{4}, {5}, {2}, {0}}));
+  }
+}
+
+TEST(LayerSorterRules, DepthBufferedPartsAreOneGroupBehindWhatIsSorted) {
+  const Points cube = shapes::cube();
+  const auto at = [&](double z, Place place) {
+    return solid(shapes::moved(cube, {0, 0, z}), {.place = place});
+  };
+  // Depth-buffered ones lie before, between and behind the sorted ones, and one of them intersects part 1.
+  const MadeScene scene{{at(7, Place::kDepthBuffered), at(0, Place::kSorted), at(0.5, Place::kDepthBuffered),
+                         at(4, Place::kSorted), at(-9, Place::kBackdrop), at(-5, Place::kDepthBuffered),
+                         at(9, Place::kOverlay)},
+                        viewFrom({0, 0, 20})};
+  for (const Way& way : allWays(true)) {
+    SCOPED_TRACE(way.name);
+    LayerSorter sorter = sorterOf(scene, way.settings);
+    const LayerOrder& order = sorter.update(scene.view);
+    const Answer answer(order);
+    EXPECT_EQ(answer.in_order, (std::vector<Group>{{6}, {3}, {1}, {0, 2, 5}, {4}}));
+    EXPECT_EQ(answer.arcs, (std::vector<Pair>{{3, 1}}));
+    EXPECT_TRUE(answer.collisions.empty());
+    EXPECT_EQ(order.first_sorted, 1u);
+    EXPECT_EQ(order.depth_buffered, 3u);
+    EXPECT_LE(order.stats.pair_queries, 3u) << "of the two sorted parts: each before the other, and touching";
+    LayerMerger merger;
+    const FrameLayers& layers = merger.merge(order);
+    EXPECT_TRUE(checkLayers(layers));
+    EXPECT_EQ(layers.layers(), 5u);
+    EXPECT_EQ(layers.depth_buffered, LayerId(3u));
+    EXPECT_EQ(layers.first_hidden, LayerId(1u));
+    EXPECT_EQ(layers.partsOf(layers.depth_buffered).size(), 3u);
+    for (const std::uint32_t part : {0u, 2u, 5u}) {
+      sorter.setEnabled(PartId(part), false);
+    }
+    EXPECT_EQ(sorter.update(scene.view).depth_buffered, LayerOrder::kNone);
+    EXPECT_FALSE(merger.merge(sorter.update(scene.view)).depth_buffered.valid());
   }
 }
 

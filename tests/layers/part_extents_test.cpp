@@ -165,7 +165,7 @@ TEST(PartExtents, HoldTheExactBoundsTightlyWhileThingsMove) {
         }
       }
       const View view = randomView(random, eye, false);
-      extents.update(view, scene.store, scene.moved);
+      extents.update(view, scene.store, scene.moved, scene.used);
       checkAll(scene, extents, axes, view, reference, random,
                "seed " + std::to_string(seed) + ", frame " + std::to_string(frame));
       scene.rest();
@@ -193,7 +193,7 @@ TEST(PartExtents, FollowSmallSteps) {
     }
     View view = straightView(eye);
     setOrientation(view, {std::sin(0.1 * frame), 0.1, -std::cos(0.1 * frame)}, {0, 1, 0});
-    extents.update(view, scene.store, scene.moved);
+    extents.update(view, scene.store, scene.moved, scene.used);
     checkAll(scene, extents, axes, view, {0, 0, 4}, random, "frame " + std::to_string(frame));
     eye += random.direction() * 0.1;
   }
@@ -205,7 +205,7 @@ TEST(PartExtents, PassTheBranchCut) {
   const std::uint32_t behind = scene.addPart(shapes::cube({0, 0, 5}, 1.0));
   const std::uint32_t front = scene.addPart(shapes::cube({0, 0, -5}, 1.0));
   PartExtents extents(cameraExtents());
-  extents.update(straightView({}), scene.store, scene.moved);
+  extents.update(straightView({}), scene.store, scene.moved, scene.used);
   // The near face's corners are at (1, 4), at a pseudo-angle of 1 / 5 from the axis.
   const Interval back = extents.table().at(0, behind);
   EXPECT_NEAR(back.low, 1.8, 1e-5);
@@ -230,7 +230,7 @@ TEST(PartExtents, OverlapAcrossTheBranchCut) {
     scene.addPart(shapes::point(at(degrees)));
   }
   PartExtents extents({cameraExtents()[0]});
-  extents.update(straightView({}), scene.store, scene.moved);
+  extents.update(straightView({}), scene.store, scene.moved, scene.used);
   for (std::uint32_t i = 0; i < others.size(); ++i) {
     EXPECT_EQ(overlaps(extents.table(), extents.query(i + 1), 0), others[i].second) << others[i].first;
     EXPECT_EQ(overlaps(extents.table(), extents.query(0), i + 1), others[i].second) << others[i].first;
@@ -245,7 +245,7 @@ TEST(PartExtents, AreTheFullCycleAroundAnEyeInTheImage) {
   scene.addPart(shapes::point({0, 0, 0}));                // is at the eye
   scene.addPart(shapes::point({7, 0, 0}));                // has the eye's image in the second plane
   PartExtents extents(cameraExtents());
-  extents.update(straightView({}), scene.store, scene.moved);
+  extents.update(straightView({}), scene.store, scene.moved, scene.used);
   const Interval full{-2, 2};
   EXPECT_EQ(extents.table().at(0, 0), full);
   EXPECT_EQ(extents.table().at(1, 0), full);
@@ -264,21 +264,44 @@ TEST(PartExtents, FixedToTheWorldAreTakenAnewForMovedPartsAlone) {
   const std::size_t n = scene.store.parts();
   PartExtents world(worldExtents()), camera(cameraExtents());
   View view = straightView({1, 2, 3});
-  EXPECT_EQ(world.update(view, scene.store, scene.moved), 3 * n);
-  EXPECT_EQ(camera.update(view, scene.store, scene.moved), 3 * n);
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 3 * n);
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 3 * n);
   scene.rest();
-  EXPECT_EQ(camera.update(view, scene.store, scene.moved), 0u);
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 0u);
   view.eye.x += 1;
-  EXPECT_EQ(world.update(view, scene.store, scene.moved), 0u);
-  EXPECT_EQ(camera.update(view, scene.store, scene.moved), 3 * n);
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 0u);
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 3 * n);
   scene.place(4, randomPlacement(random, {1, 1, 1}, 1));
-  EXPECT_EQ(world.update(view, scene.store, scene.moved), 3u);
-  EXPECT_EQ(camera.update(view, scene.store, scene.moved), 3u);
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 3u);
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 3u);
   scene.rest();
   scene.addPart(shapes::cube());
   scene.rest();
-  EXPECT_EQ(world.update(view, scene.store, scene.moved), 3u);
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 3u);
   checkAll(scene, world, worldExtents(), view, {1, 2, 3}, random, "at the end");
+}
+
+TEST(PartExtents, OfPartsThatAreNotUsedAreTakenWhenTheyAre) {
+  Random random(4);
+  ExtentScene scene = someShapes(random, 1.0);
+  const std::size_t n = scene.store.parts();
+  PartExtents world(worldExtents()), camera(cameraExtents());
+  View view = straightView({1, 2, 3});
+  scene.used[2] = scene.used[5] = 0;
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 3 * (n - 2));
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 3 * (n - 2));
+  scene.rest();
+  scene.place(5, randomPlacement(random, {1, 1, 1}, 1));
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 0u);
+  scene.rest();
+  view.eye.x += 1;
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 3 * (n - 2));
+  scene.used[2] = scene.used[5] = 1;
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 6u);
+  EXPECT_EQ(camera.update(view, scene.store, scene.moved, scene.used), 6u);
+  EXPECT_EQ(world.update(view, scene.store, scene.moved, scene.used), 0u);
+  checkAll(scene, world, worldExtents(), view, {1, 2, 3}, random, "world");
+  checkAll(scene, camera, cameraExtents(), view, view.eye, random, "camera");
 }
 
 TEST(PartExtents, KeepDetailsFarFromTheOrigin) {
@@ -287,7 +310,7 @@ TEST(PartExtents, KeepDetailsFarFromTheOrigin) {
   scene.addPart(shapes::cube({}, 1e-3), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, far});
   for (const std::vector<ExtentAxis>& axes : {cameraExtents(), worldExtents()}) {
     PartExtents extents(axes);
-    extents.update(straightView(far + Vec3d{0, 0, 1}), scene.store, scene.moved);
+    extents.update(straightView(far + Vec3d{0, 0, 1}), scene.store, scene.moved, scene.used);
     for (std::size_t a = 0; a < 3; ++a) {
       const Interval own = extents.table().at(a, 0);
       EXPECT_NEAR(own.high - own.low, 2e-3, 2e-5) << a;
@@ -302,7 +325,7 @@ TEST(PartExtents, OfPartsThatAreNotFiniteOverlapEverything) {
   for (const bool orthographic : {false, true}) {
     PartExtents extents(allKinds());
     const View view = straightView({0.5, 3, 7}, orthographic);
-    extents.update(view, scene.store, scene.moved);
+    extents.update(view, scene.store, scene.moved, scene.used);
     EXPECT_TRUE(overlaps(extents.table(), extents.query(0u), 1));
     EXPECT_TRUE(overlaps(extents.table(), extents.query(1u), 0));
     EXPECT_EQ(extents.table().at(2, 0), (Interval{-kInfinity, kInfinity}));
@@ -310,7 +333,7 @@ TEST(PartExtents, OfPartsThatAreNotFiniteOverlapEverything) {
   }
   PartExtents extents(allKinds());
   View nowhere = straightView({std::nan(""), 0, 0});
-  extents.update(nowhere, scene.store, scene.moved);
+  extents.update(nowhere, scene.store, scene.moved, scene.used);
   EXPECT_TRUE(overlaps(extents.table(), extents.query(1u), 1));
 }
 
@@ -318,7 +341,7 @@ TEST(PartExtents, PaddingOverlapsNothing) {
   ExtentScene scene;
   scene.addPart(shapes::cube(), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {std::nan(""), 0, 0}});
   PartExtents extents(allKinds());
-  extents.update(straightView({}), scene.store, scene.moved);
+  extents.update(straightView({}), scene.store, scene.moved, scene.used);
   for (std::size_t axis = 0; axis < extents.table().axes(); ++axis) {
     ASSERT_EQ(extents.table().lows[axis].size(), ExtentTable::kPadding);
     ASSERT_EQ(extents.table().highs[axis].size(), ExtentTable::kPadding);
@@ -333,17 +356,17 @@ TEST(PartExtents, AQueryReachesTheEye) {
   scene.addPart(shapes::cube({0, 0, -10}));
   scene.addPart(shapes::cube({0, 0, 20}));
   PartExtents extents(worldExtents());
-  extents.update(straightView({0, 0, 3}), scene.store,
-                 scene.moved);  // heights are measured above the first eye
+  extents.update(straightView({0, 0, 3}), scene.store, scene.moved,
+                 scene.used);  // heights are measured above the first eye
   EXPECT_NEAR(extents.query(0u)[2].high, 0.0, 1e-6);
   EXPECT_NEAR(extents.query(1u)[2].low, 0.0, 1e-6);
   EXPECT_NEAR(extents.query(1u)[2].high, 18.0, 1e-4);
   EXPECT_NEAR(extents.distanceAlong(2, 0), 13.0, 1e-5);
-  extents.update(straightView({0, 0, 8}), scene.store, scene.moved);
+  extents.update(straightView({0, 0, 8}), scene.store, scene.moved, scene.used);
   EXPECT_NEAR(extents.query(0u)[2].high, 5.0, 1e-5);
   EXPECT_NEAR(extents.distanceAlong(2, 0), 18.0, 1e-5);
   EXPECT_NEAR(extents.distanceAlong(2, 1), 12.0, 1e-5);
-  extents.update(straightView({0, 0, 8}, true), scene.store, scene.moved);
+  extents.update(straightView({0, 0, 8}, true), scene.store, scene.moved, scene.used);
   EXPECT_EQ(extents.query(0u)[2].high, kInfinity);
   EXPECT_NEAR(extents.query(0u)[2].low, -14.0, 1e-5);
   EXPECT_EQ(extents.query(0u)[0], extents.table().at(0, 0));  // the axis is across the rays
@@ -369,7 +392,8 @@ TEST_P(NeverMisses, AnOccluder) {
       scene.place(part, randomPlacement(random, random.direction() * (scale * random.number(0, 8)), scale));
     }
     PartExtents extents(axes);
-    extents.update(randomView(random, random.direction() * scale, false), scene.store, scene.moved);
+    extents.update(randomView(random, random.direction() * scale, false), scene.store, scene.moved,
+                   scene.used);
     const std::uint32_t back = random.below(n), front = random.below(n);
     if (front == back) {
       continue;
@@ -385,7 +409,7 @@ TEST_P(NeverMisses, AnOccluder) {
     placement.origin += near - own;
     scene.rest();
     scene.place(front, placement);
-    extents.update(view, scene.store, scene.moved);
+    extents.update(view, scene.store, scene.moved, scene.used);
     EXPECT_TRUE(overlaps(extents.table(), extents.query(back), front)) << "seed " << seed;
     const std::uint32_t third = random.below(n);
     const std::uint32_t group[] = {third, back};
@@ -399,7 +423,7 @@ TEST(PartExtents, OfAnOrthographicViewArePositionsAcrossIt) {
   ExtentScene scene;
   scene.addPart(shapes::cube({4, 2, -10}));
   PartExtents extents(cameraExtents());
-  extents.update(straightView({1, 1, 0}, true), scene.store, scene.moved);
+  extents.update(straightView({1, 1, 0}, true), scene.store, scene.moved, scene.used);
   EXPECT_FALSE(extents.table().angular(0));
   EXPECT_NEAR(extents.table().at(0, 0).low, 2.0, 1e-5);
   EXPECT_NEAR(extents.table().at(0, 0).high, 4.0, 1e-5);
@@ -407,7 +431,7 @@ TEST(PartExtents, OfAnOrthographicViewArePositionsAcrossIt) {
   EXPECT_NEAR(extents.table().at(1, 0).high, 2.0, 1e-5);
   EXPECT_EQ(extents.query(0u)[2].low, -kInfinity);
   EXPECT_NEAR(extents.query(0u)[2].high, 11.0, 1e-5);
-  extents.update(straightView({1, 1, 0}), scene.store, scene.moved);
+  extents.update(straightView({1, 1, 0}), scene.store, scene.moved, scene.used);
   EXPECT_TRUE(extents.table().angular(0));
   EXPECT_NEAR(extents.table().at(0, 0).high, 4.0 / 13.0, 1e-5);
 }
@@ -444,8 +468,8 @@ TEST(PartExtents, OfAxesThatAreNotFiniteRuleNothingOut) {
                        {Kind::kSpatial, Frame::kCamera, {0, 0, 0}, {}},
                        {Kind::kAngular, Frame::kWorld, {1, 0, 0}, {0, nan, 0}},
                        {Kind::kAngular, Frame::kWorld, {0, 0, 0}, {0, 0, 1}}});
-  extents.update(straightView({1, 2, 3}), scene.store, scene.moved);
-  extents.update(straightView({1e308, 2, -1e308}), scene.store, scene.moved);
+  extents.update(straightView({1, 2, 3}), scene.store, scene.moved, scene.used);
+  extents.update(straightView({1e308, 2, -1e308}), scene.store, scene.moved, scene.used);
   EXPECT_TRUE(overlaps(extents.table(), extents.query(0u), 1));
   EXPECT_TRUE(overlaps(extents.table(), extents.query(1u), 0));
 }
@@ -460,7 +484,7 @@ TEST(PartExtents, OfSeveralPartsHoldEachOne) {
       scene.place(part, randomPlacement(random, random.direction() * random.number(2, 8), 1));
     }
     PartExtents extents(allKinds());
-    extents.update(randomView(random, {}, false), scene.store, scene.moved);
+    extents.update(randomView(random, {}, false), scene.store, scene.moved, scene.used);
     std::vector<std::uint32_t> group;
     for (std::uint32_t i = 0; i < 1 + random.below(4); ++i) {
       group.push_back(random.below(n));

@@ -214,6 +214,79 @@ TEST_F(LayerCompositorTest, LayersOfGlassAreThePictureOfAllPeeledAtOnce) {
   }
 }
 
+// Leaves every part that is not see-through to the depth buffer.
+MovingScene depthBuffered(MovingScene moving) {
+  for (std::size_t part = 0; part < moving.parts.size(); ++part) {
+    const Object& object = moving.scene.objects[part];
+    if (moving.scene.view().materialOf(object).opacity != Opacity::kBlended) {
+      moving.parts[part].settings.place = PartSettings::Place::kDepthBuffered;
+    }
+  }
+  return moving;
+}
+
+TEST_F(LayerCompositorTest, SeeThroughLayersBehindADepthBufferAreThePictureOfAllPeeledAtOnce) {
+  for (const std::uint32_t samples : {1u, 2u}) {
+    LayerRendererOptions options = kSmall;
+    options.samples = samples;
+    Studio all(glass(), options), studio(depthBuffered(glass()), options);
+    for (const std::uint32_t frame : {0u, 60u, 110u, 160u, 239u}) {
+      all.goTo(frame);
+      studio.goTo(frame);
+      ASSERT_TRUE(studio.layers().depth_buffered.valid());
+      EXPECT_LT(studio.layers().layers(), all.layers().layers());
+      CompositeStats stats;
+      const LayerImage picture = studio.composite({}, &stats);
+      EXPECT_LE(measureDifference(picture, studio.atOnce()).largest, kRounding) << frame;
+      EXPECT_LE(measureDifference(picture, all.composite()).largest, kRounding) << frame;
+    }
+  }
+}
+
+TEST_F(LayerCompositorTest, OrthographicAndMovedSeeThroughLayersAreHiddenByTheDepthBuffer) {
+  Studio studio(depthBuffered(glass()));
+  View view = studio.moving().scene.paths.at(0).view(60, studio.moving().scene.origin);
+  view.orthographic = true;
+  view.ortho_height = 6.0;
+  studio.look(view);
+  EXPECT_LE(measureDifference(studio.composite(), studio.atOnce()).largest, kRounding);
+  // Another picture from elsewhere in between does not leave its depths behind.
+  studio.goTo(200);
+  (void)studio.composite();
+  studio.look(view);
+  EXPECT_LE(measureDifference(studio.composite(), studio.atOnce()).largest, kRounding);
+}
+
+TEST_F(LayerCompositorTest, AnOverlayIsBeforeTheDepthBufferAndABackdropBehindIt) {
+  SceneMaker maker;
+  maker.wall(0.0, 2.0, kGlass);          // the overlay, though it is behind
+  maker.wall(3.0, 3.0, kRed);            // opaque
+  maker.wall(1.0, 4.0, kBlueBothSides);  // the backdrop
+  maker.wall(4.0, 1.0, kGlass);          // before the wall
+  maker.wall(2.0, 1.0, kGlass);          // behind it
+  MovingScene moving = still(std::move(maker.scene));
+  using Place = PartSettings::Place;
+  const Place places[] = {Place::kOverlay, Place::kDepthBuffered, Place::kBackdrop, Place::kSorted,
+                          Place::kSorted};
+  for (std::size_t i = 0; i < 5; ++i) {
+    moving.parts[i].settings.place = places[i];
+  }
+  Studio studio(std::move(moving));
+  studio.look(testView());
+  const LayerImage picture = studio.composite();
+  // The same by hand, layer over layer.
+  LayerImage by_hand, layer;
+  by_hand.clear(kSmall.width, kSmall.height);
+  for (const std::uint32_t part : {0u, 3u, 1u, 2u}) {
+    const ObjectId object(part);
+    studio.renderer().draw(studio.view(), {&object, 1}, {}, layer);
+    compositeOver(by_hand, layer);
+  }
+  studio.renderer().drawSky(studio.view(), layer);
+  compositeOver(by_hand, layer);
+  EXPECT_LE(measureDifference(picture, by_hand).largest, kRounding);
+}
+
 TEST_F(LayerCompositorTest, SamplesChangeEdgesAlone) {
   Studio studio(glass(), {.width = 160, .height = 90, .samples = 2});
   studio.goTo(60);

@@ -47,7 +47,8 @@ std::vector<std::string> namesOf(const json& parts) {
 }
 
 TEST_F(LayerPictures, AFrameIsAPictureThatIsRightWithItsGroupsNamed) {
-  const json frames = draw("demo:glass", {"--frames", "60", "--image", folder_.file("glass.png")});
+  const json frames =
+      draw("demo:glass", {"--frames", "60", "--parts", "all", "--image", folder_.file("glass.png")});
   ASSERT_EQ(frames.size(), 1u);
   const json& picture = frames[0]["picture"];
   EXPECT_EQ(picture["file"], folder_.file("glass.png"));
@@ -74,8 +75,9 @@ TEST_F(LayerPictures, AFrameIsAPictureThatIsRightWithItsGroupsNamed) {
 // Its pieces of terrain overlap in one surface.
 TEST_F(LayerPictures, WithoutTintsItDoesNotMatterWhichOfTwoPiecesShowsTheirSurface) {
   const auto difference = [&](const std::string& tints) {
-    return draw("demo:canyon?grid=5", {"--frames", "60", "--image", folder_.file(tints + ".png"), "--tints",
-                                       tints})[0]["picture"]["difference"];
+    return draw("demo:canyon?grid=5",
+                {"--frames", "60", "--parts", "all", "--image", folder_.file(tints + ".png"), "--tints",
+                 tints})[0]["picture"]["difference"];
   };
   EXPECT_GT(difference("on")["mean"], 0.01);
   EXPECT_LE(difference("off")["largest"], 1.0);
@@ -119,6 +121,32 @@ TEST_F(LayerPictures, OpaqueScenesHaveNoPairsToGetWrong) {
   EXPECT_EQ(picture["by_distance"]["difference"]["share_beyond"], 0.0);
   EXPECT_EQ(picture["peeled"], 0);
   EXPECT_FALSE(picture.contains("file"));
+}
+
+TEST_F(LayerPictures, APictureAloneSortsSeeThroughPartsAndIsTheSame) {
+  const auto frame = [&](const std::string& parts) {
+    std::vector<std::string> more{"--frames", "60", "--image", folder_.file(parts + ".png")};
+    return draw("demo:glass", parts == "default" ? more : joined(more, {"--parts", parts}))[0];
+  };
+  const json all = frame("all"), see_through = frame("see-through"), chosen = frame("default");
+  EXPECT_TRUE(all["depth_buffered"].is_null());
+  ASSERT_TRUE(see_through["depth_buffered"].is_number());
+  EXPECT_EQ(see_through["layers"], chosen["layers"]);
+  EXPECT_LT(see_through["layers"].size(), all["layers"].size());
+  EXPECT_LT(see_through["pair_queries"], all["pair_queries"]);
+  // What needs no order is drawn together, and every part is in one layer as before.
+  const auto partsOf = [](const json& layers) {
+    std::vector<int> parts;
+    for (const json& layer : layers) {
+      parts.insert(parts.end(), layer.begin(), layer.end());
+    }
+    std::sort(parts.begin(), parts.end());
+    return parts;
+  };
+  EXPECT_EQ(partsOf(see_through["layers"]), partsOf(all["layers"]));
+  EXPECT_GT(see_through["layers"][see_through["depth_buffered"].get<std::size_t>()].size(), 10u);
+  EXPECT_LE(see_through["picture"]["difference"]["largest"], 1.0);
+  EXPECT_EQ(read("see-through.png"), read("default.png"));
 }
 
 TEST_F(LayerPictures, PartsAreLeftOutWithTheirLayers) {
@@ -201,6 +229,10 @@ TEST_F(LayerPictures, BadUsageIsRefusedAndNothingIsWritten) {
   refused({"--image", png, "--replace", "1=" + folder_.file("missing.png")}, "missing.png");
   refused({"--image", png, "--by-distance", folder_.file("b.png"), "--replace", "1=" + text}, "--replace");
   refused({"--image", png, "--samples", "3"}, "--samples");
+  refused({"--image", png, "--parts", "opaque"}, "--parts");
+  refused({"--image", png, "--parts", "see-through", "--replace", "1=" + text}, "--replace");
+  refused({"--parts", "see-through", "--svg", folder_.file("a.svg")}, "--svg");
+  refused({"--parts", "see-through", "--blurred", png}, "--blurred");
   refused({"--image", png, "--peel", "always"}, "--peel");
   expectRefused({"layers", "demo:glass", "--image", png, "--width", "0"}, "--width");
   expectRefused({"layers", "demo:glass", "--frames", "0", "--image", png, "--width", "16384"}, "8192");

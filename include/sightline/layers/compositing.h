@@ -37,6 +37,10 @@ struct FrameLayers {
   std::vector<std::uint32_t> first_part{};   // layers + 1 elements: where each layer begins in parts
   std::vector<std::uint32_t> first_layer{};  // groups + 1 elements: each group's first layer, front to back
   std::vector<LayerOcclusion> occlusions{};  // within groups; ascending; never both ways
+  // The layer of all depth-buffered parts, whose surfaces hide what is behind them of the layers from
+  // first_hidden on, up to itself. Not valid: there is none.
+  LayerId depth_buffered{};
+  LayerId first_hidden{0u};
 
   std::size_t layers() const { return first_part.empty() ? 0 : first_part.size() - 1; }
   std::size_t groups() const { return first_layer.empty() ? 0 : first_layer.size() - 1; }

@@ -58,6 +58,9 @@ struct PartSettings {
     kSorted,
     kOverlay,   // in front of all others (a head-up display); several are ordered by number
     kBackdrop,  // behind all others (the sky); several are ordered by number
+    // Opaque and drawn with a depth buffer, which then hides what of the sorted parts is behind. Such parts
+    // need no order, and are neither sorted nor tested. They are one group, LayerOrder::depth_buffered.
+    kDepthBuffered,
   };
   Place place = Place::kSorted;
   bool is_static = false;  // true: setTransform() is refused after the first update()
@@ -77,11 +80,19 @@ struct LayerStats {
 
 // The order of one frame. The spans are valid until the next update().
 struct LayerOrder {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
   std::span<const PartId> parts{};            // all enabled parts, group after group, front to back
   std::span<const std::uint32_t> first_of{};  // groups + 1 elements: where each group begins in parts
   std::span<const LayerArc> arcs{};           // within groups, or all with all_arcs; ascending
   // Pairs of parts whose hulls intersect or touch, ascending, front < back. Pairs with a rule are left out.
   std::span<const LayerArc> collisions{};
+  // The groups of sorted parts begin here, after those of overlays.
+  std::uint32_t first_sorted = 0;
+  // The group of all depth-buffered parts, by number, which comes after the sorted ones and before backdrops.
+  // Its parts need not be adjacent in the true order: where they are nearer, they hide parts of the groups
+  // from first_sorted on. kNone: there are none.
+  std::uint32_t depth_buffered = kNone;
   LayerStats stats{};
 
   std::size_t groups() const { return first_of.empty() ? 0 : first_of.size() - 1; }

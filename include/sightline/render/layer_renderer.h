@@ -49,6 +49,9 @@ struct LayerDraw {
   // Also fills LayerImage::depths with the depth of the nearest surface, opaque or not. Depths err by a few
   // units in the last place; in orthographic views by as much of the far distance.
   bool depths = false;
+  // Leaves out what is behind the surfaces that the last hideBehind() drew, which must have had the same view
+  // and lens. Where those are nearest, LayerImage::depths has their depths.
+  bool hidden = false;
   LensPoint lens{};
 };
 
@@ -81,6 +84,10 @@ class LayerRenderer {
   // the cost grows with the rectangle of pixels that the objects cover.
   LayerDrawStats draw(const View& view, std::span<const ObjectId> objects, const LayerDraw& how,
                       LayerImage& image);
+
+  // Draws the opaque and the alpha-tested ones of these objects to a depth buffer that draw() uses with
+  // LayerDraw::hidden. Returns the number of triangles sent to OpenGL.
+  std::uint64_t hideBehind(const View& view, std::span<const ObjectId> objects, const LensPoint& lens = {});
 
   // Draws the sky, which is opaque and has no depths.
   void drawSky(const View& view, LayerImage& image);

@@ -57,6 +57,12 @@ void LayerMerger::Impl::read(const LayerOrder& order) {
     }
   }
   takeArcs(order.arcs);
+  if (order.depth_buffered != LayerOrder::kNone) {
+    const std::uint32_t first = order.first_of[order.depth_buffered];
+    for (std::uint32_t i = first + 1; i < order.first_of[order.depth_buffered + 1]; ++i) {
+      places.unite(first, i);
+    }
+  }
 }
 
 void LayerMerger::Impl::takeArcs(std::span<const LayerArc> given) {
@@ -134,6 +140,12 @@ const FrameLayers& LayerMerger::merge(const LayerOrder& order) {
   }
   m.numberLayers(order);
   m.listParts(order);
+  m.layers.depth_buffered = {};
+  m.layers.first_hidden = LayerId(0u);
+  if (order.depth_buffered != LayerOrder::kNone) {
+    m.layers.depth_buffered = LayerId(m.layers.first_layer[order.depth_buffered]);
+    m.layers.first_hidden = LayerId(m.layers.first_layer[order.first_sorted]);
+  }
   m.layers.occlusions.clear();
   for (const PlaceArc& arc : m.arcs) {
     // Layers are numbered by their first places, so the occlusions are ascending, too.

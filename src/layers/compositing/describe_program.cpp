@@ -108,6 +108,10 @@ Status checkLayers(const FrameLayers& layers) {
   const auto groupOf = [&](LayerId layer) {
     return std::upper_bound(layers.first_layer.begin(), layers.first_layer.end(), layer.value);
   };
+  if (layers.depth_buffered.valid() && (layers.depth_buffered.value >= layers.layers() ||
+                                        layers.first_hidden.value > layers.depth_buffered.value)) {
+    return Error{"layers of a frame: the depth-buffered layer is none, or hides none before it"};
+  }
   const std::vector<LayerOcclusion>& all = layers.occlusions;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto [front, back] = all[i];

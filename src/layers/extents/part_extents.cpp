@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace sightline::layers {
 PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) {
@@ -22,15 +23,16 @@ PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) 
 }
 
 std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
-                                  std::span<const std::uint8_t> moved) {
-  const std::size_t known = table_.parts;
+                                  std::span<const std::uint8_t> moved, std::span<const std::uint8_t> used) {
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << axes_.size()) - 1);
   const std::uint32_t turned = lookFrom(view);
   addParts(parts);
+  stale_.resize(parts.parts(), all);
   axes_of_.resize(parts.parts());
   std::uint64_t computed = 0;
   for (std::uint32_t part = 0; part < parts.parts(); ++part) {
-    axes_of_[part] = part >= known || moved[part] != 0 ? all : turned;
+    stale_[part] |= moved[part] != 0 ? all : turned;
+    axes_of_[part] = used[part] != 0 ? std::exchange(stale_[part], 0u) : 0u;
     computed += static_cast<std::uint64_t>(std::popcount(axes_of_[part]));
   }
   updateExtents(own_, parts, axes_of_, table_);

@@ -31,7 +31,9 @@ class PartExtents {
   // for all parts if the view changed. A part that is not finite gets infinite intervals and the full circle.
   // In an orthographic view, angular axes hold positions across the view, as table().kinds says.
   // moved: one element per part, whether its placement changed since the last call; new parts count as moved.
-  std::uint64_t update(const View& view, const PartStore& parts, std::span<const std::uint8_t> moved);
+  // used: one element per part; the extents of the others are left as they are until they are used.
+  std::uint64_t update(const View& view, const PartStore& parts, std::span<const std::uint8_t> moved,
+                       std::span<const std::uint8_t> used);
 
   const ExtentTable& table() const { return table_; }
   // Returns the extent that occluders of a part must overlap: its angles, and its spatial intervals widened
@@ -60,6 +62,7 @@ class PartExtents {
   std::vector<double> away_;
 
   ExtentUpdate own_;
+  std::vector<std::uint32_t> stale_;    // one per part: a bit for each axis whose extent is to be computed
   std::vector<std::uint32_t> axes_of_;  // scratch for update()
   ExtentTable table_;
 };

@@ -71,6 +71,7 @@ struct LayerSorter::Impl {
 
   bool isFinite(std::uint32_t part) const;
   bool areParts(PartId first, PartId second) const;
+  void chooseParts();
   void place(const View& view);
   void sort();
   void condition();
@@ -83,8 +84,8 @@ struct LayerSorter::Impl {
   LayerSettings settings;
   PartStore store;
   std::vector<PartSettings> part_settings;
-  // One element per part; sorted: it has been in an update().
-  std::vector<std::uint8_t> enabled, moved, sorted;
+  // One element per part; sorted: it has been in an update(); to_sort: it is in the order of this one.
+  std::vector<std::uint8_t> enabled, moved, sorted, to_sort;
   PairRules rules;
   PartExtents extents;
   PartOcclusion occlusion;
@@ -232,19 +233,23 @@ void LayerSorter::Impl::sortByDistance(const View& view, std::span<std::uint32_t
   });
 }
 
+void LayerSorter::Impl::chooseParts() {
+  to_sort.resize(store.parts());
+  for (std::uint32_t part = 0; part < store.parts(); ++part) {
+    to_sort[part] = enabled[part] != 0 && part_settings[part].place == Place::kSorted ? 1 : 0;
+  }
+}
+
 // Brings `previous` up to date: the last order without removed parts, then new parts by distance.
 void LayerSorter::Impl::place(const View& view) {
-  const auto sorts = [&](std::uint32_t part) {
-    return enabled[part] != 0 && part_settings[part].place == Place::kSorted;
-  };
   const auto gone = std::remove_if(previous.begin(), previous.end(), [&](std::uint32_t part) {
-    listed[part] = sorts(part) ? 1 : 0;
+    listed[part] = to_sort[part];
     return listed[part] == 0;
   });
   previous.erase(gone, previous.end());
   const std::size_t known = previous.size();
   for (std::uint32_t part = 0; part < store.parts(); ++part) {
-    if (listed[part] == 0 && sorts(part)) {
+    if (listed[part] == 0 && to_sort[part] != 0) {
       listed[part] = 1;
       previous.push_back(part);
     }
@@ -301,23 +306,32 @@ void LayerSorter::Impl::addArcsBetweenGroups() {
 void LayerSorter::Impl::collect() {
   parts_out.clear();
   first_out.clear();
-  const auto addAlone = [&](Place place) {
+  const auto beginGroup = [&] { first_out.push_back(static_cast<std::uint32_t>(parts_out.size())); };
+  const auto addEach = [&](Place place, auto&& before_each) {
     for (std::uint32_t part = 0; part < store.parts(); ++part) {
       if (enabled[part] != 0 && part_settings[part].place == place) {
-        first_out.push_back(static_cast<std::uint32_t>(parts_out.size()));
+        before_each();
         parts_out.emplace_back(part);
       }
     }
   };
-  addAlone(Place::kOverlay);
+  addEach(Place::kOverlay, beginGroup);
+  const auto first_sorted = static_cast<std::uint32_t>(first_out.size());
   for (std::size_t i = 0; i < order.groups(); ++i) {
-    first_out.push_back(static_cast<std::uint32_t>(parts_out.size()));
+    beginGroup();
     for (const std::uint32_t part : order.group(i)) {
       parts_out.emplace_back(part);
     }
   }
-  addAlone(Place::kBackdrop);
-  first_out.push_back(static_cast<std::uint32_t>(parts_out.size()));
+  std::uint32_t depth_buffered = LayerOrder::kNone;
+  addEach(Place::kDepthBuffered, [&] {
+    if (depth_buffered == LayerOrder::kNone) {
+      depth_buffered = static_cast<std::uint32_t>(first_out.size());
+      beginGroup();
+    }
+  });
+  addEach(Place::kBackdrop, beginGroup);
+  beginGroup();
   const auto copyArcs = [](std::span<const Arc> arcs, std::vector<LayerArc>& target) {
     target.clear();
     for (const Arc& arc : arcs) {
@@ -326,7 +340,7 @@ void LayerSorter::Impl::collect() {
   };
   copyArcs(order.arcs, arcs_out);
   copyArcs(occlusion.collisions(), collisions_out);
-  out = {parts_out, first_out, arcs_out, collisions_out, stats()};
+  out = {parts_out, first_out, arcs_out, collisions_out, first_sorted, depth_buffered, stats()};
 }
 
 LayerStats LayerSorter::Impl::stats() const {
@@ -345,7 +359,8 @@ LayerStats LayerSorter::Impl::stats() const {
 const LayerOrder& LayerSorter::update(const View& given) {
   Impl& own = *impl_;
   const View view = scaled(given);
-  own.extent_updates = own.extents.update(view, own.store, own.moved);
+  own.chooseParts();
+  own.extent_updates = own.extents.update(view, own.store, own.moved, own.to_sort);
   std::fill(own.moved.begin(), own.moved.end(), 0);
   std::fill(own.sorted.begin(), own.sorted.end(), 1);
   own.occlusion.beginFrame(view, own.store, own.extents.table(), own.rules, own.settings.pair_expiry);

@@ -22,6 +22,12 @@ struct LayerUse {
   const LayerImage* replacement = nullptr;
 };
 
+// Whether the depth-buffered layer hides what is behind it of this one.
+bool isHidden(const FrameLayers& layers, std::uint32_t layer) {
+  return layers.depth_buffered.valid() && layer >= layers.first_hidden.value &&
+         layer < layers.depth_buffered.value;
+}
+
 Error replacementError(LayerId layer, const std::string& what) {
   return Error{"the image that replaces layer " + std::to_string(layer.value) + " " + what};
 }
@@ -50,8 +56,9 @@ struct LayerCompositor::Impl {
   bool isUnordered(const FrameLayers& layers, std::uint32_t first, std::uint32_t end) const;
 
   void collect(const FrameLayers& layers, std::uint32_t first, std::uint32_t end);
-  void drawObjects(const View& view, const CompositeSettings& settings, LayerImage& image,
+  void drawObjects(const View& view, const CompositeSettings& settings, bool hidden, LayerImage& image,
                    CompositeStats& stats);
+  void hideBehindDepthBuffered(const View& view, const FrameLayers& layers, CompositeStats& stats);
   void addLayer(const View& view, const FrameLayers& layers, std::uint32_t layer,
                 const CompositeSettings& settings, LayerImage& picture, CompositeStats& stats);
   void addGroup(const View& view, const FrameLayers& layers, std::uint32_t group,
@@ -125,9 +132,19 @@ void LayerCompositor::Impl::collect(const FrameLayers& layers, std::uint32_t fir
   }
 }
 
-void LayerCompositor::Impl::drawObjects(const View& view, const CompositeSettings& settings,
+void LayerCompositor::Impl::hideBehindDepthBuffered(const View& view, const FrameLayers& layers,
+                                                    CompositeStats& stats) {
+  objects.clear();
+  if (layers.depth_buffered.valid()) {
+    collect(layers, layers.depth_buffered.value, layers.depth_buffered.value + 1);
+    stats.triangles += renderer->hideBehind(view, objects);
+  }
+}
+
+void LayerCompositor::Impl::drawObjects(const View& view, const CompositeSettings& settings, bool hidden,
                                         LayerImage& image, CompositeStats& stats) {
   LayerDraw how;
+  how.hidden = hidden;
   how.peel = settings.peel == CompositeSettings::Peel::kWhereNeeded && needsPeel();
   ++stats.layers;
   stats.peeled += how.peel ? 1 : 0;
@@ -153,7 +170,7 @@ void LayerCompositor::Impl::addLayer(const View& view, const FrameLayers& layers
     return;
   }
   collect(layers, layer, layer + 1);
-  drawObjects(view, settings, images.front(), stats);
+  drawObjects(view, settings, isHidden(layers, layer), images.front(), stats);
   compositeOver(picture, images.front());
 }
 
@@ -175,7 +192,7 @@ void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers
   // An image that replaces a layer has no depths by which it could be peeled with the others.
   if (unordered && !any_replaced && settings.peel == CompositeSettings::Peel::kWhereNeeded) {
     collect(layers, first, end);
-    drawObjects(view, settings, images.front(), stats);
+    drawObjects(view, settings, isHidden(layers, first), images.front(), stats);
     compositeOver(picture, images.front());
     return;
   }
@@ -189,7 +206,7 @@ void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers
     }
     if (use.replacement == nullptr) {
       collect(layers, first + i, first + i + 1);
-      drawObjects(view, settings, images[i], stats);
+      drawObjects(view, settings, isHidden(layers, first + i), images[i], stats);
     }
     operands[i] = (use.replacement != nullptr ? *use.replacement : images[i]).view();
   }
@@ -247,6 +264,7 @@ Result<CompositeStats> LayerCompositor::composite(const View& view, const FrameL
   c.all_sizes_fit = true;
   c.unordered_groups.clear();
   picture.clear(c.renderer->width(), c.renderer->height());
+  c.hideBehindDepthBuffered(view, layers, stats);
   for (std::uint32_t group = 0; group < layers.groups(); ++group) {
     c.addGroup(view, layers, group, program, settings, picture, stats);
   }

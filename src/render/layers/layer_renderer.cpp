@@ -228,6 +228,9 @@ LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> o
   const std::uint64_t blended = r.buffers.blendedTriangles();
   LayerDrawStats stats{.triangles = drawn.triangles, .passes = 1};
   r.begin(r.covered(view, how.lens));
+  if (how.hidden) {
+    r.target.restoreDepths();
+  }
   r.buffers.bind();
   r.places.bind(view.eye);
   r.drawOpaque(view, how.lens);
@@ -245,6 +248,20 @@ LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> o
   }
   r.target.read(view, how.depths, image);
   return stats;
+}
+
+std::uint64_t LayerRenderer::hideBehind(const View& view, std::span<const ObjectId> objects,
+                                        const LensPoint& lens) {
+  Impl& r = *impl_;
+  const GlContext::Current current(r.context);
+  r.choose(objects, false);
+  const SceneBuffers::Drawn drawn = r.buffers.select(r.chosen, r.places.mirrored());
+  r.begin({0, 0, r.options.width, r.options.height});
+  r.buffers.bind();
+  r.places.bind(view.eye);
+  r.drawOpaque(view, lens);
+  r.target.keepDepths();
+  return drawn.triangles - r.buffers.blendedTriangles();
 }
 
 void LayerRenderer::drawSky(const View& view, LayerImage& image) {

@@ -158,6 +158,24 @@ void LayerTarget::scissor(std::uint32_t scale) const {
             static_cast<GLsizei>(rect_.width() * scale), static_cast<GLsizei>(rect_.height() * scale));
 }
 
+void LayerTarget::keepDepths() {
+  if (kept_depth_ == 0) {
+    kept_depth_ = makeTexture(GL_DEPTH_COMPONENT32F, sampleWidth(), sampleHeight());
+  }
+  copyDepths(depth_, kept_depth_);
+}
+
+void LayerTarget::restoreDepths() const {
+  if (kept_depth_ != 0) {
+    copyDepths(kept_depth_, depth_);
+  }
+}
+
+void LayerTarget::copyDepths(GLuint from, GLuint to) const {
+  glCopyImageSubData(from, GL_TEXTURE_2D, 0, 0, 0, 0, to, GL_TEXTURE_2D, 0, 0, 0, 0,
+                     static_cast<GLsizei>(sampleWidth()), static_cast<GLsizei>(sampleHeight()), 1);
+}
+
 void LayerTarget::read(const View& view, bool depths, LayerImage& image) {
   if (samples_ > 1) {
     resolve();

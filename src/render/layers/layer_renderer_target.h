@@ -35,6 +35,11 @@ class LayerTarget {
   // From now on only these pixels are drawn to and cleared.
   void restrictTo(const PixelRect& rect);
 
+  // Keeps all depths that were drawn, for restoreDepths().
+  void keepDepths();
+  // Sets all depths to those kept; without any, changes nothing.
+  void restoreDepths() const;
+
   // Reads the picture that was drawn; it is transparent outside the last rectangle. If depths is set, also
   // reads the depth of each pixel's nearest sample, in metres along the view's forward.
   void read(const View& view, bool depths, LayerImage& image);
@@ -42,10 +47,12 @@ class LayerTarget {
  private:
   Status makeResolved();
   void resolve() const;
+  void copyDepths(GLuint from, GLuint to) const;
   void scissor(std::uint32_t scale) const;  // sets it to rect_ times scale
 
   std::uint32_t width_ = 0, height_ = 0, samples_ = 1;
   GLuint framebuffer_ = 0, color_ = 0, depth_ = 0;
+  GLuint kept_depth_ = 0;  // made on first use
   PixelRect rect_;
   std::vector<ShapedPixel> read_pixels_;
   std::vector<float> read_depths_;

@@ -5,7 +5,9 @@
 namespace sightline::tool {
 
 void LayerTotals::add(const LayerOrder& order, double layers, double operations, double sort_us) {
-  Frame frame{.groups = static_cast<double>(order.groups()),
+  const bool buffers = order.depth_buffered != LayerOrder::kNone;
+  Frame frame{.groups = static_cast<double>(order.groups() - (buffers ? 1 : 0)),
+              .depth_buffered = buffers ? static_cast<double>(order.group(order.depth_buffered).size()) : 0.0,
               .layers = layers,
               .operations = operations,
               .arcs = static_cast<double>(order.arcs.size()),
@@ -15,6 +17,9 @@ void LayerTotals::add(const LayerOrder& order, double layers, double operations,
               .sort_us = sort_us};
   double parts_in_groups = 0.0;
   for (std::size_t i = 0; i < order.groups(); ++i) {
+    if (i == order.depth_buffered) {
+      continue;
+    }
     const auto size = static_cast<double>(order.group(i).size());
     frame.largest = std::max(frame.largest, size);
     if (size > 1.0) {
@@ -24,7 +29,8 @@ void LayerTotals::add(const LayerOrder& order, double layers, double operations,
   }
   if (frame.groups > 0.0) {
     frame.grouped_share = frame.grouped / frame.groups;
-    frame.parts_in_groups_share = parts_in_groups / static_cast<double>(order.parts.size());
+    frame.parts_in_groups_share =
+        parts_in_groups / (static_cast<double>(order.parts.size()) - frame.depth_buffered);
     frame.grouped_size = frame.grouped > 0.0 ? parts_in_groups / frame.grouped : 0.0;
   }
   frames_.push_back(frame);

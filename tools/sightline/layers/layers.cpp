@@ -30,6 +30,7 @@ struct LayersOptions {
   SceneOptions common;
   PathOptions path;
   LayerPlaces places;
+  std::string parts;  // a name of kPartChoices; empty: chosen by partChoiceOf()
   std::string sort = "depth-first", search = "scan", extents = "camera", arcs = "groups",
               expression = "cheapest", conditioning = "on", exact = "on", tints = "on";
   bool no_times = false;
@@ -39,6 +40,35 @@ struct LayersOptions {
   LayerLensOptions lens;
   LayerDrawingOptions drawings;
 };
+
+// Which parts --parts sorts.
+enum class PartChoice : std::uint8_t { kAll, kSeeThrough };
+constexpr std::array<Name<PartChoice>, 2> kPartChoices{{
+    {"all", PartChoice::kAll},
+    {"see-through", PartChoice::kSeeThrough},
+}};
+
+// The outputs for which each opaque part needs a layer of its own: their options, and what they were given.
+std::vector<std::pair<const char*, bool>> needOpaqueLayers(const LayersOptions& options) {
+  return {{"--replace", !options.pictures.replace.empty()},
+          {"--blurred", !options.lens.blurred.empty()},
+          {"--compare", !options.lens.compare.empty()},
+          {"--svg", !options.drawings.svg.empty()},
+          {"--pdf", !options.drawings.pdf.empty()},
+          {"--line-picture", !options.drawings.line_picture.empty()}};
+}
+
+// A picture needs only see-through parts in order, since the depth buffer takes care of the opaque ones.
+PartChoice partChoiceOf(const LayersOptions& options) {
+  if (!options.parts.empty()) {
+    return valueOf(kPartChoices, options.parts);
+  }
+  const auto needed = needOpaqueLayers(options);
+  const bool picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty();
+  return picture && std::none_of(needed.begin(), needed.end(), [](const auto& n) { return n.second; })
+             ? PartChoice::kSeeThrough
+             : PartChoice::kAll;
+}
 
 // What --sort and --search choose.
 constexpr std::array<Name<MakeLayerSort (*)()>, 2> kSorts{{
@@ -92,8 +122,13 @@ LayerSettings settingsOf(const LayersOptions& options) {
 }
 
 Json optionsJson(const LayersOptions& options) {
-  return {{"sort", options.sort},  {"search", options.search},         {"extents", options.extents},
-          {"arcs", options.arcs},  {"expression", options.expression}, {"conditioning", options.conditioning},
+  return {{"parts", nameOf(kPartChoices, partChoiceOf(options))},
+          {"sort", options.sort},
+          {"search", options.search},
+          {"extents", options.extents},
+          {"arcs", options.arcs},
+          {"expression", options.expression},
+          {"conditioning", options.conditioning},
           {"exact", options.exact}};
 }
 
@@ -120,6 +155,7 @@ Json frameJson(std::uint32_t frame, const LayerOrder& order, const FrameLayers& 
           {"order", orderJson(order)},
           {"arcs", pairsJson(order.arcs)},
           {"collisions", pairsJson(order.collisions)},
+          {"depth_buffered", layers.depth_buffered.valid() ? Json(layers.depth_buffered.value) : Json()},
           {"layers", layersJson(layers)},
           {"program", programJson(program)},
           {"sort_us", sort_us},
@@ -138,6 +174,7 @@ void print(const LayerTotals& totals, std::size_t parts) {
   line("groups", totals.mean(&LayerTotals::Frame::groups));
   line("of them with more than one part, %", 100.0 * totals.mean(&LayerTotals::Frame::grouped_share), 2);
   line("parts in those, %", 100.0 * totals.mean(&LayerTotals::Frame::parts_in_groups_share), 2);
+  line("parts left to the depth buffer", totals.mean(&LayerTotals::Frame::depth_buffered));
   line("largest group", totals.mean(&LayerTotals::Frame::largest));
   line("layers", totals.mean(&LayerTotals::Frame::layers));
   line("arcs", totals.mean(&LayerTotals::Frame::arcs));
@@ -308,18 +345,47 @@ Status checkPictureOptions(const LayersOptions& options) {
              : Error{"--samples and --tints: go with --image, --by-distance, --blurred or --compare"};
 }
 
+Status checkPartChoice(const LayersOptions& options) {
+  for (const auto& [option, given] : needOpaqueLayers(options)) {
+    if (given && partChoiceOf(options) == PartChoice::kSeeThrough) {
+      return Error{fmt::format(
+          "--parts see-through: draws opaque parts together, and {} needs a layer of each", option)};
+    }
+  }
+  return Success{};
+}
+
+// Lets the depth buffer take care of the opaque parts, except those that have a place already or that
+// --without names.
+void leaveToDepthBuffer(const LayersOptions& options, MovingScene& moving) {
+  const std::vector<std::uint32_t>& named = options.pictures.without;
+  for (std::uint32_t part = 0; part < moving.parts.size(); ++part) {
+    PartSettings::Place& place = moving.parts[part].settings.place;
+    const SceneView scene = moving.scene.view();
+    if (place == PartSettings::Place::kSorted &&
+        scene.materialOf(scene.objects[part]).opacity != Opacity::kBlended &&
+        std::find(named.begin(), named.end(), part) == named.end()) {
+      place = PartSettings::Place::kDepthBuffered;
+    }
+  }
+}
+
 Result<ExitCode> runLayers(const LayersOptions& options) {
-  for (const Status& ok : {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options)}) {
+  for (const Status& ok :
+       {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options), checkPartChoice(options)}) {
     if (!ok) {
       return ok.error();
     }
   }
-  const Result<LayerInput> input = loadLayerInput(options.common.scene, options.path, options.places);
+  Result<LayerInput> input = loadLayerInput(options.common.scene, options.path, options.places);
   if (!input) {
     return input.error();
   }
   if (const Status ok = checkFilesOfFrames(options, input->walk.frames); !ok) {
     return ok.error();
+  }
+  if (partChoiceOf(options) == PartChoice::kSeeThrough) {
+    leaveToDepthBuffer(options, input->moving);
   }
   const PictureOptions size = pictureSize(options.size, input->walk.path);
   const FrameMakerInput made_from{.input = *input,
@@ -343,6 +409,11 @@ void addChoice(CLI::App& command, const char* name, std::string& value,
 }
 
 void addSortOptions(CLI::App& command, LayersOptions& options) {
+  command
+      .add_option("--parts", options.parts,
+                  "which parts are sorted: all, or the see-through ones, if a depth buffer takes care of the "
+                  "others (default: see-through for --image and --by-distance alone, else all)")
+      ->check(isOneOf(textsOf(kPartChoices)));
   addChoice(command, "--sort", options.sort, textsOf(kSorts),
             "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
   addChoice(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
