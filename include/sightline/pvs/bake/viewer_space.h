@@ -21,7 +21,7 @@ namespace sightline {
 std::vector<Box> boxesAlong(std::span<const Vec3d> eyes, double reach);
 
 struct FreeSpaceSettings {
-  static constexpr std::uint64_t kMaxVoxels = std::uint64_t{1} << 27;
+  static constexpr std::uint64_t kMaxVoxels = 1u << 27;
   static constexpr double kUsualVoxel = 0.25;  // metres
   // Edge of the voxels, metres; 0: kUsualVoxel, or what kMaxVoxels voxels allow. Gaps narrower than about two
   // voxels may count as closed.
