@@ -22,7 +22,7 @@
 namespace sightline {
 
 using HullId = Id<struct HullTag>;  // a hull of a LayerSorter
-using PartId = Id<struct PartTag>;  // a part of a LayerSorter, numbered from 0 in the order of addPart()
+using PartId = Id<struct PartTag>;  // a part of a LayerSorter, numbered from 0 (see addPart)
 
 // `front` occludes `back`: some ray from the eye hits a hull of `front` and then, or at the same point, one
 // of `back`.
@@ -50,6 +50,9 @@ struct LayerSettings {
   int conditioning_axis = 2;
   bool exact = true;      // false: parts whose extents overlap count as occluding, which makes groups larger
   bool all_arcs = false;  // true: also report arcs between groups, which asks about every pair of parts
+  // true: sorted parts that are surely outside the view are left out of the order. It then holds for the view
+  // alone: what is drawn for shadows and reflections needs the whole.
+  bool frustum_culling = false;
   std::uint32_t pair_expiry = 1;  // frames for which a pair's cached result is kept after its last use
 };
 
@@ -76,6 +79,7 @@ struct LayerStats {
   std::uint64_t reinsertions = 0;  // parts and groups put back by incrementalSort(); 0 with the default sort
   std::uint64_t conditioned = 0;   // groups moved forward by conditioning
   std::uint64_t known_pairs = 0;   // pairs of hulls with a cached result
+  std::uint64_t outside = 0;       // parts left out because they are outside the view
 };
 
 // The order of one frame. The spans are valid until the next update().
@@ -113,8 +117,16 @@ class LayerSorter {
   LayerSorter& operator=(LayerSorter&&) noexcept;
 
   HullId addHull(ConvexHull hull);
-  // Adds a part, the union of at least one hull of this sorter.
+  // Replaces a hull, for parts that change their shape, such as skinned ones. Takes time proportional to the
+  // number of parts. Returns false and changes nothing if a static part that has been sorted has this hull.
+  bool setHull(HullId hull, ConvexHull shape);
+  // Adds a part, the union of at least one hull of this sorter. It gets the number of a removed part with as
+  // many hulls, or else the next one.
   PartId addPart(std::span<const HullId> hulls, const PartSettings& settings = {});
+  // Removes a part and its rules. Its number means nothing until addPart() returns it again, and calls with
+  // it have no effect. Takes time proportional to the number of rules.
+  void removePart(PartId part);
+  // All numbers of parts are below this, those of removed parts too.
   std::size_t parts() const;
 
   // Places a part by an affine transform. A part with a transform that is not finite occludes all others and

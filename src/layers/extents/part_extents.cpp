@@ -92,6 +92,12 @@ void PartExtents::addParts(const PartStore& parts) {
   }
 }
 
+void PartExtents::replaceHull(std::uint32_t hull, const PartStore& parts) {
+  if (hull < own_.hulls.size()) {
+    own_.hulls[hull] = boundsOf(parts.hulls[hull]);
+  }
+}
+
 Extent PartExtents::query(std::uint32_t part) const {
   return query(std::span(&part, 1));
 }

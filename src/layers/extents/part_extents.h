@@ -35,6 +35,9 @@ class PartExtents {
   std::uint64_t update(const View& view, const PartStore& parts, std::span<const std::uint8_t> moved,
                        std::span<const std::uint8_t> used);
 
+  // Takes a hull anew from the parts. Parts that have it must count as moved in the next update().
+  void replaceHull(std::uint32_t hull, const PartStore& parts);
+
   const ExtentTable& table() const { return table_; }
   // Returns the extent that occluders of a part must overlap: its angles, and its spatial intervals widened
   // to the eye (perspective: to the eye's height along the axis; orthographic: to infinity towards the eye).

@@ -105,19 +105,19 @@ Intersection chung(PairQuestion& question, Simplex& simplex, std::uint64_t& step
   return Intersection::kUndecided;
 }
 
-// An upper bound, by the hull's envelope, of the set's heights above the local origin along a direction,
-// whose components exceed 1 by no more than rounding. For sums of numbers whose magnitudes add up to m, 2^-45
-// m is far above the rounding error, and kTiny above what underflows. The bound is NaN or infinite if any
-// input is not finite.
-double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& local_origin) {
+}  // namespace
+
+// For sums of numbers whose magnitudes add up to m, 2^-45 m is far above the rounding error, and kTiny above
+// what underflows. The bound is NaN or infinite if any input is not finite.
+double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above) {
   constexpr double kRounding = 0x1p-45, kTiny = 1e-150;
   const Placement& p = set.placement;
-  const Vec3d offset = p.origin - local_origin;
+  const Vec3d offset = p.origin - above;
   const double stretch = l1Norm(p.x) + l1Norm(p.y) + l1Norm(p.z);
   double height = set.around->height(p.toHull(direction)) + dot(direction, offset) +
                   kRounding * (stretch * set.around->reach + l1Norm(offset)) + kTiny;
   if (set.kind == ConvexSet::Kind::kWithEye) {
-    const Vec3d eye = set.eye_or_sweep - local_origin;
+    const Vec3d eye = set.eye_or_sweep - above;
     const double of_eye = dot(direction, eye) + kRounding * l1Norm(eye);
     height = std::isnan(height) || of_eye <= height ? height : of_eye;
   } else if (set.kind == ConvexSet::Kind::kSwept) {
@@ -126,6 +126,8 @@ double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& lo
   }
   return height;
 }
+
+namespace {
 
 // Whether the envelopes prove that the witness's direction still separates the sets; false: not known.
 bool stillDisjoint(const ConvexSet& first, const ConvexSet& second, const PairWitness& witness) {

@@ -23,6 +23,10 @@ struct ConvexSet {
   const HullEnvelope* around = nullptr;  // the hull's envelope; null: known disjoint pairs take longer
 };
 
+// An upper bound, by the hull's envelope, of the set's heights above a point along a direction, whose length
+// exceeds 1 by no more than rounding. NaN or infinite if any input is not finite.
+double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above);
+
 enum class Intersection : std::uint8_t {
   kDisjoint,      // proven: a plane separates them with more room than the rounding error
   kIntersecting,  // a tetrahedron of differences of their points contains the origin

@@ -52,6 +52,14 @@ void PairRules::clear(std::uint32_t first, std::uint32_t second) {
   --parts_[second].rules;
 }
 
+void PairRules::clear(std::uint32_t part) {
+  for (std::size_t i = 0; i < rules_.size() && ruled(part); ++i) {
+    if (rules_[i].first == part || rules_[i].second == part) {
+      clear(rules_[i].first, rules_[i].second);
+    }
+  }
+}
+
 std::uint32_t PairRules::findRuled(std::uint32_t a, std::uint32_t b) const {
   const std::uint32_t number = index_.find(keyOf(a, b));
   return number == kNone || std::holds_alternative<std::monostate>(rules_[number].what) ? kNone : number;

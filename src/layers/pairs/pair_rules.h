@@ -38,6 +38,7 @@ class PairRules {
   void set(std::uint32_t first, std::uint32_t second, const PairCallback& rule);
   void setContainer(std::uint32_t front, std::uint32_t back);
   void clear(std::uint32_t first, std::uint32_t second);
+  void clear(std::uint32_t part);  // all rules of the part
 
   // Returns the number of the rule for two parts in any order, or kNone.
   std::uint32_t find(std::uint32_t a, std::uint32_t b) const {

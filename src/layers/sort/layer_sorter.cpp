@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "src/layers/extents/extent_scan.h"
@@ -18,6 +19,7 @@
 #include "src/layers/sort/depth_first_sort.h"
 #include "src/layers/sort/layer_sort_algorithm.h"
 #include "src/layers/sort/layer_source.h"
+#include "src/layers/sort/view_volume.h"
 
 namespace sightline {
 
@@ -70,8 +72,11 @@ struct LayerSorter::Impl {
         sort_algorithm(sortOf(settings)) {}
 
   bool isFinite(std::uint32_t part) const;
-  bool areParts(PartId first, PartId second) const;
-  void chooseParts();
+  bool isPart(PartId part) const;
+  bool isEnabled(std::uint32_t part) const { return enabled[part] != 0 && removed[part] == 0; }
+  bool areParts(PartId first, PartId second) const { return isPart(first) && isPart(second); }
+  std::uint32_t makeRoom(std::size_t hulls);
+  void chooseParts(const View& view);
   void place(const View& view);
   void sort();
   void condition();
@@ -85,7 +90,8 @@ struct LayerSorter::Impl {
   PartStore store;
   std::vector<PartSettings> part_settings;
   // One element per part; sorted: it has been in an update(); to_sort: it is in the order of this one.
-  std::vector<std::uint8_t> enabled, moved, sorted, to_sort;
+  std::vector<std::uint8_t> enabled, moved, sorted, to_sort, removed;
+  std::vector<std::uint32_t> free_parts;  // numbers of removed parts
   PairRules rules;
   PartExtents extents;
   PartOcclusion occlusion;
@@ -99,7 +105,7 @@ struct LayerSorter::Impl {
   std::vector<double> distances;  // one per part
   std::vector<double> group_distances;
   GroupedOrder order;
-  std::uint64_t extent_updates = 0, conditioned = 0;
+  std::uint64_t extent_updates = 0, conditioned = 0, outside = 0;
 
   std::vector<PartId> parts_out;
   std::vector<std::uint32_t> first_out;
@@ -118,22 +124,85 @@ HullId LayerSorter::addHull(ConvexHull hull) {
   return HullId(impl_->store.hulls.size() - 1);
 }
 
+bool LayerSorter::setHull(HullId hull, ConvexHull shape) {
+  Impl& own = *impl_;
+  assert(hull.value < own.store.hulls.size());
+  const auto forEachPartWithIt = [&](auto&& visit) {
+    for (std::uint32_t part = 0; part < own.store.parts(); ++part) {
+      const std::span<const std::uint32_t> hulls = own.store.hullsOf(part);
+      if (own.removed[part] == 0 && std::find(hulls.begin(), hulls.end(), hull.value) != hulls.end()) {
+        visit(part);
+      }
+    }
+  };
+  bool is_fixed = false;
+  forEachPartWithIt([&](std::uint32_t part) {
+    is_fixed = is_fixed || (own.part_settings[part].is_static && own.sorted[part] != 0);
+  });
+  if (is_fixed) {
+    return false;
+  }
+  own.store.envelopes[hull.value] = envelopeOf(shape);
+  own.store.hulls[hull.value] = std::move(shape);
+  own.extents.replaceHull(hull.value, own.store);
+  forEachPartWithIt([&](std::uint32_t part) {
+    own.store.finite[part] = own.isFinite(part) ? 1 : 0;
+    own.moved[part] = 1;
+  });
+  return true;
+}
+
+// The number of a removed part with so many hulls, or of a new one. The caller sets all that belongs to it.
+std::uint32_t LayerSorter::Impl::makeRoom(std::size_t hulls) {
+  const auto room = std::find_if(free_parts.begin(), free_parts.end(),
+                                 [&](std::uint32_t part) { return store.hullsOf(part).size() == hulls; });
+  if (room != free_parts.end()) {
+    const std::uint32_t part = *room;
+    free_parts.erase(room);
+    return part;
+  }
+  store.part_hulls.resize(store.part_hulls.size() + hulls);
+  store.first_hull.push_back(static_cast<std::uint32_t>(store.part_hulls.size()));
+  store.placements.emplace_back();
+  const std::size_t parts = store.parts();
+  store.finite.resize(parts);
+  part_settings.resize(parts);
+  for (std::vector<std::uint8_t>* const flags : {&enabled, &moved, &sorted, &listed, &removed}) {
+    flags->resize(parts);
+  }
+  return static_cast<std::uint32_t>(parts - 1);
+}
+
 PartId LayerSorter::addPart(std::span<const HullId> hulls, const PartSettings& settings) {
   assert(!hulls.empty());
   Impl& own = *impl_;
+  const std::uint32_t part = own.makeRoom(hulls.size());
+  std::uint32_t instance = own.store.first_hull[part];
   for (const HullId hull : hulls) {
     assert(hull.value < own.store.hulls.size());
-    own.store.part_hulls.push_back(hull.value);
+    own.store.part_hulls[instance++] = hull.value;
   }
-  own.store.first_hull.push_back(static_cast<std::uint32_t>(own.store.part_hulls.size()));
-  own.store.placements.emplace_back();
-  own.store.finite.push_back(own.isFinite(static_cast<std::uint32_t>(own.store.parts() - 1)) ? 1 : 0);
-  own.part_settings.push_back(settings);
-  own.enabled.push_back(1);
-  own.moved.push_back(1);
-  own.sorted.push_back(0);
-  own.listed.push_back(0);
-  return PartId(own.store.parts() - 1);
+  own.store.placements[part] = {};
+  own.store.finite[part] = own.isFinite(part) ? 1 : 0;
+  own.part_settings[part] = settings;
+  own.enabled[part] = own.moved[part] = 1;
+  own.sorted[part] = own.removed[part] = 0;
+  return PartId(part);
+}
+
+void LayerSorter::removePart(PartId part) {
+  Impl& own = *impl_;
+  if (!own.isPart(part)) {
+    return;
+  }
+  own.rules.clear(part.value);
+  own.removed[part.value] = 1;
+  own.free_parts.push_back(part.value);
+  // A new part of this number begins at its own place in the order.
+  if (own.listed[part.value] != 0) {
+    own.listed[part.value] = 0;
+    std::erase(own.previous, part.value);
+  }
 }
 
 std::size_t LayerSorter::parts() const {
@@ -142,6 +211,9 @@ std::size_t LayerSorter::parts() const {
 
 bool LayerSorter::setTransform(PartId part, const Mat4& world_from_part) {
   Impl& own = *impl_;
+  if (!own.isPart(part)) {
+    return false;
+  }
   if (own.part_settings[part.value].is_static && own.sorted[part.value] != 0) {
     return false;
   }
@@ -163,12 +235,14 @@ bool LayerSorter::Impl::isFinite(std::uint32_t part) const {
                       [&](std::uint32_t hull) { return store.hulls[hull].vertices.empty(); });
 }
 
-bool LayerSorter::Impl::areParts(PartId first, PartId second) const {
-  return first.value < store.parts() && second.value < store.parts();
+bool LayerSorter::Impl::isPart(PartId part) const {
+  return part.value < store.parts() && removed[part.value] == 0;
 }
 
 void LayerSorter::setEnabled(PartId part, bool enabled) {
-  impl_->enabled[part.value] = enabled ? 1 : 0;
+  if (impl_->isPart(part)) {
+    impl_->enabled[part.value] = enabled ? 1 : 0;
+  }
 }
 
 void LayerSorter::setRule(PartId first, PartId second, const PairPlane& rule) {
@@ -233,10 +307,18 @@ void LayerSorter::Impl::sortByDistance(const View& view, std::span<std::uint32_t
   });
 }
 
-void LayerSorter::Impl::chooseParts() {
+void LayerSorter::Impl::chooseParts(const View& view) {
   to_sort.resize(store.parts());
+  outside = 0;
+  const std::optional<ViewVolume> volume =
+      settings.frustum_culling ? std::optional<ViewVolume>(view) : std::nullopt;
   for (std::uint32_t part = 0; part < store.parts(); ++part) {
-    to_sort[part] = enabled[part] != 0 && part_settings[part].place == Place::kSorted ? 1 : 0;
+    bool sorts = isEnabled(part) && part_settings[part].place == Place::kSorted;
+    if (sorts && volume && volume->isOutside(store, part)) {
+      sorts = false;
+      ++outside;
+    }
+    to_sort[part] = sorts ? 1 : 0;
   }
 }
 
@@ -309,7 +391,7 @@ void LayerSorter::Impl::collect() {
   const auto beginGroup = [&] { first_out.push_back(static_cast<std::uint32_t>(parts_out.size())); };
   const auto addEach = [&](Place place, auto&& before_each) {
     for (std::uint32_t part = 0; part < store.parts(); ++part) {
-      if (enabled[part] != 0 && part_settings[part].place == place) {
+      if (isEnabled(part) && part_settings[part].place == place) {
         before_each();
         parts_out.emplace_back(part);
       }
@@ -353,13 +435,14 @@ LayerStats LayerSorter::Impl::stats() const {
           .gjk_steps = counts.gjk_steps,
           .reinsertions = sort_algorithm->reinsertions(),
           .conditioned = conditioned,
-          .known_pairs = occlusion.knownPairs()};
+          .known_pairs = occlusion.knownPairs(),
+          .outside = outside};
 }
 
 const LayerOrder& LayerSorter::update(const View& given) {
   Impl& own = *impl_;
   const View view = scaled(given);
-  own.chooseParts();
+  own.chooseParts(view);
   own.extent_updates = own.extents.update(view, own.store, own.moved, own.to_sort);
   std::fill(own.moved.begin(), own.moved.end(), 0);
   std::fill(own.sorted.begin(), own.sorted.end(), 1);

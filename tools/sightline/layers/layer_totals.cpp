@@ -8,6 +8,7 @@ void LayerTotals::add(const LayerOrder& order, double layers, double operations,
   const bool buffers = order.depth_buffered != LayerOrder::kNone;
   Frame frame{.groups = static_cast<double>(order.groups() - (buffers ? 1 : 0)),
               .depth_buffered = buffers ? static_cast<double>(order.group(order.depth_buffered).size()) : 0.0,
+              .outside = static_cast<double>(order.stats.outside),
               .layers = layers,
               .operations = operations,
               .arcs = static_cast<double>(order.arcs.size()),

@@ -14,6 +14,7 @@ class LayerTotals {
   struct Frame {
     double groups = 0.0;                        // of parts that are not left to the depth buffer
     double depth_buffered = 0.0;                // parts that are
+    double outside = 0.0;                       // parts outside the view, if those are left out
     double grouped = 0.0, grouped_share = 0.0;  // number and share of groups of more than one part
     double parts_in_groups_share = 0.0;         // share of the parts that are in those groups
     double grouped_size = 0.0;                  // mean size of those groups; 0: there are none

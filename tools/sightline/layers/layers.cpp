@@ -32,7 +32,8 @@ struct LayersOptions {
   LayerPlaces places;
   std::string parts;  // a name of kPartChoices; empty: chosen by partChoiceOf()
   std::string sort = "depth-first", search = "scan", extents = "camera", arcs = "groups",
-              expression = "cheapest", conditioning = "on", exact = "on", tints = "on";
+              expression = "cheapest", conditioning = "on", exact = "on", frustum_culling = "off",
+              tints = "on";
   bool no_times = false;
   PictureOptions size;
   std::uint32_t samples = 1;
@@ -113,6 +114,7 @@ LayerSettings settingsOf(const LayersOptions& options) {
   settings.search = valueOf(kSearches, options.search)();
   settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
   settings.exact = valueOf(kSwitch, options.exact);
+  settings.frustum_culling = valueOf(kSwitch, options.frustum_culling);
   settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
   // None of the world's axes measures the distance from the camera.
   if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
@@ -129,7 +131,8 @@ Json optionsJson(const LayersOptions& options) {
           {"arcs", options.arcs},
           {"expression", options.expression},
           {"conditioning", options.conditioning},
-          {"exact", options.exact}};
+          {"exact", options.exact},
+          {"frustum_culling", options.frustum_culling}};
 }
 
 Json layersJson(const FrameLayers& layers) {
@@ -175,6 +178,7 @@ void print(const LayerTotals& totals, std::size_t parts) {
   line("of them with more than one part, %", 100.0 * totals.mean(&LayerTotals::Frame::grouped_share), 2);
   line("parts in those, %", 100.0 * totals.mean(&LayerTotals::Frame::parts_in_groups_share), 2);
   line("parts left to the depth buffer", totals.mean(&LayerTotals::Frame::depth_buffered));
+  line("parts outside the view, left out", totals.mean(&LayerTotals::Frame::outside));
   line("largest group", totals.mean(&LayerTotals::Frame::largest));
   line("layers", totals.mean(&LayerTotals::Frame::layers));
   line("arcs", totals.mean(&LayerTotals::Frame::arcs));
@@ -426,6 +430,8 @@ void addSortOptions(CLI::App& command, LayersOptions& options) {
   addChoice(command, "--conditioning", options.conditioning, textsOf(kSwitch),
             "let near groups move forward in the order (camera extents only)");
   addChoice(command, "--exact", options.exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
+  addChoice(command, "--frustum-culling", options.frustum_culling, textsOf(kSwitch),
+            "on: parts outside the view are left out of the order");
   command.add_option("--backdrop", options.places.backdrops, "parts behind all others, by number")
       ->check(isNotEmpty())
       ->delimiter(',');

@@ -1,0 +1,34 @@
+#include "src/layers/sort/view_volume.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/geometry/tolerance.h"
+#include "src/layers/pairs/convex_pair.h"
+
+namespace sightline::layers {
+
+ViewVolume::ViewVolume(const View& view) : frustum_(frustumOf(view)), eye_(view.eye) {}
+
+bool ViewVolume::isOutside(const PartStore& parts, std::uint32_t part) const {
+  if (parts.finite[part] == 0) {
+    return false;
+  }
+  return std::any_of(frustum_.planes.begin(), frustum_.planes.end(), [&](const Plane& plane) {
+    // Heights are measured above the eye, which the planes are near. This is above the rounding of the plane
+    // there.
+    constexpr double kRounding = 0x1p-45;
+    const double at_eye = plane.evaluate(eye_);
+    const double margin = kRounding * (l1Norm(eye_) + std::abs(plane.offset));
+    const std::span<const std::uint32_t> hulls = parts.hullsOf(part);
+    return std::all_of(hulls.begin(), hulls.end(), [&](std::uint32_t hull) {
+      ConvexSet set;
+      set.hull = &parts.hulls[hull];
+      set.around = &parts.envelopes[hull];
+      set.placement = parts.placements[part];
+      return outerHeight(set, plane.normal, eye_) + at_eye + margin < 0.0;
+    });
+  });
+}
+
+}  // namespace sightline::layers
