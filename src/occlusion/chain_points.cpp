@@ -1,5 +1,6 @@
 #include "src/occlusion/chain_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -10,9 +11,10 @@ void ChainPoints::begin(const SurfaceSet& set, const PixelView& view, double cli
   view_ = view;
   clip_depth_ = clip_depth;
   points_.clear();
-  if (set_ != &set || images_.size() != set.chains.size() || ++number_ == 0) {
-    set_ = &set;
-    images_.assign(set.chains.size(), {});
+  set_ = &set;
+  images_.resize(std::max<std::size_t>(images_.size(), set.chains.size()));
+  if (++number_ == 0) {
+    std::fill(images_.begin(), images_.end(), Image{});
     number_ = 1;
   }
 }

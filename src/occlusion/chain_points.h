@@ -55,7 +55,7 @@ class ChainPoints {
   PixelView view_;
   double clip_depth_ = 0.0;
   std::uint32_t number_ = 0;
-  std::vector<Image> images_;  // by chain
+  std::vector<Image> images_;  // by chain of the largest set
   std::vector<GridPoint> points_;
 };
 

@@ -25,6 +25,7 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
                          const SurfaceDrawing& drawing, const DepthTarget& target) {
   drawing_ = drawing;
+  winding_ = view.mirrored ? -1 : 1;
   start(set, drawing.step);
   map_.resize(target);
   view_.begin(set, view, candidates, drawing.min_pixels, target);
@@ -44,20 +45,26 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
   stats_.complete = work() < drawing.budget;
 }
 
+// What is kept of a set that was drawn before counts for nothing: all numbers of groups and of views that are
+// written down are smaller than those to come.
 void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
   stats_ = {};
-  if (set_ != &set || members_.size() != set.clusters.size() || last_groups_.size() != set.chains.size() ||
-      drawn_in_.size() != set.parts.size() || patch_rests_.size() != set.patches.size()) {
+  const auto makeRoom = [](auto& list, std::size_t size) { list.resize(std::max(list.size(), size)); };
+  makeRoom(members_, set.clusters.size());
+  makeRoom(last_groups_, set.chains.size());
+  makeRoom(patch_rests_, set.patches.size());
+  makeRoom(part_rests_, set.parts.size());
+  makeRoom(drawn_in_, set.parts.size());
+  const std::array sizes{set.clusters.size(), set.chains.size(), set.patches.size(), set.parts.size()};
+  if (set_ != &set || sizes_ != sizes) {
     set_ = &set;
-    members_.assign(set.clusters.size(), {});
-    last_groups_.assign(set.chains.size(), 0);
-    group_ = 0;
-    view_number_ = 0;
+    sizes_ = sizes;
+    step = ViewStep::kJump;
   }
-  if (view_number_ == 0 || view_number_ == 0xffffffffu) {
-    patch_rests_.assign(set.patches.size(), {});
-    part_rests_.assign(set.parts.size(), {});
-    drawn_in_.assign(set.parts.size(), 0);
+  if (view_number_ == 0xffffffffu) {
+    std::fill(patch_rests_.begin(), patch_rests_.end(), Rest{});
+    std::fill(part_rests_.begin(), part_rests_.end(), Rest{});
+    std::fill(drawn_in_.begin(), drawn_in_.end(), 0u);
     view_number_ = 0;
     step = ViewStep::kJump;
   }
@@ -206,7 +213,7 @@ void SurfaceRaster::addChain(std::uint32_t number) {
 
 void SurfaceRaster::addEdges(std::uint32_t chain, std::int32_t value) {
   const ChainPoints::Edges edges = points_.edges(chain);
-  map_.addEdges(edges.points, edges.step, value);
+  map_.addEdges(edges.points, edges.step, value * winding_);
 }
 
 // Draws the lines along which the near plane cuts the cluster's triangles.
@@ -215,7 +222,7 @@ void SurfaceRaster::addCuts(const ClusterImage& image) {
   for (std::size_t i = 0; i < corners.size(); i += 3) {
     GridSegment line;
     if (points_.cut(corners.subspan(i).first<3>(), line)) {
-      map_.addEdges(std::array{line.from, line.to}, 1, image.sign);
+      map_.addEdges(std::array{line.from, line.to}, 1, image.sign * winding_);
     }
   }
 }

@@ -3,6 +3,7 @@
 // Draws whole surfaces into a depth buffer, by the winding of their boundaries. See docs/conservative.md,
 // "Surfaces".
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -52,17 +53,20 @@ class SurfaceRaster {
   std::uint64_t work() const;  // in this view, as SurfaceDrawing::budget counts it
 
   const SurfaceSet* set_ = nullptr;
+  std::array<std::size_t, 4> sizes_{};  // of the set, by which one made anew in the same place is noticed
   SurfaceDrawing drawing_;
+  std::int32_t winding_ = 1;  // of a front in this view; -1 in one that mirrors
   SurfaceView view_;
   ChainPoints points_;
   WindingMap map_;
   SurfaceStats stats_;
-  std::uint64_t work_before_ = 0;               // before the group that is drawn
-  std::vector<Membership> members_;             // by cluster of the set
+  std::uint64_t work_before_ = 0;  // before the group that is drawn
+  // Of the largest set that was drawn:
+  std::vector<Membership> members_;             // by cluster
   std::vector<std::uint32_t> last_groups_;      // by chain: the group that it was drawn in most recently
   std::uint32_t group_ = 0;                     // number of the last group
   std::vector<PatchImage> patches_;             // of a part: those that are drawn as a whole
-  std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part of the set
+  std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part
   std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;  // number of the first one since a jump

@@ -36,8 +36,8 @@ void SurfaceView::begin(const SurfaceSet& set, const PixelView& view, std::span<
   boxes_.clear();
   listed_.resize(set.parts.size());
   projection_ = BoxProjection(view, target.width, target.height);
-  batches_ = reachOf(set.bounds, view) * std::max(view.scale_x, view.scale_y) + std::abs(view.middle_x) +
-                 std::abs(view.middle_y) <
+  batches_ = view.stretch * reachOf(set.bounds, view) * std::max(view.scale_x, view.scale_y) +
+                 std::abs(view.middle_x) + std::abs(view.middle_y) <
              kLargestGrid / kGridStep;
   clusters_.clear();
   unsorted_.clear();
@@ -99,7 +99,7 @@ double SurfaceView::smallestOf(const BoxExtent& object) const {
   return kRectangle * std::sqrt(min_pixels_) * depth / std::max(view_.scale_x, view_.scale_y);
 }
 
-// Sorts the parts by the leading bits of their depth, the nearest first.
+// Sorts the parts by the leading bits of their depth, the nearest first; equal ones stay as they are.
 void SurfaceView::sortParts() {
   constexpr std::uint32_t kShift = 20, kKeys = 1u << (32 - kShift);
   const auto keyOf = [](const PartImage& part) {
@@ -107,6 +107,16 @@ void SurfaceView::sortParts() {
     const std::uint32_t ascending = (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
     return kKeys - 1 - (ascending >> kShift);
   };
+  constexpr std::size_t kFew = 16;
+  if (unsorted_.size() <= kFew) {
+    parts_.clear();
+    for (const PartImage& part : unsorted_) {
+      const auto later = std::find_if(parts_.begin(), parts_.end(),
+                                      [&](const PartImage& other) { return keyOf(other) > keyOf(part); });
+      parts_.insert(later, part);
+    }
+    return;
+  }
   first_of_key_.assign(kKeys + 1, 0);
   for (const PartImage& part : unsorted_) {
     ++first_of_key_[keyOf(part) + 1];
@@ -306,7 +316,7 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
   const Vec3d middle = view.toCamera(center(box) - view.eye), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
   const Vec3d size{dot(abs(view.right), half), dot(abs(view.up), half), dot(abs(view.forward), half)};
   const double reach = maxComponent(abs(middle)) + maxComponent(size);
-  const double rounding = 1e-14 * reach;
+  const double rounding = 1e-14 * reach * view.stretch;
   extent.nearest = middle.z - size.z - rounding;
   extent.farthest = middle.z + size.z + rounding;
   if (!(extent.farthest > clip_depth_)) {
@@ -316,7 +326,7 @@ bool SurfaceView::extentOf(const Box& box, BoxExtent& extent) const {
   extent.inexact = extent.cut && rounding > 0.5 * kNearMargin * view.near;
   const double front = std::max(extent.nearest, clip_depth_);
   const double scale = std::max(view.scale_x, view.scale_y) / (view.orthographic ? 1.0 : front);
-  const double pixels = reach * scale + std::abs(view.middle_x) + std::abs(view.middle_y);
+  const double pixels = view.stretch * reach * scale + std::abs(view.middle_x) + std::abs(view.middle_y);
   extent.inexact = extent.inexact || !(pixels < kLargestGrid / kGridStep);
   if (extent.inexact) {
     return false;
@@ -363,7 +373,7 @@ DepthBound SurfaceView::boundOf(const Vec3d& normal, double at_eye, double size,
     return bound;
   }
   // Rays through pixel (x, y): camera x is (x - middle) / scale, times the depth in a perspective view.
-  const double inverse = 1.0 / slope;
+  const double inverse = view.orthographic ? view.metres / slope : 1.0 / (slope * view.metres);
   const double a = n.x * inverse / view.scale_x, b = n.y * inverse / view.scale_y;
   const double constant = (view.orthographic ? at_eye : n.z) * inverse;
   const double c = constant - a * view.middle_x - b * view.middle_y;

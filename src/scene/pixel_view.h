@@ -2,13 +2,14 @@
 
 // A view as a pixel buffer uses it: camera space, and where points of camera space lie in the buffer.
 //
-// Camera space: x to the right, y upwards, z the depth along the viewing direction; metres, relative to the
-// eye. Buffer space: pixels from the buffer's lower left corner, x to the right, y upwards; pixel (i, j) is
-// the square from (i, j) to (i + 1, j + 1). A depth buffer stores reciprocal depth: 1 / depth in perspective
-// and -depth in orthographic views. The greater value is the nearer one, and reciprocal depth is linear over
-// the image of a plane.
+// Camera space: x to the right, y upwards, z the depth along the viewing direction; relative to the eye, in
+// metres unless PixelView::metres says otherwise. Buffer space: pixels from the buffer's lower left corner, x
+// to the right, y upwards; pixel (i, j) is the square from (i, j) to (i + 1, j + 1). A depth buffer stores
+// reciprocal depth: 1 / depth in perspective and -depth in orthographic views. The greater value is the
+// nearer one, and reciprocal depth is linear over the image of a plane.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "sightline/math/mat4.h"
@@ -32,6 +33,10 @@ struct PixelView {
   // Where the forward axis meets the buffer: in its middle, unless the view is off-centre; pixels.
   double middle_x = 0.0, middle_y = 0.0;
   double width = 0.0, height = 0.0;  // of the buffer, pixels
+  // Other than 1 only for geometry in a space of its own, see inSpace().
+  double metres = 1.0;    // the length of camera space's unit, a power of two
+  double stretch = 1.0;   // unit_x, unit_y and unit_z are at most so long
+  bool mirrored = false;  // triangles that are counter-clockwise in that space appear clockwise
 
   PixelView() = default;
   PixelView(const View& given, std::uint32_t buffer_width, std::uint32_t buffer_height)
@@ -62,44 +67,57 @@ struct PixelView {
   // With other views nothing can be decided: buffers stay empty, and boxes have no position in them.
   bool sane() const {
     constexpr double kLargestCoordinate = 0x1p60;
-    const auto axis = [](const Vec3d& v) { return isFinite(v) && maxComponent(abs(v)) < 2.0; };
+    const auto axis = [](const Vec3d& v, double size) {
+      return isFinite(v) && maxComponent(abs(v)) < 2.0 * size;
+    };
     const auto scale = [](double s) { return s < kLargestScale && s > 1.0 / kLargestScale; };
-    return valid_ && axis(right) && axis(up) && axis(forward) && axis(unit_x) && axis(unit_y) &&
-           axis(unit_z) && scale(scale_x) && scale(scale_y) && isFinite(eye) &&
-           maxComponent(abs(eye)) < kLargestCoordinate && near < kLargestCoordinate && far > near;
+    return valid_ && axis(right, 1.0) && axis(up, 1.0) && axis(forward, 1.0) && axis(unit_x, stretch) &&
+           axis(unit_y, stretch) && axis(unit_z, stretch) && scale(scale_x) && scale(scale_y) &&
+           isFinite(eye) && maxComponent(abs(eye)) < kLargestCoordinate && near < kLargestCoordinate &&
+           far > near;
   }
   // The view of geometry that is given in another space: a point p there has the image of scene_from_space p
-  // here. Not sane() unless the matrix is a rotation and a translation, exact up to single precision, and the
-  // places are near enough to the origin that double precision moves nothing by more than 2^-16 pixels.
+  // here. Camera space is then so scaled that no vector of that space becomes longer in it. Not sane() unless
+  // the matrix is affine and stretches no direction more than kLargestStretch times as much as another, and
+  // the places are near enough to the origin that double precision moves nothing by more than 2^-16 pixels.
   PixelView inSpace(const Mat4& scene_from_space) const {
     const auto column = [&](int i) {
       return Vec3d(scene_from_space(0, i), scene_from_space(1, i), scene_from_space(2, i));
     };
-    const Vec3d x = column(0), y = column(1), z = column(2), origin = column(3);
-    const auto unit = [](const Vec3d& v) { return std::abs(dot(v, v) - 1.0) < kRigid; };
-    const double volume = dot(x, cross(y, z));
-    PixelView moved = *this;
     const bool affine = scene_from_space(3, 0) == 0.0 && scene_from_space(3, 1) == 0.0 &&
                         scene_from_space(3, 2) == 0.0 && scene_from_space(3, 3) == 1.0;
-    moved.valid_ = sane() && affine && isFinite(origin) && unit(x) && unit(y) && unit(z) &&
-                   std::abs(dot(x, y)) < kRigid && std::abs(dot(y, z)) < kRigid &&
-                   std::abs(dot(z, x)) < kRigid && volume > 0.0;
+    PixelView moved = *this;
+    moved.metres = unitFor(column(0), column(1), column(2));
+    const Vec3d x = column(0) / moved.metres, y = column(1) / moved.metres, z = column(2) / moved.metres,
+                origin = column(3);
+    const double volume = dot(x, cross(y, z));
+    const Vec3d back_x = cross(y, z) / volume, back_y = cross(z, x) / volume, back_z = cross(x, y) / volume;
+    moved.stretch = std::sqrt(dot(back_x, back_x) + dot(back_y, back_y) + dot(back_z, back_z));
+    moved.mirrored = volume < 0.0;
+    moved.valid_ =
+        sane() && affine && isFinite(origin) && moved.metres > 0.0 && moved.stretch < kLargestStretch;
     if (!moved.valid_) {
       return moved;
     }
     const auto turned = [&](const Vec3d& axis) { return Vec3d(dot(x, axis), dot(y, axis), dot(z, axis)); };
-    const auto back = [&](const Vec3d& v) {
-      return Vec3d(dot(cross(y, z), v), dot(cross(z, x), v), dot(cross(x, y), v)) / volume;
-    };
-    moved.eye = back(eye - origin);
+    const auto back = [&](const Vec3d& v) { return Vec3d(dot(back_x, v), dot(back_y, v), dot(back_z, v)); };
+    moved.eye = back((eye - origin) / moved.metres);
     moved.right = turned(right);
     moved.up = turned(up);
     moved.forward = turned(forward);
     moved.unit_x = back(unit_x);
     moved.unit_y = back(unit_y);
     moved.unit_z = back(unit_z);
+    moved.frustum_near = frustum_near / moved.metres;
+    moved.near = near / moved.metres;
+    moved.far = far / moved.metres;
+    if (orthographic) {
+      moved.scale_x = scale_x * moved.metres;
+      moved.scale_y = scale_y * moved.metres;
+    }
     const auto size = [](const Vec3d& v) { return maxComponent(abs(v)); };
-    const double rounding = 0x1p-46 * (size(eye) + size(origin) + size(moved.eye));
+    const double rounding =
+        0x1p-46 * (size(eye) + size(origin) + moved.metres * moved.stretch * size(moved.eye));
     moved.valid_ = rounding * std::max(scale_x, scale_y) < 0x1p-16 * (orthographic ? 1.0 : near);
     return moved;
   }
@@ -121,12 +139,31 @@ struct PixelView {
   // Greatest distances in the buffer from where the forward axis meets it, pixels.
   double reachX() const { return std::max(middle_x, width - middle_x); }
   double reachY() const { return std::max(middle_y, height - middle_y); }
-  double reciprocalDepth(double depth) const { return orthographic ? -depth : 1.0 / depth; }
+  // depth: in camera space.
+  double reciprocalDepth(double depth) const {
+    return orthographic ? -(depth * metres) : 1.0 / (depth * metres);
+  }
 
  private:
   static constexpr double kLargestScale = 0x1p40;
-  static constexpr double kRigid = 0x1p-20;  // of the products of the columns of a rotation
-  bool valid_ = false;                       // makeUsable() found no fault in the view
+  static constexpr double kLargestStretch = 0x1p12;
+
+  // 1 for the columns of a rotation, exact up to single precision; otherwise a power of two that no unit
+  // vector is stretched beyond. Not positive if there is none.
+  static double unitFor(const Vec3d& x, const Vec3d& y, const Vec3d& z) {
+    constexpr double kRigid = 0x1p-20, kLargest = 0x1p100;
+    const double squares = dot(x, x) + dot(y, y) + dot(z, z);
+    const auto unit = [](const Vec3d& v) { return std::abs(dot(v, v) - 1.0) < kRigid; };
+    if (unit(x) && unit(y) && unit(z) && std::abs(dot(x, y)) < kRigid && std::abs(dot(y, z)) < kRigid &&
+        std::abs(dot(z, x)) < kRigid) {
+      return 1.0;
+    }
+    return squares < kLargest && squares > 1.0 / kLargest
+               ? std::ldexp(1.0, std::ilogb(std::sqrt(squares)) + 1)
+               : 0.0;
+  }
+
+  bool valid_ = false;  // makeUsable() found no fault in the view
 };
 
 }  // namespace sightline

@@ -136,10 +136,12 @@ struct SurfaceSet {
   }
 };
 
-// Surfaces that move as one, as a door or a train does, and where they are in a frame.
+// Surfaces that move as one, as a door or a train does, or that are there several times, and where they are
+// in a frame.
 struct MovingSurfaces {
   const SurfaceSet* surfaces = nullptr;  // in a space of their own; null: none
-  // A rotation and a translation, exact up to single precision. With any other matrix nothing is drawn.
+  // Affine; it may scale, shear, and mirror, which leaves fronts fronts. With another matrix, and with one
+  // that stretches a direction some thousand times as much as another, nothing is drawn.
   Mat4 scene_from_surfaces{};
 };
 
