@@ -1,0 +1,105 @@
+#pragma once
+
+// A tree of boxes that come, go and move at any time, with many children a node: for tests of many boxes at
+// once.
+//
+// Based on: Guttman. R-Trees: A Dynamic Index Structure for Spatial Searching. SIGMOD 1984; Beckmann et al.
+// The R*-Tree. SIGMOD 1990. Differs from the papers in: nodes are split by surface area; boxes of nodes grow
+// at once and shrink later; subtrees that have worn are built anew, as many at a time as the caller allows.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/math/box.h"
+
+namespace sightline::hierarchy {
+
+// At any time the box of a node contains those of all items below it, so a search misses nothing, whether
+// tidy() is called or not.
+class DynamicTree {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr std::uint32_t kChildren = 16;  // at most, of a node
+
+  // A number of the caller's, not used by another item of the tree, and a well-formed box.
+  struct Item {
+    std::uint32_t number = 0;
+    Box box;
+  };
+
+  void insert(const Item& item);
+  // The following are for items of the tree alone.
+  void remove(std::uint32_t number);
+  void move(const Item& item);
+  const Box& boxOf(std::uint32_t number) const { return boxes_[places_[number]]; }
+  bool has(std::uint32_t number) const { return number < places_.size() && places_[number] != kNone; }
+  std::size_t size() const { return size_; }
+
+  // Replaces all items. Takes n log n time; far less than inserting them one by one.
+  void build(std::span<const Item> items);
+  // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps, and at most a
+  // thousand more: a step is a node that is looked at or an item of a subtree. Returns how many steps are
+  // left over.
+  std::uint32_t tidy(std::uint32_t steps);
+
+  // kNone if there are no items.
+  std::uint32_t root() const { return root_; }
+  struct Node {
+    std::span<const Box> boxes;
+    std::span<const std::uint32_t> children;  // as many: numbers of items, or of nodes
+    bool leaf = false;                        // the children are items
+  };
+  Node node(std::uint32_t number) const {
+    const std::size_t first = std::size_t{number} * kChildren;
+    const std::size_t count = nodes_[number].count;
+    return {std::span(boxes_).subspan(first, count), std::span(children_).subspan(first, count),
+            nodes_[number].height == 0};
+  }
+
+ private:
+  struct NodeData {
+    std::uint32_t parent = kNone;  // place of this node among its parent's children, an index of children_
+    std::uint8_t count = 0;
+    std::uint8_t height = 0;  // all leaves have 0
+    bool loose = false;       // its box in its parent may be too large; listed in loose_
+    bool worn = false;        // listed in worn_
+    double built_area = 0.0;  // surface area when it was built or split
+  };
+  static constexpr std::uint32_t kMaxHeight = 10;     // more than 2^32 items of the fewest children need
+  static constexpr std::uint32_t kFew = 4;            // children of a node after a split, at least
+  static constexpr std::uint32_t kMaxRebuilt = 1024;  // items of a subtree that is built anew, at most
+
+  std::uint32_t newNode(std::uint32_t height);
+  void freeNode(std::uint32_t node);
+  Box boundsOf(std::uint32_t node) const;
+  std::uint32_t leafFor(const Box& box) const;
+  void addChild(std::uint32_t node, std::uint32_t child, const Box& box);
+  void setPlace(std::uint32_t place, bool leaf);
+  void split(std::uint32_t node, std::uint32_t child, const Box& box);
+  void removeChild(std::uint32_t place);
+  void grow(std::uint32_t node, const Box& box);
+  void loosen(std::uint32_t node);
+  void wear(std::uint32_t node);
+  void tighten(std::uint32_t node);
+  void rebuild(std::uint32_t node);
+  std::uint32_t itemsBelow(std::uint32_t node) const;
+  void collect(std::uint32_t node, bool keep);
+  void fill(std::uint32_t node, std::span<Item> items);
+  std::uint32_t heightFor(std::size_t items) const;
+
+  std::vector<NodeData> nodes_;
+  // Of node n: those from kChildren * n on. An index of these columns is a "place".
+  std::vector<Box> boxes_;
+  std::vector<std::uint32_t> children_;
+  std::vector<std::uint32_t> places_;  // by item: its place, or kNone
+  std::vector<std::uint32_t> free_;    // numbers of nodes that are not used
+  std::uint32_t root_ = kNone;
+  std::size_t size_ = 0;
+  std::array<std::vector<std::uint32_t>, kMaxHeight> loose_;  // nodes, by height
+  std::vector<std::uint32_t> worn_;
+  std::vector<Item> collected_;  // scratch for rebuild()
+};
+
+}  // namespace sightline::hierarchy

@@ -1,0 +1,201 @@
+#include "src/hierarchy/dynamic_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/random_numbers.h"
+
+namespace sightline::hierarchy {
+namespace {
+
+using Item = DynamicTree::Item;
+using Boxes = std::map<std::uint32_t, Box>;  // by number
+
+struct Counts {
+  std::size_t nodes = 0, items = 0;
+  double area = 0.0;  // of all nodes
+};
+
+// Empty when the tree holds exactly these boxes, and each node's box those of its children. tight: no larger
+// than that.
+std::string whatIsWrong(const DynamicTree& tree, const Boxes& boxes, bool tight, Counts& counts) {
+  std::vector<std::uint32_t> open;
+  if (tree.root() != DynamicTree::kNone) {
+    open.push_back(tree.root());
+  }
+  Boxes found;
+  while (!open.empty()) {
+    const DynamicTree::Node node = tree.node(open.back());
+    open.pop_back();
+    ++counts.nodes;
+    if (node.boxes.empty() || node.boxes.size() > DynamicTree::kChildren) {
+      return "a node has no children or too many";
+    }
+    for (std::size_t i = 0; i < node.boxes.size(); ++i) {
+      if (node.leaf) {
+        ++counts.items;
+        if (!found.emplace(node.children[i], node.boxes[i]).second) {
+          return "an item is there twice";
+        }
+        continue;
+      }
+      Box below;
+      for (const Box& box : tree.node(node.children[i]).boxes) {
+        below.extend(box);
+      }
+      if (!contains(node.boxes[i], below)) {
+        return "a node does not contain its children";
+      }
+      if (tight && !(node.boxes[i] == below)) {
+        return "a node is too large";
+      }
+      counts.area += surfaceArea(below);
+      open.push_back(node.children[i]);
+    }
+  }
+  if (found != boxes) {
+    return "other items";
+  }
+  for (const auto& [number, box] : boxes) {
+    if (!tree.has(number) || !(tree.boxOf(number) == box)) {
+      return "an item is not where it is said to be";
+    }
+  }
+  return tree.size() == boxes.size() ? "" : "another size";
+}
+
+std::string whatIsWrong(const DynamicTree& tree, const Boxes& boxes, bool tight = false) {
+  Counts counts;
+  return whatIsWrong(tree, boxes, tight, counts);
+}
+
+class RandomBoxes {
+ public:
+  explicit RandomBoxes(std::uint32_t seed) : engine_(seed), number_(test::numbersFrom<float>(engine_)) {}
+
+  Box next(float spread, float size) {
+    Box box;
+    const Vec3f at{number_(-spread, spread), number_(-spread, spread), number_(-spread, spread)};
+    box.extend(at);
+    box.extend(at + Vec3f{number_(0.0f, size), number_(0.0f, size), number_(0.0f, size)});
+    return box;
+  }
+  std::uint32_t below(std::uint32_t bound) { return static_cast<std::uint32_t>(engine_() % bound); }
+
+ private:
+  std::mt19937 engine_;
+  decltype(test::numbersFrom<float>(std::declval<std::mt19937&>())) number_;
+};
+
+std::vector<Item> itemsOf(const Boxes& boxes) {
+  std::vector<Item> items;
+  for (const auto& [number, box] : boxes) {
+    items.push_back({number, box});
+  }
+  return items;
+}
+
+TEST(DynamicTree, HoldsWhatIsInsertedMovedAndRemoved) {
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    RandomBoxes random(seed);
+    DynamicTree tree;
+    Boxes boxes;
+    // All boxes alike, in one place, or wide apart.
+    const float spread = seed % 3 == 0 ? 0.0f : 100.0f, size = seed % 2 == 0 ? 0.0f : 3.0f;
+    for (std::uint32_t step = 0; step < 4000; ++step) {
+      const std::uint32_t number = random.below(600);
+      const Box box = random.next(spread, size);
+      if (!tree.has(number)) {
+        tree.insert({number, box});
+        boxes[number] = box;
+      } else if (random.below(4) == 0 || (step > 2000 && step < 2600)) {
+        tree.remove(number);
+        boxes.erase(number);
+      } else {
+        tree.move({number, box});
+        boxes[number] = box;
+      }
+      if (step % 7 == 0) {
+        tree.tidy(random.below(40));
+      }
+      if (step % 50 == 0) {
+        ASSERT_EQ(whatIsWrong(tree, boxes), "") << seed << " " << step;
+      }
+    }
+    while (tree.tidy(100) < 100) {
+    }
+    ASSERT_EQ(whatIsWrong(tree, boxes, true), "") << seed;
+    for (const Item& item : itemsOf(boxes)) {
+      tree.remove(item.number);
+    }
+    EXPECT_EQ(tree.size(), 0u);
+    EXPECT_EQ(tree.root(), DynamicTree::kNone);
+  }
+}
+
+TEST(DynamicTree, IsBuiltOfAnyNumberOfItems) {
+  RandomBoxes random(1);
+  for (const std::uint32_t count :
+       {0u, 1u, 2u, 11u, 12u, 13u, 16u, 17u, 191u, 192u, 193u, 256u, 257u, 3071u, 3073u, 5000u}) {
+    Boxes boxes;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      boxes[3 * i] = random.next(50.0f, 1.0f);
+    }
+    DynamicTree tree;
+    tree.insert({7, random.next(1.0f, 1.0f)});
+    tree.build(itemsOf(boxes));
+    EXPECT_EQ(whatIsWrong(tree, boxes, true), "") << count;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      boxes[3 * i + 1] = random.next(50.0f, 1.0f);
+      tree.insert({3 * i + 1, boxes[3 * i + 1]});
+    }
+    EXPECT_EQ(whatIsWrong(tree, boxes), "") << count;
+  }
+}
+
+// A world in which everything moves and comes and goes stays about as good as one built anew.
+TEST(DynamicTree, StaysGoodWhateverChanges) {
+  RandomBoxes random(3);
+  Boxes boxes;
+  DynamicTree tree;
+  std::size_t most_nodes = 0;
+  for (std::uint32_t frame = 0; frame < 600; ++frame) {
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      const std::uint32_t number = random.below(4000);
+      if (tree.has(number)) {
+        tree.remove(number);
+        boxes.erase(number);
+      } else {
+        boxes[number] = random.next(100.0f, 2.0f);
+        tree.insert({number, boxes[number]});
+      }
+    }
+    std::uint32_t moved = 0;
+    for (auto& [number, box] : boxes) {
+      if (++moved % 3 == 0) {
+        const Box step = random.next(1.5f, 0.0f);
+        box = {box.min + step.min, box.max + step.min};
+        tree.move({number, box});
+      }
+    }
+    tree.tidy(2000);
+    Counts counts;
+    ASSERT_EQ(whatIsWrong(tree, boxes, false, counts), "") << frame;
+    most_nodes = std::max(most_nodes, counts.nodes);
+  }
+  Counts worn, fresh;
+  DynamicTree anew;
+  anew.build(itemsOf(boxes));
+  ASSERT_EQ(whatIsWrong(tree, boxes, false, worn), "");
+  ASSERT_EQ(whatIsWrong(anew, boxes, true, fresh), "");
+  EXPECT_LT(worn.area, 2.0 * fresh.area);
+  EXPECT_LT(most_nodes, 2 * fresh.nodes);
+}
+
+}  // namespace
+}  // namespace sightline::hierarchy
