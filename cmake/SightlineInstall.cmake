@@ -8,7 +8,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sightline)
 
 install(TARGETS sightline_runtime EXPORT sightlineTargets COMPONENT runtime
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime)
-foreach(room base math geometry scene hierarchy occluders occlusion culling)
+foreach(room base math geometry scene hierarchy occluders occlusion culling world)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/sightline/${room}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightline COMPONENT runtime FILES_MATCHING PATTERN "*.h")
 endforeach()

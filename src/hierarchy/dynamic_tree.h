@@ -30,6 +30,8 @@ class DynamicTree {
   };
 
   void insert(const Item& item);
+  // Builds the tree anew if these are many beside what it holds.
+  void insert(std::span<const Item> items);
   // The following are for items of the tree alone.
   void remove(std::uint32_t number);
   void move(const Item& item);

@@ -78,9 +78,15 @@ void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> ca
   impl_->raster.draw(surfaces, candidates, drawing);
 }
 
-void DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+SurfaceStats DepthPyramid::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
+                                const SurfaceDrawing& drawing) {
   impl_->finished = false;
-  impl_->raster.draw(moving, drawing);
+  return impl_->raster.draw(surfaces, candidates, drawing);
+}
+
+SurfaceStats DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+  impl_->finished = false;
+  return impl_->raster.draw(moving, drawing);
 }
 
 void DepthPyramid::finish(const ParallelFor& parallel_for) {

@@ -139,14 +139,25 @@ void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> cand
   impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target());
 }
 
-void Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
+                              const SurfaceDrawing& drawing) {
+  if (surfaces.surfaces == nullptr) {
+    return {};
+  }
+  impl_->surfaces.draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates,
+                       drawing, impl_->target());
+  return impl_->surfaces.stats();
+}
+
+SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
   if (moving.surfaces == nullptr) {
-    return;
+    return {};
   }
   SurfaceDrawing alone = drawing;
   alone.step = ViewStep::kJump;
   impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
                               moving.surfaces->objects, alone, impl_->target());
+  return impl_->moving_surfaces.stats();
 }
 
 const RasterSettings& Rasteriser::settings() const {

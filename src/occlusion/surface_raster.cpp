@@ -234,6 +234,7 @@ std::uint64_t SurfaceRaster::work() const {
 // A group that changed too few pixels for what it cost rests, twice as long as the last time. Groups that
 // began to rest in the same view come back in different ones, or drawing them all would make one view slow.
 void SurfaceRaster::account(std::uint32_t nearer, Rest& rest) {
+  stats_.gain += nearer;
   if (nearer < kMinGain * static_cast<double>(work() - work_before_)) {
     const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
     const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;

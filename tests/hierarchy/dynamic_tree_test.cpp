@@ -155,6 +155,15 @@ TEST(DynamicTree, IsBuiltOfAnyNumberOfItems) {
       tree.insert({3 * i + 1, boxes[3 * i + 1]});
     }
     EXPECT_EQ(whatIsWrong(tree, boxes), "") << count;
+    for (const std::uint32_t more : {0u, 3u, 700u}) {
+      std::vector<Item> items;
+      for (std::uint32_t i = 0; i < more; ++i) {
+        items.push_back({100000 + 1000 * more + i, random.next(50.0f, 1.0f)});
+        boxes[items.back().number] = items.back().box;
+      }
+      tree.insert(items);
+      EXPECT_EQ(whatIsWrong(tree, boxes), "") << count << " and " << more;
+    }
   }
 }
 

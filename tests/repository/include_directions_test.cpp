@@ -17,10 +17,10 @@ namespace sightline::repository {
 namespace {
 
 // From the bottom to the top.
-constexpr std::array<std::string_view, 14> kRooms{
-    "base",    "math",   "geometry", "scene", "hierarchy", "occluders", "occlusion",
-    "culling", "layers", "drawing",  "pvs",   "io",        "render",    "comparison"};
-constexpr std::size_t kRuntimeRooms = 8;  // the first of them make sightline::runtime
+constexpr std::array<std::string_view, 15> kRooms{
+    "base",  "math",   "geometry", "scene", "hierarchy", "occluders", "occlusion", "culling",
+    "world", "layers", "drawing",  "pvs",   "io",        "render",    "comparison"};
+constexpr std::size_t kRuntimeRooms = 9;  // the first of them make sightline::runtime
 
 std::optional<std::size_t> levelOf(std::string_view room) {
   const auto* found = std::find(kRooms.begin(), kRooms.end(), room);

@@ -74,7 +74,9 @@ class DepthPyramid {
             const ParallelFor& parallel_for = serialFor);
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing = {});
-  void draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
+  SurfaceStats draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
+                    const SurfaceDrawing& drawing);
+  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
   void finish(const ParallelFor& parallel_for = serialFor);
 
   // Classifies boxes in scene space as seen in the last view. answers: as many as boxes. Boxes that are not

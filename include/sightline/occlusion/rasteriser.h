@@ -82,12 +82,13 @@ struct SurfaceDrawing {
   ViewStep step = ViewStep::kJump;  // from the view in which this set was drawn last
 };
 
-// What the last draw() of surfaces drew.
+// What a draw() of surfaces drew.
 struct SurfaceStats {
   std::uint32_t patches = 0, clusters = 0;  // that were looked at closely
   std::uint32_t groups = 0;                 // of clusters that were drawn together
   std::uint32_t edges = 0;                  // of their boundaries
   std::uint32_t work = 0;                   // what they cost, as SurfaceDrawing::budget counts it
+  std::uint32_t gain = 0;                   // pixels that became nearer by an eighth or more
   bool complete = true;                     // the budget was enough
 };
 
@@ -124,14 +125,18 @@ class Rasteriser {
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing = {});
 
+  // The same for surfaces in a space of their own.
+  SurfaceStats draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
+                    const SurfaceDrawing& drawing);
+
   // Draws all surfaces of a set that moves. The set must outlive the call only; it costs least where the same
-  // one is drawn in each view. drawing.step has no effect.
-  void draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
+  // one is drawn in each view. drawing.step has no effect. Returns what was drawn, as surfaceStats() does.
+  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
 
   const RasterSettings& settings() const;
   DepthBufferView depthBuffer() const;
-  const RasterStats& stats() const;  // counts since begin()
-  const SurfaceStats& surfaceStats() const;
+  const RasterStats& stats() const;          // counts since begin()
+  const SurfaceStats& surfaceStats() const;  // of the last draw() of surfaces with candidates
   // The chosen occluders that were drawn or are behind what was drawn, since begin(), draw by draw. A convex
   // body that was drawn as one is named by the first of its faces that was chosen.
   std::span<const OccluderId> occluders() const;

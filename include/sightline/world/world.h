@@ -1,0 +1,114 @@
+#pragma once
+
+// A world of instances of meshes that are added, removed, moved, shown and hidden in any frame.
+//
+// A renderer tells a World what there is, and asks a WorldCuller, one for each view, what may be seen:
+//
+//   World world;
+//   const MeshId crate = world.addMesh(*makeMesh(mesh));                  // once a mesh
+//   const InstanceId one = world.add({crate, world_from_mesh});           // at any time
+//   world.setTransform(one, elsewhere);
+//   world.tidy();                                                         // once a frame
+//   WorldCuller culler;
+//   culler.cull(world, view);                                             // every frame
+//   for (InstanceId id : culler.visible()) ...
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sightline/base/ids.h"
+#include "sightline/base/parallel_for.h"
+#include "sightline/math/box.h"
+#include "sightline/math/mat4.h"
+#include "sightline/occluders/surface_set.h"
+#include "sightline/world/world_mesh.h"
+
+namespace sightline {
+
+namespace world {
+struct WorldData;
+}
+
+using MeshId = Id<struct MeshTag>;  // of a World
+// An instance of a World. It stays the same as long as the instance is there; afterwards the next one that is
+// added may have it.
+using InstanceId = Id<struct InstanceTag>;
+using JoinId = Id<struct JoinTag>;  // of a World
+
+struct Instance {
+  MeshId mesh{};
+  Mat4 world_from_mesh{};  // affine; it may scale, shear and mirror, which leaves fronts fronts
+  bool shown = true;
+  bool occludes = true;  // false: it hides nothing, whatever its mesh does
+  // More than 0, metres: vertices may be this far from where the matrix takes them (skinning, waves). The
+  // instance then hides nothing, and its box is larger by this.
+  double displacement = 0.0;
+};
+
+// What World::prepareJoin() found, for World::use(). Not to be changed by hand.
+struct WorldJoin {
+  std::vector<InstanceId> instances{};
+  std::vector<std::uint64_t> versions{};  // of the instances
+  Vec3d origin{};                         // of the surfaces, world space
+  SurfaceSet surfaces{};                  // ObjectId is the index into `instances`
+};
+
+// Positions are in double precision, so no origin has to move with the camera. The axes may be any: nothing
+// depends on which one is up. Calls with an id that is not there have no effect.
+//
+// Everything that is not const is for one thread, while no other one reads. Between two changes any number of
+// threads may cull, each with a WorldCuller of its own.
+class World {
+ public:
+  World();
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  MeshId addMesh(WorldMesh mesh);
+  // Also removes its instances.
+  void removeMesh(MeshId mesh);
+
+  // Takes about a microsecond. An instance with a matrix that is not finite, or of a mesh that is not there,
+  // is in every answer while it is shown.
+  InstanceId add(const Instance& instance);
+  // The same for many, whose ids are appended; after it, the hierarchy is as one built for all that is there.
+  // Takes n log n time.
+  void add(std::span<const Instance> instances, std::vector<InstanceId>& ids);
+  void remove(InstanceId instance);
+  void setTransform(InstanceId instance, const Mat4& world_from_mesh);
+  void setShown(InstanceId instance, bool shown);
+
+  bool has(InstanceId instance) const;
+  std::size_t instances() const;  // that are there
+  // All ids are below this: the size of an array by InstanceId.
+  std::size_t idBound() const;
+  Box boundsOf(InstanceId instance) const;  // world space, rounded outwards; not well formed if unknown
+  MeshId meshOf(InstanceId instance) const;
+
+  // Finds the surfaces of instances anew as one, so that what touches hides jointly: walls of panels, floors
+  // of tiles, a level of brushes. Worth it for what does not move. Instances that are in another join leave
+  // it. One that moves, is hidden or is removed later leaves the join; what was connected with it then hides
+  // by its own mesh, too. Takes as long as findSurfaces(), during which the world may be culled but not
+  // changed; use() takes microseconds.
+  WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
+                        const ParallelFor& parallel_for = serialFor) const;
+  // Instances that have changed since prepareJoin() leave the join at once.
+  JoinId use(WorldJoin join);
+  // Its instances hide by their own meshes again.
+  void drop(JoinId join);
+
+  // Call this once a frame: keeps the hierarchy good, in at most about so many steps of some 20 nanoseconds.
+  // Answers are right without it, but culling becomes slower.
+  void tidy(std::uint32_t steps = 10000);
+
+  const world::WorldData& data() const { return *data_; }  // for the library
+
+ private:
+  std::unique_ptr<world::WorldData> data_;
+};
+
+}  // namespace sightline

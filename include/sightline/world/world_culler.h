@@ -1,0 +1,76 @@
+#pragma once
+
+// What of a World may be seen in a view.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sightline/math/box.h"
+#include "sightline/occlusion/rasteriser.h"
+#include "sightline/occlusion/visibility.h"
+#include "sightline/scene/camera.h"
+#include "sightline/world/world.h"
+
+namespace sightline {
+
+struct WorldCullerSettings {
+  RasterSettings raster{};  // of the depth buffer into which surfaces are drawn
+  // Of the surfaces of one instance, or of a join; `budget` is for all of a view. `step` has no effect.
+  SurfaceDrawing drawing{};
+  bool occlusion = true;  // false: by the view's volume alone
+};
+
+// Of the last cull().
+struct WorldCullStats {
+  // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything that
+  // is shown was kept.
+  const char* view_fault = nullptr;
+  std::uint32_t occluders = 0;     // instances whose own surfaces were drawn, and joins
+  std::uint32_t edges = 0;         // of the boundaries that were drawn
+  std::uint32_t nodes_tested = 0;  // nodes of the hierarchy whose children were tested
+  std::uint32_t boxes_tested = 0;
+  double draw_us = 0.0, test_us = 0.0;  // microseconds: drawing the depth buffer, testing boxes
+};
+
+// Culls a World for one view, frame after frame. Each view of a frame (the camera's, cascades of shadows,
+// reflections) has a culler of its own, and several cullers may cull one world at the same time.
+// Conservative: whatever can be seen is kept. Instances whose surfaces hide others are those that were kept
+// in the frame before, as far as they are still there; so what hides is drawn where it is now, never where it
+// was.
+//
+// Nothing is allocated once the storage has grown to what a few frames need. For one thread at a time.
+class WorldCuller {
+ public:
+  explicit WorldCuller(const WorldCullerSettings& settings = {});
+  ~WorldCuller();
+  WorldCuller(WorldCuller&&) noexcept;
+  WorldCuller& operator=(WorldCuller&&) noexcept;
+
+  // view: in the space of the world. A view with little in common with that of the last call (a cut) is
+  // noticed and costs more; one of another world needs reset().
+  void cull(const World& world, const View& view);
+  void reset();
+
+  // Answers of the last cull(). Instances that may be seen, ascending.
+  std::span<const InstanceId> visible() const;
+  // The same as a set of bits: instance i is bit i % 64 of word i / 64. As many words as World::idBound()
+  // needs.
+  std::span<const std::uint64_t> visibleBits() const;
+  // Instances that the cull() before did not keep, or that were not there then, and instances that it kept
+  // and that are not kept any more or have been removed; ascending.
+  std::span<const InstanceId> appeared() const;
+  std::span<const InstanceId> disappeared() const;
+  const WorldCullStats& stats() const;
+  DepthBufferView depthBuffer() const;
+
+  // Whether a box in the space of the world, of something that is no instance, may be seen in that view:
+  // kHidden also means outside of it. Several threads may ask at the same time.
+  Visibility classify(const Box& box) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,434 @@
+// Worlds that change in every frame: whatever exact visibility sees, the culler keeps.
+
+#include "sightline/world/world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sightline/world/world_culler.h"
+#include "tests/world/world_story.h"
+
+namespace sightline {
+namespace {
+
+using namespace world_story;
+
+View viewFrom(const Vec3d& eye, const Vec3d& forward) {
+  View view;
+  view.eye = eye;
+  setOrientation(view, forward, {0, 1, 0});
+  view.near = 0.0625;
+  view.far = 500.0;
+  return view;
+}
+
+std::vector<Shape> shapes() {
+  return {boxShape(), panelShape(false), panelShape(true), groundShape(),
+          panelShape(true, Opacity::kBlended)};
+}
+
+// Scales a box of 1 m to this size, from this corner.
+Mat4 boxAt(const Vec3d& corner, const Vec3d& size) {
+  Mat4 m;
+  for (int axis = 0; axis < 3; ++axis) {
+    m(axis, axis) = size[axis];
+    m(axis, 3) = corner[axis];
+  }
+  return m;
+}
+
+bool keeps(const WorldCuller& culler, InstanceId id) {
+  return std::binary_search(culler.visible().begin(), culler.visible().end(), id);
+}
+
+class WorldStory : public testing::TestWithParam<bool> {};
+
+TEST_P(WorldStory, WhateverIsSeenIsKept) {
+  Judged all;
+  for (std::uint32_t seed = 0; seed < 8; ++seed) {
+    Chance chance(seed);
+    Story story(shapes());
+    std::vector<InstanceId> ids;
+    std::vector<JoinId> joins;
+    for (int i = 0; i < 60; ++i) {
+      ids.push_back(story.add(chance.below(5), chance.placement(20.0, 6.0)));
+    }
+    WorldCuller culler({.raster = {.width = 128, .height = 72}}), sometimes;
+    Vec3d eye{chance.eighths(-5, 5), 1.5, chance.eighths(-5, 5)};
+    double heading = chance.number(0.0, 6.0);
+    for (std::uint32_t frame = 0; frame < 40; ++frame) {
+      for (std::uint32_t change = chance.below(6); change > 0; --change) {
+        const std::size_t which = chance.below(static_cast<std::uint32_t>(ids.size()));
+        switch (chance.below(7)) {
+          case 0:
+            ids.push_back(story.add(chance.below(5), chance.placement(20.0, 6.0), chance.below(4) != 0));
+            break;
+          case 1:
+            story.remove(ids[which]);
+            ids[which] = ids.back();
+            ids.pop_back();
+            break;
+          case 2:
+            story.show(ids[which], chance.below(2) == 0);
+            break;
+          case 3: {
+            std::vector<InstanceId> some;
+            for (const InstanceId id : ids) {
+              if (chance.below(2) == 0) {
+                some.push_back(id);
+              }
+            }
+            joins.push_back(story.world.use(story.world.prepareJoin(some)));
+            break;
+          }
+          case 4:
+            if (!joins.empty()) {
+              story.world.drop(joins[chance.below(static_cast<std::uint32_t>(joins.size()))]);
+            }
+            break;
+          default: {
+            Mat4 m = story.told.at(ids[which].value).world_from_mesh;
+            m(0, 3) += chance.eighths(-1.0, 1.0);
+            m(2, 3) += chance.eighths(-1.0, 1.0);
+            story.move(ids[which], chance.below(8) == 0 ? chance.placement(20.0, 6.0) : m);
+          }
+        }
+      }
+      story.world.tidy(chance.below(100));
+      eye = eye + Vec3d(chance.eighths(-0.5, 0.5), 0.0, chance.eighths(-0.5, 0.5));
+      heading += chance.number(-0.1, 0.1) + (chance.below(16) == 0 ? 2.5 : 0.0);
+      View view = viewFrom(eye, {std::sin(heading), 0.0, std::cos(heading)});
+      view.orthographic = GetParam();
+      view.ortho_height = 12.0;
+      culler.cull(story.world, view);
+      if (frame % 5 == 0) {
+        sometimes.cull(story.world, view);
+      }
+      if (frame % 3 == 0) {
+        const std::string where = "seed " + std::to_string(seed) + " frame " + std::to_string(frame);
+        const Judged judged = judge(story, view, culler, where);
+        all.seen += judged.seen;
+        all.culled += judged.culled;
+        if (frame % 15 == 0) {
+          judge(story, view, sometimes, where);
+        }
+      }
+      if (HasFailure()) {
+        return;
+      }
+    }
+    EXPECT_EQ(story.world.instances(), story.told.size());
+  }
+  EXPECT_GT(all.seen, 500u);
+  EXPECT_GT(all.culled, 500u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, WorldStory, testing::Bool(),
+                         [](const auto& shown) { return shown.param ? "Orthographic" : "Perspective"; });
+
+// A wall, and a crate behind it.
+struct WallAndCrate {
+  Story story{shapes()};
+  InstanceId wall = story.add(0, boxAt({-8, 0, -11}, {16, 8, 1}));
+  InstanceId crate = story.add(0, boxAt({0, 0, -21}, {1, 1, 1}));
+  View view = viewFrom({0, 1.5, 0}, {0, 0, -1});
+  WorldCuller culler;
+
+  bool showsCrate() {
+    culler.cull(story.world, view);
+    culler.cull(story.world, view);
+    EXPECT_EQ(keeps(culler, wall), story.told.contains(wall.value) && story.told.at(wall.value).shown);
+    return keeps(culler, crate);
+  }
+};
+
+TEST(World, AWallHidesAsLongAsItIsThere) {
+  WallAndCrate scene;
+  EXPECT_FALSE(scene.showsCrate());
+  scene.story.show(scene.wall, false);
+  EXPECT_TRUE(scene.showsCrate());
+  scene.story.show(scene.wall, true);
+  EXPECT_FALSE(scene.showsCrate());
+  scene.story.move(scene.wall, boxAt({20, 0, -11}, {16, 8, 1}));
+  scene.culler.cull(scene.story.world, scene.view);
+  EXPECT_TRUE(keeps(scene.culler, scene.crate));
+  scene.story.move(scene.wall, boxAt({-8, 0, -11}, {16, 8, 1}));
+  EXPECT_FALSE(scene.showsCrate());
+  scene.story.remove(scene.wall);
+  scene.culler.cull(scene.story.world, scene.view);
+  EXPECT_TRUE(keeps(scene.culler, scene.crate));
+}
+
+// Nothing that is removed hides in the very next frame, nor what is added in its place.
+TEST(World, AnIdThatIsUsedAgainIsAnotherInstance) {
+  WallAndCrate scene;
+  EXPECT_FALSE(scene.showsCrate());
+  const InstanceId old = scene.wall;
+  scene.story.remove(scene.wall);
+  scene.wall = scene.story.add(4, boxAt({-8, 0, -11}, {16, 8, 1}));
+  EXPECT_EQ(scene.wall, old);
+  scene.culler.cull(scene.story.world, scene.view);
+  EXPECT_TRUE(keeps(scene.culler, scene.crate));
+  EXPECT_EQ(std::vector(scene.culler.appeared().begin(), scene.culler.appeared().end()),
+            (std::vector{scene.wall, scene.crate}));
+}
+
+TEST(World, WhatIsDisplacedHidesNothingAndIsLarger) {
+  WallAndCrate scene;
+  const InstanceId wall = scene.wall;
+  scene.story.remove(wall);
+  World& world = scene.story.world;
+  scene.wall = world.add({.mesh = scene.story.meshes[0],
+                          .world_from_mesh = boxAt({-8, 0, -11}, {16, 8, 1}),
+                          .displacement = 0.5});
+  scene.culler.cull(world, scene.view);
+  scene.culler.cull(world, scene.view);
+  EXPECT_TRUE(keeps(scene.culler, scene.crate));
+  const Box box = world.boundsOf(scene.wall);
+  EXPECT_LE(box.min.x, -8.5f);
+  EXPECT_GE(box.max.z, -9.5f);
+  EXPECT_GT(box.min.x, -8.51f);
+}
+
+// Panels side by side, each too small to hide the crate alone.
+struct PanelsAndCrate {
+  Story story{shapes()};
+  std::vector<InstanceId> panels;
+  InstanceId crate, small;
+  View view = viewFrom({0, 0, 0}, {0, 0, -1});
+  WorldCuller culler{{.raster = {.width = 64, .height = 36}}};
+
+  PanelsAndCrate() {
+    for (int i = 0; i < 8; ++i) {
+      panels.push_back(story.add(1, boxAt({-2.0 + 0.5 * i, -2, -4}, {0.5, 4, 1})));
+    }
+    crate = story.add(0, boxAt({-1.25, -1, -9}, {2.5, 2, 1}));
+    // Behind one triangle of the fifth panel.
+    small = story.add(0, boxAt({0.75, -2.75, -9}, {0.125, 0.125, 0.125}));
+  }
+  bool shows(InstanceId id) {
+    culler.cull(story.world, view);
+    culler.cull(story.world, view);
+    judge(story, view, culler, "");
+    return keeps(culler, id);
+  }
+  bool showsCrate() { return shows(crate); }
+};
+
+TEST(World, WhatIsJoinedHidesTogetherUntilAMemberLeaves) {
+  PanelsAndCrate scene;
+  Story& story = scene.story;
+  const std::vector<InstanceId>& panels = scene.panels;
+  const auto shows = [&] { return scene.showsCrate(); };
+  EXPECT_TRUE(shows());
+  WorldJoin prepared = story.world.prepareJoin(panels);
+  const JoinId join = story.world.use(prepared);
+  EXPECT_FALSE(shows());
+  story.world.drop(join);
+  EXPECT_TRUE(shows());
+  const JoinId again = story.world.use(prepared);
+  EXPECT_FALSE(shows());
+  // A change before use() counts too.
+  story.move(panels[4], boxAt({0.0, -2, -3.5}, {0.5, 4, 1}));
+  EXPECT_TRUE(shows());
+  story.world.drop(again);
+  story.world.use(prepared);
+  EXPECT_TRUE(shows());
+  story.remove(panels[3]);
+  EXPECT_TRUE(shows());
+  // What is not there any more, or never was, is left out.
+  prepared.instances[0] = InstanceId(4711u);
+  story.world.use(prepared);
+  EXPECT_TRUE(shows());
+}
+
+// Also where each triangle is a part of its own, drawn together with those that adjoin it.
+TEST(World, AMemberThatIsHiddenOrRemovedHidesNothing) {
+  for (const bool hidden : {true, false}) {
+    for (const std::uint32_t part_triangles : {1u, 1024u}) {
+      PanelsAndCrate scene;
+      World& world = scene.story.world;
+      world.use(world.prepareJoin(scene.panels, {.part_triangles = part_triangles}));
+      EXPECT_FALSE(scene.showsCrate());
+      EXPECT_FALSE(scene.shows(scene.small));
+      if (hidden) {
+        scene.story.show(scene.panels[4], false);
+      } else {
+        scene.story.remove(scene.panels[4]);
+      }
+      EXPECT_TRUE(scene.showsCrate());
+      EXPECT_TRUE(scene.shows(scene.small));
+    }
+  }
+}
+
+TEST(World, WhatComesIntoViewHidesInTheSameFrame) {
+  WallAndCrate scene;
+  scene.story.show(scene.wall, false);
+  EXPECT_TRUE(scene.showsCrate());
+  scene.story.show(scene.wall, true);
+  scene.culler.cull(scene.story.world, scene.view);
+  EXPECT_FALSE(keeps(scene.culler, scene.crate));
+  EXPECT_EQ(std::vector(scene.culler.appeared().begin(), scene.culler.appeared().end()),
+            std::vector{scene.wall});
+  EXPECT_EQ(std::vector(scene.culler.disappeared().begin(), scene.culler.disappeared().end()),
+            std::vector{scene.crate});
+}
+
+// Many boxes all around, none before another: what is kept is what is in the view, up to the width of a box.
+TEST(World, WhatIsOutsideTheViewIsLeftOut) {
+  Story story(shapes());
+  std::vector<Instance> ring;
+  for (int i = 0; i < 720; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / 720.0;
+    ring.push_back(
+        {.mesh = story.meshes[0],
+         .world_from_mesh = boxAt({100.0 * std::sin(angle), 0, 100.0 * std::cos(angle)}, {0.1, 0.1, 0.1})});
+  }
+  std::vector<InstanceId> ids;
+  story.world.add(ring, ids);
+  ASSERT_EQ(ids.size(), 720u);
+  WorldCuller culler, frustum({.occlusion = false});
+  for (int frame = 0; frame < 180; ++frame) {
+    const double angle = 2.0 * 3.14159265358979 * frame / 90.0;
+    View view = viewFrom({0, 0.05, 0}, {std::sin(angle), 0, std::cos(angle)});
+    view.aspect = 1.0;
+    view.tan_half_fovy = 1.0;
+    culler.cull(story.world, view);
+    frustum.cull(story.world, view);
+    // A quarter of the ring, and boxes at its ends.
+    EXPECT_GE(culler.visible().size(), 179u);
+    EXPECT_LE(culler.visible().size(), 184u);
+    EXPECT_TRUE(std::ranges::equal(culler.visible(), frustum.visible()));
+    if (frame % 10 == 9 && frame < 90) {  // half of them move, and settle again
+      for (std::size_t i = 0; i < ids.size(); i += 2) {
+        Mat4 m = ring[i].world_from_mesh;
+        m(1, 3) += frame % 20 == 9 ? 0.5 : 0.0;
+        story.world.setTransform(ids[i], m);
+      }
+    }
+    story.world.tidy();
+  }
+}
+
+TEST(World, WhatCannotBePlacedIsAlwaysKept) {
+  Story story(shapes());
+  World& world = story.world;
+  Mat4 not_finite = boxAt({0, 0, 50}, {1, 1, 1});
+  not_finite(1, 3) = std::numeric_limits<double>::quiet_NaN();
+  Mat4 projective = boxAt({0, 0, 50}, {1, 1, 1});
+  projective(3, 3) = 2.0;
+  const std::array<float, 9> bad{0, 0, 0, 1, 0, std::numeric_limits<float>::infinity(), 0, 1, 0};
+  const MeshId endless = world.addMesh(*makeMesh({.positions = bad.data(), .vertex_count = 3}));
+  const std::vector<InstanceId> odd{
+      world.add({.mesh = story.meshes[0], .world_from_mesh = not_finite}),
+      world.add({.mesh = story.meshes[0], .world_from_mesh = projective}),
+      world.add({.mesh = endless}),
+      world.add({.mesh = MeshId(1000u)}),
+      world.add({.mesh = story.meshes[0], .displacement = std::numeric_limits<double>::quiet_NaN()}),
+  };
+  const InstanceId behind =
+      world.add({.mesh = story.meshes[0], .world_from_mesh = boxAt({0, 0, 50}, {1, 1, 1})});
+  WorldCuller culler;
+  culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
+  EXPECT_EQ(std::vector(culler.visible().begin(), culler.visible().end()), odd);
+  for (const InstanceId id : odd) {
+    world.setShown(id, false);
+  }
+  culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
+  EXPECT_TRUE(culler.visible().empty());
+  EXPECT_EQ(culler.disappeared().size(), odd.size());
+  View broken = viewFrom({0, 0, 0}, {0, 0, -1});
+  broken.aspect = -1.0;
+  culler.cull(world, broken);
+  EXPECT_NE(culler.stats().view_fault, nullptr);
+  EXPECT_EQ(std::vector(culler.visible().begin(), culler.visible().end()), std::vector{behind});
+  world.setTransform(odd[0], boxAt({0, 0, -10}, {1, 1, 1}));
+  world.setShown(odd[0], true);
+  culler.cull(world, viewFrom({0, 0, 0}, {0, 0, -1}));
+  EXPECT_EQ(std::vector(culler.visible().begin(), culler.visible().end()), std::vector{odd[0]});
+}
+
+TEST(World, CallsWithIdsThatAreNotThereHaveNoEffect) {
+  Story story(shapes());
+  World& world = story.world;
+  const InstanceId id = story.add(0, Mat4());
+  for (const InstanceId nothing : {InstanceId(), InstanceId(7u)}) {
+    world.remove(nothing);
+    world.setTransform(nothing, Mat4());
+    world.setShown(nothing, false);
+    EXPECT_FALSE(world.has(nothing));
+    EXPECT_FALSE(world.boundsOf(nothing).wellFormed());
+    EXPECT_FALSE(world.meshOf(nothing).valid());
+  }
+  world.drop(JoinId());
+  world.drop(JoinId(3u));
+  world.removeMesh(MeshId());
+  EXPECT_TRUE(world.has(id));
+  world.removeMesh(story.meshes[0]);
+  EXPECT_FALSE(world.has(id));
+  EXPECT_EQ(world.instances(), 0u);
+  world.removeMesh(story.meshes[0]);
+}
+
+TEST(World, MeshesAreReadAsTheyLieInMemory) {
+  struct Vertex {
+    char color[3];
+    float at[3];
+    float normal[3];
+  };
+  const Shape box = boxShape();
+  std::vector<Vertex> vertices;
+  std::vector<std::uint16_t> indices;
+  for (std::size_t i = 0; i < box.corners.size(); ++i) {
+    const Vec3f& p = box.corners[i];
+    vertices.push_back({{}, {p.x, p.y, p.z}, {}});
+    // Clockwise.
+    indices.push_back(static_cast<std::uint16_t>(i % 3 == 0 ? i : i % 3 == 1 ? i + 1 : i - 1));
+  }
+  const MeshView view{.positions = vertices[0].at,
+                      .position_stride = sizeof(Vertex),
+                      .vertex_count = static_cast<std::uint32_t>(vertices.size()),
+                      .indices = indices.data(),
+                      .index_bytes = 2,
+                      .index_count = indices.size(),
+                      .clockwise = true};
+  const WorldMesh strided = *makeMesh(view);
+  const WorldMesh plain = *makeMesh(
+      {.positions = box.corners.data(), .vertex_count = static_cast<std::uint32_t>(box.corners.size())});
+  EXPECT_EQ(strided.bounds, plain.bounds);
+  EXPECT_EQ(strided.triangles, 12u);
+  EXPECT_EQ(strided.surfaces.vertices.size(), 8u);
+  ASSERT_EQ(strided.surfaces.triangles.size(), plain.surfaces.triangles.size());
+  EXPECT_TRUE(std::ranges::equal(strided.surfaces.triangles, plain.surfaces.triangles));
+  const auto errorOf = [&](auto change) {
+    MeshView wrong = view;
+    change(wrong);
+    const Result<WorldMesh> made = makeMesh(wrong);
+    return made ? std::string() : made.error().message;
+  };
+  EXPECT_NE(errorOf([](MeshView& m) { m.vertex_count = 5; }), "");
+  EXPECT_NE(errorOf([](MeshView& m) { m.index_count = 35; }), "");
+  EXPECT_NE(errorOf([](MeshView& m) { m.index_bytes = 3; }), "");
+  EXPECT_NE(errorOf([](MeshView& m) { m.position_stride = 8; }), "");
+  EXPECT_NE(errorOf([](MeshView& m) { m.positions = nullptr; }), "");
+  EXPECT_NE(errorOf([](MeshView& m) { m.indices = nullptr; }), "");
+  EXPECT_EQ(errorOf([](MeshView& m) { m.index_count = 0; }), "");
+}
+
+TEST(World, BoxesOfWhatIsNoInstanceAreClassified) {
+  WallAndCrate scene;
+  EXPECT_FALSE(scene.showsCrate());
+  Box behind, before;
+  behind.extend(Vec3f{2, 0, -30});
+  behind.extend(Vec3f{3, 1, -29});
+  before.extend(Vec3f{2, 0, -6});
+  before.extend(Vec3f{3, 1, -5});
+  EXPECT_EQ(scene.culler.classify(behind), Visibility::kHidden);
+  EXPECT_EQ(scene.culler.classify(before), Visibility::kVisible);
+}
+
+}  // namespace
+}  // namespace sightline
