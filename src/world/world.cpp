@@ -185,6 +185,7 @@ void WorldData::settle(std::uint32_t looks) {
     if (moves) {
       const Box box = moving.boxOf(id);
       moving.remove(id);
+      settled.insert({id, box});
       own.where = Whereabouts::kSettled;
     }
   }
