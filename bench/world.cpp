@@ -1,0 +1,195 @@
+// What does a changing world cost? A city of instances of one box, from 1,000 to 1,000,000 of them, a walk
+// along its streets. On the same frames, on one core:
+//
+//   static     a cull of the world in which nothing changes
+//   moving     the same with up to 10,000 of the instances moving in every frame
+//   update     moving them, and keeping the hierarchy good
+//   edits      40 instances added and 40 removed
+//   Culler     a Culler of the same boxes by the frustum alone, beside it to set the scale
+//   its edits  what a Culler does after any change: a hierarchy anew, and reset()
+//
+//   world [INSTANCES...]
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+#include "bench/measuring.h"
+#include "sightline/culling/culler.h"
+#include "sightline/culling/frustum_method.h"
+#include "sightline/world/world.h"
+#include "sightline/world/world_culler.h"
+
+namespace {
+
+using namespace sightline;
+using namespace sightline::bench;
+
+constexpr int kFrames = 120, kUncounted = 20;
+constexpr double kBlock = 24.0;  // metres from street to street
+
+Vec3f corner(int i) {
+  return {(i & 1) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 1.0f : 0.0f, (i & 4) != 0 ? 0.5f : -0.5f};
+}
+
+WorldMesh boxMesh() {
+  std::vector<Vec3f> corners(8);
+  for (int i = 0; i < 8; ++i) {
+    corners[static_cast<std::size_t>(i)] = corner(i);
+  }
+  const std::vector<std::uint16_t> indices{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                           2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  return *makeMesh({.positions = corners.data(),
+                    .vertex_count = 8,
+                    .indices = indices.data(),
+                    .index_bytes = 2,
+                    .index_count = indices.size()});
+}
+
+Mat4 placed(const Vec3d& at, const Vec3d& size, double turn) {
+  const double c = std::cos(turn), s = std::sin(turn);
+  Mat4 m;
+  m(0, 0) = c * size.x, m(0, 2) = s * size.z;
+  m(1, 1) = size.y;
+  m(2, 0) = -s * size.x, m(2, 2) = c * size.z;
+  for (int axis = 0; axis < 3; ++axis) {
+    m(axis, 3) = at[axis];
+  }
+  return m;
+}
+
+// One house a block, and nine small things around it.
+struct City {
+  int blocks;  // along a side
+  std::mt19937 engine{1};
+
+  explicit City(std::size_t instances)
+      : blocks(static_cast<int>(std::ceil(std::sqrt(static_cast<double>(instances) / 10.0)))) {}
+
+  double number(double low, double high) { return std::uniform_real_distribution(low, high)(engine); }
+  Mat4 next(std::size_t i) {
+    const auto block = static_cast<int>(i / 10);
+    const double x = kBlock * (block % blocks - blocks / 2), z = kBlock * (block / blocks - blocks / 2);
+    if (i % 10 == 0) {
+      return placed({x, 0, z}, {number(12, 18), number(6, 50), number(12, 18)}, 0.0);
+    }
+    return small({x, 0, z});
+  }
+  Mat4 small(const Vec3d& block) {
+    const double size = number(0.3, 1.5);
+    return placed(block + Vec3d(number(-12, 12), 0, number(-12, 12)), {size, size, size}, number(0, 6));
+  }
+  View view(int frame) const {
+    View view;
+    view.eye = {0.5 * kBlock, 1.7, 0.25 * frame};
+    setOrientation(view, {0.3 * std::sin(0.05 * frame), 0, 1}, {0, 1, 0});
+    view.far = 2000.0;
+    return view;
+  }
+};
+
+void measure(std::size_t count) {
+  City city(count);
+  World world;
+  const MeshId box = world.addMesh(boxMesh());
+  std::vector<Instance> instances;
+  for (std::size_t i = 0; i < count; ++i) {
+    instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
+  }
+  std::vector<InstanceId> ids;
+  const double build_us = microseconds([&] { world.add(instances, ids); });
+
+  // The same boxes for a Culler.
+  std::vector<Box> bounds;
+  for (const InstanceId id : ids) {
+    bounds.push_back(world.boundsOf(id));
+  }
+  Hierarchy hierarchy = buildHierarchy(bounds, {});
+  Culler by_frustum({.hierarchy = &hierarchy, .object_bounds = bounds}, frustumCulling());
+
+  std::vector<InstanceId> movers;
+  for (std::size_t i = 1; i < ids.size() && movers.size() < 10000;
+       i += std::max<std::size_t>(count / 10000, 1)) {
+    if (i % 10 != 0) {
+      movers.push_back(ids[i]);
+    }
+  }
+  std::vector<double> still, moving, update, edits, frustum, reset, kept;
+  WorldCuller culler;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const View view = city.view(frame);
+    still.push_back(microseconds([&] { culler.cull(world, view); }));
+    kept.push_back(static_cast<double>(culler.visible().size()));
+    frustum.push_back(microseconds([&] { by_frustum.cull(view); }));
+  }
+  reset.push_back(microseconds([&] {
+    hierarchy = buildHierarchy(bounds, {});
+    by_frustum.reset();
+  }));
+  std::vector<Mat4> goals;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    goals.clear();
+    for (const InstanceId id : movers) {
+      goals.push_back(instances[id.value].world_from_mesh);
+      goals.back()(0, 3) += 3.0 * std::sin(0.05 * frame + 0.1 * id.value);
+      goals.back()(2, 3) += 3.0 * std::cos(0.05 * frame + 0.1 * id.value);
+    }
+    update.push_back(microseconds([&] {
+      for (std::size_t i = 0; i < movers.size(); ++i) {
+        world.setTransform(movers[i], goals[i]);
+      }
+      world.tidy();
+    }));
+    const View view = city.view(frame);
+    moving.push_back(microseconds([&] { culler.cull(world, view); }));
+  }
+  std::vector<InstanceId> added;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    std::vector<Instance> more;
+    for (int i = 0; i < 40; ++i) {
+      more.push_back({.mesh = box, .world_from_mesh = city.small({0, 0, 0.25 * frame})});
+    }
+    edits.push_back(microseconds([&] {
+      for (const InstanceId id : added) {
+        world.remove(id);
+      }
+      added.clear();
+      for (const Instance& instance : more) {
+        added.push_back(world.add(instance));
+      }
+      world.tidy();
+    }));
+    culler.cull(world, city.view(frame));
+  }
+  const auto settled = [](std::vector<double> values) {
+    return medianOf(
+        {values.begin() + std::min<std::ptrdiff_t>(kUncounted, std::ssize(values) - 1), values.end()});
+  };
+  fmt::print("{:>9} {:>8} {:>8.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>9.0f} {:>11.0f} {:>10.0f}\n", count,
+             movers.size(), meanOf(kept), settled(still), settled(moving), settled(update), settled(edits),
+             settled(frustum), settled(reset), build_us / 1000.0);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Arguments arguments = argumentsOf(argc, argv);
+  std::vector<std::size_t> counts;
+  for (const std::string& word : arguments.words) {
+    counts.push_back(std::strtoull(word.c_str(), nullptr, 10));
+  }
+  if (counts.empty()) {
+    counts = arguments.brief ? std::vector<std::size_t>{1000}
+                             : std::vector<std::size_t>{1000, 10000, 100000, 1000000};
+  }
+  fmt::print("{:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>11} {:>10}\n", "instances", "moving", "kept",
+             "static us", "moving us", "update us", "edits us", "Culler us", "its edits us", "added ms");
+  for (const std::size_t count : counts) {
+    measure(count);
+  }
+}
