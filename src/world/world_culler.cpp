@@ -8,6 +8,7 @@
 
 #include "sightline/occlusion/depth_pyramid.h"
 #include "src/culling/last_view.h"
+#include "src/culling/usual_work.h"
 #include "src/occlusion/pixel_boxes.h"
 #include "src/scene/usable_view.h"
 #include "src/world/world_data.h"
@@ -48,9 +49,9 @@ struct WorldCuller::Impl {
   explicit Impl(const WorldCullerSettings& given) : settings(given), pyramid({given.raster}) {}
 
   void cull(const World& world, const View& given);
-  void draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates, bool follows);
-  void drawJoins(const WorldData& data, std::uint32_t& budget, bool follows);
-  void drawAlone(const WorldData& data, const View& view, std::uint32_t& budget, bool follows);
+  void draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates, ViewStep step);
+  void drawJoins(const WorldData& data, SurfaceDrawing& drawing);
+  void drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing);
   void test(const WorldData& data, bool view_only);
   void testTree(const DynamicTree& tree, bool view_only);
   void keepAll(const DynamicTree& tree, std::uint32_t node);
@@ -68,6 +69,7 @@ struct WorldCuller::Impl {
   DepthPyramid pyramid;
   culling::LastView last_view;
   WorldCullStats counts;
+  culling::UsualWork usual_work;
   std::uint32_t frame = 0;
 
   std::vector<std::uint64_t> bits, last_bits;
@@ -113,7 +115,7 @@ void WorldCuller::Impl::cull(const World& world, const View& given) {
         list();
         clear(data);
       }
-      draw(data, view, visible, !jumped);
+      draw(data, view, visible, jumped ? ViewStep::kJump : ViewStep::kNext);
     }
     pyramid.finish();
     counts.draw_us = microsecondsSince(start);
@@ -124,7 +126,7 @@ void WorldCuller::Impl::cull(const World& world, const View& given) {
     compare(data);
     if (settings.occlusion && !jumped && appeared.size() * kCalm > visible.size()) {
       const auto again = std::chrono::steady_clock::now();
-      draw(data, view, appeared, false);
+      draw(data, view, appeared, ViewStep::kSame);
       pyramid.finish();
       clear(data);
       test(data, false);
@@ -227,7 +229,7 @@ void WorldCuller::Impl::keepAll(const DynamicTree& tree, std::uint32_t root) {
 
 // Draws the surfaces of these instances, which may have been removed, hidden or moved since they were kept.
 void WorldCuller::Impl::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
-                             bool follows) {
+                             ViewStep step) {
   of_join.resize(std::max(of_join.size(), data.joins.size()));
   for (std::vector<ObjectId>& members : of_join) {
     members.clear();
@@ -245,13 +247,19 @@ void WorldCuller::Impl::draw(const WorldData& data, const View& view, std::span<
       alone.push_back(id.value);
     }
   }
-  std::uint32_t budget = settings.drawing.budget;
-  drawJoins(data, budget, follows);
-  drawAlone(data, view, budget, follows);
+  SurfaceDrawing drawing = usual_work.limited(settings.drawing, step == ViewStep::kJump);
+  drawing.step = step;
+  const std::uint32_t budget = drawing.budget;
+  drawJoins(data, drawing);
+  drawAlone(data, view, drawing);
+  if (step != ViewStep::kSame) {
+    usual_work.frame(budget - drawing.budget);
+  }
 }
 
-void WorldCuller::Impl::drawJoins(const WorldData& data, std::uint32_t& budget, bool follows) {
-  for (std::uint32_t join = 0; join < data.joins.size() && budget > 0; ++join) {
+// Takes what it drew from drawing.budget, as does drawAlone().
+void WorldCuller::Impl::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
+  for (std::uint32_t join = 0; join < data.joins.size() && drawing.budget > 0; ++join) {
     if (of_join[join].empty()) {
       continue;
     }
@@ -260,18 +268,14 @@ void WorldCuller::Impl::drawJoins(const WorldData& data, std::uint32_t& budget, 
     for (int axis = 0; axis < 3; ++axis) {
       placed.scene_from_surfaces(axis, 3) = joined.origin[axis];
     }
-    SurfaceDrawing drawing = settings.drawing;
-    drawing.budget = budget;
-    drawing.step = follows ? ViewStep::kNext : ViewStep::kJump;
     const SurfaceStats drawn = pyramid.draw(placed, of_join[join], drawing);
     counts.occluders += drawn.groups > 0 ? 1 : 0;
     counts.edges += drawn.edges;
-    budget -= std::min(budget, drawn.work);
+    drawing.budget -= std::min(drawing.budget, drawn.work);
   }
 }
 
-void WorldCuller::Impl::drawAlone(const WorldData& data, const View& view, std::uint32_t& budget,
-                                  bool follows) {
+void WorldCuller::Impl::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
   boxes.clear();
   for (const std::uint32_t id : alone) {
     boxes.push_back(data.boxOf(id));
@@ -287,7 +291,8 @@ void WorldCuller::Impl::drawAlone(const WorldData& data, const View& view, std::
     const bool reaches_the_eye = image.place == occlusion::BoxPlace::kUnbounded;
     const double pixels = static_cast<double>(image.x1 - image.x0 + 1) * (image.y1 - image.y0 + 1);
     const Rest& rest = rests[alone[i]];
-    const bool rests_now = follows && rest.until > frame && rest.born == data.instances[alone[i]].born;
+    const bool rests_now =
+        drawing.step == ViewStep::kNext && rest.until > frame && rest.born == data.instances[alone[i]].born;
     if (image.place != occlusion::BoxPlace::kOutside && !rests_now &&
         (reaches_the_eye || pixels >= settings.drawing.min_pixels)) {
       near_first.push_back(
@@ -298,17 +303,15 @@ void WorldCuller::Impl::drawAlone(const WorldData& data, const View& view, std::
     return a.nearest != b.nearest ? a.nearest > b.nearest : a.id < b.id;
   });
   for (const Candidate& candidate : near_first) {
-    if (budget == 0) {
+    if (drawing.budget == 0) {
       break;
     }
-    SurfaceDrawing drawing = settings.drawing;
-    drawing.budget = budget;
     const InstanceData& own = data.instances[candidate.id];
     const SurfaceStats drawn = pyramid.draw(
         MovingSurfaces{&data.meshes[own.mesh].mesh.surfaces, data.world_from_mesh[candidate.id]}, drawing);
     counts.occluders += drawn.groups > 0 ? 1 : 0;
     counts.edges += drawn.edges;
-    budget -= std::min(budget, drawn.work);
+    drawing.budget -= std::min(drawing.budget, drawn.work);
     Rest& rest = rests[candidate.id];
     if (drawn.gain < kMinGain * drawn.work || drawn.groups == 0) {
       // Those that begin to rest in the same frame come back in different ones.

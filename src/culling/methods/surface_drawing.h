@@ -12,6 +12,7 @@
 #include "src/culling/hierarchical_traversal.h"
 #include "src/culling/methods/traversal_options.h"
 #include "src/culling/timed_budget.h"
+#include "src/culling/usual_work.h"
 
 namespace sightline::culling {
 
@@ -24,7 +25,8 @@ class SurfaceDrawer {
 
   void prepare(const CullingScene& scene) {
     surfaces_ = use_ != SurfaceUse::kNone ? scene.surfaces : nullptr;
-    usual_work_ = work_ = 0.0;
+    usual_work_ = {};
+    work_ = 0.0;
     timed_ = TimedBudget(budget_us_);
     search_.reset();
     if (surfaces_ != nullptr) {
@@ -46,25 +48,16 @@ class SurfaceDrawer {
     }
   }
   // follows: the view follows the last one for which this buffer was drawn.
-  //
-  // After a jump nothing is known of what hides what, and all that is in the frustum may be drawn. So that a
-  // cut to another camera is no hitch, only what has few edges for its size is drawn in that view, and the
-  // work of a view does not grow to many times what is usual within one step.
   template <typename Buffer>
   void draw(Buffer& buffer, const CullingFrame& frame, bool follows) {
-    SurfaceDrawing drawing = drawing_;
-    if (usual_work_ > 0.0) {
-      drawing.pixels_per_edge *= frame.jumped ? kJumpedPixels : 1.0;
-      drawing.budget = static_cast<std::uint32_t>(
-          std::min<double>(drawing.budget, std::max(kLeastWork, kGrowth * usual_work_)));
-    }
+    SurfaceDrawing drawing = usual_work_.limited(drawing_, frame.jumped);
     if (timed_.limits()) {
       drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, timed_.work()));
     }
     draw(buffer, frame.jumped ? std::span<const ObjectId>(in_frustum_) : frame.last_visible,
          follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump, drawing);
     work_ = buffer.surfaceStats().work;
-    usual_work_ += (work_ - usual_work_) / (usual_work_ > 0.0 ? kMemory : 1.0);
+    usual_work_.frame(work_);
   }
   // The frame ends: stats has its times.
   void finish(const CullStats& stats) {
@@ -101,15 +94,12 @@ class SurfaceDrawer {
     }
   }
 
-  static constexpr double kJumpedPixels = 8.0;  // times SurfaceDrawing::pixels_per_edge
-  static constexpr double kGrowth = 16.0, kLeastWork = 6000.0, kMemory = 8.0;  // views, of usual_work_
-
   SurfaceUse use_;
   SurfaceDrawing drawing_;
   double budget_us_;
   TimedBudget timed_{0.0};
-  double work_ = 0.0;        // of the last view, SurfaceStats::work
-  double usual_work_ = 0.0;  // of a view; 0: nothing has been drawn
+  double work_ = 0.0;  // of the last view, SurfaceStats::work
+  UsualWork usual_work_;
   const SurfaceSet* surfaces_ = nullptr;
   std::optional<HierarchicalTraversal> search_;
   std::vector<ObjectId> in_frustum_;
