@@ -55,7 +55,7 @@ TEST_P(WorldStory, WhateverIsSeenIsKept) {
     for (int i = 0; i < 60; ++i) {
       ids.push_back(story.add(chance.below(5), chance.placement(20.0, 6.0)));
     }
-    WorldCuller culler({.raster = {.width = 128, .height = 72}}), sometimes;
+    WorldCuller culler({.raster = {.width = 128, .height = 72}}), sometimes, both;
     Vec3d eye{chance.eighths(-5, 5), 1.5, chance.eighths(-5, 5)};
     double heading = chance.number(0.0, 6.0);
     for (std::uint32_t frame = 0; frame < 40; ++frame) {
@@ -103,6 +103,9 @@ TEST_P(WorldStory, WhateverIsSeenIsKept) {
       view.orthographic = GetParam();
       view.ortho_height = 12.0;
       culler.cull(story.world, view);
+      View other = view;
+      other.eye = view.eye + view.right * 0.0625;
+      both.cull(story.world, std::array{view, other});
       if (frame % 5 == 0) {
         sometimes.cull(story.world, view);
       }
@@ -113,6 +116,8 @@ TEST_P(WorldStory, WhateverIsSeenIsKept) {
         all.culled += judged.culled;
         if (frame % 15 == 0) {
           judge(story, view, sometimes, where);
+          judge(story, view, both, where);
+          judge(story, other, both, where);
         }
       }
       if (HasFailure()) {
@@ -159,6 +164,34 @@ TEST(World, AWallHidesAsLongAsItIsThere) {
   scene.story.remove(scene.wall);
   scene.culler.cull(scene.story.world, scene.view);
   EXPECT_TRUE(keeps(scene.culler, scene.crate));
+}
+
+// A post hides from each eye another crate.
+TEST(World, WhatEitherEyeSeesIsKept) {
+  Story story(shapes());
+  story.add(0, boxAt({-0.5, -4, -4}, {1, 8, 0.5}));
+  const InstanceId left = story.add(0, boxAt({-0.75, 0, -12}, {0.25, 0.25, 0.25})),
+                   right = story.add(0, boxAt({0.5, 0, -12}, {0.25, 0.25, 0.25})),
+                   middle = story.add(0, boxAt({-0.125, 0, -12}, {0.25, 0.25, 0.25}));
+  const std::array eyes{viewFrom({-0.5, 0, 0}, {0, 0, -1}), viewFrom({0.5, 0, 0}, {0, 0, -1})};
+  WorldCuller one, both;
+  for (int frame = 0; frame < 3; ++frame) {
+    both.cull(story.world, eyes);
+    EXPECT_TRUE(keeps(both, left));
+    EXPECT_TRUE(keeps(both, right));
+    EXPECT_FALSE(keeps(both, middle));
+    EXPECT_NE(both.classify(story.world.boundsOf(left)), Visibility::kHidden);
+    EXPECT_EQ(both.classify(story.world.boundsOf(middle)), Visibility::kHidden);
+  }
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    one.cull(story.world, eyes[eye]);
+    one.cull(story.world, eyes[eye]);
+    EXPECT_EQ(keeps(one, left), eye == 0);
+    EXPECT_EQ(keeps(one, right), eye == 1);
+  }
+  // No view at all shows nothing.
+  both.cull(story.world, std::span<const View>());
+  EXPECT_TRUE(both.visible().empty());
 }
 
 // Nothing that is removed hides in the very next frame, nor what is added in its place.

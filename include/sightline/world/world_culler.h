@@ -50,6 +50,9 @@ class WorldCuller {
   // view: in the space of the world. A view with little in common with that of the last call (a cut) is
   // noticed and costs more; one of another world needs reset().
   void cull(const World& world, const View& view);
+  // Several views at once, as those of two eyes: what any of them may see. The same number of views in the
+  // same order in each frame is best.
+  void cull(const World& world, std::span<const View> views);
   void reset();
 
   // Answers of the last cull(). Instances that may be seen, ascending.
@@ -62,10 +65,10 @@ class WorldCuller {
   std::span<const InstanceId> appeared() const;
   std::span<const InstanceId> disappeared() const;
   const WorldCullStats& stats() const;
-  DepthBufferView depthBuffer() const;
+  DepthBufferView depthBuffer() const;  // of the first view
 
-  // Whether a box in the space of the world, of something that is no instance, may be seen in that view:
-  // kHidden also means outside of it. Several threads may ask at the same time.
+  // Whether a box in the space of the world, of something that is no instance, may be seen in one of the
+  // views: kHidden also means outside of them. Several threads may ask at the same time.
   Visibility classify(const Box& box) const;
 
  private:

@@ -1,0 +1,216 @@
+#include "src/world/world_eye.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+namespace sightline::world {
+
+using hierarchy::DynamicTree;
+
+namespace {
+
+constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
+constexpr std::uint32_t kLongestRest = 15;
+// Where more than one of so many instances that were kept is new, the view changes fast, and what the last
+// frame kept is not enough to hide what is behind the new ones.
+constexpr std::size_t kCalm = 16;
+
+double microsecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+void addAll(const DynamicTree& tree, std::uint32_t number, IdBits& kept) {
+  if (number == DynamicTree::kNone) {
+    return;
+  }
+  const DynamicTree::Node node = tree.node(number);
+  for (const std::uint32_t child : node.children) {
+    if (node.leaf) {
+      kept.insert(child);
+    } else {
+      addAll(tree, child, kept);
+    }
+  }
+}
+
+void WorldEye::cull(const WorldData& data, const View& view, std::span<const InstanceId> last,
+                    const IdBits& last_set, IdBits& kept, WorldCullStats& stats) {
+  const auto start = std::chrono::steady_clock::now();
+  const bool jumped = last_view_.jumpsTo(view);
+  ++frame_;
+  counts_ = {};
+  pyramid_.begin(view);
+  if (settings_.occlusion && jumped) {
+    test(data, true);
+    listed_.clear();
+    found_.list(listed_);
+    draw(data, view, listed_, ViewStep::kJump);
+  } else if (settings_.occlusion) {
+    draw(data, view, last, ViewStep::kNext);
+  }
+  pyramid_.finish();
+  stats.draw_us += microsecondsSince(start);
+  const auto drawn = std::chrono::steady_clock::now();
+  test(data, false);
+  if (settings_.occlusion && !jumped) {
+    listed_.clear();
+    found_.listWithout(last_set, listed_);
+    if (listed_.size() * kCalm > last.size()) {
+      draw(data, view, listed_, ViewStep::kSame);
+      pyramid_.finish();
+      test(data, false);
+    }
+  }
+  stats.test_us += microsecondsSince(drawn);
+  stats.occluders += counts_.occluders;
+  stats.edges += counts_.edges;
+  stats.nodes_tested += counts_.nodes_tested;
+  stats.boxes_tested += counts_.boxes_tested;
+  kept.add(found_);
+}
+
+// Sets found_ to what may be seen, of all or by the view's volume alone.
+void WorldEye::test(const WorldData& data, bool view_only) {
+  found_.clear(data.instances.size());
+  test(data.settled, view_only);
+  test(data.moving, view_only);
+}
+
+void WorldEye::test(const DynamicTree& tree, bool view_only) {
+  stack_.clear();
+  if (tree.root() != DynamicTree::kNone) {
+    stack_.push_back({tree.root(), view_only});
+  }
+  while (!stack_.empty()) {
+    const Entry entry = stack_.back();
+    stack_.pop_back();
+    const DynamicTree::Node node = tree.node(entry.node);
+    const std::span<BoxAnswer> answers = std::span(answers_).first(node.boxes.size());
+    if (entry.view_only) {
+      pyramid_.classifyInView(node.boxes, answers);
+    } else {
+      pyramid_.classify(node.boxes, answers, {.plain_from = node.leaf ? 0 : node.boxes.size()});
+    }
+    ++counts_.nodes_tested;
+    counts_.boxes_tested += static_cast<std::uint32_t>(node.boxes.size());
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const Visibility visibility = answers[i].visibility;
+      if (visibility == Visibility::kHidden) {
+        continue;
+      }
+      const bool sees_all = entry.view_only || visibility == Visibility::kVisible;
+      if (node.leaf) {
+        found_.insert(node.children[i]);
+      } else if (sees_all && answers[i].within_view) {
+        addAll(tree, node.children[i], found_);
+      } else {
+        stack_.push_back({node.children[i], sees_all});
+      }
+    }
+  }
+}
+
+// Draws the surfaces of these instances, which may have been removed, hidden or moved since they were kept.
+void WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
+                    ViewStep step) {
+  of_join_.resize(std::max(of_join_.size(), data.joins.size()));
+  for (std::vector<ObjectId>& members : of_join_) {
+    members.clear();
+  }
+  alone_.clear();
+  for (const InstanceId id : candidates) {
+    if (id.value >= data.instances.size() || !data.hides(id.value)) {
+      continue;
+    }
+    const InstanceData& own = data.instances[id.value];
+    if (own.join != InstanceData::kNone) {
+      of_join_[own.join].emplace_back(own.object);
+    }
+    if (own.alone) {
+      alone_.push_back(id.value);
+    }
+  }
+  SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
+  drawing.step = step;
+  const std::uint32_t budget = drawing.budget;
+  drawJoins(data, drawing);
+  drawAlone(data, view, drawing);
+  if (step != ViewStep::kSame) {
+    usual_work_.frame(budget - drawing.budget);
+  }
+}
+
+// Takes what it draws from drawing.budget, as does drawAlone().
+void WorldEye::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
+  for (std::uint32_t join = 0; join < data.joins.size() && drawing.budget > 0; ++join) {
+    if (of_join_[join].empty()) {
+      continue;
+    }
+    const WorldJoin& joined = data.joins[join].join;
+    MovingSurfaces placed{&joined.surfaces, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+      placed.scene_from_surfaces(axis, 3) = joined.origin[axis];
+    }
+    const SurfaceStats drawn = pyramid_.draw(placed, of_join_[join], drawing);
+    counts_.occluders += drawn.groups > 0 ? 1 : 0;
+    counts_.edges += drawn.edges;
+    drawing.budget -= std::min(drawing.budget, drawn.work);
+  }
+}
+
+// Sets near_first_ to those of alone_ that are large enough and do not rest.
+void WorldEye::listNearFirst(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
+  boxes_.clear();
+  for (const std::uint32_t id : alone_) {
+    boxes_.push_back(data.boxOf(id));
+  }
+  images_.resize(std::max(images_.size(), boxes_.size()));
+  const DepthBufferView buffer = pyramid_.depthBuffer();
+  occlusion::projectBoxes(PixelView(view, buffer.width, buffer.height), buffer.width, buffer.height, boxes_,
+                          images_);
+  near_first_.clear();
+  for (std::size_t i = 0; i < alone_.size(); ++i) {
+    const occlusion::PixelBox& image = images_[i];
+    const bool near = image.place == occlusion::BoxPlace::kUnbounded;
+    const double pixels = static_cast<double>(image.x1 - image.x0 + 1) * (image.y1 - image.y0 + 1);
+    const Rest& rest = rests_[alone_[i]];
+    const bool rests =
+        drawing.step == ViewStep::kNext && rest.until > frame_ && rest.born == data.instances[alone_[i]].born;
+    if (image.place != occlusion::BoxPlace::kOutside && !rests && (near || pixels >= drawing.min_pixels)) {
+      near_first_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
+    }
+  }
+  std::sort(near_first_.begin(), near_first_.end(), [](const Candidate& a, const Candidate& b) {
+    return a.nearest != b.nearest ? a.nearest > b.nearest : a.id < b.id;
+  });
+}
+
+void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
+  rests_.resize(std::max(rests_.size(), data.instances.size()));
+  listNearFirst(data, view, drawing);
+  for (const Candidate& candidate : near_first_) {
+    if (drawing.budget == 0) {
+      break;
+    }
+    const InstanceData& own = data.instances[candidate.id];
+    const SurfaceStats drawn = pyramid_.draw(
+        MovingSurfaces{&data.meshes[own.mesh].mesh.surfaces, data.world_from_mesh[candidate.id]}, drawing);
+    counts_.occluders += drawn.groups > 0 ? 1 : 0;
+    counts_.edges += drawn.edges;
+    drawing.budget -= std::min(drawing.budget, drawn.work);
+    Rest& rest = rests_[candidate.id];
+    if (drawn.groups == 0 || drawn.gain < kMinGain * drawn.work) {
+      // Those that begin to rest in the same frame come back in different ones.
+      const std::uint32_t last = rest.born == own.born ? rest.length : 0;
+      const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
+      rest = {own.born, frame_ + 1 + length + candidate.id % (length / 2 + 1), length};
+    } else {
+      rest = {own.born, 0, 0};
+    }
+  }
+}
+
+}  // namespace sightline::world
