@@ -1,0 +1,97 @@
+// Frames of a changing world: they allocate nothing once storage has grown, and several threads may cull.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "sightline/world/world.h"
+#include "sightline/world/world_culler.h"
+#include "tests/support/count_allocations.h"
+#include "tests/world/world_story.h"
+
+namespace sightline {
+namespace {
+
+using namespace world_story;
+
+View viewAt(int frame) {
+  View view;
+  view.eye = {0.25 * frame, 1.5, 0};
+  setOrientation(view, {std::sin(0.1 * frame), 0.0, std::cos(0.1 * frame)}, {0, 1, 0});
+  return view;
+}
+
+struct Crowd {
+  Story story{{boxShape(), panelShape(false), groundShape()}};
+  std::vector<InstanceId> ids;
+
+  explicit Crowd(std::uint32_t count) {
+    Chance chance(7);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      ids.push_back(story.add(i % 3, chance.placement(60.0, 6.0)));
+    }
+    story.world.use(story.world.prepareJoin(std::span(ids).first(count / 4)));
+  }
+  // The same changes in each round of 40 frames, but for the first one, which takes them out of the join.
+  void change(int frame) {
+    Chance chance(static_cast<std::uint32_t>(frame % 40));
+    for (int i = 0; i < 50; ++i) {
+      story.world.setTransform(ids[chance.below(static_cast<std::uint32_t>(ids.size()))],
+                               chance.placement(60.0, 6.0));
+    }
+    for (int i = 0; i < 5; ++i) {
+      const InstanceId id = ids[chance.below(static_cast<std::uint32_t>(ids.size()))];
+      story.world.setShown(id, i % 2 == 0);
+    }
+    InstanceId& renewed = ids[static_cast<std::size_t>(frame % 40)];
+    story.world.remove(renewed);
+    renewed = story.world.add({.mesh = story.meshes[0], .world_from_mesh = chance.placement(60.0, 6.0)});
+    story.world.tidy();
+  }
+};
+
+TEST(WorldFrames, AllocateNothingAfterAFew) {
+  Crowd crowd(900);
+  WorldCuller culler;
+  const auto round = [&] {
+    const std::size_t before = allocations;
+    for (int frame = 0; frame < 40; ++frame) {
+      crowd.change(frame);
+      culler.cull(crowd.story.world, viewAt(frame));
+    }
+    return allocations - before;
+  };
+  EXPECT_GT(round(), 0u);
+  for (int i = 0; i < 4; ++i) {
+    round();
+  }
+  EXPECT_EQ(round(), 0u);
+}
+
+TEST(WorldFrames, ThreadsThatCullOneWorldGiveTheSameAnswers) {
+  Crowd crowd(900);
+  constexpr std::size_t kViews = 4;
+  std::array<WorldCuller, kViews> alone, together;
+  for (int frame = 0; frame < 20; ++frame) {
+    crowd.change(frame);
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < kViews; ++i) {
+      const View view = viewAt(frame + 10 * static_cast<int>(i));
+      alone[i].cull(crowd.story.world, view);
+      threads.emplace_back([&, i, view] { together[i].cull(crowd.story.world, view); });
+    }
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+    for (std::size_t i = 0; i < kViews; ++i) {
+      EXPECT_TRUE(std::ranges::equal(alone[i].visible(), together[i].visible())) << frame;
+      EXPECT_FALSE(alone[i].visible().empty());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline
