@@ -16,7 +16,7 @@ using namespace world;
 struct WorldCuller::Impl {
   explicit Impl(const WorldCullerSettings& given) : settings(given) { eyes.emplace_back(given); }
 
-  void cull(const World& world, std::span<const View> given);
+  void cull(const WorldData& data, std::span<const View> given);
   bool takeViews(std::span<const View> given);
   void keepEverything(const WorldData& data);
 
@@ -57,8 +57,7 @@ void WorldCuller::Impl::keepEverything(const WorldData& data) {
   }
 }
 
-void WorldCuller::Impl::cull(const World& world, std::span<const View> given) {
-  const WorldData& data = world.data();
+void WorldCuller::Impl::cull(const WorldData& data, std::span<const View> given) {
   counts = {};
   std::swap(kept, last_kept);
   kept.clear(data.instances.size());
@@ -86,10 +85,10 @@ void WorldCuller::Impl::cull(const World& world, std::span<const View> given) {
 }
 
 void WorldCuller::cull(const World& world, const View& view) {
-  impl_->cull(world, {&view, 1});
+  impl_->cull(*world.data_, {&view, 1});
 }
 void WorldCuller::cull(const World& world, std::span<const View> views) {
-  impl_->cull(world, views);
+  impl_->cull(*world.data_, views);
 }
 
 void WorldCuller::reset() {

@@ -105,9 +105,8 @@ class World {
   // Answers are right without it, but culling becomes slower.
   void tidy(std::uint32_t steps = 10000);
 
-  const world::WorldData& data() const { return *data_; }  // for the library
-
  private:
+  friend class WorldCuller;
   std::unique_ptr<world::WorldData> data_;
 };
 
