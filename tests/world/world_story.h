@@ -248,7 +248,7 @@ struct RandomStory {
       ids.pop_back();
     } else if (kind == 2) {
       story.show(ids[which], chance.below(2) == 0);
-    } else if (kind == 3) {
+    } else if (kind == 3 && joins.size() < 8) {
       std::vector<InstanceId> some;
       for (const InstanceId id : ids) {
         if (chance.below(2) == 0) {
