@@ -53,6 +53,11 @@ struct LayerSettings {
   // true: sorted parts that are surely outside the view are left out of the order. It then holds for the view
   // alone: what is drawn for shadows and reflections needs the whole.
   bool frustum_culling = false;
+  // More than 0, metres: parts whose spatial extents overlap are taken as hulls made smaller by up to half of
+  // this on all sides. So parts that touch, as boxes that share a face do, or overlap by a quarter of this or
+  // less, have an order. It may be wrong where the image of one covers that of the other by no more than
+  // this. 0: parts that touch occlude each other.
+  double contact_tolerance = 0.0;
   std::uint32_t pair_expiry = 1;  // frames for which a pair's cached result is kept after its last use
 };
 
@@ -89,7 +94,8 @@ struct LayerOrder {
   std::span<const PartId> parts{};            // all enabled parts, group after group, front to back
   std::span<const std::uint32_t> first_of{};  // groups + 1 elements: where each group begins in parts
   std::span<const LayerArc> arcs{};           // within groups, or all with all_arcs; ascending
-  // Pairs of parts whose hulls intersect or touch, ascending, front < back. Pairs with a rule are left out.
+  // Pairs of parts whose hulls intersect or touch, or overlap by more than the contact tolerance, ascending,
+  // front < back. Pairs with a rule are left out.
   std::span<const LayerArc> collisions{};
   // The groups of sorted parts begin here, after those of overlays.
   std::uint32_t first_sorted = 0;

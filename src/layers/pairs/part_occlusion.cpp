@@ -81,8 +81,12 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
   if (rule == nullptr && stillCollide(front, back)) {
     return containment(front, back) != Verdict::kDoesNot;
   }
-  const bool occludes = anyHullPair(
-      front, back, [&](std::uint32_t i, std::uint32_t j) { return hullOccludes(front, i, back, j); });
+  const double erosion = rule == nullptr && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
+                             ? contact_tolerance_
+                             : 0.0;
+  const bool occludes = anyHullPair(front, back, [&](std::uint32_t i, std::uint32_t j) {
+    return hullOccludes(front, i, back, j, erosion);
+  });
   return occludes &&
          (rule != nullptr || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
 }
@@ -144,7 +148,8 @@ bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& 
 // Precondition: a < b.
 bool PartOcclusion::hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
   PairWitness& witness = table_.use(i, j, PairTable::Question::kIntersection);
-  return testIntersection(placed(a, i), placed(b, j), witness, counts_) != Intersection::kDisjoint;
+  return testIntersection(placed(a, i, contact_tolerance_), placed(b, j, contact_tolerance_), witness,
+                          counts_) != Intersection::kDisjoint;
 }
 
 void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
@@ -181,10 +186,12 @@ bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
   return intersect;
 }
 
-// Whether the hull in front intersects the set that the hull behind sweeps to the eye.
-bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j) {
-  const ConvexSet in_front = placed(front, i);
-  ConvexSet swept = placed(back, j);
+// Whether the hull in front intersects the set that the hull behind sweeps to the eye, both made smaller by
+// half the erosion.
+bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
+                                 double erosion) {
+  const ConvexSet in_front = placed(front, i, erosion);
+  ConvexSet swept = placed(back, j, erosion);
   if (view_.orthographic) {
     if (!sweepPast(in_front, swept)) {
       return false;
@@ -270,12 +277,14 @@ bool PartOcclusion::contains(std::uint32_t shell, std::uint32_t part) const {
   return true;
 }
 
-ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance) const {
+// erosion: the hull is made smaller by half of this.
+ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance, double erosion) const {
   ConvexSet set;
   const std::uint32_t hull = parts_->part_hulls[instance];
   set.hull = &parts_->hulls[hull];
   set.around = hull < parts_->envelopes.size() ? &parts_->envelopes[hull] : nullptr;
-  set.placement = parts_->placements[part];
+  set.placement = erosion > 0.0 ? eroded(parts_->placements[part], parts_->boxes[hull], 0.5 * erosion)
+                                : parts_->placements[part];
   return set;
 }
 

@@ -25,6 +25,9 @@ namespace sightline::layers {
 
 class PartOcclusion {
  public:
+  // contact_tolerance: see LayerSettings.
+  explicit PartOcclusion(double contact_tolerance = 0.0) : contact_tolerance_(contact_tolerance) {}
+
   // Begins a frame. Parts, extents and rules must not change until its last question.
   // extents: only those of spatial axes are used. expiry: frames for which a pair's result is kept after its
   // last use.
@@ -34,8 +37,8 @@ class PartOcclusion {
   // certain. A part that is not finite occludes all others and is occluded by all.
   bool occludes(std::uint32_t front, std::uint32_t back);
   // Returns the pairs of parts that were asked about in this frame, have no rule, and intersect, touch, or
-  // nearly
-  // touch: front < back, each once, ascending. Valid until the next question.
+  // nearly touch, or overlap by more than the contact tolerance: front < back, each once, ascending. Valid
+  // until the next question.
   std::span<const Arc> collisions();
 
   std::uint64_t pairQueries() const { return pair_queries_; }  // pairs whose hulls were tested in this frame
@@ -51,7 +54,8 @@ class PartOcclusion {
   bool spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) const;
   template <typename Test>
   bool anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const;
-  bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j);
+  bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
+                    double erosion);
   bool hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
   bool stillCollide(std::uint32_t front, std::uint32_t back);
   bool collide(std::uint32_t front, std::uint32_t back);
@@ -62,8 +66,9 @@ class PartOcclusion {
   Verdict containment(std::uint32_t front, std::uint32_t back) const;
   bool contains(std::uint32_t shell, std::uint32_t part) const;
 
-  ConvexSet placed(std::uint32_t part, std::uint32_t instance) const;
+  ConvexSet placed(std::uint32_t part, std::uint32_t instance, double erosion = 0.0) const;
 
+  double contact_tolerance_;
   View view_;
   bool view_is_finite_ = false;
   const PartStore* parts_ = nullptr;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/layers/hull.h"
+#include "src/layers/hull/hull_box.h"
 #include "src/layers/hull/hull_envelope.h"
 #include "src/layers/pairs/placement.h"
 
@@ -16,6 +17,7 @@ namespace sightline::layers {
 struct PartStore {
   std::vector<ConvexHull> hulls;
   std::vector<HullEnvelope> envelopes;       // one per hull, or empty
+  std::vector<HullBox> boxes;                // one per hull, needed with a contact tolerance
   std::vector<std::uint32_t> first_hull{0};  // parts + 1 elements: where each part begins in part_hulls
   std::vector<std::uint32_t> part_hulls;     // indices of hulls; an index of this column is an "instance"
   std::vector<Placement> placements;         // one per part

@@ -33,6 +33,9 @@ LayerSettings checked(LayerSettings settings) {
   if (settings.extents.size() > kMaxExtentAxes) {
     settings.extents.resize(kMaxExtentAxes);
   }
+  if (!(settings.contact_tolerance > 0.0) || !std::isfinite(settings.contact_tolerance)) {
+    settings.contact_tolerance = 0.0;
+  }
   const auto axis = static_cast<std::size_t>(settings.conditioning_axis);
   if (settings.conditioning_axis < 0 || axis >= settings.extents.size() ||
       settings.extents[axis].kind != ExtentAxis::Kind::kSpatial) {
@@ -68,6 +71,7 @@ struct LayerSorter::Impl {
   explicit Impl(LayerSettings given)
       : settings(checked(std::move(given))),
         extents(settings.extents),
+        occlusion(settings.contact_tolerance),
         source(searchOf(settings), settings.exact, extents, occlusion),
         sort_algorithm(sortOf(settings)) {}
 
@@ -120,6 +124,7 @@ LayerSorter& LayerSorter::operator=(LayerSorter&&) noexcept = default;
 
 HullId LayerSorter::addHull(ConvexHull hull) {
   impl_->store.envelopes.push_back(envelopeOf(hull));
+  impl_->store.boxes.push_back(boxOf(hull));
   impl_->store.hulls.push_back(std::move(hull));
   return HullId(impl_->store.hulls.size() - 1);
 }
@@ -143,6 +148,7 @@ bool LayerSorter::setHull(HullId hull, ConvexHull shape) {
     return false;
   }
   own.store.envelopes[hull.value] = envelopeOf(shape);
+  own.store.boxes[hull.value] = boxOf(shape);
   own.store.hulls[hull.value] = std::move(shape);
   own.extents.replaceHull(hull.value, own.store);
   forEachPartWithIt([&](std::uint32_t part) {

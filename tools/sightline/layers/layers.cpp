@@ -34,6 +34,7 @@ struct LayersOptions {
   std::string sort = "depth-first", search = "scan", extents = "camera", arcs = "groups",
               expression = "cheapest", conditioning = "on", exact = "on", frustum_culling = "off",
               tints = "on";
+  double contact_tolerance = 1e-6;
   bool no_times = false;
   PictureOptions size;
   std::uint32_t samples = 1;
@@ -115,6 +116,7 @@ LayerSettings settingsOf(const LayersOptions& options) {
   settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
   settings.exact = valueOf(kSwitch, options.exact);
   settings.frustum_culling = valueOf(kSwitch, options.frustum_culling);
+  settings.contact_tolerance = options.contact_tolerance;
   settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
   // None of the world's axes measures the distance from the camera.
   if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
@@ -132,7 +134,8 @@ Json optionsJson(const LayersOptions& options) {
           {"expression", options.expression},
           {"conditioning", options.conditioning},
           {"exact", options.exact},
-          {"frustum_culling", options.frustum_culling}};
+          {"frustum_culling", options.frustum_culling},
+          {"contact_tolerance", options.contact_tolerance}};
 }
 
 Json layersJson(const FrameLayers& layers) {
@@ -432,6 +435,10 @@ void addSortOptions(CLI::App& command, LayersOptions& options) {
   addChoice(command, "--exact", options.exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
   addChoice(command, "--frustum-culling", options.frustum_culling, textsOf(kSwitch),
             "on: parts outside the view are left out of the order");
+  addDecimalOption(
+      command, "--contact-tolerance", options.contact_tolerance, 0.0, 1000.0,
+      "parts that touch, or overlap by less than a quarter of this, have an order, metres; 0: they "
+      "are drawn together");
   command.add_option("--backdrop", options.places.backdrops, "parts behind all others, by number")
       ->check(isNotEmpty())
       ->delimiter(',');
