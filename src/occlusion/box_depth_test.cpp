@@ -50,7 +50,7 @@ HWY_INLINE void forLanes(const CellRange& range, std::uint32_t from, Use&& use) 
   const Lanes d;
   const auto x0 = hn::Set(d, static_cast<float>(range.x0)), x1 = hn::Set(d, static_cast<float>(range.x1));
   for (std::size_t lane = 0; lane < kBlock; lane += hn::Lanes(d)) {
-    const auto x = hn::Iota(d, static_cast<float>(from + lane));
+    const auto x = hn::Add(hn::Set(d, static_cast<float>(from + lane)), hn::Iota(d, 0.0f));
     use(lane, hn::And(hn::Ge(x, x0), hn::Le(x, x1)), x);
   }
 }

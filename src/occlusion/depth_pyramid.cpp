@@ -73,20 +73,21 @@ void DepthPyramid::draw(const OccluderSet& set, std::span<const OccluderId> chos
 }
 
 void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
-                        const SurfaceDrawing& drawing) {
+                        const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   impl_->finished = false;
-  impl_->raster.draw(surfaces, candidates, drawing);
+  impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
 }
 
 SurfaceStats DepthPyramid::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
-                                const SurfaceDrawing& drawing) {
+                                const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   impl_->finished = false;
-  return impl_->raster.draw(surfaces, candidates, drawing);
+  return impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
 }
 
-SurfaceStats DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+SurfaceStats DepthPyramid::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
+                                const ParallelFor& parallel_for) {
   impl_->finished = false;
-  return impl_->raster.draw(moving, drawing);
+  return impl_->raster.draw(moving, drawing, parallel_for);
 }
 
 void DepthPyramid::finish(const ParallelFor& parallel_for) {

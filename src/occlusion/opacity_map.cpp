@@ -101,14 +101,15 @@ void OpacityMap::draw(const OccluderSet& set, std::span<const OccluderId> chosen
 }
 
 void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
-                      const SurfaceDrawing& drawing) {
+                      const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   impl_->ready = false;
-  impl_->raster.draw(surfaces, candidates, drawing);
+  impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
 }
 
-void OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+void OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
+                      const ParallelFor& parallel_for) {
   impl_->ready = false;
-  impl_->raster.draw(moving, drawing);
+  impl_->raster.draw(moving, drawing, parallel_for);
 }
 
 void OpacityMap::finish() {

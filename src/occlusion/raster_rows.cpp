@@ -63,7 +63,7 @@ HWY_INLINE Crossing cross(const BufferEdge& edge, float margin, Vector y) {
 }
 
 HWY_INLINE Vector rowsFrom(std::uint32_t y) {
-  return hn::Iota(Lanes(), static_cast<float>(y));
+  return hn::Add(hn::Set(Lanes(), static_cast<float>(y)), hn::Iota(Lanes(), 0.0f));
 }
 
 // Fills the polygon's reciprocal depth in the first pixel of each run. A row's bits must not depend on where
@@ -96,7 +96,7 @@ struct RowReciprocalDepth {
   // Returns that of the pixels x, x + 1, ...
   HWY_INLINE Vector from(std::uint32_t x) const {
     const Lanes d;
-    const auto offset = hn::Iota(d, static_cast<float>(x - first));
+    const auto offset = hn::Add(hn::Set(d, static_cast<float>(x - first)), hn::Iota(d, 0.0f));
     auto min = along(0, offset);
     for (std::uint32_t p = 1; p < planes; ++p) {
       min = hn::Min(min, along(p, offset));

@@ -135,28 +135,29 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
 }
 
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
-                      const SurfaceDrawing& drawing) {
-  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target());
+                      const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
+  impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target(), parallel_for);
 }
 
 SurfaceStats Rasteriser::draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
-                              const SurfaceDrawing& drawing) {
+                              const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   if (surfaces.surfaces == nullptr) {
     return {};
   }
   impl_->surfaces.draw(*surfaces.surfaces, impl_->view.inSpace(surfaces.scene_from_surfaces), candidates,
-                       drawing, impl_->target());
+                       drawing, impl_->target(), parallel_for);
   return impl_->surfaces.stats();
 }
 
-SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+SurfaceStats Rasteriser::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
+                              const ParallelFor& parallel_for) {
   if (moving.surfaces == nullptr) {
     return {};
   }
   SurfaceDrawing alone = drawing;
   alone.step = ViewStep::kJump;
   impl_->moving_surfaces.draw(*moving.surfaces, impl_->view.inSpace(moving.scene_from_surfaces),
-                              moving.surfaces->objects, alone, impl_->target());
+                              moving.surfaces->objects, alone, impl_->target(), parallel_for);
   return impl_->moving_surfaces.stats();
 }
 

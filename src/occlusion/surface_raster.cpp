@@ -14,6 +14,16 @@ namespace {
 constexpr double kMinGain = 0.3;
 constexpr std::uint32_t kLongestRest = 15;  // views, before up to half as many are added
 
+// Groups are drawn when so much work waits, and half of what was drawn in the view before. What is behind
+// them is noticed from then on.
+constexpr std::uint64_t kFirstRound = 128;
+constexpr std::int32_t kTilePixels = kTileWidth * kTileHeight;
+
+// What a group costs, as SurfaceDrawing::budget counts it.
+std::uint64_t workOf(std::uint32_t edges, std::uint32_t tiles) {
+  return std::uint64_t{edges} + tiles + 8;
+}
+
 constexpr PixelRectangle kNoPixels{1 << 30, 1 << 30, 0, 0};
 
 PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
@@ -23,32 +33,39 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 }  // namespace
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-                         const SurfaceDrawing& drawing, const DepthTarget& target) {
+                         const SurfaceDrawing& drawing, const DepthTarget& target,
+                         const ParallelFor& parallel_for) {
   drawing_ = drawing;
+  parallel_for_ = &parallel_for;
   winding_ = view.mirrored ? -1 : 1;
   start(set, drawing.step);
   map_.resize(target);
   view_.begin(set, view, candidates, drawing.min_pixels, target);
-  points_.begin(set, view, view_.clipDepth());
+  chains_.begin(set, view, view_.clipDepth(), map_.buffer());
   for (const PartImage& part : view_.parts()) {
-    if (work() >= drawing.budget) {
+    if (!withinBudget()) {
       break;
     }
     if (drawn_in_[part.part] != view_number_ && !map_.hides(part.rectangle, part.nearest)) {
       drawn_in_[part.part] = view_number_;
-      drawPart(part);
+      addPart(part);
+      if (waiting_work_ > kFirstRound + work_ / 2) {
+        drawGroups();
+      }
     }
   }
+  drawGroups();
   stats_.clusters = static_cast<std::uint32_t>(view_.clusters().size());
-  stats_.edges = static_cast<std::uint32_t>(map_.edges());
-  stats_.work = static_cast<std::uint32_t>(work());
-  stats_.complete = work() < drawing.budget;
+  stats_.work = static_cast<std::uint32_t>(work_);
+  stats_.complete = work_ < drawing.budget;
 }
 
 // What is kept of a set that was drawn before counts for nothing: all numbers of groups and of views that are
 // written down are smaller than those to come.
 void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
   stats_ = {};
+  work_ = waiting_work_ = 0;
+  rested_ = 0;
   const auto makeRoom = [](auto& list, std::size_t size) { list.resize(std::max(list.size(), size)); };
   makeRoom(members_, set.clusters.size());
   makeRoom(last_groups_, set.chains.size());
@@ -82,8 +99,8 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
   return rectangle.area() >= drawing_.pixels_per_edge * edges;
 }
 
-// Draws the large patches of a part, each alone, and all of them together.
-void SurfaceRaster::drawPart(const PartImage& image) {
+// Adds the large patches of a part, each alone, and all of them together.
+void SurfaceRaster::addPart(const PartImage& image) {
   const SurfacePart& part = set_->parts[image.part];
   const std::span<const std::uint32_t> adjoining =
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
@@ -113,8 +130,8 @@ void SurfaceRaster::drawPart(const PartImage& image) {
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
     if (!resting && patch.rectangle.area() >= drawing_.min_patch_pixels &&
-        pays(patch.rectangle, source.edge_count) && work() < drawing_.budget) {
-      drawPatch(patch, patch_rests_[number]);
+        pays(patch.rectangle, source.edge_count) && withinBudget()) {
+      addPatch(patch, patch_rests_[number]);
     }
   }
   stats_.patches += shown;
@@ -126,18 +143,18 @@ void SurfaceRaster::drawPart(const PartImage& image) {
       ++shown;
     }
   }
-  if (together && shown > 1 && work() < drawing_.budget) {
-    drawTogether(view_.clusters().subspan(first_cluster), patches_, rectangle, part_rests_[image.part]);
+  if (together && shown > 1 && withinBudget()) {
+    addTogether(view_.clusters().subspan(first_cluster), patches_, rectangle, part_rests_[image.part]);
   }
 }
 
-void SurfaceRaster::drawPatch(const PatchImage& patch, Rest& rest) {
+void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
   const std::span<const ClusterImage> clusters = view_.clusters().subspan(patch.first, patch.count);
   if (!patch.flat) {
-    drawTogether(clusters, {}, patch.rectangle, rest);
+    addTogether(clusters, {}, patch.rectangle, rest);
     return;
   }
-  beginGroup(patch.rectangle);
+  beginGroup();
   if (patch.sign == 0) {
     addBoundary(clusters);
   } else {
@@ -145,12 +162,13 @@ void SurfaceRaster::drawPatch(const PatchImage& patch, Rest& rest) {
       addEdges(chain.chain, chain.value * patch.sign);
     }
   }
-  account(map_.resolve(patch.depth), rest);
+  depths_.push_back({patch.rectangle, patch.depth});
+  endGroup(patch.rectangle, true, rest);
 }
 
-void SurfaceRaster::drawTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
-                                 const PixelRectangle& rectangle, Rest& rest) {
-  beginGroup(rectangle);
+void SurfaceRaster::addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
+                                const PixelRectangle& rectangle, Rest& rest) {
+  beginGroup();
   for (const PatchImage& image : patches) {
     const SurfacePatch& patch = set_->patches[image.patch];
     for (std::uint32_t i = 0; i < patch.cluster_count; ++i) {
@@ -162,26 +180,74 @@ void SurfaceRaster::drawTogether(std::span<const ClusterImage> clusters, std::sp
     for (const PatchChain& chain : set_->chainsOf(set_->patches[image.patch])) {
       addChain(chain.chain);
     }
-    map_.addDepth(image.rectangle, image.depth);
+    depths_.push_back({image.rectangle, image.depth});
   }
   for (const ClusterImage& image : clusters) {
-    view_.addDepth(image, map_);
+    view_.addDepths(image, depths_);
   }
-  account(map_.resolve(), rest);
+  endGroup(rectangle, false, rest);
 }
 
-void SurfaceRaster::beginGroup(const PixelRectangle& rectangle) {
-  work_before_ = work();
-  stats_.groups += 1;
+void SurfaceRaster::beginGroup() {
   if (++group_ == 0) {
     std::fill(members_.begin(), members_.end(), Membership{});
     std::fill(last_groups_.begin(), last_groups_.end(), 0u);
     group_ = 1;
   }
-  map_.begin(rectangle);
+  Group group;
+  group.first_chain = static_cast<std::uint32_t>(boundary_.size());
+  group.first_depth = static_cast<std::uint32_t>(depths_.size());
+  groups_.push_back(group);
 }
 
-// Adds clusters to the group and draws the chains at which they end. Patches have been added before them.
+void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest) {
+  Group& group = groups_.back();
+  group.chain_count = static_cast<std::uint32_t>(boundary_.size()) - group.first_chain;
+  group.depth_count = static_cast<std::uint32_t>(depths_.size()) - group.first_depth;
+  group.rectangle = rectangle;
+  group.flat = flat;
+  group.rest = &rest;
+  for (std::uint32_t i = 0; i < group.chain_count; ++i) {
+    group.edges += boundary_[group.first_chain + i].count;
+  }
+  waiting_work_ += workOf(group.edges, static_cast<std::uint32_t>(rectangle.area() / kTilePixels));
+}
+
+// What groups cost is only known when they have been drawn.
+bool SurfaceRaster::withinBudget() {
+  if (work_ + waiting_work_ >= drawing_.budget) {
+    drawGroups();
+  }
+  return work_ < drawing_.budget;
+}
+
+// Draws the groups that wait, and finds out of what use they are.
+void SurfaceRaster::drawGroups() {
+  if (groups_.empty()) {
+    return;
+  }
+  drawn_.clear();
+  for (const Group& group : groups_) {
+    drawn_.push_back({group.rectangle, std::span(boundary_).subspan(group.first_chain, group.chain_count),
+                      std::span(depths_).subspan(group.first_depth, group.depth_count), group.flat});
+  }
+  gains_.resize(std::max(gains_.size(), groups_.size()));
+  map_.draw(drawn_, chains_.edges(), gains_, *parallel_for_);
+  for (std::size_t i = 0; i < groups_.size(); ++i) {
+    const std::uint64_t work = workOf(groups_[i].edges, gains_[i].tiles);
+    account(gains_[i], work, *groups_[i].rest);
+    work_ += work;
+    stats_.edges += groups_[i].edges;
+  }
+  stats_.groups += static_cast<std::uint32_t>(groups_.size());
+  waiting_work_ = 0;
+  groups_.clear();
+  boundary_.clear();
+  depths_.clear();
+}
+
+// Adds clusters to the group, and the chains at which they end to its boundary. Patches have been added
+// before them.
 void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters) {
   for (const ClusterImage& image : clusters) {
     addMember(image.cluster, image.sign);
@@ -196,7 +262,7 @@ void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters) {
   }
 }
 
-// Draws a chain with what is left over of the group's clusters that end at it, once.
+// Adds a chain with what is left over of the group's clusters that end at it, once.
 void SurfaceRaster::addChain(std::uint32_t number) {
   if (std::exchange(last_groups_[number], group_) == group_) {
     return;
@@ -211,35 +277,23 @@ void SurfaceRaster::addChain(std::uint32_t number) {
   }
 }
 
-void SurfaceRaster::addEdges(std::uint32_t chain, std::int32_t value) {
-  const ChainPoints::Edges edges = points_.edges(chain);
-  map_.addEdges(edges.points, edges.step, value * winding_);
-}
-
-// Draws the lines along which the near plane cuts the cluster's triangles.
+// Adds the lines along which the near plane cuts the cluster's triangles.
 void SurfaceRaster::addCuts(const ClusterImage& image) {
   const std::span<const std::uint32_t> corners = set_->trianglesOf(set_->clusters[image.cluster]);
   for (std::size_t i = 0; i < corners.size(); i += 3) {
-    GridSegment line;
-    if (points_.cut(corners.subspan(i).first<3>(), line)) {
-      map_.addEdges(std::array{line.from, line.to}, 1, image.sign * winding_);
-    }
+    chains_.addCut(corners.subspan(i).first<3>(), image.sign * winding_, boundary_);
   }
-}
-
-std::uint64_t SurfaceRaster::work() const {
-  return map_.edges() + map_.pixels() / 256 + std::uint64_t{8} * stats_.groups;
 }
 
 // A group that changed too few pixels for what it cost rests, twice as long as the last time. Groups that
 // began to rest in the same view come back in different ones, or drawing them all would make one view slow.
-void SurfaceRaster::account(std::uint32_t nearer, Rest& rest) {
-  stats_.gain += nearer;
-  if (nearer < kMinGain * static_cast<double>(work() - work_before_)) {
+void SurfaceRaster::account(const WindingGain& gain, std::uint64_t work, Rest& rest) {
+  stats_.gain += gain.nearer;
+  if (gain.nearer < kMinGain * static_cast<double>(work)) {
     const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
     const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;
     const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
-    rest = {view_number_, length + stats_.groups % (length / 2 + 1)};
+    rest = {view_number_, length + rested_++ % (length / 2 + 1)};
   } else {
     rest = {};
   }

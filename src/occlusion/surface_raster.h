@@ -10,7 +10,7 @@
 
 #include "sightline/occluders/surface_set.h"
 #include "sightline/occlusion/rasteriser.h"
-#include "src/occlusion/chain_points.h"
+#include "src/occlusion/chain_edges.h"
 #include "src/occlusion/surface_view.h"
 #include "src/occlusion/winding_map.h"
 #include "src/scene/pixel_view.h"
@@ -20,7 +20,7 @@ namespace sightline::occlusion {
 class SurfaceRaster {
  public:
   void draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
-            const SurfaceDrawing& drawing, const DepthTarget& target);
+            const SurfaceDrawing& drawing, const DepthTarget& target, const ParallelFor& parallel_for);
   const SurfaceStats& stats() const { return stats_; }
 
  private:
@@ -39,37 +39,59 @@ class SurfaceRaster {
   void start(const SurfaceSet& set, ViewStep step);
   bool rests(const Rest& rest) const;
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
-  void drawPart(const PartImage& part);
-  void drawPatch(const PatchImage& patch, Rest& rest);
-  void drawTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
-                    const PixelRectangle& rectangle, Rest& rest);
-  void beginGroup(const PixelRectangle& rectangle);
+  // A group that waits for being drawn.
+  struct Group {
+    std::uint32_t first_chain = 0, chain_count = 0;  // into boundary_
+    std::uint32_t first_depth = 0, depth_count = 0;  // into depths_
+    std::uint32_t edges = 0;
+    PixelRectangle rectangle;
+    bool flat = false;
+    Rest* rest = nullptr;  // its own
+  };
+
+  void addPart(const PartImage& part);
+  void addPatch(const PatchImage& patch, Rest& rest);
+  void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
+                   const PixelRectangle& rectangle, Rest& rest);
+  void beginGroup();
+  void endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest);
   void addMember(std::uint32_t cluster, std::int32_t sign) { members_[cluster] = {group_, sign}; }
   void addBoundary(std::span<const ClusterImage> clusters);
   void addChain(std::uint32_t chain);
-  void addEdges(std::uint32_t chain, std::int32_t value);
+  void addEdges(std::uint32_t chain, std::int32_t value) { chains_.add(chain, value * winding_, boundary_); }
   void addCuts(const ClusterImage& image);
-  void account(std::uint32_t nearer, Rest& rest);
-  std::uint64_t work() const;  // in this view, as SurfaceDrawing::budget counts it
+  bool withinBudget();
+  void drawGroups();
+  void account(const WindingGain& gain, std::uint64_t work, Rest& rest);
 
   const SurfaceSet* set_ = nullptr;
   std::array<std::size_t, 4> sizes_{};  // of the set, by which one made anew in the same place is noticed
   SurfaceDrawing drawing_;
-  std::int32_t winding_ = 1;  // of a front in this view; -1 in one that mirrors
+  const ParallelFor* parallel_for_ = nullptr;  // of the view
+  std::int32_t winding_ = 1;                   // of a front in this view; -1 in one that mirrors
   SurfaceView view_;
-  ChainPoints points_;
+  ChainEdges chains_;
   WindingMap map_;
   SurfaceStats stats_;
-  std::uint64_t work_before_ = 0;  // before the group that is drawn
+  // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
+  std::uint64_t work_ = 0, waiting_work_ = 0;
   // Of the largest set that was drawn:
-  std::vector<Membership> members_;             // by cluster
-  std::vector<std::uint32_t> last_groups_;      // by chain: the group that it was drawn in most recently
-  std::uint32_t group_ = 0;                     // number of the last group
+  std::vector<Membership> members_;         // by cluster
+  std::vector<std::uint32_t> last_groups_;  // by chain: the group that it was added to most recently
+  std::uint32_t group_ = 0;                 // number of the last group
+  // Groups that wait for being drawn, their boundaries, and how far away they are:
+  std::vector<Group> groups_;
+  std::vector<BoundaryChain> boundary_;
+  std::vector<PartDepth> depths_;
+  // Scratch for one drawGroups():
+  std::vector<WindingGroup> drawn_;
+  std::vector<WindingGain> gains_;
   std::vector<PatchImage> patches_;             // of a part: those that are drawn as a whole
   std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part
   std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;  // number of the first one since a jump
+  std::uint32_t rested_ = 0;      // groups that began to rest in this view
 };
 
 }  // namespace sightline::occlusion

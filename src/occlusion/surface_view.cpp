@@ -244,9 +244,9 @@ bool SurfaceView::chooseCluster(std::uint32_t number, const PixelBox& box, Clust
   return true;
 }
 
-void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) {
+void SurfaceView::addDepths(const ClusterImage& image, std::vector<PartDepth>& depths) {
   if (image.flat || image.rectangle.area() < kSmall) {
-    map.addDepth(image.rectangle, image.depth);
+    depths.push_back({image.rectangle, image.depth});
     return;
   }
   // Triangle by triangle. Where the surface hides something, it shows its front there.
@@ -269,7 +269,7 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) {
                            : extentOf(boxes_[i / 3], image_of_box, extent);
     if (!known) {
       if (extent.inexact) {
-        map.addDepth(image.rectangle, image.depth);
+        depths.push_back({image.rectangle, image.depth});
       }
       continue;
     }
@@ -284,8 +284,8 @@ void SurfaceView::addDepth(const ClusterImage& image, WindingMap& map) {
     if (height < -1e-9 * size * (view_.orthographic ? 1.0 : reach)) {
       continue;
     }
-    map.addDepth(extent.rectangle,
-                 boundOf(normal, -dot(normal, p) + 1e-14 * reach * size, size, extent.farthest));
+    depths.push_back(
+        {extent.rectangle, boundOf(normal, -dot(normal, p) + 1e-14 * reach * size, size, extent.farthest)});
   }
 }
 

@@ -73,8 +73,8 @@ class SurfaceView {
   void addClusters(std::span<const std::uint32_t> numbers);
   std::span<const ClusterImage> clusters() const { return clusters_; }  // since begin()
 
-  // Tells a map how far away the cluster is.
-  void addDepth(const ClusterImage& image, WindingMap& map);
+  // Appends how far away the cluster is where it may appear.
+  void addDepths(const ClusterImage& image, std::vector<PartDepth>& depths);
 
  private:
   void listParts(std::span<const ObjectId> candidates);

@@ -20,6 +20,35 @@ namespace {
 constexpr std::uint32_t kMapWidth = 8192, kMapHeight = 8, kMapStride = kMapWidth + 8;
 constexpr float kNoDepth = -std::numeric_limits<float>::max();
 
+// A closed polygon, or a part of a boundary. The surface lies to its left, `value` times.
+struct Polygon {
+  std::vector<GridPoint> points;
+  std::int32_t value = 1;
+};
+
+// Draws polygons as one group that has one depth.
+void drawGroup(WindingMap& map, std::span<const Polygon> polygons, const DepthBound& depth) {
+  const EdgeBuffer buffer = map.buffer();
+  std::vector<BoundaryEdge> edges;
+  std::vector<BoundaryChain> chains;
+  for (const Polygon& polygon : polygons) {
+    const std::size_t first = edges.size();
+    for (std::size_t i = 1; i < polygon.points.size(); ++i) {
+      const BoundaryEdge edge = prepareEdge(polygon.points[i - 1], polygon.points[i], buffer);
+      if (edge.matters) {
+        edges.push_back(edge);
+      }
+    }
+    chains.push_back(
+        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(edges.size() - first), polygon.value});
+  }
+  const PixelRectangle all{0, 0, buffer.width, buffer.height};
+  const std::array depths{PartDepth{all, depth}};
+  const std::array groups{WindingGroup{all, chains, depths, true}};
+  std::array<WindingGain, 1> gains;
+  map.draw(groups, edges, gains);
+}
+
 // What one closed polygon covers in a map.
 class PolygonCover {
  public:
@@ -27,9 +56,7 @@ class PolygonCover {
 
   const std::vector<float>& of(std::span<const GridPoint> polygon) {
     std::fill(values_.begin(), values_.end(), kNoDepth);
-    map_.begin({0, 0, kMapWidth, kMapHeight});
-    map_.addEdges(polygon, 1, 1);
-    map_.resolve(DepthBound{.floor = 1.0f});
+    drawGroup(map_, std::array{Polygon{{polygon.begin(), polygon.end()}}}, {.floor = 1.0f});
     for (std::uint32_t row = 0; row < kMapHeight; ++row) {
       std::fill_n(values_.begin() + kMapStride * row + kMapWidth, kMapStride - kMapWidth, kNoDepth);
     }
@@ -129,11 +156,11 @@ class SmallMap {
   }
   // Draws polygons as one group.
   void draw(std::span<const std::vector<GridPoint>> polygons, std::int32_t value, float depth) {
-    map_.begin({0, 0, static_cast<std::int32_t>(target_.width), static_cast<std::int32_t>(target_.height)});
+    std::vector<Polygon> group;
     for (const std::vector<GridPoint>& polygon : polygons) {
-      map_.addEdges(polygon, 1, value);
+      group.push_back({polygon, value});
     }
-    map_.resolve(DepthBound{.at_origin = depth, .floor = depth});
+    drawGroup(map_, group, {.at_origin = depth, .floor = depth});
   }
   float at(std::uint32_t x, std::uint32_t y) const { return values_[std::size_t{target_.stride} * y + x]; }
   bool covered(std::uint32_t x, std::uint32_t y) const { return at(x, y) > kNoDepth; }
@@ -188,11 +215,87 @@ TEST(WindingMap, SumsUpEdgesOfAnyValueAsFarAsItCanHold) {
     // What was not known is forgotten with the group.
     map.draw(std::array{box(3.5, 1.5, 70.5, 20.5)}, 1, 2.0f);
     EXPECT_EQ(map.at(10, 10), 2.0f) << sheets;
-    // One polygon of that value is as many polygons.
+    // One polygon of that value is as many polygons. The one beside it keeps it from being drawn in runs.
     SmallMap once(100, 24);
-    once.draw(std::array{box(3.5, 1.5, 70.5, 20.5)}, sheets, 1.0f);
-    for (std::uint32_t x = 0; x < 100; ++x) {
+    drawGroup(once.map(), std::array{Polygon{box(3.5, 1.5, 70.5, 20.5), sheets}, Polygon{box(80, 1, 90, 21)}},
+              {.floor = 1.0f});
+    SmallMap in_runs(100, 24);
+    in_runs.draw(std::array{box(3.5, 1.5, 70.5, 20.5)}, sheets, 1.0f);
+    for (std::uint32_t x = 0; x < 75; ++x) {
       EXPECT_EQ(once.covered(x, 10), x > 3 && x < 70 && (sheets < 8 || x >= 32)) << sheets << ", pixel " << x;
+      EXPECT_EQ(in_runs.covered(x, 10), x > 3 && x < 70) << sheets << ", pixel " << x;
+    }
+  }
+}
+
+// A triangle or a convex quad of up to a thousand pixels.
+Polygon convexPolygon(std::mt19937& random, double width, double height) {
+  const auto number = test::numbersFrom<double>(random);
+  const double x = number(0.0, width), y = number(0.0, height), reach = std::pow(10.0, number(-0.5, 3.0));
+  std::array<double, 4> angles{};
+  for (double& angle : angles) {
+    angle = number(0.0, 6.283185307179586);
+  }
+  std::ranges::sort(angles);
+  // Corners on an ellipse.
+  const double flat = number(0.05, 1.0);
+  Polygon polygon;
+  for (std::size_t i = random() % 2; i < angles.size(); ++i) {
+    polygon.points.push_back({std::nearbyint(kGridStep * (x + reach * std::cos(angles[i]))),
+                              std::nearbyint(kGridStep * (y + flat * reach * std::sin(angles[i])))});
+  }
+  polygon.points.push_back(polygon.points.front());
+  return polygon;
+}
+
+TEST(WindingMap, CoversTheSameOfConvexPolygonsInRunsAndInTiles) {
+  std::mt19937 random(17);
+  std::size_t covered = 0;
+  for (int n = 0; n < 20'000; ++n) {
+    const auto width = static_cast<std::uint32_t>(1 + random() % 140),
+               height = static_cast<std::uint32_t>(1 + random() % 40);
+    const Polygon polygon = convexPolygon(random, width, height);
+    // One like it to the left of the map adds to the height of what begins and ends, and to no winding here.
+    Polygon beside = polygon;
+    for (GridPoint& point : beside.points) {
+      point.x -= 4096.0 * kGridStep;
+    }
+    SmallMap runs(width, height), tiles(width, height);
+    drawGroup(runs.map(), std::array{polygon}, {.along_x = 0.01f, .along_y = -0.02f, .at_origin = 3.0f});
+    drawGroup(tiles.map(), std::array{polygon, beside},
+              {.along_x = 0.01f, .along_y = -0.02f, .at_origin = 3.0f});
+    std::size_t lost = 0, different = 0;
+    for (std::uint32_t y = 0; y < height; ++y) {
+      for (std::uint32_t x = 0; x < width; ++x) {
+        covered += runs.covered(x, y) ? 1 : 0;
+        lost += tiles.covered(x, y) && !runs.covered(x, y) ? 1 : 0;
+        different += runs.covered(x, y) && tiles.covered(x, y) && runs.at(x, y) != tiles.at(x, y) ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(lost, 0u) << "polygon " << n;
+    EXPECT_EQ(different, 0u) << "polygon " << n;
+  }
+  EXPECT_GT(covered, 1'000'000u);
+}
+
+TEST(WindingMap, LosesNoRowToALevelStep) {
+  // A wall with a step on its left side, one on its right side, and its lower and upper borders, all of which
+  // lie on the grid of pixels.
+  const double s = kGridStep;
+  SmallMap map(64, 24);
+  map.draw(std::array{std::vector<GridPoint>{{10 * s, 4 * s},
+                                             {50 * s, 4 * s},
+                                             {50 * s, 12 * s + 9},
+                                             {40 * s, 12 * s + 9},
+                                             {40 * s, 20 * s},
+                                             {20 * s, 20 * s},
+                                             {20 * s, 9 * s + 77},
+                                             {10 * s, 9 * s + 77},
+                                             {10 * s, 4 * s}}},
+           1, 1.0f);
+  for (std::uint32_t y = 5; y < 19; ++y) {
+    for (std::uint32_t x = 21; x < 39; ++x) {
+      EXPECT_TRUE(map.covered(x, y)) << x << ", " << y;
     }
   }
 }
@@ -208,11 +311,6 @@ TEST(WindingMap, CoversTheBarsOfAGrilleAndNotWhatIsBetweenThem) {
     EXPECT_EQ(map.covered(x, 17), x % 5 == 1 || x % 5 == 2) << x;
   }
 }
-
-struct Polygon {
-  std::vector<GridPoint> points;
-  std::int32_t value = 0;
-};
 
 // A closed polygon of any form, from a tenth of a pixel to a million pixels wide and high, some of whose
 // corners lie on borders and middles of rows and columns.
@@ -233,6 +331,59 @@ Polygon anyPolygon(std::mt19937& random, double width, double height) {
   polygon.points.push_back(polygon.points.front());
   polygon.value = random() % 4 == 0 ? -1 : random() % 4 == 0 ? 2 : 1;
   return polygon;
+}
+
+TEST(WindingMap, DrawsTheSameHoweverItsRowsAreDivided) {
+  std::mt19937 random(23);
+  const auto divided = [&random](std::uint32_t count, const RangeBody& body) {
+    std::vector<std::uint32_t> ends;
+    for (std::uint32_t i = 1; i < count; ++i) {
+      if (random() % 2 == 0) {
+        ends.push_back(i);
+      }
+    }
+    ends.push_back(count);
+    for (std::size_t i = ends.size(); i > 0; --i) {  // the last ones first
+      body(i > 1 ? ends[i - 2] : 0, ends[i - 1]);
+    }
+  };
+  for (int n = 0; n < 300; ++n) {
+    const auto width = static_cast<std::uint32_t>(1 + random() % 140),
+               height = static_cast<std::uint32_t>(1 + random() % 90);
+    SmallMap whole(width, height), bands(width, height);
+    std::vector<BoundaryEdge> edges;
+    std::vector<BoundaryChain> chains;
+    const PixelRectangle all{0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)};
+    for (std::uint32_t k = 0; k < 6; ++k) {
+      const Polygon polygon =
+          k % 2 == 0 ? convexPolygon(random, width, height) : anyPolygon(random, width, height);
+      const std::size_t first = edges.size();
+      for (std::size_t i = 1; i < polygon.points.size(); ++i) {
+        const BoundaryEdge edge = prepareEdge(polygon.points[i - 1], polygon.points[i], whole.map().buffer());
+        if (edge.matters) {
+          edges.push_back(edge);
+        }
+      }
+      chains.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(edges.size() - first),
+                        polygon.value});
+    }
+    const std::array depths{PartDepth{all, {.along_x = 0.01f, .at_origin = 1.0f}},
+                            PartDepth{all, {.along_y = 0.02f, .at_origin = 1.0f}}};
+    const std::span<const BoundaryChain> boundary(chains);
+    const std::array groups{WindingGroup{all, boundary.subspan(0, 1), depths, true},
+                            WindingGroup{all, boundary.subspan(1, 2), depths, false},
+                            WindingGroup{all, boundary.subspan(3, 3), std::span(depths).subspan(1), true}};
+    std::array<WindingGain, 3> gains, other_gains;
+    whole.map().draw(groups, edges, gains);
+    bands.map().draw(groups, edges, other_gains, divided);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      EXPECT_EQ(gains[i].nearer, other_gains[i].nearer) << n;
+      EXPECT_EQ(gains[i].tiles, other_gains[i].tiles) << n;
+    }
+    for (std::uint32_t i = 0; i < width * height; ++i) {
+      ASSERT_EQ(whole.at(i % width, i / width), bands.at(i % width, i / width)) << n;
+    }
+  }
 }
 
 // The winding of polygons about a point halfway between grid points, exactly.
@@ -266,11 +417,7 @@ TEST(WindingMap, CoversOnlyPixelsInWhichTheWindingOfAnyPolygonsIsPositive) {
     for (std::size_t k = 1 + random() % 3; k > 0; --k) {
       polygons.push_back(anyPolygon(random, width, height));
     }
-    map.map().begin({0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)});
-    for (const Polygon& polygon : polygons) {
-      map.map().addEdges(polygon.points, 1, polygon.value);
-    }
-    map.map().resolve(DepthBound{.floor = 1.0f});
+    drawGroup(map.map(), polygons, {.floor = 1.0f});
     for (std::uint32_t y = 0; y < height; ++y) {
       for (std::uint32_t x = 0; x < width; ++x) {
         if (!map.covered(x, y)) {
@@ -302,11 +449,7 @@ TEST(WindingMap, HasTheSameBitsOfAnyPolygonsWithEveryInstructionSet) {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
       SmallMap map(width, height);
-      map.map().begin({0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height)});
-      for (const Polygon& polygon : polygons) {
-        map.map().addEdges(polygon.points, 1, polygon.value);
-      }
-      map.map().resolve(DepthBound{.along_x = 0.1f, .along_y = -0.3f, .at_origin = 1.0f, .floor = 0.5f});
+      drawGroup(map.map(), polygons, {.along_x = 0.1f, .along_y = -0.3f, .at_origin = 1.0f, .floor = 0.5f});
       hwy::SetSupportedTargetsForTest(0);
       std::vector<float> values;
       for (std::uint32_t i = 0; i < width * height; ++i) {

@@ -73,10 +73,11 @@ class DepthPyramid {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
-            const SurfaceDrawing& drawing = {});
+            const SurfaceDrawing& drawing = {}, const ParallelFor& parallel_for = serialFor);
   SurfaceStats draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
-                    const SurfaceDrawing& drawing);
-  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
+                    const SurfaceDrawing& drawing, const ParallelFor& parallel_for = serialFor);
+  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {},
+                    const ParallelFor& parallel_for = serialFor);
   void finish(const ParallelFor& parallel_for = serialFor);
 
   // Classifies boxes in scene space as seen in the last view. answers: as many as boxes. Boxes that are not

@@ -69,8 +69,9 @@ class OpacityMap {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
-            const SurfaceDrawing& drawing = {});
-  void draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
+            const SurfaceDrawing& drawing = {}, const ParallelFor& parallel_for = serialFor);
+  void draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {},
+            const ParallelFor& parallel_for = serialFor);
   void finish();
 
   // Classifies a box in scene space as seen in the last view. Boxes that are not well formed, and those that

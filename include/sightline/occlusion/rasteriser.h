@@ -123,15 +123,16 @@ class Rasteriser {
   // Draws the surfaces of some objects, SurfaceSet::objects for all. With any coverage rule they are drawn
   // conservatively.
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
-            const SurfaceDrawing& drawing = {});
+            const SurfaceDrawing& drawing = {}, const ParallelFor& parallel_for = serialFor);
 
   // The same for surfaces in a space of their own.
   SurfaceStats draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,
-                    const SurfaceDrawing& drawing);
+                    const SurfaceDrawing& drawing, const ParallelFor& parallel_for = serialFor);
 
   // Draws all surfaces of a set that moves. The set must outlive the call only; it costs least where the same
   // one is drawn in each view. drawing.step has no effect. Returns what was drawn, as surfaceStats() does.
-  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {});
+  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {},
+                    const ParallelFor& parallel_for = serialFor);
 
   const RasterSettings& settings() const;
   DepthBufferView depthBuffer() const;

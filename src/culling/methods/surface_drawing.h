@@ -40,6 +40,7 @@ class SurfaceDrawer {
 
   // Call this once a frame, before draw().
   void begin(const CullingFrame& frame) {
+    parallel_for_ = frame.parallel_for;
     in_frustum_.clear();
     if (draws() && frame.jumped) {
       CullStats ignored;
@@ -73,7 +74,7 @@ class SurfaceDrawer {
   template <typename Buffer>
   void drawMoving(Buffer& buffer, const CullingFrame& frame) const {
     for (std::size_t i = 0; drawsMoving(frame) && i < frame.moving_surfaces.size(); ++i) {
-      buffer.draw(frame.moving_surfaces[i], drawing_);
+      buffer.draw(frame.moving_surfaces[i], drawing_, *parallel_for_);
     }
   }
   bool drawsMoving(const CullingFrame& frame) const {
@@ -90,7 +91,7 @@ class SurfaceDrawer {
   void draw(Buffer& buffer, std::span<const ObjectId> objects, ViewStep step, SurfaceDrawing drawing) const {
     if (draws()) {
       drawing.step = step;
-      buffer.draw(*surfaces_, objects, drawing);
+      buffer.draw(*surfaces_, objects, drawing, *parallel_for_);
     }
   }
 
@@ -101,6 +102,7 @@ class SurfaceDrawer {
   double work_ = 0.0;  // of the last view, SurfaceStats::work
   UsualWork usual_work_;
   const SurfaceSet* surfaces_ = nullptr;
+  const ParallelFor* parallel_for_ = nullptr;  // of the frame
   std::optional<HierarchicalTraversal> search_;
   std::vector<ObjectId> in_frustum_;
 };

@@ -1,0 +1,62 @@
+#pragma once
+
+// Edges of the boundary of a surface in a depth buffer, prepared once a view for being drawn several times.
+
+#include <cstdint>
+
+namespace sightline::occlusion {
+
+// A point of the buffer in 256ths of a pixel, x to the right, y upwards.
+struct GridPoint {
+  double x = 0.0, y = 0.0;  // whole numbers
+};
+inline constexpr std::int32_t kGridShift = 8, kGridStep = 1 << kGridShift;
+inline constexpr double kLargestGrid = 0x1p36;  // coordinates beyond it must not be used
+
+// Edges are drawn a tile at a time, with a vector lane for each of its rows.
+inline constexpr std::int32_t kTileWidthShift = 5, kTileHeightShift = 3;
+inline constexpr std::int32_t kTileWidth = 1 << kTileWidthShift,
+                              kTileHeight = 1 << kTileHeightShift;  // pixels
+
+// The size of a buffer, pixels; at most 8192 each.
+struct EdgeBuffer {
+  std::int32_t width = 0, height = 0;
+};
+
+// How x changes along an edge.
+enum class EdgeSlope : std::uint8_t {
+  kSteep,  // by at most 256 pixels a row, so that single precision can follow from row to row
+  kFlat,
+  kLevel,  // not with y
+};
+
+// Lengths are in 256ths of a pixel unless they say otherwise. Rows and tiles are those of the buffer.
+struct BoundaryEdge {
+  // Corners may be off by less than this.
+  static constexpr std::int32_t kMargin = 1;
+  // So far to the left or right of the buffer nothing matters, and places are moved there.
+  static constexpr std::int32_t kBeyond = 1 << 20;
+
+  double x;      // where its line crosses the lower border of the tiles of first_row; of a level edge, its y
+  double slope;  // change of x with y; 0 for a level edge
+  float left, right;  // of the edge with its margin
+  float reach;  // beyond where it crosses the borders of a row, along the row, it may touch pixels so far
+  // So near to the edge, along the middle of a row, or of a level edge upwards and downwards, it is unknown
+  // on which side a pixel's centre is: see "The pixel" in docs/conservative.md.
+  float doubt;
+  std::int32_t bottom, top;                 // of the edge, moved into the buffer
+  std::int16_t first_row, last_row;         // that it may touch
+  std::int16_t first_crossed, end_crossed;  // whose middle it crosses
+  std::int16_t first_tile, last_tile;       // columns of tiles that it may touch; -1: left of the buffer
+  EdgeSlope kind;
+  bool falls, rightwards;  // from its first point to its second one
+  bool matters;            // it does not lie above, below or to the right of the buffer
+
+  // Whether the winding is greater to the right of it, if the surface lies to its left `value` times. Of a
+  // level edge this is a convention.
+  bool rises(std::int32_t value) const { return falls == (value > 0); }
+};
+
+BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer);
+
+}  // namespace sightline::occlusion

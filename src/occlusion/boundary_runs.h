@@ -1,0 +1,43 @@
+#pragma once
+
+// Groups of surfaces whose pixels in each row are one run: to the right of all edges that begin the group
+// there, and to the left of all that end it. Most flat surfaces, and the outlines of most solids, are such.
+
+#include <cstdint>
+#include <span>
+
+#include "src/occlusion/boundary_edge.h"
+
+namespace sightline::occlusion {
+
+// Edges of a group's boundary. The surface lies to their left, `value` times.
+struct BoundaryChain {
+  std::uint32_t first = 0, count = 0;  // into a list of edges
+  std::int32_t value = 0;              // not 0
+};
+
+// The runs of a row of tiles. Places are in 256ths of a pixel.
+struct alignas(64) TileRowRuns {
+  float after[kTileHeight];            // the greatest place that edges touch which begin the group
+  float before[kTileHeight];           // the least place that edges touch which end it
+  std::uint32_t crossed[kTileHeight];  // all bits: an edge that begins the group crosses the row's middle
+};
+
+// Rows of tiles of a group, from first_row to last_row.
+struct RunRows {
+  TileRowRuns* runs = nullptr;  // by row of tiles of the buffer
+  std::int32_t first_row = 0, last_row = -1;
+  double end_x = 0.0;  // right border of the buffer, 256ths of a pixel
+};
+
+// Whether the group has one run in each row, or so it seems: then little or nothing of it is lost if it is
+// drawn in runs.
+bool hasRuns(std::span<const BoundaryEdge> edges, std::span<const BoundaryChain> chains);
+
+// Sets the runs of a group to those that its boundary leaves. Pixels in them are touched by no edge, and the
+// group's winding number is 1 or more there: any boundary may be drawn. Returns how many edges may touch the
+// rows.
+std::uint32_t drawRuns(const RunRows& rows, std::span<const BoundaryEdge> edges,
+                       std::span<const BoundaryChain> chains);
+
+}  // namespace sightline::occlusion
