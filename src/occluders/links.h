@@ -1,8 +1,10 @@
 #pragma once
 
-#include <span>
-#include <vector>
+// Puts found polygons into an occluder set, and links those that share edges of the mesh.
 
+#include <span>
+
+#include "sightline/base/parallel_for.h"
 #include "sightline/occluders/occluder_set.h"
 #include "src/occluders/polygon_merge.h"
 
@@ -10,12 +12,15 @@ namespace sightline::occluders {
 
 // A found polygon with what the set says of it.
 struct RankedPolygon {
-  FoundPolygon polygon;  // vertex ids into positions shared by all
-  ObjectId object;
+  const FoundPolygon* polygon = nullptr;  // vertex ids into positions shared by all
+  ObjectId object;                        // polygons without one come last
+  OccluderId id;                          // from 0 on, without gaps
 };
 
-// Fills vertices, edges, lines, neighbours and the per-object lists of a set from its polygons, in their
-// order. set.objects is there already, and has all valid objects of the polygons.
-void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set);
+// Fills a set from its polygons, but for the report. polygons: by object; of one object in any order. In that
+// order memory is read, and most of it is written in the order of ids. set.objects is there already, and has
+// all valid objects of the polygons.
+void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+                 const ParallelFor& parallel_for, OccluderSet& set);
 
 }  // namespace sightline::occluders
