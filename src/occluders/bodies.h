@@ -11,7 +11,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "src/base/rows.h"
 #include "src/base/union_find.h"
-#include "src/occluders/links.h"
+#include "src/occluders/assemble_set.h"
 #include "src/occluders/polygon_merge.h"
 
 namespace sightline::occluders {

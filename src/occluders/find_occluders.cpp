@@ -8,8 +8,8 @@
 #include "sightline/occluders/occluder_set.h"
 #include "src/base/parts.h"
 #include "src/base/sort_keys.h"
+#include "src/occluders/assemble_set.h"
 #include "src/occluders/bodies.h"
-#include "src/occluders/links.h"
 #include "src/occluders/polygon_merge.h"
 
 namespace sightline {
