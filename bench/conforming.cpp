@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -88,7 +89,7 @@ occluders::SurfaceMesh weldVillage(const Triangles& village) {
                       .index_count = static_cast<std::uint32_t>(village.indices.size()),
                       .material = MaterialId(0u)};
   const Material material;
-  return occluders::weld({village.positions, village.indices, {&object, 1}, {&material, 1}});
+  return occluders::weld({village.positions, village.indices, {&object, 1}, {&material, 1}}, serialFor);
 }
 
 struct Boundary {
@@ -151,8 +152,8 @@ void measure(std::string_view name, const Weld& weld, std::uint32_t threads,
     vertices.emplace_back(v);
   }
   std::vector<std::uint32_t> triangles;
-  for (const occluders::MeshTriangle& t : mesh.triangles) {
-    triangles.insert(triangles.end(), t.vertices, t.vertices + 3);
+  for (const std::array<std::uint32_t, 3>& corners : mesh.triangles) {
+    triangles.insert(triangles.end(), corners.begin(), corners.end());
   }
   start = secondsNow();
   const occluders::ConformedMesh conformed =
@@ -220,6 +221,7 @@ int main(int argc, char** argv) {
     const Scene scene = isDemoUrl(name) ? bench::valueOrExit(makeDemoScene(name), "conforming")
                                         : bench::valueOrExit(importScene(name), "conforming");
     measure(
-        name.substr(name.rfind('/') + 1), [&] { return occluders::weld(scene.view()); }, threads, settings);
+        name.substr(name.rfind('/') + 1), [&] { return occluders::weld(scene.view(), serialFor); }, threads,
+        settings);
   }
 }

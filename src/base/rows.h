@@ -59,6 +59,10 @@ class Rows {
     groupIntoRows(rows, first_, items_, for_each_pair);
   }
 
+  // The arrays themselves, to be filled at once: as those of groupIntoRows() of parallel_rows.h.
+  LargeVector<std::uint32_t>& first() { return first_; }
+  LargeVector<Item>& all() { return items_; }
+
   void shrinkToFit() { items_.shrink_to_fit(); }
   std::size_t bytes() const {  // beside the object itself
     return first_.capacity() * sizeof(std::uint32_t) + items_.capacity() * sizeof(Item);

@@ -1,80 +1,208 @@
 #include "src/occluders/bodies.h"
 
 #include <algorithm>
-#include <compare>
+#include <tuple>
 
-#include "sightline/base/large_vector.h"
-#include "src/base/union_find.h"
+#include "src/base/parts.h"
 
 namespace sightline::occluders {
 namespace {
 
 // Of a body; vertices, faces and edges are numbered in bytes.
 constexpr std::size_t kMaxFaces = 32, kMaxEdges = 64, kMaxVertices = 32;
+constexpr std::size_t kObjectsOfPart = 1024;
 
-// The mesh vertices from one corner of a polygon to the next, both included.
-struct Chain {
-  const FoundPolygon* polygon = nullptr;
-  std::uint32_t begin = 0, length = 0;  // in the loop
-  std::uint32_t owner = 0;              // which of the polygons
+std::uint32_t cornerOf(const FoundPolygon& polygon, std::size_t number) {
+  return polygon.loop[polygon.corners[number]];
+}
 
-  std::uint32_t at(std::uint32_t i) const { return polygon->loop[(begin + i) % polygon->loop.size()]; }
-  std::uint32_t from() const { return at(0); }
-  std::uint32_t to() const { return at(length - 1); }
-  std::pair<std::uint32_t, std::uint32_t> key() const {
-    return {std::min(from(), to()), std::max(from(), to())};
+// Vertex number i of a chain.
+std::uint32_t vertexOf(const FoundPolygon& polygon, const CornerChain& chain, std::uint32_t i) {
+  const std::size_t at = std::size_t{chain.begin} + i;
+  return polygon.loop[at < polygon.loop.size() ? at : at - polygon.loop.size()];
+}
+
+bool runAgainst(const FoundPolygon& p, const CornerChain& a, const FoundPolygon& q, const CornerChain& b) {
+  bool same = a.edge_count == b.edge_count;
+  for (std::uint32_t i = 0; same && i <= a.edge_count; ++i) {
+    same = vertexOf(p, a, i) == vertexOf(q, b, b.edge_count - i);
   }
-  bool reverses(const Chain& other) const {
-    bool same = length == other.length;
-    for (std::uint32_t i = 0; same && i < length; ++i) {
-      same = at(i) == other.at(length - 1 - i);
-    }
-    return same;
-  }
+  return same;
+}
+
+// What bodies add to a set. Numbers of vertices, edges and faces count from the first one here.
+struct BodyLists {
+  std::vector<OccluderBody> bodies;
+  std::vector<Vec3f> vertices;
+  std::vector<BodyEdge> edges;
+  std::vector<BodyFace> faces;
 };
 
-void appendChains(const FoundPolygon& polygon, std::uint32_t owner, std::vector<Chain>& chains) {
-  const auto corners = static_cast<std::uint32_t>(polygon.corners.size());
-  const auto size = static_cast<std::uint32_t>(polygon.loop.size());
-  for (std::uint32_t i = 0; i < corners; ++i) {
-    const std::uint32_t begin = polygon.corners[i], end = polygon.corners[(i + 1) % corners];
-    chains.push_back({&polygon, begin, (end + size - begin) % size + 1, owner});
+// Adds bodies to lists, one after the other.
+class BodyMaker {
+ public:
+  BodyMaker(std::span<const Vec3f> positions, const OccluderSet& set, BodyLists& lists)
+      : positions_(positions), set_(set), lists_(lists) {}
+
+  // faces: polygons of the set, ascending by id.
+  void add(std::span<const RankedPolygon* const> faces) {
+    OccluderBody body;
+    body.first_vertex = static_cast<std::uint32_t>(lists_.vertices.size());
+    body.first_edge = static_cast<std::uint32_t>(lists_.edges.size());
+    body.first_face = static_cast<std::uint32_t>(lists_.faces.size());
+    body.face_count = static_cast<std::uint8_t>(faces.size());
+    vertices_.clear();
+    polygons_.clear();
+    for (const RankedPolygon* face : faces) {
+      const FoundPolygon& polygon = *face->polygon;
+      polygons_.push_back(&polygon);
+      body.slack = std::max(body.slack, set_[face->id].slack);
+      for (const std::uint32_t corner : polygon.corners) {
+        numberOf(polygon.loop[corner], body.bounds);
+      }
+      lists_.faces.push_back({polygon.plane, face->id, numberOf(cornerOf(polygon, 0), body.bounds)});
+    }
+    addThickness(body);
+    addEdges(body);
+    body.vertex_count = static_cast<std::uint8_t>(vertices_.size());
+    lists_.bodies.push_back(body);
+  }
+
+ private:
+  // Corners that lie before planes count as slack.
+  void addThickness(OccluderBody& body) const {
+    for (const std::uint32_t vertex : vertices_) {
+      for (const FoundPolygon* other : polygons_) {
+        body.slack = std::max(body.slack,
+                              static_cast<float>(1.001 * other->plane.evaluate(Vec3d(positions_[vertex]))));
+      }
+    }
+  }
+
+  void addEdges(OccluderBody& body) {
+    mates_.find(polygons_);
+    const std::span<const CornerChain> chains = mates_.chains();
+    for (std::size_t i = 0; i + 1 < chains.size(); i += 2) {
+      const CornerChain &a = chains[i], &b = chains[i + 1];
+      const FoundPolygon& polygon = *polygons_[a.polygon];
+      lists_.edges.push_back({numberOf(vertexOf(polygon, a, 0), body.bounds),
+                              numberOf(vertexOf(polygon, a, a.edge_count), body.bounds),
+                              static_cast<std::uint8_t>(a.polygon), static_cast<std::uint8_t>(b.polygon)});
+    }
+    body.edge_count = static_cast<std::uint8_t>(chains.size() / 2);
+  }
+
+  std::uint8_t numberOf(std::uint32_t vertex, Box& bounds) {
+    const auto found = std::find(vertices_.begin(), vertices_.end(), vertex);
+    if (found == vertices_.end()) {
+      vertices_.push_back(vertex);
+      lists_.vertices.push_back(positions_[vertex]);
+      bounds.extend(positions_[vertex]);
+      return static_cast<std::uint8_t>(vertices_.size() - 1);
+    }
+    return static_cast<std::uint8_t>(found - vertices_.begin());
+  }
+
+  std::span<const Vec3f> positions_;
+  const OccluderSet& set_;
+  BodyLists& lists_;
+  ChainMates mates_;
+  // Of the body.
+  std::vector<std::uint32_t> vertices_;
+  std::vector<const FoundPolygon*> polygons_;
+};
+
+// Adds the bodies of one object of which no polygon is missing. in_bodies: scratch.
+void addBodies(std::span<const RankedPolygon> polygons, std::vector<const RankedPolygon*>& in_bodies,
+               BodyMaker& maker) {
+  in_bodies.clear();
+  for (const RankedPolygon& polygon : polygons) {
+    if (polygon.polygon->body != FoundPolygon::kNoBody) {
+      in_bodies.push_back(&polygon);
+    }
+  }
+  std::sort(in_bodies.begin(), in_bodies.end(), [](const RankedPolygon* a, const RankedPolygon* b) {
+    return std::tie(a->polygon->body, a->id) < std::tie(b->polygon->body, b->id);
+  });
+  for (std::size_t first = 0, last = 0; first < in_bodies.size(); first = last) {
+    const FoundPolygon& polygon = *in_bodies[first]->polygon;
+    while (last < in_bodies.size() && in_bodies[last]->polygon->body == polygon.body) {
+      ++last;
+    }
+    if (last - first == polygon.body_size) {
+      maker.add(std::span(in_bodies).subspan(first, last - first));
+    }
   }
 }
 
-// Pairs of chains that run against each other; nothing where some chain has no or several partners.
-// Sorted by key, of equal ones by owner.
-struct Mates {
-  std::vector<Chain> chains;
-  std::vector<bool> mated;  // by owner: all its chains have one
-
-  Mates(std::span<const FoundPolygon* const> polygons) : mated(polygons.size(), true) {
-    for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-      appendChains(*polygons[p], p, chains);
+// Appends what a part found.
+void append(const BodyLists& part, OccluderSet& set) {
+  const auto first_vertex = static_cast<std::uint32_t>(set.body_vertices.size());
+  const auto first_edge = static_cast<std::uint32_t>(set.body_edges.size());
+  const auto first_face = static_cast<std::uint32_t>(set.body_faces.size());
+  for (OccluderBody body : part.bodies) {
+    for (std::uint32_t face = body.first_face; face < body.first_face + body.face_count; ++face) {
+      set.body_of[part.faces[face].occluder.value] = static_cast<std::uint32_t>(set.bodies.size());
     }
-    std::stable_sort(chains.begin(), chains.end(),
-                     [](const Chain& a, const Chain& b) { return a.key() < b.key(); });
-    for (std::size_t first = 0, last = 0; first < chains.size(); first = last) {
-      while (last < chains.size() && chains[last].key() == chains[first].key()) {
-        ++last;
-      }
-      if (last - first != 2 || !chains[first].reverses(chains[first + 1])) {
-        for (std::size_t i = first; i < last; ++i) {
-          mated[chains[i].owner] = false;
-        }
+    body.first_vertex += first_vertex;
+    body.first_edge += first_edge;
+    body.first_face += first_face;
+    set.bodies.push_back(body);
+  }
+  set.body_vertices.insert(set.body_vertices.end(), part.vertices.begin(), part.vertices.end());
+  set.body_edges.insert(set.body_edges.end(), part.edges.begin(), part.edges.end());
+  set.body_faces.insert(set.body_faces.end(), part.faces.begin(), part.faces.end());
+}
+
+}  // namespace
+
+void ChainMates::find(std::span<const FoundPolygon* const> polygons) {
+  chains_.clear();
+  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
+    const FoundPolygon& polygon = *polygons[p];
+    const auto corners = static_cast<std::uint32_t>(polygon.corners.size());
+    const auto size = static_cast<std::uint32_t>(polygon.loop.size());
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      const std::uint32_t begin = polygon.corners[i], end = polygon.corners[i + 1 < corners ? i + 1 : 0];
+      const std::uint32_t from = polygon.loop[begin], to = polygon.loop[end];
+      chains_.push_back({std::uint64_t{std::min(from, to)} << 32 | std::max(from, to), p, begin,
+                         end > begin ? end - begin : end + size - begin});
+    }
+  }
+  std::sort(chains_.begin(), chains_.end(), [](const CornerChain& a, const CornerChain& b) {
+    return std::tie(a.key, a.polygon, a.begin) < std::tie(b.key, b.polygon, b.begin);
+  });
+  mated_.assign(polygons.size(), 1);
+  for (std::size_t first = 0, last = 0; first < chains_.size(); first = last) {
+    while (last < chains_.size() && chains_[last].key == chains_[first].key) {
+      ++last;
+    }
+    const CornerChain &a = chains_[first], &b = chains_[last - 1];
+    if (last - first != 2 || !runAgainst(*polygons[a.polygon], a, *polygons[b.polygon], b)) {
+      for (std::size_t i = first; i < last; ++i) {
+        mated_[chains_[i].polygon] = 0;
       }
     }
   }
-};
+}
 
 // Whether the faces bound a convex solid that has some thickness below each of them.
-bool isConvex(std::span<const Vec3f> positions, std::span<const FoundPolygon* const> faces,
-              double tolerance) {
+bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double tolerance) const {
+  std::size_t edges = 0;
+  for (const FoundPolygon* face : faces) {
+    edges += face->corners.size();
+  }
+  edges /= 2;
+  // Euler: as many vertices as edges and two, less the faces.
+  if (faces.size() < 4 || faces.size() > kMaxFaces || edges > kMaxEdges ||
+      edges + 2 - faces.size() > kMaxVertices) {
+    return false;
+  }
   for (const FoundPolygon* face : faces) {
     double lowest = 0.0;
     for (const FoundPolygon* other : faces) {
-      for (const std::uint32_t corner : other->corners) {
-        const double height = face->plane.evaluate(Vec3d(positions[other->loop[corner]]));
+      for (std::size_t corner = 0; corner < other->corners.size(); ++corner) {
+        const double height = face->plane.evaluate(Vec3d(positions_[cornerOf(*other, corner)]));
         if (height > tolerance) {
           return false;
         }
@@ -88,134 +216,69 @@ bool isConvex(std::span<const Vec3f> positions, std::span<const FoundPolygon* co
   return true;
 }
 
-// A polygon of a body.
-struct BodyFace {
-  std::uint32_t object, body, polygon;
-  friend auto operator<=>(const BodyFace&, const BodyFace&) = default;
-};
-
-// Adds bodies to a set, one after the other.
-class BodyMaker {
- public:
-  BodyMaker(std::span<const Vec3f> positions, OccluderSet& set) : positions_(positions), set_(set) {}
-
-  void add(std::span<const RankedPolygon> polygons, std::span<const std::uint32_t> ids) {
-    std::vector<const FoundPolygon*> faces;
-    OccluderBody body;
-    body.first_vertex = static_cast<std::uint32_t>(set_.body_vertices.size());
-    body.first_edge = static_cast<std::uint32_t>(set_.body_edges.size());
-    body.first_face = static_cast<std::uint32_t>(set_.body_faces.size());
-    body.face_count = static_cast<std::uint8_t>(ids.size());
-    vertices_.clear();
-    for (const std::uint32_t id : ids) {
-      faces.push_back(&polygons[id].polygon);
-      const Occluder& occluder = set_.occluders[id];
-      body.slack = std::max(body.slack, occluder.slack);
-      for (const std::uint32_t corner : faces.back()->corners) {
-        numberOf(faces.back()->loop[corner], body.bounds);
-      }
-      set_.body_faces.push_back(
-          {occluder.plane, OccluderId(id), numberOf(firstCorner(*faces.back()), body.bounds)});
-      set_.body_of[id] = static_cast<std::uint32_t>(set_.bodies.size());
-    }
-    for (const FoundPolygon* face : faces) {
-      for (const std::uint32_t corner : face->corners) {
-        for (const FoundPolygon* other : faces) {
-          body.slack = std::max(
-              body.slack,
-              static_cast<float>(1.001 * other->plane.evaluate(Vec3d(positions_[face->loop[corner]]))));
-        }
-      }
-    }
-    const Mates mates(faces);
-    for (std::size_t i = 0; i + 1 < mates.chains.size(); i += 2) {
-      const Chain &a = mates.chains[i], &b = mates.chains[i + 1];
-      set_.body_edges.push_back({numberOf(a.from(), body.bounds), numberOf(a.to(), body.bounds),
-                                 static_cast<std::uint8_t>(a.owner), static_cast<std::uint8_t>(b.owner)});
-    }
-    body.edge_count = static_cast<std::uint8_t>(mates.chains.size() / 2);
-    body.vertex_count = static_cast<std::uint8_t>(vertices_.size());
-    set_.bodies.push_back(body);
-  }
-
- private:
-  static std::uint32_t firstCorner(const FoundPolygon& polygon) { return polygon.loop[polygon.corners[0]]; }
-
-  std::uint8_t numberOf(std::uint32_t vertex, Box& bounds) {
-    const auto found = std::find(vertices_.begin(), vertices_.end(), vertex);
-    if (found == vertices_.end()) {
-      vertices_.push_back(vertex);
-      set_.body_vertices.push_back(positions_[vertex]);
-      bounds.extend(positions_[vertex]);
-      return static_cast<std::uint8_t>(vertices_.size() - 1);
-    }
-    return static_cast<std::uint8_t>(found - vertices_.begin());
-  }
-
-  std::span<const Vec3f> positions_;
-  OccluderSet& set_;
-  std::vector<std::uint32_t> vertices_;  // of the body
-};
-
-}  // namespace
-
-void findBodies(std::span<const Vec3f> positions, std::span<FoundPolygon* const> polygons, double tolerance) {
-  const std::vector<const FoundPolygon*> read(polygons.begin(), polygons.end());
-  const Mates mates(read);
-  base::UnionFind components(polygons.size());  // of polygons that share edges
-  for (std::size_t i = 0; i + 1 < mates.chains.size(); ++i) {
-    if (mates.chains[i].key() == mates.chains[i + 1].key()) {
-      components.unite(mates.chains[i].owner, mates.chains[i + 1].owner);
+void BodyFinder::find(std::span<FoundPolygon* const> polygons, double tolerance) {
+  read_.assign(polygons.begin(), polygons.end());
+  mates_.find(read_);
+  components_.reset(polygons.size());
+  const std::span<const CornerChain> chains = mates_.chains();
+  for (std::size_t i = 0; i + 1 < chains.size(); ++i) {
+    if (chains[i].key == chains[i + 1].key) {
+      components_.unite(chains[i].polygon, chains[i + 1].polygon);
     }
   }
-  std::vector<std::vector<const FoundPolygon*>> component(polygons.size());
-  std::vector<bool> closed(polygons.size(), true);
+  closed_.assign(polygons.size(), 1);
   for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    component[components.root(p)].push_back(read[p]);
-    closed[components.root(p)] = closed[components.root(p)] && mates.mated[p];
+    if (!mates_.allMated(p)) {
+      closed_[components_.root(p)] = 0;
+    }
   }
+  by_component_.group(polygons.size(), [this](auto&& pair) {
+    for (std::uint32_t p = 0; p < read_.size(); ++p) {
+      if (closed_[components_.root(p)] != 0) {
+        pair(components_.root(p), p);
+      }
+    }
+  });
   std::uint32_t next = 0;
-  std::vector<std::uint32_t> number(polygons.size(), FoundPolygon::kNoBody);
-  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    std::size_t edges = 0;
-    for (const FoundPolygon* face : component[p]) {
-      edges += face->corners.size();
+  for (std::size_t component = 0; component < by_component_.count(); ++component) {
+    const std::span<const std::uint32_t> members = by_component_[component];
+    faces_.clear();
+    for (const std::uint32_t p : members) {
+      faces_.push_back(read_[p]);
     }
-    edges /= 2;
-    // Euler: as many vertices as edges and two, less the faces.
-    const std::size_t faces = component[p].size();
-    if (faces >= 4 && closed[p] && faces <= kMaxFaces && edges <= kMaxEdges &&
-        edges + 2 - faces <= kMaxVertices && isConvex(positions, component[p], tolerance)) {
-      number[p] = next++;
+    if (isBody(faces_, tolerance)) {
+      for (const std::uint32_t p : members) {
+        polygons[p]->body = next;
+        polygons[p]->body_size = static_cast<std::uint32_t>(members.size());
+      }
+      ++next;
     }
-  }
-  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    polygons[p]->body = number[components.root(p)];
-    polygons[p]->body_size = static_cast<std::uint32_t>(component[components.root(p)].size());
   }
 }
 
 void assembleBodies(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
-                    OccluderSet& set) {
+                    const ParallelFor& parallel_for, OccluderSet& set) {
   set.body_of.assign(polygons.size(), OccluderSet::kNoBody);
-  LargeVector<BodyFace> faces;
-  for (std::uint32_t p = 0; p < polygons.size(); ++p) {
-    if (polygons[p].polygon.body != FoundPolygon::kNoBody) {
-      faces.push_back({polygons[p].object.value, polygons[p].polygon.body, p});
+  std::vector<std::uint32_t> first_of_object;  // and one more
+  for (std::uint32_t i = 0; i < polygons.size(); ++i) {
+    if (i == 0 || polygons[i].object != polygons[i - 1].object) {
+      first_of_object.push_back(i);
     }
   }
-  std::sort(faces.begin(), faces.end());
-  std::vector<std::uint32_t> ids;  // of one body
-  BodyMaker maker(positions, set);
-  for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
-    ids.clear();
-    while (last < faces.size() && faces[last].object == faces[first].object &&
-           faces[last].body == faces[first].body) {
-      ids.push_back(faces[last++].polygon);
+  const base::Parts parts(first_of_object.size(), kObjectsOfPart);
+  first_of_object.push_back(static_cast<std::uint32_t>(polygons.size()));
+  std::vector<BodyLists> of_part(parts.count());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    BodyMaker maker(positions, set, of_part[part]);
+    std::vector<const RankedPolygon*> in_bodies;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t first = first_of_object[i];
+      addBodies(polygons.subspan(first, first_of_object[i + 1] - first), in_bodies, maker);
     }
-    if (ids.size() == polygons[ids[0]].polygon.body_size) {
-      maker.add(polygons, ids);
-    }
+  });
+  for (BodyLists& part : of_part) {
+    append(part, set);
+    part = {};
   }
 }
 

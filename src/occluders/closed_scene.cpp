@@ -27,7 +27,7 @@ ClosedScene closeCracks(const SceneView& scene, double width, const ParallelFor&
     closed.indices.assign(scene.indices.begin(), scene.indices.end());
     return closed;
   }
-  const OpaqueTriangles opaque = occluders::opaqueTriangles(scene);
+  const OpaqueTriangles opaque = occluders::opaqueTriangles(scene, parallel_for);
   const std::vector<Vec3d> vertices = exact(opaque.vertices);
   const occluders::ClosedCracks cracks =
       occluders::closeCracks({vertices, opaque.corners}, width, parallel_for);
@@ -83,7 +83,7 @@ ClosedScene closeCracks(const SceneView& scene, double width, const ParallelFor&
 }
 
 std::vector<Crack> findCracks(const SceneView& scene, double width, const ParallelFor& parallel_for) {
-  const OpaqueTriangles opaque = occluders::opaqueTriangles(scene);
+  const OpaqueTriangles opaque = occluders::opaqueTriangles(scene, parallel_for);
   const std::vector<Vec3d> vertices = exact(opaque.vertices);
   std::vector<Crack> cracks;
   for (const occluders::NearMiss& miss :

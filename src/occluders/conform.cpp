@@ -16,6 +16,7 @@
 #include <tuple>
 
 #include "sightline/math/box.h"
+#include "src/base/parts.h"
 #include "src/base/rows.h"
 #include "src/occluders/close_cracks.h"
 #include "src/occluders/conform_contacts.h"
@@ -36,16 +37,6 @@ float below(double value) {
   const auto rounded = static_cast<float>(value);
   return double{rounded} > value ? std::nextafterf(rounded, -std::numeric_limits<float>::infinity())
                                  : rounded;
-}
-
-// Calls one(i) for all i below a number.
-template <typename One>
-void forEach(const ParallelFor& parallel_for, std::size_t count, const One& one) {
-  parallel_for(static_cast<std::uint32_t>(count), [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t i = begin; i < end; ++i) {
-      one(i);
-    }
-  });
 }
 
 class Conforming {
@@ -73,7 +64,7 @@ class Conforming {
     }
     scene_.lattice = Lattice::of(scene_.vertices);
     roles_.resize(count_);
-    forEach(parallel_for_, count_, [&](std::uint32_t t) {
+    base::forEach(parallel_for_, count_, [&](std::uint32_t t) {
       const std::uint32_t* corner = scene_.corners(t);
       roles_[t] = vertex_allowed[corner[0]] + vertex_allowed[corner[1]] + vertex_allowed[corner[2]] < 3
                       ? Role::kUntouched
@@ -93,7 +84,7 @@ class Conforming {
       }
     }
     std::vector<Box> boxes(numbers.size());
-    forEach(parallel_for_, numbers.size(), [&](std::uint32_t i) {
+    base::forEach(parallel_for_, numbers.size(), [&](std::uint32_t i) {
       for (int k = 0; k < 3; ++k) {
         const Vec3d& at = scene_.vertices[scene_.corners(numbers[i])[k]];
         boxes[i].extend(Vec3f{below(at.x), below(at.y), below(at.z)});
@@ -103,7 +94,7 @@ class Conforming {
     const BoxPairs pairs(boxes, numbers);
     std::vector<std::vector<Contact>> parts(pairs.partCount());
     std::vector<ContactCounts> counts(pairs.partCount());
-    forEach(parallel_for_, pairs.partCount(), [&](std::uint32_t part) {
+    base::forEach(parallel_for_, pairs.partCount(), [&](std::uint32_t part) {
       pairs.forPairs(part, [&](std::uint32_t a, std::uint32_t b) {
         addContacts(scene_, settings_, std::min(a, b), std::max(a, b), parts[part], counts[part]);
       });
@@ -138,7 +129,7 @@ class Conforming {
 
   void splitTriangles() {
     pieces_.resize((touched_.size() + kSplitsOfPart - 1) / kSplitsOfPart);
-    forEach(parallel_for_, pieces_.size(), [&](std::uint32_t part) {
+    base::forEach(parallel_for_, pieces_.size(), [&](std::uint32_t part) {
       TriangleSplit split;
       const std::size_t end = std::min<std::size_t>(touched_.size(), (part + std::size_t{1}) * kSplitsOfPart);
       for (std::size_t i = part * std::size_t{kSplitsOfPart}; i < end; ++i) {

@@ -1,11 +1,15 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "sightline/base/large_vector.h"
 #include "sightline/occluders/occluder_set.h"
+#include "src/base/parts.h"
+#include "src/base/sort_keys.h"
+#include "src/occluders/assemble_set.h"
 #include "src/occluders/bodies.h"
-#include "src/occluders/links.h"
 #include "src/occluders/polygon_merge.h"
 
 namespace sightline {
@@ -14,46 +18,67 @@ namespace {
 using occluders::FoundPolygon;
 using occluders::RankedPolygon;
 
-struct ObjectResult {
-  std::vector<FoundPolygon> polygons;
+constexpr std::size_t kTrianglesOfPart = 8192;
+
+// What was found in some objects.
+struct PartResult {
+  std::vector<FoundPolygon> polygons;       // by object
+  std::vector<std::uint32_t> polygon_ends;  // by object
+  occluders::IdStore ids;                   // of the polygons
   OccluderReport report;
 };
 
-ObjectResult findInObject(const SceneView& scene, const Object& object, std::uint32_t max_vertices) {
-  ObjectResult result;
-  const Material& material = scene.materialOf(object);
-  if (!material.opaque()) {
-    result.report.see_through = object.triangleCount();
-    return result;
+// Finds polygons in one object after the other.
+class ObjectSearch {
+ public:
+  ObjectSearch(const SceneView& scene, std::uint32_t max_vertices, PartResult& result)
+      : scene_(scene), result_(result), merger_(scene.positions, max_vertices), bodies_(scene.positions) {}
+
+  void search(const Object& object) {
+    const std::size_t first = result_.polygons.size();
+    searchTriangles(object);
+    result_.polygon_ends.push_back(static_cast<std::uint32_t>(result_.polygons.size()));
+    pointers_.clear();
+    for (FoundPolygon& polygon : std::span(result_.polygons).subspan(first)) {
+      pointers_.push_back(&polygon);
+    }
+    bodies_.find(pointers_, tolerance_);
   }
-  if (object.mark == OccluderMark::kNever) {
-    result.report.marked_never = object.triangleCount();
-    return result;
-  }
-  const double largest = maxComponent(max(abs(Vec3d(object.bounds.min)), abs(Vec3d(object.bounds.max))));
-  if (!std::isfinite(largest)) {
-    result.report.degenerate = object.triangleCount();
-    return result;
-  }
-  const double tolerance = occluders::roundingTolerance(largest);
-  const auto found =
-      occluders::findPatches(scene.positions, scene.indicesOf(object), material.double_sided, tolerance);
-  std::uint64_t in_polygons = 0;
-  for (const occluders::Patch& patch : found.patches) {
-    for (FoundPolygon& polygon : occluders::mergePatch(scene.positions, patch, tolerance, max_vertices)) {
-      polygon.double_sided = material.double_sided;
-      in_polygons += polygon.triangle_count;
-      result.polygons.push_back(std::move(polygon));
+
+ private:
+  void searchTriangles(const Object& object) {
+    const Material& material = scene_.materialOf(object);
+    const double largest = maxComponent(max(abs(Vec3d(object.bounds.min)), abs(Vec3d(object.bounds.max))));
+    if (!material.opaque()) {
+      result_.report.see_through += object.triangleCount();
+    } else if (object.mark == OccluderMark::kNever) {
+      result_.report.marked_never += object.triangleCount();
+    } else if (!std::isfinite(largest)) {
+      result_.report.degenerate += object.triangleCount();
+    } else {
+      tolerance_ = occluders::roundingTolerance(largest);
+      std::uint64_t in_polygons = 0;
+      patches_.find(scene_.positions, scene_.indicesOf(object), material.double_sided, tolerance_);
+      for (const occluders::Patch& patch : patches_.patches()) {
+        const std::size_t first = result_.polygons.size();
+        merger_.merge(patch, patches_.trianglesOf(patch), tolerance_, result_.polygons, result_.ids);
+        for (FoundPolygon& polygon : std::span(result_.polygons).subspan(first)) {
+          polygon.double_sided = material.double_sided;
+          in_polygons += polygon.triangle_count;
+        }
+      }
+      result_.report.degenerate += object.triangleCount() - in_polygons;
     }
   }
-  result.report.degenerate = object.triangleCount() - in_polygons;
-  std::vector<FoundPolygon*> pointers;
-  for (FoundPolygon& polygon : result.polygons) {
-    pointers.push_back(&polygon);
-  }
-  occluders::findBodies(scene.positions, pointers, tolerance);
-  return result;
-}
+
+  const SceneView& scene_;
+  PartResult& result_;
+  occluders::PatchFinder patches_;
+  occluders::PolygonMerger merger_;
+  occluders::BodyFinder bodies_;
+  double tolerance_ = 0.0;
+  std::vector<FoundPolygon*> pointers_;
+};
 
 void add(OccluderReport& sum, const OccluderReport& part) {
   sum.used += part.used;
@@ -63,52 +88,83 @@ void add(OccluderReport& sum, const OccluderReport& part) {
   sum.too_small += part.too_small;
 }
 
-// The polygons to keep, largest first; the others are counted as too small.
-std::vector<RankedPolygon> rank(const SceneView& scene, std::vector<ObjectResult>& results,
-                                const OccluderSettings& settings, OccluderReport& report) {
-  // Polygons are large: references to them are sorted, and each is moved once.
-  struct Candidate {
-    FoundPolygon* polygon;
-    double area;
-    ObjectId object;
-    std::uint32_t triangles;
-    std::uint32_t body;  // bodies of all objects, numbered one after the other; kNoBody
-  };
-  LargeVector<Candidate> all;
-  double total_area = 0.0;
-  std::uint32_t first_body = 0, next_body = 0;
-  for (std::size_t o = 0; o < results.size(); ++o, first_body = next_body) {
-    for (FoundPolygon& polygon : results[o].polygons) {
-      total_area += polygon.area;
-      const bool in_body = polygon.body != FoundPolygon::kNoBody;
-      const std::uint32_t body = in_body ? first_body + polygon.body : FoundPolygon::kNoBody;
-      next_body = in_body ? std::max(next_body, body + 1) : next_body;
-      all.push_back({&polygon, polygon.area, ObjectId(o), polygon.triangle_count, body});
+// Parts of about as many triangles: the first object of each, and one more.
+std::vector<std::uint32_t> partsOf(std::span<const Object> objects) {
+  std::vector<std::uint32_t> first(1, 0);
+  std::size_t triangles = 0;
+  for (std::uint32_t o = 0; o < objects.size(); ++o) {
+    triangles += objects[o].triangleCount();
+    if (triangles >= kTrianglesOfPart || o + 1 == objects.size()) {
+      first.push_back(o + 1);
+      triangles = 0;
     }
-    add(report, results[o].report);
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
-  const std::size_t limit = settings.max_occluders != 0 ? settings.max_occluders : all.size();
-  double area_before = 0.0;
-  std::vector<RankedPolygon> kept;
-  std::vector<bool> body_is_kept(next_body);
-  for (const Candidate& candidate : all) {
-    const bool in_body = candidate.body != FoundPolygon::kNoBody;
-    const bool large =
-        area_before < settings.area_fraction * total_area && candidate.area >= settings.min_area;
-    const bool marked = scene.objects[candidate.object.value].mark == OccluderMark::kOccluder;
-    area_before += candidate.area;
-    if ((large || marked || (in_body && body_is_kept[candidate.body])) && kept.size() < limit) {
-      if (in_body) {
-        body_is_kept[candidate.body] = true;
+  return first;
+}
+
+// Polygons of all objects, by object.
+struct AllPolygons {
+  LargeVector<RankedPolygon> polygons;  // without ids
+  std::vector<std::uint32_t> body_of;   // by polygon: bodies of all objects, one after the other; kNoBody
+  std::uint32_t body_count = 0;
+};
+
+AllPolygons listAll(std::span<PartResult> parts) {
+  AllPolygons all;
+  std::uint32_t object = 0;
+  for (PartResult& part : parts) {
+    std::uint32_t first = 0;
+    for (const std::uint32_t end : part.polygon_ends) {
+      const std::uint32_t first_body = all.body_count;
+      for (const FoundPolygon& polygon : std::span(part.polygons).subspan(first, end - first)) {
+        const bool in_body = polygon.body != FoundPolygon::kNoBody;
+        all.polygons.push_back({&polygon, ObjectId(object), OccluderId()});
+        all.body_of.push_back(in_body ? first_body + polygon.body : FoundPolygon::kNoBody);
+        all.body_count = in_body ? std::max(all.body_count, all.body_of.back() + 1) : all.body_count;
       }
-      kept.push_back({std::move(*candidate.polygon), candidate.object});
-    } else {
-      report.too_small += candidate.triangles;
+      first = end;
+      ++object;
     }
   }
-  return kept;
+  return all;
+}
+
+// Gives ids to the polygons to keep, the largest first, and removes the others, which count as too small.
+void rank(const SceneView& scene, const OccluderSettings& settings, const ParallelFor& parallel_for,
+          AllPolygons& all, OccluderReport& report) {
+  LargeVector<base::SortKey> by_area;
+  by_area.reserve(all.polygons.size());
+  double total_area = 0.0;
+  for (std::size_t i = 0; i < all.polygons.size(); ++i) {
+    const double area = all.polygons[i].polygon->area;
+    total_area += area;
+    by_area.push_back({base::descending(area), i});
+  }
+  base::KeySorter().sort(by_area, parallel_for);
+  const std::size_t limit = settings.max_occluders != 0 ? settings.max_occluders : all.polygons.size();
+  double area_before = 0.0;
+  std::uint32_t next = 0;
+  std::vector<bool> body_is_kept(all.body_count);
+  for (const base::SortKey& key : by_area) {
+    const double area = base::valueOf(key.first);
+    RankedPolygon& polygon = all.polygons[key.second];
+    const std::uint32_t body = all.body_of[key.second];
+    const bool in_body = body != FoundPolygon::kNoBody;
+    const bool large = area_before < settings.area_fraction * total_area && area >= settings.min_area;
+    area_before += area;
+    if ((large || scene.objects[polygon.object.value].mark == OccluderMark::kOccluder ||
+         (in_body && body_is_kept[body])) &&
+        next < limit) {
+      if (in_body) {
+        body_is_kept[body] = true;
+      }
+      polygon.id = OccluderId(next++);
+    }
+  }
+  std::erase_if(all.polygons, [&](const RankedPolygon& polygon) {
+    (polygon.id.valid() ? report.used : report.too_small) += polygon.polygon->triangle_count;
+    return !polygon.id.valid();
+  });
 }
 
 std::uint32_t clampedVertices(std::uint32_t max_vertices) {
@@ -119,20 +175,26 @@ std::uint32_t clampedVertices(std::uint32_t max_vertices) {
 
 OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settings,
                           const ParallelFor& parallel_for) {
-  std::vector<ObjectResult> results(scene.objects.size());
   const std::uint32_t max_vertices = clampedVertices(settings.max_vertices);
-  parallel_for(static_cast<std::uint32_t>(results.size()), [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t o = begin; o < end; ++o) {
-      results[o] = findInObject(scene, scene.objects[o], max_vertices);
+  const std::vector<std::uint32_t> first_of_part = partsOf(scene.objects);
+  std::vector<PartResult> parts(first_of_part.size() - 1);
+  base::forEach(parallel_for, parts.size(), [&](std::uint32_t part) {
+    ObjectSearch search(scene, max_vertices, parts[part]);
+    for (std::uint32_t o = first_of_part[part]; o < first_of_part[part + 1]; ++o) {
+      search.search(scene.objects[o]);
     }
   });
   OccluderSet set;
-  const std::vector<RankedPolygon> ranked = rank(scene, results, settings, set.report);
-  results = {};
-  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    set.objects.push_back(ObjectId(o));
+  for (const PartResult& part : parts) {
+    add(set.report, part.report);
   }
-  occluders::assembleSet(scene.positions, ranked, set);
+  AllPolygons all = listAll(parts);
+  rank(scene, settings, parallel_for, all, set.report);
+  set.objects.resize(scene.objects.size());
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    set.objects[o] = ObjectId(o);
+  }
+  occluders::assembleSet(scene.positions, all.polygons, parallel_for, set);
   return set;
 }
 
@@ -147,55 +209,69 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
   }
   weldPositions(corners);
 
-  std::vector<RankedPolygon> ranked;
   OccluderSet set;
+  occluders::IdStore ids;
+  occluders::PolygonFinisher finisher(corners.positions, 64);
+  std::vector<FoundPolygon> all;
+  std::vector<ObjectId> object_of;  // by polygon
   std::size_t first = 0;
   double largest_of_all = 0.0;
   for (const OccluderPolygon& polygon : polygons) {
-    FoundPolygon found;
-    found.double_sided = polygon.double_sided;
+    occluders::GrowingPolygon outline;
     double largest = 0.0;
     Vec3d normal;
     for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
-      found.loop.push_back(corners.indices[first + i]);
+      outline.loop.push_back(corners.indices[first + i]);
       largest = std::max(largest, static_cast<double>(maxComponent(abs(polygon.vertices[i]))));
       const Vec3d origin(polygon.vertices[0]);
       normal += cross(Vec3d(polygon.vertices[i]) - origin,
                       Vec3d(polygon.vertices[(i + 1) % polygon.vertices.size()]) - origin);
     }
     first += polygon.vertices.size();
-    if (found.loop.size() < 3 || !std::isfinite(largest) || !(length(normal) > 0.0)) {
+    if (outline.loop.size() < 3 || !std::isfinite(largest) || !(length(normal) > 0.0)) {
       ++set.report.degenerate;
       continue;
     }
-    found.plane.normal = normalized(normal);
-    found.plane.offset = -dot(found.plane.normal, Vec3d(polygon.vertices[0]));
+    Plane plane;
+    plane.normal = normalized(normal);
+    plane.offset = -dot(plane.normal, Vec3d(polygon.vertices[0]));
     for (const Vec3f& vertex : polygon.vertices) {
-      found.slack = std::max(found.slack, std::abs(found.plane.evaluate(Vec3d(vertex))));
+      outline.slack = std::max(outline.slack, std::abs(plane.evaluate(Vec3d(vertex))));
     }
-    found.triangle_count = static_cast<std::uint32_t>(found.loop.size() - 2);
+    outline.triangle_count = static_cast<std::uint32_t>(outline.loop.size() - 2);
     const double tolerance = occluders::roundingTolerance(largest);
-    if (found.slack > tolerance || !occluders::finishPolygon(corners.positions, tolerance, 64, found)) {
+    finisher.setPlane(plane, tolerance);
+    if (outline.slack > tolerance || !finisher.finish(outline)) {
       ++set.report.degenerate;
       continue;
     }
     largest_of_all = std::max(largest_of_all, largest);
-    ranked.push_back({std::move(found), polygon.object});
+    all.push_back(occluders::foundPolygon(outline, plane, ids));
+    all.back().double_sided = polygon.double_sided;
+    object_of.push_back(polygon.object);
+    set.report.used += outline.triangle_count;
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedPolygon& a, const RankedPolygon& b) {
-    return a.polygon.area > b.polygon.area;
-  });
-  std::map<std::uint32_t, std::vector<FoundPolygon*>> by_object;
-  for (RankedPolygon& polygon : ranked) {
-    by_object[polygon.object.value].push_back(&polygon.polygon);
+  std::vector<std::uint32_t> by_area(all.size());
+  std::iota(by_area.begin(), by_area.end(), 0u);
+  std::stable_sort(by_area.begin(), by_area.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return all[a].area > all[b].area; });
+  std::vector<RankedPolygon> ranked;
+  std::map<ObjectId, std::vector<FoundPolygon*>> by_object;
+  for (std::size_t id = 0; id < by_area.size(); ++id) {
+    FoundPolygon& polygon = all[by_area[id]];
+    ranked.push_back({&polygon, object_of[by_area[id]], OccluderId(id)});
+    by_object[ranked.back().object].push_back(&polygon);
   }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const RankedPolygon& a, const RankedPolygon& b) { return a.object < b.object; });
+  occluders::BodyFinder bodies(corners.positions);
   for (const auto& [object, of_object] : by_object) {
-    if (ObjectId(object).valid()) {
-      set.objects.push_back(ObjectId(object));
+    if (object.valid()) {
+      set.objects.push_back(object);
     }
-    occluders::findBodies(corners.positions, of_object, occluders::roundingTolerance(largest_of_all));
+    bodies.find(of_object, occluders::roundingTolerance(largest_of_all));
   }
-  occluders::assembleSet(corners.positions, ranked, set);
+  occluders::assembleSet(corners.positions, ranked, serialFor, set);
   return set;
 }
 

@@ -2,28 +2,28 @@
 // them. So that the occlusion structures stay watertight there, all occluder edges along one shared edge are
 // put on one line, given by two mesh vertices, and each of them knows which polygons lie beyond each of the
 // mesh edges that it was merged from.
+//
+// Polygons are ranked by area, and neighbours are of any rank. So everything is numbered by place first, in
+// the order of the polygons as they are given, where neighbours are close in memory; and what the set holds
+// by rank is written from there.
 
 #include "src/occluders/links.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
-#include "src/base/rows.h"
+#include "src/base/parallel_rows.h"
 #include "src/base/union_find.h"
-#include "src/occluders/bodies.h"
 
 namespace sightline::occluders {
 namespace {
 
-// One mesh edge on one occluder edge.
-struct Use {
-  std::uint32_t low, high;  // vertex ids
-  std::uint32_t edge;       // into OccluderSet::edges
-  std::uint32_t mesh_edge;  // number within the occluder edge, from 0
-};
-
 // Edges of more mesh edges are never watertight: the open ones are told by 64 bits.
 constexpr std::uint32_t kMaxMeshEdges = 64;
+constexpr std::size_t kPolygonsOfPart = 4096, kLowVerticesOfPart = 16384;
 
 double distanceToLine(const Vec3d& point, const Vec3d& p, const Vec3d& q) {
   const Vec3d d = q - p;
@@ -31,287 +31,432 @@ double distanceToLine(const Vec3d& point, const Vec3d& p, const Vec3d& q) {
   return l > 0.0 ? length(cross(d, point - p)) / l : length(point - p);
 }
 
+// Links the edges of a set. "Place" is the number of a polygon among the given ones, "edge" that of an
+// occluder edge in their order, "use" that of a mesh edge on an occluder edge; "rank" is the number of an
+// occluder edge in the set.
 class Linker {
  public:
-  Linker(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set)
-      : positions_(positions), polygons_(polygons), set_(set), classes_(set.edges.size()) {}
+  // first_vertex: by place, in the set.
+  Linker(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+         LargeVector<std::uint32_t> first_vertex, const ParallelFor& parallel_for, OccluderSet& set)
+      : positions_(positions),
+        polygons_(polygons),
+        parallel_for_(parallel_for),
+        set_(set),
+        first_vertex_(std::move(first_vertex)) {}
 
+  // Fills edges, lines and neighbours, and adds to the slack of occluders.
   void run() {
-    collectUses();
-    uniteSharedEdges();
-    chooseLines();
+    numberEdges();
+    groupUses();
+    findSharedEdges();
+    countLists();
+    placeLists();
+    writeLines();
     writeNeighbours();
     shareSlack();
   }
 
  private:
-  void collectUses() {
-    for (std::size_t o = 0; o < polygons_.size(); ++o) {
-      const FoundPolygon& polygon = polygons_[o].polygon;
-      const std::size_t n = polygon.loop.size(), c = polygon.corners.size();
-      for (std::size_t e = 0; e < c; ++e) {
-        const std::uint32_t edge = set_.occluders[o].first_vertex + static_cast<std::uint32_t>(e);
-        owner_.push_back(static_cast<std::uint32_t>(o));
-        std::uint32_t count = 0;
-        std::size_t i = polygon.corners[e];
-        do {
-          const std::uint32_t a = polygon.loop[i], b = polygon.loop[(i + 1) % n];
-          uses_.push_back({std::min(a, b), std::max(a, b), edge, count++});
-          i = (i + 1) % n;
-        } while (i != polygon.corners[(e + 1) % c]);
-        set_.edges[edge].mesh_edge_count = static_cast<std::uint16_t>(count <= kMaxMeshEdges ? count : 0);
-        set_.edges[edge].first_edge_vertex = static_cast<std::uint32_t>(set_.edge_vertices.size());
-        for (std::uint32_t k = 1; k < count && count <= kMaxMeshEdges; ++k) {
-          set_.edge_vertices.push_back(positions_[polygon.loop[(polygon.corners[e] + k) % n]]);
-        }
-        first_use_.push_back(static_cast<std::uint32_t>(uses_.size()) - count);
-        mesh_edge_count_.push_back(count);
-      }
-    }
-    by_vertex_.group(positions_.size(), [this](auto&& pair) {
-      for (const Use& use : uses_) {
-        pair(use.low, use);
-      }
-    });
-    for (std::size_t low = 0; low < by_vertex_.count(); ++low) {
-      std::sort(by_vertex_[low].begin(), by_vertex_[low].end(), [](const Use& a, const Use& b) {
-        return std::tie(a.high, a.edge, a.mesh_edge) < std::tie(b.high, b.edge, b.mesh_edge);
-      });
+  enum class EdgeKind : std::uint8_t {
+    kOneMeshEdge,     // and so is each edge that shares it
+    kSeveral,         // it, or one that shares a mesh edge with it, has several mesh edges
+    kNeverWatertight  // of those
+  };
+  struct Use {
+    std::uint32_t high = 0, use = 0;  // the mesh edge's higher vertex
+    friend auto operator<=>(const Use&, const Use&) = default;
+  };
+  // Edges that share mesh edges, directly or by others. Some of them have several mesh edges.
+  struct SharedEdge {
+    std::size_t begin = 0, end = 0;  // in by_shared_edge_
+    bool one_line = true;            // false: each edge has a line of its own, and none is watertight
+    double deviation = 0.0;          // of mesh vertices from the line
+  };
+
+  const FoundPolygon& polygonOf(std::uint32_t edge) const { return *polygons_[place_of_edge_[edge]].polygon; }
+  std::uint32_t cornerOf(std::uint32_t edge) const { return edge - first_edge_[place_of_edge_[edge]]; }
+  std::uint32_t rankOf(std::uint32_t edge) const {
+    return first_vertex_[place_of_edge_[edge]] + cornerOf(edge);
+  }
+  // Mesh edges from a corner to another one.
+  static std::uint32_t meshEdges(const FoundPolygon& polygon, std::uint32_t from, std::uint32_t to) {
+    return polygon.corners[to] >= polygon.corners[from]
+               ? polygon.corners[to] - polygon.corners[from]
+               : polygon.corners[to] + static_cast<std::uint32_t>(polygon.loop.size()) -
+                     polygon.corners[from];
+  }
+  static std::uint32_t nextCorner(const FoundPolygon& polygon, std::uint32_t corner) {
+    return corner + 1 < polygon.corners.size() ? corner + 1 : 0;
+  }
+  std::uint32_t meshEdgeCount(std::uint32_t edge) const {
+    const FoundPolygon& polygon = polygonOf(edge);
+    return meshEdges(polygon, cornerOf(edge), nextCorner(polygon, cornerOf(edge)));
+  }
+  std::uint32_t firstUse(std::uint32_t edge) const {
+    return first_use_[place_of_edge_[edge]] + meshEdges(polygonOf(edge), 0, cornerOf(edge));
+  }
+  std::array<Vec3f, 2> ownLine(std::uint32_t edge) const {
+    const FoundPolygon& polygon = polygonOf(edge);
+    const std::uint32_t corner = cornerOf(edge), next = nextCorner(polygon, corner);
+    return {positions_[polygon.loop[polygon.corners[corner]]],
+            positions_[polygon.loop[polygon.corners[next]]]};
+  }
+  // Visits both ends of each mesh edge of an edge, the lower vertex first.
+  template <typename Visit>
+  void forEachMeshEdgeEnd(std::uint32_t edge, Visit visit) const {
+    const FoundPolygon& polygon = polygonOf(edge);
+    std::size_t at = polygon.corners[cornerOf(edge)];
+    for (std::uint32_t left = meshEdgeCount(edge); left > 0; --left) {
+      const std::uint32_t from = polygon.loop[at];
+      at = at + 1 < polygon.loop.size() ? at + 1 : 0;
+      visit(positions_[std::min(from, polygon.loop[at])]);
+      visit(positions_[std::max(from, polygon.loop[at])]);
     }
   }
 
+  void numberEdges() {
+    first_edge_.resize(polygons_.size() + 1);
+    first_use_.resize(polygons_.size() + 1);
+    const base::Parts parts(polygons_.size(), kPolygonsOfPart);
+    parts.run(parallel_for_, [this](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const FoundPolygon& polygon = *polygons_[i].polygon;
+        first_edge_[i + 1] = static_cast<std::uint32_t>(polygon.corners.size());
+        first_use_[i + 1] = static_cast<std::uint32_t>(polygon.loop.size());
+      }
+    });
+    std::partial_sum(first_edge_.begin(), first_edge_.end(), first_edge_.begin());
+    std::partial_sum(first_use_.begin(), first_use_.end(), first_use_.begin());
+    place_of_edge_.resize(first_edge_.back());
+    kind_.resize(first_edge_.back());
+    edge_of_use_.resize(first_use_.back());
+    set_.edges.resize(first_edge_.back());
+    parts.run(parallel_for_, [this](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        std::uint32_t use = first_use_[i];
+        for (std::uint32_t edge = first_edge_[i]; edge < first_edge_[i + 1]; ++edge) {
+          place_of_edge_[edge] = static_cast<std::uint32_t>(i);
+          const std::uint32_t count = meshEdgeCount(edge);
+          kind_[edge] = count == 1 ? EdgeKind::kOneMeshEdge : EdgeKind::kSeveral;
+          std::fill_n(edge_of_use_.begin() + use, count, edge);
+          use += count;
+        }
+      }
+    });
+  }
+
+  void groupUses() {
+    base::groupIntoRows(parallel_for_, positions_.size(), polygons_.size(), by_vertex_.first(),
+                        by_vertex_.all(), [this](std::size_t begin, std::size_t end, auto&& pair) {
+                          for (std::size_t i = begin; i < end; ++i) {
+                            const std::span<const std::uint32_t> loop = polygons_[i].polygon->loop;
+                            std::size_t at = polygons_[i].polygon->corners[0];
+                            for (std::uint32_t use = first_use_[i]; use < first_use_[i + 1]; ++use) {
+                              const std::uint32_t from = loop[at];
+                              at = at + 1 < loop.size() ? at + 1 : 0;
+                              pair(std::min(from, loop[at]), Use{std::max(from, loop[at]), use});
+                            }
+                          }
+                        });
+    base::Parts(by_vertex_.count(), kLowVerticesOfPart)
+        .run(parallel_for_, [this](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t low = begin; low < end; ++low) {
+            std::sort(by_vertex_[low].begin(), by_vertex_[low].end());
+          }
+        });
+  }
+
+  // Visits the uses of each mesh edge of the lower vertices `begin` to `end`.
   template <typename Visit>
-  void forEachSharedMeshEdge(Visit visit) const {
-    const std::span<const Use> uses = by_vertex_.items();
-    for (std::size_t i = 0; i < uses.size();) {
-      std::size_t end = i + 1;
-      while (end < uses.size() && uses[end].low == uses[i].low && uses[end].high == uses[i].high) {
+  void forEachMeshEdge(std::size_t begin, std::size_t end, Visit visit) const {
+    for (std::size_t low = begin; low < end; ++low) {
+      const std::span<const Use> uses = by_vertex_[low];
+      for (std::size_t i = 0, next = 0; i < uses.size(); i = next) {
+        while (next < uses.size() && uses[next].high == uses[i].high) {
+          ++next;
+        }
+        visit(uses.subspan(i, next - i));
+      }
+    }
+  }
+  template <typename Visit>
+  void forEachMeshEdge(Visit visit) const {
+    base::Parts(by_vertex_.count(), kLowVerticesOfPart)
+        .run(parallel_for_,
+             [&](std::size_t, std::size_t begin, std::size_t end) { forEachMeshEdge(begin, end, visit); });
+  }
+  bool isOneMeshEdge(std::span<const Use> users) const {
+    return kind_[edge_of_use_[users[0].use]] == EdgeKind::kOneMeshEdge;
+  }
+
+  // Finds the edges that are not just one mesh edge, and which of them belong together.
+  void findSharedEdges() {
+    forEachMeshEdge([this](std::span<const Use> users) {
+      const auto isOne = [this](const Use& use) {
+        return kind_[edge_of_use_[use.use]] == EdgeKind::kOneMeshEdge;
+      };
+      if (!std::all_of(users.begin(), users.end(), isOne)) {
+        for (const Use& use : users) {
+          if (isOne(use)) {  // so no other thread looks at this edge
+            kind_[edge_of_use_[use.use]] = EdgeKind::kSeveral;
+          }
+        }
+      }
+    });
+    for (std::uint32_t edge = 0; edge < kind_.size(); ++edge) {
+      if (kind_[edge] == EdgeKind::kSeveral) {
+        by_shared_edge_.push_back({edge, rankOf(edge)});
+      }
+    }
+    if (by_shared_edge_.empty()) {
+      return;
+    }
+    base::UnionFind classes(kind_.size());
+    forEachMeshEdge(0, by_vertex_.count(), [&](std::span<const Use> users) {
+      for (const Use& use : users.subspan(isOneMeshEdge(users) ? users.size() : 1)) {
+        classes.unite(edge_of_use_[users[0].use], edge_of_use_[use.use]);
+      }
+    });
+    for (base::SortKey& key : by_shared_edge_) {
+      const auto edge = static_cast<std::uint32_t>(key.first);
+      key = {std::uint64_t{classes.root(edge)}, key.second << 32 | edge};
+    }
+    base::KeySorter().sort(by_shared_edge_, parallel_for_);
+    for (std::size_t i = 0, end = 0; i < by_shared_edge_.size(); i = end) {
+      while (end < by_shared_edge_.size() && by_shared_edge_[end].first == by_shared_edge_[i].first) {
         ++end;
       }
-      if (end - i > 1) {
-        visit(uses.subspan(i, end - i));
-      }
-      i = end;
+      shared_edges_.push_back({i, end, true, 0.0});
     }
   }
 
-  void uniteSharedEdges() {
-    forEachSharedMeshEdge([this](std::span<const Use> users) {
-      for (const Use& use : users.subspan(1)) {
-        classes_.unite(users[0].edge, use.edge);
-      }
-    });
+  // The edges of a shared one, by rank.
+  std::uint32_t edgeAt(std::size_t i) const {
+    return static_cast<std::uint32_t>(by_shared_edge_[i].second & 0xffffffffu);
   }
-
-  // Visits the ends of each mesh edge of an occluder edge.
   template <typename Visit>
-  void forEachVertex(std::uint32_t edge, Visit visit) const {
-    for (std::uint32_t k = 0; k < mesh_edge_count_[edge]; ++k) {
-      const Use& use = uses_[first_use_[edge] + k];
-      visit(positions_[use.low]);
-      visit(positions_[use.high]);
+  void forEachEdge(const SharedEdge& shared, Visit visit) const {
+    for (std::size_t i = shared.begin; i < shared.end; ++i) {
+      visit(edgeAt(i));
     }
   }
 
-  std::array<Vec3f, 2> ownLine(std::uint32_t edge) const {
-    const Occluder& occluder = set_.occluders[owner_[edge]];
-    const std::uint32_t next =
-        edge + 1 == occluder.first_vertex + occluder.vertex_count ? occluder.first_vertex : edge + 1;
-    return {set_.vertices[edge], set_.vertices[next]};
-  }
-
-  void chooseLines() {
-    base::Rows<std::uint32_t> by_class;
-    by_class.group(set_.edges.size(), [this](auto&& pair) {
-      for (std::uint32_t edge = 0; edge < set_.edges.size(); ++edge) {
-        pair(classes_.root(edge), edge);
+  // The line for all edges along a shared one: through their outermost mesh vertices, in the direction of the
+  // longest of them.
+  std::array<Vec3f, 2> lineOf(const SharedEdge& shared) const {
+    std::array<Vec3f, 2> line = ownLine(edgeAt(shared.begin));
+    if (shared.end - shared.begin == 1) {
+      return line;
+    }
+    double longest = 0.0;
+    Vec3d along;
+    forEachEdge(shared, [&](std::uint32_t edge) {
+      const auto own = ownLine(edge);
+      const Vec3d d = Vec3d(own[1]) - Vec3d(own[0]);
+      if (length(d) > longest) {
+        longest = length(d);
+        along = d;
       }
     });
-    for (std::size_t c = 0; c < by_class.count(); ++c) {
-      if (!by_class[c].empty()) {
-        chooseLine(by_class[c]);
-      }
-    }
+    double low = 0.0, high = 0.0;
+    bool first = true;
+    forEachEdge(shared, [&](std::uint32_t edge) {
+      forEachMeshEdgeEnd(edge, [&](const Vec3f& p) {
+        const double t = dot(along, Vec3d(p));
+        if (first || t < low) {
+          low = t;
+          line[0] = p;
+        }
+        if (first || t > high) {
+          high = t;
+          line[1] = p;
+        }
+        first = false;
+      });
+    });
+    return line;
   }
 
-  // Chooses one line for all occluder edges along a shared edge: through their outermost mesh vertices, in
-  // the direction of the longest of them. Where a vertex is farther from that line than rounding explains,
-  // each occluder edge keeps a line of its own, and the shared edge is not watertight.
-  void chooseLine(std::span<const std::uint32_t> shared) {
-    std::array<Vec3f, 2> line = ownLine(shared[0]);
-    if (shared.size() > 1) {
-      double longest = 0.0;
-      Vec3d along;
-      for (const std::uint32_t edge : shared) {
-        const auto own = ownLine(edge);
-        const Vec3d d = Vec3d(own[1]) - Vec3d(own[0]);
-        if (length(d) > longest) {
-          longest = length(d);
-          along = d;
-        }
-      }
-      double low = 0.0, high = 0.0;
-      bool first = true;
-      for (const std::uint32_t edge : shared) {
-        forEachVertex(edge, [&](const Vec3f& p) {
-          const double t = dot(along, Vec3d(p));
-          if (first || t < low) {
-            low = t;
-            line[0] = p;
-          }
-          if (first || t > high) {
-            high = t;
-            line[1] = p;
-          }
-          first = false;
-        });
-      }
-    }
+  // Chooses the line of a shared edge. Where a vertex is farther from it than rounding explains, each
+  // occluder edge keeps a line of its own, and the shared edge is not watertight.
+  void judge(SharedEdge& shared) const {
+    const std::array<Vec3f, 2> line = lineOf(shared);
     double deviation = 0.0, largest = 0.0;
-    for (const std::uint32_t edge : shared) {
-      forEachVertex(edge, [&](const Vec3f& p) {
+    forEachEdge(shared, [&](std::uint32_t edge) {
+      forEachMeshEdgeEnd(edge, [&](const Vec3f& p) {
         deviation = std::max(deviation, distanceToLine(Vec3d(p), Vec3d(line[0]), Vec3d(line[1])));
         largest = std::max(largest, static_cast<double>(maxComponent(abs(p))));
       });
+    });
+    shared.one_line = deviation <= 4.0 * roundingTolerance(largest);
+    shared.deviation = shared.one_line ? deviation : 0.0;
+  }
+
+  // Of the users of a mesh edge that is all of their edges: the edge with the lowest rank.
+  std::uint32_t firstByRank(std::span<const Use> users) const {
+    std::uint32_t first = edge_of_use_[users[0].use];
+    for (const Use& use : users.subspan(1)) {
+      const std::uint32_t edge = edge_of_use_[use.use];
+      first = rankOf(edge) < rankOf(first) ? edge : first;
     }
-    if (deviation <= 4.0 * roundingTolerance(largest)) {
-      assign(shared, line, deviation);
-      return;
-    }
-    for (const std::uint32_t edge : shared) {
-      set_.edges[edge].mesh_edge_count = 0;
-      assign(std::span(&edge, 1), ownLine(edge), 0.0);
+    return first;
+  }
+
+  // Lines are numbered by the first edge on each of them, and vertices along edges by edge: until
+  // placeLists(), an edge of the set has its counts of both in place of the first numbers.
+  void countLists() {
+    forEachMeshEdge([this](std::span<const Use> users) {
+      if (isOneMeshEdge(users)) {
+        for (const Use& use : users) {
+          set_.edges[rankOf(edge_of_use_[use.use])].mesh_edge_count = 1;
+        }
+        set_.edges[rankOf(firstByRank(users))].line = 1;
+      }
+    });
+    base::forEach(parallel_for_, shared_edges_.size(), [this](std::uint32_t number) {
+      SharedEdge& shared = shared_edges_[number];
+      judge(shared);
+      forEachEdge(shared, [&](std::uint32_t edge) {
+        OccluderEdge& counts = set_.edges[rankOf(edge)];
+        const std::uint32_t count = meshEdgeCount(edge);
+        const bool few = count <= kMaxMeshEdges;
+        counts.mesh_edge_count = static_cast<std::uint16_t>(few && shared.one_line ? count : 0);
+        counts.first_edge_vertex = few ? count - 1 : 0;
+        kind_[edge] = counts.mesh_edge_count == 0 ? EdgeKind::kNeverWatertight : EdgeKind::kSeveral;
+      });
+      set_.edges[rankOf(edgeAt(shared.begin))].line =
+          shared.one_line ? 1 : static_cast<std::uint32_t>(shared.end - shared.begin);
+    });
+    for (const SharedEdge& shared : shared_edges_) {
+      forEachEdge(shared, [&](std::uint32_t edge) {
+        Occluder& occluder = set_.occluders[polygons_[place_of_edge_[edge]].id.value];
+        occluder.slack = std::max(occluder.slack, static_cast<float>(shared.deviation * 1.001));
+      });
     }
   }
 
-  void assign(std::span<const std::uint32_t> edges, const std::array<Vec3f, 2>& line, double deviation) {
-    for (const std::uint32_t edge : edges) {
-      set_.edges[edge].line = static_cast<std::uint32_t>(set_.lines.size());
-      Occluder& occluder = set_.occluders[owner_[edge]];
-      occluder.slack = std::max(occluder.slack, static_cast<float>(deviation * 1.001));
+  void placeLists() {
+    std::uint32_t lines = 0, vertices = 0;
+    for (OccluderEdge& edge : set_.edges) {
+      lines += std::exchange(edge.line, lines);
+      vertices += std::exchange(edge.first_edge_vertex, vertices);
     }
-    set_.lines.push_back(line);
+    set_.lines.resize(lines);
+    set_.edge_vertices.resize(vertices);
+  }
+
+  void writeLines() {
+    forEachMeshEdge([this](std::span<const Use> users) {
+      if (isOneMeshEdge(users)) {
+        const std::uint32_t first = firstByRank(users), line = set_.edges[rankOf(first)].line;
+        set_.lines[line] = ownLine(first);
+        for (const Use& use : users) {
+          set_.edges[rankOf(edge_of_use_[use.use])].line = line;
+        }
+      }
+    });
+    base::forEach(parallel_for_, shared_edges_.size(), [this](std::uint32_t number) {
+      const SharedEdge& shared = shared_edges_[number];
+      std::uint32_t line = set_.edges[rankOf(edgeAt(shared.begin))].line;
+      if (shared.one_line) {
+        set_.lines[line] = lineOf(shared);
+      }
+      forEachEdge(shared, [&](std::uint32_t edge) {
+        OccluderEdge& written = set_.edges[rankOf(edge)];
+        written.line = line;
+        if (!shared.one_line) {
+          set_.lines[line++] = ownLine(edge);
+        }
+        writeEdgeVertices(edge, written.first_edge_vertex);
+      });
+    });
+  }
+
+  void writeEdgeVertices(std::uint32_t edge, std::uint32_t first) {
+    const FoundPolygon& polygon = polygonOf(edge);
+    const std::uint32_t count = meshEdgeCount(edge);
+    for (std::uint32_t k = 1; k < count && count <= kMaxMeshEdges; ++k) {
+      const std::size_t at = (polygon.corners[cornerOf(edge)] + k) % polygon.loop.size();
+      set_.edge_vertices[first + k - 1] = positions_[polygon.loop[at]];
+    }
   }
 
   void writeNeighbours() {
-    base::Rows<EdgeNeighbour> by_edge;
-    by_edge.group(set_.edges.size(), [this](auto&& pair) {
-      forEachSharedMeshEdge([&](std::span<const Use> users) {
-        for (const Use& a : users) {
-          for (const Use& b : users) {
-            if (owner_[a.edge] != owner_[b.edge] && set_.edges[a.edge].mesh_edge_count != 0 &&
-                set_.occluders[owner_[b.edge]].watertight_edges) {
-              pair(a.edge, EdgeNeighbour{OccluderId(owner_[b.edge]), a.mesh_edge});
-            }
-          }
-        }
-      });
+    LargeVector<std::uint8_t> joins(polygons_.size());  // by place
+    base::forEach(parallel_for_, polygons_.size(), [&](std::uint32_t i) {
+      joins[i] = set_.occluders[polygons_[i].id.value].watertight_edges ? 1 : 0;
     });
-    set_.neighbours.reserve(by_edge.items().size());
-    for (std::size_t e = 0; e < by_edge.count(); ++e) {
-      const std::span<EdgeNeighbour> neighbours = by_edge[e];
-      if (neighbours.empty()) {
-        continue;
+    LargeVector<std::uint32_t> first;
+    base::groupIntoRows(parallel_for_, set_.edges.size(), by_vertex_.count(), first, set_.neighbours,
+                        [&](std::size_t begin, std::size_t end, auto&& pair) {
+                          forEachMeshEdge(begin, end, [&](std::span<const Use> users) {
+                            for (const Use& a : users) {
+                              const std::uint32_t edge = edge_of_use_[a.use], place = place_of_edge_[edge];
+                              if (kind_[edge] == EdgeKind::kNeverWatertight) {
+                                continue;
+                              }
+                              const std::uint32_t mesh_edge =
+                                  kind_[edge] == EdgeKind::kOneMeshEdge ? 0 : a.use - firstUse(edge);
+                              for (const Use& b : users) {
+                                const std::uint32_t other = place_of_edge_[edge_of_use_[b.use]];
+                                if (other != place && joins[other] != 0) {
+                                  pair(rankOf(edge), EdgeNeighbour{polygons_[other].id, mesh_edge});
+                                }
+                              }
+                            }
+                          });
+                        });
+    base::forEach(parallel_for_, set_.edges.size(), [&](std::uint32_t e) {
+      const std::uint32_t count = first[e + 1] - first[e];
+      if (count > 0) {
+        set_.edges[e].first_neighbour = first[e];
+        set_.edges[e].neighbour_count = static_cast<std::uint16_t>(count <= 0xffff ? count : 0);
+        std::sort(set_.neighbours.begin() + first[e], set_.neighbours.begin() + first[e + 1],
+                  [](const EdgeNeighbour& a, const EdgeNeighbour& b) {
+                    return std::tie(a.mesh_edge, a.occluder) < std::tie(b.mesh_edge, b.occluder);
+                  });
       }
-      std::sort(neighbours.begin(), neighbours.end(), [](const EdgeNeighbour& a, const EdgeNeighbour& b) {
-        return std::tie(a.mesh_edge, a.occluder) < std::tie(b.mesh_edge, b.occluder);
-      });
-      OccluderEdge& edge = set_.edges[e];
-      edge.first_neighbour = static_cast<std::uint32_t>(set_.neighbours.size());
-      edge.neighbour_count = static_cast<std::uint16_t>(neighbours.size() <= 0xffff ? neighbours.size() : 0);
-      set_.neighbours.insert(set_.neighbours.end(), neighbours.begin(), neighbours.end());
-    }
+    });
   }
 
   // An occluder's slack also bounds that of its neighbours: the uncertain outline of a neighbour begins at
   // the end of the edge that both share.
   void shareSlack() {
-    std::vector<float> slack;
+    LargeVector<float> slack;
+    slack.reserve(set_.occluders.size());
     for (const Occluder& occluder : set_.occluders) {
       slack.push_back(occluder.slack);
     }
-    for (Occluder& occluder : set_.occluders) {
+    base::forEach(parallel_for_, set_.occluders.size(), [&](std::uint32_t id) {
+      Occluder& occluder = set_.occluders[id];
       for (const OccluderEdge& edge : set_.edgesOf(occluder)) {
         for (const EdgeNeighbour& neighbour : set_.neighboursOf(edge)) {
           occluder.slack = std::max(occluder.slack, slack[neighbour.occluder.value]);
         }
       }
-    }
+    });
   }
 
   std::span<const Vec3f> positions_;
   std::span<const RankedPolygon> polygons_;
+  const ParallelFor& parallel_for_;
   OccluderSet& set_;
-  base::UnionFind classes_;    // of occluder edges along one shared edge
-  LargeVector<Use> uses_;      // in the order of edges
+  LargeVector<std::uint32_t> first_vertex_, first_edge_, first_use_;  // by place; the first is in the set
+  LargeVector<std::uint32_t> place_of_edge_;
+  LargeVector<EdgeKind> kind_;  // by edge
+  LargeVector<std::uint32_t> edge_of_use_;
   base::Rows<Use> by_vertex_;  // by their lower vertex, sorted by mesh edge
-  LargeVector<std::uint32_t> owner_, first_use_, mesh_edge_count_;  // by edge
+  // Of edges of the kind kSeveral: the first of the edges that they are joined with, then rank and edge.
+  LargeVector<base::SortKey> by_shared_edge_;
+  std::vector<SharedEdge> shared_edges_;
 };
-
-// False where a corner is sharper than three degrees: near it, a neighbour's own boundary would be too close
-// to the shared edge.
-bool hasNoSharpCorner(std::span<const Vec3f> corners) {
-  constexpr double kSine = 0.052;
-  const std::size_t n = corners.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3d at(corners[i]);
-    const Vec3d a = normalized(Vec3d(corners[(i + n - 1) % n]) - at);
-    const Vec3d b = normalized(Vec3d(corners[(i + 1) % n]) - at);
-    if (length(cross(a, b)) < kSine && dot(a, b) > 0.0) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// Lists, for each object, the occluders for which listed(id) is true, in the order of their ids.
-template <typename Listed>
-void listByObject(const OccluderSet& set, Listed&& listed, std::vector<std::uint32_t>& first,
-                  std::vector<OccluderId>& ids) {
-  const auto forEachListed = [&](auto&& visit) {
-    for (std::size_t o = 0; o < set.occluders.size(); ++o) {
-      const std::size_t place = set.placeOf(set.occluders[o].object);
-      if (place < set.objects.size() && listed(OccluderId(o))) {
-        visit(place, OccluderId(o));
-      }
-    }
-  };
-  base::groupIntoRows(set.objects.size(), first, ids, forEachListed);
-}
 
 }  // namespace
 
-void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
-                 OccluderSet& set) {
-  for (const RankedPolygon& ranked : polygons) {
-    const FoundPolygon& polygon = ranked.polygon;
-    Occluder occluder;
-    occluder.first_vertex = static_cast<std::uint32_t>(set.vertices.size());
-    occluder.vertex_count = static_cast<std::uint16_t>(polygon.corners.size());
-    occluder.double_sided = polygon.double_sided;
-    occluder.object = ranked.object;
-    occluder.area = static_cast<float>(polygon.area);
-    occluder.slack = static_cast<float>(polygon.slack * 1.001);
-    occluder.plane = polygon.plane;
-    occluder.centroid = Vec3f(polygon.centroid);
-    for (const std::uint32_t corner : polygon.corners) {
-      set.vertices.push_back(positions[polygon.loop[corner]]);
-    }
-    occluder.watertight_edges = hasNoSharpCorner(std::span(set.vertices).subspan(occluder.first_vertex));
-    set.area += polygon.area;
-    set.report.used += polygon.triangle_count;
-    set.occluders.push_back(occluder);
-  }
-  set.edges.resize(set.vertices.size());
-  Linker(positions, polygons, set).run();
-  assembleBodies(positions, polygons, set);
-  listByObject(
-      set, [](OccluderId) { return true; }, set.first_of_object, set.of_object);
-  const auto stands_for_all = [&](OccluderId id) {
-    const OccluderBody* body = set.bodyOf(id);
-    return body == nullptr || set.facesOf(*body).front().occluder == id;
-  };
-  listByObject(set, stands_for_all, set.first_unit_of_object, set.unit_of_object);
+void linkEdges(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+               LargeVector<std::uint32_t> first_vertex, const ParallelFor& parallel_for, OccluderSet& set) {
+  Linker(positions, polygons, std::move(first_vertex), parallel_for, set).run();
 }
 
 }  // namespace sightline::occluders

@@ -1,21 +1,17 @@
 #pragma once
 
-#include <span>
-#include <vector>
+// Links the occluders of a set that share edges of the mesh.
 
-#include "sightline/occluders/occluder_set.h"
-#include "src/occluders/polygon_merge.h"
+#include <cstdint>
+#include <span>
+
+#include "src/occluders/assemble_set.h"
 
 namespace sightline::occluders {
 
-// A found polygon with what the set says of it.
-struct RankedPolygon {
-  FoundPolygon polygon;  // vertex ids into positions shared by all
-  ObjectId object;
-};
-
-// Fills vertices, edges, lines, neighbours and the per-object lists of a set from its polygons, in their
-// order. set.objects is there already, and has all valid objects of the polygons.
-void assembleSet(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons, OccluderSet& set);
+// Fills edges, lines and neighbours of a set with occluders and vertices, and adds to the slack of occluders.
+// first_vertex: in the set, by place among the given polygons.
+void linkEdges(std::span<const Vec3f> positions, std::span<const RankedPolygon> polygons,
+               LargeVector<std::uint32_t> first_vertex, const ParallelFor& parallel_for, OccluderSet& set);
 
 }  // namespace sightline::occluders

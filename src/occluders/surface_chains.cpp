@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <tuple>
+#include <vector>
+
+#include "src/base/parallel_rows.h"
 
 namespace sightline::occluders {
 namespace {
+
+constexpr std::size_t kEdgesOfPart = 32768, kClustersOfPart = 2048;
 
 // An edge at which clusters end, in the direction in which the first of its uses has a positive value.
 struct BoundaryEdge {
@@ -12,42 +17,114 @@ struct BoundaryEdge {
   std::uint32_t first_use, use_count;
 };
 
-class ChainFinder {
- public:
-  ChainFinder(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, SurfaceSet& set)
-      : mesh_(mesh), cluster_of_(cluster_of), set_(set) {}
+// Boundary edges with their uses, ascending by cluster; those of a part of the mesh, or all.
+struct BoundaryEdges {
+  LargeVector<BoundaryEdge> edges;
+  LargeVector<ChainUse> uses;
+};
 
-  void run() {
-    collectEdges();
-    base::Rows<BoundaryEdge> by_cluster;  // by their first cluster
-    by_cluster.group(set_.clusters.size(), [&](auto&& pair) {
-      for (const BoundaryEdge& edge : edges_) {
-        pair(uses_[edge.first_use].cluster, edge);
+// Sums up, edge by edge, how the triangles of each cluster run.
+class EdgeCollector {
+ public:
+  EdgeCollector(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, BoundaryEdges& found)
+      : mesh_(mesh), cluster_of_(cluster_of), found_(found) {}
+
+  void add(std::span<const Side> sides) {
+    sums_.clear();
+    for (const Side side : sides) {
+      const std::uint32_t cluster = cluster_of_[side.triangle()];
+      auto at = std::find_if(sums_.begin(), sums_.end(),
+                             [&](const ChainUse& use) { return use.cluster == cluster; });
+      if (at == sums_.end()) {
+        at = sums_.insert(sums_.end(), {cluster, 0});
       }
-    });
-    edges_ = {};
-    set_.chains.reserve(by_cluster.items().size());
-    set_.uses.reserve(uses_.size());
-    set_.chain_vertices.reserve(2 * by_cluster.items().size());
-    for (std::size_t c = 0; c < by_cluster.count(); ++c) {
-      const std::span<BoundaryEdge> edges = by_cluster[c];
-      std::sort(edges.begin(), edges.end(), [this](const BoundaryEdge& a, const BoundaryEdge& b) {
-        const int order = compareUses(a, b);
-        return order != 0 ? order < 0 : std::tie(a.from, a.to) < std::tie(b.from, b.to);
-      });
-      for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
-        while (last < edges.size() && compareUses(edges[first], edges[last]) == 0) {
-          ++last;
-        }
-        joinEdges(edges.subspan(first, last - first));
+      at->value += side.value();
+    }
+    std::erase_if(sums_, [](const ChainUse& use) { return use.value == 0; });
+    if (sums_.empty()) {
+      return;
+    }
+    std::sort(sums_.begin(), sums_.end(),
+              [](const ChainUse& a, const ChainUse& b) { return a.cluster < b.cluster; });
+    const auto [low, high] = mesh_.endsOf(sides[0]);
+    BoundaryEdge edge{low, high, static_cast<std::uint32_t>(found_.uses.size()),
+                      static_cast<std::uint32_t>(sums_.size())};
+    if (sums_[0].value < 0) {
+      std::swap(edge.from, edge.to);
+      for (ChainUse& use : sums_) {
+        use.value = -use.value;
       }
     }
-    listByCluster();
+    found_.uses.insert(found_.uses.end(), sums_.begin(), sums_.end());
+    found_.edges.push_back(edge);
+  }
+
+ private:
+  const SurfaceMesh& mesh_;
+  std::span<const std::uint32_t> cluster_of_;
+  BoundaryEdges& found_;
+  std::vector<ChainUse> sums_;
+};
+
+BoundaryEdges collectEdges(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
+                           const ParallelFor& parallel_for) {
+  const base::Parts parts(mesh.sides.count(), kEdgesOfPart);
+  std::vector<BoundaryEdges> of_part(parts.count());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    EdgeCollector collector(mesh, cluster_of, of_part[part]);
+    for (std::size_t edge = begin; edge < end; ++edge) {
+      collector.add(mesh.sides[edge]);
+    }
+  });
+  std::vector<std::uint32_t> first_edge(1, 0), first_use(1, 0);
+  for (const BoundaryEdges& part : of_part) {
+    first_edge.push_back(first_edge.back() + static_cast<std::uint32_t>(part.edges.size()));
+    first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.size()));
+  }
+  BoundaryEdges all;
+  all.edges.resize(first_edge.back());
+  all.uses.resize(first_use.back());
+  base::forEach(parallel_for, of_part.size(), [&](std::uint32_t part) {
+    for (BoundaryEdge& edge : of_part[part].edges) {
+      edge.first_use += first_use[part];
+    }
+    std::copy(of_part[part].edges.begin(), of_part[part].edges.end(), all.edges.begin() + first_edge[part]);
+    std::copy(of_part[part].uses.begin(), of_part[part].uses.end(), all.uses.begin() + first_use[part]);
+    of_part[part] = {};
+  });
+  return all;
+}
+
+// Chains, with numbers that count from the first vertex and use here.
+struct Chains {
+  std::vector<SurfaceChain> chains;
+  std::vector<ChainUse> uses;
+  std::vector<Vec3f> vertices;
+};
+
+// Joins the edges of one cluster after the other.
+class ChainMaker {
+ public:
+  ChainMaker(std::span<const ChainUse> uses, std::span<const Vec3f> vertices, Chains& made)
+      : uses_(uses), vertices_(vertices), made_(made) {}
+
+  // edges: those of which the cluster is the first one that ends there. Sorts them.
+  void add(std::span<BoundaryEdge> edges) {
+    std::sort(edges.begin(), edges.end(), [this](const BoundaryEdge& a, const BoundaryEdge& b) {
+      const int order = compareUses(a, b);
+      return order != 0 ? order < 0 : std::tie(a.from, a.to) < std::tie(b.from, b.to);
+    });
+    for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+      while (last < edges.size() && compareUses(edges[first], edges[last]) == 0) {
+        ++last;
+      }
+      joinEdges(edges.subspan(first, last - first));
+    }
   }
 
  private:
   std::span<const ChainUse> usesOf(const BoundaryEdge& edge) const {
-    return std::span(uses_).subspan(edge.first_use, edge.use_count);
+    return uses_.subspan(edge.first_use, edge.use_count);
   }
   int compareUses(const BoundaryEdge& a, const BoundaryEdge& b) const {
     const std::span<const ChainUse> p = usesOf(a), q = usesOf(b);
@@ -57,47 +134,6 @@ class ChainFinder {
       }
     }
     return p.size() == q.size() ? 0 : p.size() < q.size() ? -1 : 1;
-  }
-
-  // Sums up, edge by edge, how the triangles of each cluster run.
-  void collectEdges() {
-    std::vector<ChainUse> sums;
-    edges_.reserve(mesh_.edgeCount());
-    uses_.reserve(mesh_.beside.items().size());
-    for (std::uint32_t e = 0; e < mesh_.edgeCount(); ++e) {
-      sums.clear();
-      for (const std::uint32_t t : mesh_.beside[e]) {
-        const std::uint32_t cluster = cluster_of_[t];
-        auto at = std::find_if(sums.begin(), sums.end(),
-                               [&](const ChainUse& use) { return use.cluster == cluster; });
-        if (at == sums.end()) {
-          at = sums.insert(sums.end(), {cluster, 0});
-        }
-        at->value += mesh_.triangles[t].edges[sideOf(t, e)] % 2 == 0 ? 1 : -1;
-      }
-      std::erase_if(sums, [](const ChainUse& use) { return use.value == 0; });
-      if (sums.empty()) {
-        continue;
-      }
-      std::sort(sums.begin(), sums.end(),
-                [](const ChainUse& a, const ChainUse& b) { return a.cluster < b.cluster; });
-      BoundaryEdge edge{mesh_.edge_vertices[2 * std::size_t{e}], mesh_.edge_vertices[2 * std::size_t{e} + 1],
-                        static_cast<std::uint32_t>(uses_.size()), static_cast<std::uint32_t>(sums.size())};
-      if (sums[0].value < 0) {
-        std::swap(edge.from, edge.to);
-        for (ChainUse& use : sums) {
-          use.value = -use.value;
-        }
-      }
-      uses_.insert(uses_.end(), sums.begin(), sums.end());
-      edges_.push_back(edge);
-    }
-  }
-
-  // No triangle has an edge twice.
-  std::uint32_t sideOf(std::uint32_t triangle, std::uint32_t edge) const {
-    const std::uint32_t(&edges)[3] = mesh_.triangles[triangle].edges;
-    return edges[0] / 2 == edge ? 0 : edges[1] / 2 == edge ? 1 : 2;
   }
 
   // Joins edges with the same uses, ascending by `from`, end to end.
@@ -126,50 +162,94 @@ class ChainFinder {
           continue;
         }
         SurfaceChain chain;
-        chain.first_vertex = static_cast<std::uint32_t>(set_.chain_vertices.size());
-        chain.first_use = static_cast<std::uint32_t>(set_.uses.size());
-        set_.chain_vertices.push_back(set_.vertices[edges[i].from]);
+        chain.first_vertex = static_cast<std::uint32_t>(made_.vertices.size());
+        chain.first_use = static_cast<std::uint32_t>(made_.uses.size());
+        made_.vertices.push_back(vertices_[edges[i].from]);
         for (std::size_t next = i; next < edges.size(); next = startingAt(edges[next].to)) {
           taken_[next] = 1;
-          set_.chain_vertices.push_back(set_.vertices[edges[next].to]);
+          made_.vertices.push_back(vertices_[edges[next].to]);
         }
-        chain.vertex_count = static_cast<std::uint32_t>(set_.chain_vertices.size()) - chain.first_vertex;
+        chain.vertex_count = static_cast<std::uint32_t>(made_.vertices.size()) - chain.first_vertex;
         const std::span<const ChainUse> uses = usesOf(edges[i]);
-        set_.uses.insert(set_.uses.end(), uses.begin(), uses.end());
+        made_.uses.insert(made_.uses.end(), uses.begin(), uses.end());
         chain.use_count = static_cast<std::uint32_t>(uses.size());
-        set_.chains.push_back(chain);
+        made_.chains.push_back(chain);
       }
     }
   }
 
-  void listByCluster() {
-    LargeVector<std::uint32_t> first;
-    base::groupIntoRows(set_.clusters.size(), first, set_.cluster_chains, [&](auto&& pair) {
-      for (std::uint32_t c = 0; c < set_.chains.size(); ++c) {
-        for (const ChainUse& use : set_.usesOf(set_.chains[c])) {
-          pair(use.cluster, c);
-        }
-      }
-    });
-    for (std::size_t c = 0; c < set_.clusters.size(); ++c) {
-      set_.clusters[c].first_chain = first[c];
-      set_.clusters[c].chain_count = first[c + 1] - first[c];
-    }
-  }
-
-  const SurfaceMesh& mesh_;
-  std::span<const std::uint32_t> cluster_of_;
-  SurfaceSet& set_;
-  LargeVector<BoundaryEdge> edges_;
-  LargeVector<ChainUse> uses_;
+  std::span<const ChainUse> uses_;
+  std::span<const Vec3f> vertices_;
+  Chains& made_;
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> ends_;
 };
 
+// Puts the chains of all parts one after the other.
+void putTogether(std::span<Chains> parts, const ParallelFor& parallel_for, SurfaceSet& set) {
+  std::vector<std::size_t> first_chain(1, 0);
+  std::vector<std::uint32_t> first_use(1, 0), first_vertex(1, 0);
+  for (const Chains& part : parts) {
+    first_chain.push_back(first_chain.back() + part.chains.size());
+    first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.size()));
+    first_vertex.push_back(first_vertex.back() + static_cast<std::uint32_t>(part.vertices.size()));
+  }
+  set.chains.resize(first_chain.back());
+  set.uses.resize(first_use.back());
+  set.chain_vertices.resize(first_vertex.back());
+  base::forEach(parallel_for, parts.size(), [&](std::uint32_t number) {
+    Chains& part = parts[number];
+    for (SurfaceChain& chain : part.chains) {
+      chain.first_use += first_use[number];
+      chain.first_vertex += first_vertex[number];
+    }
+    std::copy(part.chains.begin(), part.chains.end(),
+              set.chains.begin() + static_cast<std::ptrdiff_t>(first_chain[number]));
+    std::copy(part.uses.begin(), part.uses.end(), set.uses.begin() + first_use[number]);
+    std::copy(part.vertices.begin(), part.vertices.end(), set.chain_vertices.begin() + first_vertex[number]);
+    part = {};
+  });
+}
+
+void listByCluster(const ParallelFor& parallel_for, SurfaceSet& set) {
+  LargeVector<std::uint32_t> first;
+  base::groupIntoRows(parallel_for, set.clusters.size(), set.chains.size(), first, set.cluster_chains,
+                      [&](std::size_t begin, std::size_t end, auto&& pair) {
+                        for (std::size_t c = begin; c < end; ++c) {
+                          for (const ChainUse& use : set.usesOf(set.chains[c])) {
+                            pair(use.cluster, static_cast<std::uint32_t>(c));
+                          }
+                        }
+                      });
+  base::forEach(parallel_for, set.clusters.size(), [&](std::uint32_t c) {
+    set.clusters[c].first_chain = first[c];
+    set.clusters[c].chain_count = first[c + 1] - first[c];
+  });
+}
+
 }  // namespace
 
-void findChains(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, SurfaceSet& set) {
-  ChainFinder(mesh, cluster_of, set).run();
+void findChains(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
+                const ParallelFor& parallel_for, SurfaceSet& set) {
+  BoundaryEdges boundary = collectEdges(mesh, cluster_of, parallel_for);
+  base::Rows<BoundaryEdge> by_cluster;  // by their first cluster
+  base::groupIntoRows(parallel_for, set.clusters.size(), boundary.edges.size(), by_cluster.first(),
+                      by_cluster.all(), [&](std::size_t begin, std::size_t end, auto&& pair) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                          pair(boundary.uses[boundary.edges[i].first_use].cluster, boundary.edges[i]);
+                        }
+                      });
+  boundary.edges = {};
+  const base::Parts parts(set.clusters.size(), kClustersOfPart);
+  std::vector<Chains> of_part(parts.count());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    ChainMaker maker(boundary.uses, mesh.vertices, of_part[part]);
+    for (std::size_t cluster = begin; cluster < end; ++cluster) {
+      maker.add(by_cluster[cluster]);
+    }
+  });
+  putTogether(of_part, parallel_for, set);
+  listByCluster(parallel_for, set);
 }
 
 }  // namespace sightline::occluders

@@ -1,117 +1,139 @@
 #include "src/occluders/surface_mesh.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include "src/base/parallel_rows.h"
 #include "src/occluders/close_cracks.h"
-#include "src/scene/weld.h"
+#include "src/occluders/weld_vertices.h"
 
 namespace sightline::occluders {
 
 namespace {
 
-// Calls use(corners, object, double_sided) for the opaque triangles of a scene that are finite.
-template <typename Use>
-void forOpaqueTriangles(const SceneView& scene, Use&& use) {
-  for (std::uint32_t number = 0; number < scene.objects.size(); ++number) {
-    const Object& object = scene.objects[number];
-    if (!mayOcclude(scene, object)) {
-      continue;
-    }
-    const bool double_sided = scene.materialOf(object).double_sided;
-    const std::span<const std::uint32_t> indices = scene.indicesOf(object);
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-      if (isFiniteTriangle(scene, indices.subspan(i, 3))) {
-        use(indices.subspan(i, 3), number, double_sided);
-      }
-    }
-  }
-}
+constexpr std::size_t kVerticesOfPart = 16384, kTrianglesOfPart = 16384;
 
-struct WeldedVertices {
-  LargeVector<Vec3f> vertices;             // in the order in which opaque triangles use them
-  LargeVector<std::uint32_t> position_of;  // by vertex: the first of the scene's positions there
-  LargeVector<std::uint32_t> vertex_of;    // by position, where opaque triangles use it
+// A side before edges have numbers.
+struct LooseSide {
+  std::uint32_t high = 0;  // the edge's higher vertex
+  Side side;
 };
 
-WeldedVertices weldVertices(const SceneView& scene) {
-  constexpr std::uint32_t kUnknown = 0xffffffffu;
-  WeldedVertices welded;
-  welded.vertex_of.assign(scene.positions.size(), kUnknown);
-  scene::PositionNumbers numbers(scene.positions.size());
-  forOpaqueTriangles(scene, [&](std::span<const std::uint32_t> corners, std::uint32_t, bool) {
-    for (const std::uint32_t corner : corners) {
-      std::uint32_t& vertex = welded.vertex_of[corner];
-      if (vertex == kUnknown) {
-        vertex = numbers.numberOf(scene.positions[corner]);
-        if (vertex == welded.position_of.size()) {
-          welded.position_of.push_back(corner);
+// What lies beyond the sides of an edge: see SurfaceMesh::beyond.
+void setBeyond(std::span<const Side> sides, std::uint32_t edge, LargeVector<std::uint32_t>& beyond) {
+  if (sides.size() == 1) {
+    beyond[sides[0].corner()] = SurfaceMesh::kNone;
+  } else if (sides.size() == 2 && sides[0].value() != sides[1].value()) {
+    beyond[sides[0].corner()] = sides[1].corner();
+    beyond[sides[1].corner()] = sides[0].corner();
+  } else {
+    for (const Side side : sides) {
+      beyond[side.corner()] = SurfaceMesh::kOther + edge;
+    }
+  }
+}
+
+// Numbers the edges, and finds the triangles beside them.
+void connect(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+  base::Rows<LooseSide> by_low;
+  base::groupIntoRows(parallel_for, mesh.vertices.size(), mesh.triangleCount(), by_low.first(), by_low.all(),
+                      [&](std::size_t begin, std::size_t end, auto&& pair) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                          for (std::uint32_t k = 0; k < 3; ++k) {
+                            const std::uint32_t a = mesh.triangles[t][k],
+                                                b = mesh.triangles[t][k == 2 ? 0 : k + 1];
+                            const auto code = static_cast<std::uint32_t>(2 * (3 * t + k));
+                            pair(std::min(a, b), LooseSide{std::max(a, b), {code + (a < b ? 0 : 1)}});
+                          }
+                        }
+                      });
+  const base::Parts parts(mesh.vertices.size(), kVerticesOfPart);
+  std::vector<std::uint32_t> first_edge(parts.count() + 1, 0);
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    std::uint32_t edges = 0;
+    for (std::size_t low = begin; low < end; ++low) {
+      const std::span<LooseSide> sides = by_low[low];
+      std::sort(sides.begin(), sides.end(), [](const LooseSide& a, const LooseSide& b) {
+        return std::tie(a.high, a.side.code) < std::tie(b.high, b.side.code);
+      });
+      for (std::size_t i = 0; i < sides.size(); ++i) {
+        edges += i == 0 || sides[i].high != sides[i - 1].high ? 1 : 0;
+      }
+    }
+    first_edge[part + 1] = edges;
+  });
+  std::partial_sum(first_edge.begin(), first_edge.end(), first_edge.begin());
+
+  // Sides stay where they are: rows of edges divide those of vertices.
+  LargeVector<Side>& sides = mesh.sides.all();
+  LargeVector<std::uint32_t>& first = mesh.sides.first();
+  sides.resize(by_low.items().size());
+  first.resize(std::size_t{first_edge.back()} + 1);
+  first.back() = static_cast<std::uint32_t>(sides.size());
+  mesh.beyond.resize(sides.size());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    std::uint32_t edge = first_edge[part];
+    for (std::size_t low = begin; low < end; ++low) {
+      const std::span<const LooseSide> loose = by_low[low];
+      const auto offset = static_cast<std::size_t>(loose.data() - by_low.items().data());
+      for (std::size_t i = 0, next = 0; i < loose.size(); i = next) {
+        for (; next < loose.size() && loose[next].high == loose[i].high; ++next) {
+          sides[offset + next] = loose[next].side;
         }
+        first[edge] = static_cast<std::uint32_t>(offset + i);
+        setBeyond(std::span(sides).subspan(offset + i, next - i), edge, mesh.beyond);
+        ++edge;
       }
     }
   });
-  welded.vertices = std::move(numbers).take();
-  return welded;
 }
 
-// Numbers the edges, ascending by their lower and then their higher vertex, and finds the triangles beside
-// them.
-void connect(SurfaceMesh& mesh) {
-  mesh.edge_vertices.clear();
-  struct Side {
-    std::uint32_t high, triangle, corner;
-  };
-  base::Rows<Side> by_low;
-  by_low.group(mesh.vertices.size(), [&](auto&& pair) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+// Whether the triangles at the edge from a corner on do not cancel.
+bool isOpen(const SurfaceMesh& mesh, Corner corner) {
+  const std::uint32_t beyond = mesh.beyond[corner];
+  if (beyond < SurfaceMesh::kOther || beyond == SurfaceMesh::kNone) {
+    return beyond == SurfaceMesh::kNone;
+  }
+  std::int32_t sum = 0;
+  for (const Side side : mesh.sides[beyond - SurfaceMesh::kOther]) {
+    sum += side.value();
+  }
+  return sum != 0;
+}
+
+// Triangles with edges at which they do not cancel, as joinEdges() wants them.
+struct OpenTriangles {
+  std::vector<std::uint32_t> numbers;  // ascending
+  std::vector<std::uint32_t> corners;  // three vertices each
+  std::vector<std::uint8_t> edges;     // bit k for edge k
+};
+
+OpenTriangles openTriangles(const SurfaceMesh& mesh, const ParallelFor& parallel_for) {
+  const base::Parts parts(mesh.triangleCount(), kTrianglesOfPart);
+  std::vector<OpenTriangles> of_part(parts.count());
+  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      std::uint32_t open = 0;
       for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = mesh.triangles[t].vertices[k], b = mesh.triangles[t].vertices[(k + 1) % 3];
-        pair(std::min(a, b), Side{std::max(a, b), t, k});
+        open |= isOpen(mesh, static_cast<Corner>(3 * t + k)) ? 1u << k : 0u;
+      }
+      if (open != 0) {
+        of_part[part].numbers.push_back(static_cast<std::uint32_t>(t));
+        of_part[part].edges.push_back(static_cast<std::uint8_t>(open));
       }
     }
   });
-  mesh.edge_vertices.reserve(6 *
-                             mesh.triangles.size());  // far more than needed; what is not used costs nothing
-  for (std::uint32_t low = 0; low < by_low.count(); ++low) {
-    const std::span<Side> sides = by_low[low];
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return std::tie(a.high, a.triangle, a.corner) < std::tie(b.high, b.triangle, b.corner);
-    });
-    std::uint32_t last = low;  // no edge ends where it begins
-    for (const Side& side : sides) {
-      if (side.high != last) {
-        last = side.high;
-        mesh.edge_vertices.insert(mesh.edge_vertices.end(), {low, last});
-      }
-      MeshTriangle& triangle = mesh.triangles[side.triangle];
-      const bool back = triangle.vertices[side.corner] != low;
-      triangle.edges[side.corner] = 2 * static_cast<std::uint32_t>(mesh.edgeCount() - 1) + (back ? 1 : 0);
-    }
+  OpenTriangles open;
+  for (const OpenTriangles& part : of_part) {
+    open.numbers.insert(open.numbers.end(), part.numbers.begin(), part.numbers.end());
+    open.edges.insert(open.edges.end(), part.edges.begin(), part.edges.end());
   }
-  mesh.beside.group(mesh.edgeCount(), [&](auto&& pair) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      for (const std::uint32_t edge : mesh.triangles[t].edges) {
-        pair(edge / 2, t);
-      }
-    }
-  });
-}
-
-// By triangle, bit k for its edge k: the triangles at that edge do not cancel.
-LargeVector<std::uint8_t> openEdges(const SurfaceMesh& mesh) {
-  LargeVector<std::int32_t> sums(mesh.edgeCount());
-  for (const MeshTriangle& triangle : mesh.triangles) {
-    for (const std::uint32_t edge : triangle.edges) {
-      sums[edge / 2] += edge % 2 == 0 ? 1 : -1;
-    }
-  }
-  LargeVector<std::uint8_t> open(mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const bool remains = sums[mesh.triangles[t].edges[k] / 2] != 0;
-      open[t] = static_cast<std::uint8_t>(open[t] | (remains ? 1u << k : 0u));
-    }
+  open.corners.reserve(3 * open.numbers.size());
+  for (const std::uint32_t t : open.numbers) {
+    open.corners.insert(open.corners.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
   }
   return open;
 }
@@ -127,72 +149,91 @@ bool isFiniteTriangle(const SceneView& scene, std::span<const std::uint32_t> cor
          isFinite(scene.positions[corners[2]]);
 }
 
-OpaqueTriangles opaqueTriangles(const SceneView& scene) {
-  WeldedVertices welded = weldVertices(scene);
+OpaqueTriangles opaqueTriangles(const SceneView& scene, const ParallelFor& parallel_for) {
+  const OpaqueParts parts(scene);
+  WeldedVertices welded = weldVertices(scene, parts, parallel_for);
   OpaqueTriangles opaque;
-  forOpaqueTriangles(scene, [&](std::span<const std::uint32_t> corners, std::uint32_t object, bool) {
-    for (const std::uint32_t corner : corners) {
-      opaque.corners.push_back(welded.vertex_of[corner]);
-    }
-    opaque.objects.push_back(object);
-  });
+  for (std::size_t part = 0; part < parts.count(); ++part) {
+    parts.forEachTriangle(part,
+                          [&](std::uint32_t, std::span<const std::uint32_t> corners, std::uint32_t object) {
+                            for (const std::uint32_t corner : corners) {
+                              opaque.corners.push_back(welded.vertex_of[corner]);
+                            }
+                            opaque.objects.push_back(object);
+                          });
+  }
   opaque.vertices = std::move(welded.vertices);
   opaque.position_of = std::move(welded.position_of);
   return opaque;
 }
 
-SurfaceMesh weld(const SceneView& scene) {
+SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for) {
+  const OpaqueParts parts(scene);
+  WeldedVertices welded = weldVertices(scene, parts, parallel_for);
+  // Calls use(vertices, object) for the triangles of a part that have three different vertices.
+  const auto forEachTriangle = [&](std::size_t part, const auto& use) {
+    parts.forEachTriangle(
+        part, [&](std::uint32_t, std::span<const std::uint32_t> corners, std::uint32_t object) {
+          const std::array vertices{welded.vertex_of[corners[0]], welded.vertex_of[corners[1]],
+                                    welded.vertex_of[corners[2]]};
+          if (vertices[0] != vertices[1] && vertices[1] != vertices[2] && vertices[2] != vertices[0]) {
+            use(vertices, object);
+          }
+        });
+  };
+  std::vector<std::uint32_t> first(parts.count() + 1, 0);
+  parts.run(parallel_for, [&](std::uint32_t part) {
+    std::uint32_t count = 0;
+    forEachTriangle(part, [&](const std::array<std::uint32_t, 3>&, std::uint32_t) { ++count; });
+    first[part + 1] = count;
+  });
+  std::partial_sum(first.begin(), first.end(), first.begin());
   SurfaceMesh mesh;
-  WeldedVertices welded = weldVertices(scene);
+  mesh.triangles.resize(first.back());
+  mesh.objects.resize(first.back());
+  parts.run(parallel_for, [&](std::uint32_t part) {
+    std::uint32_t t = first[part];
+    forEachTriangle(part, [&](const std::array<std::uint32_t, 3>& vertices, std::uint32_t object) {
+      mesh.triangles[t] = vertices;
+      mesh.objects[t++] = object;
+    });
+  });
   mesh.vertices = std::move(welded.vertices);
-  const LargeVector<std::uint32_t>& vertex_of = welded.vertex_of;
-  mesh.triangles.reserve(scene.indices.size() / 3);
-  forOpaqueTriangles(
-      scene, [&](std::span<const std::uint32_t> corners, std::uint32_t object, bool double_sided) {
-        const std::uint32_t a = vertex_of[corners[0]], b = vertex_of[corners[1]], c = vertex_of[corners[2]];
-        if (a != b && b != c && c != a) {
-          mesh.triangles.push_back({{a, b, c}, {}, object, double_sided});
-        }
-      });
-  connect(mesh);
+  connect(mesh, parallel_for);
   return mesh;
 }
 
 void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
-  const LargeVector<std::uint8_t> open = openEdges(mesh);
-  std::vector<std::uint32_t> asked, corners;
-  std::vector<std::uint8_t> edges;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (open[t] != 0) {
-      asked.push_back(t);
-      edges.push_back(open[t]);
-      corners.insert(corners.end(), mesh.triangles[t].vertices, mesh.triangles[t].vertices + 3);
-    }
-  }
-  if (asked.empty()) {
+  const OpenTriangles open = openTriangles(mesh, parallel_for);
+  if (open.numbers.empty()) {
     return;
   }
   const std::vector<Vec3d> vertices(mesh.vertices.begin(), mesh.vertices.end());
-  const ClosedCracks divided = joinEdges({vertices, corners}, edges, parallel_for);
-  LargeVector<MeshTriangle> pieces;
-  pieces.reserve(mesh.triangles.size());
+  const ClosedCracks divided = joinEdges({vertices, open.corners}, open.edges, parallel_for);
+  if (divided.bent == 0) {
+    return;
+  }
+  SurfaceMesh pieces;
+  pieces.triangles.reserve(mesh.triangles.size());
+  pieces.objects.reserve(mesh.triangles.size());
   std::size_t next = 0, piece = 0;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const MeshTriangle& triangle = mesh.triangles[t];
-    const std::size_t before = pieces.size();
-    if (next < asked.size() && asked[next] == t) {
+  for (std::uint32_t t = 0; t < mesh.triangleCount(); ++t) {
+    const std::size_t before = pieces.triangles.size();
+    if (next < open.numbers.size() && open.numbers[next] == t) {
       for (; piece < divided.source.size() && divided.source[piece] == next; ++piece) {
         const std::uint32_t* of = &divided.triangles[3 * piece];
-        pieces.push_back({{of[0], of[1], of[2]}, {}, triangle.object, triangle.double_sided});
+        pieces.triangles.push_back({of[0], of[1], of[2]});
       }
       ++next;
     }
-    if (pieces.size() == before) {
-      pieces.push_back(triangle);
+    if (pieces.triangles.size() == before) {
+      pieces.triangles.push_back(mesh.triangles[t]);
     }
+    pieces.objects.resize(pieces.triangles.size(), mesh.objects[t]);
   }
-  mesh.triangles = std::move(pieces);
-  connect(mesh);
+  pieces.vertices = std::move(mesh.vertices);
+  mesh = std::move(pieces);
+  connect(mesh, parallel_for);
 }
 
 }  // namespace sightline::occluders

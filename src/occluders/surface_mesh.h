@@ -2,6 +2,7 @@
 
 // The opaque triangles of a scene as one mesh: equal positions are one vertex, equal pairs of them one edge.
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -12,22 +13,53 @@
 
 namespace sightline::occluders {
 
-struct MeshTriangle {
-  std::uint32_t vertices[3] = {};  // three different ones, counter-clockwise from the front
-  // Edge i goes from vertex i to the next one: twice its number, plus 1 if it runs from its higher to its
-  // lower vertex.
-  std::uint32_t edges[3] = {};
-  std::uint32_t object = 0;
-  bool double_sided = false;
+// One of the three edges of a triangle, from its corner of that number to the next one: 3 * triangle +
+// number.
+using Corner = std::uint32_t;
+
+// A triangle's way along an edge of the mesh.
+struct Side {
+  std::uint32_t code = 0;  // twice the corner, plus 1 if it runs from the edge's higher vertex to its lower
+
+  Corner corner() const { return code / 2; }
+  std::uint32_t triangle() const { return code / 6; }
+  std::int32_t value() const { return code % 2 == 0 ? 1 : -1; }
 };
 
 struct SurfaceMesh {
-  LargeVector<Vec3f> vertices;               // in the order in which triangles use them
-  LargeVector<MeshTriangle> triangles;       // by object
-  LargeVector<std::uint32_t> edge_vertices;  // two for each edge, the lower one first
-  base::Rows<std::uint32_t> beside;          // triangles by edge
+  LargeVector<Vec3f> vertices;  // in the order in which triangles use them
+  // Three different vertices each, counter-clockwise from the front; by object.
+  LargeVector<std::array<std::uint32_t, 3>> triangles;
+  LargeVector<std::uint32_t> objects;  // by triangle
 
-  std::size_t edgeCount() const { return edge_vertices.size() / 2; }
+  // Filled by connect(). Edges are numbered by their lower and then by their higher vertex.
+  base::Rows<Side> sides;  // by edge, ascending
+  // By corner: the corner at which one other triangle runs back along the edge. Where there is no other
+  // triangle: kNone; otherwise kOther and the number of the edge.
+  LargeVector<std::uint32_t> beyond;
+  static constexpr std::uint32_t kNone = 0xffffffffu, kOther = 0x80000000u;
+
+  std::size_t triangleCount() const { return triangles.size(); }
+  // The vertices of an edge of the mesh, the lower one first.
+  std::array<std::uint32_t, 2> endsOf(Side side) const {
+    const std::array<std::uint32_t, 3>& triangle = triangles[side.triangle()];
+    const std::uint32_t number = side.corner() % 3;
+    const std::uint32_t from = triangle[number], to = triangle[number == 2 ? 0 : number + 1];
+    return side.value() > 0 ? std::array{from, to} : std::array{to, from};
+  }
+  // Calls visit(triangle) for all other triangles at the edge from a corner on, ascending, and maybe for the
+  // corner's own.
+  template <typename Visit>
+  void forEachBeyond(Corner corner, Visit&& visit) const {
+    const std::uint32_t other = beyond[corner];
+    if (other < kOther) {
+      visit(other / 3);
+    } else if (other != kNone) {
+      for (const Side side : sides[other - kOther]) {
+        visit(side.triangle());
+      }
+    }
+  }
 };
 
 // Whether the object's triangles may be occluders: its material is opaque, and it is not marked kNever.
@@ -42,10 +74,10 @@ struct OpaqueTriangles {
   LargeVector<std::uint32_t> corners;      // three for each triangle
   LargeVector<std::uint32_t> objects;      // by triangle, ascending
 };
-OpaqueTriangles opaqueTriangles(const SceneView& scene);
+OpaqueTriangles opaqueTriangles(const SceneView& scene, const ParallelFor& parallel_for);
 
 // Leaves out triangles that are not finite, and those with two equal corners.
-SurfaceMesh weld(const SceneView& scene);
+SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for);
 
 // Divides edges at which triangles do not cancel where vertices of other such edges lie on them exactly, and
 // their triangles with them. No vertex is new.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 #include <string>
-#include <thread>
 
 #include "scenes/procedural.h"
 #include "tests/occluders/flat_mesh.h"
+#include "tests/support/cut_work.h"
 
 namespace sightline {
 namespace {
@@ -29,7 +29,8 @@ bool sameSet(const OccluderSet& a, const OccluderSet& b) {
   };
   const auto sameEdge = [](const OccluderEdge& p, const OccluderEdge& q) {
     return p.line == q.line && p.first_neighbour == q.first_neighbour &&
-           p.neighbour_count == q.neighbour_count && p.mesh_edge_count == q.mesh_edge_count;
+           p.neighbour_count == q.neighbour_count && p.mesh_edge_count == q.mesh_edge_count &&
+           p.first_edge_vertex == q.first_edge_vertex;
   };
   const auto sameNeighbour = [](const EdgeNeighbour& p, const EdgeNeighbour& q) {
     return p.occluder == q.occluder && p.mesh_edge == q.mesh_edge;
@@ -39,7 +40,9 @@ bool sameSet(const OccluderSet& a, const OccluderSet& b) {
          std::equal(a.edges.begin(), a.edges.end(), b.edges.begin(), b.edges.end(), sameEdge) &&
          std::equal(a.neighbours.begin(), a.neighbours.end(), b.neighbours.begin(), b.neighbours.end(),
                     sameNeighbour) &&
-         a.vertices == b.vertices && a.lines == b.lines && a.first_of_object == b.first_of_object &&
+         a.vertices == b.vertices && a.lines == b.lines && a.edge_vertices == b.edge_vertices &&
+         a.body_of == b.body_of && a.body_vertices == b.body_vertices &&
+         a.unit_of_object == b.unit_of_object && a.first_of_object == b.first_of_object &&
          a.of_object == b.of_object && a.area == b.area && reported(a.report) == reported(b.report) &&
          a.report.used == b.report.used;
 }
@@ -222,29 +225,17 @@ TEST(FindOccluders, KeepsToTheirObjectsAndFacesForwardLikeItsTriangles) {
 }
 
 TEST(FindOccluders, DoNotDependOnHowTheWorkIsCut) {
-  const Scene scene = makeBuilding({.floors = 2, .plants = 3});
-  const OccluderSet serial = findOccluders(scene.view());
-  EXPECT_GT(serial.occluders.size(), 50u);
-  for (const std::uint32_t step : {1u, 7u, 1000u}) {
-    const ParallelFor backwards = [step](std::uint32_t count, const RangeBody& body) {
-      for (std::uint32_t end = count; end > 0;) {
-        const std::uint32_t begin = end > step ? end - step : 0;
-        body(begin, end);
-        end = begin;
-      }
-    };
-    EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, backwards))) << "step " << step;
+  std::vector<Scene> scenes;
+  scenes.push_back(makeBuilding({.floors = 2, .plants = 3}));
+  scenes.push_back(makeBoxCity({.buildings = 3000, .boxes = 9000}));  // several parts of each step
+  for (const Scene& scene : scenes) {
+    const OccluderSet serial = findOccluders(scene.view());
+    EXPECT_GT(serial.occluders.size(), 50u);
+    for (const std::uint32_t step : {1u, 7u, 1000u}) {
+      EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, backwardsBy(step)))) << "step " << step;
+    }
+    EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, onThreads(4))));
   }
-  const ParallelFor threads = [](std::uint32_t count, const RangeBody& body) {
-    std::vector<std::thread> running;
-    for (std::uint32_t t = 0; t < 4; ++t) {
-      running.emplace_back([=, &body] { body(count * t / 4, count * (t + 1) / 4); });
-    }
-    for (std::thread& thread : running) {
-      thread.join();
-    }
-  };
-  EXPECT_TRUE(sameSet(serial, findOccluders(scene.view(), {}, threads)));
 }
 
 // Tests of the neighbours of edges.

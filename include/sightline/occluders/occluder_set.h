@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "sightline/base/ids.h"
+#include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
 #include "sightline/math/box.h"
 #include "sightline/math/plane.h"
@@ -89,25 +89,25 @@ struct OccluderSettings {
 // Ranked by area, largest first: a smaller OccluderId is a larger polygon. Made by the functions below and
 // not to be changed by hand: bodies have corners and planes of their own.
 struct OccluderSet {
-  std::vector<Occluder> occluders{};
-  std::vector<Vec3f> vertices{};              // corners of all occluders, scene space
-  std::vector<OccluderEdge> edges{};          // edge i starts at vertex i
-  std::vector<std::array<Vec3f, 2>> lines{};  // two points on each line
-  std::vector<EdgeNeighbour> neighbours{};    // by edge, then by mesh edge, then by occluder
-  std::vector<Vec3f> edge_vertices{};         // mesh vertices along edges, between the corners
+  LargeVector<Occluder> occluders{};
+  LargeVector<Vec3f> vertices{};              // corners of all occluders, scene space
+  LargeVector<OccluderEdge> edges{};          // edge i starts at vertex i
+  LargeVector<std::array<Vec3f, 2>> lines{};  // two points on each line
+  LargeVector<EdgeNeighbour> neighbours{};    // by edge, then by mesh edge, then by occluder
+  LargeVector<Vec3f> edge_vertices{};         // mesh vertices along edges, between the corners
   // Ascending: all objects of the scene in which occluders were found, or those that given polygons name.
-  std::vector<ObjectId> objects{};
-  std::vector<std::uint32_t> first_of_object{};  // by place in objects, and one more; into of_object
-  std::vector<OccluderId> of_object{};           // occluders by object
+  LargeVector<ObjectId> objects{};
+  LargeVector<std::uint32_t> first_of_object{};  // by place in objects, and one more; into of_object
+  LargeVector<OccluderId> of_object{};           // occluders by object
   // The same without the faces of bodies but the first one, which stands for the body.
-  std::vector<std::uint32_t> first_unit_of_object{};
-  std::vector<OccluderId> unit_of_object{};
+  LargeVector<std::uint32_t> first_unit_of_object{};
+  LargeVector<OccluderId> unit_of_object{};
   static constexpr std::uint32_t kNoBody = 0xffffffffu;
-  std::vector<OccluderBody> bodies{};
-  std::vector<Vec3f> body_vertices{};  // scene space
-  std::vector<BodyEdge> body_edges{};
-  std::vector<BodyFace> body_faces{};    // of a body: ascending by occluder
-  std::vector<std::uint32_t> body_of{};  // by OccluderId: into bodies, or kNoBody
+  LargeVector<OccluderBody> bodies{};
+  LargeVector<Vec3f> body_vertices{};  // scene space
+  LargeVector<BodyEdge> body_edges{};
+  LargeVector<BodyFace> body_faces{};    // of a body: ascending by occluder
+  LargeVector<std::uint32_t> body_of{};  // by OccluderId: into bodies, or kNoBody
   OccluderReport report{};
   double area = 0.0;  // of all occluders, square metres
 
