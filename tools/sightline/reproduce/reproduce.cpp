@@ -14,12 +14,26 @@
 #include "tools/sightline/reproduce/paper_table.h"
 
 namespace sightline::tool {
+namespace {
+
+std::vector<std::string> namesAndAll() {
+  std::vector<std::string> names = paperNames();
+  names.emplace_back(kAllPapers);
+  return names;
+}
+
+}  // namespace
+
 void addReproduce(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand("reproduce", "a paper's experiments, on the scenes of today");
   const auto options = std::make_shared<ReproduceOptions>();
-  command->add_option("PAPER", options->paper, "the paper, by its authors")
+  command
+      ->add_option(
+          "PAPER", options->paper,
+          "the paper, by its authors; all: one after the other, each into a folder of its own in that of "
+          "-o, with a page that leads to them; papers that are finished there are not run again")
       ->required()
-      ->check(isOneOf(paperNames()));
+      ->check(isOneOf(namesAndAll()));
   command
       ->add_option("--scene", options->scenes,
                    "a file or demo:NAME?key=value&...; several: once for each (default: the paper's)")
@@ -57,11 +71,12 @@ void addReproduce(CLI::App& app, Command& chosen) {
       "  sightline reproduce poon-wang -o report\n"
       "  sightline reproduce saona-vazquez --threads 8 -o report\n"
       "  sightline reproduce snyder-lengyel -o report\n"
+      "  sightline reproduce all --short -o reports\n"
       "  sightline reproduce coorg-teller --short --scene \"demo:city?copies=4\" --json tables.json\n"
       "  sightline reproduce coorg-teller --scene office.glb --path walk.json -o report");
   command->callback([options, command, &chosen] {
     options->command_line = commandLine(*command);
-    chosen = [options] { return runPaper(*options); };
+    chosen = [options] { return options->paper == kAllPapers ? runAllPapers(*options) : runPaper(*options); };
   });
 }
 
