@@ -94,6 +94,15 @@ TEST_F(BittnerReproduced, PublishedFiguresStandBesideOurs) {
   EXPECT_EQ(found, printed.size());
 }
 
+TEST_F(BittnerReproduced, TheTableOfParametersBeginsWithThePapersAndEndsWithTheLibrarys) {
+  ASSERT_EQ(rows("parameters").size(), 2u * 7);
+  for (std::size_t scene = 0; scene < 2; ++scene) {
+    const json &first = rows("parameters")[7 * scene], &last = rows("parameters")[7 * scene + 6];
+    EXPECT_EQ(first["triangles"], rowOf("table2", first["scene"], "FME", 32)["triangles"]);
+    EXPECT_EQ(last["triangles"], rowOf("table2", last["scene"], "FME, defaults", 32)["triangles"]);
+  }
+}
+
 // The library's modified algorithm misses nothing that the standard one finds, up to rounding.
 TEST_F(BittnerReproduced, ComparingWithPlanesRendersAsFewPolygonsAsSplitting) {
   for (const char* scene : {kBuilding, kCity}) {
@@ -165,7 +174,7 @@ TEST_F(BittnerReproduced, EachStatementOfThePaperIsJudged) {
 
 TEST_F(BittnerReproduced, TheTablesAreOnThePapersPageAndInFilesOfTheirOwn) {
   const std::string page = file("index.html");
-  for (const std::string table : {"table2", "table2_published", "steps", "curves"}) {
+  for (const std::string table : {"table2", "table2_published", "parameters", "steps", "curves"}) {
     EXPECT_NE(page.find(table + ".csv"), std::string::npos);
     const std::string csv = file(table + ".csv");
     EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), rows(table).size() + 1)

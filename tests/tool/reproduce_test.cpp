@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
@@ -227,6 +228,71 @@ TEST(Reproduce, ShortTakesASmallShipAndFewFrames) {
   EXPECT_EQ(result["experiments"]["bake"]["rows"][0]["depth"], 4);
   EXPECT_EQ(result["scenes"], json::array({"demo:ship?decks=3&rooms=4&machinery=8"}));
   EXPECT_EQ(result["experiments"]["look_up"]["rows"][1]["frames"], 20);
+}
+
+json reproducedRoutes(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"reproduce", "poon-wang", "--short", "--scene", "demo:city?copies=2",
+                                     "--frames",  "0:60:20",   "--width", "64",      "--height",
+                                     "64",        "--json",    "-"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = runTool(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return parse(outcome.out);
+}
+
+TEST(Reproduce, PoonWangHasATableForEachExperiment) {
+  const json result = reproducedRoutes();
+  expectDocumented(result, {"reproduce"});
+  const json& tables = result["experiments"];
+  EXPECT_EQ(tables.size(), 5u);
+  EXPECT_EQ(tables["occluder_counts"]["rows"].size(), 3u * 9) << "three criteria, nine numbers of occluders";
+  EXPECT_EQ(tables["criteria"]["rows"].size(), 4u);
+  EXPECT_EQ(tables["picture_sizes"]["rows"].size(), 2u * 3);
+  std::set<std::string> routes;
+  for (const json& row : tables["routes"]["rows"]) {
+    routes.insert(row["route"]);
+    EXPECT_GE(row["cull_ms"], 0.0);
+  }
+  EXPECT_EQ(routes, (std::set<std::string>{"best", "average", "worst"}));
+  for (const json& row : tables["occluder_counts"]["rows"]) {
+    EXPECT_GE(row["culled_percent"], 0.0) << row;
+    EXPECT_LE(row["culled_percent"], 100.0) << row;
+  }
+  EXPECT_EQ(result["findings"].size(), 4u);
+}
+
+TEST(Reproduce, PoonWangsFiguresStandBesideOurs) {
+  const json tables = reproducedRoutes()["experiments"];
+  std::map<std::string, json> published;  // by table, culling and what else tells rows apart
+  for (const char* table : {"routes", "criteria", "occluder_counts"}) {
+    for (const json& row : tables[table]["rows"]) {
+      const std::string what = row.value("route", "") + std::to_string(row.value("occluders", 0));
+      published[std::string(table) + " " + row["culling"].get<std::string>() + " " + what] = row;
+    }
+  }
+  EXPECT_EQ(published["routes OM best0"]["published_speed_up"], 14.6);
+  EXPECT_EQ(published["routes PC worst0"]["published_fps"], 28.8);
+  EXPECT_FALSE(published["routes VF best0"].contains("published_fps"));
+  EXPECT_EQ(published["criteria projected-size best0"]["published_fps"], 5.4);
+  EXPECT_EQ(published["occluder_counts minimum-sets 192"]["published_culled_percent"], 94.0);
+  EXPECT_EQ(tables["picture_sizes"]["rows"][5]["published_speed_up"], 11.6);
+}
+
+TEST(Reproduce, ThePeaksOfTheSparseDepthMapAreUsedWhereTheyAreForced) {
+  const json tables = reproducedRoutes()["experiments"];
+  const json& rows = tables["depth_comparison"]["rows"];
+  ASSERT_EQ(rows.size(), 3u * 3) << "three routes, three comparisons";
+  for (std::size_t route = 0; route < 3; ++route) {
+    const json &pixelwise = rows[3 * route], &where_paying = rows[3 * route + 1],
+               &always = rows[3 * route + 2];
+    EXPECT_EQ(pixelwise["sparse_rows"], 0.0);
+    EXPECT_EQ(pixelwise["percent_of_pixelwise"], 100.0);
+    EXPECT_GT(always["sparse_rows"], 0.0);
+    EXPECT_LT(always["depths_compared"], pixelwise["depths_compared"]);
+    EXPECT_LE(where_paying["depths_compared"], pixelwise["depths_compared"]);
+    EXPECT_EQ(always["depth_tests"], pixelwise["depth_tests"]) << "the same answers, so the same questions";
+    EXPECT_EQ(where_paying["depth_tests"], pixelwise["depth_tests"]);
+  }
 }
 
 TEST(Reproduce, OptionsOfABakeAreOfPapersThatBake) {

@@ -76,6 +76,24 @@ std::vector<Case> allCases() {
   return cases;
 }
 
+std::vector<Case> parameterCases() {
+  const Setting paper = treeSetting(OcclusionTreeVariant::kFME, kPlottedOccluders);
+  const auto changed = [&](const char* what, auto change) {
+    Case one{what, kPlottedOccluders, paper};
+    change(one.setting);
+    return one;
+  };
+  return {
+      {"none: the paper's", kPlottedOccluders, paper},
+      changed("no limit of distance", [](Setting& s) { s.culler.occluders.lambda_steps = 0.0; }),
+      changed("V towards the occluder",
+              [](Setting& s) { s.culler.occluders.area_angle_direction = AreaAngleDirection::kOccluder; }),
+      changed("objects tested", [](Setting& s) { s.culler.test_objects = true; }),
+      changed("minimum cost 0", [](Setting& s) { s.culler.min_node_cost = 0; }),
+      changed("bounding-volume hierarchy", [](Setting& s) { s.hierarchy = HierarchyKind::kBvh; }),
+      {"all: the library's", kPlottedOccluders, ownSetting(kPlottedOccluders)}};
+}
+
 const WalkRun* Measured::runOf(const std::string& method, std::uint32_t occluders) const {
   for (std::size_t c = 0; c < cases.size(); ++c) {
     if (cases[c].method == method && cases[c].occluders == occluders) {
@@ -99,14 +117,19 @@ void addTreeWork(Measured& measured) {
   }
 }
 
+std::vector<Setting> settingsOf(const std::vector<Case>& cases) {
+  std::vector<Setting> settings;
+  for (const Case& one : cases) {
+    settings.push_back(one.setting);
+  }
+  return settings;
+}
+
 // Without a renderer (null) nothing is drawn.
 void walkThrough(Measured& measured, Renderer* renderer) {
   const Walk& walk = measured.input.walk;
-  std::vector<Setting> settings;
-  for (const Case& one : measured.cases) {
-    settings.push_back(one.setting);
-  }
-  measured.record.runs = makeRuns(settings, measured.data);
+  measured.record.runs = makeRuns(settingsOf(measured.cases), measured.data);
+  measured.parameter_runs = makeRuns(settingsOf(parameterCases()), measured.data);
   measured.record.device = renderer != nullptr ? renderer->device() : "";
   measured.trees.resize(measured.cases.size());
   ProgressBar progress("walking");
@@ -114,6 +137,7 @@ void walkThrough(Measured& measured, Renderer* renderer) {
     const View view = walk.view(walk.frames[i], measured.input.scene);
     cullFrame(measured.record.runs, measured.data, walk.frames[i], view);
     addTreeWork(measured);
+    cullFrame(measured.parameter_runs, measured.data, walk.frames[i], view);
     if (renderer != nullptr) {
       drawFrame(measured.record.runs, view, *renderer, nullptr);
     }

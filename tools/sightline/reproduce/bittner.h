@@ -33,6 +33,10 @@ struct Case {
 std::vector<Case> allCases();
 inline constexpr const char* kOwn = "FME, defaults";  // the library's own parameters in place of the paper's
 
+// The case of figures 9 and 10 with one parameter of the paper replaced by the library's. The first is the
+// paper's, the last has all of the library's.
+std::vector<Case> parameterCases();
+
 // The case of figures 9 and 10.
 inline constexpr const char* kPlotted = "FME";
 inline constexpr std::uint32_t kPlottedOccluders = 32;
@@ -49,8 +53,9 @@ struct Measured {
   const SceneAndWalk& input;
   CullingData data;
   std::vector<Case> cases{};
-  WalkRecord record{};            // one run for each case
-  std::vector<TreeWork> trees{};  // one for each case
+  WalkRecord record{};                    // one run for each case
+  std::vector<WalkRun> parameter_runs{};  // one for each of parameterCases(), culled but not drawn
+  std::vector<TreeWork> trees{};          // one for each case
 
   bool drawn() const { return !record.device.empty(); }
   // Null if it was not measured.
