@@ -37,6 +37,7 @@ TEST(Reproduce, CoorgTellerHasATableForEachExperiment) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
       {"polygons_drawn", {"scene", "culling", "triangles", "percent", "percent_of_frustum"}},
       {"frame_time", {"scene", "culling", "cull_ms"}},
+      {"renderer_models", {"scene", "culling", "triangle_us", "total_ms", "speed_up"}},
       {"visibility_time",
        {"scene", "speed", "frames", "visibility_us", "visibility_us_nothing_kept", "reused", "unchanged",
         "rebuilt"}},
@@ -69,6 +70,35 @@ TEST(Reproduce, OcclusionCullingDrawsFewerPolygons) {
           << rows[kCullings * scene + other];
     }
   }
+}
+
+TEST(Reproduce, ASlowerRendererGainsMore) {
+  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& rows = result["experiments"]["renderer_models"]["rows"];
+  ASSERT_EQ(rows.size(), 5u * 4) << "five cullings, four renderers";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const json& row = rows[r];
+    EXPECT_NEAR(row["total_ms"].get<double>(), row["cull_ms"].get<double>() + row["draw_ms"].get<double>(),
+                1e-9);
+    if (row["culling"] == "frustum") {
+      EXPECT_DOUBLE_EQ(row["speed_up"], 1.0);
+    } else if (r % 4 > 0) {
+      EXPECT_GT(row["triangle_us"], rows[r - 1]["triangle_us"]);
+      EXPECT_GT(row["speed_up"], rows[r - 1]["speed_up"]) << row;
+    }
+  }
+}
+
+TEST(Reproduce, OnlyAFractionOfTheOccluderNodePairsIsCompared) {
+  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& kept = result["experiments"]["nodes_tested"]["rows"][0];
+  EXPECT_GT(kept["node_pairs"], kept["nodes_tested"])
+      << "each tested node is compared with an occluder at least";
+  const double all = kept["nodes"].get<double>() * kept["occluders"].get<double>();
+  EXPECT_NEAR(kept["pairs_percent"].get<double>(), 100.0 * kept["node_pairs"].get<double>() / all, 1e-6);
+  EXPECT_LT(kept["pairs_percent"], 100.0 * kept["nodes_tested"].get<double>() / kept["nodes"].get<double>())
+      << "a node is compared with fewer occluders than its parent";
+  EXPECT_FALSE(result["experiments"]["nodes_tested"]["rows"][1].contains("node_pairs"));
 }
 
 TEST(Reproduce, AFastObserverRebuildsMoreRelations) {
