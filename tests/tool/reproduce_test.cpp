@@ -164,10 +164,13 @@ TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
       {"levels", spread},
       {"histograms", {"level", "to_10", "to_100"}},
       {"uniform_grid", {"leaves", "with_viewers", "voxels_in_box", "voxels_in_root", "percent"}},
+      {"budgets", {"budget_percent", "budget", "leaves", "met_percent", "depth", "triangles", "bake_s"}},
       {"polygons_sent", {"navigation", "culling", "mean", "deviation", "percent_of_frustum"}},
       {"frame_rate", {}},  // none without OpenGL
       {"look_up", {"frustum_us", "octree_us", "look_up_us", "first_find_us", "find_ns"}},
-      {"bake", {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file"}}};
+      {"bake",
+       {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file", "parts",
+        "part_ms", "part_deviation_ms", "part_max_ms"}}};
   EXPECT_EQ(result["experiments"].size(), tables.size());
   for (const auto& [name, keys] : tables) {
     const json& table = result["experiments"][name];
@@ -213,6 +216,23 @@ TEST(Reproduce, TheOctreeIsTheOneThatBakeMakes) {
   for (const auto& [key, count] : reasons) {
     EXPECT_EQ(count, baked["stop_reasons"][key]) << key;
   }
+}
+
+TEST(Reproduce, LeavesMeetLargerBudgetsAndAreFewerThen) {
+  const json result = reproducedShip();
+  const json& rows = result["experiments"]["budgets"]["rows"];
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_GT(rows[i]["met_percent"], 0.0) << rows[i];
+    if (i > 0) {
+      EXPECT_GT(rows[i]["budget"], rows[i - 1]["budget"]);
+      EXPECT_LE(rows[i]["leaves"], rows[i - 1]["leaves"]);
+      EXPECT_LE(rows[i]["depth"], rows[i - 1]["depth"]);
+    }
+  }
+  const json& bake = result["experiments"]["bake"]["rows"][0];
+  EXPECT_GE(bake["part_max_ms"], bake["part_ms"]);
+  EXPECT_GE(bake["parts"], 1);
 }
 
 TEST(Reproduce, TheOctreeSendsFewerPolygonsOnEveryNavigation) {
