@@ -342,11 +342,7 @@ void addFigure6(Measured& measured, Figures& figures) {
                 {.anchor = SvgText::Anchor::kStart, .bold = true});
     drawDiagram(canvas, visitDiagram(small, visits),
                 {.corner = {20.0, top + 10.0}, .size = {960.0, 180.0}, .radius = 9.0});
-    counts += fmt::format("{}{} skipped and {} tested",
-                          k == 0   ? ""
-                          : k == 1 ? ", then "
-                                   : ", then ",
-                          skipped, tested);
+    counts += fmt::format("{}{} skipped and {} tested", k == 0 ? "" : ", then ", skipped, tested);
   }
   const Legend legend[] = {{kMarked, "skipped: partial before"},
                            {kPartialNode, "tested: partial"},
