@@ -14,15 +14,20 @@ namespace sightline {
 using occlusion::areaOf;
 using occlusion::BoxPlace;
 using occlusion::PixelBox;
+using occlusion::SparseDepth;
 
 struct OpacityMap::Impl {
   explicit Impl(const OpacityMapSettings& s)
-      : settings(s), raster(s.raster), coverage_ratio(s.coverage_ratio) {}
+      : settings(s),
+        raster(s.raster),
+        sparse_depth(s.depth == DepthComparison::kSparseAlways ? SparseDepth::Use::kAlways
+                                                               : SparseDepth::Use::kWherePaying),
+        coverage_ratio(s.coverage_ratio) {}
 
   void finish() {
     const DepthBufferView buffer = raster.depthBuffer();
     opacity.build(buffer);
-    if (settings.depth == DepthComparison::kSparse) {
+    if (settings.depth != DepthComparison::kPixelwise) {
       sparse_depth.begin(buffer);
     }
     stats.raster = raster.stats();
@@ -42,7 +47,7 @@ struct OpacityMap::Impl {
     const std::uint64_t before = sparse_depth.compared();
     const bool nearer = sparse_depth.allNearer(image);
     stats.depths_compared += sparse_depth.compared() - before;
-    stats.sparse |= sparse_depth.used();
+    stats.sparse_rows = sparse_depth.rowsUsed();
     return nearer;
   }
 
@@ -68,7 +73,7 @@ struct OpacityMap::Impl {
   Rasteriser raster;
   occlusion::BoxProjection projection;
   occlusion::SummedArea opacity;
-  occlusion::SparseDepth sparse_depth;
+  SparseDepth sparse_depth;
   double coverage_ratio;
   bool ready = false;  // finish() has been called for this view
   OpacityMapStats stats;

@@ -49,14 +49,14 @@ bool allNearerPixelwise(const DepthBufferView& buffer, const PixelBox& rect, std
 void SparseDepth::begin(const DepthBufferView& buffer) {
   if (retest_delay_ > 0) {
     --retest_delay_;
-  } else if (peaks_ * kWorthwhileStep > made_) {
+  } else if (use_ == Use::kWherePaying && peaks_ * kWorthwhileStep > made_) {
     retest_delay_ = kRetestDelay;
   }
   buffer_ = buffer;
   steps_.resize(std::size_t{buffer.width} * buffer.height);
   rows_.assign(buffer.height, {});
   made_ = peaks_ = compared_ = 0;
-  used_ = false;
+  rows_used_ = 0;
 }
 
 // Goes from right to left. Neighbouring pixels of equal depth count as one; the leftmost is the peak.
@@ -80,7 +80,9 @@ void SparseDepth::makeRow(std::uint32_t y) {
   }
   made_ += buffer_.width;
   peaks_ += peaks;
-  rows_[y].state = peaks * kWorthwhileStep > buffer_.width ? RowState::kTooManyPeaks : RowState::kSteps;
+  const bool too_many = use_ == Use::kWherePaying && peaks * kWorthwhileStep > buffer_.width;
+  rows_[y].state = too_many ? RowState::kTooManyPeaks : RowState::kSteps;
+  rows_used_ += too_many ? 0 : 1;
 }
 
 // The paper leaves out what happens where the next peak lies beyond the rectangle: depth may rise up to the
@@ -101,7 +103,7 @@ bool SparseDepth::nearerAtPeaks(const PixelBox& rect, std::uint32_t y) {
 SparseDepth::RowState SparseDepth::stateOf(std::uint32_t y, std::uint32_t asked) {
   Row& row = rows_[y];
   if (row.state == RowState::kNotMade) {
-    if (row.compared < kWorthwhileQuestions * buffer_.width) {
+    if (use_ == Use::kWherePaying && row.compared < kWorthwhileQuestions * buffer_.width) {
       row.compared += asked;
     } else {
       makeRow(y);
@@ -112,13 +114,12 @@ SparseDepth::RowState SparseDepth::stateOf(std::uint32_t y, std::uint32_t asked)
 
 bool SparseDepth::allNearer(const PixelBox& rect) {
   const std::uint32_t width = rect.x1 - rect.x0 + 1u;
-  if (retest_delay_ > 0 || width < kWorthwhileWidth) {
+  if (use_ == Use::kWherePaying && (retest_delay_ > 0 || width < kWorthwhileWidth)) {
     return allNearerPixelwise(buffer_, rect, compared_);
   }
   for (std::uint32_t y = rect.y0; y <= rect.y1; ++y) {
     bool nearer;
     if (stateOf(y, width) == RowState::kSteps) {
-      used_ = true;
       nearer = nearerAtPeaks(rect, y);
     } else {
       compared_ += width;

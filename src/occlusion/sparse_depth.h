@@ -11,7 +11,7 @@
 
 namespace sightline::occlusion {
 
-// Both ways of comparing give the same answer: true where every covered pixel of the rectangle, which lies in
+// All ways of comparing give the same answer: true where every covered pixel of the rectangle, which lies in
 // the buffer, is nearer than the box's nearest point; a pixel that is as near is not nearer. Uncovered pixels
 // are left out, for the overlap test decides whether there may be any.
 
@@ -26,9 +26,14 @@ bool allNearerPixelwise(const DepthBufferView& buffer, const PixelBox& rect, std
 //
 // Making a row of the sparse map takes as long as comparing it pixel by pixel several times in vector code.
 // So a row is made only after that many comparisons, and rows without coverage never are. Rows, and whole
-// buffers, with too many peaks are compared pixel by pixel, as are narrow rectangles.
+// buffers, with too many peaks are compared pixel by pixel, as are narrow rectangles. With kAlways none of
+// this holds: the table of a row is made for the first rectangle in it, and used for all.
 class SparseDepth {
  public:
+  enum class Use : std::uint8_t { kWherePaying, kAlways };
+
+  explicit SparseDepth(Use use = Use::kWherePaying) : use_(use) {}
+
   // After a buffer with too many peaks, so many buffers are compared pixel by pixel before rows are made
   // again.
   static constexpr std::uint32_t kRetestDelay = 15;
@@ -41,8 +46,8 @@ class SparseDepth {
 
   // False where this buffer is compared pixel by pixel because an earlier one had too many peaks.
   bool worthwhile() const { return retest_delay_ == 0; }
-  // True when peaks of this buffer were used.
-  bool used() const { return used_; }
+  // The number of rows of this buffer that were compared at their peaks.
+  std::uint32_t rowsUsed() const { return rows_used_; }
   // The number of pixels of this buffer that were compared.
   std::uint64_t compared() const { return compared_; }
 
@@ -57,12 +62,13 @@ class SparseDepth {
   void makeRow(std::uint32_t y);
   bool nearerAtPeaks(const PixelBox& rect, std::uint32_t y);
 
+  Use use_;
   DepthBufferView buffer_;
   std::vector<std::uint16_t> steps_;  // by pixel: pixels to the next peak or the row's end
   std::vector<Row> rows_;
   std::uint64_t made_ = 0, peaks_ = 0;  // pixels of this buffer's rows that were made, and peaks in them
   std::uint32_t retest_delay_ = 0;      // buffers still to be compared pixel by pixel, with this one
-  bool used_ = false;
+  std::uint32_t rows_used_ = 0;
   std::uint64_t compared_ = 0;
 };
 

@@ -55,13 +55,47 @@ TEST(SparseDepth, AnswersAsScanningAllPixelsDoes) {
           ASSERT_EQ(allNearerPixelwise(buffer.view(), rect, compared), expected) << buffer.name << " " << i;
           (expected ? nearer : not_nearer) += 1;
         }
-        used += depth.used() ? 1 : 0;
+        used += depth.rowsUsed() > 0 ? 1 : 0;
       }
     }
   }
   EXPECT_GT(nearer, 5000);
   EXPECT_GT(not_nearer, 5000);
   EXPECT_GT(used, 50);
+}
+
+TEST(SparseDepth, UsedAlwaysItAnswersAsScanningAllPixelsDoes) {
+  int rectangles = 0;
+  for (const auto& size : kMapSizes) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      SparseDepth depth(SparseDepth::Use::kAlways);  // also with a buffer after one of many peaks
+      for (const SyntheticMap& buffer : syntheticMaps(size[0], size[1], seed)) {
+        std::mt19937_64 random(seed);
+        depth.begin(buffer.view());
+        for (int i = 0; i < 300; ++i, ++rectangles) {
+          PixelBox rect = randomRectangle(random, buffer.width, buffer.height);
+          rect.nearest = someDepth(random, buffer);
+          ASSERT_EQ(depth.allNearer(rect), allNearerByScanning(buffer.view(), rect))
+              << buffer.name << " seed " << seed << " rectangle " << i;
+        }
+        EXPECT_GT(depth.rowsUsed(), 0u) << buffer.name;
+      }
+    }
+  }
+  EXPECT_GT(rectangles, 5000);
+}
+
+TEST(SparseDepth, UsedAlwaysItComparesThePeaksOfTheFirstRectangleHoweverNarrow) {
+  const SyntheticMap flat("flat", 100, 3, [](std::uint32_t, std::uint32_t) { return 1.0f; });
+  SparseDepth always(SparseDepth::Use::kAlways), where_paying;
+  for (SparseDepth* depth : {&always, &where_paying}) {
+    depth->begin(flat.view());
+    EXPECT_TRUE(depth->allNearer(rectangle(10, 0, 19, 1, 0.5f)));
+  }
+  EXPECT_EQ(always.rowsUsed(), 2u);
+  EXPECT_EQ(always.compared(), 2u * 2) << "the first pixel and the last one of each row";
+  EXPECT_EQ(where_paying.rowsUsed(), 0u);
+  EXPECT_EQ(where_paying.compared(), 2u * 10);
 }
 
 TEST(SparseDepth, EveryRectangleOfARowIsAnsweredRightAtEveryDepth) {
@@ -90,7 +124,7 @@ TEST(SparseDepth, TheLastPixelIsLookedAtWhereTheNextPeakLiesBeyondIt) {
   SparseDepth depth;
   depth.begin(buffer.view());
   makeRows(depth, buffer);
-  ASSERT_TRUE(depth.used());
+  ASSERT_GT(depth.rowsUsed(), 0u);
   EXPECT_TRUE(depth.allNearer(rectangle(10, 0, 50, 0, -50.5f)));
   EXPECT_FALSE(depth.allNearer(rectangle(10, 0, 50, 0, -49.5f)));
   EXPECT_FALSE(depth.allNearer(rectangle(10, 0, 50, 0, -50.0f)));
@@ -101,7 +135,7 @@ TEST(SparseDepth, LooksAtFewPixels) {
     SparseDepth depth;
     depth.begin(buffer.view());
     makeRows(depth, buffer);
-    EXPECT_TRUE(depth.used()) << buffer.name;
+    EXPECT_GT(depth.rowsUsed(), 0u) << buffer.name;
     const std::uint64_t before = depth.compared();
     EXPECT_TRUE(depth.allNearer(rectangle(0, 0, buffer.width - 1, buffer.height - 1, -1e30f)));
     return depth.compared() - before;
@@ -142,12 +176,12 @@ TEST(SparseDepth, AMapOfPeaksIsComparedPixelByPixelAndTheNextOnesAreNotMade) {
   depth.begin(rough.view());
   EXPECT_TRUE(depth.worthwhile());
   makeRows(depth, rough);
-  EXPECT_FALSE(depth.used());
+  EXPECT_EQ(depth.rowsUsed(), 0u);
   for (U frame = 0; frame < SparseDepth::kRetestDelay; ++frame) {
     depth.begin(flat.view());
     EXPECT_FALSE(depth.worthwhile()) << frame;
     makeRows(depth, flat);
-    EXPECT_FALSE(depth.used()) << frame;
+    EXPECT_EQ(depth.rowsUsed(), 0u) << frame;
     const std::uint64_t before = depth.compared();
     EXPECT_TRUE(depth.allNearer(rect));
     EXPECT_EQ(depth.compared() - before, areaOf(rect));
@@ -157,7 +191,7 @@ TEST(SparseDepth, AMapOfPeaksIsComparedPixelByPixelAndTheNextOnesAreNotMade) {
     EXPECT_TRUE(depth.worthwhile());
     EXPECT_EQ(depth.compared(), 0u);
     makeRows(depth, flat);
-    EXPECT_TRUE(depth.used());
+    EXPECT_GT(depth.rowsUsed(), 0u);
   }
 }
 
@@ -180,7 +214,7 @@ TEST(SparseDepth, AFewQuestionsMakeNothing) {
   SparseDepth depth;
   depth.begin(buffer.view());
   EXPECT_TRUE(depth.allNearer(rectangle(0, 0, 99, 0, 0.5f)));
-  EXPECT_FALSE(depth.used());
+  EXPECT_EQ(depth.rowsUsed(), 0u);
   EXPECT_EQ(depth.compared(), 100u);
 }
 

@@ -151,7 +151,8 @@ TEST(MethodOptions, FramesTellOfRelationsWhereTheyAreKept) {
   const json cull = culled({"--method", "supporting-planes", "--planes", "through-box"});
   EXPECT_FALSE(cull.contains("database"));
   for (const json& frame : cull["frames"]) {
-    for (const std::string key : {"reused", "unchanged", "rebuilt", "evicted", "dropped", "kept", "bytes"}) {
+    for (const std::string key :
+         {"reused", "unchanged", "rebuilt", "evicted", "dropped", "kept", "bytes", "node_pairs"}) {
       EXPECT_TRUE(frame["relations"][key].is_number_unsigned()) << key;
     }
     EXPECT_GT(frame["nodes_tested_share"], 0.0);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
@@ -36,6 +37,7 @@ TEST(Reproduce, CoorgTellerHasATableForEachExperiment) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
       {"polygons_drawn", {"scene", "culling", "triangles", "percent", "percent_of_frustum"}},
       {"frame_time", {"scene", "culling", "cull_ms"}},
+      {"renderer_models", {"scene", "culling", "triangle_us", "total_ms", "speed_up"}},
       {"visibility_time",
        {"scene", "speed", "frames", "visibility_us", "visibility_us_nothing_kept", "reused", "unchanged",
         "rebuilt"}},
@@ -68,6 +70,35 @@ TEST(Reproduce, OcclusionCullingDrawsFewerPolygons) {
           << rows[kCullings * scene + other];
     }
   }
+}
+
+TEST(Reproduce, ASlowerRendererGainsMore) {
+  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& rows = result["experiments"]["renderer_models"]["rows"];
+  ASSERT_EQ(rows.size(), 5u * 4) << "five cullings, four renderers";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const json& row = rows[r];
+    EXPECT_NEAR(row["total_ms"].get<double>(), row["cull_ms"].get<double>() + row["draw_ms"].get<double>(),
+                1e-9);
+    if (row["culling"] == "frustum") {
+      EXPECT_DOUBLE_EQ(row["speed_up"], 1.0);
+    } else if (r % 4 > 0) {
+      EXPECT_GT(row["triangle_us"], rows[r - 1]["triangle_us"]);
+      EXPECT_GT(row["speed_up"], rows[r - 1]["speed_up"]) << row;
+    }
+  }
+}
+
+TEST(Reproduce, OnlyAFractionOfTheOccluderNodePairsIsCompared) {
+  const json result = reproduced({"--scene", "demo:city?copies=1"});
+  const json& kept = result["experiments"]["nodes_tested"]["rows"][0];
+  EXPECT_GT(kept["node_pairs"], kept["nodes_tested"])
+      << "each tested node is compared with an occluder at least";
+  const double all = kept["nodes"].get<double>() * kept["occluders"].get<double>();
+  EXPECT_NEAR(kept["pairs_percent"].get<double>(), 100.0 * kept["node_pairs"].get<double>() / all, 1e-6);
+  EXPECT_LT(kept["pairs_percent"], 100.0 * kept["nodes_tested"].get<double>() / kept["nodes"].get<double>())
+      << "a node is compared with fewer occluders than its parent";
+  EXPECT_FALSE(result["experiments"]["nodes_tested"]["rows"][1].contains("node_pairs"));
 }
 
 TEST(Reproduce, AFastObserverRebuildsMoreRelations) {
@@ -133,10 +164,13 @@ TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
       {"levels", spread},
       {"histograms", {"level", "to_10", "to_100"}},
       {"uniform_grid", {"leaves", "with_viewers", "voxels_in_box", "voxels_in_root", "percent"}},
+      {"budgets", {"budget_percent", "budget", "leaves", "met_percent", "depth", "triangles", "bake_s"}},
       {"polygons_sent", {"navigation", "culling", "mean", "deviation", "percent_of_frustum"}},
       {"frame_rate", {}},  // none without OpenGL
       {"look_up", {"frustum_us", "octree_us", "look_up_us", "first_find_us", "find_ns"}},
-      {"bake", {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file"}}};
+      {"bake",
+       {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file", "parts",
+        "part_ms", "part_deviation_ms", "part_max_ms"}}};
   EXPECT_EQ(result["experiments"].size(), tables.size());
   for (const auto& [name, keys] : tables) {
     const json& table = result["experiments"][name];
@@ -184,6 +218,23 @@ TEST(Reproduce, TheOctreeIsTheOneThatBakeMakes) {
   }
 }
 
+TEST(Reproduce, LeavesMeetLargerBudgetsAndAreFewerThen) {
+  const json result = reproducedShip();
+  const json& rows = result["experiments"]["budgets"]["rows"];
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_GT(rows[i]["met_percent"], 0.0) << rows[i];
+    if (i > 0) {
+      EXPECT_GT(rows[i]["budget"], rows[i - 1]["budget"]);
+      EXPECT_LE(rows[i]["leaves"], rows[i - 1]["leaves"]);
+      EXPECT_LE(rows[i]["depth"], rows[i - 1]["depth"]);
+    }
+  }
+  const json& bake = result["experiments"]["bake"]["rows"][0];
+  EXPECT_GE(bake["part_max_ms"], bake["part_ms"]);
+  EXPECT_GE(bake["parts"], 1);
+}
+
 TEST(Reproduce, TheOctreeSendsFewerPolygonsOnEveryNavigation) {
   const json result = reproducedShip();
   const json& rows = result["experiments"]["polygons_sent"]["rows"];
@@ -227,6 +278,71 @@ TEST(Reproduce, ShortTakesASmallShipAndFewFrames) {
   EXPECT_EQ(result["experiments"]["bake"]["rows"][0]["depth"], 4);
   EXPECT_EQ(result["scenes"], json::array({"demo:ship?decks=3&rooms=4&machinery=8"}));
   EXPECT_EQ(result["experiments"]["look_up"]["rows"][1]["frames"], 20);
+}
+
+json reproducedRoutes(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"reproduce", "poon-wang", "--short", "--scene", "demo:city?copies=2",
+                                     "--frames",  "0:60:20",   "--width", "64",      "--height",
+                                     "64",        "--json",    "-"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = runTool(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return parse(outcome.out);
+}
+
+TEST(Reproduce, PoonWangHasATableForEachExperiment) {
+  const json result = reproducedRoutes();
+  expectDocumented(result, {"reproduce"});
+  const json& tables = result["experiments"];
+  EXPECT_EQ(tables.size(), 5u);
+  EXPECT_EQ(tables["occluder_counts"]["rows"].size(), 3u * 9) << "three criteria, nine numbers of occluders";
+  EXPECT_EQ(tables["criteria"]["rows"].size(), 4u);
+  EXPECT_EQ(tables["picture_sizes"]["rows"].size(), 2u * 3);
+  std::set<std::string> routes;
+  for (const json& row : tables["routes"]["rows"]) {
+    routes.insert(row["route"]);
+    EXPECT_GE(row["cull_ms"], 0.0);
+  }
+  EXPECT_EQ(routes, (std::set<std::string>{"best", "average", "worst"}));
+  for (const json& row : tables["occluder_counts"]["rows"]) {
+    EXPECT_GE(row["culled_percent"], 0.0) << row;
+    EXPECT_LE(row["culled_percent"], 100.0) << row;
+  }
+  EXPECT_EQ(result["findings"].size(), 4u);
+}
+
+TEST(Reproduce, PoonWangsFiguresStandBesideOurs) {
+  const json tables = reproducedRoutes()["experiments"];
+  std::map<std::string, json> published;  // by table, culling and what else tells rows apart
+  for (const char* table : {"routes", "criteria", "occluder_counts"}) {
+    for (const json& row : tables[table]["rows"]) {
+      const std::string what = row.value("route", "") + std::to_string(row.value("occluders", 0));
+      published[std::string(table) + " " + row["culling"].get<std::string>() + " " + what] = row;
+    }
+  }
+  EXPECT_EQ(published["routes OM best0"]["published_speed_up"], 14.6);
+  EXPECT_EQ(published["routes PC worst0"]["published_fps"], 28.8);
+  EXPECT_FALSE(published["routes VF best0"].contains("published_fps"));
+  EXPECT_EQ(published["criteria projected-size best0"]["published_fps"], 5.4);
+  EXPECT_EQ(published["occluder_counts minimum-sets 192"]["published_culled_percent"], 94.0);
+  EXPECT_EQ(tables["picture_sizes"]["rows"][5]["published_speed_up"], 11.6);
+}
+
+TEST(Reproduce, ThePeaksOfTheSparseDepthMapAreUsedWhereTheyAreForced) {
+  const json tables = reproducedRoutes()["experiments"];
+  const json& rows = tables["depth_comparison"]["rows"];
+  ASSERT_EQ(rows.size(), 3u * 3) << "three routes, three comparisons";
+  for (std::size_t route = 0; route < 3; ++route) {
+    const json &pixelwise = rows[3 * route], &where_paying = rows[3 * route + 1],
+               &always = rows[3 * route + 2];
+    EXPECT_EQ(pixelwise["sparse_rows"], 0.0);
+    EXPECT_EQ(pixelwise["percent_of_pixelwise"], 100.0);
+    EXPECT_GT(always["sparse_rows"], 0.0);
+    EXPECT_LT(always["depths_compared"], pixelwise["depths_compared"]);
+    EXPECT_LE(where_paying["depths_compared"], pixelwise["depths_compared"]);
+    EXPECT_EQ(always["depth_tests"], pixelwise["depth_tests"]) << "the same answers, so the same questions";
+    EXPECT_EQ(where_paying["depth_tests"], pixelwise["depth_tests"]);
+  }
 }
 
 TEST(Reproduce, OptionsOfABakeAreOfPapersThatBake) {

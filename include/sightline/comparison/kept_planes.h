@@ -30,7 +30,9 @@ struct KeptPlanesSettings {
 // Counts of relations, each the planes of one occluder and one box, since the last build(); `kept` and
 // `bytes` are of all that the store holds now.
 struct RelationStats {
-  std::uint32_t reused = 0;     // relations of an earlier frame that were used again
+  std::uint32_t compared =
+      0;                     // pairs of an occluder and a box that were compared, with or without a relation
+  std::uint32_t reused = 0;  // relations of an earlier frame that were used again
   std::uint32_t unchanged = 0;  // of these: the eye had not moved far enough for a sign to change
   std::uint32_t rebuilt = 0;    // relations whose planes were made
   std::uint32_t evicted = 0;    // relations dropped, or not kept, for want of room
@@ -86,6 +88,7 @@ class KeptPlanes {
   void forgetAll();
 
   KeptPlanesStats stats() const;
+  std::uint32_t compared() const;  // RelationStats::compared, so far
   // The chosen occluders of the first set that can be used from this view.
   std::span<const OccluderId> occluders() const;
 

@@ -22,7 +22,7 @@ inline constexpr MethodTraits kOpacityMapTraits{.occluders = true};
 
 // Culling by an OpacityMap of the chosen occluders (Poon, Wang 1999), or of whole surfaces.
 // Statistics: "map" with occluders_hidden, overlap_tests, overlap_failed, given_up, depth_tests,
-// depths_compared, and, where triangle_us is set, suspended;
+// depths_compared, sparse_rows, and, where triangle_us is set, suspended;
 // then also "coverage" with per_mille, the coverage ratio of the frame. With surfaces, "surfaces" with groups
 // of them and edges of their boundaries.
 std::unique_ptr<CullingMethod> opacityMap(const OpacityMapMethodSettings& settings = {});

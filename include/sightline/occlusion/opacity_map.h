@@ -17,8 +17,9 @@ namespace sightline {
 
 // How a box's depth is compared with the buffer's.
 enum class DepthComparison : std::uint8_t {
-  kSparse,     // only at local peaks of each row (Poon and Wang 1999, section 5.3)
-  kPixelwise,  // at every pixel, to measure against
+  kSparse,        // at local peaks of each row (Poon and Wang 1999, section 5.3), where that takes less time
+  kPixelwise,     // at every pixel, to measure against
+  kSparseAlways,  // at local peaks everywhere, as the paper has it, to measure against
 };
 
 struct OpacityMapSettings {
@@ -41,7 +42,7 @@ struct OpacityMapStats {
   std::uint32_t given_up = 0;         // of the failed: partly covered, but less than the coverage ratio
   std::uint32_t depth_tests = 0;      // boxes that passed the overlap test
   std::uint64_t depths_compared = 0;  // pixels whose depth was compared
-  bool sparse = false;                // rows of the sparse depth map were made and used
+  std::uint32_t sparse_rows = 0;      // rows that were compared at their peaks
 };
 
 // Tells for any box whether the drawn occluders hide it. It can be used alone: build() from any occluders,
@@ -49,7 +50,7 @@ struct OpacityMapStats {
 //
 // With the conservative coverage rule and no tolerance answers are conservative: kHidden only where no point
 // of the box can be seen from the view's eye. kVisible means that nothing covers the box's rectangle, or too
-// little (coverage_ratio). Both comparisons of depth give the same answers. Before build(), and between
+// little (coverage_ratio). All comparisons of depth give the same answers. Before build(), and between
 // begin() and finish(), everything is kVisible.
 //
 // Use by one thread at a time; nothing is allocated once the storage has grown to what a few builds need.

@@ -28,8 +28,10 @@ class KeptPlanesMethod final : public CullingMethod {
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
     // Relations are their own temporal coherence, which needs every node's lists.
+    node_pairs_ = 0;
     traversal_->run(frame.frustum, culling::optionsOf(frame, false),
-                    comparison::KeptPlanesTraversal{*planes_, *hierarchy_, entered_}, stats, visible);
+                    comparison::KeptPlanesTraversal{*planes_, *hierarchy_, entered_, node_pairs_}, stats,
+                    visible);
   }
 
   bool testDetail(culling::DetailTest& test, std::vector<ObjectId>& visible) override {
@@ -43,7 +45,7 @@ class KeptPlanesMethod final : public CullingMethod {
     const RelationStats& relations = counts.relations;
     const std::uint64_t values[] = {relations.reused,  relations.unchanged, relations.rebuilt,
                                     relations.evicted, relations.dropped,   relations.kept,
-                                    relations.bytes};
+                                    relations.bytes,   node_pairs_};
     for (std::size_t i = 0; i < statistics_.size(); ++i) {
       statistics_[i].value = values[i];
     }
@@ -63,14 +65,16 @@ class KeptPlanesMethod final : public CullingMethod {
   const Hierarchy* hierarchy_ = nullptr;
   std::optional<culling::HierarchicalTraversal> traversal_;
   std::optional<KeptPlanes> planes_;
-  std::vector<bool> entered_;  // by node, see KeptPlanesTraversal
-  std::array<MethodStatistic, 7> statistics_{{{"relations", "reused", "relations reused"},
+  std::vector<bool> entered_;     // by node, see KeptPlanesTraversal
+  std::uint64_t node_pairs_ = 0;  // of the last frame
+  std::array<MethodStatistic, 8> statistics_{{{"relations", "reused", "relations reused"},
                                               {"relations", "unchanged", "of them unchanged"},
                                               {"relations", "rebuilt", "relations rebuilt"},
                                               {"relations", "evicted", "relations evicted"},
                                               {"relations", "dropped", "relations dropped"},
                                               {"relations", "kept", "relations kept"},
-                                              {"relations", "bytes", "bytes for them"}}};
+                                              {"relations", "bytes", "bytes for them"},
+                                              {"relations", "node_pairs", "occluder-node pairs"}}};
 };
 
 }  // namespace

@@ -16,13 +16,16 @@ struct KeptPlanesTraversal {
   KeptPlanes& planes;
   const Hierarchy& hierarchy;
   std::vector<bool>&
-      entered;  // by node: the traversal went on below it, and what is there may have relations
+      entered;                // by node: the traversal went on below it, and what is there may have relations
+  std::uint64_t& node_pairs;  // increased by the pairs of an occluder and a node that are compared
 
   OccluderList start() const { return planes.all(); }
   Visibility classify(const culling::TraversalBox& asked, OccluderList among, OccluderList& touching) {
+    const std::uint32_t before = planes.compared();
     const Visibility state = planes.classify(asked.box, asked.item, among, touching);
-    if (asked.item < entered.size() && state == Visibility::kPartial) {
-      entered[asked.item] = true;
+    if (asked.item < entered.size()) {
+      node_pairs += planes.compared() - before;
+      entered[asked.item] = entered[asked.item] || state == Visibility::kPartial;
     }
     return state;
   }

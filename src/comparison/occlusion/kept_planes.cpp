@@ -112,6 +112,7 @@ const Relation* KeptPlanes::Impl::reuse(Item item, const ActiveOccluder& occlude
 // occluders of other sets than the first: their ids may be others' in the next frame.
 EyePlaneTest KeptPlanes::Impl::test(const Box& box, Item item, std::uint32_t number) {
   const ActiveOccluder& occluder = active[number];
+  ++stats.compared;
   if (occluder.set != 0) {
     item = kNoItem;
   }
@@ -200,6 +201,10 @@ KeptPlanesStats KeptPlanes::stats() const {
   stats.relations.kept = impl_->store.size();
   stats.relations.bytes = impl_->store.bytes();
   return stats;
+}
+
+std::uint32_t KeptPlanes::compared() const {
+  return impl_->stats.compared;
 }
 
 std::span<const OccluderId> KeptPlanes::occluders() const {

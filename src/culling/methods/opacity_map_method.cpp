@@ -79,6 +79,7 @@ class OpacityMapMethod final : public CullingMethod {
     statistics_[3].value = counts.given_up;
     statistics_[4].value = counts.depth_tests;
     statistics_[5].value = counts.depths_compared;
+    statistics_[6].value = counts.sparse_rows;
     if (surface_statistics_ > 0) {
       const SurfaceStats drawn = suspended_ || !surfaces_.draws() ? SurfaceStats{} : map_->surfaceStats();
       statistics_[surface_statistics_].value = drawn.groups;
@@ -122,7 +123,8 @@ class OpacityMapMethod final : public CullingMethod {
                                            {"map", "overlap_failed", "of them failed"},
                                            {"map", "given_up", "given up for little coverage"},
                                            {"map", "depth_tests", "depth tests"},
-                                           {"map", "depths_compared", "depths compared"}};
+                                           {"map", "depths_compared", "depths compared"},
+                                           {"map", "sparse_rows", "rows compared at peaks"}};
   // The first of the statistics of surfaces, and of an adaptive coverage ratio; 0: there are none.
   std::size_t surface_statistics_ = 0, adaptive_statistics_ = 0;
 };

@@ -54,9 +54,10 @@ inline const std::array<Name<const CoverageRule*>, 2> kCoverages{{
     {"inner", nullptr},
     {"centre", centreCoverage()},
 }};
-inline constexpr std::array<Name<DepthComparison>, 2> kDepthComparisons{{
+inline constexpr std::array<Name<DepthComparison>, 3> kDepthComparisons{{
     {"sparse", DepthComparison::kSparse},
     {"pixelwise", DepthComparison::kPixelwise},
+    {"sparse-always", DepthComparison::kSparseAlways},
 }};
 inline constexpr std::array<Name<OccluderChoice>, 5> kOccluderChoices{{
     {"area-angle", OccluderChoice::kAreaAngle},

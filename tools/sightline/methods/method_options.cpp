@@ -243,7 +243,8 @@ const std::vector<Option>& allOptions() {
       {"coverage-ratio", kOwn, always, kList, kWhenChanged,
        "opacity map: what is covered by less than this part counts as visible with all in it",
        decimal(+[](Setting& s) -> double& { return s.opacity_map.map.coverage_ratio; })},
-      {"depth-comparison", kOwn, always, kList, kWhenChanged, "opacity map: at peaks only or everywhere",
+      {"depth-comparison", kOwn, always, kList, kWhenChanged,
+       "opacity map: at peaks where that takes less time, everywhere, or always at peaks",
        oneOf(
            kDepthComparisons, +[](Setting& s) -> DepthComparison& { return s.opacity_map.map.depth; })},
       {"triangle-us", kOwn, always, kOne, kWhenChanged,

@@ -22,6 +22,8 @@ namespace {
 constexpr std::uint32_t kStretchFrames = 800, kFewerStretchFrames = 160;
 constexpr std::size_t kBaseline = 0, kKeptPlanes = 1;  // indices in kCullings
 constexpr double kMebibyte = 1024.0 * 1024.0;
+// Microseconds that drawing a triangle takes in the models of renderers, from fast to slow.
+constexpr double kTriangleUs[] = {0.01, 0.1, 1.0, 10.0};
 
 // The methods that are compared, with their names in the tables. The paper's own method follows the baseline.
 struct Culling {
@@ -150,6 +152,46 @@ Experiment frameTime(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
+// The time of a frame of each culling with a renderer that does nothing but triangles.
+double modelledMs(const ReportRow& row, double triangle_us) {
+  return row.cull_ms + 1e-3 * triangle_us * row.triangles;
+}
+
+double modelledSpeedUp(const Measured& measured, std::size_t culling, double triangle_us) {
+  const WalkRecord& record = measured.record;
+  return modelledMs(rowOf(record.baseline(), record), triangle_us) /
+         modelledMs(rowOf(record.runs[culling], record), triangle_us);
+}
+
+Experiment rendererModels(const std::vector<Measured>& scenes) {
+  Experiment experiment{
+      "renderer_models",
+      "2b. The same with models of renderers, in which each triangle takes the same time to draw",
+      "the total falls on a fast machine and more so on a slow one.",
+      {{"scene", "scene"},
+       {"culling", "culling"},
+       {"triangle_us", "us a triangle", 2},
+       {"cull_ms", "cull ms", 3},
+       {"draw_ms", "draw ms", 3},
+       {"total_ms", "total ms", 3},
+       {"speed_up", "speed-up", 2}}};
+  for (const Measured& measured : scenes) {
+    for (std::size_t c = 0; c < measured.record.runs.size(); ++c) {
+      const ReportRow row = rowOf(measured.record.runs[c], measured.record);
+      for (const double triangle_us : kTriangleUs) {
+        experiment.rows.push_back({{"scene", measured.name},
+                                   {"culling", kCullings[c].name},
+                                   {"triangle_us", triangle_us},
+                                   {"cull_ms", row.cull_ms},
+                                   {"draw_ms", 1e-3 * triangle_us * row.triangles},
+                                   {"total_ms", modelledMs(row, triangle_us)},
+                                   {"speed_up", modelledSpeedUp(measured, c, triangle_us)}});
+      }
+    }
+  }
+  return experiment;
+}
+
 Experiment visibilityTime(const std::vector<Measured>& scenes) {
   Experiment experiment{
       "visibility_time",
@@ -184,29 +226,53 @@ Experiment visibilityTime(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
+// The share of the occluder-node pairs that are compared in a frame: s of the s k n in section 4, percent.
+double pairsPercent(const WalkRun& run) {
+  const double occluders = run.mean([](const FrameRecord& frame) { return frame.stats.occluders; });
+  return 100.0 * run.meanOf("relations", "node_pairs") /
+         std::max(1.0, occluders * static_cast<double>(run.hierarchy_nodes));
+}
+
+// The share of the relations that were there from an earlier frame, percent.
+double reusedPercent(const WalkRun& run) {
+  const double reused = run.meanOf("relations", "reused"), rebuilt = run.meanOf("relations", "rebuilt");
+  return 100.0 * reused / std::max(1.0, reused + rebuilt);
+}
+
 Experiment nodesTested(const std::vector<Measured>& scenes) {
-  Experiment experiment{
-      "nodes_tested",
-      "4. Nodes of the kd-tree tested for occlusion, mean of the walk",
-      "only a part of the kd-tree's nodes in the view frustum is tested in a frame: spatial coherence.",
-      {{"scene", "scene"},
-       {"culling", "culling"},
-       {"height", "height", 0},
-       {"nodes", "nodes", 0},
-       {"nodes_in_frustum", "in frustum", 1},
-       {"nodes_tested", "tested", 1},
-       {"percent", "% of all", 2},
-       {"percent_of_frustum", "% of frustum's", 2},
-       {"occluders", "occluders", 1}}};
+  Experiment experiment{"nodes_tested",
+                        "4. Nodes of the kd-tree tested for occlusion, mean of the walk",
+                        "only a part of the kd-tree's nodes in the view frustum is tested in a frame: "
+                        "spatial coherence. Of the k n "
+                        "pairs of an occluder and a node, a fraction s is compared.",
+                        {{"scene", "scene"},
+                         {"culling", "culling"},
+                         {"height", "height", 0},
+                         {"nodes", "nodes", 0},
+                         {"nodes_in_frustum", "in frustum", 1},
+                         {"nodes_tested", "tested", 1},
+                         {"percent", "% of all", 2},
+                         {"percent_of_frustum", "% of frustum's", 2},
+                         {"occluders", "occluders", 1},
+                         {"node_pairs", "pairs tested", 1},
+                         {"pairs_percent", "% of k n", 3},
+                         {"reused_percent", "% reused", 1}}};
   for (const Measured& measured : scenes) {
     addRows(experiment, measured, kKeptPlanes, [&](const WalkRun& run, const ReportRow& row) -> Json {
-      return {{"height", run.hierarchy_depth},
-              {"nodes", run.hierarchy_nodes},
-              {"nodes_in_frustum", measured.nodes_in_frustum},
-              {"nodes_tested", row.nodes_tested},
-              {"percent", 100.0 * row.nodes_tested / static_cast<double>(run.hierarchy_nodes)},
-              {"percent_of_frustum", 100.0 * row.nodes_tested / std::max(1.0, measured.nodes_in_frustum)},
-              {"occluders", row.occluders}};
+      Json json = {
+          {"height", run.hierarchy_depth},
+          {"nodes", run.hierarchy_nodes},
+          {"nodes_in_frustum", measured.nodes_in_frustum},
+          {"nodes_tested", row.nodes_tested},
+          {"percent", 100.0 * row.nodes_tested / static_cast<double>(run.hierarchy_nodes)},
+          {"percent_of_frustum", 100.0 * row.nodes_tested / std::max(1.0, measured.nodes_in_frustum)},
+          {"occluders", row.occluders}};
+      if (&run == &measured.record.runs[kKeptPlanes]) {
+        json["node_pairs"] = run.meanOf("relations", "node_pairs");
+        json["pairs_percent"] = pairsPercent(run);
+        json["reused_percent"] = reusedPercent(run);
+      }
+      return json;
     });
   }
   return experiment;
@@ -242,6 +308,74 @@ Experiment memory(const std::vector<Measured>& scenes) {
          {"database_build_ms", measured.data.database()->build_us * 1e-3}});
   }
   return experiment;
+}
+
+// Calls use(measured, run) for the paper's own method in each scene.
+template <typename Use>
+void forKeptPlanes(const std::vector<Measured>& scenes, Use&& use) {
+  for (const Measured& measured : scenes) {
+    use(measured, measured.record.runs[kKeptPlanes]);
+  }
+}
+
+std::string listed(const std::string& list, const std::string& item) {
+  return list.empty() ? item : list + "; " + item;
+}
+
+Finding polygonsFinding(const std::vector<Measured>& scenes) {
+  Finding finding{"occlusion culling reduces the polygons drawn by a factor", true, ""};
+  forKeptPlanes(scenes, [&](const Measured& measured, const WalkRun& run) {
+    const double factor = 1.0 / std::max(1e-9, rowOf(run, measured.record).triangles_share);
+    finding.agrees = finding.agrees && factor > 1.0;
+    finding.text = listed(finding.text, fmt::format("by {:.1f} in {}", factor, measured.name));
+  });
+  return finding;
+}
+
+Finding rendererFinding(const std::vector<Measured>& scenes) {
+  Finding finding{"the slower the graphics hardware, the more is gained", true, ""};
+  forKeptPlanes(scenes, [&](const Measured& measured, const WalkRun&) {
+    std::string text;
+    double last = 0.0;
+    for (const double triangle_us : kTriangleUs) {
+      const double speed_up = modelledSpeedUp(measured, kKeptPlanes, triangle_us);
+      finding.agrees = finding.agrees && speed_up > last;
+      last = speed_up;
+      text += fmt::format("{}{:.2f}", text.empty() ? "" : ", ", speed_up);
+    }
+    finding.text = listed(finding.text, fmt::format("speed-ups of {} in {}", text, measured.name));
+  });
+  finding.text +=
+      fmt::format(" with {}, {}, {} and {} us a triangle: culling takes the same time, drawing grows",
+                  kTriangleUs[0], kTriangleUs[1], kTriangleUs[2], kTriangleUs[3]);
+  return finding;
+}
+
+Finding speedFinding(const std::vector<Measured>& scenes) {
+  Finding finding{"less time is spent for slow observers", true, ""};
+  for (const Measured& measured : scenes) {
+    if (!measured.speeds.empty()) {
+      const SpeedResult &slow = measured.speeds.front(), &fast = measured.speeds.back();
+      const double ratio =
+          (fast.coherent_us - fast.frustum_us) / std::max(1e-9, slow.coherent_us - slow.frustum_us);
+      finding.agrees = finding.agrees && ratio > 1.0;
+      finding.text = listed(finding.text, fmt::format("{} times the speed takes {:.1f} times as long in {}",
+                                                      fast.speed, ratio, measured.name));
+    }
+  }
+  return finding;
+}
+
+Finding pairsFinding(const std::vector<Measured>& scenes) {
+  Finding finding{"of the k n pairs of an occluder and a node only a fraction s is compared", true, ""};
+  forKeptPlanes(scenes, [&](const Measured& measured, const WalkRun& run) {
+    finding.agrees = finding.agrees && pairsPercent(run) < 10.0;
+    finding.text =
+        listed(finding.text, fmt::format("s = {:.4f} in {}, and {:.0f} % of the relations were there from "
+                                         "the frame before",
+                                         0.01 * pairsPercent(run), measured.name, reusedPercent(run)));
+  });
+  return finding;
 }
 
 Plot speedPlot(const std::vector<SpeedResult>& speeds) {
@@ -318,8 +452,10 @@ Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
       result.notes.push_back(measured.name + ": its path is too short for experiment 3.");
     }
   }
-  result.experiments = {polygonsDrawn(scenes), frameTime(scenes), visibilityTime(scenes), nodesTested(scenes),
-                        memory(scenes)};
+  result.experiments = {polygonsDrawn(scenes),  frameTime(scenes),   rendererModels(scenes),
+                        visibilityTime(scenes), nodesTested(scenes), memory(scenes)};
+  result.findings = {polygonsFinding(scenes), rendererFinding(scenes), speedFinding(scenes),
+                     pairsFinding(scenes)};
   for (const Measured& measured : scenes) {
     result.reports.push_back(reportOf(measured, result.experiments, options));
   }

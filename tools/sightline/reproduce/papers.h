@@ -1,7 +1,7 @@
 #pragma once
 
 // The papers that can be reproduced, one function each. A new paper is a file of its own, its function here
-// and its row in the table of reproduce.cpp.
+// and its row in paper_table.cpp.
 
 #include "tools/sightline/reproduce/reproduction.h"
 
@@ -9,6 +9,10 @@ namespace sightline::tool {
 
 // inputs has one entry for each scene on which the paper is reproduced.
 
+// Based on: Bittner, Havran, Slavik. Hierarchical Visibility Culling with Occlusion Trees. CGI 1998,
+// section 7.
+Result<Reproduction> reproduceBittner(const ReproduceOptions& options,
+                                      const std::vector<SceneAndWalk>& inputs);
 // Based on: Coorg, Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997, section 6.
 Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
                                           const std::vector<SceneAndWalk>& inputs);

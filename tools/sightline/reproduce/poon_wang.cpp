@@ -1,4 +1,5 @@
-// The experiments of Poon and Wang 1999, section 6: figures 6, 8, 9 and 10.
+// The experiments of Poon and Wang 1999, section 6: figures 6, 8, 9 and 10, and the depth comparisons of
+// section 5.3.
 //
 // Differs from the paper in: scenes, machine and renderer are those of today. Occluders cover only pixels
 // that lie wholly inside them; the paper's sampling at pixel centres, which culls visible objects, stands
@@ -15,6 +16,7 @@
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
+#include "tools/sightline/reproduce/poon_wang.h"
 #include "tools/sightline/walk/walk_report.h"
 #include "tools/sightline/walk/walk_runs.h"
 
@@ -108,6 +110,7 @@ struct Measured {
   std::string name;
   double cull_ms = 0.0, draw_ms = 0.0;  // means of a frame
   double triangles = 0.0;
+  double depth_tests = 0.0, depths_compared = 0.0, sparse_rows = 0.0;  // means of a frame
   std::vector<double> frame_ms{};
 
   double frameMs() const { return cull_ms + draw_ms; }
@@ -119,6 +122,9 @@ Measured measuredOf(const std::string& name, const WalkRun& run) {
   measured.cull_ms = run.mean([](const FrameRecord& frame) { return frame.cull_us * 1e-3; });
   measured.draw_ms = run.mean([](const FrameRecord& frame) { return frame.draw_us * 1e-3; });
   measured.triangles = run.mean([](const FrameRecord& frame) { return frame.triangles; });
+  measured.depth_tests = run.meanOf("map", "depth_tests");
+  measured.depths_compared = run.meanOf("map", "depths_compared");
+  measured.sparse_rows = run.meanOf("map", "sparse_rows");
   for (const FrameRecord& frame : run.frames) {
     measured.frame_ms.push_back(frame.frameUs() * 1e-3);
   }
@@ -153,11 +159,11 @@ class Experiments {
   bool drawn() const { return renderer_.has_value(); }
   std::string whyNot() const { return why_not_; }
 
-  void run(std::vector<Experiment>& all) {
-    occluderCounts(all[0]);
-    routes(all[1]);
-    criteria(all[2]);
-    pictureSizes(all[3]);
+  void run(poon_wang::Tables& tables) {
+    occluderCounts(tables.occluder_counts);
+    routes(tables.routes, tables.depth_comparison);
+    criteria(tables.criteria);
+    pictureSizes(tables.picture_sizes);
   }
 
   Report report() const {
@@ -235,7 +241,7 @@ class Experiments {
   double triangleUs(const Walk& route) {
     Walk start = route;
     start.frames.resize(std::min<std::size_t>(route.frames.size(), 5));
-    const Measured frustum = walkRoute(start, {"VF"}, {frustumSetting()}, false).front();
+    const Measured frustum = walkRoute(start, {poon_wang::kFrustum}, {frustumSetting()}, false).front();
     return frustum.triangles > 0.0 ? 1e3 * frustum.draw_ms / frustum.triangles : 0.0;
   }
 
@@ -284,7 +290,7 @@ class Experiments {
       return measured;
     };
     measureAt("", frustumSetting());  // warms up
-    const Measured frustum = measureAt("VF", frustumSetting());
+    const Measured frustum = measureAt(poon_wang::kFrustum, frustumSetting());
     Plot rates{.title = "Figure 6: frame rate by the number of occluders",
                .x_label = "number of occluders: "};
     Plot culled{.title = "Figure 6: triangles culled by the number of occluders", .x_label = rates.x_label};
@@ -313,15 +319,39 @@ class Experiments {
     }
   }
 
-  // Figure 8.
-  void routes(Experiment& experiment) {
+  // The rows of one route: the way of comparing depths for each of `measured` that tests depths as the paper
+  // does.
+  void addDepthComparisons(const std::string& route, const std::vector<Measured>& measured,
+                           Experiment& experiment) const {
+    const auto named = [&](const char* name) {
+      return *std::find_if(measured.begin(), measured.end(),
+                           [&](const Measured& one) { return one.name == name; });
+    };
+    const double pixels = std::max(1.0, named(poon_wang::kPixelwise).depths_compared);
+    for (const char* name : {poon_wang::kPixelwise, poon_wang::kOpacityMap, poon_wang::kPeaksAlways}) {
+      const Measured one = named(name);
+      experiment.rows.push_back({{"scene", name_},
+                                 {"route", route},
+                                 {"culling", name},
+                                 {"depth_tests", one.depth_tests},
+                                 {"depths_compared", one.depths_compared},
+                                 {"percent_of_pixelwise", 100.0 * one.depths_compared / pixels},
+                                 {"sparse_rows", one.sparse_rows},
+                                 {"cull_ms", one.cull_ms}});
+    }
+  }
+
+  // Figure 8, and section 5.3.
+  void routes(Experiment& experiment, Experiment& depths) {
     for (const Walk& route : routes_) {
       const Setting om = opacitySetting(OccluderChoice::kMinimumSets, kOccluders);
-      Setting pixelwise = om, adaptive = om, centre = om;
+      Setting pixelwise = om, peaks = om, adaptive = om, centre = om;
       pixelwise.opacity_map.map.depth = DepthComparison::kPixelwise;
+      peaks.opacity_map.map.depth = DepthComparison::kSparseAlways;
       centre.raster.coverage = centreCoverage();
-      std::vector<std::string> names{"VF", "OM", "PC", "OM, centres (not conservative)"};
-      std::vector<Setting> settings{frustumSetting(), om, pixelwise, centre};
+      std::vector<std::string> names{poon_wang::kFrustum, poon_wang::kOpacityMap, poon_wang::kPixelwise,
+                                     poon_wang::kPeaksAlways, "OM, centres (not conservative)"};
+      std::vector<Setting> settings{frustumSetting(), om, pixelwise, peaks, centre};
       if (drawn()) {
         adaptive.opacity_map.triangle_us = triangleUs(route);
         names.push_back("OM, adaptive");
@@ -332,13 +362,14 @@ class Experiments {
         experiment.rows.push_back(row(one, measured[1]));
         experiment.rows.back()["route"] = route.path.name;
       }
+      addDepthComparisons(route.path.name, measured, depths);
       addPlot("Figure 8: frame time, route " + route.path.name, "ms", measured);
     }
   }
 
   // Figure 9, on the first route.
   void criteria(Experiment& experiment) {
-    std::vector<std::string> names{"VF"};
+    std::vector<std::string> names{poon_wang::kFrustum};
     std::vector<Setting> settings{frustumSetting()};
     for (const OccluderChoice criterion : kCriteria) {
       names.push_back(nameOf(kOccluderChoices, criterion));
@@ -361,7 +392,7 @@ class Experiments {
         useRenderer(picture);
       }
       const std::vector<Measured> measured =
-          walkRoute(routes_.front(), {"VF", "OM"},
+          walkRoute(routes_.front(), {poon_wang::kFrustum, poon_wang::kOpacityMap},
                     {frustumSetting(), opacitySetting(OccluderChoice::kMinimumSets, kOccluders)}, false);
       for (const Measured& one : measured) {
         experiment.rows.push_back(row(one, measured[0]));
@@ -387,42 +418,13 @@ class Experiments {
   std::vector<Plot> plots_;
 };
 
-std::vector<Experiment> emptyExperiments(const PictureOptions& picture) {
-  const auto columns = [](std::vector<Column> first) {
-    first.insert(first.begin(), {"scene", "scene"});
-    first.insert(first.end(), {{"culling", "culling"},
-                               {"triangles", "triangles", 0},
-                               {"culled_percent", "% culled", 2},
-                               {"cull_ms", "cull ms", 3},
-                               {"frame_ms", "frame ms", 3},
-                               {"fps", "frames/s", 1},
-                               {"speed_up", "speed-up", 2}});
-    return first;
-  };
-  return {
-      {"occluder_counts", "Figure 6. Frame rate and triangles culled by the number of occluders",
-       "minimum sets reach the best culling, 94 %, with 192 occluders, first-hit with 384; projected size "
-       "reaches 93 % with 512.",
-       columns({{"occluders", "occluders", 0}})},
-      {"routes", "Figure 8. Routes of three depth complexities, 64 occluders, " + sizeText(picture),
-       "speed-ups over view-frustum culling (VF) of 14.6, 4.4 and 0.7; pixelwise comparison (PC) 17.7, 19.4 "
-       "and 28.8 frames/s against 25.5, 26.7 and 34.6 of the opacity map (OM).",
-       columns({{"route", "route"}})},
-      {"criteria", "Figure 9. Criteria of choosing occluders, best route, 64 occluders",
-       "25.5 frames/s with minimum sets, 24.5 with first-hit, 5.4 with projected size.",
-       columns({{"route", "route"}})},
-      {"picture_sizes", "Figure 10. Picture sizes, best route",
-       "25.6, 20.1 and 16.7 frames/s; what is culled does not depend on the size.",
-       columns({{"picture", "picture"}})}};
-}
-
 }  // namespace
 
 Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
                                        const std::vector<SceneAndWalk>& inputs) {
   const Threads threads(options.threads);
   Reproduction result;
-  result.experiments = emptyExperiments(pictureOf(options));
+  poon_wang::Tables tables = poon_wang::emptyTables(sizeText(pictureOf(options)));
   std::vector<std::vector<Walk>> routes;
   for (const SceneAndWalk& input : inputs) {  // check all inputs before the work starts
     Result<std::vector<Walk>> of_scene = routesOf(input, options);
@@ -434,13 +436,18 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     Experiments experiments(options.scenes[i], inputs[i], std::move(routes[i]), options,
                             threads.parallelFor());
-    experiments.run(result.experiments);
+    experiments.run(tables);
     if (!experiments.drawn()) {
       result.notes.push_back(
           fmt::format("{}: nothing was drawn: {}", options.scenes[i], experiments.whyNot()));
     }
     result.reports.push_back(experiments.report());
   }
+  poon_wang::addPublished(tables);
+  result.findings = poon_wang::findingsOf(tables);
+  result.experiments = {std::move(tables.occluder_counts), std::move(tables.routes),
+                        std::move(tables.depth_comparison), std::move(tables.criteria),
+                        std::move(tables.picture_sizes)};
   return result;
 }
 

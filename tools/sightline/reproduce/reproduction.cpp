@@ -18,6 +18,18 @@ std::string cellText(const Json& row, const Column& column) {
                              : fmt::format("{:.{}f}", value.get<double>(), column.decimals);
 }
 
+// Text as a value of comma-separated values: quoted where it has to be.
+std::string csvText(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
@@ -68,6 +80,36 @@ std::string toText(const Experiment& experiment) {
   }
   const std::string claim = experiment.claim.empty() ? "" : "The paper: " + experiment.claim + "\n";
   return experiment.title + "\n" + claim + toText(table);
+}
+
+std::string toCsv(const Experiment& experiment) {
+  std::string text;
+  for (const Column& column : experiment.columns) {
+    text += (text.empty() ? "" : ",") + csvText(column.key);
+  }
+  text += "\n";
+  for (const Json& row : experiment.rows) {
+    const char* separator = "";
+    for (const Column& column : experiment.columns) {
+      text += separator;
+      if (row.contains(column.key) && !row[column.key].is_null()) {
+        const Json& value = row[column.key];
+        text += value.is_string() ? csvText(value.get<std::string>()) : value.dump();
+      }
+      separator = ",";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string toText(const Finding& finding) {
+  return fmt::format("{}: {}\n  Here: {}\n", finding.agrees ? "agrees" : "DIFFERS", finding.claim,
+                     finding.text);
+}
+
+Json toJson(const Finding& finding) {
+  return {{"claim", finding.claim}, {"agrees", finding.agrees}, {"text", finding.text}};
 }
 
 Json toJson(const Experiment& experiment) {

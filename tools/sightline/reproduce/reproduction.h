@@ -56,19 +56,33 @@ struct Experiment {
 
 std::string toText(const Experiment& experiment);
 Json toJson(const Experiment& experiment);
+// Comma-separated values: a line of keys, then the rows; what a row lacks is empty.
+std::string toCsv(const Experiment& experiment);
+
+// Whether a statement of the paper holds here.
+struct Finding {
+  std::string claim;  // the paper's statement
+  bool agrees = false;
+  std::string text;  // what was measured, and why it is so
+};
+
+std::string toText(const Finding& finding);
+Json toJson(const Finding& finding);
 
 // A file beside a report's page: a picture or, if that is empty, a text.
 struct ReportFile {
   std::string name;
   Image picture{};  // written as PNG
   std::string text{};
+  std::size_t report = 0;  // index of the report
 };
 
 struct Reproduction {
   std::vector<Experiment> experiments{};
+  std::vector<Finding> findings{};
   std::vector<std::string> notes{};
-  std::vector<Report> reports{};    // one for each scene, or a single one if the paper makes its own scenes
-  std::vector<ReportFile> files{};  // belong to the first report
+  std::vector<Report> reports{};  // one for each scene, or a single one if the paper makes its own scenes
+  std::vector<ReportFile> files{};
 };
 
 }  // namespace sightline::tool

@@ -20,6 +20,7 @@
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
+#include "tools/sightline/reproduce/timed_bake.h"
 #include "tools/sightline/walk/walk_runs.h"
 
 namespace sightline::tool {
@@ -30,7 +31,8 @@ namespace {
 
 constexpr const char* kNavigations[] = {"walk", "random"};
 constexpr std::uint32_t kShortDepth = 4;
-constexpr std::size_t kMinFinds = 100'000;  // look-ups that are timed, at least
+constexpr double kBudgets[] = {10.0, 25.0, 50.0};  // percent of the scene's triangles
+constexpr std::size_t kMinFinds = 100'000;         // look-ups that are timed, at least
 
 // Writes a file, opens it and removes it; the memory map outlives the file's name.
 Result<SightFile> written(const BakedVisibility& baked) {
@@ -79,7 +81,10 @@ Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const 
   effort.occluders = bake->occluders().all;
   ProgressBar bar("baking");
   const Progress progress = [&](double done) { bar.update(done); };
-  Result<BakedVisibility> baked = bake->assemble(bake->bakeAll(parallel_for, progress, &effort.stats));
+  const TimedBake parts = bakeTimed(*bake, parallel_for, progress);
+  effort.stats = parts.stats;
+  effort.part_ms = spreadOf(parts.part_ms);
+  Result<BakedVisibility> baked = bake->assemble(parts.parts);
   if (!baked) {
     return baked.error();
   }
@@ -104,6 +109,35 @@ Leaves leavesOf(const SightFile& file) {
     }
   });
   return leaves;
+}
+
+// Bakes the same scene with budgets that leaves can meet.
+Status tryBudgets(BakeSettings settings, const ParallelFor& parallel_for, Measured& measured) {
+  settings.max_depth = measured.baked.file.record().max_depth;
+  for (const double percent : kBudgets) {
+    BudgetResult result{percent};
+    result.triangles = static_cast<std::uint64_t>(
+        std::max(1.0, 0.01 * percent * static_cast<double>(measured.scene.triangleCount())));
+    settings.triangle_budget = result.triangles;
+    const Result<Baked> baked = bakeScene(measured.scene, settings, parallel_for);
+    if (!baked) {
+      return baked.error();
+    }
+    const Result<SightFacts> facts = factsOf(baked->file);
+    if (!facts) {
+      return facts.error();
+    }
+    const Leaves leaves = leavesOf(baked->file);
+    for (const auto& of_level : leaves.reasons) {
+      result.met += of_level[static_cast<std::size_t>(StopReason::kBudgetMet)];
+    }
+    result.bake_s = baked->effort.bake_s;
+    result.depths = leaves.depths;
+    result.mean_triangles = facts->sizes.triangles.mean;
+    result.file_bytes = baked->file.fileBytes();
+    measured.budgets.push_back(std::move(result));
+  }
+  return Success{};
 }
 
 // Measures look-ups alone: first along the camera path, while sets must be decoded, then with all sets
@@ -175,7 +209,8 @@ Result<std::vector<Walk>> navigationsOf(const SceneAndWalk& input, const Reprodu
 
 Result<Measured> bakeAndMeasure(const std::string& name, const Scene& scene, const std::vector<Walk>& walks,
                                 const ReproduceOptions& options, const ParallelFor& parallel_for) {
-  Result<Baked> baked = bakeScene(scene, settingsFor(scene, walks, options), parallel_for);
+  const BakeSettings settings = settingsFor(scene, walks, options);
+  Result<Baked> baked = bakeScene(scene, settings, parallel_for);
   if (!baked) {
     return baked.error();
   }
@@ -184,8 +219,12 @@ Result<Measured> bakeAndMeasure(const std::string& name, const Scene& scene, con
     return facts.error();
   }
   const SightFile file = baked->file;
-  return Measured{name,   scene,          std::move(*baked),
-                  *facts, leavesOf(file), CullingData(scene, parallel_for, {}, file)};
+  Measured measured{name,   scene,          std::move(*baked),
+                    *facts, leavesOf(file), CullingData(scene, parallel_for, {}, file)};
+  if (const Status tried = tryBudgets(settings, parallel_for, measured); !tried) {
+    return tried.error();
+  }
+  return measured;
 }
 
 void navigateAll(Measured& measured, const std::vector<Walk>& walks, std::vector<std::string>& notes) {
@@ -225,6 +264,7 @@ Result<Reproduction> reproduceSaonaVazquez(const ReproduceOptions& options,
     navigateAll(scenes.emplace_back(std::move(*measured)), walks[i], result.notes);
   }
   result.experiments = tablesOf(scenes);
+  result.findings = findingsOf(scenes);
   for (const Measured& measured : scenes) {
     result.reports.push_back(reportOf(measured, result.experiments, options));
   }

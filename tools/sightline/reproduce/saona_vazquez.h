@@ -19,6 +19,7 @@ struct Effort {
   std::uint32_t occluders = 0;
   double plan_s = 0.0, bake_s = 0.0;
   BakeStats stats{};             // max_sample_bytes is the sum over all threads
+  Spread part_ms{};              // of the parts that are baked one by one
   std::uint64_t peak_bytes = 0;  // the process's peak memory so far
 };
 
@@ -40,6 +41,17 @@ struct Navigation {
   double first_find_us = 0.0, find_ns = 0.0;  // mean time of a look-up: while sets must be decoded, and later
 };
 
+// The leaves of an octree of the same depth with another budget.
+struct BudgetResult {
+  double percent = 0.0;         // of the scene's triangles
+  std::uint64_t triangles = 0;  // the budget
+  double bake_s = 0.0;
+  std::vector<double> depths{};  // of leaves where viewers are
+  std::uint64_t met = 0;         // of those: leaves that meet the budget
+  double mean_triangles = 0.0;   // that may be seen from a leaf
+  std::uint64_t file_bytes = 0;
+};
+
 // All results of one scene.
 struct Measured {
   const std::string& name;
@@ -49,12 +61,14 @@ struct Measured {
   Leaves leaves;
   CullingData data;
   std::vector<Navigation> navigations{};
+  std::vector<BudgetResult> budgets{};
 
   bool drawn() const { return !navigations.front().record.device.empty(); }
 };
 
 // The tables of all experiments, with some rows for each scene.
 std::vector<Experiment> tablesOf(const std::vector<Measured>& scenes);
+std::vector<Finding> findingsOf(const std::vector<Measured>& scenes);
 // The report of one scene. The paper's claims are taken from `experiments`.
 Report reportOf(const Measured& measured, const std::vector<Experiment>& experiments,
                 const ReproduceOptions& options);

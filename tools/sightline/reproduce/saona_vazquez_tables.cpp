@@ -54,6 +54,10 @@ std::vector<Column> withSpread(std::vector<Column> first, int decimals) {
   return first;
 }
 
+double metPercent(const BudgetResult& result) {
+  return 100.0 * static_cast<double>(result.met) / std::max(1.0, static_cast<double>(result.depths.size()));
+}
+
 Experiment leafTable(const std::vector<Measured>& scenes) {
   Experiment experiment{"leaves", "Table 2. Depth of leaves and triangles that may be seen from them",
                         "even from the worst node a significant part of the scene is culled.",
@@ -262,7 +266,11 @@ Experiment bakeTable(const std::vector<Measured>& scenes) {
        {"sample_mib", "samples MiB", 2},
        {"peak_mib", "peak MiB", 1},
        {"file_mib", "file MiB", 3},
-       {"samples_to_file", "samples / file", 1}}};
+       {"samples_to_file", "samples / file", 1},
+       {"parts", "parts", 0},
+       {"part_ms", "part ms, mean", 2},
+       {"part_deviation_ms", "std. dev.", 2},
+       {"part_max_ms", "largest", 2}}};
   for (const Measured& measured : scenes) {
     const Effort& effort = measured.baked.effort;
     const BakeRecord& record = measured.baked.file.record();
@@ -279,7 +287,40 @@ Experiment bakeTable(const std::vector<Measured>& scenes) {
                                {"sample_mib", samples / kMebibyte},
                                {"peak_mib", static_cast<double>(effort.peak_bytes) / kMebibyte},
                                {"file_mib", file / kMebibyte},
-                               {"samples_to_file", samples / file}});
+                               {"samples_to_file", samples / file},
+                               {"parts", effort.part_ms.count},
+                               {"part_ms", effort.part_ms.mean},
+                               {"part_deviation_ms", effort.part_ms.deviation},
+                               {"part_max_ms", effort.part_ms.max}});
+  }
+  return experiment;
+}
+
+Experiment budgetTable(const std::vector<Measured>& scenes) {
+  Experiment experiment{"budgets",
+                        "Leaves of octrees of the same depth with larger budgets",
+                        "on the upper levels leaves meet the budget, and are not divided.",
+                        {{"scene", "scene"},
+                         {"budget_percent", "% of the scene", 0},
+                         {"budget", "budget", 0},
+                         {"leaves", "leaves", 0},
+                         {"met_percent", "% meet it", 1},
+                         {"depth", "depth, mean", 2},
+                         {"triangles", "triangles, mean", 0},
+                         {"bake_s", "bake s", 2},
+                         {"file_mib", "file MiB", 3}}};
+  for (const Measured& measured : scenes) {
+    for (const BudgetResult& result : measured.budgets) {
+      experiment.rows.push_back({{"scene", measured.name},
+                                 {"budget_percent", result.percent},
+                                 {"budget", result.triangles},
+                                 {"leaves", result.depths.size()},
+                                 {"met_percent", metPercent(result)},
+                                 {"depth", spreadOf(result.depths).mean},
+                                 {"triangles", result.mean_triangles},
+                                 {"bake_s", result.bake_s},
+                                 {"file_mib", static_cast<double>(result.file_bytes) / kMebibyte}});
+    }
   }
   return experiment;
 }
@@ -314,8 +355,42 @@ Plot histogramPlot(const Measured& measured) {
 }  // namespace
 
 std::vector<Experiment> tablesOf(const std::vector<Measured>& scenes) {
-  return {leafTable(scenes),    levelTable(scenes), histogramTable(scenes), gridTable(scenes),
-          polygonTable(scenes), rateTable(scenes),  lookUpTable(scenes),    bakeTable(scenes)};
+  return {leafTable(scenes), levelTable(scenes),  histogramTable(scenes),
+          gridTable(scenes), budgetTable(scenes), polygonTable(scenes),
+          rateTable(scenes), lookUpTable(scenes), bakeTable(scenes)};
+}
+
+std::vector<Finding> findingsOf(const std::vector<Measured>& scenes) {
+  Finding budgets{"leaves meet the budget, more of them the larger it is", true, ""};
+  Finding sent{"fewer triangles are sent in a frame than are weakly visible from a leaf", true, ""};
+  Finding pieces{"samples are the larger part of a bake's memory; the finished octree is far smaller", true,
+                 ""};
+  for (const Measured& measured : scenes) {
+    for (std::size_t i = 0; i < measured.budgets.size(); ++i) {
+      const BudgetResult& result = measured.budgets[i];
+      budgets.agrees = budgets.agrees && result.met > 0 &&
+                       (i == 0 || metPercent(result) >= metPercent(measured.budgets[i - 1]));
+      budgets.text += fmt::format("{}{:.0f} % of {} leaves with a budget of {:.0f} % of the scene",
+                                  budgets.text.empty() ? "" : ", ", metPercent(result), result.depths.size(),
+                                  result.percent);
+    }
+    for (const Navigation& navigation : measured.navigations) {
+      const double triangles = navigation.record.runs[1].mean(
+          [](const FrameRecord& frame) { return static_cast<double>(frame.triangles); });
+      sent.agrees = sent.agrees && triangles < measured.facts.sizes.triangles.mean;
+      sent.text +=
+          fmt::format("{}{:.0f} on {}", sent.text.empty() ? "" : ", ", triangles, navigation.walk.path.name);
+    }
+    sent.text += fmt::format(", of {:.0f} that are visible from a leaf of {}",
+                             measured.facts.sizes.triangles.mean, measured.name);
+    const auto samples = static_cast<double>(measured.baked.effort.stats.max_sample_bytes);
+    const auto file = static_cast<double>(measured.baked.file.fileBytes());
+    pieces.agrees = pieces.agrees && samples > file;
+    pieces.text +=
+        fmt::format("{}{:.1f} MiB of samples, {:.2f} MiB of file in {}", pieces.text.empty() ? "" : "; ",
+                    samples / kMebibyte, file / kMebibyte, measured.name);
+  }
+  return {budgets, sent, pieces};
 }
 
 Report reportOf(const Measured& measured, const std::vector<Experiment>& experiments,

@@ -45,6 +45,15 @@ struct WalkRun {
     }
     return frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
   }
+  // The mean of a statistic over all frames; 0 if the setting has none of this name.
+  double meanOf(std::string_view group, std::string_view name) const {
+    for (std::size_t i = 0; i < statistics.size(); ++i) {
+      if (statistics[i].group == group && statistics[i].name == name) {
+        return mean([i](const FrameRecord& frame) { return frame.statistics[i]; });
+      }
+    }
+    return 0.0;
+  }
   // The largest value of a statistic in any frame.
   std::uint64_t peak(std::string_view group, std::string_view name) const {
     std::uint64_t most = 0;
