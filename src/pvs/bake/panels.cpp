@@ -72,7 +72,7 @@ class PanelMaker {
   const Vec3d& startOf(std::uint32_t half_edge) const { return panels_.vertices[panels_.sheets[half_edge]]; }
 
   void divideTriangles(const SceneView& scene, const ParallelFor& parallel_for) {
-    const occluders::OpaqueTriangles given = occluders::opaqueTriangles(scene);
+    const occluders::OpaqueTriangles given = occluders::opaqueTriangles(scene, parallel_for);
     std::vector<Vec3d> vertices;
     vertices.reserve(given.vertices.size());
     for (const Vec3f& vertex : given.vertices) {
