@@ -117,7 +117,7 @@ void measure(const ToothpickOptions& options, bool brief) {
   const MovingScene scene = makeToothpicks(options);
   LayerSorter depth_first = makeSorter(scene, {});
   LayerSorter incremental = makeSorter(scene, {.sort = incrementalSort()});
-  LayerSorter all_arcs = makeSorter(scene, {.all_arcs = true});
+  LayerSorter all_arcs = makeSorter(scene, {.arcs = LayerArcs::kAll});
   std::vector<Mat4> poses(scene.parts.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   std::vector<double> first_us, depth_first_us, incremental_us, pairs_us, distance_us;
