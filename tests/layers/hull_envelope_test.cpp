@@ -40,7 +40,7 @@ TEST(HullEnvelope, IsNowhereLowerThanTheHull) {
     Random random(seed);
     const std::vector<Vec3d> points = randomPoints(random, seed);
     const ConvexHull hull = hullOf(points);
-    const HullEnvelope around = envelopeOf(hull);
+    const PlacedEnvelope around(envelopeOf(hull), {});
     for (int i = 0; i < 40; ++i) {
       const Vec3d direction = i == 0 ? Vec3d{0, 1, 0} : random.direction();
       double highest = dot(direction, points[0]), lowest = highest;
@@ -49,7 +49,9 @@ TEST(HullEnvelope, IsNowhereLowerThanTheHull) {
         lowest = std::min(lowest, dot(direction, point));
       }
       const double height = around.height(direction);
-      EXPECT_GE(height, highest - 0x1p-45 * around.reach) << "seed " << seed;
+      EXPECT_GE(height, highest - 0x1p-45 * around.reach()) << "seed " << seed;
+      EXPECT_NEAR(dot(around.farthest(direction), direction), height, 1e-12 * around.reach())
+          << "seed " << seed;
       tight += height - highest < 0.5 * (highest - lowest) ? 1 : 0;
     }
   }
@@ -66,7 +68,8 @@ std::vector<Vec3d> boxAround(const Vec3d& middle, double half) {
 
 // Tests two sets with a witness that they were disjoint along the x axis.
 Intersection askAgain(ConvexSet first, ConvexSet second) {
-  const HullEnvelope around_first = envelopeOf(*first.hull), around_second = envelopeOf(*second.hull);
+  const PlacedEnvelope around_first(envelopeOf(*first.hull), first.placement),
+      around_second(envelopeOf(*second.hull), second.placement);
   first.around = &around_first;
   second.around = &around_second;
   PairWitness witness;
@@ -79,7 +82,7 @@ Intersection askAgain(ConvexSet first, ConvexSet second) {
 
 TEST(HullEnvelope, SaysNothingOfAPoint) {
   const ConvexHull point = hullOf({{5, 0, 0}}), box = hullOf(boxAround({5, 0, 0}, 1.0));
-  EXPECT_TRUE(std::isnan(envelopeOf(point).height({1, 0, 0})));
+  EXPECT_TRUE(std::isnan(PlacedEnvelope(envelopeOf(point), {}).height({1, 0, 0})));
   for (const auto kind : {ConvexSet::Kind::kHull, ConvexSet::Kind::kWithEye, ConvexSet::Kind::kSwept}) {
     ConvexSet in_the_box{&point, {}, kind};
     in_the_box.eye_or_sweep = {-3.0, 0.0, 0.0};
@@ -110,7 +113,7 @@ TEST(HullEnvelope, LetsNoPairBeDisjointThatIsNot) {
     Random random(seed);
     const ConvexHull first = hullOf(randomPoints(random, 4 * seed + 2)),
                      second = hullOf(randomPoints(random, 4 * seed + 3));
-    const HullEnvelope around_first = envelopeOf(first), around_second = envelopeOf(second);
+    const HullEnvelope envelope_first = envelopeOf(first), envelope_second = envelopeOf(second);
     const double reach = first.radius + second.radius;
     PairWitness witness;
     PairCounts counts;
@@ -123,6 +126,8 @@ TEST(HullEnvelope, LetsNoPairBeDisjointThatIsNot) {
       b.eye_or_sweep = {0.0, reach * 3.0, 0.0};
       PairWitness cold;
       const Intersection exact = testIntersection(a, b, cold, counts);
+      const PlacedEnvelope around_first(envelope_first, a.placement),
+          around_second(envelope_second, b.placement);
       a.around = &around_first;
       b.around = &around_second;
       const Intersection quick = testIntersection(a, b, witness, counts);

@@ -42,14 +42,17 @@ double positiveRoot(double square) {
 
 }  // namespace
 
-HullEnvelope envelopeOf(const ConvexHull& hull) {
+HullEnvelope envelopeOf(const ConvexHull& hull, const HullBox& box) {
+  HullEnvelope around;
   if (hull.vertices.empty() || !(hull.radius > kMinRadius) || !std::isfinite(hull.radius)) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     constexpr Vec3d kNowhere(kNone, kNone, kNone);
-    return {kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNone};
+    around.round_centre = around.box_centre = kNowhere;
+    around.round_axes = around.box_axes = {kNowhere, kNowhere, kNowhere};
+    around.reach = kNone;
+    return around;
   }
-  HullEnvelope around;
-  around.centre = hull.centre;
+  around.round_centre = hull.centre;
   // Only the shape counts, so it is scaled to a trace of about 1 at most.
   const Covariance sum = covarianceOf(hull);
   const double n = static_cast<double>(hull.vertices.size());
@@ -70,19 +73,15 @@ HullEnvelope envelopeOf(const ConvexHull& hull) {
   const double shortest = lxx * lyy * lzz / square;
   const double ball = hull.slack / hull.radius + kRounding;
   const double size = hull.radius * (std::sqrt(longest) * (1.0 + kRounding) + ball / shortest);
-  around.a = Vec3d{lxx, lyx, lzx} * size;
-  around.b = Vec3d{0.0, lyy, lzy} * size;
-  around.c = Vec3d{0.0, 0.0, lzz} * size;
-  Vec3d low = hull.vertices.front(), high = low;
-  for (const Vec3d& vertex : hull.vertices) {
-    low = min(low, vertex);
-    high = max(high, vertex);
-  }
+  around.round_axes = {Vec3d{lxx, lyx, lzx} * size, Vec3d{0.0, lyy, lzy} * size, Vec3d{0.0, 0.0, lzz} * size};
+  // Also far above the rounding of the box's axes, which are orthonormal up to 1e-10.
   const double more = hull.slack + kRounding * hull.radius;
-  around.box_centre = (low + high) * 0.5;
-  around.box_half = (high - low) * 0.5 + Vec3d(more, more, more);
-  around.reach = l1Norm(hull.centre) + l1Norm(around.a) + l1Norm(around.b) + l1Norm(around.c) +
-                 l1Norm(around.box_centre) + l1Norm(around.box_half);
+  around.box_centre = box.centre;
+  around.reach = l1Norm(around.round_centre) + l1Norm(around.box_centre);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    around.box_axes[axis] = box.axes[axis] * (box.half[axis] + more);
+    around.reach += l1Norm(around.round_axes[axis]) + l1Norm(around.box_axes[axis]);
+  }
   return around;
 }
 

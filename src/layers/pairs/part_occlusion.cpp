@@ -5,6 +5,7 @@
 
 #include "sightline/geometry/tolerance.h"
 #include "src/layers/hull/support.h"
+#include "src/layers/pairs/envelope_pair.h"
 #include "src/layers/pairs/pair_eye.h"
 
 namespace sightline::layers {
@@ -44,6 +45,8 @@ void PartOcclusion::beginFrame(const View& view, const PartStore& parts, const E
   rules_ = &rules;
   table_.beginFrame(expiry);
   ++frame_;
+  expiry_ = expiry;
+  known_colliders_.resize(parts.parts(), 0);
   rule_orders_.resize(rules.numbers());
   collisions_.clear();
   collisions_are_sorted_ = true;
@@ -147,19 +150,28 @@ bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& 
 
 // Precondition: a < b.
 bool PartOcclusion::hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
-  PairWitness& witness = table_.use(i, j, PairTable::Question::kIntersection);
-  return testIntersection(placed(a, i, contact_tolerance_), placed(b, j, contact_tolerance_), witness,
-                          counts_) != Intersection::kDisjoint;
+  const auto [witness, again] = table_.use(i, j, PairTable::Question::kIntersection);
+  if (!again) {
+    testIntersection(placed(a, i, contact_tolerance_, eroded_first_),
+                     placed(b, j, contact_tolerance_, eroded_second_), witness, counts_);
+  }
+  return !witness.disjoint;
 }
 
 void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
   collisions_.push_back({a, b});
+  for (const std::uint32_t part : {a, b}) {
+    known_colliders_[part] = frame_ + expiry_;
+  }
   collisions_are_sorted_ = false;
 }
 
 // Whether the parts intersected at their last test and do so now. Then each occludes the other, and one test
 // serves both directions.
 bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
+  if (!mayBeKnownToCollide(front) || !mayBeKnownToCollide(back)) {
+    return false;
+  }
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
   const bool intersect = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
     const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kIntersection);
@@ -186,21 +198,49 @@ bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
   return intersect;
 }
 
+// Whether the direction that separated the hull in front from the set that the hull behind sweeps to the eye
+// still does, by their envelopes and with some room.
+bool PartOcclusion::stillApart(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
+                               const PairWitness& witness, double room) const {
+  if (!witness.disjoint || !isUnit(witness.direction) || parts_->around.empty()) {
+    return false;
+  }
+  const Vec3d& direction = witness.direction;
+  const Vec3d& origin = parts_->placements[front].origin;
+  const double highest_of_front = outerHeight(parts_->around[i], Vec3d(), direction);
+  const double highest_of_back =
+      outerHeight(parts_->around[j], parts_->placements[back].origin - origin, -direction);
+  // An eye at infinity is on one side of the plane.
+  const bool eye_is_apart = view_.orthographic
+                                ? outerHeight(view_.forward, direction) <= 0.0
+                                : highest_of_front + outerHeight(view_.eye - origin, -direction) < -room;
+  return eye_is_apart && highest_of_front + highest_of_back < -room;
+}
+
 // Whether the hull in front intersects the set that the hull behind sweeps to the eye, both made smaller by
 // half the erosion.
 bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
                                  double erosion) {
-  const ConvexSet in_front = placed(front, i, erosion);
-  ConvexSet swept = placed(back, j, erosion);
+  const auto [witness, again] = table_.use(i, j, PairTable::Question::kOcclusion);
+  if (again) {
+    return !witness.disjoint;
+  }
+  if (stillApart(front, i, back, j, witness, erosion)) {
+    ++counts_.questions;
+    ++counts_.chung_steps;
+    return false;
+  }
+  const ConvexSet in_front = placed(front, i, erosion, eroded_first_);
+  ConvexSet swept = placed(back, j, erosion, eroded_second_);
   if (view_.orthographic) {
     if (!sweepPast(in_front, swept)) {
+      witness.disjoint = true;
       return false;
     }
   } else {
     swept.kind = ConvexSet::Kind::kWithEye;
     swept.eye_or_sweep = view_.eye;
   }
-  PairWitness& witness = table_.use(i, j, PairTable::Question::kOcclusion);
   return testIntersection(in_front, swept, witness, counts_) != Intersection::kDisjoint;
 }
 
@@ -277,14 +317,26 @@ bool PartOcclusion::contains(std::uint32_t shell, std::uint32_t part) const {
   return true;
 }
 
-// erosion: the hull is made smaller by half of this.
-ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance, double erosion) const {
+ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance) const {
   ConvexSet set;
-  const std::uint32_t hull = parts_->part_hulls[instance];
-  set.hull = &parts_->hulls[hull];
-  set.around = hull < parts_->envelopes.size() ? &parts_->envelopes[hull] : nullptr;
-  set.placement = erosion > 0.0 ? eroded(parts_->placements[part], parts_->boxes[hull], 0.5 * erosion)
-                                : parts_->placements[part];
+  set.hull = &parts_->hulls[parts_->part_hulls[instance]];
+  set.around = instance < parts_->around.size() ? &parts_->around[instance] : nullptr;
+  set.placement = parts_->placements[part];
+  return set;
+}
+
+// erosion: the hull is made smaller by half of this. own: receives the envelope of a smaller hull.
+ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance, double erosion,
+                                PlacedEnvelope& own) const {
+  ConvexSet set = placed(part, instance);
+  if (erosion > 0.0) {
+    const std::uint32_t hull = parts_->part_hulls[instance];
+    set.placement = eroded(set.placement, parts_->boxes[hull], 0.5 * erosion);
+    if (set.around != nullptr) {
+      own = PlacedEnvelope(parts_->envelopes[hull], set.placement);
+      set.around = &own;
+    }
+  }
   return set;
 }
 

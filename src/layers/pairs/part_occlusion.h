@@ -56,9 +56,12 @@ class PartOcclusion {
   bool anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const;
   bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
                     double erosion);
+  bool stillApart(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
+                  const PairWitness& witness, double room) const;
   bool hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
   bool stillCollide(std::uint32_t front, std::uint32_t back);
   bool collide(std::uint32_t front, std::uint32_t back);
+  bool mayBeKnownToCollide(std::uint32_t part) const { return known_colliders_[part] >= frame_; }
   void addCollision(std::uint32_t a, std::uint32_t b);
   bool sweepPast(const ConvexSet& front, ConvexSet& back) const;
 
@@ -66,7 +69,8 @@ class PartOcclusion {
   Verdict containment(std::uint32_t front, std::uint32_t back) const;
   bool contains(std::uint32_t shell, std::uint32_t part) const;
 
-  ConvexSet placed(std::uint32_t part, std::uint32_t instance, double erosion = 0.0) const;
+  ConvexSet placed(std::uint32_t part, std::uint32_t instance) const;
+  ConvexSet placed(std::uint32_t part, std::uint32_t instance, double erosion, PlacedEnvelope& own) const;
 
   double contact_tolerance_;
   View view_;
@@ -76,6 +80,7 @@ class PartOcclusion {
   const PairRules* rules_ = nullptr;
 
   PairTable table_;
+  PlacedEnvelope eroded_first_, eroded_second_;  // scratch for the pair that is being tested
   struct RuleOrder {
     std::uint64_t frame = 0;
     PairOrder order;
@@ -83,6 +88,9 @@ class PartOcclusion {
   std::vector<RuleOrder> rule_orders_;  // one per rule: its last order and the frame of it
   std::uint64_t frame_ = 0;
   std::vector<Arc> collisions_;
+  // One per part: the last frame in which the table may know of a collision.
+  std::vector<std::uint64_t> known_colliders_;
+  std::uint32_t expiry_ = 0;
   bool collisions_are_sorted_ = true;
 
   std::uint64_t pair_queries_ = 0;
