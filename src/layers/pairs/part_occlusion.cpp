@@ -87,7 +87,7 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
   const double erosion = rule == nullptr && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
                              ? contact_tolerance_
                              : 0.0;
-  const bool occludes = anyHullPair(front, back, [&](std::uint32_t i, std::uint32_t j) {
+  const bool occludes = anyHullPair(front, back, Reach::kToTheEye, [&](std::uint32_t i, std::uint32_t j) {
     return hullOccludes(front, i, back, j, erosion);
   });
   return occludes &&
@@ -137,10 +137,40 @@ bool PartOcclusion::spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) cons
 
 // Whether test(i, j) is true for some pair of instances of the two parts.
 template <typename Test>
-bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const {
+bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Reach reach, Test&& test) {
+  if (hull_extents_ != nullptr && (parts_->hullsOf(front).size() > 1 || parts_->hullsOf(back).size() > 1)) {
+    return anyOverlappingHullPair(front, back, reach, test);
+  }
   for (std::uint32_t i = parts_->first_hull[front]; i < parts_->first_hull[front + 1]; ++i) {
     for (std::uint32_t j = parts_->first_hull[back]; j < parts_->first_hull[back + 1]; ++j) {
       if (test(i, j)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Compares each hull with the whole other part first, so that little is left of parts that hardly overlap.
+template <typename Test>
+bool PartOcclusion::anyOverlappingHullPair(std::uint32_t front, std::uint32_t back, Reach reach,
+                                           Test&& test) {
+  const PartExtents& extents = *hull_extents_;
+  const bool to_the_eye = reach == Reach::kToTheEye;
+  const Extent whole = to_the_eye ? extents.query(back) : extentOf(extents.table(), back);
+  front_hulls_.clear();
+  for (std::uint32_t i = parts_->first_hull[front]; i < parts_->first_hull[front + 1]; ++i) {
+    if (overlaps(extents.hulls(), whole, i)) {
+      front_hulls_.push_back(i);
+    }
+  }
+  for (std::uint32_t j = parts_->first_hull[back]; j < parts_->first_hull[back + 1]; ++j) {
+    const Extent query = to_the_eye ? extents.queryOfHull(j) : extentOf(extents.hulls(), j);
+    if (!overlaps(extents.table(), query, front)) {
+      continue;
+    }
+    for (const std::uint32_t i : front_hulls_) {
+      if (overlaps(extents.hulls(), query, i) && test(i, j)) {
         return true;
       }
     }
@@ -173,7 +203,7 @@ bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
     return false;
   }
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
-  const bool intersect = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
+  const bool intersect = anyHullPair(low, high, Reach::kOwn, [&](std::uint32_t i, std::uint32_t j) {
     const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kIntersection);
     return kept.witness != nullptr && !kept.witness->disjoint &&
            (kept.used_now || hullsIntersect(low, i, high, j));
@@ -188,10 +218,10 @@ bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
 // collision of a tested pair is missed.
 bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
-  const bool intersect =
-      spatialExtentsOverlap(low, high) && anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
-        return hullsIntersect(low, i, high, j);
-      });
+  const bool intersect = spatialExtentsOverlap(low, high) &&
+                         anyHullPair(low, high, Reach::kOwn, [&](std::uint32_t i, std::uint32_t j) {
+                           return hullsIntersect(low, i, high, j);
+                         });
   if (intersect) {
     addCollision(low, high);
   }

@@ -71,7 +71,7 @@ struct LayerSorter::Impl {
   explicit Impl(LayerSettings given)
       : settings(checked(std::move(given))),
         extents(settings.extents),
-        occlusion(settings.contact_tolerance),
+        occlusion(settings.contact_tolerance, &extents),
         source(searchOf(settings), settings.exact, extents, occlusion),
         sort_algorithm(sortOf(settings)) {}
 
