@@ -20,11 +20,11 @@ using Kind = ConvexSet::Kind;
 struct Whole {
   Points points;
   ConvexHull hull;
-  PlacedEnvelope around;
+  HullEnvelope around;
   ConvexSet set;
 
   explicit Whole(const Points& given, Kind kind = Kind::kHull, const Vec3d& eye_or_sweep = {})
-      : points(given), hull(*buildHull(given)), around(envelopeOf(hull), {}) {
+      : points(given), hull(*buildHull(given)), around(hull, boxOf(hull)) {
     set = {&hull, {}, kind, eye_or_sweep, &around};
     const std::size_t count = points.size();
     if (kind == Kind::kWithEye) {

@@ -20,6 +20,10 @@ ConvexHull hullOf(const std::vector<Vec3d>& points) {
   return std::move(*hull);
 }
 
+HullEnvelope envelopeOf(const ConvexHull& hull) {
+  return {hull, boxOf(hull)};
+}
+
 // A random hull: solid, flat, a segment or a point; long or round; anywhere.
 std::vector<Vec3d> randomPoints(Random& random, std::uint64_t kind) {
   const double thin = kind % 4 == 0 ? 0.0 : kind % 4 == 1 ? 1e-3 : 1.0, thinner = kind % 8 < 4 ? thin : 0.0;
@@ -40,7 +44,7 @@ TEST(HullEnvelope, IsNowhereLowerThanTheHull) {
     Random random(seed);
     const std::vector<Vec3d> points = randomPoints(random, seed);
     const ConvexHull hull = hullOf(points);
-    const PlacedEnvelope around(envelopeOf(hull), {});
+    const HullEnvelope around = envelopeOf(hull);
     for (int i = 0; i < 40; ++i) {
       const Vec3d direction = i == 0 ? Vec3d{0, 1, 0} : random.direction();
       double highest = dot(direction, points[0]), lowest = highest;
@@ -68,8 +72,7 @@ std::vector<Vec3d> boxAround(const Vec3d& middle, double half) {
 
 // Tests two sets with a witness that they were disjoint along the x axis.
 Intersection askAgain(ConvexSet first, ConvexSet second) {
-  const PlacedEnvelope around_first(envelopeOf(*first.hull), first.placement),
-      around_second(envelopeOf(*second.hull), second.placement);
+  const HullEnvelope around_first = envelopeOf(*first.hull), around_second = envelopeOf(*second.hull);
   first.around = &around_first;
   second.around = &around_second;
   PairWitness witness;
@@ -82,7 +85,7 @@ Intersection askAgain(ConvexSet first, ConvexSet second) {
 
 TEST(HullEnvelope, SaysNothingOfAPoint) {
   const ConvexHull point = hullOf({{5, 0, 0}}), box = hullOf(boxAround({5, 0, 0}, 1.0));
-  EXPECT_TRUE(std::isnan(PlacedEnvelope(envelopeOf(point), {}).height({1, 0, 0})));
+  EXPECT_TRUE(std::isnan(envelopeOf(point).height({1, 0, 0})));
   for (const auto kind : {ConvexSet::Kind::kHull, ConvexSet::Kind::kWithEye, ConvexSet::Kind::kSwept}) {
     ConvexSet in_the_box{&point, {}, kind};
     in_the_box.eye_or_sweep = {-3.0, 0.0, 0.0};
@@ -113,7 +116,7 @@ TEST(HullEnvelope, LetsNoPairBeDisjointThatIsNot) {
     Random random(seed);
     const ConvexHull first = hullOf(randomPoints(random, 4 * seed + 2)),
                      second = hullOf(randomPoints(random, 4 * seed + 3));
-    const HullEnvelope envelope_first = envelopeOf(first), envelope_second = envelopeOf(second);
+    const HullEnvelope around_first = envelopeOf(first), around_second = envelopeOf(second);
     const double reach = first.radius + second.radius;
     PairWitness witness;
     PairCounts counts;
@@ -126,8 +129,6 @@ TEST(HullEnvelope, LetsNoPairBeDisjointThatIsNot) {
       b.eye_or_sweep = {0.0, reach * 3.0, 0.0};
       PairWitness cold;
       const Intersection exact = testIntersection(a, b, cold, counts);
-      const PlacedEnvelope around_first(envelope_first, a.placement),
-          around_second(envelope_second, b.placement);
       a.around = &around_first;
       b.around = &around_second;
       const Intersection quick = testIntersection(a, b, witness, counts);

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "sightline/layers/hull.h"
-#include "src/layers/pairs/placed_envelope.h"
+#include "src/layers/hull/hull_envelope.h"
 #include "src/layers/pairs/placement.h"
 
 namespace sightline::layers {
@@ -20,7 +20,7 @@ struct ConvexSet {
   Placement placement;
   Kind kind = Kind::kHull;
   Vec3d eye_or_sweep;  // world space: the eye, or a segment long enough to pass the other set
-  const PlacedEnvelope* around = nullptr;  // the hull's envelope; null: disjoint pairs take longer
+  const HullEnvelope* around = nullptr;  // the hull's envelope; null: disjoint pairs take longer
 };
 
 enum class Intersection : std::uint8_t {

@@ -19,7 +19,9 @@ constexpr int kMoreTries = 1;
 
 // The point of the set's envelope that is farthest along a direction, above a point.
 Vec3d outerPoint(const ConvexSet& set, const Vec3d& direction, const Vec3d& above) {
-  const Vec3d point = set.around->farthest(direction) + (set.placement.origin - above);
+  const Placement& p = set.placement;
+  const Vec3d far = set.around->farthest(p.toHull(direction));
+  const Vec3d point = p.x * far.x + p.y * far.y + p.z * far.z + (p.origin - above);
   if (set.kind == ConvexSet::Kind::kWithEye) {
     const Vec3d eye = set.eye_or_sweep - above;
     return dot(direction, eye) > dot(direction, point) ? eye : point;
@@ -49,7 +51,7 @@ Vec3d nearestOnSegment(const Vec3d& p, const Vec3d& q) {
 }  // namespace
 
 double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above) {
-  double height = outerHeight(*set.around, set.placement.origin - above, direction);
+  double height = outerHeight(*set.around, set.placement, set.placement.origin - above, direction);
   if (set.kind == ConvexSet::Kind::kWithEye) {
     const double of_eye = outerHeight(set.eye_or_sweep - above, direction);
     height = std::isnan(height) || of_eye <= height ? height : of_eye;
@@ -61,9 +63,7 @@ double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& ab
 }
 
 Vec3d directionBetween(const ConvexSet& first, const ConvexSet& second) {
-  const auto middleOf = [](const ConvexSet& set) {
-    return set.placement.origin + set.around->vector(PlacedEnvelope::kRoundCentre);
-  };
+  const auto middleOf = [](const ConvexSet& set) { return set.placement.point(set.around->centre()); };
   const Vec3d from = middleOf(first), to = middleOf(second) - from;
   Vec3d nearest = to;
   if (second.kind == ConvexSet::Kind::kWithEye) {

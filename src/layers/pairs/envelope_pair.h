@@ -14,11 +14,13 @@ namespace sightline::layers {
 // An upper bound of the heights of a hull's points along a direction, whose length exceeds 1 by no more than
 // rounding, by the hull's envelope. NaN or infinite if any input is not finite.
 // offset: from the point above which heights are measured to the origin of the hull's placement.
-inline double outerHeight(const PlacedEnvelope& around, const Vec3d& offset, const Vec3d& direction) {
+inline double outerHeight(const HullEnvelope& around, const Placement& placement, const Vec3d& offset,
+                          const Vec3d& direction) {
   // For sums of numbers whose magnitudes add up to m, 2^-45 m is far above the rounding error, and the last
   // number above what underflows.
-  return around.height(direction) + dot(direction, offset) + 0x1p-45 * (around.reach() + l1Norm(offset)) +
-         1e-150;
+  const double stretch = l1Norm(placement.x) + l1Norm(placement.y) + l1Norm(placement.z);
+  return around.height(placement.toHull(direction)) + dot(direction, offset) +
+         0x1p-45 * (stretch * around.reach() + l1Norm(offset)) + 1e-150;
 }
 // The same for a single point.
 inline double outerHeight(const Vec3d& point, const Vec3d& direction) {

@@ -80,18 +80,26 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
     }
   }
 
-  ++pair_queries_;
-  if (rule == nullptr && stillCollide(front, back)) {
+  const std::uint64_t before = counts_.questions;
+  const bool occludes = hullsOcclude(front, back, rule == nullptr);
+  pair_queries_ += counts_.questions != before ? 1 : 0;
+  return occludes;
+}
+
+// Whether the hulls of part `front` occlude those of part `back`. Without a rule, contacts and containers
+// count.
+bool PartOcclusion::hullsOcclude(std::uint32_t front, std::uint32_t back, bool without_rule) {
+  if (without_rule && stillCollide(front, back)) {
     return containment(front, back) != Verdict::kDoesNot;
   }
-  const double erosion = rule == nullptr && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
+  const double erosion = without_rule && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
                              ? contact_tolerance_
                              : 0.0;
   const bool occludes = anyHullPair(front, back, Reach::kToTheEye, [&](std::uint32_t i, std::uint32_t j) {
     return hullOccludes(front, i, back, j, erosion);
   });
   return occludes &&
-         (rule != nullptr || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
+         (!without_rule || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
 }
 
 std::span<const Arc> PartOcclusion::collisions() {
@@ -182,8 +190,7 @@ bool PartOcclusion::anyOverlappingHullPair(std::uint32_t front, std::uint32_t ba
 bool PartOcclusion::hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
   const auto [witness, again] = table_.use(i, j, PairTable::Question::kIntersection);
   if (!again) {
-    testIntersection(placed(a, i, contact_tolerance_, eroded_first_),
-                     placed(b, j, contact_tolerance_, eroded_second_), witness, counts_);
+    testIntersection(placed(a, i, contact_tolerance_), placed(b, j, contact_tolerance_), witness, counts_);
   }
   return !witness.disjoint;
 }
@@ -232,14 +239,16 @@ bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
 // still does, by their envelopes and with some room.
 bool PartOcclusion::stillApart(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
                                const PairWitness& witness, double room) const {
-  if (!witness.disjoint || !isUnit(witness.direction) || parts_->around.empty()) {
+  if (!witness.disjoint || !isUnit(witness.direction) || parts_->envelopes.empty()) {
     return false;
   }
   const Vec3d& direction = witness.direction;
-  const Vec3d& origin = parts_->placements[front].origin;
-  const double highest_of_front = outerHeight(parts_->around[i], Vec3d(), direction);
+  const Placement &of_front = parts_->placements[front], &of_back = parts_->placements[back];
+  const Vec3d& origin = of_front.origin;
+  const double highest_of_front =
+      outerHeight(parts_->envelopes[parts_->part_hulls[i]], of_front, Vec3d(), direction);
   const double highest_of_back =
-      outerHeight(parts_->around[j], parts_->placements[back].origin - origin, -direction);
+      outerHeight(parts_->envelopes[parts_->part_hulls[j]], of_back, of_back.origin - origin, -direction);
   // An eye at infinity is on one side of the plane.
   const bool eye_is_apart = view_.orthographic
                                 ? outerHeight(view_.forward, direction) <= 0.0
@@ -260,10 +269,11 @@ bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint
     ++counts_.chung_steps;
     return false;
   }
-  const ConvexSet in_front = placed(front, i, erosion, eroded_first_);
-  ConvexSet swept = placed(back, j, erosion, eroded_second_);
+  const ConvexSet in_front = placed(front, i, erosion);
+  ConvexSet swept = placed(back, j, erosion);
   if (view_.orthographic) {
     if (!sweepPast(in_front, swept)) {
+      ++counts_.questions;
       witness.disjoint = true;
       return false;
     }
@@ -347,26 +357,14 @@ bool PartOcclusion::contains(std::uint32_t shell, std::uint32_t part) const {
   return true;
 }
 
-ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance) const {
+// erosion: the hull is made smaller by half of this.
+ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance, double erosion) const {
   ConvexSet set;
-  set.hull = &parts_->hulls[parts_->part_hulls[instance]];
-  set.around = instance < parts_->around.size() ? &parts_->around[instance] : nullptr;
-  set.placement = parts_->placements[part];
-  return set;
-}
-
-// erosion: the hull is made smaller by half of this. own: receives the envelope of a smaller hull.
-ConvexSet PartOcclusion::placed(std::uint32_t part, std::uint32_t instance, double erosion,
-                                PlacedEnvelope& own) const {
-  ConvexSet set = placed(part, instance);
-  if (erosion > 0.0) {
-    const std::uint32_t hull = parts_->part_hulls[instance];
-    set.placement = eroded(set.placement, parts_->boxes[hull], 0.5 * erosion);
-    if (set.around != nullptr) {
-      own = PlacedEnvelope(parts_->envelopes[hull], set.placement);
-      set.around = &own;
-    }
-  }
+  const std::uint32_t hull = parts_->part_hulls[instance];
+  set.hull = &parts_->hulls[hull];
+  set.around = hull < parts_->envelopes.size() ? &parts_->envelopes[hull] : nullptr;
+  set.placement = erosion > 0.0 ? eroded(parts_->placements[part], parts_->boxes[hull], 0.5 * erosion)
+                                : parts_->placements[part];
   return set;
 }
 

@@ -62,6 +62,7 @@ class PartOcclusion {
   bool anyHullPair(std::uint32_t front, std::uint32_t back, Reach reach, Test&& test);
   template <typename Test>
   bool anyOverlappingHullPair(std::uint32_t front, std::uint32_t back, Reach reach, Test&& test);
+  bool hullsOcclude(std::uint32_t front, std::uint32_t back, bool without_rule);
   bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
                     double erosion);
   bool stillApart(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
@@ -77,8 +78,7 @@ class PartOcclusion {
   Verdict containment(std::uint32_t front, std::uint32_t back) const;
   bool contains(std::uint32_t shell, std::uint32_t part) const;
 
-  ConvexSet placed(std::uint32_t part, std::uint32_t instance) const;
-  ConvexSet placed(std::uint32_t part, std::uint32_t instance, double erosion, PlacedEnvelope& own) const;
+  ConvexSet placed(std::uint32_t part, std::uint32_t instance, double erosion = 0.0) const;
 
   double contact_tolerance_;
   const PartExtents* hull_extents_;
@@ -89,8 +89,7 @@ class PartOcclusion {
   const PairRules* rules_ = nullptr;
 
   PairTable table_;
-  std::vector<std::uint32_t> front_hulls_;       // scratch for anyOverlappingHullPair()
-  PlacedEnvelope eroded_first_, eroded_second_;  // scratch for the pair that is being tested
+  std::vector<std::uint32_t> front_hulls_;  // scratch for anyOverlappingHullPair()
   struct RuleOrder {
     std::uint64_t frame = 0;
     PairOrder order;

@@ -10,19 +10,17 @@
 #include "sightline/layers/hull.h"
 #include "src/layers/hull/hull_box.h"
 #include "src/layers/hull/hull_envelope.h"
-#include "src/layers/pairs/placed_envelope.h"
 #include "src/layers/pairs/placement.h"
 
 namespace sightline::layers {
 
 struct PartStore {
   std::vector<ConvexHull> hulls;
-  std::vector<HullEnvelope> envelopes;       // one per hull, or empty with `around`
+  std::vector<HullEnvelope> envelopes;       // one per hull, or empty
   std::vector<HullBox> boxes;                // one per hull, needed with a contact tolerance
   std::vector<std::uint32_t> first_hull{0};  // parts + 1 elements: where each part begins in part_hulls
   std::vector<std::uint32_t> part_hulls;     // indices of hulls; an index of this column is an "instance"
   std::vector<Placement> placements;         // one per part
-  std::vector<PlacedEnvelope> around;        // one per instance, or empty
   std::vector<std::uint8_t> finite;  // one per part: its placement is finite and its hulls have vertices
 
   std::size_t parts() const { return placements.size(); }

@@ -80,7 +80,6 @@ struct LayerSorter::Impl {
   bool isEnabled(std::uint32_t part) const { return enabled[part] != 0 && removed[part] == 0; }
   bool areParts(PartId first, PartId second) const { return isPart(first) && isPart(second); }
   std::uint32_t makeRoom(std::size_t hulls);
-  void placeEnvelopes();
   void chooseParts(const View& view);
   void place(const View& view);
   void sort();
@@ -126,7 +125,7 @@ LayerSorter& LayerSorter::operator=(LayerSorter&&) noexcept = default;
 
 HullId LayerSorter::addHull(ConvexHull hull) {
   impl_->store.boxes.push_back(boxOf(hull));
-  impl_->store.envelopes.push_back(envelopeOf(hull, impl_->store.boxes.back()));
+  impl_->store.envelopes.emplace_back(hull, impl_->store.boxes.back());
   impl_->store.hulls.push_back(std::move(hull));
   return HullId(impl_->store.hulls.size() - 1);
 }
@@ -150,7 +149,7 @@ bool LayerSorter::setHull(HullId hull, ConvexHull shape) {
     return false;
   }
   own.store.boxes[hull.value] = boxOf(shape);
-  own.store.envelopes[hull.value] = envelopeOf(shape, own.store.boxes[hull.value]);
+  own.store.envelopes[hull.value] = HullEnvelope(shape, own.store.boxes[hull.value]);
   own.store.hulls[hull.value] = std::move(shape);
   own.extents.replaceHull(hull.value, own.store);
   forEachPartWithIt([&](std::uint32_t part) {
@@ -315,18 +314,6 @@ void LayerSorter::Impl::sortByDistance(const View& view, std::span<std::uint32_t
   });
 }
 
-// Places the envelopes of what moved.
-void LayerSorter::Impl::placeEnvelopes() {
-  store.around.resize(store.instances());
-  for (std::uint32_t part = 0; part < store.parts(); ++part) {
-    if (moved[part] != 0) {
-      for (std::uint32_t i = store.first_hull[part]; i < store.first_hull[part + 1]; ++i) {
-        store.around[i] = PlacedEnvelope(store.envelopes[store.part_hulls[i]], store.placements[part]);
-      }
-    }
-  }
-}
-
 void LayerSorter::Impl::chooseParts(const View& view) {
   to_sort.resize(store.parts());
   outside = 0;
@@ -389,11 +376,21 @@ void LayerSorter::Impl::condition() {
   conditioned = conditioning.sort(group_distances, distances, may_occlude, {}, order);
 }
 
-// Asks about the arcs within groups, while the parts of one group are active.
+// Asks about the arcs within groups. Of few parts, all pairs are compared; a search would take longer.
 void LayerSorter::Impl::addArcsWithinGroups() {
+  constexpr std::size_t kFewParts = 16;
   for (std::size_t i = 0; i < order.groups(); ++i) {
-    if (order.group(i).size() > 1) {
-      addArcsOf(order.group(i));
+    const std::span<const std::uint32_t> parts = order.group(i);
+    if (parts.size() > kFewParts) {
+      addArcsOf(parts);
+      continue;
+    }
+    for (const std::uint32_t front : parts) {
+      for (const std::uint32_t back : parts) {
+        if (front != back && source.occludes(front, back)) {
+          arcs_out.push_back({PartId(front), PartId(back)});
+        }
+      }
     }
   }
 }
@@ -470,7 +467,6 @@ LayerStats LayerSorter::Impl::stats() const {
 const LayerOrder& LayerSorter::update(const View& given) {
   Impl& own = *impl_;
   const View view = scaled(given);
-  own.placeEnvelopes();
   own.chooseParts(view);
   own.extent_updates = own.extents.update(view, own.store, own.moved, own.to_sort);
   std::fill(own.moved.begin(), own.moved.end(), 0);

@@ -22,7 +22,7 @@ bool ViewVolume::isOutside(const PartStore& parts, std::uint32_t part) const {
     const double margin = kRounding * (l1Norm(eye_) + std::abs(plane.offset));
     for (std::uint32_t i = parts.first_hull[part]; i < parts.first_hull[part + 1]; ++i) {
       ConvexSet set;
-      set.around = &parts.around[i];
+      set.around = &parts.envelopes[parts.part_hulls[i]];
       set.placement = parts.placements[part];
       if (!(outerHeight(set, plane.normal, eye_) + at_eye + margin < 0.0)) {
         return false;
