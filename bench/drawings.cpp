@@ -70,7 +70,7 @@ View overview(const Scene& scene) {
 }
 
 LayerSorter sorterOf(const Scene& scene, bool all_arcs) {
-  LayerSorter sorter({.all_arcs = all_arcs});
+  LayerSorter sorter({.arcs = all_arcs ? LayerArcs::kAll : LayerArcs::kWithinGroups});
   for (const Object& object : scene.objects) {
     std::vector<std::uint32_t> corners(scene.indices.begin() + object.first_index,
                                        scene.indices.begin() + object.first_index + object.index_count);

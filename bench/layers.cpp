@@ -7,6 +7,9 @@
 //              a graph library would do; on a few frames only
 //   distance   a sort of the parts by the distance of their centres, and how many arcs it gets wrong
 //
+// Then it replaces the toothpicks by rings, which are not convex: as unions of 64 hulls, and as one hull
+// each.
+//
 //   layers [COUNT...]
 
 #include <ccd/ccd.h>
@@ -15,7 +18,9 @@
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/strong_components.hpp>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -117,7 +122,7 @@ void measure(const ToothpickOptions& options, bool brief) {
   const MovingScene scene = makeToothpicks(options);
   LayerSorter depth_first = makeSorter(scene, {});
   LayerSorter incremental = makeSorter(scene, {.sort = incrementalSort()});
-  LayerSorter all_arcs = makeSorter(scene, {.all_arcs = true});
+  LayerSorter all_arcs = makeSorter(scene, {.arcs = LayerArcs::kAll});
   std::vector<Mat4> poses(scene.parts.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   std::vector<double> first_us, depth_first_us, incremental_us, pairs_us, distance_us;
@@ -158,6 +163,77 @@ void measure(const ToothpickOptions& options, bool brief) {
   std::fflush(stdout);
 }
 
+// A ring around the y axis, as wedges with a square section.
+std::vector<ConvexHull> ringOf(std::uint32_t wedges, double radius, double thickness) {
+  std::vector<ConvexHull> hulls;
+  for (std::uint32_t i = 0; i < wedges; ++i) {
+    std::vector<Vec3d> points;
+    for (const std::uint32_t end : {i, i + 1}) {
+      const double angle = 2.0 * std::numbers::pi * end / wedges;
+      for (const double at : {radius - thickness, radius + thickness}) {
+        points.emplace_back(at * std::cos(angle), -thickness, at * std::sin(angle));
+        points.emplace_back(at * std::cos(angle), thickness, at * std::sin(angle));
+      }
+    }
+    hulls.push_back(*buildHull(points));
+  }
+  return hulls;
+}
+
+struct Rings {
+  std::vector<double> sort_us;
+  double groups = 0.0, largest = 0.0, known_pairs = 0.0;  // means of a frame
+};
+
+// Sorts parts with these hulls along the paths of the toothpicks.
+Rings sortRings(const MovingScene& scene, const std::vector<ConvexHull>& hulls, std::uint32_t frames) {
+  LayerSorter sorter;
+  std::vector<HullId> ids;
+  for (const ConvexHull& hull : hulls) {
+    ids.push_back(sorter.addHull(hull));
+  }
+  for (std::size_t part = 0; part < scene.parts.size(); ++part) {
+    sorter.addPart(ids);
+  }
+  std::vector<Mat4> poses;
+  Rings rings;
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    pose(scene, frame, poses, sorter);
+    const View view = scene.scene.paths.front().view(frame, scene.scene.origin);
+    const LayerOrder* order = nullptr;
+    const double us = microseconds([&] { order = &sorter.update(view); });
+    if (frame > 0) {
+      rings.sort_us.push_back(us);
+    }
+    std::size_t largest = 0;
+    for (std::size_t i = 0; i < order->groups(); ++i) {
+      largest = std::max(largest, order->group(i).size());
+    }
+    rings.groups += static_cast<double>(order->groups()) / frames;
+    rings.largest += static_cast<double>(largest) / frames;
+    rings.known_pairs += static_cast<double>(order->stats.known_pairs) / frames;
+  }
+  return rings;
+}
+
+void measureRings(std::uint32_t count, bool brief) {
+  constexpr std::uint32_t kWedges = 64;
+  const MovingScene scene = makeToothpicks({.count = count});
+  const std::vector<ConvexHull> wedges = ringOf(kWedges, 0.12, 0.004);
+  std::vector<Vec3d> points;
+  for (const ConvexHull& wedge : wedges) {
+    points.insert(points.end(), wedge.vertices.begin(), wedge.vertices.end());
+  }
+  const std::uint32_t frames = brief ? 5 : 60;
+  for (const bool as_union : {true, false}) {
+    const Rings rings =
+        sortRings(scene, as_union ? wedges : std::vector<ConvexHull>{*buildHull(points)}, frames);
+    fmt::print("{:>7} {:>3} | {:>9.0f} {:>9.0f} | {:>9.1f} {:>9.1f} | {:>11.0f}\n", scene.parts.size(),
+               as_union ? kWedges : 1, meanOf(rings.sort_us), medianOf(rings.sort_us), rings.groups,
+               rings.largest, rings.known_pairs);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -178,5 +254,10 @@ int main(int argc, char** argv) {
     if (count < 5000) {
       measure({.count = count}, arguments.brief);
     }
+  }
+  fmt::print("\n{:>7} {:>3} | {:>9} {:>9} | {:>9} {:>9} | {:>11}\n", "rings", "of", "mean, us", "median",
+             "groups", "largest", "hull pairs");
+  for (const std::uint32_t count : {50u, 200u}) {
+    measureRings(count, arguments.brief);
   }
 }

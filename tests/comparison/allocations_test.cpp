@@ -28,7 +28,6 @@ TEST(IncrementalSort, DoesNotAllocateOnceItHasSortedAsMuch) {
   }
   EXPECT_EQ(allocations.load() - before, 0u);
   EXPECT_GT(incremental.reinsertions(), 0u);
-  EXPECT_GT(order.arcs.size(), 0u);
 }
 
 using namespace made;

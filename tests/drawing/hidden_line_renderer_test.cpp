@@ -53,7 +53,9 @@ struct Set {
     moving.hulls.push_back(*buildHull(points));
     updateBounds(scene);
   }
-  LayerSorter sorter(bool all_arcs) const { return makeSorter(moving, {.all_arcs = all_arcs}); }
+  LayerSorter sorter(bool all_arcs) const {
+    return makeSorter(moving, {.arcs = all_arcs ? LayerArcs::kAll : LayerArcs::kWithinGroups});
+  }
   Drawing paint(const View& view, const DrawingSettings& settings = {.page_height = kHeight}) const {
     LayerSorter sorter = this->sorter(false);
     return HiddenLineRenderer(moving.scene.view())

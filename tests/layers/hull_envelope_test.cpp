@@ -20,6 +20,10 @@ ConvexHull hullOf(const std::vector<Vec3d>& points) {
   return std::move(*hull);
 }
 
+HullEnvelope envelopeOf(const ConvexHull& hull) {
+  return {hull, boxOf(hull)};
+}
+
 // A random hull: solid, flat, a segment or a point; long or round; anywhere.
 std::vector<Vec3d> randomPoints(Random& random, std::uint64_t kind) {
   const double thin = kind % 4 == 0 ? 0.0 : kind % 4 == 1 ? 1e-3 : 1.0, thinner = kind % 8 < 4 ? thin : 0.0;
@@ -49,7 +53,9 @@ TEST(HullEnvelope, IsNowhereLowerThanTheHull) {
         lowest = std::min(lowest, dot(direction, point));
       }
       const double height = around.height(direction);
-      EXPECT_GE(height, highest - 0x1p-45 * around.reach) << "seed " << seed;
+      EXPECT_GE(height, highest - 0x1p-45 * around.reach()) << "seed " << seed;
+      EXPECT_NEAR(dot(around.farthest(direction), direction), height, 1e-12 * around.reach())
+          << "seed " << seed;
       tight += height - highest < 0.5 * (highest - lowest) ? 1 : 0;
     }
   }

@@ -168,7 +168,7 @@ TEST(LayerSorterChanges, NumbersOfRemovedPartsAreUsedAgain) {
 
 TEST(LayerSorterChanges, ARemovedPartTakesItsRulesAlongAndCallsWithItDoNothing) {
   LayerSettings settings;
-  settings.all_arcs = true;
+  settings.arcs = LayerArcs::kAll;
   LayerSorter sorter(settings);
   const PartId front = addMade(sorter, partAt(shapes::cube(), {0, 0, 4}));
   const PartId back = addMade(sorter, partAt(shapes::cube(), {0, 0, 0}));

@@ -32,7 +32,7 @@ ConvexHull cube() {
 
 // Makes two parts with one hull each, the second at a distance of `behind` along -z.
 LayerSorter two(const ConvexHull& hull, double behind, LayerSettings settings = {}) {
-  settings.all_arcs = true;
+  settings.arcs = LayerArcs::kAll;
   LayerSorter sorter(settings);
   const HullId id = sorter.addHull(hull);
   sorter.addPart({&id, 1});

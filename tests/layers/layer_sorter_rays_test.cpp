@@ -160,7 +160,7 @@ LayerSettings settingsOf(SortChoice sort, SearchChoice search) {
   LayerSettings settings;
   settings.sort = sortOf(sort);
   settings.search = searchOf(search);
-  settings.all_arcs = true;
+  settings.arcs = LayerArcs::kAll;
   return settings;
 }
 

@@ -285,7 +285,7 @@ TEST(LayerSorterRules, SettingsOutOfRangeAreMadeUsable) {
     for (const std::size_t axes : {0u, 1u, 3u, 16u, 17u, 40u}) {
       SCOPED_TRACE(::testing::Message() << axes << " axes, conditioned along " << conditioning_axis);
       LayerSettings settings;
-      settings.all_arcs = true;
+      settings.arcs = LayerArcs::kAll;
       settings.conditioning_axis = conditioning_axis;
       settings.extents.clear();
       for (std::size_t i = 0; i < axes; ++i) {
@@ -310,7 +310,7 @@ TEST(LayerSorterRules, AxesWithoutDirectionBoundNothing) {
   for (const Vec3d& direction : {Vec3d(), Vec3d(kNan, 0, 0), Vec3d(kInfinity, 1, 0), Vec3d(1e-300, 0, 0)}) {
     for (const auto kind : {ExtentAxis::Kind::kSpatial, ExtentAxis::Kind::kAngular}) {
       LayerSettings settings;
-      settings.all_arcs = true;
+      settings.arcs = LayerArcs::kAll;
       settings.extents = {{kind, ExtentAxis::Frame::kWorld, direction, {0, 0, 1}},
                           {kind, ExtentAxis::Frame::kCamera, {1, 0, 0}, direction}};
       settings.conditioning_axis = 0;

@@ -27,7 +27,7 @@ void expectSameInAllFrames(const MovingScene& scene, const std::vector<ExtentAxi
       one.sort = sortOf(sort);
       one.search = searchOf(search, {.rebuild_after = 20});
       one.extents = extents;
-      one.all_arcs = all_arcs;
+      one.arcs = all_arcs ? LayerArcs::kAll : LayerArcs::kWithinGroups;
       one.conditioning_axis = sort == SortChoice::kIncremental && search == SearchChoice::kTree ? -1 : 2;
       sorters.emplace_back(scene, one);
       settings.push_back(one);
@@ -67,7 +67,7 @@ TEST(LayerSorterScenes, AllWaysToSortTheCanyonGiveTheSame) {
 TEST(LayerSorterScenes, ExtentsDoNotChangeTheArcs) {
   const MovingScene scene = makeToothpicks({.count = 100});
   LayerSettings settings;
-  settings.all_arcs = true;
+  settings.arcs = LayerArcs::kAll;
   MovingSorter by_camera(scene, settings);
   settings.extents = worldExtents();
   MovingSorter by_world(scene, settings);
@@ -85,7 +85,7 @@ TEST(LayerSorterScenes, ExtentsDoNotChangeTheArcs) {
 TEST(LayerSorterScenes, ToothpicksOfAnySizeAnywhereAreGroupedTheSame) {
   const MovingScene scene = makeToothpicks({.count = 60});
   LayerSettings settings;
-  settings.all_arcs = true;
+  settings.arcs = LayerArcs::kAll;
   MovingSorter here(scene, settings);
   for (const auto& [scale, shift] :
        {std::pair(1e-6, 0.0), {1e6, 0.0}, {1.0, 1e6}, {1e-6, 1.0}, {1e6, -1e9}}) {

@@ -49,7 +49,7 @@ TEST(LayerSorter, FindsExactlyTheArcsGroupsAndCollisions) {
       for (const Way& way : *ways) {
         SCOPED_TRACE(way.name);
         LayerSorter sorter = sorterOf(scene, way.settings);
-        expectTrue(Answer(sorter.update(scene.view)), truth, way.settings.all_arcs);
+        expectTrue(Answer(sorter.update(scene.view)), truth, way.settings.arcs == LayerArcs::kAll);
         ASSERT_FALSE(HasFailure());
       }
     }
@@ -57,6 +57,33 @@ TEST(LayerSorter, FindsExactlyTheArcsGroupsAndCollisions) {
   EXPECT_GT(grouped, 50u);
   EXPECT_GT(cycles, 5u);
   EXPECT_GT(alone, 100u);
+}
+
+TEST(LayerSorter, WithoutArcsGivesTheSameGroupsOfFewerExactTests) {
+  std::uint64_t tests_with_arcs = 0, tests = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    const MadeScene scene = randomScene(random, 6, 4);
+    const Truth truth = truthOf(scene);
+    for (Way way : allWays(false)) {
+      SCOPED_TRACE(way.name);
+      LayerSorter with_arcs = sorterOf(scene, way.settings);
+      tests_with_arcs += with_arcs.update(scene.view).stats.pair_queries;
+      way.settings.arcs = LayerArcs::kNone;
+      LayerSorter sorter = sorterOf(scene, way.settings);
+      const LayerOrder& order = sorter.update(scene.view);
+      tests += order.stats.pair_queries;
+      const Answer answer(order);
+      EXPECT_TRUE(answer.arcs.empty());
+      EXPECT_EQ(answer.groups, truth.groups);
+      EXPECT_TRUE(std::includes(truth.collisions.begin(), truth.collisions.end(), answer.collisions.begin(),
+                                answer.collisions.end()));
+      expectOrdered(answer, truth.arcs);
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+  EXPECT_LT(tests, tests_with_arcs);
 }
 
 TEST(LayerSorter, MissesNoArcOfViewsAlongAnyDirection) {
@@ -150,7 +177,7 @@ TEST(LayerSorter, SaysInEveryFrameWhatAFreshOneSays) {
         LayerSorter fresh = sorterOf(scene, way.settings);
         expectSame(warm, Answer(fresh.update(scene.view)));
         if (frame % 5 == 4) {
-          expectTrue(warm, truthOf(scene), way.settings.all_arcs);
+          expectTrue(warm, truthOf(scene), way.settings.arcs == LayerArcs::kAll);
         }
         ASSERT_FALSE(HasFailure());
         changeSomething(scene, sorter, random);

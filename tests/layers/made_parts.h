@@ -237,7 +237,7 @@ inline std::vector<Way> allWays(bool all_arcs, const ExtentTreeSettings& tree = 
         LayerSettings settings;
         settings.sort = sortOf(sort);
         settings.search = searchOf(search, tree);
-        settings.all_arcs = all_arcs;
+        settings.arcs = all_arcs ? LayerArcs::kAll : LayerArcs::kWithinGroups;
         settings.extents = extents == 0   ? camera
                            : extents == 1 ? worldExtents()
                            : extents == 2 ? mixed

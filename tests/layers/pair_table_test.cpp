@@ -21,20 +21,20 @@ TEST(PairTable, RemembersWhatWasWrittenForAPair) {
   PairTable table;
   table.beginFrame(1);
   EXPECT_EQ(table.size(), 0u);
-  EXPECT_TRUE(isFresh(table.use(3, 5, Question::kOcclusion)));
-  table.use(3, 5, Question::kOcclusion).first[0] = 17;
-  EXPECT_EQ(table.use(3, 5, Question::kOcclusion).first[0], 17u);
+  EXPECT_TRUE(isFresh(table.use(3, 5, Question::kOcclusion).witness));
+  table.use(3, 5, Question::kOcclusion).witness.first[0] = 17;
+  EXPECT_EQ(table.use(3, 5, Question::kOcclusion).witness.first[0], 17u);
   EXPECT_EQ(table.size(), 1u);
 }
 
 TEST(PairTable, IntersectionIsTheSameBothWaysAndOcclusionIsNot) {
   PairTable table;
   table.beginFrame(1);
-  table.use(3, 5, Question::kIntersection).first[0] = 1;
-  EXPECT_EQ(table.use(5, 3, Question::kIntersection).first[0], 1u);
-  table.use(3, 5, Question::kOcclusion).first[0] = 2;
-  EXPECT_TRUE(isFresh(table.use(5, 3, Question::kOcclusion)));
-  EXPECT_EQ(table.use(3, 5, Question::kIntersection).first[0], 1u);
+  table.use(3, 5, Question::kIntersection).witness.first[0] = 1;
+  EXPECT_EQ(table.use(5, 3, Question::kIntersection).witness.first[0], 1u);
+  table.use(3, 5, Question::kOcclusion).witness.first[0] = 2;
+  EXPECT_TRUE(isFresh(table.use(5, 3, Question::kOcclusion).witness));
+  EXPECT_EQ(table.use(3, 5, Question::kIntersection).witness.first[0], 1u);
   EXPECT_EQ(table.size(), 3u);
 }
 
@@ -42,33 +42,33 @@ TEST(PairTable, EntriesLastForAsManyFramesAsAskedFor) {
   for (std::uint32_t expiry = 0; expiry < 4; ++expiry) {
     PairTable table;
     table.beginFrame(expiry);
-    table.use(1, 2, Question::kIntersection).first[0] = 9;
+    table.use(1, 2, Question::kIntersection).witness.first[0] = 9;
     for (std::uint32_t frames_later = 1; frames_later <= expiry; ++frames_later) {
       table.beginFrame(expiry);
       EXPECT_EQ(table.size(), 1u) << frames_later << " of " << expiry;
     }
     table.beginFrame(expiry);
     EXPECT_EQ(table.size(), 0u) << expiry;
-    EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection))) << expiry;
+    EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection).witness)) << expiry;
   }
 }
 
 TEST(PairTable, NothingExpiresWhenNeverIsAskedFor) {
   PairTable table;
-  table.use(1, 2, Question::kIntersection).first[0] = 9;
+  table.use(1, 2, Question::kIntersection).witness.first[0] = 9;
   for (int frame = 0; frame < 50; ++frame) {
     table.beginFrame(0xffffffffu);
   }
-  EXPECT_EQ(table.use(1, 2, Question::kIntersection).first[0], 9u);
+  EXPECT_EQ(table.use(1, 2, Question::kIntersection).witness.first[0], 9u);
 }
 
 TEST(PairTable, ClearForgetsAll) {
   PairTable table;
   table.beginFrame(1);
-  table.use(1, 2, Question::kIntersection).first[0] = 9;
+  table.use(1, 2, Question::kIntersection).witness.first[0] = 9;
   table.clear();
   EXPECT_EQ(table.size(), 0u);
-  EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection)));
+  EXPECT_TRUE(isFresh(table.use(1, 2, Question::kIntersection).witness));
 }
 
 // The expected content of the table, kept in a plain map.
@@ -77,6 +77,7 @@ struct Model {
   struct Entry {
     std::uint32_t tag = 0;
     int last_frame = 0;
+    bool used_before = false;  // whether use() had returned it in that frame
   };
   std::map<Key, Entry> entries;
   int frame = 0;
@@ -90,6 +91,7 @@ struct Model {
       std::tie(a, b) = std::minmax({a, b});
     }
     Entry& entry = entries[{a, b, question}];
+    entry.used_before = entry.last_frame == frame;
     entry.last_frame = frame;
     return entry;
   }
@@ -111,8 +113,9 @@ TEST(PairTable, BehavesAsAMapUnderRandomUse) {
       for (std::uint32_t uses = random.below(400u); uses > 0; --uses) {
         const std::uint32_t a = random.below(parts), b = random.below(parts);
         const Question question = random.below(2u) == 0 ? Question::kIntersection : Question::kOcclusion;
-        PairWitness& witness = table.use(a, b, question);
+        const auto [witness, again] = table.use(a, b, question);
         Model::Entry& entry = model.use(a, b, question);
+        ASSERT_EQ(again, entry.tag != 0 && entry.used_before) << a << ' ' << b;
         ASSERT_EQ(witness.first[0], entry.tag) << a << ' ' << b;
         witness.first[0] = entry.tag = ++tag;
       }

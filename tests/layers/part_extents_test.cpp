@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 
 #include "src/layers/extents/angular_extent.h"
 #include "tests/layers/extent_scene.h"
@@ -196,6 +197,33 @@ TEST(PartExtents, FollowSmallSteps) {
     extents.update(view, scene.store, scene.moved, scene.used);
     checkAll(scene, extents, axes, view, {0, 0, 4}, random, "frame " + std::to_string(frame));
     eye += random.direction() * 0.1;
+  }
+}
+
+TEST(PartExtents, HullsOfAPartHaveTheExtentsOfPartsOfTheirOwn) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed);
+    ExtentScene alone = someShapes(random, 1.0), together = alone;
+    const std::uint32_t count = static_cast<std::uint32_t>(alone.points.size());
+    std::vector<std::uint32_t> hulls(count);
+    std::iota(hulls.begin(), hulls.end(), 0u);
+    const std::uint32_t part = together.addPart(hulls, {});
+    PartExtents of_alone(allKinds()), of_together(allKinds());
+    for (int frame = 0; frame < 3; ++frame) {
+      const Placement placement = randomPlacement(random, random.direction() * random.number(0, 8), 1);
+      for (std::uint32_t i = 0; i < alone.store.parts(); ++i) {
+        alone.place(i, placement);
+      }
+      together.place(part, placement);
+      const View view = randomView(random, {}, seed % 3 == 0);
+      of_alone.update(view, alone.store, alone.moved, alone.used);
+      of_together.update(view, together.store, together.moved, together.used);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t instance = together.store.first_hull[part] + i;
+        EXPECT_EQ(extentOf(of_together.hulls(), instance), extentOf(of_alone.table(), i)) << "seed " << seed;
+        EXPECT_EQ(of_together.queryOfHull(instance), of_alone.query(i)) << "seed " << seed;
+      }
+    }
   }
 }
 

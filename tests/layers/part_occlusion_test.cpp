@@ -560,6 +560,23 @@ TEST(PartOcclusion, AskingAgainCostsAtMostAStepAQuestion) {
   EXPECT_LE(counts.chung_steps + counts.gjk_steps, counts.questions);
 }
 
+TEST(PartOcclusion, AskingTwiceInAFrameTestsOnce) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    PartWorld world;
+    const std::uint32_t a = world.addPart({shapes::randomGrid(random, 20, 3), shapes::cube({4, 0, 0})});
+    const std::uint32_t b = world.addPart({shapes::randomGrid(random, 20, 3), shapes::cube({0, 0, 9})});
+    world.view = seed % 2 == 0 ? viewFrom(random.direction() * 8.0) : viewFromAfar(random.direction());
+    world.measure();
+    world.beginFrame();
+    const bool first = world.occlusion.occludes(a, b), reverse = world.occlusion.occludes(b, a);
+    const std::uint64_t questions = world.occlusion.counts().questions;
+    EXPECT_EQ(world.occlusion.occludes(a, b), first) << "seed " << seed;
+    EXPECT_EQ(world.occlusion.occludes(b, a), reverse) << "seed " << seed;
+    EXPECT_EQ(world.occlusion.counts().questions, questions) << "seed " << seed;
+  }
+}
+
 TEST(PartOcclusion, CountsBeginAnewWithEachFrame) {
   PartWorld world;
   const std::uint32_t a = world.addPart({shapes::cube({0, 0, 5})});

@@ -75,7 +75,7 @@ class HiddenLineRenderer {
                 const LayerOrder& order, const DrawingSettings& settings);
 
   // The visible pieces of all lines and nothing else, for plotters and CAD. A line is tested against its
-  // object and those that may occlude it by order.arcs, which must hold all pairs (LayerSettings::all_arcs).
+  // object and those that may occlude it by order.arcs, which must hold all pairs (LayerArcs::kAll).
   // Each object is a group of its own. A piece that several objects draw at the same place, as walls that
   // share an edge do, is drawn by the first one only, so that a pen goes there once.
   Drawing plot(const SceneView& scene, std::span<const std::string> names, const View& view,

@@ -61,7 +61,8 @@ class LayerMerger {
   LayerMerger(LayerMerger&&) noexcept;
   LayerMerger& operator=(LayerMerger&&) noexcept;
 
-  // Arcs between groups are ignored. The result is valid until the next call.
+  // order: with the arcs within groups (LayerSettings::arcs); those between groups are ignored. The result is
+  // valid until the next call.
   const FrameLayers& merge(const LayerOrder& order);
 
  private:

@@ -41,6 +41,14 @@ class CandidateSearch;
 using MakeLayerSort = std::function<std::unique_ptr<LayerSortAlgorithm>()>;
 using MakeCandidateSearch = std::function<std::unique_ptr<CandidateSearch>()>;
 
+// Which arcs LayerOrder::arcs has. The sort itself asks about few pairs: of n parts in one place about 2 n of
+// their n^2.
+enum class LayerArcs : std::uint8_t {
+  kNone,
+  kWithinGroups,  // asks about all pairs of parts of each group; needed to merge and composite groups
+  kAll,           // asks about all pairs of parts
+};
+
 struct LayerSettings {
   MakeLayerSort sort{};  // empty: strongly connected components by depth-first search
   std::vector<ExtentAxis> extents = cameraExtents();  // at most kMaxExtentAxes
@@ -48,8 +56,8 @@ struct LayerSettings {
   // Index of the spatial axis of `extents` by which groups are moved forward after the sort, past groups that
   // lie farther and do not occlude them; -1: none. This keeps the order near the one that later frames need.
   int conditioning_axis = 2;
-  bool exact = true;      // false: parts whose extents overlap count as occluding, which makes groups larger
-  bool all_arcs = false;  // true: also report arcs between groups, which asks about every pair of parts
+  bool exact = true;  // false: parts whose extents overlap count as occluding, which makes groups larger
+  LayerArcs arcs = LayerArcs::kWithinGroups;
   // true: sorted parts that are surely outside the view are left out of the order. It then holds for the view
   // alone: what is drawn for shadows and reflections needs the whole.
   bool frustum_culling = false;
@@ -93,9 +101,9 @@ struct LayerOrder {
 
   std::span<const PartId> parts{};            // all enabled parts, group after group, front to back
   std::span<const std::uint32_t> first_of{};  // groups + 1 elements: where each group begins in parts
-  std::span<const LayerArc> arcs{};           // within groups, or all with all_arcs; ascending
+  std::span<const LayerArc> arcs{};           // as LayerSettings::arcs says; ascending
   // Pairs of parts whose hulls intersect or touch, or overlap by more than the contact tolerance, ascending,
-  // front < back. Pairs with a rule are left out.
+  // front < back. Pairs with a rule are left out. With LayerArcs::kNone only some.
   std::span<const LayerArc> collisions{};
   // The groups of sorted parts begin here, after those of overlays.
   std::uint32_t first_sorted = 0;

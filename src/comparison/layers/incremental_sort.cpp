@@ -24,7 +24,6 @@ void IncrementalSort::sort(std::span<const std::uint32_t> previous, OccluderSour
       observer.call(observer.user, *this, order);
     }
   }
-  collectArcs(source, order);
 }
 
 std::vector<IncrementalSort::Listed> IncrementalSort::list() const {
@@ -39,7 +38,6 @@ std::vector<IncrementalSort::Listed> IncrementalSort::list() const {
 
 void IncrementalSort::prepare(std::span<const std::uint32_t> previous, GroupedOrder& order) {
   order.parts.clear();
-  order.arcs.clear();
   order.first_of.assign(1, 0);
   std::size_t bound = 0;
   for (const std::uint32_t part : previous) {
@@ -180,20 +178,6 @@ void IncrementalSort::emit(GroupedOrder& order) {
   order.first_of.push_back(static_cast<std::uint32_t>(order.parts.size()));
   ++epoch_;  // unmarks all objects
   steps_in_prefix_ = 0;
-}
-
-void IncrementalSort::collectArcs(OccluderSource& source, GroupedOrder& order) const {
-  for (std::size_t i = 0; i < order.groups(); ++i) {
-    const std::span<const std::uint32_t> parts = order.group(i);
-    for (const std::uint32_t front : parts) {
-      for (const std::uint32_t back : parts) {
-        if (front != back && source.occludes(front, back)) {
-          order.arcs.push_back({front, back});
-        }
-      }
-    }
-  }
-  std::sort(order.arcs.begin(), order.arcs.end());
 }
 
 // Whether a part of one object occludes a part of another.

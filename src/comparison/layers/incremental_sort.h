@@ -6,7 +6,7 @@
 // 1997, section 4 (incremental visibility sort).
 // Differs from the paper in: places in the list are compared by labels, not by traversing the list; unmarking
 // all objects increments a counter; of several occluders in a marked sequence the first is followed, without
-// which the sort may not halt; the arcs within groups are asked for at the end.
+// which the sort may not halt.
 
 #include <cstdint>
 #include <span>
@@ -56,7 +56,6 @@ class IncrementalSort final : public LayerSortAlgorithm {
   bool detectCycle(OccluderSource& source);
   void group(std::uint32_t object, OccluderSource& source);
   void emit(GroupedOrder& order);
-  void collectArcs(OccluderSource& source, GroupedOrder& order) const;
   bool occludes(std::uint32_t front, std::uint32_t back, OccluderSource& source) const;
   void setActive(std::uint32_t object, bool active, OccluderSource& source) const;
   void collectMembers(std::uint32_t object, std::vector<std::uint32_t>& members) const;

@@ -28,8 +28,8 @@ inline Interval unite(const Interval& a, const Interval& b) {
 // eye).
 using Extent = std::array<Interval, kMaxExtentAxes>;
 
-// Column a holds the intervals of all parts along axis a. It is padded to a multiple of kPadding rows with
-// intervals that overlap nothing.
+// Column a holds the intervals of all parts along axis a (or of all hulls of all parts). It is padded to a
+// multiple of kPadding rows with intervals that overlap nothing.
 struct ExtentTable {
   static constexpr std::size_t kPadding = 16;
 
@@ -42,6 +42,14 @@ struct ExtentTable {
   Interval at(std::size_t axis, std::uint32_t part) const { return {lows[axis][part], highs[axis][part]}; }
   bool angular(std::size_t axis) const { return kinds[axis] == ExtentAxis::Kind::kAngular; }
 };
+
+inline Extent extentOf(const ExtentTable& table, std::uint32_t row) {
+  Extent extent{};
+  for (std::size_t axis = 0; axis < table.axes(); ++axis) {
+    extent[axis] = table.at(axis, row);
+  }
+  return extent;
+}
 
 // Closed intervals that touch overlap.
 inline bool overlapsSpatial(const Interval& a, const Interval& b) {

@@ -34,8 +34,8 @@ struct PlacedHull {
   const PlacedRow* rows;
 };
 
-HWY_INLINE void addHeights(const PlacedHull& placed, const MeasuredAxis& axis, bool first,
-                           std::uint32_t* vertices, PartBounds& all) {
+HWY_INLINE void measureHeights(const PlacedHull& placed, const MeasuredAxis& axis, std::uint32_t* vertices,
+                               PartBounds& bounds) {
   const PlacedRow& row = placed.rows[axis.along];
   const Support low = farthestHere(placed.hull, -row.direction, vertices[0]);
   const Support high = farthestHere(placed.hull, row.direction, vertices[1]);
@@ -47,8 +47,8 @@ HWY_INLINE void addHeights(const PlacedHull& placed, const MeasuredAxis& axis, b
   if (!(lower <= upper)) {
     lower = -kInfinity, upper = kInfinity;
   }
-  all.low = first ? lower : std::min(all.low, lower);
-  all.high = first ? upper : std::max(all.high, upper);
+  bounds.low = lower;
+  bounds.high = upper;
 }
 
 HWY_INLINE AngleRange anglesOf(const PlacedHull& placed, const MeasuredAxis& axis, std::uint32_t* vertices) {
@@ -68,8 +68,8 @@ HWY_INLINE AngleRange anglesOf(const PlacedHull& placed, const MeasuredAxis& axi
   return range;
 }
 
-HWY_INLINE void addHull(const PlacedHull& placed, const ExtentUpdate& update, std::uint32_t axes, bool first,
-                        std::uint32_t* vertices, PartBounds* all) {
+HWY_INLINE void measureHull(const PlacedHull& placed, const ExtentUpdate& update, std::uint32_t axes,
+                            std::uint32_t* vertices, PartBounds* bounds) {
   for (std::size_t i = 0; i < update.axes.size(); ++i) {
     const MeasuredAxis& axis = update.axes[i];
     if (((axes >> i) & 1u) == 0 || axis.look.measure == Measure::kNothing) {
@@ -77,10 +77,23 @@ HWY_INLINE void addHull(const PlacedHull& placed, const ExtentUpdate& update, st
     }
     std::uint32_t* const own = vertices + axis.first_vertex;
     if (axis.look.measure == Measure::kAngles) {
-      const AngleRange angles = anglesOf(placed, axis, own);
-      all[i].angles = first ? angles : unite(all[i].angles, angles);
+      bounds[i].angles = anglesOf(placed, axis, own);
     } else {
-      addHeights(placed, axis, first, own, all[i]);
+      measureHeights(placed, axis, own, bounds[i]);
+    }
+  }
+}
+
+HWY_INLINE void uniteBounds(const ExtentUpdate& update, std::uint32_t axes, const PartBounds* other,
+                            PartBounds* bounds) {
+  for (std::size_t i = 0; i < update.axes.size(); ++i) {
+    if (((axes >> i) & 1u) == 0) {
+      continue;
+    }
+    bounds[i].low = std::min(bounds[i].low, other[i].low);
+    bounds[i].high = std::max(bounds[i].high, other[i].high);
+    if (update.axes[i].look.measure == Measure::kAngles) {
+      bounds[i].angles = unite(bounds[i].angles, other[i].angles);
     }
   }
 }
@@ -96,40 +109,50 @@ HWY_INLINE Interval intervalOf(const MeasuredAxis& axis, const PartBounds& bound
   return {roundedDown(bounds.low), roundedUp(bounds.high)};
 }
 
-HWY_INLINE void updatePart(ExtentUpdate& update, const PartStore& parts, std::uint32_t part,
-                           std::uint32_t axes, ExtentTable& table) {
-  PartBounds* const bounds = update.part_bounds.data();
-  const bool finite = parts.finite[part] != 0;
-  if (finite) {
-    const Placement& placement = parts.placements[part];
-    PlacedRow* const rows = update.placed_rows.data();
-    for (std::size_t i = 0; i < update.rows.size(); ++i) {
-      const Vec3d offset = placement.origin - update.rows[i].from;
-      const Vec3d& direction = update.rows[i].direction;
-      rows[i] = {placement.toHull(direction), dot(direction, offset), l1Norm(offset)};
-    }
-    const double stretch = stretchOf(placement);
-    const std::uint32_t begin = parts.first_hull[part], end = parts.first_hull[part + 1];
-    for (std::uint32_t instance = begin; instance < end; ++instance) {
-      const std::uint32_t hull = parts.part_hulls[instance];
-      addHull({parts.hulls[hull], update.hulls[hull], stretch, rows}, update, axes, instance == begin,
-              update.vertices.data() + std::size_t{instance} * update.vertices_of_instance, bounds);
-    }
-  }
+HWY_INLINE void writeBounds(const ExtentUpdate& update, std::uint32_t axes, const PartBounds* bounds,
+                            bool finite, std::uint32_t row, ExtentTable& table) {
   for (std::size_t i = 0; i < update.axes.size(); ++i) {
     if (((axes >> i) & 1u) != 0) {
       const Interval interval = intervalOf(update.axes[i], bounds[i], finite);
-      table.lows[i][part] = interval.low;
-      table.highs[i][part] = interval.high;
+      table.lows[i][row] = interval.low;
+      table.highs[i][row] = interval.high;
     }
   }
 }
 
+HWY_INLINE void updatePart(ExtentUpdate& update, const PartStore& parts, std::uint32_t part,
+                           std::uint32_t axes, ExtentTable& table, ExtentTable& hulls) {
+  PartBounds* const all = update.part_bounds.data();
+  const bool finite = parts.finite[part] != 0;
+  const Placement& placement = parts.placements[part];
+  PlacedRow* const rows = update.placed_rows.data();
+  for (std::size_t i = 0; finite && i < update.rows.size(); ++i) {
+    const Vec3d offset = placement.origin - update.rows[i].from;
+    const Vec3d& direction = update.rows[i].direction;
+    rows[i] = {placement.toHull(direction), dot(direction, offset), l1Norm(offset)};
+  }
+  const double stretch = stretchOf(placement);
+  const std::uint32_t begin = parts.first_hull[part], end = parts.first_hull[part + 1];
+  for (std::uint32_t instance = begin; instance < end; ++instance) {
+    PartBounds* const own = instance == begin ? all : update.hull_bounds.data();
+    if (finite) {
+      const std::uint32_t hull = parts.part_hulls[instance];
+      measureHull({parts.hulls[hull], update.hulls[hull], stretch, rows}, update, axes,
+                  update.vertices.data() + std::size_t{instance} * update.vertices_of_instance, own);
+    }
+    writeBounds(update, axes, own, finite, instance, hulls);
+    if (finite && instance != begin) {
+      uniteBounds(update, axes, own, all);
+    }
+  }
+  writeBounds(update, axes, all, finite, part, table);
+}
+
 void updateAll(ExtentUpdate& update, const PartStore& parts, std::span<const std::uint32_t> axes_of,
-               ExtentTable& table) {
+               ExtentTable& table, ExtentTable& hulls) {
   for (std::uint32_t part = 0; part < axes_of.size(); ++part) {
     if (axes_of[part] != 0) {
-      updatePart(update, parts, part, axes_of[part], table);
+      updatePart(update, parts, part, axes_of[part], table, hulls);
     }
   }
 }
@@ -143,8 +166,8 @@ namespace sightline::layers {
 HWY_EXPORT(updateAll);
 
 void updateExtents(ExtentUpdate& update, const PartStore& parts, std::span<const std::uint32_t> axes_of,
-                   ExtentTable& table) {
-  HWY_DYNAMIC_DISPATCH(updateAll)(update, parts, axes_of, table);
+                   ExtentTable& table, ExtentTable& hulls) {
+  HWY_DYNAMIC_DISPATCH(updateAll)(update, parts, axes_of, table, hulls);
 }
 
 HullBounds boundsOf(const ConvexHull& hull) {

@@ -55,15 +55,16 @@ struct ExtentUpdate {
   std::vector<std::uint32_t> vertices;  // instances * vertices_of_instance elements: where searches start
   // Scratch for one part.
   std::array<PlacedRow, 2 * kMaxExtentAxes> placed_rows;
-  std::array<PartBounds, kMaxExtentAxes> part_bounds;
+  std::array<PartBounds, kMaxExtentAxes> part_bounds, hull_bounds;
 };
 
 // Vertex numbers kept per instance and axis.
 inline constexpr std::uint32_t kHeightVertices = 2;  // the lowest and the highest vertex
 inline constexpr std::uint32_t kAngleVertices = 3;   // AngularVertices; heights use the first two
 
-// Computes intervals of parts. axes_of: one element per part, with bit a set if axis a is to be computed.
+// Computes intervals of parts and of their hulls. axes_of: one element per part, with bit a set if axis a is
+// to be computed. table: one row per part. hulls: one row per instance.
 void updateExtents(ExtentUpdate& update, const PartStore& parts, std::span<const std::uint32_t> axes_of,
-                   ExtentTable& table);
+                   ExtentTable& table, ExtentTable& hulls);
 
 }  // namespace sightline::layers

@@ -17,9 +17,11 @@ PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) 
   to_eye_.resize(axes_.size());
   eye_.resize(axes_.size());
   away_.resize(axes_.size());
-  table_.kinds.resize(axes_.size());
-  table_.lows.resize(axes_.size());
-  table_.highs.resize(axes_.size());
+  for (ExtentTable* const table : {&table_, &hulls_}) {
+    table->kinds.resize(axes_.size());
+    table->lows.resize(axes_.size());
+    table->highs.resize(axes_.size());
+  }
 }
 
 std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
@@ -35,7 +37,7 @@ std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
     axes_of_[part] = used[part] != 0 ? std::exchange(stale_[part], 0u) : 0u;
     computed += static_cast<std::uint64_t>(std::popcount(axes_of_[part]));
   }
-  updateExtents(own_, parts, axes_of_, table_);
+  updateExtents(own_, parts, axes_of_, table_, hulls_);
   return computed;
 }
 
@@ -57,7 +59,7 @@ std::uint32_t PartExtents::lookFrom(const View& view) {
     to_eye_[axis] = eyeHeights(look, view);
     eye_[axis] = dot(look.direction, view.eye - look.from);
     away_[axis] = !view.orthographic ? 0.0 : std::copysign(1.0, dot(look.direction, view.forward));
-    table_.kinds[axis] = look.kind();
+    table_.kinds[axis] = hulls_.kinds[axis] = look.kind();
   }
   return turned;
 }
@@ -71,25 +73,34 @@ std::uint32_t PartExtents::rowOf(const ExtentRow& row) {
   return static_cast<std::uint32_t>(found - own_.rows.begin());
 }
 
+namespace {
+
+// NaN in the padding overlaps nothing, not even an infinite interval.
+void resize(ExtentTable& table, std::size_t rows) {
+  if (table.parts == rows) {
+    return;
+  }
+  table.parts = rows;
+  const std::size_t padded =
+      (rows + ExtentTable::kPadding - 1) / ExtentTable::kPadding * ExtentTable::kPadding;
+  for (std::size_t axis = 0; axis < table.axes(); ++axis) {
+    table.lows[axis].resize(padded);
+    table.highs[axis].resize(padded);
+    for (std::size_t i = rows; i < padded; ++i) {
+      table.lows[axis][i] = table.highs[axis][i] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+}
+
+}  // namespace
+
 void PartExtents::addParts(const PartStore& parts) {
   for (std::size_t i = own_.hulls.size(); i < parts.hulls.size(); ++i) {
     own_.hulls.push_back(boundsOf(parts.hulls[i]));
   }
   own_.vertices.resize(parts.instances() * own_.vertices_of_instance);
-  if (table_.parts == parts.parts()) {
-    return;
-  }
-  table_.parts = parts.parts();
-  const std::size_t padded =
-      (table_.parts + ExtentTable::kPadding - 1) / ExtentTable::kPadding * ExtentTable::kPadding;
-  for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-    // NaN overlaps nothing, not even an infinite interval.
-    table_.lows[axis].resize(padded);
-    table_.highs[axis].resize(padded);
-    for (std::size_t i = table_.parts; i < padded; ++i) {
-      table_.lows[axis][i] = table_.highs[axis][i] = std::numeric_limits<float>::quiet_NaN();
-    }
-  }
+  resize(table_, parts.parts());
+  resize(hulls_, parts.instances());
 }
 
 void PartExtents::replaceHull(std::uint32_t hull, const PartStore& parts) {
@@ -103,19 +114,23 @@ Extent PartExtents::query(std::uint32_t part) const {
 }
 
 Extent PartExtents::query(std::span<const std::uint32_t> group) const {
+  return query(table_, group);
+}
+
+Extent PartExtents::query(const ExtentTable& table, std::span<const std::uint32_t> group) const {
   Extent extent{};
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
     Interval& all = extent[axis];
-    all = table_.at(axis, group[0]);
-    if (!table_.angular(axis)) {
+    all = table.at(axis, group[0]);
+    if (!table.angular(axis)) {
       for (const std::uint32_t member : group.subspan(1)) {
-        all = unite(all, table_.at(axis, member));
+        all = unite(all, table.at(axis, member));
       }
       all = unite(all, to_eye_[axis]);
     } else if (group.size() > 1) {
       AngleRange range{all.low, all.high};
       for (const std::uint32_t member : group.subspan(1)) {
-        const Interval own = table_.at(axis, member);
+        const Interval own = table.at(axis, member);
         range = unite(range, AngleRange{own.low, own.high});
       }
       all = roundedAngles(range);

@@ -46,6 +46,11 @@ class PartExtents {
   Extent query(std::span<const std::uint32_t> group) const;
   // Whether part `front` overlaps the query of part `back`.
   bool mayOcclude(std::uint32_t front, std::uint32_t back) const;
+
+  // The extents of the hulls of parts, one row per instance, and the query of one of them.
+  const ExtentTable& hulls() const { return hulls_; }
+  Extent queryOfHull(std::uint32_t instance) const { return query(hulls_, std::span(&instance, 1)); }
+
   // Returns a part's distance from the eye along a spatial axis: the absolute difference of its interval's
   // middle and the eye's height. In an orthographic view it has a sign and grows away from the eye. Infinite
   // if it is not finite.
@@ -55,6 +60,7 @@ class PartExtents {
   std::uint32_t lookFrom(const View& view);
   void addParts(const PartStore& parts);
   std::uint32_t rowOf(const ExtentRow& row);
+  Extent query(const ExtentTable& table, std::span<const std::uint32_t> group) const;
 
   std::vector<ExtentAxis> axes_;
   bool has_reference_ = false;
@@ -67,7 +73,7 @@ class PartExtents {
   ExtentUpdate own_;
   std::vector<std::uint32_t> stale_;    // one per part: a bit for each axis whose extent is to be computed
   std::vector<std::uint32_t> axes_of_;  // scratch for update()
-  ExtentTable table_;
+  ExtentTable table_, hulls_;
 };
 
 }  // namespace sightline::layers

@@ -42,14 +42,16 @@ double positiveRoot(double square) {
 
 }  // namespace
 
-HullEnvelope envelopeOf(const ConvexHull& hull) {
+HullEnvelope::HullEnvelope(const ConvexHull& hull, const HullBox& box) {
   if (hull.vertices.empty() || !(hull.radius > kMinRadius) || !std::isfinite(hull.radius)) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    constexpr Vec3d kNowhere(kNone, kNone, kNone);
-    return {kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNowhere, kNone};
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      set(i, {kNone, kNone, kNone});
+    }
+    reach_ = kNone;
+    return;
   }
-  HullEnvelope around;
-  around.centre = hull.centre;
+  set(kRoundCentre, hull.centre);
   // Only the shape counts, so it is scaled to a trace of about 1 at most.
   const Covariance sum = covarianceOf(hull);
   const double n = static_cast<double>(hull.vertices.size());
@@ -70,20 +72,31 @@ HullEnvelope envelopeOf(const ConvexHull& hull) {
   const double shortest = lxx * lyy * lzz / square;
   const double ball = hull.slack / hull.radius + kRounding;
   const double size = hull.radius * (std::sqrt(longest) * (1.0 + kRounding) + ball / shortest);
-  around.a = Vec3d{lxx, lyx, lzx} * size;
-  around.b = Vec3d{0.0, lyy, lzy} * size;
-  around.c = Vec3d{0.0, 0.0, lzz} * size;
-  Vec3d low = hull.vertices.front(), high = low;
-  for (const Vec3d& vertex : hull.vertices) {
-    low = min(low, vertex);
-    high = max(high, vertex);
-  }
+  set(0, Vec3d{lxx, lyx, lzx} * size);
+  set(1, Vec3d{0.0, lyy, lzy} * size);
+  set(2, Vec3d{0.0, 0.0, lzz} * size);
+  // Also far above the rounding of the box's axes, which are orthonormal up to 1e-10.
   const double more = hull.slack + kRounding * hull.radius;
-  around.box_centre = (low + high) * 0.5;
-  around.box_half = (high - low) * 0.5 + Vec3d(more, more, more);
-  around.reach = l1Norm(hull.centre) + l1Norm(around.a) + l1Norm(around.b) + l1Norm(around.c) +
-                 l1Norm(around.box_centre) + l1Norm(around.box_half);
-  return around;
+  set(kBoxCentre, box.centre);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    set(kBox + axis, box.axes[axis] * (box.half[axis] + more));
+  }
+  for (std::size_t i = 0; i < kVectors; ++i) {
+    reach_ += l1Norm(vector(i));
+  }
+}
+
+Vec3d HullEnvelope::farthest(const Vec3d& direction) const {
+  const Heights at = along(direction);
+  const double length = root(at);
+  if (length > 0.0 && roundHeight(at) < boxHeight(at)) {
+    return centre() + (vector(0) * at[0] + vector(1) * at[1] + vector(2) * at[2]) / length;
+  }
+  Vec3d point = vector(kBoxCentre);
+  for (std::size_t i = kBox; i < kBox + 3; ++i) {
+    point += vector(i) * std::copysign(1.0, at[i]);
+  }
+  return point;
 }
 
 }  // namespace sightline::layers

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sightline/geometry/tolerance.h"
+#include "src/layers/pairs/envelope_pair.h"
 #include "src/layers/pairs/gjk.h"
 
 namespace sightline::layers {
@@ -22,10 +22,6 @@ Vec3d directionBetween(const PairQuestion& question) {
   const Vec3d inner = innerPoint(question.second, innerPoint(question.first, Vec3d()));
   const Vec3d unit = unitOrZero(inner - innerPoint(question.first, inner));
   return unit == Vec3d() ? Vec3d{1, 0, 0} : unit;
-}
-
-bool isUnit(const Vec3d& direction) {
-  return std::abs(dot(direction, direction) - 1.0) <= 1e-9;
 }
 
 // Starts from the witness's direction and vertices.
@@ -105,39 +101,26 @@ Intersection chung(PairQuestion& question, Simplex& simplex, std::uint64_t& step
   return Intersection::kUndecided;
 }
 
-}  // namespace
-
-// For sums of numbers whose magnitudes add up to m, 2^-45 m is far above the rounding error, and kTiny above
-// what underflows. The bound is NaN or infinite if any input is not finite.
-double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above) {
-  constexpr double kRounding = 0x1p-45, kTiny = 1e-150;
-  const Placement& p = set.placement;
-  const Vec3d offset = p.origin - above;
-  const double stretch = l1Norm(p.x) + l1Norm(p.y) + l1Norm(p.z);
-  double height = set.around->height(p.toHull(direction)) + dot(direction, offset) +
-                  kRounding * (stretch * set.around->reach + l1Norm(offset)) + kTiny;
-  if (set.kind == ConvexSet::Kind::kWithEye) {
-    const Vec3d eye = set.eye_or_sweep - above;
-    const double of_eye = dot(direction, eye) + kRounding * l1Norm(eye);
-    height = std::isnan(height) || of_eye <= height ? height : of_eye;
-  } else if (set.kind == ConvexSet::Kind::kSwept) {
-    const double along = dot(direction, set.eye_or_sweep) + kRounding * l1Norm(set.eye_or_sweep);
-    height = along <= 0.0 ? height : height + along;
-  }
-  return height;
-}
-
-namespace {
-
-// Whether the envelopes prove that the witness's direction still separates the sets; false: not known.
-bool stillDisjoint(const ConvexSet& first, const ConvexSet& second, const PairWitness& witness) {
-  if (!witness.disjoint || first.around == nullptr || second.around == nullptr ||
-      !isUnit(witness.direction)) {
+// Whether the envelopes prove that the sets are disjoint; false: not known. The search begins at the
+// direction that separated them last.
+bool envelopesDisjoint(const ConvexSet& first, const ConvexSet& second, PairWitness& witness,
+                       PairCounts& counts) {
+  if (first.around == nullptr || second.around == nullptr || (witness.pairs > 0 && !witness.disjoint)) {
     return false;
   }
-  const Vec3d& origin = first.placement.origin;
-  return outerHeight(first, witness.direction, origin) + outerHeight(second, -witness.direction, origin) <
-         0.0;
+  Vec3d direction =
+      witness.pairs > 0 && isUnit(witness.direction) ? witness.direction : directionBetween(first, second);
+  ++counts.chung_steps;
+  witness.near = !separates(first, second, direction) &&
+                 (witness.near || !separateEnvelopes(first, second, direction, counts.chung_steps));
+  if (witness.near) {
+    return false;
+  }
+  if (!witness.disjoint) {
+    witness = {.disjoint = true, .pairs = 2};
+  }
+  witness.direction = direction;
+  return true;
 }
 
 bool hasPoints(const ConvexSet& set) {
@@ -163,8 +146,7 @@ Intersection testIntersection(const ConvexSet& first, const ConvexSet& second, P
     witness = PairWitness();
     return Intersection::kUndecided;
   }
-  if (stillDisjoint(first, second, witness)) {
-    ++counts.chung_steps;
+  if (envelopesDisjoint(first, second, witness, counts)) {
     return Intersection::kDisjoint;
   }
   PairQuestion question = questionOf(first, second);

@@ -20,12 +20,8 @@ struct ConvexSet {
   Placement placement;
   Kind kind = Kind::kHull;
   Vec3d eye_or_sweep;  // world space: the eye, or a segment long enough to pass the other set
-  const HullEnvelope* around = nullptr;  // the hull's envelope; null: known disjoint pairs take longer
+  const HullEnvelope* around = nullptr;  // the hull's envelope; null: disjoint pairs take longer
 };
-
-// An upper bound, by the hull's envelope, of the set's heights above a point along a direction, whose length
-// exceeds 1 by no more than rounding. NaN or infinite if any input is not finite.
-double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above);
 
 enum class Intersection : std::uint8_t {
   kDisjoint,      // proven: a plane separates them with more room than the rounding error
@@ -39,6 +35,7 @@ struct PairWitness {
   static constexpr std::uint32_t kSweptBit = 0x80000000u;  // in a vertex number: the far end of its segment
 
   bool disjoint = false;   // result of the last test
+  bool near = false;       // whether the envelopes were not found disjoint then, so that vertices decided
   std::uint8_t pairs = 0;  // number of vertex pairs in use
   Vec3d direction;         // world space, from the first set to the second
   // Vertices of the two sets. Disjoint: the farthest along `direction`, then the farthest of the hulls alone.
@@ -50,13 +47,13 @@ struct PairCounts {
   std::uint64_t questions = 0, chung_steps = 0, gjk_steps = 0;
 };
 
-// Tests two sets for intersection and updates the witness. Sets that were disjoint before are first tested by
-// their envelopes, which mostly suffices. Sets that were disjoint or are new then take up to four of Chung's
-// reflections. GJK decides the rest, starting from the vertex pairs found. The witness changes the result
-// only for pairs that nearly touch; any witness is valid, also with numbers that the hulls do not have.
-// Source: Snyder, Lengyel. MSR-TR-97-11, appendix B; Chung, Wang. Quick collision detection of polytopes in
-// virtual environments. VRST 1996; Gilbert, Johnson, Keerthi. A fast procedure for computing the distance
-// between complex objects in three-dimensional space. IEEE J. Robotics and Automation 1988.
+// Tests two sets for intersection and updates the witness. Sets that were disjoint or are new are first
+// tested by their envelopes, which mostly suffices, and then take up to four of Chung's reflections. GJK
+// decides the rest, starting from the vertex pairs found. The witness changes the result only for pairs that
+// nearly touch; any witness is valid, also with numbers that the hulls do not have. Source: Snyder, Lengyel.
+// MSR-TR-97-11, appendix B; Chung, Wang. Quick collision detection of polytopes in virtual environments. VRST
+// 1996; Gilbert, Johnson, Keerthi. A fast procedure for computing the distance between complex objects in
+// three-dimensional space. IEEE J. Robotics and Automation 1988.
 Intersection testIntersection(const ConvexSet& first, const ConvexSet& second, PairWitness& witness,
                               PairCounts& counts);
 

@@ -35,17 +35,19 @@ PairTable::Kept PairTable::find(std::uint32_t a, std::uint32_t b, Question quest
   return entry == PairIndex::kNone ? Kept{} : Kept{&witnesses_[entry], last_used_[entry] == frame_};
 }
 
-PairWitness& PairTable::use(std::uint32_t a, std::uint32_t b, Question question) {
+PairTable::Used PairTable::use(std::uint32_t a, std::uint32_t b, Question question) {
   const PairKey key = keyOf(a, b, question);
   std::uint32_t entry = index_.find(key);
-  if (entry == PairIndex::kNone) {
+  const bool known = entry != PairIndex::kNone;
+  const bool again = known && last_used_[entry] == frame_;
+  if (!known) {
     entry = static_cast<std::uint32_t>(index_.size());
     index_.add(key);
     witnesses_.emplace_back();
     last_used_.push_back(frame_);
   }
   last_used_[entry] = frame_;
-  return witnesses_[entry];
+  return {witnesses_[entry], again};
 }
 
 void PairTable::clear() {

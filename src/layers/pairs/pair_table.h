@@ -20,9 +20,13 @@ class PairTable {
   // Begins a frame and removes entries that were not used in the last `expiry` frames (0: all). Moves the
   // others together. Allocates only when the table holds more entries than ever before.
   void beginFrame(std::uint32_t expiry);
+  struct Used {
+    PairWitness& witness;
+    bool again = false;  // whether the entry was used in this frame before
+  };
   // Returns the entry of a pair, which it makes if there is none; valid until the next call. The entries of
   // kIntersection for (a, b) and (b, a) are the same, with a < b.
-  PairWitness& use(std::uint32_t a, std::uint32_t b, Question question);
+  Used use(std::uint32_t a, std::uint32_t b, Question question);
   struct Kept {
     const PairWitness* witness = nullptr;  // null: there is no entry
     bool used_now = false;                 // whether the entry was used in this frame

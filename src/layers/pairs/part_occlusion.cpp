@@ -5,6 +5,7 @@
 
 #include "sightline/geometry/tolerance.h"
 #include "src/layers/hull/support.h"
+#include "src/layers/pairs/envelope_pair.h"
 #include "src/layers/pairs/pair_eye.h"
 
 namespace sightline::layers {
@@ -44,6 +45,8 @@ void PartOcclusion::beginFrame(const View& view, const PartStore& parts, const E
   rules_ = &rules;
   table_.beginFrame(expiry);
   ++frame_;
+  expiry_ = expiry;
+  known_colliders_.resize(parts.parts(), 0);
   rule_orders_.resize(rules.numbers());
   collisions_.clear();
   collisions_are_sorted_ = true;
@@ -77,18 +80,26 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
     }
   }
 
-  ++pair_queries_;
-  if (rule == nullptr && stillCollide(front, back)) {
+  const std::uint64_t before = counts_.questions;
+  const bool occludes = hullsOcclude(front, back, rule == nullptr);
+  pair_queries_ += counts_.questions != before ? 1 : 0;
+  return occludes;
+}
+
+// Whether the hulls of part `front` occlude those of part `back`. Without a rule, contacts and containers
+// count.
+bool PartOcclusion::hullsOcclude(std::uint32_t front, std::uint32_t back, bool without_rule) {
+  if (without_rule && stillCollide(front, back)) {
     return containment(front, back) != Verdict::kDoesNot;
   }
-  const double erosion = rule == nullptr && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
+  const double erosion = without_rule && contact_tolerance_ > 0.0 && spatialExtentsOverlap(front, back)
                              ? contact_tolerance_
                              : 0.0;
-  const bool occludes = anyHullPair(front, back, [&](std::uint32_t i, std::uint32_t j) {
+  const bool occludes = anyHullPair(front, back, Reach::kToTheEye, [&](std::uint32_t i, std::uint32_t j) {
     return hullOccludes(front, i, back, j, erosion);
   });
   return occludes &&
-         (rule != nullptr || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
+         (!without_rule || !collide(front, back) || containment(front, back) != Verdict::kDoesNot);
 }
 
 std::span<const Arc> PartOcclusion::collisions() {
@@ -134,7 +145,10 @@ bool PartOcclusion::spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) cons
 
 // Whether test(i, j) is true for some pair of instances of the two parts.
 template <typename Test>
-bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const {
+bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Reach reach, Test&& test) {
+  if (hull_extents_ != nullptr && (parts_->hullsOf(front).size() > 1 || parts_->hullsOf(back).size() > 1)) {
+    return anyOverlappingHullPair(front, back, reach, test);
+  }
   for (std::uint32_t i = parts_->first_hull[front]; i < parts_->first_hull[front + 1]; ++i) {
     for (std::uint32_t j = parts_->first_hull[back]; j < parts_->first_hull[back + 1]; ++j) {
       if (test(i, j)) {
@@ -145,23 +159,58 @@ bool PartOcclusion::anyHullPair(std::uint32_t front, std::uint32_t back, Test&& 
   return false;
 }
 
+// Compares each hull with the whole other part first, so that little is left of parts that hardly overlap.
+template <typename Test>
+bool PartOcclusion::anyOverlappingHullPair(std::uint32_t front, std::uint32_t back, Reach reach,
+                                           Test&& test) {
+  const PartExtents& extents = *hull_extents_;
+  const bool to_the_eye = reach == Reach::kToTheEye;
+  const Extent whole = to_the_eye ? extents.query(back) : extentOf(extents.table(), back);
+  front_hulls_.clear();
+  for (std::uint32_t i = parts_->first_hull[front]; i < parts_->first_hull[front + 1]; ++i) {
+    if (overlaps(extents.hulls(), whole, i)) {
+      front_hulls_.push_back(i);
+    }
+  }
+  for (std::uint32_t j = parts_->first_hull[back]; j < parts_->first_hull[back + 1]; ++j) {
+    const Extent query = to_the_eye ? extents.queryOfHull(j) : extentOf(extents.hulls(), j);
+    if (!overlaps(extents.table(), query, front)) {
+      continue;
+    }
+    for (const std::uint32_t i : front_hulls_) {
+      if (overlaps(extents.hulls(), query, i) && test(i, j)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Precondition: a < b.
 bool PartOcclusion::hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j) {
-  PairWitness& witness = table_.use(i, j, PairTable::Question::kIntersection);
-  return testIntersection(placed(a, i, contact_tolerance_), placed(b, j, contact_tolerance_), witness,
-                          counts_) != Intersection::kDisjoint;
+  const auto [witness, again] = table_.use(i, j, PairTable::Question::kIntersection);
+  if (!again) {
+    testIntersection(placed(a, i, contact_tolerance_), placed(b, j, contact_tolerance_), witness, counts_);
+  }
+  return !witness.disjoint;
 }
 
 void PartOcclusion::addCollision(std::uint32_t a, std::uint32_t b) {
   collisions_.push_back({a, b});
+  for (const std::uint32_t part : {a, b}) {
+    known_colliders_[part] = frame_ + expiry_;
+  }
   collisions_are_sorted_ = false;
 }
 
 // Whether the parts intersected at their last test and do so now. Then each occludes the other, and one test
 // serves both directions.
 bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
+  if (!mayBeKnownToCollide(front) || !mayBeKnownToCollide(back)) {
+    return false;
+  }
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
-  const bool intersect = anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
+  const bool intersect = anyHullPair(low, high, Reach::kOwn, [&](std::uint32_t i, std::uint32_t j) {
     const PairTable::Kept kept = table_.find(i, j, PairTable::Question::kIntersection);
     return kept.witness != nullptr && !kept.witness->disjoint &&
            (kept.used_now || hullsIntersect(low, i, high, j));
@@ -176,31 +225,62 @@ bool PartOcclusion::stillCollide(std::uint32_t front, std::uint32_t back) {
 // collision of a tested pair is missed.
 bool PartOcclusion::collide(std::uint32_t front, std::uint32_t back) {
   const std::uint32_t low = std::min(front, back), high = std::max(front, back);
-  const bool intersect =
-      spatialExtentsOverlap(low, high) && anyHullPair(low, high, [&](std::uint32_t i, std::uint32_t j) {
-        return hullsIntersect(low, i, high, j);
-      });
+  const bool intersect = spatialExtentsOverlap(low, high) &&
+                         anyHullPair(low, high, Reach::kOwn, [&](std::uint32_t i, std::uint32_t j) {
+                           return hullsIntersect(low, i, high, j);
+                         });
   if (intersect) {
     addCollision(low, high);
   }
   return intersect;
 }
 
+// Whether the direction that separated the hull in front from the set that the hull behind sweeps to the eye
+// still does, by their envelopes and with some room.
+bool PartOcclusion::stillApart(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
+                               const PairWitness& witness, double room) const {
+  if (!witness.disjoint || !isUnit(witness.direction) || parts_->envelopes.empty()) {
+    return false;
+  }
+  const Vec3d& direction = witness.direction;
+  const Placement &of_front = parts_->placements[front], &of_back = parts_->placements[back];
+  const Vec3d& origin = of_front.origin;
+  const double highest_of_front =
+      outerHeight(parts_->envelopes[parts_->part_hulls[i]], of_front, Vec3d(), direction);
+  const double highest_of_back =
+      outerHeight(parts_->envelopes[parts_->part_hulls[j]], of_back, of_back.origin - origin, -direction);
+  // An eye at infinity is on one side of the plane.
+  const bool eye_is_apart = view_.orthographic
+                                ? outerHeight(view_.forward, direction) <= 0.0
+                                : highest_of_front + outerHeight(view_.eye - origin, -direction) < -room;
+  return eye_is_apart && highest_of_front + highest_of_back < -room;
+}
+
 // Whether the hull in front intersects the set that the hull behind sweeps to the eye, both made smaller by
 // half the erosion.
 bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
                                  double erosion) {
+  const auto [witness, again] = table_.use(i, j, PairTable::Question::kOcclusion);
+  if (again) {
+    return !witness.disjoint;
+  }
+  if (stillApart(front, i, back, j, witness, erosion)) {
+    ++counts_.questions;
+    ++counts_.chung_steps;
+    return false;
+  }
   const ConvexSet in_front = placed(front, i, erosion);
   ConvexSet swept = placed(back, j, erosion);
   if (view_.orthographic) {
     if (!sweepPast(in_front, swept)) {
+      ++counts_.questions;
+      witness.disjoint = true;
       return false;
     }
   } else {
     swept.kind = ConvexSet::Kind::kWithEye;
     swept.eye_or_sweep = view_.eye;
   }
-  PairWitness& witness = table_.use(i, j, PairTable::Question::kOcclusion);
   return testIntersection(in_front, swept, witness, counts_) != Intersection::kDisjoint;
 }
 

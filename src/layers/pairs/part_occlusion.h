@@ -4,8 +4,9 @@
 //
 // Based on: Snyder, Lengyel. MSR-TR-97-11, section 6.
 // Differs from the paper in: hulls are first tested for occlusion, which most pairs fail, and for collision
-// only if they occlude or collided in the last frame; parts are unions of hulls; views may be orthographic;
-// rules are applied before hulls are tested; containers.
+// only if they occlude or collided in the last frame; parts are unions of hulls, of which only the pairs with
+// extents that overlap are tested; views may be orthographic; rules are applied before hulls are tested;
+// containers.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "sightline/layers/pair_rule.h"
 #include "sightline/scene/camera.h"
 #include "src/layers/extents/extent_table.h"
+#include "src/layers/extents/part_extents.h"
 #include "src/layers/pairs/convex_pair.h"
 #include "src/layers/pairs/pair_rules.h"
 #include "src/layers/pairs/pair_table.h"
@@ -25,8 +27,10 @@ namespace sightline::layers {
 
 class PartOcclusion {
  public:
-  // contact_tolerance: see LayerSettings.
-  explicit PartOcclusion(double contact_tolerance = 0.0) : contact_tolerance_(contact_tolerance) {}
+  // contact_tolerance: see LayerSettings. hull_extents: of parts with several hulls, only those pairs of
+  // hulls are tested whose extents allow it; null: all pairs. They must be up to date in each frame.
+  explicit PartOcclusion(double contact_tolerance = 0.0, const PartExtents* hull_extents = nullptr)
+      : contact_tolerance_(contact_tolerance), hull_extents_(hull_extents) {}
 
   // Begins a frame. Parts, extents and rules must not change until its last question.
   // extents: only those of spatial axes are used. expiry: frames for which a pair's result is kept after its
@@ -52,13 +56,21 @@ class PartOcclusion {
 
   PairOrder ruleOrder(std::uint32_t number);
   bool spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) const;
+  // Which pairs of hulls matter: those that may occlude in this order, or those that may intersect.
+  enum class Reach : std::uint8_t { kToTheEye, kOwn };
   template <typename Test>
-  bool anyHullPair(std::uint32_t front, std::uint32_t back, Test&& test) const;
+  bool anyHullPair(std::uint32_t front, std::uint32_t back, Reach reach, Test&& test);
+  template <typename Test>
+  bool anyOverlappingHullPair(std::uint32_t front, std::uint32_t back, Reach reach, Test&& test);
+  bool hullsOcclude(std::uint32_t front, std::uint32_t back, bool without_rule);
   bool hullOccludes(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
                     double erosion);
+  bool stillApart(std::uint32_t front, std::uint32_t i, std::uint32_t back, std::uint32_t j,
+                  const PairWitness& witness, double room) const;
   bool hullsIntersect(std::uint32_t a, std::uint32_t i, std::uint32_t b, std::uint32_t j);
   bool stillCollide(std::uint32_t front, std::uint32_t back);
   bool collide(std::uint32_t front, std::uint32_t back);
+  bool mayBeKnownToCollide(std::uint32_t part) const { return known_colliders_[part] >= frame_; }
   void addCollision(std::uint32_t a, std::uint32_t b);
   bool sweepPast(const ConvexSet& front, ConvexSet& back) const;
 
@@ -69,6 +81,7 @@ class PartOcclusion {
   ConvexSet placed(std::uint32_t part, std::uint32_t instance, double erosion = 0.0) const;
 
   double contact_tolerance_;
+  const PartExtents* hull_extents_;
   View view_;
   bool view_is_finite_ = false;
   const PartStore* parts_ = nullptr;
@@ -76,6 +89,7 @@ class PartOcclusion {
   const PairRules* rules_ = nullptr;
 
   PairTable table_;
+  std::vector<std::uint32_t> front_hulls_;  // scratch for anyOverlappingHullPair()
   struct RuleOrder {
     std::uint64_t frame = 0;
     PairOrder order;
@@ -83,6 +97,9 @@ class PartOcclusion {
   std::vector<RuleOrder> rule_orders_;  // one per rule: its last order and the frame of it
   std::uint64_t frame_ = 0;
   std::vector<Arc> collisions_;
+  // One per part: the last frame in which the table may know of a collision.
+  std::vector<std::uint64_t> known_colliders_;
+  std::uint32_t expiry_ = 0;
   bool collisions_are_sorted_ = true;
 
   std::uint64_t pair_queries_ = 0;

@@ -16,14 +16,12 @@ void DepthFirstSort::sort(std::span<const std::uint32_t> previous, OccluderSourc
                           GroupedOrder& order) {
   prepare(previous);
   order.parts.clear();
-  order.arcs.clear();
   order.first_of.assign(1, 0);
   for (const std::uint32_t part : previous) {
     if (found_[part] == 0) {
       search(part, source, order);
     }
   }
-  std::sort(order.arcs.begin(), order.arcs.end());
 }
 
 void DepthFirstSort::prepare(std::span<const std::uint32_t> previous) {
@@ -40,10 +38,10 @@ void DepthFirstSort::prepare(std::span<const std::uint32_t> previous) {
   for (std::size_t i = 0; i < previous.size(); ++i) {
     rank_[previous[i]] = static_cast<std::uint32_t>(i);
   }
-  occluders_.clear();
+  candidates_.clear();
   open_.clear();
   path_.clear();
-  // Their greatest size is known; that of occluders_ depends on the arcs.
+  // Their greatest size is known; that of candidates_ depends on the extents.
   open_.reserve(previous.size());
   path_.reserve(previous.size());
   entered_ = 0;
@@ -53,17 +51,16 @@ void DepthFirstSort::search(std::uint32_t root, OccluderSource& source, GroupedO
   enter(root, source);
   while (!path_.empty()) {
     Visit& visit = path_.back();
-    if (visit.next_edge == last_[visit.part]) {
+    if (visit.next == last_[visit.part]) {
       const std::uint32_t part = visit.part;
       path_.pop_back();
       leave(part, source, order);
       continue;
     }
-    const std::uint32_t occluder = occluders_[visit.next_edge++];
-    if (found_[occluder] == 0) {
-      enter(occluder, source);
-    } else if (group_[occluder] == kNoGroup) {
-      low_[visit.part] = std::min(low_[visit.part], found_[occluder]);
+    // One that was visited since is in the output, or was reached from this part.
+    const std::uint32_t candidate = candidates_[visit.next++];
+    if (found_[candidate] == 0 && source.candidateOccludes(candidate, visit.part)) {
+      enter(candidate, source);
     }
   }
 }
@@ -71,12 +68,30 @@ void DepthFirstSort::search(std::uint32_t root, OccluderSource& source, GroupedO
 void DepthFirstSort::enter(std::uint32_t part, OccluderSource& source) {
   found_[part] = low_[part] = ++entered_;
   open_.push_back(part);
-  first_[part] = occluders_.size();
-  source.occludersOf(std::span(&part, 1), occluders_);
-  last_[part] = occluders_.size();
-  std::sort(occluders_.begin() + static_cast<std::ptrdiff_t>(first_[part]), occluders_.end(),
+  first_[part] = candidates_.size();
+  source.candidatesOf(part, candidates_);
+  const auto begin = candidates_.begin() + static_cast<std::ptrdiff_t>(first_[part]);
+  const auto open = std::partition(begin, candidates_.end(),
+                                   [this](std::uint32_t candidate) { return found_[candidate] == 0; });
+  visited_.assign(open, candidates_.end());
+  candidates_.erase(open, candidates_.end());
+  last_[part] = candidates_.size();
+  std::sort(begin, candidates_.end(),
             [this](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; });
+  lower(part, source);
   path_.push_back({part, first_[part]});
+}
+
+// Finds the part that was visited first of those in visited_ that occlude this one: it alone matters.
+void DepthFirstSort::lower(std::uint32_t part, OccluderSource& source) {
+  std::sort(visited_.begin(), visited_.end(),
+            [this](std::uint32_t a, std::uint32_t b) { return found_[a] < found_[b]; });
+  const auto first = std::find_if(visited_.begin(), visited_.end(), [&](std::uint32_t candidate) {
+    return source.candidateOccludes(candidate, part);
+  });
+  if (first != visited_.end()) {
+    low_[part] = found_[*first];
+  }
 }
 
 void DepthFirstSort::leave(std::uint32_t part, OccluderSource& source, GroupedOrder& order) {
@@ -89,7 +104,8 @@ void DepthFirstSort::leave(std::uint32_t part, OccluderSource& source, GroupedOr
   }
 }
 
-// Emits the root and all open parts that were visited after it as one group. Their occluders end occluders_.
+// Emits the root and all open parts that were visited after it as one group. Their candidates end
+// candidates_.
 void DepthFirstSort::emit(std::uint32_t root, OccluderSource& source, GroupedOrder& order) {
   const auto group = static_cast<std::uint32_t>(order.groups());
   const std::size_t begin = order.parts.size();
@@ -103,15 +119,7 @@ void DepthFirstSort::emit(std::uint32_t root, OccluderSource& source, GroupedOrd
   } while (part != root);
   std::sort(order.parts.begin() + static_cast<std::ptrdiff_t>(begin), order.parts.end(),
             [this](std::uint32_t a, std::uint32_t b) { return rank_[a] < rank_[b]; });
-  for (std::size_t i = begin; i < order.parts.size(); ++i) {
-    const std::uint32_t back = order.parts[i];
-    for (std::size_t edge = first_[back]; edge < last_[back]; ++edge) {
-      if (group_[occluders_[edge]] == group) {
-        order.arcs.push_back({occluders_[edge], back});
-      }
-    }
-  }
-  occluders_.resize(first_[root]);
+  candidates_.resize(first_[root]);
   order.first_of.push_back(static_cast<std::uint32_t>(order.parts.size()));
 }
 

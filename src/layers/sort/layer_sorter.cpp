@@ -71,7 +71,7 @@ struct LayerSorter::Impl {
   explicit Impl(LayerSettings given)
       : settings(checked(std::move(given))),
         extents(settings.extents),
-        occlusion(settings.contact_tolerance),
+        occlusion(settings.contact_tolerance, &extents),
         source(searchOf(settings), settings.exact, extents, occlusion),
         sort_algorithm(sortOf(settings)) {}
 
@@ -84,7 +84,8 @@ struct LayerSorter::Impl {
   void place(const View& view);
   void sort();
   void condition();
-  void addArcsBetweenGroups();
+  void addArcsWithinGroups();
+  void addArcsOf(std::span<const std::uint32_t> parts);
   void collect();
   void sortByDistance(const View& view, std::span<std::uint32_t> parts);
   double distance(const View& view, std::uint32_t part) const;
@@ -103,10 +104,10 @@ struct LayerSorter::Impl {
   std::unique_ptr<LayerSortAlgorithm> sort_algorithm;
   ConditioningSort conditioning;
 
-  std::vector<std::uint32_t> previous;  // parts to be sorted, in the last frame's order
-  std::vector<std::uint8_t> listed;     // one per part: whether it is in `previous`
-  std::vector<std::uint32_t> occluders;
-  std::vector<double> distances;  // one per part
+  std::vector<std::uint32_t> previous;    // parts to be sorted, in the last frame's order
+  std::vector<std::uint8_t> listed;       // one per part: whether it is in `previous`
+  std::vector<std::uint32_t> candidates;  // scratch for addArcsOf()
+  std::vector<double> distances;          // one per part
   std::vector<double> group_distances;
   GroupedOrder order;
   std::uint64_t extent_updates = 0, conditioned = 0, outside = 0;
@@ -123,8 +124,8 @@ LayerSorter::LayerSorter(LayerSorter&&) noexcept = default;
 LayerSorter& LayerSorter::operator=(LayerSorter&&) noexcept = default;
 
 HullId LayerSorter::addHull(ConvexHull hull) {
-  impl_->store.envelopes.push_back(envelopeOf(hull));
   impl_->store.boxes.push_back(boxOf(hull));
+  impl_->store.envelopes.emplace_back(hull, impl_->store.boxes.back());
   impl_->store.hulls.push_back(std::move(hull));
   return HullId(impl_->store.hulls.size() - 1);
 }
@@ -147,8 +148,8 @@ bool LayerSorter::setHull(HullId hull, ConvexHull shape) {
   if (is_fixed) {
     return false;
   }
-  own.store.envelopes[hull.value] = envelopeOf(shape);
   own.store.boxes[hull.value] = boxOf(shape);
+  own.store.envelopes[hull.value] = HullEnvelope(shape, own.store.boxes[hull.value]);
   own.store.hulls[hull.value] = std::move(shape);
   own.extents.replaceHull(hull.value, own.store);
   forEachPartWithIt([&](std::uint32_t part) {
@@ -375,20 +376,42 @@ void LayerSorter::Impl::condition() {
   conditioned = conditioning.sort(group_distances, distances, may_occlude, {}, order);
 }
 
-// Asks for the occluders of every part while all parts are active.
-void LayerSorter::Impl::addArcsBetweenGroups() {
-  for (const std::uint32_t part : order.parts) {
-    source.setActive(part, true);
-  }
-  order.arcs.clear();
-  for (const std::uint32_t part : order.parts) {
-    occluders.clear();
-    source.occludersOf(std::span(&part, 1), occluders);
-    for (const std::uint32_t front : occluders) {
-      order.arcs.push_back({front, part});
+// Asks about the arcs within groups. Of few parts, all pairs are compared; a search would take longer.
+void LayerSorter::Impl::addArcsWithinGroups() {
+  constexpr std::size_t kFewParts = 16;
+  for (std::size_t i = 0; i < order.groups(); ++i) {
+    const std::span<const std::uint32_t> parts = order.group(i);
+    if (parts.size() > kFewParts) {
+      addArcsOf(parts);
+      continue;
+    }
+    for (const std::uint32_t front : parts) {
+      for (const std::uint32_t back : parts) {
+        if (front != back && source.occludes(front, back)) {
+          arcs_out.push_back({PartId(front), PartId(back)});
+        }
+      }
     }
   }
-  std::sort(order.arcs.begin(), order.arcs.end());
+}
+
+// Asks about the arcs between these parts; none is active before and after.
+void LayerSorter::Impl::addArcsOf(std::span<const std::uint32_t> parts) {
+  for (const std::uint32_t part : parts) {
+    source.setActive(part, true);
+  }
+  for (const std::uint32_t back : parts) {
+    candidates.clear();
+    source.candidatesOf(back, candidates);
+    for (const std::uint32_t front : candidates) {
+      if (source.candidateOccludes(front, back)) {
+        arcs_out.push_back({PartId(front), PartId(back)});
+      }
+    }
+  }
+  for (const std::uint32_t part : parts) {
+    source.setActive(part, false);
+  }
 }
 
 void LayerSorter::Impl::collect() {
@@ -420,14 +443,10 @@ void LayerSorter::Impl::collect() {
   });
   addEach(Place::kBackdrop, beginGroup);
   beginGroup();
-  const auto copyArcs = [](std::span<const Arc> arcs, std::vector<LayerArc>& target) {
-    target.clear();
-    for (const Arc& arc : arcs) {
-      target.push_back({PartId(arc.front), PartId(arc.back)});
-    }
-  };
-  copyArcs(order.arcs, arcs_out);
-  copyArcs(occlusion.collisions(), collisions_out);
+  collisions_out.clear();
+  for (const Arc& pair : occlusion.collisions()) {
+    collisions_out.push_back({PartId(pair.front), PartId(pair.back)});
+  }
   out = {parts_out, first_out, arcs_out, collisions_out, first_sorted, depth_buffered, stats()};
 }
 
@@ -457,9 +476,13 @@ const LayerOrder& LayerSorter::update(const View& given) {
   own.sort();
   own.condition();
   own.previous.assign(own.order.parts.begin(), own.order.parts.end());
-  if (own.settings.all_arcs) {
-    own.addArcsBetweenGroups();
+  own.arcs_out.clear();
+  if (own.settings.arcs == LayerArcs::kAll) {
+    own.addArcsOf(own.order.parts);
+  } else if (own.settings.arcs == LayerArcs::kWithinGroups) {
+    own.addArcsWithinGroups();
   }
+  std::sort(own.arcs_out.begin(), own.arcs_out.end());
   own.collect();
   return own.out;
 }

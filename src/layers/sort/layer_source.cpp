@@ -25,27 +25,34 @@ bool LayerSource::occludes(std::uint32_t front, std::uint32_t back) {
   return mayOcclude(front, back) && (!exact_ || occlusion_.occludes(front, back));
 }
 
-// The united extents of a group also enclose the space between its parts, so each part is tested alone
-// (section 5.3 of the paper).
-bool LayerSource::occludesOneOf(std::uint32_t front, std::span<const std::uint32_t> group) {
-  if (group.size() == 1) {  // the search has compared the extents already
-    return !exact_ || occlusion_.occludes(front, group[0]);
+void LayerSource::candidatesOf(std::uint32_t part, std::vector<std::uint32_t>& candidates) {
+  const auto begin = static_cast<std::ptrdiff_t>(candidates.size());
+  search_->query(extents_.query(part), candidates);
+  const auto self = std::lower_bound(candidates.begin() + begin, candidates.end(), part);
+  if (self != candidates.end() && *self == part) {
+    candidates.erase(self);
   }
-  return std::any_of(group.begin(), group.end(),
-                     [&](std::uint32_t member) { return occludes(front, member); });
+  ++queries_;
+  candidates_ += static_cast<std::uint64_t>(candidates.end() - candidates.begin() - begin);
 }
 
+bool LayerSource::candidateOccludes(std::uint32_t candidate, std::uint32_t part) {
+  return !exact_ || occlusion_.occludes(candidate, part);
+}
+
+// The united extents of a group also enclose the space between its parts, so each part is tested alone
+// (section 5.3 of the paper).
 void LayerSource::occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) {
-  const Extent query = group.size() == 1 ? extents_.query(group[0]) : extents_.query(group);
   found_.clear();
-  search_->query(query, found_);
+  search_->query(extents_.query(group), found_);
   ++queries_;
   for (const std::uint32_t part : found_) {
     if (std::find(group.begin(), group.end(), part) != group.end()) {
       continue;
     }
     ++candidates_;
-    if (occludesOneOf(part, group)) {
+    if (std::any_of(group.begin(), group.end(),
+                    [&](std::uint32_t member) { return occludes(part, member); })) {
       occluders.push_back(part);
     }
   }

@@ -25,6 +25,8 @@ class LayerSource final : public OccluderSource {
   void beginFrame(std::span<const std::uint32_t> sorted);
   void rebuildSearch() { search_->rebuild(extents_.table()); }
 
+  void candidatesOf(std::uint32_t part, std::vector<std::uint32_t>& candidates) override;
+  bool candidateOccludes(std::uint32_t candidate, std::uint32_t part) override;
   void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) override;
   bool occludes(std::uint32_t front, std::uint32_t back) override;
   void setActive(std::uint32_t part, bool active) override;
@@ -36,8 +38,6 @@ class LayerSource final : public OccluderSource {
   std::uint64_t candidates() const { return candidates_; }
 
  private:
-  bool occludesOneOf(std::uint32_t front, std::span<const std::uint32_t> group);
-
   std::unique_ptr<CandidateSearch> search_;
   bool exact_;
   const PartExtents& extents_;

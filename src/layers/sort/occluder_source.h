@@ -12,6 +12,10 @@ class OccluderSource {
  public:
   virtual ~OccluderSource() = default;
 
+  // Appends the active parts that may occlude a part, each once and ascending, without the part itself. They
+  // cost little; whether a candidate occludes the part is for candidateOccludes() to say.
+  virtual void candidatesOf(std::uint32_t part, std::vector<std::uint32_t>& candidates) = 0;
+  virtual bool candidateOccludes(std::uint32_t candidate, std::uint32_t part) = 0;
   // Appends the active parts that occlude at least one part of the group, each once and ascending, without
   // the group's own parts.
   virtual void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) = 0;
@@ -32,7 +36,6 @@ struct Arc {
 struct GroupedOrder {
   std::vector<std::uint32_t> parts;     // group after group
   std::vector<std::uint32_t> first_of;  // groups + 1 elements: where each group begins in parts
-  std::vector<Arc> arcs;                // all arcs within groups, ascending
 
   std::size_t groups() const { return first_of.empty() ? 0 : first_of.size() - 1; }
   std::span<const std::uint32_t> group(std::size_t i) const {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sightline/geometry/tolerance.h"
-#include "src/layers/pairs/convex_pair.h"
+#include "src/layers/pairs/envelope_pair.h"
 
 namespace sightline::layers {
 
@@ -20,14 +20,15 @@ bool ViewVolume::isOutside(const PartStore& parts, std::uint32_t part) const {
     constexpr double kRounding = 0x1p-45;
     const double at_eye = plane.evaluate(eye_);
     const double margin = kRounding * (l1Norm(eye_) + std::abs(plane.offset));
-    const std::span<const std::uint32_t> hulls = parts.hullsOf(part);
-    return std::all_of(hulls.begin(), hulls.end(), [&](std::uint32_t hull) {
+    for (std::uint32_t i = parts.first_hull[part]; i < parts.first_hull[part + 1]; ++i) {
       ConvexSet set;
-      set.hull = &parts.hulls[hull];
-      set.around = &parts.envelopes[hull];
+      set.around = &parts.envelopes[parts.part_hulls[i]];
       set.placement = parts.placements[part];
-      return outerHeight(set, plane.normal, eye_) + at_eye + margin < 0.0;
-    });
+      if (!(outerHeight(set, plane.normal, eye_) + at_eye + margin < 0.0)) {
+        return false;
+      }
+    }
+    return true;
   });
 }
 

@@ -39,7 +39,7 @@ int main() {
   const ChoiceSettings choice{.count = 8};
   const OccluderDatabaseSettings database{.directions = 8};
   const SetQuerySettings query{.cache_bytes = 1024};
-  const LayerSettings layers{.all_arcs = true};
+  const LayerSettings layers{.arcs = LayerArcs::kAll};
   const PartSettings part{.is_static = true};
   const ExtentAxis axis{.kind = ExtentAxis::Kind::kAngular};
   const PairPlane plane{.plane = {.offset = 1.0}};
@@ -61,7 +61,7 @@ int main() {
                  opacity.tolerance == 0 && tree.variant == OcclusionTreeVariant::kFSE &&
                  !planes.joint_occlusion && hierarchy.kind == HierarchyKind::kKdTree &&
                  occluders.max_vertices == 8 && choice.count == 8 && database.directions == 8 &&
-                 query.cache_bytes == 1024 && layers.all_arcs && part.is_static &&
+                 query.cache_bytes == 1024 && layers.arcs == LayerArcs::kAll && part.is_static &&
                  axis.kind == ExtentAxis::Kind::kAngular && plane.plane.offset > 0.0 &&
                  joint.sphere_radius > 1.0 && split.count == 2 && cylinder.sectors == 6 &&
                  hexagons.width > 1.0 && view.near > 0.5 && frame.forward.z < 0.0 && path.near > 0.5 &&

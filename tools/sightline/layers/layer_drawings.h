@@ -25,7 +25,7 @@ FeatureSettings featuresOf(const LayerDrawingOptions& options);
 // Checks that no number is NaN and that some kind of line is to be drawn.
 Status checkLines(const LayerDrawingOptions& options);
 
-// Whether the sorter must find the arcs of all pairs (LayerSettings::all_arcs).
+// Whether the sorter must find the arcs of all pairs (LayerArcs::kAll).
 bool needAllArcs(const LayerDrawingOptions& options);
 
 // Makes a hidden-line drawing of each frame. The page is as high as the pictures in pixels and has the view's

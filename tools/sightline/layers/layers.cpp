@@ -82,6 +82,12 @@ constexpr std::array<Name<MakeCandidateSearch (*)()>, 2> kSearches{{
     {"tree", [] { return extentTree(); }},
 }};
 
+// What --arcs reports.
+constexpr std::array<Name<LayerArcs>, 2> kArcs{{
+    {"groups", LayerArcs::kWithinGroups},
+    {"all", LayerArcs::kAll},
+}};
+
 using FrameMakers = std::vector<std::unique_ptr<FrameMaker>>;
 
 template <typename Tag>
@@ -117,7 +123,7 @@ LayerSettings settingsOf(const LayersOptions& options) {
   settings.exact = valueOf(kSwitch, options.exact);
   settings.frustum_culling = valueOf(kSwitch, options.frustum_culling);
   settings.contact_tolerance = options.contact_tolerance;
-  settings.all_arcs = options.arcs == "all" || needAllArcs(options.drawings);
+  settings.arcs = needAllArcs(options.drawings) ? LayerArcs::kAll : valueOf(kArcs, options.arcs);
   // None of the world's axes measures the distance from the camera.
   if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
     settings.conditioning_axis = -1;
@@ -426,7 +432,7 @@ void addSortOptions(CLI::App& command, LayersOptions& options) {
   addChoice(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
   addChoice(command, "--extents", options.extents, {"camera", "world"},
             "two angles and depth of the camera, or x, y, z of the world");
-  addChoice(command, "--arcs", options.arcs, {"groups", "all"},
+  addChoice(command, "--arcs", options.arcs, textsOf(kArcs),
             "who occludes whom: within groups, or of all pairs");
   addChoice(command, "--expression", options.expression, textsOf(kCompositingForms),
             "how cycles without mutual occlusion are composited");
