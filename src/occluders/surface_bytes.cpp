@@ -131,6 +131,21 @@ bool haveSmallValues(const SurfaceSet& set) {
          });
 }
 
+// Whether chains lie in the boxes of the clusters that end at them, by which drawing tells how large their
+// images may be.
+bool chainsLieInTheirBoxes(const SurfaceSet& set) {
+  return std::all_of(set.chains.begin(), set.chains.end(), [&set](const SurfaceChain& chain) {
+    const std::span<const ChainUse> uses = set.usesOf(chain);
+    return std::all_of(uses.begin(), uses.end(), [&](const ChainUse& use) {
+      const Box& bounds = set.cluster_bounds[use.cluster];
+      const std::span<const Vec3f> vertices = set.verticesOf(chain);
+      return std::all_of(vertices.begin(), vertices.end(), [&bounds](const Vec3f& vertex) {
+        return contains(bounds, Box{vertex, vertex});
+      });
+    });
+  });
+}
+
 // What is wrong with the numbers of a set; empty if nothing is: no index leaves its array.
 std::string flawOf(const SurfaceSet& set, std::size_t objects) {
   const auto all = [](const auto& items, auto&& sound) {
@@ -193,6 +208,9 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
   }
   if (!isFiniteSet(set)) {
     return "some of its numbers are not finite";
+  }
+  if (!chainsLieInTheirBoxes(set)) {
+    return "some of its edges lie outside of what they are edges of";
   }
   return "";
 }

@@ -8,6 +8,11 @@ namespace {
 
 constexpr double kSteepest = 256.0;  // pixels a row
 
+// What is not to be used is moved to where it does no harm.
+std::int64_t wholeOf(double v) {
+  return static_cast<std::int64_t>(std::min(std::max(v, -kLargestGrid), kLargestGrid));
+}
+
 // The first row whose middle is not below a point.
 std::int64_t rowAfter(std::int64_t y) {
   return (y + kGridStep / 2 - 1) >> kGridShift;
@@ -22,8 +27,7 @@ std::int16_t clamped(std::int64_t v, std::int64_t least, std::int64_t most) {
 BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer) {
   constexpr std::int64_t kMargin = BoundaryEdge::kMargin, kBeyond = BoundaryEdge::kBeyond;
   constexpr std::int32_t kRowOfTiles = kGridShift + kTileHeightShift, kColumn = kGridShift + kTileWidthShift;
-  const auto x0 = static_cast<std::int64_t>(from.x), x1 = static_cast<std::int64_t>(to.x),
-             y0 = static_cast<std::int64_t>(from.y), y1 = static_cast<std::int64_t>(to.y);
+  const std::int64_t x0 = wholeOf(from.x), x1 = wholeOf(to.x), y0 = wholeOf(from.y), y1 = wholeOf(to.y);
   const std::int64_t bottom = std::min(y0, y1), top = std::max(y0, y1);
   const std::int64_t left = std::min(x0, x1) - kMargin, right = std::max(x0, x1) + kMargin;
   const std::int64_t end_x = std::int64_t{buffer.width} << kGridShift,

@@ -37,8 +37,10 @@ struct BoundaryEdge {
   // So far to the left or right of the buffer nothing matters, and places are moved there.
   static constexpr std::int32_t kBeyond = 1 << 20;
 
-  double x;      // where its line crosses the lower border of the tiles of first_row; of a level edge, its y
-  double slope;  // change of x with y; 0 for a level edge
+  // Where its line crosses the lower border of the tiles of first_row. A level edge crosses none: this is its
+  // y.
+  double x;
+  double slope;       // change of x with y; 0 for a level edge
   float left, right;  // of the edge with its margin
   float reach;  // beyond where it crosses the borders of a row, along the row, it may touch pixels so far
   // So near to the edge, along the middle of a row, or of a level edge upwards and downwards, it is unknown
@@ -55,6 +57,12 @@ struct BoundaryEdge {
   // Whether the winding is greater to the right of it, if the surface lies to its left `value` times. Of a
   // level edge this is a convention.
   bool rises(std::int32_t value) const { return falls == (value > 0); }
+};
+
+// Edges of a group's boundary. The surface lies to their left, `value` times.
+struct BoundaryChain {
+  std::uint32_t first = 0, count = 0;  // into a list of edges
+  std::int32_t value = 0;              // not 0
 };
 
 BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer);

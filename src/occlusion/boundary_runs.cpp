@@ -60,12 +60,12 @@ HWY_INLINE void drawLevelEdge(const RunRows& target, const BoundaryEdge& edge) {
   }
 }
 
-std::uint32_t drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edges,
-                         std::span<const BoundaryChain> chains) {
+void drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edges,
+                std::span<const BoundaryChain> chains) {
   for (std::int32_t row = rows.first_row; row <= rows.last_row; ++row) {
     clearRuns(rows.runs[row]);
   }
-  std::uint32_t drawn = 0, level = 0;
+  std::uint32_t level = 0;
   const std::int32_t begin_row = rows.first_row * kTileHeight, end_row = (rows.last_row + 1) * kTileHeight;
   const auto forEdges = [&](auto&& use) HWY_ATTR {
     for (const BoundaryChain& chain : chains) {
@@ -77,7 +77,6 @@ std::uint32_t drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edge
     }
   };
   forEdges([&](const BoundaryEdge& edge, std::int32_t value) HWY_ATTR {
-    ++drawn;
     if (edge.kind == EdgeSlope::kLevel) {
       ++level;
     } else {
@@ -91,7 +90,6 @@ std::uint32_t drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edge
       }
     });
   }
-  return drawn;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -162,9 +160,9 @@ bool hasRuns(std::span<const BoundaryEdge> edges, std::span<const BoundaryChain>
                                         }));
 }
 
-std::uint32_t drawRuns(const RunRows& rows, std::span<const BoundaryEdge> edges,
-                       std::span<const BoundaryChain> chains) {
-  return HWY_DYNAMIC_DISPATCH(drawRunsOf)(rows, edges, chains);
+void drawRuns(const RunRows& rows, std::span<const BoundaryEdge> edges,
+              std::span<const BoundaryChain> chains) {
+  HWY_DYNAMIC_DISPATCH(drawRunsOf)(rows, edges, chains);
 }
 
 }  // namespace sightline::occlusion

@@ -10,16 +10,10 @@
 
 namespace sightline::occlusion {
 
-// Edges of a group's boundary. The surface lies to their left, `value` times.
-struct BoundaryChain {
-  std::uint32_t first = 0, count = 0;  // into a list of edges
-  std::int32_t value = 0;              // not 0
-};
-
-// The runs of a row of tiles. Places are in 256ths of a pixel.
+// The runs of a row of tiles, by row of pixels. Places are in 256ths of a pixel.
 struct alignas(64) TileRowRuns {
-  float after[kTileHeight];            // the greatest place that edges touch which begin the group
-  float before[kTileHeight];           // the least place that edges touch which end it
+  float after[kTileHeight];            // the rightmost place that an edge touches which begins the group
+  float before[kTileHeight];           // the leftmost place that an edge touches which ends it
   std::uint32_t crossed[kTileHeight];  // all bits: an edge that begins the group crosses the row's middle
 };
 
@@ -35,9 +29,8 @@ struct RunRows {
 bool hasRuns(std::span<const BoundaryEdge> edges, std::span<const BoundaryChain> chains);
 
 // Sets the runs of a group to those that its boundary leaves. Pixels in them are touched by no edge, and the
-// group's winding number is 1 or more there: any boundary may be drawn. Returns how many edges may touch the
-// rows.
-std::uint32_t drawRuns(const RunRows& rows, std::span<const BoundaryEdge> edges,
-                       std::span<const BoundaryChain> chains);
+// group's winding number is 1 or more there: any boundary may be drawn.
+void drawRuns(const RunRows& rows, std::span<const BoundaryEdge> edges,
+              std::span<const BoundaryChain> chains);
 
 }  // namespace sightline::occlusion

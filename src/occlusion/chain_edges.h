@@ -8,7 +8,6 @@
 
 #include "sightline/occluders/surface_set.h"
 #include "src/occlusion/boundary_edge.h"
-#include "src/occlusion/boundary_runs.h"
 #include "src/scene/pixel_view.h"
 
 namespace sightline::occlusion {

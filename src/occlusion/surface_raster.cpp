@@ -14,10 +14,17 @@ namespace {
 constexpr double kMinGain = 0.3;
 constexpr std::uint32_t kLongestRest = 15;  // views, before up to half as many are added
 
-// Groups are drawn when so much work waits, and half of what was drawn in the view before. What is behind
-// them is noticed from then on.
+// Groups are drawn when this work waits, plus half of the work already done in the view. What is behind them
+// is noticed from then on.
 constexpr std::uint64_t kFirstRound = 128;
-constexpr std::int32_t kTilePixels = kTileWidth * kTileHeight;
+
+// At most so many tiles are looked at for a group with this rectangle.
+std::uint32_t tilesIn(const PixelRectangle& r) {
+  const auto tiles = [](std::int32_t first, std::int32_t end, std::int32_t size) {
+    return static_cast<std::uint32_t>((end - 1) / size - first / size + 1);
+  };
+  return r.empty() ? 0 : tiles(r.x0, r.x1, kTileWidth) * tiles(r.y0, r.y1, kTileHeight);
+}
 
 // What a group costs, as SurfaceDrawing::budget counts it.
 std::uint64_t workOf(std::uint32_t edges, std::uint32_t tiles) {
@@ -210,7 +217,7 @@ void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Rest& r
   for (std::uint32_t i = 0; i < group.chain_count; ++i) {
     group.edges += boundary_[group.first_chain + i].count;
   }
-  waiting_work_ += workOf(group.edges, static_cast<std::uint32_t>(rectangle.area() / kTilePixels));
+  waiting_work_ += workOf(group.edges, tilesIn(rectangle));
 }
 
 // What groups cost is only known when they have been drawn.

@@ -135,7 +135,7 @@ WindingMap::Plan WindingMap::planOf(const WindingGroup& group, std::span<const B
   for (const BoundaryChain& chain : group.boundary) {
     sum += std::uint64_t{chain.count} * static_cast<std::uint32_t>(std::abs(chain.value));
   }
-  plan.known = sum <= kLargestSum;
+  plan.known = plan.in_runs || sum <= kLargestSum;
   return plan;
 }
 

@@ -63,7 +63,7 @@ class WindingMap {
   struct Plan {
     TileRange tiles;
     bool in_runs = false;
-    bool known = false;  // the numbers that tiles hand on are large enough for it
+    bool known = false;  // numbers are large enough for its windings
   };
 
   Plan planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const;

@@ -46,6 +46,15 @@ HWY_INLINE bool coverTile(WindingTile& tile, const std::int32_t* outside, std::u
   return some;
 }
 
+// Sets pixels to a depth where that is nearer. Returns how many of them become nearer by kGain.
+template <typename D>
+HWY_INLINE std::size_t gainPixels(D d, hn::Mask<D> pixels, hn::Vec<D> depth, float* out) {
+  const auto old = hn::LoadU(d, out);
+  const auto nearer = hn::And(pixels, hn::Gt(depth, old));
+  hn::StoreU(hn::IfThenElse(nearer, depth, old), d, out);
+  return hn::CountTrue(d, hn::And(nearer, hn::Gt(depth, hn::Mul(old, hn::Set(d, kGain)))));
+}
+
 // depth_of(x, y, d): the reciprocal depths of the pixels from x on in row y, counted from the lowest one of
 // the tiles. Returns how many pixels changed.
 template <std::int32_t kMostLanes, typename DepthOf>
@@ -90,11 +99,7 @@ HWY_INLINE std::uint32_t resolveTilesOf(const CoveredRow& target, std::uint32_t&
           continue;
         }
         const auto mask = hn::RebindMask(d, hn::TestBit(hn::Set(d32, chunk), lane_bits));
-        const auto old = hn::LoadU(d, out + at);
-        const auto depth = depth_of(x * kWide + at, y, d);
-        const auto gained = hn::And(mask, hn::Gt(depth, old));
-        nearer += hn::CountTrue(d, hn::And(gained, hn::Gt(depth, hn::Mul(old, hn::Set(d, kGain)))));
-        hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + at);
+        nearer += gainPixels(d, mask, depth_of(x * kWide + at, y, d), out + at);
       }
     }
   }
@@ -133,11 +138,7 @@ HWY_INLINE std::uint32_t resolveRunsOf(const CoveredRow& target, std::uint32_t& 
     for (std::int32_t x = begins[y] / lanes * lanes; x < ends[y]; x += lanes) {
       const auto to = hn::FirstN(d, static_cast<std::size_t>(std::min(ends[y] - x, lanes))),
                  before = hn::FirstN(d, static_cast<std::size_t>(std::max(begins[y] - x, 0)));
-      const auto old = hn::LoadU(d, out + x);
-      const auto depth = depth_of(x, y, d);
-      const auto gained = hn::And(hn::AndNot(before, to), hn::Gt(depth, old));
-      nearer += hn::CountTrue(d, hn::And(gained, hn::Gt(depth, hn::Mul(old, hn::Set(d, kGain)))));
-      hn::StoreU(hn::IfThenElse(gained, depth, old), d, out + x);
+      nearer += gainPixels(d, hn::AndNot(before, to), depth_of(x, y, d), out + x);
     }
   }
   for (std::int32_t x = first / kWide; x * kWide < end; ++x) {

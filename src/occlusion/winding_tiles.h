@@ -3,11 +3,9 @@
 // Windings of a group's boundary around the pixels of a depth buffer, in tiles.
 
 #include <cstdint>
-#include <cstring>
 #include <span>
 
 #include "src/occlusion/boundary_edge.h"
-#include "src/occlusion/boundary_runs.h"
 
 namespace sightline::occlusion {
 
@@ -18,8 +16,6 @@ struct alignas(64) WindingTile {
   std::uint32_t planes[kPlanes][kTileHeight];
   std::uint32_t unknown[kTileHeight];  // a winding here went beyond what its bits can hold
   std::int16_t carry[kTileHeight];     // what edges to the left of the tile add to all of a row
-
-  void clear() { std::memset(this, 0, sizeof(*this)); }
 };
 
 // Which tiles of a row of them edges have changed; last < first: none.

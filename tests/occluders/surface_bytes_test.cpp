@@ -113,6 +113,7 @@ TEST(SurfaceBytes, WithNumbersThatDrawingCannotComputeWithTheyAreRefused) {
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
   EXPECT_FALSE(refuses([](SurfaceSet&) {}));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.chain_vertices.back().x = kNan; }));
+  EXPECT_TRUE(refuses([](SurfaceSet& set) { set.chain_vertices.back().x = 1e30f; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.vertices[0].y = -1.0f / 0.0f; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.part_bounds[0].max.z = kNan; }));
   EXPECT_TRUE(refuses([](SurfaceSet& set) { set.clusters[0].support.offset = double{kNan}; }));

@@ -255,7 +255,7 @@ TEST(WindingMap, CoversTheSameOfConvexPolygonsInRunsAndInTiles) {
     const auto width = static_cast<std::uint32_t>(1 + random() % 140),
                height = static_cast<std::uint32_t>(1 + random() % 40);
     const Polygon polygon = convexPolygon(random, width, height);
-    // One like it to the left of the map adds to the height of what begins and ends, and to no winding here.
+    // One like it to the left of the map begins at the same heights, and adds to no winding here.
     Polygon beside = polygon;
     for (GridPoint& point : beside.points) {
       point.x -= 4096.0 * kGridStep;
