@@ -9,7 +9,7 @@ namespace {
 constexpr double kSteepest = 256.0;  // pixels a row
 
 // What is not to be used is moved to where it does no harm.
-std::int64_t wholeOf(double v) {
+std::int64_t gridNumber(double v) {
   return static_cast<std::int64_t>(std::min(std::max(v, -kLargestGrid), kLargestGrid));
 }
 
@@ -27,7 +27,8 @@ std::int16_t clamped(std::int64_t v, std::int64_t least, std::int64_t most) {
 BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer) {
   constexpr std::int64_t kMargin = BoundaryEdge::kMargin, kBeyond = BoundaryEdge::kBeyond;
   constexpr std::int32_t kRowOfTiles = kGridShift + kTileHeightShift, kColumn = kGridShift + kTileWidthShift;
-  const std::int64_t x0 = wholeOf(from.x), x1 = wholeOf(to.x), y0 = wholeOf(from.y), y1 = wholeOf(to.y);
+  const std::int64_t x0 = gridNumber(from.x), x1 = gridNumber(to.x), y0 = gridNumber(from.y),
+                     y1 = gridNumber(to.y);
   const std::int64_t bottom = std::min(y0, y1), top = std::max(y0, y1);
   const std::int64_t left = std::min(x0, x1) - kMargin, right = std::max(x0, x1) + kMargin;
   const std::int64_t end_x = std::int64_t{buffer.width} << kGridShift,

@@ -7,7 +7,7 @@ namespace sightline::occlusion {
 namespace {
 
 // The nearest whole number; halves go to the even one.
-double wholeOf(double v) {
+double nearestWhole(double v) {
   constexpr double kWhole = 0x1.8p52;  // so large numbers have no places after the point
   return (v + kWhole) - kWhole;
 }
@@ -30,8 +30,8 @@ void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip
 
 GridPoint ChainEdges::pixelOf(const Vec3d& camera) const {
   const double inverse = view_.inverseDepth(camera);
-  return {wholeOf(view_.pixelX(camera, inverse) * kGridStep),
-          wholeOf(view_.pixelY(camera, inverse) * kGridStep)};
+  return {nearestWhole(view_.pixelX(camera, inverse) * kGridStep),
+          nearestWhole(view_.pixelY(camera, inverse) * kGridStep)};
 }
 
 // Where an edge crosses the clip plane; the same from both sides.
