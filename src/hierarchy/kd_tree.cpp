@@ -32,7 +32,7 @@ class KdTreeBuilder {
   KdTreeBuilder(FlatWriter& writer, const BuildLimits& limits, std::vector<Item> items)
       : writer_(writer), limits_(limits), items_(std::move(items)) {}
 
-  // Of the items from number `first` to the last one, which it removes.
+  // Builds a node of the items from number `first` on, and removes them.
   void build(std::size_t first, std::uint32_t level);
 
  private:
@@ -76,8 +76,8 @@ struct Boundaries {
   }
 };
 
-// Of boundaries that are as good as the best one, the first of the lower sides of boxes, or else of the upper
-// ones.
+// Returns the first lower side of a box that is as good a boundary as the best one, or else the first upper
+// side.
 float firstOfTie(std::span<const Item> items, const Boundaries& mins, const Boundaries& maxs,
                  const Window& window, const Split& best) {
   const auto isAsGood = [&](float s) {

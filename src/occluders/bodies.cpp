@@ -107,7 +107,7 @@ class BodyMaker {
   const OccluderSet& set_;
   BodyLists& lists_;
   ChainMates mates_;
-  // Of the body.
+  // Scratch for one body: its vertices and polygons.
   std::vector<std::uint32_t> vertices_;
   std::vector<const FoundPolygon*> polygons_;
 };

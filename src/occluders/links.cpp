@@ -293,7 +293,7 @@ class Linker {
     shared.deviation = shared.one_line ? deviation : 0.0;
   }
 
-  // Of the users of a mesh edge that is all of their edges: the edge with the lowest rank.
+  // The users have a mesh edge that is all of each of their edges. Returns the edge with the lowest rank.
   std::uint32_t firstByRank(std::span<const Use> users) const {
     std::uint32_t first = edge_of_use_[users[0].use];
     for (const Use& use : users.subspan(1)) {
@@ -447,7 +447,8 @@ class Linker {
   LargeVector<EdgeKind> kind_;  // by edge
   LargeVector<std::uint32_t> edge_of_use_;
   base::Rows<Use> by_vertex_;  // by their lower vertex, sorted by mesh edge
-  // Of edges of the kind kSeveral: the first of the edges that they are joined with, then rank and edge.
+  // This lists the edges of the kind kSeveral, by the first edge that each is joined with, by rank and by
+  // edge.
   LargeVector<base::SortKey> by_shared_edge_;
   std::vector<SharedEdge> shared_edges_;
 };

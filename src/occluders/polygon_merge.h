@@ -60,7 +60,7 @@ class PatchFinder {
   void find(std::span<const Vec3f> positions, std::span<const std::uint32_t> indices, bool double_sided,
             double tolerance);
 
-  // Of the last object.
+  // The patches of the object that find() was last called for.
   std::span<const Patch> patches() const { return patches_; }
   std::span<const PatchTriangle> trianglesOf(const Patch& patch) const {
     return std::span(in_patches_).subspan(patch.first, patch.triangle_count);

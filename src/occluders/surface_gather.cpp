@@ -213,7 +213,7 @@ class PartDivider {
   const PartTriangles& parts_;
   const std::uint32_t patch_triangles_, cluster_triangles_;
   const double min_cosine_;
-  // Of the part.
+  // These belong to the part that is being gathered.
   std::uint32_t begin_part_ = 0, size_ = 0;
   std::vector<std::uint32_t> patch_of_, cluster_of_;
   std::vector<std::uint32_t> in_patch_, in_cluster_;

@@ -54,6 +54,10 @@ struct BoundaryEdge {
   bool falls, rightwards;  // from its first point to its second one
   bool matters;            // it does not lie above, below or to the right of the buffer
 
+  // Whether it may touch some of the rows of tiles from `first` to `last`.
+  bool touches(std::int32_t first, std::int32_t last) const {
+    return first_row < (last + 1) * kTileHeight && last_row >= first * kTileHeight;
+  }
   // Whether the winding is greater to the right of it, if the surface lies to its left `value` times. Of a
   // level edge this is a convention.
   bool rises(std::int32_t value) const { return falls == (value > 0); }

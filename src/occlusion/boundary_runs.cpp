@@ -66,11 +66,10 @@ void drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edges,
     clearRuns(rows.runs[row]);
   }
   std::uint32_t level = 0;
-  const std::int32_t begin_row = rows.first_row * kTileHeight, end_row = (rows.last_row + 1) * kTileHeight;
   const auto forEdges = [&](auto&& use) HWY_ATTR {
     for (const BoundaryChain& chain : chains) {
       for (const BoundaryEdge& edge : edges.subspan(chain.first, chain.count)) {
-        if (edge.first_row < end_row && edge.last_row >= begin_row) {
+        if (edge.touches(rows.first_row, rows.last_row)) {
           use(edge, chain.value);
         }
       }

@@ -36,9 +36,6 @@ class SurfaceRaster {
     std::uint32_t length = 0;  // views after that one
   };
 
-  void start(const SurfaceSet& set, ViewStep step);
-  bool rests(const Rest& rest) const;
-  bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
   // A group that waits for being drawn.
   struct Group {
     std::uint32_t first_chain = 0, chain_count = 0;  // into boundary_
@@ -49,6 +46,9 @@ class SurfaceRaster {
     Rest* rest = nullptr;  // its own
   };
 
+  void start(const SurfaceSet& set, ViewStep step);
+  bool rests(const Rest& rest) const;
+  bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
   void addPart(const PartImage& part);
   void addPatch(const PatchImage& patch, Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
@@ -75,10 +75,12 @@ class SurfaceRaster {
   SurfaceStats stats_;
   // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
   std::uint64_t work_ = 0, waiting_work_ = 0;
-  // Of the largest set that was drawn:
-  std::vector<Membership> members_;         // by cluster
-  std::vector<std::uint32_t> last_groups_;  // by chain: the group that it was added to most recently
-  std::uint32_t group_ = 0;                 // number of the last group
+  // These have a place for each item of the largest set that was drawn:
+  std::vector<Membership> members_;             // by cluster
+  std::vector<std::uint32_t> last_groups_;      // by chain: the group that it was added to most recently
+  std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part
+  std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
+  std::uint32_t group_ = 0;                     // number of the last group
   // Groups that wait for being drawn, their boundaries, and how far away they are:
   std::vector<Group> groups_;
   std::vector<BoundaryChain> boundary_;
@@ -86,9 +88,7 @@ class SurfaceRaster {
   // Scratch for one drawGroups():
   std::vector<WindingGroup> drawn_;
   std::vector<WindingGain> gains_;
-  std::vector<PatchImage> patches_;             // of a part: those that are drawn as a whole
-  std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part
-  std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
+  std::vector<PatchImage> patches_;  // scratch for one addPart(): patches that are drawn as a whole
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;  // number of the first one since a jump
   std::uint32_t rested_ = 0;      // groups that began to rest in this view

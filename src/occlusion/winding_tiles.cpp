@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight;
 constexpr std::int32_t kMostSteps = 2 << WindingTile::kPlanes;  // no winding is known after more of them
 
-// Of whole numbers from 0 to 2^22.
+// Converts whole numbers from 0 to 2^22.
 HWY_INLINE NumbersV wholeOf(PlacesV v) {
   constexpr float kWhole = 0x1p23f;  // the last digits of so large numbers are whole ones
   const auto whole = hn::Set(kPlaces, kWhole);
@@ -146,10 +146,9 @@ void drawAll(const WindingTiles& target, const TileRange& range, std::span<const
   for (std::int32_t row = range.first_row; row <= range.last_row; ++row) {
     target.extents[row] = {range.last_column + 1, -1};
   }
-  const std::int32_t begin_row = range.first_row * kHigh, end_row = (range.last_row + 1) * kHigh;
   for (const BoundaryChain& chain : chains) {
     for (const BoundaryEdge& edge : edges.subspan(chain.first, chain.count)) {
-      if (edge.first_row < end_row && edge.last_row >= begin_row && edge.first_tile <= range.last_column) {
+      if (edge.touches(range.first_row, range.last_row) && edge.first_tile <= range.last_column) {
         TileEdge(target, range, edge, chain.value).draw(edge.rightwards == (chain.value > 0));
       }
     }
