@@ -106,9 +106,9 @@ void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> cand
   impl_->raster.draw(surfaces, candidates, drawing);
 }
 
-void OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
+SurfaceStats OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing) {
   impl_->ready = false;
-  impl_->raster.draw(moving, drawing);
+  return impl_->raster.draw(moving, drawing);
 }
 
 void OpacityMap::finish() {

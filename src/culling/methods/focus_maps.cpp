@@ -1,0 +1,210 @@
+#include "src/culling/methods/focus_maps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/scene/pixel_view.h"
+
+namespace sightline::culling {
+namespace {
+
+constexpr std::uint32_t kMaxPixels = 24;  // in which an object that is in doubt may show
+constexpr std::uint32_t kIdleViews = 3;   // after one in which no window was worth drawing
+// Work, as FocusBudget counts it.
+constexpr double kOccluderWork = 10.0, kTestWork = 0.5;
+
+// The least side of a window, in pixels of the first buffer.
+std::uint32_t coarseSize(std::uint32_t fine, double magnification) {
+  return static_cast<std::uint32_t>(std::clamp<double>(std::round(fine / magnification), 1.0, kMaxBufferSize));
+}
+
+bool intersect(const occlusion::PixelBox& image, const PixelRange& range) {
+  return image.x0 <= range.x1 && image.x1 >= range.x0 && image.y0 <= range.y1 && image.y1 >= range.y0;
+}
+
+}  // namespace
+
+FocusMaps::FocusMaps(const FocusSettings& settings, const CullingScene& scene, std::uint32_t width,
+                     std::uint32_t height)
+    : settings_(settings),
+      scene_(scene),
+      width_(width),
+      height_(height),
+      raster_({.width = settings.raster.width, .height = settings.raster.height}),
+      choice_(width, height, coarseSize(raster_.settings().width, settings.magnification),
+              coarseSize(raster_.settings().height, settings.magnification)),
+      budget_(settings.worth),
+      memory_(scene.object_bounds.size()),
+      windows_(std::min(settings.windows, kMaxFocusWindows)) {}
+
+void FocusMaps::begin() {
+  memory_.beginView();
+  window_count_ = 0;
+  hidden_ = 0;
+}
+
+void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
+                       double work, const CullStats& stats, std::vector<ObjectId>& visible) {
+  const double occluders = buffer.stats().raster.occluders, tests = stats.nodes_tested + stats.objects_tested;
+  budget_.view(work + kOccluderWork * occluders + kTestWork * tests,
+               static_cast<double>(visible.size()));
+  idle_views_ = frame.jumped ? 0 : idle_views_;
+  if (idle_views_ > 0) {
+    --idle_views_;
+    return;
+  }
+  findDoubts(buffer, visible);
+  drawWindows(frame, surfaces, visible);
+  removeHidden(visible);
+  if (window_count_ == 0) {
+    idle_views_ = kIdleViews;
+    budget_.idle();
+  }
+}
+
+void FocusMaps::findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible) {
+  asked_.clear();
+  boxes_.clear();
+  for (std::uint32_t at = 0; at < visible.size(); ++at) {
+    if (!memory_.rests(visible[at])) {
+      asked_.push_back(at);
+      boxes_.push_back(scene_.object_bounds[visible[at].value]);
+    }
+  }
+  pixels_.clear();
+  doubts_.clear();
+  counts_.resize(boxes_.size());
+  buffer.openPixels(boxes_, kMaxPixels, counts_, pixels_);
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    if (counts_[i] == kManyPixels) {
+      memory_.clear(visible[asked_[i]]);
+      continue;
+    }
+    doubts_.push_back({asked_[i], first, counts_[i]});
+    first += counts_[i];
+  }
+}
+
+void FocusMaps::drawWindows(const CullingFrame& frame, const SurfaceDrawer& surfaces,
+                            std::span<const ObjectId> visible) {
+  choice_.begin();
+  for (const Doubt& doubt : doubts_) {
+    choice_.add(pixelsOf(doubt), memory_.chance(visible[doubt.at]));
+  }
+  PixelRange range;
+  while (window_count_ < windows_.size() && budget_.left() > 0.0 &&
+         choice_.next(budget_.minObjects() * DoubtMemory::kCertain, range)) {
+    if (window_count_ == 0) {
+      boxes_.clear();
+      for (const ObjectId object : visible) {
+        boxes_.push_back(scene_.object_bounds[object.value]);
+      }
+      images_.resize(boxes_.size());
+      occlusion::projectBoxes(PixelView(frame.view, width_, height_), width_, height_, boxes_, images_);
+    }
+    FocusWindow& window = windows_[window_count_];
+    const RasterSettings& fine = raster_.settings();
+    if (!window.place(frame.view, width_, height_, range, fine.width, fine.height)) {
+      return;
+    }
+    budget_.drawn(draw(window, frame, surfaces, visible));
+    ++window_count_;
+  }
+}
+
+double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
+                       std::span<const ObjectId> visible) {
+  shown_.clear();
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    const occlusion::PixelBox& image = images_[i];
+    if (image.place == occlusion::BoxPlace::kUnbounded ||
+        (image.place == occlusion::BoxPlace::kOnBuffer && intersect(image, window.range()))) {
+      shown_.push_back(visible[i]);
+    }
+  }
+  raster_.begin(window.view());
+  drawOccluders(window, frame, surfaces.wantsOccluders());
+  double work = kOccluderWork * raster_.stats().occluders;
+  work += surfaces.drawOf(raster_, shown_, std::sqrt(settings_.magnification), budget_.left());
+  work += surfaces.drawMoving(raster_, frame);
+  window.take(raster_.depthBuffer());
+  return work;
+}
+
+// Draws the chosen occluders, and with choose_more the best ones of the objects that may be in the window.
+void FocusMaps::drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more) {
+  for (std::size_t i = 0; i < frame.occluders.size(); ++i) {
+    chosen_.assign(frame.occluders[i].chosen.begin(), frame.occluders[i].chosen.end());
+    if (i == 0 && choose_more && settings_.occluder_count > 0) {
+      const ChoiceSettings choice{.count = settings_.occluder_count, .bodies = true};
+      const auto more =
+          chooser_.choose(window.view(), *scene_.occluders, shown_, scene_.object_bounds, choice);
+      chosen_.insert(chosen_.end(), more.begin(), more.end());
+    }
+    raster_.draw(*frame.occluders[i].set, chosen_, *frame.parallel_for);
+  }
+}
+
+FocusMaps::Sight FocusMaps::lookAt(const Box& box, std::span<BufferPixel> pixels) {
+  for (const FocusWindow& window : windowsDrawn()) {
+    const auto inside = std::partition(pixels.begin(), pixels.end(),
+                                       [&](const BufferPixel& pixel) { return !window.contains(pixel); });
+    const auto outside = static_cast<std::size_t>(inside - pixels.begin());
+    if (outside < pixels.size() && !window.hides(box, pixels.subspan(outside), ranges_)) {
+      return Sight::kSeen;
+    }
+    pixels = pixels.first(outside);
+  }
+  return pixels.empty() ? Sight::kHidden : Sight::kUnknown;
+}
+
+void FocusMaps::removeHidden(std::vector<ObjectId>& visible) {
+  std::size_t kept = 0, next = 0;
+  for (std::size_t at = 0; at < visible.size(); ++at) {
+    const ObjectId object = visible[at];
+    if (next < doubts_.size() && doubts_[next].at == at) {
+      const Sight sight = lookAt(scene_.object_bounds[object.value], pixelsOf(doubts_[next++]));
+      if (sight == Sight::kHidden) {
+        memory_.hidden(object);
+        ++hidden_;
+        continue;
+      }
+      if (sight == Sight::kSeen) {
+        memory_.seen(object);
+      }
+    }
+    visible[kept++] = object;
+  }
+  visible.resize(kept);
+}
+
+void FocusMaps::classify(const DepthPyramid& buffer, std::span<const Box> boxes,
+                         std::span<Visibility> states) {
+  if (window_count_ == 0) {
+    return;
+  }
+  asked_.clear();
+  boxes_.clear();
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    if (states[i] != Visibility::kHidden) {
+      asked_.push_back(i);
+      boxes_.push_back(boxes[i]);
+    }
+  }
+  pixels_.clear();
+  counts_.resize(boxes_.size());
+  buffer.openPixels(boxes_, kMaxPixels, counts_, pixels_);
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    if (counts_[i] == kManyPixels) {
+      continue;
+    }
+    if (lookAt(boxes_[i], std::span(pixels_).subspan(first, counts_[i])) == Sight::kHidden) {
+      states[asked_[i]] = Visibility::kHidden;
+    }
+    first += counts_[i];
+  }
+}
+
+}  // namespace sightline::culling
