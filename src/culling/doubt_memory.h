@@ -24,6 +24,8 @@ class DoubtMemory {
   bool rests(ObjectId object) const {
     return static_cast<std::uint8_t>(objects_[object.value].until - view_ - 1) < kLongestRest;
   }
+  // Whether a finer buffer hid the object when it was last looked at.
+  bool wasHidden(ObjectId object) const { return objects_[object.value].halvings == 0; }
   // How likely a finer buffer hides the object, at most kCertain.
   std::uint32_t chance(ObjectId object) const { return kCertain >> objects_[object.value].halvings; }
 
@@ -39,7 +41,7 @@ class DoubtMemory {
 
  private:
   static constexpr std::uint8_t kLongestRest = 100;  // views
-  static constexpr std::uint32_t kClearRest = 8;     // views; up to 7 are added
+  static constexpr std::uint32_t kClearRest = 20;    // views; up to 7 are added
   static constexpr int kMostHalvings = 5;
 
   struct Doubt {

@@ -20,12 +20,10 @@ class FocusBudget {
     spent_ = 0.0;
   }
   // A window that takes away fewer objects does not pay.
-  double minObjects() const {
-    const double price = std::max(work_ / std::max(kept_, 1.0), kLeastPrice);
-    return (window_ + kWindowWork) / (worth_ * price);
-  }
-  // Work that may yet be done in this view.
+  double minObjects() const { return (window_ + kWindowWork) / price(); }
+  // Work that may yet be done in this view, and for a window that is likely to take away so many objects.
   double left() const { return work_ - spent_; }
+  double left(double objects) const { return std::min(left(), kSlack * objects * price()); }
   void drawn(double work) {
     spent_ += work;
     window_ += (work - window_) / kWindowMemory;
@@ -37,7 +35,10 @@ class FocusBudget {
   static constexpr double kMemory = 32.0, kWindowMemory = 16.0;  // views, windows
   static constexpr double kLeastPrice = 5.0;                     // of an object, about a microsecond
   static constexpr double kUsualWindow = 500.0;                  // work of a window of which nothing is known
+  static constexpr double kSlack = 2.0;                          // windows differ in what they take
   static constexpr double kWindowWork = 100.0;                   // of a window, beside what it draws
+
+  double price() const { return worth_ * std::max(work_ / std::max(kept_, 1.0), kLeastPrice); }
 
   double worth_;
   double work_ = 0.0, kept_ = 0.0;  // of a view, on average

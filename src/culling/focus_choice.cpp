@@ -10,10 +10,13 @@ FocusChoice::FocusChoice(std::uint32_t width, std::uint32_t height, std::uint32_
       height_(height),
       window_width_(std::min(window_width, width)),
       window_height_(std::min(window_height, height)) {
-  while ((std::max(width, height) >> cell_shift_) > kMaxCells) {
+  constexpr std::uint32_t kCells = 4;  // along a side of a window, if it has so many pixels
+  while (kCells << (cell_shift_ + 1) <= std::min(window_width_, window_height_)) {
     ++cell_shift_;
   }
-  const auto cells = [this](std::uint32_t pixels) { return (pixels + (1u << cell_shift_) - 1) >> cell_shift_; };
+  const auto cells = [this](std::uint32_t pixels) {
+    return (pixels + (1u << cell_shift_) - 1) >> cell_shift_;
+  };
   columns_ = cells(width);
   rows_ = cells(height);
   window_columns_ = std::max(window_width_ >> cell_shift_, 1u);
@@ -23,7 +26,10 @@ FocusChoice::FocusChoice(std::uint32_t width, std::uint32_t height, std::uint32_
 }
 
 void FocusChoice::begin() {
-  std::fill(weights_.begin(), weights_.end(), 0u);
+  if (any_) {
+    std::fill(weights_.begin() + std::size_t{first_row_} * columns_,
+              weights_.begin() + (std::size_t{last_row_} + 1) * columns_, 0u);
+  }
   any_ = false;
   first_row_ = rows_;
   last_row_ = 0;
@@ -41,9 +47,9 @@ void FocusChoice::add(std::span<const BufferPixel> pixels, std::uint32_t weight)
   any_ = any_ || (count > 0 && weight > 0);
 }
 
-bool FocusChoice::next(double min_weight, PixelRange& range) {
+std::uint32_t FocusChoice::next(double min_weight, PixelRange& range) {
   if (!any_) {
-    return false;
+    return 0;
   }
   std::uint32_t max_sum = 0, best_column = 0, best_row = 0;
   // The rows of windows that reach a weight.
@@ -74,7 +80,7 @@ bool FocusChoice::next(double min_weight, PixelRange& range) {
     }
   }
   if (max_sum == 0 || max_sum < min_weight) {
-    return false;
+    return 0;
   }
   for (std::uint32_t y = best_row; y < best_row + window_rows_; ++y) {
     std::fill_n(&at(best_column, y), window_columns_, 0u);
@@ -84,7 +90,7 @@ bool FocusChoice::next(double min_weight, PixelRange& range) {
   range = {static_cast<std::uint16_t>(x0), static_cast<std::uint16_t>(y0),
            static_cast<std::uint16_t>(x0 + window_width_ - 1),
            static_cast<std::uint16_t>(y0 + window_height_ - 1)};
-  return true;
+  return max_sum;
 }
 
 }  // namespace sightline::culling

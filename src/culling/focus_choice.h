@@ -20,23 +20,21 @@ class FocusChoice {
   void begin();
   // Shares a weight among pixels.
   void add(std::span<const BufferPixel> pixels, std::uint32_t weight);
-  // Finds the part with the greatest sum of weights, and takes them away. False: no part has so much.
-  bool next(double min_weight, PixelRange& range);
+  // Finds the part with the greatest sum of weights, takes them away, and returns the sum. 0: no part has so
+  // much.
+  std::uint32_t next(double min_weight, PixelRange& range);
 
  private:
-  static constexpr std::uint32_t kMaxCells = 128;  // along a side of the buffer
-  static constexpr std::uint32_t kMinCellShift = 2;
-
   std::uint32_t& at(std::uint32_t column, std::uint32_t row) { return weights_[row * columns_ + column]; }
 
   std::uint32_t width_, height_, window_width_, window_height_;  // pixels
-  std::uint32_t cell_shift_ = kMinCellShift;                     // the side of a cell is 1 << cell_shift_ pixels
-  std::uint32_t columns_, rows_;                                 // cells
-  std::uint32_t window_columns_, window_rows_;                   // cells
-  std::vector<std::uint32_t> weights_;                           // by cell
-  std::vector<std::uint32_t> sums_;  // by column: of the rows of a part
+  std::uint32_t cell_shift_ = 0;                // the side of a cell is 1 << cell_shift_ pixels
+  std::uint32_t columns_, rows_;                // cells
+  std::uint32_t window_columns_, window_rows_;  // cells
+  std::vector<std::uint32_t> weights_;          // by cell
+  std::vector<std::uint32_t> sums_;             // by column: of the rows of a part
   std::uint32_t first_row_ = 0, last_row_ = 0;  // that have weights
-  bool any_ = false;                 // some weight is not 0
+  bool any_ = false;                            // some weight is not 0
 };
 
 }  // namespace sightline::culling

@@ -14,8 +14,7 @@ constexpr std::uint8_t kMinRetestDelay = 6;
 
 class WideTraversal::Task {
  public:
-  Task(WideTraversal& traversal, const DepthPyramid& buffer, const TraversalOptions& options,
-       Found& found)
+  Task(WideTraversal& traversal, const DepthPyramid& buffer, const TraversalOptions& options, Found& found)
       : hierarchy_(traversal.hierarchy_),
         wide_(traversal.wide_),
         retest_delay_(traversal.retest_delay_),

@@ -22,7 +22,7 @@ struct FocusSettings {
   std::uint32_t occluder_count = 64;
   // A window is drawn where it is likely to take away so many objects that its work is at most so many times
   // what the view has cost for as many. With more, more windows are drawn.
-  double worth = 3.0;
+  double worth = 2.0;
 };
 
 struct DepthPyramidMethodSettings {
@@ -44,7 +44,8 @@ inline constexpr MethodTraits kDepthPyramidTraits{.occluders = true};
 // Culling by a DepthPyramid of whole surfaces, or of the chosen occluders where the scene has none: all
 // children of a node are compared with it at once. The surfaces of a frame are those of the objects that the
 // last frame kept. Statistics: "map" with occluders_hidden, the occluders behind others, focused, the
-// windows with finer depth buffers, focus_hidden, the objects that these hid, and what was drawn of surfaces: groups, and edges of their boundaries.
+// windows with finer depth buffers, focus_hidden, the objects that these hid, and what was drawn of surfaces:
+// groups, and edges of their boundaries.
 std::unique_ptr<CullingMethod> depthPyramid(const DepthPyramidMethodSettings& settings = {});
 
 }  // namespace sightline

@@ -66,12 +66,13 @@ class DepthPyramidMethod final : public CullingMethod {
     // With surfaces most time goes into drawing, and testing everything costs little.
     const bool skips = settings_.temporal_coherence && !surfaces_.draws() && !surfaces_.drawsMoving(frame);
     traversal_->run(*pyramid_, culling::optionsOf(frame, skips), stats, visible, *frame.parallel_for);
-    if (focus_) {
-      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, visible);
-    }
+    // Before the finer buffers: what these hide is nothing new in the next frame.
     if (surfaces_.draws()) {
       findNews(visible);
       last_kept_ = visible;
+    }
+    if (focus_ && frame.test_objects) {
+      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, visible);
     }
   }
 
@@ -94,11 +95,11 @@ class DepthPyramidMethod final : public CullingMethod {
     answers_.resize(std::max(answers_.size(), boxes.size()));
     const std::span<BoxAnswer> answers = std::span(answers_).first(boxes.size());
     pyramid_->classify(asked_, answers);
+    if (focus_) {
+      focus_->classify(*pyramid_, asked_, answers);
+    }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       states[i] = answers[i].visibility;
-    }
-    if (focus_) {
-      focus_->classify(*pyramid_, asked_, states);
     }
   }
 
@@ -109,7 +110,7 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  // Sets news_ to the objects that the last frame did not keep.
+  // Sets news_ to the objects that the first buffer of the last frame did not keep.
   void findNews(std::span<const ObjectId> kept) {
     news_.clear();
     std::set_difference(kept.begin(), kept.end(), last_kept_.begin(), last_kept_.end(),
@@ -145,19 +146,18 @@ class DepthPyramidMethod final : public CullingMethod {
   CullingScene scene_;
   std::optional<culling::WideTraversal> traversal_;
   std::optional<DepthPyramid> pyramid_;
-  std::size_t own_occluders_ = 0;  // occluders in the pyramid that are of the scene's set
+  std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
   std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
   std::uint64_t groups_ = 0, edges_ = 0;     // of the surfaces in the pyramid
   double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
   // Scratch for one classify() call: all boxes, and their answers.
   std::vector<Box> asked_;
   std::vector<BoxAnswer> answers_;
-  std::array<MethodStatistic, 5> statistics_{
-      {{"map", "occluders_hidden", "occluders behind others"},
-       {"map", "focused", "finer maps"},
-       {"map", "focus_hidden", "objects that finer maps hide"},
-       {"surfaces", "groups", "groups of surfaces drawn"},
-       {"surfaces", "edges", "edges of their boundaries"}}};
+  std::array<MethodStatistic, 5> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
+                                              {"map", "focused", "finer maps"},
+                                              {"map", "focus_hidden", "objects that finer maps hide"},
+                                              {"surfaces", "groups", "groups of surfaces drawn"},
+                                              {"surfaces", "edges", "edges of their boundaries"}}};
 };
 
 }  // namespace

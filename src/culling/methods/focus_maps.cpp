@@ -9,13 +9,24 @@ namespace sightline::culling {
 namespace {
 
 constexpr std::uint32_t kMaxPixels = 24;  // in which an object that is in doubt may show
-constexpr std::uint32_t kIdleViews = 3;   // after one in which no window was worth drawing
+// New doubts are looked for after so many views, or after more of them where no window was worth drawing.
+constexpr std::uint32_t kSearchViews = 4, kMostSearchViews = 32;
+constexpr double kCertain = DoubtMemory::kCertain;
 // Work, as FocusBudget counts it.
 constexpr double kOccluderWork = 10.0, kTestWork = 0.5;
 
 // The least side of a window, in pixels of the first buffer.
 std::uint32_t coarseSize(std::uint32_t fine, double magnification) {
-  return static_cast<std::uint32_t>(std::clamp<double>(std::round(fine / magnification), 1.0, kMaxBufferSize));
+  return static_cast<std::uint32_t>(
+      std::clamp<double>(std::round(fine / magnification), 1.0, kMaxBufferSize));
+}
+
+// Which objects are looked at differs from view to view; their storage depends on what is kept alone.
+template <typename T>
+void makeRoom(std::vector<T>& list, std::size_t size) {
+  if (list.capacity() < size) {
+    list.reserve(std::max(size, 2 * list.capacity()));
+  }
 }
 
 bool intersect(const occlusion::PixelBox& image, const PixelRange& range) {
@@ -35,7 +46,11 @@ FocusMaps::FocusMaps(const FocusSettings& settings, const CullingScene& scene, s
               coarseSize(raster_.settings().height, settings.magnification)),
       budget_(settings.worth),
       memory_(scene.object_bounds.size()),
-      windows_(std::min(settings.windows, kMaxFocusWindows)) {}
+      windows_(std::min(settings.windows, kMaxFocusWindows)) {
+  for (FocusWindow& window : windows_) {
+    window.take(raster_.depthBuffer());  // takes memory now rather than in some view
+  }
+}
 
 void FocusMaps::begin() {
   memory_.beginView();
@@ -46,27 +61,35 @@ void FocusMaps::begin() {
 void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
                        double work, const CullStats& stats, std::vector<ObjectId>& visible) {
   const double occluders = buffer.stats().raster.occluders, tests = stats.nodes_tested + stats.objects_tested;
-  budget_.view(work + kOccluderWork * occluders + kTestWork * tests,
-               static_cast<double>(visible.size()));
-  idle_views_ = frame.jumped ? 0 : idle_views_;
-  if (idle_views_ > 0) {
-    --idle_views_;
-    return;
-  }
-  findDoubts(buffer, visible);
+  budget_.view(work + kOccluderWork * occluders + kTestWork * tests, static_cast<double>(visible.size()));
+  const bool searches = frame.jumped || search_in_ == 0;
+  makeRoom(asked_, visible.size());
+  makeRoom(boxes_, visible.size());
+  makeRoom(counts_, visible.size());
+  makeRoom(doubts_, visible.size());
+  makeRoom(images_, visible.size());
+  makeRoom(shown_, visible.size());
+  makeRoom(pixels_, visible.size() * kMaxPixels);
+  makeRoom(ranges_, kMaxPixels);
+  findDoubts(buffer, visible, searches);
   drawWindows(frame, surfaces, visible);
   removeHidden(visible);
   if (window_count_ == 0) {
-    idle_views_ = kIdleViews;
     budget_.idle();
   }
+  if (searches) {
+    const bool found = window_count_ > 0 || frame.jumped;
+    search_views_ = found ? kSearchViews : std::min(2 * search_views_, kMostSearchViews);
+    search_in_ = search_views_;
+  }
+  --search_in_;
 }
 
-void FocusMaps::findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible) {
+void FocusMaps::findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible, bool all) {
   asked_.clear();
   boxes_.clear();
   for (std::uint32_t at = 0; at < visible.size(); ++at) {
-    if (!memory_.rests(visible[at])) {
+    if (memory_.wasHidden(visible[at]) || (all && !memory_.rests(visible[at]))) {
       asked_.push_back(at);
       boxes_.push_back(scene_.object_bounds[visible[at].value]);
     }
@@ -81,8 +104,11 @@ void FocusMaps::findDoubts(const DepthPyramid& buffer, std::span<const ObjectId>
       memory_.clear(visible[asked_[i]]);
       continue;
     }
-    doubts_.push_back({asked_[i], first, counts_[i]});
-    first += counts_[i];
+    // What the first buffer hides is kept because it was not tested, and that is not in doubt.
+    if (counts_[i] > 0) {
+      doubts_.push_back({asked_[i], first, counts_[i]});
+      first += counts_[i];
+    }
   }
 }
 
@@ -92,9 +118,12 @@ void FocusMaps::drawWindows(const CullingFrame& frame, const SurfaceDrawer& surf
   for (const Doubt& doubt : doubts_) {
     choice_.add(pixelsOf(doubt), memory_.chance(visible[doubt.at]));
   }
-  PixelRange range;
-  while (window_count_ < windows_.size() && budget_.left() > 0.0 &&
-         choice_.next(budget_.minObjects() * DoubtMemory::kCertain, range)) {
+  while (window_count_ < windows_.size() && budget_.left() > 0.0) {
+    PixelRange range;
+    const double objects = choice_.next(budget_.minObjects() * kCertain, range) / kCertain;
+    if (objects == 0.0) {
+      return;
+    }
     if (window_count_ == 0) {
       boxes_.clear();
       for (const ObjectId object : visible) {
@@ -108,13 +137,13 @@ void FocusMaps::drawWindows(const CullingFrame& frame, const SurfaceDrawer& surf
     if (!window.place(frame.view, width_, height_, range, fine.width, fine.height)) {
       return;
     }
-    budget_.drawn(draw(window, frame, surfaces, visible));
+    budget_.drawn(draw(window, frame, surfaces, visible, budget_.left(objects)));
     ++window_count_;
   }
 }
 
 double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
-                       std::span<const ObjectId> visible) {
+                       std::span<const ObjectId> visible, double budget) {
   shown_.clear();
   for (std::size_t i = 0; i < visible.size(); ++i) {
     const occlusion::PixelBox& image = images_[i];
@@ -124,9 +153,9 @@ double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const Sur
     }
   }
   raster_.begin(window.view());
-  drawOccluders(window, frame, surfaces.wantsOccluders());
+  drawOccluders(window, frame, surfaces.wantsOccluders() && frame.max_occluders > 0);
   double work = kOccluderWork * raster_.stats().occluders;
-  work += surfaces.drawOf(raster_, shown_, std::sqrt(settings_.magnification), budget_.left());
+  work += surfaces.drawOf(raster_, shown_, std::sqrt(settings_.magnification), budget);
   work += surfaces.drawMoving(raster_, frame);
   window.take(raster_.depthBuffer());
   return work;
@@ -180,14 +209,19 @@ void FocusMaps::removeHidden(std::vector<ObjectId>& visible) {
 }
 
 void FocusMaps::classify(const DepthPyramid& buffer, std::span<const Box> boxes,
-                         std::span<Visibility> states) {
+                         std::span<BoxAnswer> answers) {
   if (window_count_ == 0) {
     return;
   }
+  const auto windows = windowsDrawn();
   asked_.clear();
   boxes_.clear();
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-    if (states[i] != Visibility::kHidden) {
+    const BufferPixel middle{answers[i].x, answers[i].y};
+    const bool in_window = answers[i].on_buffer &&
+                           std::any_of(windows.begin(), windows.end(),
+                                       [&](const FocusWindow& window) { return window.contains(middle); });
+    if (in_window && answers[i].visibility != Visibility::kHidden) {
       asked_.push_back(i);
       boxes_.push_back(boxes[i]);
     }
@@ -201,7 +235,7 @@ void FocusMaps::classify(const DepthPyramid& buffer, std::span<const Box> boxes,
       continue;
     }
     if (lookAt(boxes_[i], std::span(pixels_).subspan(first, counts_[i])) == Sight::kHidden) {
-      states[asked_[i]] = Visibility::kHidden;
+      answers[asked_[i]].visibility = Visibility::kHidden;
     }
     first += counts_[i];
   }

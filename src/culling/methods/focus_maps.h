@@ -38,8 +38,9 @@ class FocusMaps {
   // stats: of the traversal that found the objects.
   void refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
               double work, const CullStats& stats, std::vector<ObjectId>& visible);
-  // Sets the states of those boxes to kHidden that the windows of refine() hide.
-  void classify(const DepthPyramid& buffer, std::span<const Box> boxes, std::span<Visibility> states);
+  // Sets the answers for those boxes to kHidden that the windows of refine() hide, where the middle of their
+  // rectangle is in a window.
+  void classify(const DepthPyramid& buffer, std::span<const Box> boxes, std::span<BoxAnswer> answers);
 
   // In the last view.
   std::uint32_t windows() const { return window_count_; }
@@ -57,12 +58,13 @@ class FocusMaps {
     std::uint32_t first_pixel = 0, pixel_count = 0;
   };
 
-  void findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible);
+  // all: not only among objects that windows hid before.
+  void findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible, bool all);
   void drawWindows(const CullingFrame& frame, const SurfaceDrawer& surfaces,
                    std::span<const ObjectId> visible);
-  // Returns the work.
+  // Draws surfaces up to so much work. Returns the work.
   double draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
-              std::span<const ObjectId> visible);
+              std::span<const ObjectId> visible, double budget);
   void drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more);
   void removeHidden(std::vector<ObjectId>& visible);
   // Reorders the pixels.
@@ -82,7 +84,7 @@ class FocusMaps {
   std::vector<FocusWindow> windows_;
   std::uint32_t window_count_ = 0;  // that are drawn in this view
   std::uint32_t hidden_ = 0;
-  std::uint32_t idle_views_ = 0;  // yet to come, in which no doubts are looked for
+  std::uint32_t search_in_ = 0, search_views_ = 1;  // views until all objects are looked at again
 
   // Scratch of a view.
   std::vector<Doubt> doubts_;  // ascending

@@ -67,7 +67,8 @@ class SurfaceDrawer {
   // Draws the surfaces of some of the objects in a view that follows no other and is so much magnified, up to
   // so much work. Returns the work.
   template <typename Buffer>
-  double drawOf(Buffer& buffer, std::span<const ObjectId> objects, double magnification, double budget) const {
+  double drawOf(Buffer& buffer, std::span<const ObjectId> objects, double magnification,
+                double budget) const {
     SurfaceDrawing drawing = drawing_;
     drawing.min_pixels *= magnification;
     drawing.min_patch_pixels *= magnification;
