@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kMaxFocusWindows = 64;
 // because their boxes may show in a few of its pixels. Their occluders are those of the first buffer, and
 // what the view keeps there.
 struct FocusSettings {
-  std::uint32_t windows = 4;  // at most so many in a view, kMaxFocusWindows at most; 0: none
+  std::uint32_t windows = 2;  // at most so many in a view, kMaxFocusWindows at most; 0: none
   // Pixels along the side of one pixel of the first depth buffer; 1 or less: there are no windows.
   double magnification = 4.0;
   RasterSettings raster{.width = 64, .height = 64};  // of each; coverage: that of the first one counts

@@ -60,7 +60,7 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    if (surfaces_.draws() && !frame.jumped && news_.size() * kCalm > last_kept_.size()) {
+    if (surfaces_.draws() && !frame.jumped && changesFast()) {
       drawNews(frame);
     }
     // With surfaces most time goes into drawing, and testing everything costs little.
@@ -72,7 +72,7 @@ class DepthPyramidMethod final : public CullingMethod {
       last_kept_ = visible;
     }
     if (focus_ && frame.test_objects) {
-      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, visible);
+      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, changesFast(), visible);
     }
   }
 
@@ -116,6 +116,9 @@ class DepthPyramidMethod final : public CullingMethod {
     std::set_difference(kept.begin(), kept.end(), last_kept_.begin(), last_kept_.end(),
                         std::back_inserter(news_));
   }
+
+  // Whether many of the objects that were kept are new.
+  bool changesFast() const { return news_.size() * kCalm > last_kept_.size(); }
 
   // Draws the surfaces of objects that come into view in this frame.
   void drawNews(const CullingFrame& frame) {

@@ -13,7 +13,7 @@ constexpr std::uint32_t kMaxPixels = 24;  // in which an object that is in doubt
 constexpr std::uint32_t kSearchViews = 4, kMostSearchViews = 32;
 constexpr double kCertain = DoubtMemory::kCertain;
 // Work, as FocusBudget counts it.
-constexpr double kOccluderWork = 10.0, kTestWork = 0.5;
+constexpr double kOccluderWork = 10.0, kChoiceWork = 0.5, kTestWork = 0.5;
 
 // The least side of a window, in pixels of the first buffer.
 std::uint32_t coarseSize(std::uint32_t fine, double magnification) {
@@ -59,10 +59,10 @@ void FocusMaps::begin() {
 }
 
 void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
-                       double work, const CullStats& stats, std::vector<ObjectId>& visible) {
+                       double work, const CullStats& stats, bool changes, std::vector<ObjectId>& visible) {
   const double occluders = buffer.stats().raster.occluders, tests = stats.nodes_tested + stats.objects_tested;
   budget_.view(work + kOccluderWork * occluders + kTestWork * tests, static_cast<double>(visible.size()));
-  const bool searches = frame.jumped || search_in_ == 0;
+  const bool searches = frame.jumped || changes || search_in_ == 0;
   makeRoom(asked_, visible.size());
   makeRoom(boxes_, visible.size());
   makeRoom(counts_, visible.size());
@@ -153,8 +153,7 @@ double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const Sur
     }
   }
   raster_.begin(window.view());
-  drawOccluders(window, frame, surfaces.wantsOccluders() && frame.max_occluders > 0);
-  double work = kOccluderWork * raster_.stats().occluders;
+  double work = drawOccluders(window, frame, surfaces.wantsOccluders() && frame.max_occluders > 0);
   work += surfaces.drawOf(raster_, shown_, std::sqrt(settings_.magnification), budget);
   work += surfaces.drawMoving(raster_, frame);
   window.take(raster_.depthBuffer());
@@ -162,7 +161,8 @@ double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const Sur
 }
 
 // Draws the chosen occluders, and with choose_more the best ones of the objects that may be in the window.
-void FocusMaps::drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more) {
+double FocusMaps::drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more) {
+  double work = 0.0;
   for (std::size_t i = 0; i < frame.occluders.size(); ++i) {
     chosen_.assign(frame.occluders[i].chosen.begin(), frame.occluders[i].chosen.end());
     if (i == 0 && choose_more && settings_.occluder_count > 0) {
@@ -170,9 +170,14 @@ void FocusMaps::drawOccluders(const FocusWindow& window, const CullingFrame& fra
       const auto more =
           chooser_.choose(window.view(), *scene_.occluders, shown_, scene_.object_bounds, choice);
       chosen_.insert(chosen_.end(), more.begin(), more.end());
+      for (const ObjectId object : shown_) {
+        work += kChoiceWork * static_cast<double>(scene_.occluders->occludersOf(object).size());
+      }
     }
     raster_.draw(*frame.occluders[i].set, chosen_, *frame.parallel_for);
+    work += kOccluderWork * static_cast<double>(chosen_.size());
   }
+  return work;
 }
 
 FocusMaps::Sight FocusMaps::lookAt(const Box& box, std::span<BufferPixel> pixels) {

@@ -35,9 +35,9 @@ class FocusMaps {
   // A view begins: it has no windows yet.
   void begin();
   // Removes those of the visible objects that finer buffers hide. work: of the surfaces in the view's buffer.
-  // stats: of the traversal that found the objects.
+  // stats: of the traversal that found the objects. changes: many of them are new.
   void refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
-              double work, const CullStats& stats, std::vector<ObjectId>& visible);
+              double work, const CullStats& stats, bool changes, std::vector<ObjectId>& visible);
   // Sets the answers for those boxes to kHidden that the windows of refine() hide, where the middle of their
   // rectangle is in a window.
   void classify(const DepthPyramid& buffer, std::span<const Box> boxes, std::span<BoxAnswer> answers);
@@ -65,7 +65,8 @@ class FocusMaps {
   // Draws surfaces up to so much work. Returns the work.
   double draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
               std::span<const ObjectId> visible, double budget);
-  void drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more);
+  // Returns the work.
+  double drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more);
   void removeHidden(std::vector<ObjectId>& visible);
   // Reorders the pixels.
   Sight lookAt(const Box& box, std::span<BufferPixel> pixels);
