@@ -51,7 +51,7 @@ inline Method focusedMethod(std::string name, std::uint32_t occluder_count, MapS
                             const FocusSettings& focus) {
   Method made = cullerMethod(std::move(name), AnyMethod::kDepthPyramid, occluder_count, size);
   made.settings.focus = focus;
-  made.settings.focus.min_objects = 0;
+  made.settings.focus.worth = 1e9;
   return made;
 }
 

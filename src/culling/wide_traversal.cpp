@@ -14,15 +14,14 @@ constexpr std::uint8_t kMinRetestDelay = 6;
 
 class WideTraversal::Task {
  public:
-  Task(WideTraversal& traversal, const TraversalBuffers& buffers, const TraversalOptions& options,
-       Found& found)
+  Task(WideTraversal& traversal, const DepthPyramid& buffer, const TraversalOptions& options, Found& found)
       : hierarchy_(traversal.hierarchy_),
         wide_(traversal.wide_),
         retest_delay_(traversal.retest_delay_),
         in_set_(traversal.in_set_),
         child_marks_(traversal.child_marks_ ? traversal.child_marks_->marks()
                                             : std::span<const std::uint8_t>()),
-        buffers_(buffers),
+        buffer_(buffer),
         options_(options),
         found_(found) {}
 
@@ -40,7 +39,6 @@ class WideTraversal::Task {
   void testInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
   void testBuffer(std::span<const Box> boxes, std::span<const std::uint8_t> retest_delay,
                   std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers);
-  void testFineBuffer(const WideNode& node, std::uint32_t begin, std::uint32_t end);
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
   const Hierarchy& hierarchy_;
@@ -48,12 +46,12 @@ class WideTraversal::Task {
   std::span<std::uint8_t> retest_delay_;
   ObjectSet in_set_;
   std::span<const std::uint8_t> child_marks_;  // empty if all objects are in the set
-  const TraversalBuffers& buffers_;
+  const DepthPyramid& buffer_;
   const TraversalOptions& options_;
   Found& found_;
 };
 
-void WideTraversal::run(const TraversalBuffers& buffers, const TraversalOptions& options, CullStats& stats,
+void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
                         std::vector<ObjectId>& out, const ParallelFor& parallel_for) {
   entries_.clear();
   if (!wide_.nodes.empty()) {
@@ -64,17 +62,17 @@ void WideTraversal::run(const TraversalBuffers& buffers, const TraversalOptions&
   Found& first = found_[0];
   std::size_t next = 0;
   while (next < entries_.size() && entries_.size() - next < kMaxRanges - kWideChildren) {
-    Task(*this, buffers, options, first).visit(entries_[next++]);
+    Task(*this, buffer, options, first).visit(entries_[next++]);
     entries_.insert(entries_.end(), first.stack.begin(), first.stack.end());
     first.stack.clear();
   }
-  take(first, buffers, stats);
+  take(first, stats);
   entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(next));
   const auto count = static_cast<std::uint32_t>(entries_.size());
   // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
   const auto traverseRange = [&](std::uint32_t begin, std::uint32_t end) {
     Found& found = found_[begin];
-    Task task(*this, buffers, options, found);
+    Task task(*this, buffer, options, found);
     for (std::uint32_t i = begin; i < end; ++i) {
       found.stack.push_back(entries_[i]);
       while (!found.stack.empty()) {
@@ -87,7 +85,7 @@ void WideTraversal::run(const TraversalBuffers& buffers, const TraversalOptions&
   parallel_for(count,
                [&traverseRange](std::uint32_t begin, std::uint32_t end) { traverseRange(begin, end); });
   for (std::uint32_t i = 0; i < count; ++i) {
-    take(found_[i], buffers, stats);
+    take(found_[i], stats);
   }
   visible_.drainInto(out);
 }
@@ -124,18 +122,14 @@ void WideTraversal::restrictTo(const ObjectSet& objects) {
   }
 }
 
-void WideTraversal::take(Found& found, const TraversalBuffers& buffers, CullStats& stats) {
+void WideTraversal::take(Found& found, CullStats& stats) {
   for (const ObjectId object : found.kept) {
     visible_.insert(object);
-  }
-  for (const Shown& shown : found.shown) {
-    buffers.window->add(shown.x, shown.y, shown.objects);
   }
   stats.nodes_visited += found.nodes_visited;
   stats.nodes_tested += found.nodes_tested;
   stats.objects_tested += found.objects_tested;
   found.kept.clear();
-  found.shown.clear();
   found.nodes_visited = found.nodes_tested = found.objects_tested = 0;
 }
 
@@ -186,9 +180,6 @@ void WideTraversal::Task::test(const WideNode& node, std::uint32_t begin, std::u
   if (view_only) {
     return;
   }
-  if (buffers_.window != nullptr) {
-    testFineBuffer(node, begin, end);
-  }
   for (std::size_t i = 0; options_.temporal_coherence && i < retest_delay.size(); ++i) {
     const bool hidden = answers[i].visibility == Visibility::kHidden;
     // The delays differ so that children that come into view together are not all tested again in one view.
@@ -200,7 +191,7 @@ void WideTraversal::Task::test(const WideNode& node, std::uint32_t begin, std::u
 void WideTraversal::Task::testBuffer(std::span<const Box> boxes, std::span<const std::uint8_t> retest_delay,
                                      std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
   if (view_only) {
-    buffers_.view.classifyInView(boxes, answers);
+    buffer_.classifyInView(boxes, answers);
     return;
   }
   BoxHints hints;
@@ -208,10 +199,7 @@ void WideTraversal::Task::testBuffer(std::span<const Box> boxes, std::span<const
     hints.seen = retest_delay;
   }
   hints.plain_from = plain_from;
-  if (buffers_.fine != nullptr) {
-    buffers_.window->writeTo(hints);
-  }
-  buffers_.view.classify(boxes, answers, hints);
+  buffer_.classify(boxes, answers, hints);
 }
 
 std::uint32_t WideTraversal::Task::countInSet(const WideNode& node, std::uint32_t begin,
@@ -249,44 +237,6 @@ void WideTraversal::Task::testInSet(const WideNode& node, std::uint32_t begin, s
   for (std::uint32_t i = begin; i < end; ++i) {
     const bool in_set = child_marks_[node.first_child + i] != 0;
     found_.answers[i] = in_set ? answers[next++] : BoxAnswer{.visibility = Visibility::kHidden};
-  }
-}
-
-// Tests the children that the view's depth buffer does not hide against that of the window.
-void WideTraversal::Task::testFineBuffer(const WideNode& node, std::uint32_t begin, std::uint32_t end) {
-  found_.fine_boxes.clear();
-  found_.fine_child.clear();
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const BoxAnswer& answer = found_.answers[i];
-    if (answer.visibility == Visibility::kHidden || !answer.on_buffer) {
-      continue;
-    }
-    if (i >= node.node_count) {
-      found_.shown.push_back({answer.x, answer.y, 1});
-    }
-    const bool delayed = retest_delay_[node.first_child + i] != 0;
-    if (buffers_.fine != nullptr && !delayed && buffers_.window->mayContain(answer.x, answer.y)) {
-      found_.fine_boxes.push_back(wide_.boxes[node.first_child + i]);
-      found_.fine_child.push_back(i);
-    }
-  }
-  if (found_.fine_boxes.empty()) {
-    return;
-  }
-  found_.fine_answers.resize(std::max(found_.fine_answers.size(), found_.fine_boxes.size()));
-  buffers_.fine->classify(found_.fine_boxes, std::span(found_.fine_answers).first(found_.fine_boxes.size()),
-                          {.plain_from = 0});
-  for (std::size_t i = 0; i < found_.fine_boxes.size(); ++i) {
-    const BoxAnswer& fine = found_.fine_answers[i];
-    if (fine.within_view && fine.visibility == Visibility::kHidden) {
-      found_.answers[found_.fine_child[i]].visibility = Visibility::kHidden;
-      const std::uint32_t child = found_.fine_child[i];
-      if (child < node.node_count) {
-        const WideNode& hidden = wide_.nodes[node.first_node + child];
-        const BoxAnswer& answer = found_.answers[child];
-        found_.shown.push_back({answer.x, answer.y, hidden.object_end - hidden.first_object});
-      }
-    }
   }
 }
 

@@ -11,21 +11,12 @@
 #include "sightline/culling/culling_method.h"
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/occlusion/depth_pyramid.h"
-#include "src/culling/focus_window.h"
 #include "src/culling/hierarchical_traversal.h"
 #include "src/culling/object_bits.h"
 #include "src/culling/tree_marks.h"
 #include "src/hierarchy/wide_hierarchy.h"
 
 namespace sightline::culling {
-
-// The depth buffers that a traversal tests boxes against: one of the whole view and, if there is a focus
-// window, a finer one of the window.
-struct TraversalBuffers {
-  const DepthPyramid& view;
-  FocusWindow* window = nullptr;       // counts the objects that `view` does not hide
-  const DepthPyramid* fine = nullptr;  // the depth buffer of the window; null if there is no window
-};
 
 class WideTraversal {
  public:
@@ -41,7 +32,7 @@ class WideTraversal {
   // Appends the objects that may be visible to out, in ascending order, and adds to the counts of stats. With
   // options.temporal_coherence a box that was not hidden is not tested for occlusion again for a few views;
   // it is kept while it is in the view. The result does not depend on parallel_for.
-  void run(const TraversalBuffers& buffers, const TraversalOptions& options, CullStats& stats,
+  void run(const DepthPyramid& buffer, const TraversalOptions& options, CullStats& stats,
            std::vector<ObjectId>& out, const ParallelFor& parallel_for = serialFor);
 
   // From now on only objects of the set are tested and kept. The set's memory is not copied: call this again
@@ -59,11 +50,6 @@ class WideTraversal {
     bool surely_visible;  // with respect to the occluders
   };
 
-  // Objects around a pixel that the depth buffer of the view does not hide, see FocusWindow::add.
-  struct Shown {
-    std::uint16_t x, y;
-    std::uint32_t objects;
-  };
   // Traverses a part of the hierarchy; several may work at the same time.
   class Task;
   // Scratch and results of one task.
@@ -75,18 +61,12 @@ class WideTraversal {
     std::vector<Box> set_boxes;
     std::vector<std::uint8_t> set_retest_delay;
     std::vector<BoxAnswer> set_answers;
-    // The children that are also tested against the finer depth buffer: their boxes, their numbers within the
-    // node, and their answers.
-    std::vector<Box> fine_boxes;
-    std::vector<std::uint32_t> fine_child;
-    std::vector<BoxAnswer> fine_answers;
     std::vector<ObjectId> kept;
-    std::vector<Shown> shown;
     std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
   };
 
   // Adds the results of a task to those of the view, and clears them.
-  void take(Found& found, const TraversalBuffers& buffers, CullStats& stats);
+  void take(Found& found, CullStats& stats);
   TreeMarks marksOfChildren() const;
 
   const Hierarchy& hierarchy_;

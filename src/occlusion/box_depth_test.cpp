@@ -104,9 +104,13 @@ bool anyNearer(std::span<const DepthLevel> levels, std::uint32_t level, const Pi
 // Compares one box with cells by its own outline and depth.
 struct Refinement {
   std::span<const DepthLevel> levels;
-  const PixelBox& image;
-  const BoxOutline& outline;
+  const PixelBox& image;      // the pixels that are compared, and the box's depths
+  const BoxOutline& outline;  // its functions are of pixels from (x0, y0)
+  float x0, y0;
   std::uint32_t rows_left = ~0u;  // of eight cells; then what is left counts as open
+
+  Refinement(std::span<const DepthLevel> l, const PixelBox& i, const BoxOutline& o)
+      : levels(l), image(i), outline(o), x0(i.x0), y0(i.y0) {}
 
   // The result for eight cells in a row; bit i is for the cell `from` + i.
   struct Row {
@@ -117,8 +121,8 @@ struct Refinement {
   HWY_INLINE Row ask(std::uint32_t level, const CellRange& range, std::uint32_t from, std::uint32_t y) const {
     const Lanes d;
     const float size = static_cast<float>(1u << (kBlockShift * level));
-    const float y_px = static_cast<float>(y) * size - static_cast<float>(image.y0);
-    const auto x_origin = hn::Set(d, static_cast<float>(image.x0));
+    const float y_px = static_cast<float>(y) * size - y0;
+    const auto x_origin = hn::Set(d, x0);
     const float* min_row = levels[level].min + std::size_t{y} * levels[level].stride + from;
     Row row;
     forLanes(range, from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
@@ -173,7 +177,50 @@ struct Refinement {
     }
     return false;
   }
+
+  // Appends the pixels in which the box is not surely hidden. Ends early, returning false, where `pixels`
+  // would get more than `max`, or where it takes too many rows.
+  bool findOpen(std::uint32_t level, const CellRange& range, std::size_t max,
+                std::vector<BufferPixel>& pixels) {
+    const std::uint32_t from = readFrom(levels[level], range);
+    for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
+      if (rows_left-- == 0) {
+        rows_left = 0;
+        return false;
+      }
+      for (std::uint32_t open = ask(level, range, from, y).open; open != 0; open &= open - 1) {
+        const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(open));
+        if (level > 0) {
+          if (!findOpen(level - 1, cellsWithin(image, level - 1, x, y), max, pixels)) {
+            return false;
+          }
+        } else if (pixels.size() < max) {
+          pixels.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+        } else {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
 };
+
+// The cells of the finest level on which the image has at most eight cells along each side.
+HWY_INLINE CellRange finestRange(const PixelBox& image, std::uint32_t& level) {
+  level = 0;
+  CellRange range = cellsOf(image, 0);
+  while (range.x1 - range.x0 >= kBlock || range.y1 - range.y0 >= kBlock) {
+    range = cellsOf(image, ++level);
+  }
+  return range;
+}
+
+// How far from the image's first pixel its cells of a level reach, pixels: they may begin before it and end
+// after it.
+HWY_INLINE double reachOf(const PixelBox& image, std::uint32_t level) {
+  const std::uint32_t size = 1u << (kBlockShift * level);
+  return std::max(image.x1 - image.x0, image.y1 - image.y0) + 2.0 * size;
+}
 
 // Whether the buffer, in the pixel of the box's centre, is not before the box's farthest point. The outline
 // surely intersects that pixel. This settles most boxes that can be seen.
@@ -217,11 +264,13 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, c
   const double reach = std::max(buffer.width, buffer.height) + 2.0 * (1u << (kBlockShift * level));
   const BoxOutline outline = outlineOf(view, box, 0, 0, reach);
   // Without faces the eye is in the box or on it, or nothing is known of them.
-  return outline.face_count > 0 && !Refinement{levels, image, outline, kMostRows}.anyOpen(level, all);
+  Refinement refinement(levels, image, outline);
+  refinement.rows_left = kMostRows;
+  return outline.face_count > 0 && !refinement.anyOpen(level, all);
 }
 
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                   const PixelBox& image, bool plain, bool quick) {
+                   const PixelBox& image, bool plain) {
   if (image.place == BoxPlace::kOutside) {
     return Visibility::kHidden;
   }
@@ -232,15 +281,9 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
     return hidesUnbounded(levels, view, box) ? Visibility::kHidden : Visibility::kPartial;
   }
   std::uint32_t level = 0;
-  CellRange range = cellsOf(image, 0);
-  while (range.x1 - range.x0 >= kBlock || range.y1 - range.y0 >= kBlock) {
-    range = cellsOf(image, ++level);
-  }
+  const CellRange range = finestRange(image, level);
   if (allNearer(levels[level], range, image.nearest)) {
     return Visibility::kHidden;
-  }
-  if (quick) {
-    return Visibility::kPartial;
   }
   if (!plain && !anyNearer(levels, level, image, range, image.farthest)) {
     return Visibility::kVisible;
@@ -248,11 +291,8 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   if (seenAtCentre(levels[0], view, box, image)) {
     return Visibility::kPartial;
   }
-  // Cells may begin before the rectangle and end after it.
-  const std::uint32_t size = 1u << (kBlockShift * level);
-  const double reach = std::max(image.x1 - image.x0, image.y1 - image.y0) + 2.0 * size;
-  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reach);
-  Refinement refinement{levels, image, outline};
+  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
+  Refinement refinement(levels, image, outline);
   if (refinement.anyOpen(level, range)) {
     return Visibility::kPartial;
   }
@@ -265,13 +305,73 @@ void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::spa
              std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const PixelBox& image = images[i];
-    const bool quick = image.x0 >= hints.window_x0 && image.x1 <= hints.window_x1 &&
-                       image.y0 >= hints.window_y0 && image.y1 <= hints.window_y1;
     const bool skipped = !hints.seen.empty() && hints.seen[i] != 0;
-    answers[i] = image.answer(!skipped ? testOne(levels, view, boxes[i], image, i >= hints.plain_from, quick)
+    answers[i] = image.answer(!skipped ? testOne(levels, view, boxes[i], image, i >= hints.plain_from)
                               : image.place == BoxPlace::kOutside ? Visibility::kHidden
                                                                   : Visibility::kPartial);
   }
+}
+
+std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                         const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels) {
+  if (image.place == BoxPlace::kOutside) {
+    return 0;
+  }
+  if (levels.empty() || image.place == BoxPlace::kUnbounded) {
+    return kManyPixels;
+  }
+  constexpr std::uint32_t kMostRows = 64;  // of eight cells; a box that takes more of them has many pixels
+  std::uint32_t level = 0;
+  const CellRange range = finestRange(image, level);
+  if (allNearer(levels[level], range, image.nearest)) {
+    return 0;
+  }
+  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
+  const std::size_t before = pixels.size();
+  Refinement refinement(levels, image, outline);
+  refinement.rows_left = kMostRows;
+  if (!refinement.findOpen(level, range, before + max, pixels)) {
+    pixels.resize(before);
+    return kManyPixels;
+  }
+  return static_cast<std::uint32_t>(pixels.size() - before);
+}
+
+bool hidesWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                 std::span<const PixelRange> ranges) {
+  constexpr double kLargest = 0x1p60;  // metres; products stay finite
+  const Vec3d size = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
+  if (levels.empty() || !view.sane() || !box.wellFormed() || !(maxComponent(size) < kLargest)) {
+    return false;
+  }
+  PixelBox image;
+  image.nearest = std::numeric_limits<float>::max();  // its faces say more
+  image.farthest = kUncovered;
+  image.x0 = image.y0 = std::numeric_limits<std::uint16_t>::max();
+  for (const PixelRange& range : ranges) {
+    image.x0 = std::min(image.x0, range.x0);
+    image.y0 = std::min(image.y0, range.y0);
+    image.x1 = std::max(image.x1, range.x1);
+    image.y1 = std::max(image.y1, range.y1);
+  }
+  std::uint32_t level = 0;
+  finestRange(image, level);
+  const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
+  if (outline.face_count == 0) {
+    return false;
+  }
+  Refinement refinement(levels, image, outline);
+  for (const PixelRange& range : ranges) {
+    image.x0 = range.x0;
+    image.y0 = range.y0;
+    image.x1 = range.x1;
+    image.y1 = range.y1;
+    const CellRange cells = finestRange(image, level);
+    if (refinement.anyOpen(level, cells)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -282,6 +382,18 @@ HWY_AFTER_NAMESPACE();
 namespace sightline::occlusion {
 
 HWY_EXPORT(testAll);
+HWY_EXPORT(openPixels);
+HWY_EXPORT(hidesWithin);
+
+std::uint32_t findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                             const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels) {
+  return HWY_DYNAMIC_DISPATCH(openPixels)(levels, view, box, image, max, pixels);
+}
+
+bool hidesBoxWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                    std::span<const PixelRange> ranges) {
+  return HWY_DYNAMIC_DISPATCH(hidesWithin)(levels, view, box, ranges);
+}
 
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {

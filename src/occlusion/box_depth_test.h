@@ -3,6 +3,7 @@
 // Compares boxes with a depth buffer and its levels.
 
 #include <span>
+#include <vector>
 
 #include "sightline/math/box.h"
 #include "sightline/occlusion/depth_pyramid.h"
@@ -20,5 +21,14 @@ namespace sightline::occlusion {
 // is hidden that may be on the buffer. Every instruction set gives the same answers.
 void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
                std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints = {});
+
+// Appends the pixels in which the buffer does not surely hide a box, and returns how many. Returns
+// kManyPixels and appends none where they are more than `max`, where the box reaches the near plane, and
+// without levels. image: of the box. Every instruction set gives the same pixels in the same order.
+std::uint32_t findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                             const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels);
+// Whether the buffer surely hides what of a box lies in these pixels and beyond the near plane.
+bool hidesBoxWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                    std::span<const PixelRange> ranges);
 
 }  // namespace sightline::occlusion

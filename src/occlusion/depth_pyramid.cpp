@@ -125,6 +125,18 @@ void DepthPyramid::classifyInView(std::span<const Box> boxes, std::span<BoxAnswe
   });
 }
 
+void DepthPyramid::openPixels(std::span<const Box> boxes, std::uint32_t max, std::span<std::uint32_t> counts,
+                              std::vector<BufferPixel>& pixels) const {
+  PixelBox images[kGroup];
+  forGroups(boxes.size(), [&](std::size_t first, std::size_t count) {
+    projectBoxes(impl_->projection, boxes.subspan(first, count), {images, count});
+    for (std::size_t i = 0; i < count; ++i) {
+      counts[first + i] =
+          findOpenPixels(impl_->usableLevels(), impl_->view, boxes[first + i], images[i], max, pixels);
+    }
+  });
+}
+
 std::uint32_t DepthPyramid::levels() const {
   return static_cast<std::uint32_t>(impl_->usableLevels().size());
 }

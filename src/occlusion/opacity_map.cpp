@@ -111,10 +111,10 @@ void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> cand
   impl_->raster.draw(surfaces, candidates, drawing, parallel_for);
 }
 
-void OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
-                      const ParallelFor& parallel_for) {
+SurfaceStats OpacityMap::draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing,
+                              const ParallelFor& parallel_for) {
   impl_->ready = false;
-  impl_->raster.draw(moving, drawing, parallel_for);
+  return impl_->raster.draw(moving, drawing, parallel_for);
 }
 
 void OpacityMap::finish() {

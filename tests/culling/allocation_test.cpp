@@ -39,6 +39,13 @@ std::vector<NamedSettings> allSettings() {
   return all;
 }
 
+// How often the views of a test are culled before nothing may be allocated. Where finer depth buffers are
+// drawn at any price, objects that they did not hide rest for up to 135 views, so they lie elsewhere in each
+// of the first rounds.
+int warmUps(const AnySettings& settings) {
+  return settings.method == AnyMethod::kDepthPyramid && settings.focus.worth > FocusSettings{}.worth ? 8 : 2;
+}
+
 TEST(Allocations, AreCountedByThisTest) {
   AnyCuller culler = smallCity().culler(HierarchyKind::kBvh, {});
   EXPECT_GT(allocationsIn(culler, smallCity().frames(smallCity().scene.paths[0], 0, 1), {}), 0u);
@@ -54,8 +61,9 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
     for (const HierarchyKind kind : kKinds) {
       for (const auto& [name, settings, stands_for_method] : allSettings()) {
         AnyCuller culler = demo->culler(kind, settings);
-        allocationsIn(culler, views, dynamic_boxes);
-        allocationsIn(culler, views, dynamic_boxes);
+        for (int round = 0; round < warmUps(settings); ++round) {
+          allocationsIn(culler, views, dynamic_boxes);
+        }
         EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u) << name << " " << nameOf(kind);
       }
     }
@@ -79,7 +87,7 @@ TEST(Allocations, DoNotHappenWithOccludersThatMove) {
   for (const auto& [name, settings, stands_for_method] : allSettings()) {
     AnyCuller culler = demo.culler(HierarchyKind::kBvh, settings);
     std::size_t counted = 0;
-    for (int round = 0; round < 3; ++round) {
+    for (int round = 0; round <= warmUps(settings); ++round) {
       const std::size_t before = allocations;
       for (std::size_t v = 0; v < views.size(); ++v) {
         culler.cull(views[v], {}, v % 5 == 4 ? nullptr : &moving[v]);

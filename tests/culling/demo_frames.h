@@ -36,7 +36,7 @@ constexpr NamedSettings kStructures[] = {
      {.method = AnyMethod::kKeptPlanes, .kept_planes = {.joint_occlusion = false}}},
     {"opacity map", {.method = AnyMethod::kOpacityMap, .raster = {.width = 64, .height = 36}}, true},
     {"depth pyramid", {.method = AnyMethod::kDepthPyramid}, true},
-    {"depth pyramid, focused", {.method = AnyMethod::kDepthPyramid, .focus = {.min_objects = 0}}, true},
+    {"depth pyramid, focused", {.method = AnyMethod::kDepthPyramid, .focus = {.worth = 1e9}}, true},
 };
 inline std::vector<NamedSettings> oneOfEachMethod() {
   std::vector<NamedSettings> chosen;

@@ -24,7 +24,7 @@ struct Answer {
 Answer traversed(WideTraversal& traversal, const DepthPyramid& pyramid,
                  const TraversalOptions& options = {.temporal_coherence = false}) {
   Answer answer;
-  traversal.run({pyramid}, options, answer.stats, answer.kept);
+  traversal.run(pyramid, options, answer.stats, answer.kept);
   return answer;
 }
 

@@ -132,7 +132,7 @@ class CullingJudge {
     s.raster.width = kWidths[below(6)];
     s.raster.height = kWidths[below(6)];
     s.focus.magnification = chance(2) ? 8.0 : 0.0;
-    s.focus.min_objects = 0;
+    s.focus.worth = 1e9;
     s.temporal_coherence = chance(2);
     s.occluder_count = chance(4) ? 4u : 256u;
     s.surfaces = std::array{SurfaceUse::kNone, SurfaceUse::kAlone, SurfaceUse::kAlone,

@@ -8,14 +8,21 @@
 
 namespace sightline {
 
-// A second, finer depth buffer around the direction in which the first one hides least, for perspective
-// views. Its occluders are those of the first one, and the best of what the last frame kept there.
+inline constexpr std::uint32_t kMaxFocusWindows = 64;
+
+// Finer depth buffers for parts of the view, called windows: where the first buffer leaves objects in doubt,
+// because their boxes may show in a few of its pixels. Their occluders are those of the first buffer, and
+// what the view keeps there.
 struct FocusSettings {
-  // Pixels along the side of one pixel of the first depth buffer; 1 or less: there is no second one.
-  double magnification = 8.0;
-  RasterSettings raster{.width = 128, .height = 64};  // coverage: that of the first one counts
-  std::uint32_t occluder_count = 64;                  // at most so many more occluders than in the first one
-  std::uint32_t min_objects = 256;  // made only where the first one leaves at least so many objects
+  std::uint32_t windows = 2;  // at most so many in a view, kMaxFocusWindows at most; 0: none
+  // Pixels along the side of one pixel of the first depth buffer; 1 or less: there are no windows.
+  double magnification = 4.0;
+  RasterSettings raster{.width = 64, .height = 64};  // of each; coverage: that of the first one counts
+  // Without surfaces: at most so many more occluders than in the first one.
+  std::uint32_t occluder_count = 64;
+  // A window is drawn where it is likely to take away so many objects that its work is at most so many times
+  // what the view has cost for as many. With more, more windows are drawn.
+  double worth = 2.0;
 };
 
 struct DepthPyramidMethodSettings {
@@ -36,8 +43,9 @@ inline constexpr MethodTraits kDepthPyramidTraits{.occluders = true};
 
 // Culling by a DepthPyramid of whole surfaces, or of the chosen occluders where the scene has none: all
 // children of a node are compared with it at once. The surfaces of a frame are those of the objects that the
-// last frame kept. Statistics: "map" with occluders_hidden, the occluders behind others, focused, 1 in frames
-// with a second depth buffer, and what was drawn of surfaces: groups, and edges of their boundaries.
+// last frame kept. Statistics: "map" with occluders_hidden, the occluders behind others, focused, the
+// windows with finer depth buffers, focus_hidden, the objects that these hid, and what was drawn of surfaces:
+// groups, and edges of their boundaries.
 std::unique_ptr<CullingMethod> depthPyramid(const DepthPyramidMethodSettings& settings = {});
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sightline/base/parallel_for.h"
 #include "sightline/occluders/occluder_set.h"
@@ -22,11 +23,24 @@ struct DepthPyramidStats {
   RasterStats raster{};
 };
 
+inline constexpr std::uint32_t kManyPixels = 0xffffffffu;  // see DepthPyramid::openPixels
+
 struct BoxAnswer {
   Visibility visibility = Visibility::kVisible;
   bool within_view = false;    // all of the box surely lies in the view's volume
   bool on_buffer = false;      // its rectangle in the depth buffer is known
   std::uint16_t x = 0, y = 0;  // with on_buffer: the middle of that rectangle, pixels
+};
+
+// A pixel of a depth buffer; the lowest row comes first.
+struct BufferPixel {
+  std::uint16_t x = 0, y = 0;
+  friend bool operator==(const BufferPixel&, const BufferPixel&) = default;
+};
+
+// The first and the last pixels of a rectangle.
+struct PixelRange {
+  std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
 // What a caller knows of boxes that are tested view after view.
@@ -36,9 +50,6 @@ struct BoxHints {
   std::span<const std::uint8_t> seen{};
   // For boxes from this index on, kVisible and kPartial need not be told apart.
   std::size_t plain_from = static_cast<std::size_t>(-1);
-  // First and last pixels of a window for which the caller has a finer buffer. A box whose rectangle lies in
-  // the window is kPartial unless a short test hides it.
-  std::uint16_t window_x0 = 1, window_y0 = 1, window_x1 = 0, window_y1 = 0;
 
   // Returns the hints for `count` boxes from the index `first` on.
   BoxHints from(std::size_t first, std::size_t count) const {
@@ -88,6 +99,12 @@ class DepthPyramid {
   // Classifies by the view's volume alone, as if nothing were drawn: kHidden for boxes that are wholly
   // outside, kVisible or kPartial for all others.
   void classifyInView(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
+
+  // The pixels in which boxes are not surely hidden. counts: as many as boxes; box by box, the pixels are
+  // appended. A count is kManyPixels, and no pixel is appended, where there are more than `max` of them, and
+  // for a box that is not well formed or reaches the near plane. A box without any is hidden.
+  void openPixels(std::span<const Box> boxes, std::uint32_t max, std::span<std::uint32_t> counts,
+                  std::vector<BufferPixel>& pixels) const;
 
   // The number of levels; level 0 is the depth buffer itself.
   std::uint32_t levels() const;

@@ -71,8 +71,8 @@ class OpacityMap {
             const ParallelFor& parallel_for = serialFor);
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing = {}, const ParallelFor& parallel_for = serialFor);
-  void draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {},
-            const ParallelFor& parallel_for = serialFor);
+  SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {},
+                    const ParallelFor& parallel_for = serialFor);
   void finish();
 
   // Classifies a box in scene space as seen in the last view. Boxes that are not well formed, and those that

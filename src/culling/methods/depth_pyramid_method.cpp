@@ -5,9 +5,8 @@
 #include <iterator>
 #include <optional>
 
-#include "sightline/occluders/choose_occluders.h"
-#include "src/culling/focus_window.h"
 #include "src/culling/methods/draw_occluders.h"
+#include "src/culling/methods/focus_maps.h"
 #include "src/culling/methods/surface_drawing.h"
 #include "src/culling/methods/traversal_options.h"
 #include "src/culling/set_filter.h"
@@ -32,15 +31,12 @@ class DepthPyramidMethod final : public CullingMethod {
     surfaces_.prepare(scene);
     pyramid_.emplace(DepthPyramidSettings{settings_.raster});
     own_occluders_ = 0;
-    focused_ = false;
     last_kept_.clear();
     news_.clear();
-    if (settings_.focus.magnification > 1.0 && drawsBodies()) {
+    focus_.reset();
+    if (settings_.focus.windows > 0 && settings_.focus.magnification > 1.0 && drawsBodies()) {
       const DepthBufferView buffer = pyramid_->depthBuffer();
-      window_.emplace(settings_.focus, buffer.width, buffer.height);
-      RasterSettings fine = settings_.focus.raster;
-      fine.coverage = settings_.raster.coverage;
-      fine_pyramid_.emplace(DepthPyramidSettings{fine});
+      focus_.emplace(settings_.focus, scene_, buffer.width, buffer.height);
     }
   }
 
@@ -56,28 +52,27 @@ class DepthPyramidMethod final : public CullingMethod {
     surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
     groups_ = edges_ = 0;
     countSurfaces();
-    surfaces_.drawMoving(*pyramid_, frame);
+    work_ = surfaces_.work() + surfaces_.drawMoving(*pyramid_, frame);
     pyramid_->finish(*frame.parallel_for);
-    focused_ = false;
-    if (window_) {
-      window_->begin(frame.view, !frame.jumped && frame.max_occluders > 0);
-      focused_ = window_->found();
-      if (focused_) {
-        drawFocus(frame);
-      }
+    if (focus_) {
+      focus_->begin();
     }
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    if (surfaces_.draws() && !frame.jumped && news_.size() * kCalm > last_kept_.size()) {
+    if (surfaces_.draws() && !frame.jumped && changesFast()) {
       drawNews(frame);
     }
     // With surfaces most time goes into drawing, and testing everything costs little.
     const bool skips = settings_.temporal_coherence && !surfaces_.draws() && !surfaces_.drawsMoving(frame);
-    traversal_->run(buffers(), culling::optionsOf(frame, skips), stats, visible, *frame.parallel_for);
+    traversal_->run(*pyramid_, culling::optionsOf(frame, skips), stats, visible, *frame.parallel_for);
+    // Before the finer buffers: what these hide is nothing new in the next frame.
     if (surfaces_.draws()) {
       findNews(visible);
       last_kept_ = visible;
+    }
+    if (focus_ && frame.test_objects) {
+      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, changesFast(), visible);
     }
   }
 
@@ -86,9 +81,10 @@ class DepthPyramidMethod final : public CullingMethod {
     const RasterStats& raster = pyramid_->stats().raster;
     stats.occluders = raster.occluders;
     statistics_[0].value = raster.hidden;
-    statistics_[1].value = focused_ ? 1 : 0;
-    statistics_[2].value = groups_;
-    statistics_[3].value = edges_;
+    statistics_[1].value = focus_ ? focus_->windows() : 0;
+    statistics_[2].value = focus_ ? focus_->hidden() : 0;
+    statistics_[3].value = groups_;
+    statistics_[4].value = edges_;
   }
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
@@ -99,24 +95,11 @@ class DepthPyramidMethod final : public CullingMethod {
     answers_.resize(std::max(answers_.size(), boxes.size()));
     const std::span<BoxAnswer> answers = std::span(answers_).first(boxes.size());
     pyramid_->classify(asked_, answers);
-    fine_boxes_.clear();
-    in_doubt_.clear();
+    if (focus_) {
+      focus_->classify(*pyramid_, asked_, answers);
+    }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       states[i] = answers[i].visibility;
-      if (focused_ && states[i] != Visibility::kHidden && answers[i].on_buffer &&
-          window_->mayContain(answers[i].x, answers[i].y)) {
-        fine_boxes_.push_back(boxes[i].box);
-        in_doubt_.push_back(i);
-      }
-    }
-    if (fine_boxes_.empty()) {
-      return;
-    }
-    fine_pyramid_->classify(fine_boxes_, answers.first(fine_boxes_.size()), {.plain_from = 0});
-    for (std::size_t i = 0; i < in_doubt_.size(); ++i) {
-      if (answers[i].within_view && answers[i].visibility == Visibility::kHidden) {
-        states[in_doubt_[i]] = Visibility::kHidden;
-      }
     }
   }
 
@@ -127,56 +110,21 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  // Draws the finer depth buffer: the chosen occluders in the window, and the best ones of the objects in the
-  // window that the last frame kept.
-  void drawFocus(const CullingFrame& frame) {
-    in_window_.clear();
-    for (const ObjectId object : frame.last_visible) {
-      if (window_->mayShow(scene_.object_bounds[object.value])) {
-        in_window_.push_back(object);
-      }
-    }
-    fine_chosen_.clear();
-    for (const OccluderId id : frame.occluders[0].chosen) {
-      const OccluderBody* body = scene_.occluders->bodyOf(id);
-      if (body == nullptr || window_->mayShow(body->bounds)) {
-        fine_chosen_.push_back(id);
-      }
-    }
-    if (wantsOccluders()) {
-      const ChoiceSettings choice{.count = settings_.focus.occluder_count, .bodies = true};
-      const auto more =
-          chooser_.choose(window_->view(), *scene_.occluders, in_window_, scene_.object_bounds, choice);
-      fine_chosen_.insert(fine_chosen_.end(), more.begin(), more.end());
-    }
-    std::array<ChosenOccluders, 2> sets{{{scene_.occluders, fine_chosen_}, {}}};
-    const bool moving = frame.occluders.size() > 1;
-    if (moving) {
-      sets[1] = frame.occluders[1];
-    }
-    culling::drawOccluders(*fine_pyramid_, window_->view(), std::span(sets).first(moving ? 2 : 1),
-                           *frame.parallel_for);
-    surfaces_.drawOf(*fine_pyramid_, in_window_);
-    surfaces_.drawMoving(*fine_pyramid_, frame);
-    fine_pyramid_->finish(*frame.parallel_for);
-  }
-
-  culling::TraversalBuffers buffers() {
-    return {*pyramid_, window_ ? &*window_ : nullptr, focused_ ? &*fine_pyramid_ : nullptr};
-  }
-
-  // Sets news_ to the objects that the last frame did not keep.
+  // Sets news_ to the objects that the first buffer of the last frame did not keep.
   void findNews(std::span<const ObjectId> kept) {
     news_.clear();
     std::set_difference(kept.begin(), kept.end(), last_kept_.begin(), last_kept_.end(),
                         std::back_inserter(news_));
   }
 
+  // Whether many of the objects that were kept are new.
+  bool changesFast() const { return news_.size() * kCalm > last_kept_.size(); }
+
   // Draws the surfaces of objects that come into view in this frame.
   void drawNews(const CullingFrame& frame) {
     found_.clear();
     CullStats ignored;
-    traversal_->run({*pyramid_}, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
+    traversal_->run(*pyramid_, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
     findNews(found_);
     surfaces_.drawMore(*pyramid_, news_);
     countSurfaces();
@@ -201,22 +149,16 @@ class DepthPyramidMethod final : public CullingMethod {
   CullingScene scene_;
   std::optional<culling::WideTraversal> traversal_;
   std::optional<DepthPyramid> pyramid_;
-  std::size_t own_occluders_ = 0;  // occluders in the pyramid that are of the scene's set
-  // The focus window and its finer depth buffer; empty if the settings turn them off.
-  std::optional<culling::FocusWindow> window_;
-  std::optional<DepthPyramid> fine_pyramid_;
-  bool focused_ = false;                  // this frame has a window
-  std::uint64_t groups_ = 0, edges_ = 0;  // of the surfaces in the pyramid
-  // Scratch for one classify() call: all boxes, those that are tested against the finer depth buffer too,
-  // their numbers among all, and answers.
-  std::vector<Box> asked_, fine_boxes_;
+  std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
+  std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
+  std::uint64_t groups_ = 0, edges_ = 0;     // of the surfaces in the pyramid
+  double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
+  // Scratch for one classify() call: all boxes, and their answers.
+  std::vector<Box> asked_;
   std::vector<BoxAnswer> answers_;
-  std::vector<std::size_t> in_doubt_;
-  OccluderChooser chooser_;
-  std::vector<ObjectId> in_window_;
-  std::vector<OccluderId> fine_chosen_;
-  std::array<MethodStatistic, 4> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
-                                              {"map", "focused", "frames with a finer map"},
+  std::array<MethodStatistic, 5> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
+                                              {"map", "focused", "finer maps"},
+                                              {"map", "focus_hidden", "objects that finer maps hide"},
                                               {"surfaces", "groups", "groups of surfaces drawn"},
                                               {"surfaces", "edges", "edges of their boundaries"}}};
 };

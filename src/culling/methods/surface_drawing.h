@@ -65,21 +65,32 @@ class SurfaceDrawer {
     timed_.frame(work_, stats.build_us, stats.totalUs() - stats.build_us);
   }
 
-  // Draws the surfaces of some of the objects, in a view that follows no other.
+  // Draws the surfaces of some of the objects in a view that follows no other and is so much magnified, up to
+  // so much work. Returns the work.
   template <typename Buffer>
-  void drawOf(Buffer& buffer, std::span<const ObjectId> objects) const {
-    draw(buffer, objects, ViewStep::kJump, drawing_);
+  double drawOf(Buffer& buffer, std::span<const ObjectId> objects, double magnification,
+                double budget) const {
+    SurfaceDrawing drawing = drawing_;
+    drawing.min_pixels *= magnification;
+    drawing.min_patch_pixels *= magnification;
+    drawing.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, drawing_.budget));
+    draw(buffer, objects, ViewStep::kJump, drawing);
+    return draws() ? buffer.surfaceStats().work : 0.0;
   }
-  // Draws the surfaces that move.
+  // Draws the surfaces that move. Returns the work.
   template <typename Buffer>
-  void drawMoving(Buffer& buffer, const CullingFrame& frame) const {
+  double drawMoving(Buffer& buffer, const CullingFrame& frame) const {
+    double work = 0.0;
     for (std::size_t i = 0; drawsMoving(frame) && i < frame.moving_surfaces.size(); ++i) {
-      buffer.draw(frame.moving_surfaces[i], drawing_, *parallel_for_);
+      work += buffer.draw(frame.moving_surfaces[i], drawing_, *parallel_for_).work;
     }
+    return work;
   }
   bool drawsMoving(const CullingFrame& frame) const {
     return use_ != SurfaceUse::kNone && !frame.moving_surfaces.empty();
   }
+  // What has been drawn of the scene's surfaces in this view.
+  double work() const { return work_; }
   // Draws the surfaces of further objects in the same view.
   template <typename Buffer>
   void drawMore(Buffer& buffer, std::span<const ObjectId> objects) const {

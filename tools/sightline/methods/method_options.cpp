@@ -227,14 +227,16 @@ const std::vector<Option>& allOptions() {
        oneOf(
            kCoverages, +[](Setting& s) -> const CoverageRule*& { return s.raster.coverage; })},
       {"focus", kOwn, mayFocus, kList, kWhenChanged,
-       "depth pyramid: magnification of a second map where the first one hides least; 0: none",
+       "depth pyramid: magnification of finer maps where the first one leaves objects in doubt; 0: none",
        decimal(+[](Setting& s) -> double& { return s.focus.magnification; })},
-      {"focus-resolution", kOwn, focuses, kOne, kWhenChanged, "of that second map",
+      {"focus-resolution", kOwn, focuses, kOne, kWhenChanged, "of each finer map",
        resolution(+[](Setting& s) -> RasterSettings& { return s.focus.raster; })},
-      {"focus-objects", kOwn, focuses, kOne, kWhenChanged,
-       "the second map is made where the first one leaves so many objects",
+      {"focus-windows", kOwn, focuses, kList, kWhenChanged, "most finer maps in a frame",
        whole(
-           0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.min_objects; })},
+           0, kMaxFocusWindows, +[](Setting& s) -> std::uint32_t& { return s.focus.windows; })},
+      {"focus-worth", kOwn, focuses, kList, kWhenChanged,
+       "a finer map may cost so many times what the frame costs for each object that the map takes away",
+       decimal(+[](Setting& s) -> double& { return s.focus.worth; })},
       {"tolerance", kOwn, always, kList, kWhenChanged,
        "opacity map: pixels of an object that may be uncovered; more than 0 culls what can be seen",
        whole(
@@ -273,7 +275,7 @@ const std::vector<Option>& allOptions() {
        whole(
            1, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.culler.occluders.count; })},
       {"focus-occluder-count", kOwn, focusesOccluders, kOne, kWhenChanged,
-       "most occluders that only the second map has",
+       "most occluders that only a finer map has",
        whole(
            0, kMaxOccluders, +[](Setting& s) -> std::uint32_t& { return s.focus.occluder_count; })},
       {"planes", kOwn, always, kList, kWhenChanged,

@@ -1,0 +1,102 @@
+#pragma once
+
+// The finer depth buffers of a view: where they are drawn, and what they hide.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sightline/culling/culling_method.h"
+#include "sightline/culling/depth_pyramid_method.h"
+#include "sightline/occluders/choose_occluders.h"
+#include "sightline/occlusion/depth_pyramid.h"
+#include "sightline/occlusion/rasteriser.h"
+#include "src/culling/doubt_memory.h"
+#include "src/culling/focus_budget.h"
+#include "src/culling/focus_choice.h"
+#include "src/culling/focus_window.h"
+#include "src/culling/methods/surface_drawing.h"
+#include "src/occlusion/pixel_boxes.h"
+
+namespace sightline::culling {
+
+// An object is in doubt if the depth buffer of the view does not hide its box, in a few pixels only. Where
+// many such pixels are, windows are drawn with finer pixels. If each pixel in which the box may show lies in
+// a window whose buffer hides the box there, the object is hidden.
+//
+// What is in doubt is found once the view has been culled, so windows lie where they are needed in this very
+// view, and their occluders are those that it keeps.
+class FocusMaps {
+ public:
+  // width, height: of the view's depth buffer, pixels.
+  FocusMaps(const FocusSettings& settings, const CullingScene& scene, std::uint32_t width,
+            std::uint32_t height);
+
+  // A view begins: it has no windows yet.
+  void begin();
+  // Removes those of the visible objects that finer buffers hide. work: of the surfaces in the view's buffer.
+  // stats: of the traversal that found the objects. changes: many of them are new.
+  void refine(const DepthPyramid& buffer, const CullingFrame& frame, const SurfaceDrawer& surfaces,
+              double work, const CullStats& stats, bool changes, std::vector<ObjectId>& visible);
+  // Sets the answers for those boxes to kHidden that the windows of refine() hide, where the middle of their
+  // rectangle is in a window.
+  void classify(const DepthPyramid& buffer, std::span<const Box> boxes, std::span<BoxAnswer> answers);
+
+  // In the last view.
+  std::uint32_t windows() const { return window_count_; }
+  std::uint32_t hidden() const { return hidden_; }
+
+ private:
+  // What the windows say of a box.
+  enum class Sight : std::uint8_t {
+    kHidden,
+    kSeen,     // in some pixel that is in a window, it is not surely hidden
+    kUnknown,  // some pixel in which it may show is in no window
+  };
+  struct Doubt {
+    std::uint32_t at = 0;  // of the object, in the list of visible ones
+    std::uint32_t first_pixel = 0, pixel_count = 0;
+  };
+
+  // all: not only among objects that windows hid before.
+  void findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible, bool all);
+  void drawWindows(const CullingFrame& frame, const SurfaceDrawer& surfaces,
+                   std::span<const ObjectId> visible);
+  // Draws surfaces up to so much work. Returns the work.
+  double draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
+              std::span<const ObjectId> visible, double budget);
+  // Returns the work.
+  double drawOccluders(const FocusWindow& window, const CullingFrame& frame, bool choose_more);
+  void removeHidden(std::vector<ObjectId>& visible);
+  // Reorders the pixels.
+  Sight lookAt(const Box& box, std::span<BufferPixel> pixels);
+  std::span<const FocusWindow> windowsDrawn() const { return std::span(windows_).first(window_count_); }
+  std::span<BufferPixel> pixelsOf(const Doubt& doubt) {
+    return std::span(pixels_).subspan(doubt.first_pixel, doubt.pixel_count);
+  }
+
+  FocusSettings settings_;
+  CullingScene scene_;
+  std::uint32_t width_, height_;
+  Rasteriser raster_;  // draws one window after the other
+  FocusChoice choice_;
+  FocusBudget budget_;
+  DoubtMemory memory_;
+  std::vector<FocusWindow> windows_;
+  std::uint32_t window_count_ = 0;  // that are drawn in this view
+  std::uint32_t hidden_ = 0;
+  std::uint32_t search_in_ = 0, search_views_ = 1;  // views until all objects are looked at again
+
+  // Scratch of a view.
+  std::vector<Doubt> doubts_;  // ascending
+  std::vector<BufferPixel> pixels_;
+  std::vector<Box> boxes_;
+  std::vector<std::uint32_t> asked_, counts_;
+  std::vector<occlusion::PixelBox> images_;  // of all visible objects, if there is a window
+  std::vector<ObjectId> shown_;              // objects that may appear in a window
+  std::vector<PixelRange> ranges_;
+  OccluderChooser chooser_;
+  std::vector<OccluderId> chosen_;
+};
+
+}  // namespace sightline::culling
