@@ -30,8 +30,8 @@ struct Bake::Data {
 namespace {
 
 // Version of the bake method; increase it whenever the same input would give other cells.
-constexpr std::uint32_t kVersion = 5;
-constexpr std::uint32_t kMaxDivisions = 16;
+constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kMaxDivisions = 16, kMaxNarrowings = 8;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
 // Cells above this level are divided into parts. Below it, a part has at most 73 cells, so an interrupted
@@ -67,6 +67,9 @@ std::string problemWith(const BakeSettings& s) {
   if (s.divisions > kMaxDivisions) {
     return "divisions is " + std::to_string(s.divisions) + "; at most " + std::to_string(kMaxDivisions);
   }
+  if (s.narrowings > kMaxNarrowings) {
+    return "narrowings is " + std::to_string(s.narrowings) + "; at most " + std::to_string(kMaxNarrowings);
+  }
   if (!std::all_of(s.viewers.begin(), s.viewers.end(), [](const Box& box) { return box.wellFormed(); })) {
     return "a box of viewers is empty or not finite";
   }
@@ -95,7 +98,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   for (const std::uint64_t number :
        {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
         static_cast<std::uint64_t>(s.occlusion), s.triangle_budget, std::uint64_t{s.max_depth},
-        std::uint64_t{base_depth}, std::uint64_t{s.divisions}}) {
+        std::uint64_t{base_depth}, std::uint64_t{s.divisions}, std::uint64_t{s.narrowings}}) {
     bytes.add(number);
   }
   for (const double number :

@@ -214,7 +214,7 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
       fused_.hides(region,
                    {.box = {Vec3d(node.bounds.min), Vec3d(node.bounds.max)},
                     .object = leaf ? boxes.objects[node.first_object].value : kNoObject},
-                   leaf ? scene_.settings.divisions : 0)) {
+                   leaf ? RegionEffort{scene_.settings.narrowings, scene_.settings.divisions} : RegionEffort{})) {
     hidden_.add(std::span(&objects, 1));
     return;
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "src/pvs/bake/bake_scene.h"
-#include "src/pvs/bake/fused_occlusion.h"
+#include "src/pvs/bake/region_occlusion.h"
 #include "src/pvs/bake/samples.h"
 
 namespace sightline::pvs {
@@ -88,7 +88,7 @@ class CellBaker {
 
   const BakeScene& scene_;
   SampleStore samples_;
-  FusedOcclusion fused_;
+  RegionOcclusion fused_;
   // Scratch for the current cell.
   std::vector<std::uint32_t> chosen_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;

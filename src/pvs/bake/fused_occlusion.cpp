@@ -107,9 +107,8 @@ class SegmentTest {
 
 }  // namespace
 
-FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, double magnitude)
+FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude)
     : panels_(panels),
-      near_distance_(near_distance),
       magnitude_(magnitude),
       places_(panels.panels.size()),
       beyond_(panels.vertices.size()) {
@@ -121,38 +120,21 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double near_distance, doubl
   sheet_margin_ = 0x1p-24 * magnitude_ + panels.slack;
 }
 
-bool FusedOcclusion::hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions) {
-  most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
-  const Answer answer = answerFor(region, target.box, target.object);
-  if (answer != Answer::kUndecided || divisions == 0) {
-    return answer == Answer::kHidden;
-  }
-  const bool of_region = maxComponent(region.extent()) >= maxComponent(target.box.extent());
-  const CellBox& larger = of_region ? region : target.box;
-  const Vec3d extent = larger.extent();
-  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-  CellBox low = larger, high = larger;
-  low.max[axis] = high.min[axis] = larger.centre()[axis];
-  const auto hidesHalf = [&](const CellBox& half) {
-    return of_region ? hides(half, target, divisions - 1)
-                     : hides(region, {half, target.object}, divisions - 1);
-  };
-  return hidesHalf(low) && hidesHalf(high);
-}
-
 bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to) {
   left_out_ = kNoObject;
   findCrossings(from, to, true);
   return clear();
 }
 
-FusedOcclusion::Answer FusedOcclusion::answerFor(const CellBox& region, const CellBox& target,
-                                                 std::uint32_t left_out) {
+FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTarget& target,
+                                           double near_distance) {
   const double widening = kWidening * magnitude_;
   const Vec3d by{widening, widening, widening};
   region_ = region;
-  target_ = {target.min - by, target.max + by};
-  left_out_ = left_out;
+  target_ = {target.box.min - by, target.box.max + by};
+  near_distance_ = near_distance;
+  left_out_ = target.object;
+  most_members_ = target.object == kNoObject ? kMostMembersOfNodes : kMostMembers;
   shaft_ = Shaft(region_, target_, magnitude_, panels_.slack);
   components_.clear();
   members_.clear();
@@ -339,7 +321,7 @@ std::uint32_t FusedOcclusion::sidesBeyond(std::uint32_t vertex) {
 
 // Whether some sheet in the shaft is too near to hide anything, and its front may be seen.
 bool FusedOcclusion::tooNear(std::uint32_t number) const {
-  const double near = near_distance_ + error_ + 0x1p-40 * magnitude_;
+  const double near = near_distance_ + nearMargin();
   const auto isFar = [&](const Box& box) {
     const Vec3d gap = gapBetween(region_, box);
     return dot(gap, gap) > near * near;

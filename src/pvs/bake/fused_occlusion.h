@@ -20,19 +20,23 @@ struct FusedTarget {
 // For use by one thread at a time.
 class FusedOcclusion {
  public:
-  // near_distance: what is closer to a viewer, in metres, hides nothing. magnitude: an upper bound
-  // of the absolute coordinates of all regions and boxes that are asked about. The panels must outlive this.
-  FusedOcclusion(const Panels& panels, double near_distance, double magnitude);
+  // kHidden: every line of sight from the region to the target meets the front of a sheet. kClear: one of
+  // them surely does not.
+  enum class Answer { kHidden, kClear, kUndecided };
 
-  // True only if no point of the box can be seen from any point of the region. divisions: how often the
-  // region or the box, whichever is larger, is halved where that is not yet sure.
-  bool hides(const CellBox& region, const FusedTarget& target, std::uint32_t divisions);
+  // magnitude: an upper bound of the absolute coordinates of all regions and boxes that are asked about. The
+  // panels must outlive this.
+  FusedOcclusion(const Panels& panels, double magnitude);
+
+  // near_distance: what is closer to the region, in metres, hides nothing.
+  Answer ask(const CellBox& region, const FusedTarget& target, double near_distance);
   // True if the line of sight between the points surely meets the front of no sheet.
   bool isClear(const Vec3d& from, const Vec3d& to);
+  double magnitude() const { return magnitude_; }  // of all coordinates, metres
+  // How much farther than the near distance, for sure, something has to be.
+  double nearMargin() const { return error_ + 0x1p-40 * magnitude_; }
 
  private:
-  // kClear: a line of sight is clear.
-  enum class Answer { kHidden, kClear, kUndecided };
   // How the line of sight meets a panel.
   struct Crossing {
     std::uint32_t panel = 0;
@@ -49,7 +53,6 @@ class FusedOcclusion {
     bool in_doubt = false;
   };
 
-  Answer answerFor(const CellBox& region, const CellBox& target, std::uint32_t left_out);
   bool hiddenBehind(const Vec3d& to);
   void findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked);
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
@@ -62,12 +65,13 @@ class FusedOcclusion {
   std::int32_t mostBehind(const Component& component, const Vec3d& point) const;
 
   const Panels& panels_;
-  double near_distance_, magnitude_;
+  double magnitude_;
   double error_;         // of a coordinate relative to another point, metres
   double sheet_margin_;  // around the corners of a sheet in single precision, metres
 
   // Of the last question.
   CellBox region_, target_;
+  double near_distance_ = 0.0;
   std::uint32_t left_out_ = kNoObject;  // its sheets hide nothing
   std::uint32_t most_members_ = 0;      // of a component
   Shaft shaft_;

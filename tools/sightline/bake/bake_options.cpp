@@ -55,6 +55,12 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                   "box is halved so often at most, and each half tested")
       ->check(CLI::Range(0u, 16u))
       ->capture_default_str();
+  command
+      .add_option("--narrowings", settings.narrowings,
+                  "before that, what of the cell, of a window before the object, and of the object's box lines "
+                  "of sight may pass is narrowed so often at most")
+      ->check(CLI::Range(0u, 8u))
+      ->capture_default_str();
   addViewerOptions(command, options.viewers);
   addDecimalOption(command, "--search-distance", settings.search_distance, 0.0, kMax,
                    "occluders are looked for within so many metres at first; 0: chosen");
@@ -131,6 +137,7 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                {"viewers", viewers.facts},
                {"occlusion", settings.occlusion == BakeOcclusion::kFused ? "fused" : "convex"},
                {"divisions", settings.divisions},
+               {"narrowings", settings.narrowings},
                {"search_distance", settings.search_distance},
                {"occluder_size", settings.occluder_size},
                {"similarity", settings.similarity},

@@ -1,4 +1,4 @@
-#include "src/pvs/bake/fused_occlusion.h"
+#include "src/pvs/bake/region_occlusion.h"
 
 #include <gtest/gtest.h>
 
@@ -68,11 +68,11 @@ bool seesByLines(const Scene& scene, const CellBox& region, const CellBox& targe
   return false;
 }
 
-bool hides(const Scene& scene, const CellBox& region, const FusedTarget& target, std::uint32_t divisions = 0,
-           double near = kNear) {
+bool hides(const Scene& scene, const CellBox& region, const FusedTarget& target,
+           const RegionEffort& effort = {}, double near = kNear) {
   const Panels panels = findPanels(scene.view());
-  FusedOcclusion fused(panels, near, 100.0);
-  const bool hidden = fused.hides(region, target, divisions);
+  RegionOcclusion occlusion(panels, near, 100.0);
+  const bool hidden = occlusion.hides(region, target, effort);
   std::mt19937 random(11);
   EXPECT_FALSE(hidden && seesByLines(scene, region, target.box, 2000, random, near));
   return hidden;
@@ -107,16 +107,16 @@ Solid wallOfTiles(int count, int without = -1, bool reversed = false) {
 const CellBox kViewers{{-6, -0.5, -0.5}, {-5, 0.5, 0.5}};
 const FusedTarget kBehind{.box = {{3, -1, -1}, {4, 1, 1}}};
 
-TEST(FusedOcclusion, ManySmallTrianglesHideTogether) {
+TEST(RegionOcclusion, ManySmallTrianglesHideTogether) {
   EXPECT_TRUE(hides(sceneOf({wallOfTiles(20)}), kViewers, kBehind));
 }
 
-TEST(FusedOcclusion, AHoleInTheShaftIsSeenThroughAndOneBesideItIsNot) {
+TEST(RegionOcclusion, AHoleInTheShaftIsSeenThroughAndOneBesideItIsNot) {
   EXPECT_FALSE(hides(sceneOf({wallOfTiles(20, 10 * 20 + 10)}), kViewers, kBehind));
   EXPECT_TRUE(hides(sceneOf({wallOfTiles(20, 0)}), kViewers, kBehind));
 }
 
-TEST(FusedOcclusion, BacksHideNothingButDoubleSidedTrianglesDo) {
+TEST(RegionOcclusion, BacksHideNothingButDoubleSidedTrianglesDo) {
   Scene scene = sceneOf({wallOfTiles(5, -1, true)});
   EXPECT_FALSE(hides(scene, kViewers, kBehind));
   EXPECT_TRUE(hides(scene, kBehind.box, {.box = kViewers})) << "from the other side";
@@ -124,23 +124,23 @@ TEST(FusedOcclusion, BacksHideNothingButDoubleSidedTrianglesDo) {
   EXPECT_TRUE(hides(scene, kViewers, kBehind));
 }
 
-TEST(FusedOcclusion, WhatTheNearPlaneMayClipHidesNothing) {
+TEST(RegionOcclusion, WhatTheNearPlaneMayClipHidesNothing) {
   const Scene scene = sceneOf({wallOfTiles(5)});
   const CellBox close{{-1, -0.5, -0.5}, {-0.05, 0.5, 0.5}};
-  EXPECT_FALSE(hides(scene, close, kBehind, 3, 0.1));
-  EXPECT_TRUE(hides(scene, close, kBehind, 0, 0.01));
+  EXPECT_FALSE(hides(scene, close, kBehind, {.divisions = 3}, 0.1));
+  EXPECT_TRUE(hides(scene, close, kBehind, {}, 0.01));
 }
 
-TEST(FusedOcclusion, ASlitIsSeenThroughAndATouchIsNot) {
+TEST(RegionOcclusion, ASlitIsSeenThroughAndATouchIsNot) {
   const auto halves = [](float slit) {
     return sceneOf({block({0, -4, -4}, {0.5f, 4, 0}), block({0, -4, slit}, {0.5f, 4, 4})});
   };
-  EXPECT_FALSE(hides(halves(1e-4f), kViewers, kBehind, 4));
-  EXPECT_FALSE(hides(halves(std::nextafter(0.0f, 1.0f)), kViewers, kBehind, 4));
+  EXPECT_FALSE(hides(halves(1e-4f), kViewers, kBehind, {.divisions = 4}));
+  EXPECT_FALSE(hides(halves(std::nextafter(0.0f, 1.0f)), kViewers, kBehind, {.divisions = 4}));
   EXPECT_TRUE(hides(halves(0.0f), kViewers, kBehind));
 }
 
-TEST(FusedOcclusion, WhatTouchesOrPenetratesIsOneSurface) {
+TEST(RegionOcclusion, WhatTouchesOrPenetratesIsOneSurface) {
   // Boards on each other's edges, a post pushed into them, and a wall that stands on a slab.
   EXPECT_TRUE(hides(sceneOf({block({0, -4, -4}, {0.5f, 0.25f, 0.25f}),
                              block({0, -4, 0.25f}, {0.5f, 0.25f, 4}), block({0, 0.25f, -4}, {0.5f, 4, 4})}),
@@ -152,7 +152,7 @@ TEST(FusedOcclusion, WhatTouchesOrPenetratesIsOneSurface) {
   EXPECT_TRUE(hides(standing, kViewers, {.box = {{3, -1, -1}, {4, 1, 1}}}));
 }
 
-TEST(FusedOcclusion, ATargetMayStandOnWhatHidesIt) {
+TEST(RegionOcclusion, ATargetMayStandOnWhatHidesIt) {
   // The floor and the wall are one mesh; the target's lower face lies on the floor.
   Solid solid = wallOfTiles(4);
   const auto first = static_cast<std::uint32_t>(solid.points.size());
@@ -164,21 +164,21 @@ TEST(FusedOcclusion, ATargetMayStandOnWhatHidesIt) {
   EXPECT_TRUE(hides(scene, kViewers, {.box = {{3, -4, -1}, {4, -3, 1}}}));
 }
 
-TEST(FusedOcclusion, ATargetThatTouchesTheWallIsLeftOut) {
+TEST(RegionOcclusion, ATargetThatTouchesTheWallIsLeftOut) {
   const Scene scene = sceneOf({block({0, -4, -4}, {0.5f, 4, 4}), block({0.5f, -1, -1}, {1, 1, 1}),
                                block({-0.5f, -1, -1}, {0, 1, 1})});
   EXPECT_TRUE(hides(scene, kViewers, {.box = {{0.5, -1, -1}, {1, 1, 1}}, .object = 1}));
-  EXPECT_FALSE(hides(scene, kViewers, {.box = {{-0.5, -1, -1}, {0, 1, 1}}, .object = 2}, 4))
+  EXPECT_FALSE(hides(scene, kViewers, {.box = {{-0.5, -1, -1}, {0, 1, 1}}, .object = 2}, {.divisions = 4}))
       << "in front of the wall";
 }
 
-TEST(FusedOcclusion, AFlatTargetOnTheBackOfAWallIsHidden) {
+TEST(RegionOcclusion, AFlatTargetOnTheBackOfAWallIsHidden) {
   const Scene scene = sceneOf({block({0, -4, -4}, {0.5f, 4, 4})});
   EXPECT_TRUE(hides(scene, kViewers, {.box = {{0.5, -1, -1}, {0.5, 1, 1}}}));
-  EXPECT_FALSE(hides(scene, kViewers, {.box = {{0, -1, -1}, {0, 1, 1}}}, 4)) << "on its front";
+  EXPECT_FALSE(hides(scene, kViewers, {.box = {{0, -1, -1}, {0, 1, 1}}}, {.divisions = 4})) << "on its front";
 }
 
-TEST(FusedOcclusion, ARoomIsClosedFromInsideAndOpenFromOutside) {
+TEST(RegionOcclusion, ARoomIsClosedFromInsideAndOpenFromOutside) {
   // A box with its fronts inwards.
   Solid room = dicedBlock({-4, -4, -4}, {4, 4, 4}, 3);
   for (std::vector<std::uint32_t>& face : room.faces) {
@@ -188,24 +188,90 @@ TEST(FusedOcclusion, ARoomIsClosedFromInsideAndOpenFromOutside) {
   const CellBox inside{{-1, -1, -1}, {1, 1, 1}};
   const FusedTarget outside{.box = {{9, -2, 3}, {11, 2, 7}}};
   EXPECT_TRUE(hides(scene, inside, outside));
-  EXPECT_FALSE(hides(scene, outside.box, {.box = inside}, 4));
+  EXPECT_FALSE(hides(scene, outside.box, {.box = inside}, {.divisions = 4}));
 }
 
-TEST(FusedOcclusion, DividingShowsWhatNoSurfaceHidesByItself) {
+TEST(RegionOcclusion, DividingShowsWhatNoSurfaceHidesByItself) {
   // Two walls with an edge each in the shaft, one behind the other.
   const Scene scene = sceneOf({block({0, -4, -4}, {0.25f, 4, 0.5f}), block({1, -4, -0.5f}, {1.25f, 4, 4})});
-  const CellBox viewers{{-12, -0.5, -0.125}, {-11, 0.5, 0.125}};
-  const FusedTarget target{.box = {{3, -0.5, -0.125}, {3.25, 0.5, 0.125}}};
-  EXPECT_TRUE(hides(scene, viewers, target, 3));
+  const CellBox viewers{{-12, -0.5, -1}, {-11, 0.5, 1}};
+  const FusedTarget target{.box = {{3, -0.5, -1}, {3.25, 0.5, 1}}};
+  EXPECT_FALSE(hides(scene, viewers, target));
+  EXPECT_TRUE(hides(scene, viewers, target, {.divisions = 3}));
+  EXPECT_TRUE(hides(scene, viewers, target, {.narrowings = 1}));
 }
 
-TEST(FusedOcclusion, WithoutSurfacesNothingIsHidden) {
+// A wall across x, from z = -9 to 9, with a door 0.8 metres wide around `door`.
+std::vector<Solid> wallWithDoor(float x, float door) {
+  return {block({x, -4, -9}, {x + 0.25f, 4, door - 0.4f}), block({x, -4, door + 0.4f}, {x + 0.25f, 4, 9})};
+}
+
+Scene twoDoors(float first, float second) {
+  std::vector<Solid> solids = wallWithDoor(0, first);
+  const std::vector<Solid> more = wallWithDoor(4, second);
+  solids.insert(solids.end(), more.begin(), more.end());
+  return sceneOf(solids);
+}
+
+TEST(RegionOcclusion, NarrowingShowsThatTwoDoorsAreNotInLine) {
+  const FusedTarget wide{.box = {{8, -1, -8}, {9, 1, 8}}};
+  for (const float second : {-3.5f, 3.5f}) {
+    const Scene scene = twoDoors(0, second);
+    EXPECT_FALSE(hides(scene, kViewers, wide)) << "there is a door in the shaft in each wall";
+    EXPECT_TRUE(hides(scene, kViewers, wide, {.narrowings = 2}));
+    EXPECT_TRUE(hides(scene, wide.box, {.box = kViewers}, {.narrowings = 2}));
+  }
+  for (const float second : {-1.4f, 0.0f, 1.4f}) {
+    EXPECT_FALSE(hides(twoDoors(0, second), kViewers, wide, {.narrowings = 8, .divisions = 4}));
+  }
+}
+
+TEST(RegionOcclusion, NarrowingLooksAlongEveryAxisAndBothWays) {
+  const FusedTarget wide{.box = {{8, -1, -8}, {9, 1, 8}}};
+  for (int turn = 0; turn < 3; ++turn) {
+    for (const float sign : {1.0f, -1.0f}) {
+      // A rotation, and with the sign another one: by half a turn around an axis.
+      const auto turned = [&](const Vec3f& p) {
+        const Vec3f q{sign * p.x, p.y, sign * p.z};
+        return turn == 0 ? q : turn == 1 ? Vec3f{q.y, q.z, q.x} : Vec3f{q.z, q.x, q.y};
+      };
+      const auto box = [&](const CellBox& b) {
+        const Vec3d one(turned(Vec3f(b.min))), other(turned(Vec3f(b.max)));
+        return CellBox{min(one, other), max(one, other)};
+      };
+      Scene scene = twoDoors(0, 3.5f);
+      for (Vec3f& point : scene.positions) {
+        point = turned(point);
+      }
+      for (Object& object : scene.objects) {
+        Box bounds;
+        for (const Vec3d& corner : {Vec3d(object.bounds.min), Vec3d(object.bounds.max)}) {
+          bounds.extend(turned(Vec3f(corner)));
+        }
+        object.bounds = bounds;
+      }
+      EXPECT_FALSE(hides(scene, box(kViewers), {.box = box(wide.box)}));
+      EXPECT_TRUE(hides(scene, box(kViewers), {.box = box(wide.box)}, {.narrowings = 2}));
+    }
+  }
+}
+
+TEST(RegionOcclusion, NoWindowIsCloserThanTheNearPlane) {
+  // What hides the target from a window between may be clipped for viewers this close.
+  const CellBox close{{-0.75, -0.5, -0.5}, {-0.25, 0.5, 0.5}};
+  const FusedTarget target{.box = {{0.75, -1, -1}, {1, 1, 1}}};
+  const Scene scene = sceneOf({wallOfTiles(5)});
+  EXPECT_FALSE(hides(scene, close, target, {.narrowings = 4}, 0.6));
+  EXPECT_TRUE(hides(scene, close, target, {}, 0.2));
+}
+
+TEST(RegionOcclusion, WithoutSurfacesNothingIsHidden) {
   Scene scene = sceneOf({wallOfTiles(2)});
   scene.materials[0].opacity = Opacity::kBlended;
-  EXPECT_FALSE(hides(scene, kViewers, kBehind, 2));
+  EXPECT_FALSE(hides(scene, kViewers, kBehind, {.divisions = 2}));
   const Panels none;
-  FusedOcclusion fused(none, kNear, 100.0);
-  EXPECT_FALSE(fused.hides(kViewers, kBehind, 2));
+  RegionOcclusion occlusion(none, kNear, 100.0);
+  EXPECT_FALSE(occlusion.hides(kViewers, kBehind, {.narrowings = 2, .divisions = 2}));
 }
 
 // Walls, boards and crates on a grid of half metres, so that most of them touch, with coordinates a unit in
@@ -242,13 +308,13 @@ Scene untidyScene(std::mt19937& random) {
   return scene;
 }
 
-TEST(FusedOcclusion, HidesNothingThatALineSees) {
+TEST(RegionOcclusion, HidesNothingThatALineSees) {
   std::size_t hidden = 0, asked = 0;
   for (std::uint32_t seed = 1; seed <= 30; ++seed) {
     std::mt19937 random(seed);
     const Scene scene = untidyScene(random);
     const Panels panels = findPanels(scene.view());
-    FusedOcclusion fused(panels, kNear, 100.0);
+    RegionOcclusion occlusion(panels, kNear, 100.0);
     for (int i = 0; i < 40; ++i) {
       const auto place = [&] { return std::uniform_real_distribution<double>(-5.0, 5.0)(random); };
       const Vec3d at{place(), place(), place()};
@@ -259,7 +325,9 @@ TEST(FusedOcclusion, HidesNothingThatALineSees) {
         const FusedTarget target{.box = {Vec3d(box.min), Vec3d(box.max)},
                                  .object = random() % 2 != 0 ? object : kNoObject};
         ++asked;
-        if (!intersects(region, box) && fused.hides(region, target, random() % 4)) {
+        const RegionEffort effort{.narrowings = random() % 3 == 0 ? 2u : 0u,
+                                  .divisions = random() % 2 == 0 ? 2u : 0u};
+        if (!intersects(region, box) && occlusion.hides(region, target, effort)) {
           ++hidden;
           ASSERT_FALSE(seesByLines(scene, region, target.box, 60, random))
               << "seed " << seed << ", object " << object << ", region at " << at.x << " " << at.y << " "

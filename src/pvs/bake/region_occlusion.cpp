@@ -1,0 +1,205 @@
+#include "src/pvs/bake/region_occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sightline::pvs {
+namespace {
+
+// Of a place that is computed from two others on the same line, for each metre of their coordinates and each
+// time that they are apart.
+constexpr double kPlaceRounding = 0x1p-44;
+constexpr int kMostHalves = 16;  // that are cut off one end of a part in a row
+
+struct Interval {
+  double low, high;
+};
+
+Interval along(const CellBox& box, int axis) {
+  return {box.min[axis], box.max[axis]};
+}
+
+int longestAxis(const Vec3d& extent) {
+  return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+}
+
+// Where, along one axis, a line is that passes through places a and b of it, `share` of the way from a to b.
+Interval between(const Interval& a, const Interval& b, double share, double rounding) {
+  const double from = 1.0 - share, margin = rounding * (std::abs(from) + std::abs(share));
+  return {(from >= 0.0 ? a.low : a.high) * from + (share >= 0.0 ? b.low : b.high) * share - margin,
+          (from >= 0.0 ? a.high : a.low) * from + (share >= 0.0 ? b.high : b.low) * share + margin};
+}
+
+// Narrows a box, across an axis, to where lines are that pass through two others. The three do not overlap
+// along the axis. False if nothing is left.
+bool narrowToLines(CellBox& box, const CellBox& first, const CellBox& second, int axis, double rounding) {
+  const Interval own = along(box, axis), one = along(first, axis), other = along(second, axis);
+  for (int across = 0; across < 3; ++across) {
+    if (across == axis) {
+      continue;
+    }
+    Interval reach{box.max[across], box.min[across]};
+    for (const double at : {own.low, own.high}) {
+      for (const double a : {one.low, one.high}) {
+        for (const double b : {other.low, other.high}) {
+          const Interval place =
+              between(along(first, across), along(second, across), (at - a) / (b - a), rounding);
+          reach = {std::min(reach.low, place.low), std::max(reach.high, place.high)};
+        }
+      }
+    }
+    box.min[across] = std::max(box.min[across], reach.low);
+    box.max[across] = std::min(box.max[across], reach.high);
+    if (!(box.min[across] <= box.max[across])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+RegionOcclusion::RegionOcclusion(const Panels& panels, double near_distance, double magnitude)
+    : fused_(panels, magnitude), near_distance_(near_distance) {}
+
+bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, const RegionEffort& effort) {
+  return decide(region, target, effort) == Answer::kHidden;
+}
+
+RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget target,
+                                                const RegionEffort& effort) {
+  Answer answer = fused_.ask(region, target, near_distance_);
+  if (answer == Answer::kUndecided && effort.narrowings > 0) {
+    answer = narrow(region, target.box, target.object, effort.narrowings);
+  }
+  if (answer != Answer::kUndecided || effort.divisions == 0) {
+    return answer;
+  }
+  const RegionEffort less{effort.narrowings, effort.divisions - 1};
+  CellBox& larger = maxComponent(region.extent()) >= maxComponent(target.box.extent()) ? region : target.box;
+  const int axis = longestAxis(larger.extent());
+  const double middle = larger.centre()[axis], end = larger.max[axis];
+  larger.max[axis] = middle;
+  answer = decide(region, target, less);
+  if (answer != Answer::kHidden) {
+    return answer;
+  }
+  larger.min[axis] = middle;
+  larger.max[axis] = end;
+  return decide(region, target, less);
+}
+
+RegionOcclusion::Answer RegionOcclusion::narrow(CellBox& region, CellBox& target, std::uint32_t object,
+                                                std::uint32_t times) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool before = region.max[axis] < target.min[axis];
+    if (!before && !(target.max[axis] < region.min[axis])) {
+      continue;
+    }
+    const Interval gap = before ? Interval{region.max[axis], target.min[axis]}
+                                : Interval{target.max[axis], region.min[axis]};
+    const double middle = 0.5 * (gap.low + gap.high);
+    // No near plane clips what hides the target from the window.
+    if (!(0.5 * (gap.high - gap.low) > near_distance_ + fused_.nearMargin())) {
+      continue;
+    }
+    const double far = fused_.magnitude();
+    Passage passage{region, {{-far, -far, -far}, {far, far, far}}, target, axis, object};
+    passage.window.min[axis] = passage.window.max[axis] = middle;
+    const Answer answer = narrow(passage, times);
+    if (answer != Answer::kUndecided) {
+      return answer;
+    }
+    region = passage.region;
+    target = passage.target;
+  }
+  return Answer::kUndecided;
+}
+
+RegionOcclusion::Answer RegionOcclusion::narrow(Passage& passage, std::uint32_t times) {
+  if (!tighten(passage)) {
+    return Answer::kHidden;
+  }
+  bool cut = true;
+  for (std::uint32_t time = 0; time < times && cut; ++time) {
+    cut = false;
+    for (const Part part : {Part::kTarget, Part::kWindow, Part::kRegion}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const bool high : {false, true}) {
+          if (part == Part::kWindow && axis == passage.axis) {
+            continue;
+          }
+          const Answer answer = cutOff(passage, part, axis, high, cut);
+          if (answer != Answer::kUndecided) {
+            return answer;
+          }
+        }
+      }
+    }
+    if (cut) {
+      const Answer answer =
+          fused_.ask(passage.region, {passage.target, passage.object}, near_distance_);
+      if (answer != Answer::kUndecided) {
+        return answer;
+      }
+    }
+  }
+  return Answer::kUndecided;
+}
+
+RegionOcclusion::Answer RegionOcclusion::cutOff(Passage& passage, Part part, int axis, bool high, bool& cut) {
+  CellBox& box = part == Part::kTarget   ? passage.target
+                 : part == Part::kWindow ? passage.window
+                                         : passage.region;
+  // Half of it, and again, until that cannot be; then a quarter.
+  int halves = 0;
+  for (double share = 0.5; share > 0.2;) {
+    const double size = box.max[axis] - box.min[axis];
+    const double place = high ? box.max[axis] - share * size : box.min[axis] + share * size;
+    if (!(place > box.min[axis] && place < box.max[axis])) {
+      return Answer::kUndecided;  // it is flat
+    }
+    CellBox off = box;
+    (high ? off.min : off.max)[axis] = place;
+    const Answer answer = strip(passage, part, off);
+    if (answer == Answer::kClear) {
+      return answer;
+    }
+    if (answer == Answer::kHidden) {
+      (high ? box.max : box.min)[axis] = place;
+      cut = true;
+      if (!tighten(passage)) {
+        return Answer::kHidden;
+      }
+    }
+    if (answer == Answer::kUndecided || share < 0.5 || ++halves == kMostHalves) {
+      share *= 0.5;
+    }
+  }
+  return Answer::kUndecided;
+}
+
+// Whether the lines of the passage through a piece of one part are blocked. kClear: one of all is not.
+RegionOcclusion::Answer RegionOcclusion::strip(const Passage& passage, Part part, const CellBox& strip) {
+  if (part == Part::kTarget) {
+    return fused_.ask(passage.region, {strip, passage.object}, near_distance_);
+  }
+  if (part == Part::kRegion) {
+    return fused_.ask(strip, {passage.target, passage.object}, near_distance_);
+  }
+  // Those that are clear only as far as the window, or only from there on, say nothing.
+  const bool hidden =
+      fused_.ask(passage.region, {strip, passage.object}, near_distance_) == Answer::kHidden ||
+      fused_.ask(strip, {passage.target, passage.object}, 0.0) == Answer::kHidden;
+  return hidden ? Answer::kHidden : Answer::kUndecided;
+}
+
+bool RegionOcclusion::tighten(Passage& passage) const {
+  const double rounding = kPlaceRounding * fused_.magnitude();
+  const int axis = passage.axis;
+  return narrowToLines(passage.window, passage.region, passage.target, axis, rounding) &&
+         narrowToLines(passage.region, passage.window, passage.target, axis, rounding) &&
+         narrowToLines(passage.target, passage.region, passage.window, axis, rounding);
+}
+
+}  // namespace sightline::pvs

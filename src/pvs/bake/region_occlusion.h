@@ -1,0 +1,56 @@
+#pragma once
+
+// Whether a box is hidden from a whole region: one question to the surfaces, and where it does not decide,
+// questions about less. docs/conservative.md, "Sets from regions", says why that is safe.
+
+#include <cstdint>
+
+#include "src/pvs/bake/fused_occlusion.h"
+
+namespace sightline::pvs {
+
+// What is done where one question does not decide.
+struct RegionEffort {
+  std::uint32_t narrowings = 0;  // how often all boxes of a passage are narrowed
+  std::uint32_t divisions = 0;   // how often the region or the target, whichever is larger, is halved
+};
+
+// For use by one thread at a time.
+class RegionOcclusion {
+ public:
+  // near_distance: what is closer to a viewer, in metres, hides nothing. magnitude: an upper bound of the
+  // absolute coordinates of all regions and boxes that are asked about. The panels must outlive this.
+  RegionOcclusion(const Panels& panels, double near_distance, double magnitude);
+
+  // True only if no point of the target can be seen from any point of the region.
+  bool hides(const CellBox& region, const FusedTarget& target, const RegionEffort& effort);
+  // True if the line of sight between the points surely meets the front of no sheet.
+  bool isClear(const Vec3d& from, const Vec3d& to) { return fused_.isClear(from, to); }
+
+ private:
+  using Answer = FusedOcclusion::Answer;
+  // Lines of sight from the region through a window to the target. The window is a rectangle that lies
+  // between them, at right angles to an axis. Whatever line is not known to be blocked begins, passes and
+  // ends in these boxes.
+  struct Passage {
+    CellBox region, window, target;
+    int axis = 0;
+    std::uint32_t object = kNoObject;  // FusedTarget::object
+  };
+  enum class Part { kTarget, kWindow, kRegion };
+
+  Answer decide(CellBox region, FusedTarget target, const RegionEffort& effort);
+  // Narrows the region and the target.
+  Answer narrow(CellBox& region, CellBox& target, std::uint32_t object, std::uint32_t times);
+  Answer narrow(Passage& passage, std::uint32_t times);
+  // Cuts off what it can of one end of a part. cut: set to true if it does.
+  Answer cutOff(Passage& passage, Part part, int axis, bool high, bool& cut);
+  Answer strip(const Passage& passage, Part part, const CellBox& strip);
+  // Narrows each part to where lines through both others pass. False: there are none.
+  bool tighten(Passage& passage) const;
+
+  FusedOcclusion fused_;
+  double near_distance_;
+};
+
+}  // namespace sightline::pvs
