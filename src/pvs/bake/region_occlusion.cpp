@@ -9,7 +9,7 @@ namespace {
 // Of a place that is computed from two others on the same line, for each metre of their coordinates and each
 // time that they are apart.
 constexpr double kPlaceRounding = 0x1p-44;
-constexpr int kMostHalves = 16;  // that are cut off one end of a part in a row
+constexpr int kMaxHalves = 16;  // that are cut off one end of a part in a row
 
 struct Interval {
   double low, high;
@@ -151,46 +151,39 @@ RegionOcclusion::Answer RegionOcclusion::cutOff(Passage& passage, Part part, int
   CellBox& box = part == Part::kTarget   ? passage.target
                  : part == Part::kWindow ? passage.window
                                          : passage.region;
-  // Half of it, and again, until that cannot be; then a quarter.
-  int halves = 0;
-  for (double share = 0.5; share > 0.2;) {
-    const double size = box.max[axis] - box.min[axis];
-    const double place = high ? box.max[axis] - share * size : box.min[axis] + share * size;
-    if (!(place > box.min[axis] && place < box.max[axis])) {
+  for (int halves = 0; halves < kMaxHalves; ++halves) {
+    const double middle = box.centre()[axis];
+    if (!(middle > box.min[axis] && middle < box.max[axis])) {
       return Answer::kUndecided;  // it is flat
     }
-    CellBox off = box;
-    (high ? off.min : off.max)[axis] = place;
-    const Answer answer = strip(passage, part, off);
-    if (answer == Answer::kClear) {
+    CellBox half = box;
+    (high ? half.min : half.max)[axis] = middle;
+    const Answer answer = answerThrough(passage, part, half);
+    if (answer != Answer::kHidden) {
       return answer;
     }
-    if (answer == Answer::kHidden) {
-      (high ? box.max : box.min)[axis] = place;
-      cut = true;
-      if (!tighten(passage)) {
-        return Answer::kHidden;
-      }
-    }
-    if (answer == Answer::kUndecided || share < 0.5 || ++halves == kMostHalves) {
-      share *= 0.5;
+    (high ? box.max : box.min)[axis] = middle;
+    cut = true;
+    if (!tighten(passage)) {
+      return Answer::kHidden;
     }
   }
   return Answer::kUndecided;
 }
 
 // Whether the lines of the passage through a piece of one part are blocked. kClear: one of all is not.
-RegionOcclusion::Answer RegionOcclusion::strip(const Passage& passage, Part part, const CellBox& strip) {
+RegionOcclusion::Answer RegionOcclusion::answerThrough(const Passage& passage, Part part,
+                                                       const CellBox& piece) {
   if (part == Part::kTarget) {
-    return fused_.ask(passage.region, {strip, passage.object}, near_distance_);
+    return fused_.ask(passage.region, {piece, passage.object}, near_distance_);
   }
   if (part == Part::kRegion) {
-    return fused_.ask(strip, {passage.target, passage.object}, near_distance_);
+    return fused_.ask(piece, {passage.target, passage.object}, near_distance_);
   }
   // Those that are clear only as far as the window, or only from there on, say nothing.
   const bool hidden =
-      fused_.ask(passage.region, {strip, passage.object}, near_distance_) == Answer::kHidden ||
-      fused_.ask(strip, {passage.target, passage.object}, 0.0) == Answer::kHidden;
+      fused_.ask(passage.region, {piece, passage.object}, near_distance_) == Answer::kHidden ||
+      fused_.ask(piece, {passage.target, passage.object}, 0.0) == Answer::kHidden;
   return hidden ? Answer::kHidden : Answer::kUndecided;
 }
 

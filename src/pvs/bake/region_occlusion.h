@@ -43,9 +43,10 @@ class RegionOcclusion {
   // Narrows the region and the target.
   Answer narrow(CellBox& region, CellBox& target, std::uint32_t object, std::uint32_t times);
   Answer narrow(Passage& passage, std::uint32_t times);
-  // Cuts off what it can of one end of a part. cut: set to true if it does.
+  // Cuts off one end of a part, half of it at a time. cut: set to true if it does.
   Answer cutOff(Passage& passage, Part part, int axis, bool high, bool& cut);
-  Answer strip(const Passage& passage, Part part, const CellBox& strip);
+  // Of the lines of the passage through a piece of one part. kClear: one of all lines of sight is clear.
+  Answer answerThrough(const Passage& passage, Part part, const CellBox& piece);
   // Narrows each part to where lines through both others pass. False: there are none.
   bool tighten(Passage& passage) const;
 
