@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/boiler_house.h"
 #include "scenes/glass.h"
 #include "scenes/landscapes.h"
 #include "scenes/moving_scene.h"
@@ -179,6 +180,15 @@ Result<Scene> makeDemoJungle(std::string_view query) {
   return status ? Result<Scene>(makeJungle(options)) : status.error();
 }
 
+Result<Scene> makeDemoBoilerHouse(std::string_view query) {
+  BoilerHouseOptions options;
+  Key keys[] = {{"boilers", 1, 50, &options.boilers},
+                {"pipes", 0, 20000, &options.pipes},
+                {"seed", 0, kAnySeed, &options.seed}};
+  const Status status = readQuery(query, "boilerhouse", keys);
+  return status ? Result<Scene>(makeBoilerHouse(options)) : status.error();
+}
+
 Result<MovingScene> makeDemoToothpicks(std::string_view query) {
   static constexpr std::string_view kScalings[] = {"us", "ud"};
   ToothpickOptions options;
@@ -203,11 +213,17 @@ struct Maker {
   std::string_view name;
   Result<S> (*make)(std::string_view query);
 };
-constexpr Maker<Scene> kStillScenes[] = {{"city", makeDemoCity},     {"building", makeDemoBuilding},
-                                         {"boxes", makeDemoBoxes},   {"ship", makeDemoShip},
-                                         {"glass", makeDemoGlass},   {"terrain", makeDemoTerrain},
-                                         {"cave", makeDemoCave},     {"village", makeDemoVillage},
-                                         {"jungle", makeDemoJungle}, {"voxels", makeDemoVoxels}};
+constexpr Maker<Scene> kStillScenes[] = {{"city", makeDemoCity},
+                                         {"building", makeDemoBuilding},
+                                         {"boxes", makeDemoBoxes},
+                                         {"ship", makeDemoShip},
+                                         {"glass", makeDemoGlass},
+                                         {"terrain", makeDemoTerrain},
+                                         {"cave", makeDemoCave},
+                                         {"village", makeDemoVillage},
+                                         {"jungle", makeDemoJungle},
+                                         {"voxels", makeDemoVoxels},
+                                         {"boilerhouse", makeDemoBoilerHouse}};
 constexpr Maker<MovingScene> kMovingScenes[] = {{"toothpicks", makeDemoToothpicks},
                                                 {"canyon", makeDemoCanyon}};
 

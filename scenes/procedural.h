@@ -58,9 +58,10 @@ Scene makeShip(const ShipOptions& options);
 // "demo:boxes?buildings=10000&boxes=50000", "demo:ship?decks=6&rooms=7&machinery=60",
 // "demo:glass?panes=18&bottles=12" (scenes/glass.h), "demo:terrain?triangles=100000",
 // "demo:cave?halls=24&triangles=100000", "demo:village?houses=160", "demo:jungle?buttes=45&trees=1500",
-// "demo:voxels?halls=24" (scenes/landscapes.h), and frame 0 of the scenes with moving parts
-// (scenes/moving_scene.h): "demo:toothpicks?n=200&scaling=ud", "demo:canyon?grid=14". An unknown scene or
-// key, or a value out of range, is an error that lists the valid ones.
+// "demo:voxels?halls=24" (scenes/landscapes.h), "demo:boilerhouse?boilers=5&pipes=900"
+// (scenes/boiler_house.h), and frame 0 of the scenes with moving parts (scenes/moving_scene.h):
+// "demo:toothpicks?n=200&scaling=ud", "demo:canyon?grid=14". An unknown scene or key, or a value out of
+// range, is an error that lists the valid ones.
 bool isDemoUrl(std::string_view url);
 Result<Scene> makeDemoScene(std::string_view url);
 

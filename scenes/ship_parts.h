@@ -18,6 +18,7 @@
 #include "scenes/placement.h"
 #include "scenes/procedural.h"
 #include "scenes/random.h"
+#include "scenes/round_solids.h"
 
 namespace sightline::scenes::ship {
 
@@ -102,20 +103,9 @@ Room roomAt(const Plan& plan, std::uint32_t deck, std::uint32_t bay, bool port);
 std::array<Room, 2> roomsOnWalk(const Plan& plan);
 bool isOnWalk(const Plan& plan, const Room& room);
 
-// Solids beyond those of MeshBuilder. The first two use the placement of the mesh; the others set it.
-
-// A convex solid with six faces. Bits of the corner index: bit 0 for east, bit 1 for north, bit 2 for top.
+// A convex solid with six faces, in the placement of the mesh. Bits of the corner index: bit 0 for east, bit
+// 1 for north, bit 2 for top.
 void addHexahedron(MeshBuilder& mesh, const std::array<Vec3d, 8>& corners);
-// A round tube along straight legs with mitred corners, closed at both ends. Needs at least two corners.
-void addTube(MeshBuilder& mesh, std::span<const Vec3d> corners, double radius, std::uint32_t segments = 12);
-// A cylinder from `foot`, `length` metres along axis `axis` (0: x, 1: y, 2: z) of `at`.
-void addCylinder(MeshBuilder& mesh, const Placement& at, const Vec3d& foot, std::uint32_t axis, double radius,
-                 double length, std::uint32_t segments = 12);
-// `at` moved to `foot` and turned so that its z axis runs along axis `axis` of `at`.
-Placement standingAlong(const Placement& at, const Vec3d& foot, std::uint32_t axis);
-// A half circle of `legs` segments from (0, -radius) up to (0, radius), moved up by z: the profile of a
-// sphere.
-std::vector<Point2> halfCircle(double radius, double z, std::uint32_t legs);
 
 // A wall from (0, 0, 0) of `at` along its x axis, with its thickness along y. Each convex piece is an object,
 // named `name` and a number. Openings must not overlap in x and are in ascending order of x; their y is the

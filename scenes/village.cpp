@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kHalfSize = 200.0;  // of the ground, metres
 constexpr double kSquare = 15.0;     // radius of the market square, metres
-constexpr std::uint32_t kQuads = 130, kTiles = 12;
+constexpr std::uint32_t kQuads = 130, kGroundTiles = 12;
 constexpr std::uint32_t kFieldTrees = 260;
 
 std::vector<Material> materials() {
@@ -98,7 +98,7 @@ CameraPath walk(const HeightField& ground) {
 }
 
 void addAll(MeshBuilder& mesh, const HeightField& ground, const VillageOptions& options) {
-  ground.addTiles(mesh, kTiles, "ground",
+  ground.addTiles(mesh, kGroundTiles, "ground",
                   [](Point2 p) { return MaterialId{fromStreets(p) < 9.0 ? kEarth : kGrass}; });
   FreeGround free;
   for (const std::vector<Vec3d>& street : streets()) {

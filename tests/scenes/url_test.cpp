@@ -46,8 +46,8 @@ TEST(DemoUrl, GivesTheSceneOfItsOptions) {
 }
 
 TEST(DemoUrl, AnUnknownSceneIsAnErrorThatListsTheScenes) {
-  expectError("demo:castle",
-              {"castle", "city", "building", "boxes", "terrain", "cave", "village", "jungle", "voxels"});
+  expectError("demo:castle", {"castle", "city", "building", "boxes", "terrain", "cave", "village", "jungle",
+                              "voxels", "boilerhouse"});
   expectError("demo:", {"city", "building"});
   expectError("city", {"demo:"});
 }

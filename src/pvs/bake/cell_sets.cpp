@@ -211,10 +211,11 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
   }
   const bool leaf = boxes.leaf(number);
   if (node.bounds.wellFormed() && !intersects(region, node.bounds) &&
-      fused_.hides(region,
-                   {.box = {Vec3d(node.bounds.min), Vec3d(node.bounds.max)},
-                    .object = leaf ? boxes.objects[node.first_object].value : kNoObject},
-                   leaf ? RegionEffort{scene_.settings.narrowings, scene_.settings.divisions} : RegionEffort{})) {
+      fused_.hides(
+          region,
+          {.box = {Vec3d(node.bounds.min), Vec3d(node.bounds.max)},
+           .object = leaf ? boxes.objects[node.first_object].value : kNoObject},
+          leaf ? RegionEffort{scene_.settings.narrowings, scene_.settings.divisions} : RegionEffort{})) {
     hidden_.add(std::span(&objects, 1));
     return;
   }

@@ -108,10 +108,7 @@ class SegmentTest {
 }  // namespace
 
 FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude)
-    : panels_(panels),
-      magnitude_(magnitude),
-      places_(panels.panels.size()),
-      beyond_(panels.vertices.size()) {
+    : panels_(panels), magnitude_(magnitude), places_(panels.panels.size()), beyond_(panels.vertices.size()) {
   for (const Vec3d& vertex : panels.vertices) {
     magnitude_ = std::max(magnitude_, maxComponent(abs(vertex)));
   }

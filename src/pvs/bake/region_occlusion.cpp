@@ -96,8 +96,8 @@ RegionOcclusion::Answer RegionOcclusion::narrow(CellBox& region, CellBox& target
     if (!before && !(target.max[axis] < region.min[axis])) {
       continue;
     }
-    const Interval gap = before ? Interval{region.max[axis], target.min[axis]}
-                                : Interval{target.max[axis], region.min[axis]};
+    const Interval gap =
+        before ? Interval{region.max[axis], target.min[axis]} : Interval{target.max[axis], region.min[axis]};
     const double middle = 0.5 * (gap.low + gap.high);
     // No near plane clips what hides the target from the window.
     if (!(0.5 * (gap.high - gap.low) > near_distance_ + fused_.nearMargin())) {
@@ -137,8 +137,7 @@ RegionOcclusion::Answer RegionOcclusion::narrow(Passage& passage, std::uint32_t 
       }
     }
     if (cut) {
-      const Answer answer =
-          fused_.ask(passage.region, {passage.target, passage.object}, near_distance_);
+      const Answer answer = fused_.ask(passage.region, {passage.target, passage.object}, near_distance_);
       if (answer != Answer::kUndecided) {
         return answer;
       }

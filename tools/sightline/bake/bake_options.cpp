@@ -56,9 +56,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
       ->check(CLI::Range(0u, 16u))
       ->capture_default_str();
   command
-      .add_option("--narrowings", settings.narrowings,
-                  "before that, what of the cell, of a window before the object, and of the object's box lines "
-                  "of sight may pass is narrowed so often at most")
+      .add_option(
+          "--narrowings", settings.narrowings,
+          "before that, what of the cell, of a window before the object, and of the object's box lines "
+          "of sight may pass is narrowed so often at most")
       ->check(CLI::Range(0u, 8u))
       ->capture_default_str();
   addViewerOptions(command, options.viewers);

@@ -66,7 +66,8 @@ int run(int argc, char** argv, AddCommands add_commands) {
   app.footer(
       "SCENE is a file (.glb .gltf .obj .ply .stl ...) or a built-in scene: demo:city?copies=30&seed=1, "
       "demo:building, demo:boxes, demo:ship, demo:glass, demo:terrain?triangles=100000, demo:cave, "
-      "demo:village, demo:jungle, demo:voxels, demo:toothpicks?n=200&scaling=ud, demo:canyon?grid=14.\n"
+      "demo:village, demo:jungle, demo:voxels, demo:boilerhouse, demo:toothpicks?n=200&scaling=ud, "
+      "demo:canyon?grid=14.\n"
       "Exit code: 0 fine, 1 a check failed, 2 bad usage or input, 130 interrupted (Ctrl-C), 143 told to end "
       "(SIGTERM).\n"
       "sightline help COMMAND, or COMMAND --help, shows a command's options and examples.");

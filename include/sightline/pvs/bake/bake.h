@@ -55,8 +55,8 @@ struct BakeSettings {
   // Where surfaces do not hide an object from a whole cell for sure, the cell or the object's box, whichever
   // is larger, is halved up to this many times, 0 to 16, and each half tested.
   std::uint32_t divisions = 0;
-  // Before that, what of the cell, of a window between and of the object's box such lines of sight may pass is
-  // narrowed up to this many times, 0 to 8.
+  // Before that, what of the cell, of a window between and of the object's box such lines of sight may pass
+  // is narrowed up to this many times, 0 to 8.
   std::uint32_t narrowings = 0;
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
