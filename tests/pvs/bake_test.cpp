@@ -455,10 +455,35 @@ TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   EXPECT_GT(judge.hidden, judge_convex.hidden + judge_convex.hidden / 10);
 }
 
+TEST(Bake, FusedSetsLeaveOutAnObjectOfWhichEachBoxIsHidden) {
+  // An L behind a wall that lacks a corner, through which the empty corner of the L's own box shows.
+  test::Solid shape = test::block({2, -2, -2}, {2.5f, 3, -1});
+  const test::Solid upright = test::block({2, -2, -1}, {2.5f, -1.5f, 3});
+  for (std::vector<std::uint32_t> face : upright.faces) {
+    for (std::uint32_t& corner : face) {
+      corner += static_cast<std::uint32_t>(shape.points.size());
+    }
+    shape.faces.push_back(face);
+  }
+  shape.points.insert(shape.points.end(), upright.points.begin(), upright.points.end());
+  const Scene scene = test::sceneOf(
+      {test::block({-0.25f, -4, -4}, {0, 4, 2}), test::block({-0.25f, -4, 2}, {0, 0, 4}), shape});
+  for (const std::uint32_t boxes : {1u, kMaxObjectBoxes}) {
+    const BakedVisibility result = baked(scene, {.occlusion = BakeOcclusion::kFused,
+                                                 .max_depth = 0,
+                                                 .near_distance = 0.1,
+                                                 .viewers = {{{-6, -0.5, -0.5}, {-5, 0.5, 0.5}}},
+                                                 .object_boxes = boxes});
+    EXPECT_EQ(test::membersOf(result, 0)[2], boxes == 1) << boxes;
+  }
+}
+
 TEST(Bake, FusedSetsAreTheSameWhoeverBakesTheParts) {
   const Scene scene = randomScene(3);
-  const BakeSettings settings{
-      .occlusion = BakeOcclusion::kFused, .max_depth = 3, .near_distance = 0.05, .divisions = 1};
+  const BakeSettings settings{.occlusion = BakeOcclusion::kFused,
+                              .max_depth = 3,
+                              .near_distance = 0.05,
+                              .narrowings = 1};
   const Result<Bake> bake = Bake::plan(scene.view(), allOccluders(scene), settings);
   ASSERT_TRUE(bake);
   Bake::Worker one(*bake);
@@ -516,6 +541,10 @@ TEST(Bake, RefusesSettingsThatMakeNoSense) {
       {.near_distance = kNan},
       {.search_distance = -1.0},
       {.divisions = 17},
+      {.narrowings = 9},
+      {.object_boxes = 0},
+      {.object_boxes = kMaxObjectBoxes + 1},
+      {.box_margin = -1.0},
       {.occluder_size = kNan},
       {.similarity = 2.0},
       {.min_gain = -0.1},

@@ -70,6 +70,13 @@ std::string problemWith(const BakeSettings& s) {
   if (s.narrowings > kMaxNarrowings) {
     return "narrowings is " + std::to_string(s.narrowings) + "; at most " + std::to_string(kMaxNarrowings);
   }
+  if (s.object_boxes == 0 || s.object_boxes > kMaxObjectBoxes) {
+    return "object_boxes is " + std::to_string(s.object_boxes) + "; from 1 to " +
+           std::to_string(kMaxObjectBoxes);
+  }
+  if (!usable(s.box_margin, 0.0, 1e12)) {
+    return "box_margin is metres from 0 to 1e12";
+  }
   if (!std::all_of(s.viewers.begin(), s.viewers.end(), [](const Box& box) { return box.wellFormed(); })) {
     return "a box of viewers is empty or not finite";
   }
@@ -98,11 +105,12 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   for (const std::uint64_t number :
        {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
         static_cast<std::uint64_t>(s.occlusion), s.triangle_budget, std::uint64_t{s.max_depth},
-        std::uint64_t{base_depth}, std::uint64_t{s.divisions}, std::uint64_t{s.narrowings}}) {
+        std::uint64_t{base_depth}, std::uint64_t{s.divisions}, std::uint64_t{s.narrowings},
+        std::uint64_t{s.object_boxes}}) {
     bytes.add(number);
   }
-  for (const double number :
-       {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.min_gain, s.merge_tolerance}) {
+  for (const double number : {s.near_distance, s.search_distance, s.occluder_size, s.similarity, s.min_gain,
+                              s.merge_tolerance, s.box_margin}) {
     bytes.add(number);
   }
   for (const Box& box : s.viewers) {

@@ -140,6 +140,10 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       position_of(scene.objects.size()),
       occluders(set),
       panels(s.occlusion == BakeOcclusion::kFused ? findPanels(scene, parallel_for) : Panels{}),
+      object_boxes(
+          s.occlusion == BakeOcclusion::kFused
+              ? findObjectBoxes(scene, {.max_boxes = s.object_boxes, .margin = s.box_margin}, parallel_for)
+              : ObjectBoxes{}),
       side_margin(sideMargin(root)),
       diagonal(diagonalOf(scene, region)),
       reach(1.01 * diagonalOf(scene, root)),

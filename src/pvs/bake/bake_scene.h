@@ -31,7 +31,8 @@ struct BakeScene {
   TriangleCounts triangles;
   std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
   ConvexOccluders occluders;
-  Panels panels;  // none if only convex occluders hide
+  Panels panels;             // none if only convex occluders hide
+  ObjectBoxes object_boxes;  // the same
   OccluderCounts counts;
   double side_margin = 0.0;  // sideMargin of the root, metres
   double diagonal = 0.0;     // diagonal of the region and all objects, metres

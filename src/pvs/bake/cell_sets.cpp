@@ -209,19 +209,28 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
   if (hidden_.containsAll(objects)) {
     return;
   }
-  const bool leaf = boxes.leaf(number);
-  if (node.bounds.wellFormed() && !intersects(region, node.bounds) &&
-      fused_.hides(
-          region,
-          {.box = {Vec3d(node.bounds.min), Vec3d(node.bounds.max)},
-           .object = leaf ? boxes.objects[node.first_object].value : kNoObject},
-          leaf ? RegionEffort{scene_.settings.narrowings, scene_.settings.divisions} : RegionEffort{})) {
+  const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
+                                         : hidesBox(region, node.bounds, kNoObject, {});
+  if (hidden) {
     hidden_.add(std::span(&objects, 1));
     return;
   }
   for (std::uint32_t child = number + 1; child < node.end; child = boxes.nodes[child].end) {
     removeFusedBelow(child, region);
   }
+}
+
+bool CellBaker::hidesObject(const CellBox& region, const Box& bounds, ObjectId object) {
+  const RegionEffort effort{scene_.settings.narrowings, scene_.settings.divisions};
+  const auto hides = [&](const Box& box) { return hidesBox(region, box, object.value, effort); };
+  const std::span<const Box> several = scene_.object_boxes.of(object);
+  return hides(bounds) || (!several.empty() && std::all_of(several.begin(), several.end(), hides));
+}
+
+bool CellBaker::hidesBox(const CellBox& region, const Box& box, std::uint32_t object,
+                         const RegionEffort& effort) {
+  return box.wellFormed() && !intersects(region, box) &&
+         fused_.hides(region, {.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object}, effort);
 }
 
 // Skips an occluder whose object is already hidden. Its shadow lies within that of what hides it, from every

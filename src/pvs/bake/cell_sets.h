@@ -80,6 +80,9 @@ class CellBaker {
   void removeFused(const CellBox& box, CellSets& sets);
   void removeFusedFrom(const CellBox& region, Runs& seen);
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
+  bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
+  // object: FusedTarget::object
+  bool hidesBox(const CellBox& region, const Box& box, std::uint32_t object, const RegionEffort& effort);
   // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
   // them.
   double shareSeenFrom(const Vec3d& point, const Runs& seen);

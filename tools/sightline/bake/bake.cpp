@@ -84,14 +84,15 @@ Result<Planned> planBake(const BakeOptions& options) {
     return scene.error();
   }
   const Threads threads(options.common.threads);
-  closeCracksOf(*scene, options.crack_width, threads.parallelFor());
+  const CrackClosing closing = closeCracksOf(*scene, options.crack_width, threads.parallelFor());
   const double load_us = watch.lap();
   Result<ViewerSpace> viewers =
       findViewers(options.viewers, options.common.scene, *scene, threads.parallelFor());
   if (!viewers) {
     return viewers.error();
   }
-  const BakeSettings settings = bakeSettings(options, *scene, *viewers);
+  BakeSettings settings = bakeSettings(options, *scene, *viewers);
+  settings.box_margin = closing.margin;
   const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
   Result<Bake> bake = Bake::plan(scene->view(), occluders, settings, threads.parallelFor());
   if (!bake) {

@@ -62,6 +62,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "of sight may pass is narrowed so often at most")
       ->check(CLI::Range(0u, 8u))
       ->capture_default_str();
+  command
+      .add_option("--object-boxes", settings.object_boxes,
+                  "with surfaces, an object is hidden if each of so many boxes around its triangles is")
+      ->check(CLI::Range(1u, kMaxObjectBoxes))
+      ->capture_default_str();
   addViewerOptions(command, options.viewers);
   addDecimalOption(command, "--search-distance", settings.search_distance, 0.0, kMax,
                    "occluders are looked for within so many metres at first; 0: chosen");
@@ -139,6 +144,7 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                {"occlusion", settings.occlusion == BakeOcclusion::kFused ? "fused" : "convex"},
                {"divisions", settings.divisions},
                {"narrowings", settings.narrowings},
+               {"object_boxes", settings.object_boxes},
                {"search_distance", settings.search_distance},
                {"occluder_size", settings.occluder_size},
                {"similarity", settings.similarity},

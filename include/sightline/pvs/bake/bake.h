@@ -15,6 +15,7 @@
 #include "sightline/base/result.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/pvs/format/baked_visibility.h"
+#include "sightline/scene/object_boxes.h"
 #include "sightline/scene/scene.h"
 
 namespace sightline {
@@ -58,6 +59,10 @@ struct BakeSettings {
   // Before that, what of the cell, of a window between and of the object's box such lines of sight may pass
   // is narrowed up to this many times, 0 to 8.
   std::uint32_t narrowings = 0;
+  // With surfaces, an object is hidden if each of so many boxes around its triangles is, at most
+  // kMaxObjectBoxes; 1: its own box alone. box_margin: ObjectBoxesSettings::margin, metres.
+  std::uint32_t object_boxes = kMaxObjectBoxes;
+  double box_margin = 0.0;
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
 };
