@@ -16,7 +16,7 @@ namespace sightline::world {
 struct Joined {
   bool there = false;
   WorldJoin join;
-  std::uint32_t groups = 0;  // that all members have
+  std::uint32_t groups = 0;                   // that all members have
   base::Rows<std::uint32_t> objects_of_part;  // indices into join.instances, where members that left are not
                                               // valid any more
 };
@@ -57,9 +57,9 @@ struct InstanceData {
   std::uint32_t join = kNone, object = kNone;  // it is that object of that join
   std::uint32_t sets = kNone, baked = kNone;   // it is that object of those sets
   std::uint32_t groups = 0;
-  std::uint32_t last_moved = 0;                // number of the frame, in the moving tree
-  std::uint64_t version = 0;                   // of its last change
-  std::uint64_t born = 0;                      // the version in which it was added
+  std::uint32_t last_moved = 0;  // number of the frame, in the moving tree
+  std::uint64_t version = 0;     // of its last change
+  std::uint64_t born = 0;        // the version in which it was added
   std::uint64_t mark = 0;
 };
 

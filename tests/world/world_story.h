@@ -137,6 +137,10 @@ struct Story {
   }
 };
 
+inline bool keeps(const WorldCuller& culler, InstanceId id) {
+  return std::binary_search(culler.visible().begin(), culler.visible().end(), id);
+}
+
 struct Judged {
   std::size_t seen = 0, culled = 0;
   std::string wrong;  // what was culled and is not proved hidden; empty: nothing
@@ -277,6 +281,10 @@ struct RandomStory {
       change();
     }
     story.world.tidy(chance.below(100));
+    if (chance.below(24) == 0) {
+      story.world.setOrigin(
+          {chance.eighths(-500.0, 500.0), chance.eighths(-9.0, 9.0), chance.eighths(-500.0, 500.0)});
+    }
     const auto stay = [](double x) { return std::clamp(x, -25.0, 25.0); };
     eye = {stay(eye.x + chance.eighths(-0.5, 0.5)), 1.5, stay(eye.z + chance.eighths(-0.5, 0.5))};
     heading += chance.number(-0.1, 0.1) + (chance.below(16) == 0 ? 2.5 : 0.0);

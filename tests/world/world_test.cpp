@@ -25,10 +25,6 @@ Mat4 boxAt(const Vec3d& corner, const Vec3d& size) {
   return m;
 }
 
-bool keeps(const WorldCuller& culler, InstanceId id) {
-  return std::binary_search(culler.visible().begin(), culler.visible().end(), id);
-}
-
 class WorldStory : public testing::TestWithParam<bool> {};
 
 TEST_P(WorldStory, WhateverIsSeenIsKept) {
