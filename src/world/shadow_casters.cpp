@@ -87,7 +87,7 @@ bool shadesNothingIn(const Frustum& frustum, const Box& box, const Light& light)
 
 struct ShadowCasters::Impl {
   explicit Impl(const ShadowCasterSettings& given)
-      : pixels(std::clamp(given.mask_pixels, 1u, 1024u)), light(given.culler) {}
+      : pixels(std::clamp(given.mask_pixels, 1u, 1024u)), filter(given.filter), light(given.culler) {}
 
   void drawReceivers(const WorldData& data, const PixelView& map, const WorldCuller::Impl& seen);
   bool isBeforeSomething(const PixelBox& image) const;
@@ -99,6 +99,7 @@ struct ShadowCasters::Impl {
   }
 
   std::uint32_t pixels;
+  double filter;
   WorldCuller light;
   ShadowCasterStats counts;
   std::vector<float> farthest;  // of the receivers in each pixel, reciprocal depth; infinite: none
@@ -181,7 +182,7 @@ void ShadowCasters::Impl::choose(const WorldData& data, const View& light_view, 
   }
   boxes.clear();
   for (const InstanceId id : light.visible()) {
-    boxes.push_back(boxOf(data, id));
+    boxes.push_back(widened(boxOf(data, id), filter));
   }
   project(map);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
