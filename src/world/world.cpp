@@ -17,12 +17,21 @@ namespace {
 constexpr std::uint32_t kNone = InstanceData::kNone;
 constexpr std::uint32_t kSettleAfter = 60;  // frames without movement
 
+// Rows of a matrix that are finite and have no perspective in them.
 bool isAffine(const Mat4& m) {
-  bool finite = true;
-  for (const double element : m.m) {
-    finite = finite && std::isfinite(element);
+  double none = 0.0;  // stays 0 unless a number is not finite
+  for (int column = 0; column < 4; ++column) {
+    none += (m(0, column) * 0.0 + m(1, column) * 0.0) + m(2, column) * 0.0;
   }
-  return finite && m(3, 0) == 0.0 && m(3, 1) == 0.0 && m(3, 2) == 0.0 && m(3, 3) == 1.0;
+  return none == 0.0 && m(3, 0) == 0.0 && m(3, 1) == 0.0 && m(3, 2) == 0.0 && m(3, 3) == 1.0;
+}
+
+// Numbers of single precision that are surely not above, and not below; by a few units in the last place.
+float below(double x) {
+  return static_cast<float>(x - 0x1p-22 * std::abs(x) - 0x1p-148);
+}
+float above(double x) {
+  return static_cast<float>(x + 0x1p-22 * std::abs(x) + 0x1p-148);
 }
 
 }  // namespace
@@ -46,9 +55,8 @@ Box WorldData::boundsOf(std::uint32_t id) const {
     const Vec3d row{std::abs(m(axis, 0)), std::abs(m(axis, 1)), std::abs(m(axis, 2))};
     const double terms = dot(row, abs(middle) + half) + std::abs(m(axis, 3));
     const double reach = dot(row, half) + displacement + kRounding * terms;
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    box.min[axis] = std::nextafterf(static_cast<float>(at[axis] - reach), -kFar);
-    box.max[axis] = std::nextafterf(static_cast<float>(at[axis] + reach), kFar);
+    box.min[axis] = below(at[axis] - reach);
+    box.max[axis] = above(at[axis] + reach);
   }
   return box;
 }
@@ -63,10 +71,25 @@ void WorldData::place(std::uint32_t id) {
     unbounded.emplace_back(id);
   } else if (own.where == Whereabouts::kMoving) {
     moving.move({id, box});
+  } else if (own.moves) {
+    unplace(id);
+    moving.insert({id, box});
+    setMoving(id);
   } else {
     unplace(id);
     own.where = Whereabouts::kSettled;
     settled.insert({id, box});
+  }
+}
+
+// Of one that has just come into the moving tree.
+void WorldData::setMoving(std::uint32_t id) {
+  InstanceData& own = instances[id];
+  own.where = Whereabouts::kMoving;
+  own.last_moved = frame;
+  if (!own.listed) {
+    own.listed = true;
+    movers.emplace_back(id);
   }
 }
 
@@ -93,11 +116,7 @@ void WorldData::moved(std::uint32_t id) {
     const Box box = settled.boxOf(id);
     settled.remove(id);
     moving.insert({id, box});
-    own.where = Whereabouts::kMoving;
-    if (!own.listed) {
-      own.listed = true;
-      movers.emplace_back(id);
-    }
+    setMoving(id);
   }
   place(id);
 }
@@ -107,6 +126,7 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
   world_from_mesh.resize(instances.size());
   InstanceData& own = instances[id];
   own = {.there = true, .shown = given.shown, .occludes = given.occludes, .listed = own.listed};
+  own.moves = given.moves;
   own.groups = given.groups;
   own.mark = given.mark;
   own.displacement = static_cast<float>(given.displacement);
@@ -182,13 +202,16 @@ InstanceId World::add(const Instance& instance) {
 
 void World::add(std::span<const Instance> given, std::vector<InstanceId>& ids) {
   WorldData& own = *data_;
-  std::vector<hierarchy::DynamicTree::Item> items;
+  std::vector<hierarchy::DynamicTree::Item> items, moving_items;
   for (const Instance& instance : given) {
     const std::uint32_t id = own.addInstance(instance);
     ids.emplace_back(id);
     InstanceData& added = own.instances[id];
     const Box box = added.shown ? own.boundsOf(id) : Box{};
-    if (box.wellFormed()) {
+    if (box.wellFormed() && added.moves) {
+      moving_items.push_back({id, box});
+      own.setMoving(id);
+    } else if (box.wellFormed()) {
       items.push_back({id, box});
       added.where = Whereabouts::kSettled;
     } else if (added.shown) {
@@ -196,6 +219,7 @@ void World::add(std::span<const Instance> given, std::vector<InstanceId>& ids) {
     }
   }
   own.settled.insert(items);
+  own.moving.insert(moving_items);
 }
 
 void World::remove(InstanceId instance) {

@@ -50,7 +50,8 @@ struct InstanceData {
   bool there = false, shown = false, occludes = false;
   bool listed = false;  // in WorldData::movers
   Whereabouts where = Whereabouts::kNowhere;
-  bool alone = true;  // it hides by its own mesh
+  bool alone = true;   // it hides by its own mesh
+  bool moves = false;  // it goes to the moving ones at once
   float displacement = 0.0f;
   std::uint32_t mesh = kNone;
   std::uint32_t in_mesh = 0;                   // its place in MeshData::instances
@@ -97,6 +98,7 @@ struct WorldData {
   std::uint32_t frame = 0;                 // calls of tidy()
 
   void place(std::uint32_t id);
+  void setMoving(std::uint32_t id);
   void unplace(std::uint32_t id);
   void moved(std::uint32_t id);
   void leave(Joined& joined, std::uint32_t object);

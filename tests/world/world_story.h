@@ -90,7 +90,8 @@ struct Story {
     }
   }
   InstanceId add(std::size_t shape, const Mat4& m, bool shown = true) {
-    const InstanceId id = world.add({.mesh = meshes[shape], .world_from_mesh = m, .shown = shown});
+    const InstanceId id = world.add(
+        {.mesh = meshes[shape], .world_from_mesh = m, .shown = shown, .moves = world.idBound() % 3 == 0});
     told[id.value] = {shape, m, shown};
     return id;
   }
