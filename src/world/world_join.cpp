@@ -47,9 +47,9 @@ void WorldData::leave(Joined& joined, std::uint32_t object) {
 
 void WorldData::leaveJoin(std::uint32_t id) {
   InstanceData& own = instances[id];
-  if (own.join != kNone) {
+  if (own.join != InstanceData::kNone) {
     leave(joins[own.join], own.object);
-    own.join = kNone;
+    own.join = InstanceData::kNone;
     own.alone = true;
   }
 }
