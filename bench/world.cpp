@@ -1,5 +1,5 @@
 // What does a changing world cost? A city of instances of one box, from 1,000 to 1,000,000 of them, a walk
-// along its streets. On the same frames, on one core:
+// along its streets. On the same frames, processor time of one thread, medians:
 //
 //   static     a cull of the world in which nothing changes
 //   moving     the same with up to 10,000 of the instances moving in every frame
@@ -14,6 +14,8 @@
 //   shadows    the casters of a sun whose map is 120 m wide, after the camera's cull
 //   sight      a question whether a box may be seen from a point, up to 60 m away
 //   set origin boxes anew around another origin
+//   foreseen   of what appears, the share that viewsAhead() had in its views 0.4 seconds before, at 60 frames
+//              a second, and how many times as many instances as are visible it has
 //   one by one a static cull where instances were added one at a time instead of as a list
 //
 // And boxes that all move in every frame, beside the linear test of as many by a Culler.
@@ -21,6 +23,7 @@
 //   world [INSTANCES...]
 
 #include <fmt/format.h>
+#include <time.h>
 
 #include <array>
 #include <cmath>
@@ -33,6 +36,7 @@
 #include "sightline/culling/culler.h"
 #include "sightline/culling/frustum_method.h"
 #include "sightline/world/shadow_casters.h"
+#include "sightline/world/views_ahead.h"
 #include "sightline/world/world.h"
 #include "sightline/world/world_culler.h"
 #include "sightline/world/world_sight.h"
@@ -43,7 +47,20 @@ using namespace sightline;
 using namespace sightline::bench;
 
 constexpr int kFrames = 120, kUncounted = 20;
-constexpr double kBlock = 24.0;  // metres from street to street
+constexpr std::size_t kAhead = 24;  // frames, 0.4 s
+constexpr double kBlock = 24.0;     // metres from street to street
+
+// Processor time, which other work on the machine changes little.
+double processorUs(const auto& function) {
+  const auto now = [] {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1e6 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_nsec);
+  };
+  const double start = now();
+  function();
+  return now() - start;
+}
 
 Vec3f corner(int i) {
   return {(i & 1) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 1.0f : 0.0f, (i & 4) != 0 ? 0.5f : -0.5f};
@@ -119,7 +136,7 @@ void measure(std::size_t count) {
     instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
   }
   std::vector<InstanceId> ids;
-  const double build_us = microseconds([&] { world.add(instances, ids); });
+  const double build_us = processorUs([&] { world.add(instances, ids); });
 
   // The same boxes for a Culler.
   std::vector<Box> bounds;
@@ -140,11 +157,11 @@ void measure(std::size_t count) {
   WorldCuller culler;
   for (int frame = 0; frame < kFrames; ++frame) {
     const View view = city.view(frame);
-    still.push_back(microseconds([&] { culler.cull(world, view); }));
+    still.push_back(processorUs([&] { culler.cull(world, view); }));
     kept.push_back(static_cast<double>(culler.visible().size()));
-    frustum.push_back(microseconds([&] { by_frustum.cull(view); }));
+    frustum.push_back(processorUs([&] { by_frustum.cull(view); }));
   }
-  reset.push_back(microseconds([&] {
+  reset.push_back(processorUs([&] {
     hierarchy = buildHierarchy(bounds, {});
     by_frustum.reset();
   }));
@@ -156,14 +173,14 @@ void measure(std::size_t count) {
       goals.back()(0, 3) += 3.0 * std::sin(0.05 * frame + 0.1 * id.value);
       goals.back()(2, 3) += 3.0 * std::cos(0.05 * frame + 0.1 * id.value);
     }
-    update.push_back(microseconds([&] {
+    update.push_back(processorUs([&] {
       for (std::size_t i = 0; i < movers.size(); ++i) {
         world.setTransform(movers[i], goals[i]);
       }
       world.tidy();
     }));
     const View view = city.view(frame);
-    moving.push_back(microseconds([&] { culler.cull(world, view); }));
+    moving.push_back(processorUs([&] { culler.cull(world, view); }));
   }
   std::vector<InstanceId> added;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -171,7 +188,7 @@ void measure(std::size_t count) {
     for (int i = 0; i < 40; ++i) {
       more.push_back({.mesh = box, .world_from_mesh = city.small({0, 0, 0.25 * frame})});
     }
-    edits.push_back(microseconds([&] {
+    edits.push_back(processorUs([&] {
       for (const InstanceId id : added) {
         world.remove(id);
       }
@@ -200,7 +217,7 @@ void measureQuestions(std::size_t count) {
   }
   std::vector<InstanceId> ids;
   world.add(instances, ids);
-  const double add_us = microseconds([&] {
+  const double add_us = processorUs([&] {
     for (const Instance& instance : instances) {
       one_by_one.add(instance);
     }
@@ -208,7 +225,9 @@ void measureQuestions(std::size_t count) {
   for (int i = 0; i < kFrames; ++i) {
     one_by_one.tidy();
   }
-  WorldCuller culler, both, apart;
+  WorldCuller culler, both, apart, forecast;
+  std::vector<std::vector<std::uint64_t>> forecasts;
+  std::size_t appeared = 0, foreseen = 0, ahead_count = 0, visible_count = 0;
   ShadowCasters sun;
   WorldSight sight;
   std::vector<double> still, eyes, shadows, looks, origins, scattered, casters;
@@ -223,23 +242,39 @@ void measureQuestions(std::size_t count) {
     setOrientation(light, {0.4, -0.8, 0.3}, {0, 1, 0});
     light.eye = view.eye + view.forward * 50.0 - light.forward * 200.0;
     light.far = 400.0;
-    still.push_back(microseconds([&] { culler.cull(world, view); }));
-    eyes.push_back(microseconds([&] { both.cull(world, pair); }));
-    shadows.push_back(microseconds([&] { sun.cull(world, light, culler); }));
+    still.push_back(processorUs([&] { culler.cull(world, view); }));
+    eyes.push_back(processorUs([&] { both.cull(world, pair); }));
+    shadows.push_back(processorUs([&] { sun.cull(world, light, culler); }));
+    std::array<View, 3> views;
+    viewsAhead(view, {.velocity = {0.0, 0.0, 0.25 * 60.0}, .spread = 2.0}, 0.5, views);
+    forecast.cull(world, views);
+    if (forecasts.size() >= kAhead) {
+      const std::vector<std::uint64_t>& before = forecasts[forecasts.size() - kAhead];
+      for (const InstanceId id : culler.appeared()) {
+        ++appeared;
+        foreseen += before[id.value / 64] >> (id.value % 64) & 1;
+      }
+      ahead_count += forecast.visible().size();
+      visible_count += culler.visible().size();
+    }
+    forecasts.emplace_back(forecast.visibleBits().begin(), forecast.visibleBits().end());
     casters.push_back(static_cast<double>(sun.casters().size()));
-    scattered.push_back(microseconds([&] { apart.cull(one_by_one, view); }));
+    scattered.push_back(processorUs([&] { apart.cull(one_by_one, view); }));
     Box target;
     const Vec3d at = view.eye + Vec3d(city.number(-40, 40), -1.0, city.number(-40, 40));
     target.extend(Vec3f(at));
     target.extend(Vec3f(at + Vec3d(0.5, 1.8, 0.5)));
-    looks.push_back(microseconds([&] { sight.look(world, view.eye, target); }));
+    looks.push_back(processorUs([&] { sight.look(world, view.eye, target); }));
     if (frame % 20 == 19) {
-      origins.push_back(microseconds([&] { world.setOrigin({0.0, 0.0, frame % 40 == 19 ? 16.0 : 0.0}); }));
+      origins.push_back(processorUs([&] { world.setOrigin({0.0, 0.0, frame % 40 == 19 ? 16.0 : 0.0}); }));
     }
   }
-  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>13.2f} {:>10.0f} {:>12.2f}\n", count,
+  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>13.2f} {:>10.0f} {:>12.2f}", count,
              settled(still), settled(eyes), settled(shadows), meanOf(casters), settled(looks),
              medianOf(origins) / 1000.0, settled(scattered), add_us / static_cast<double>(count));
+  fmt::print(" {:>8.0f} % {:>6.2f}\n",
+             100.0 * static_cast<double>(foreseen) / static_cast<double>(std::max<std::size_t>(appeared, 1)),
+             static_cast<double>(ahead_count) / static_cast<double>(std::max<std::size_t>(visible_count, 1)));
   std::fflush(stdout);
 }
 
@@ -285,17 +320,17 @@ void measureMovers(std::size_t count) {
       boxes[i] = {{static_cast<float>(goals[i](0, 3)) - 1, 0, static_cast<float>(goals[i](2, 3)) - 1},
                   {static_cast<float>(goals[i](0, 3)) + 1, 2, static_cast<float>(goals[i](2, 3)) + 1}};
     }
-    update.push_back(microseconds([&] {
+    update.push_back(processorUs([&] {
       for (std::size_t i = 0; i < count; ++i) {
         world.setTransform(movers[i], goals[i]);
       }
       world.tidy();
     }));
     const View view = city.view(frame);
-    moving.push_back(microseconds([&] { culler.cull(world, view); }));
-    still.push_back(microseconds([&] { without.cull(empty_of_movers, view); }));
-    frustum.push_back(microseconds([&] { linear.cull(view); }));
-    frustum_boxes.push_back(microseconds([&] { linear.cull(view, boxes); }));
+    moving.push_back(processorUs([&] { culler.cull(world, view); }));
+    still.push_back(processorUs([&] { without.cull(empty_of_movers, view); }));
+    frustum.push_back(processorUs([&] { linear.cull(view); }));
+    frustum_boxes.push_back(processorUs([&] { linear.cull(view, boxes); }));
   }
   fmt::print("{:>9} {:>9.0f} {:>12.0f} {:>9.0f} {:>14.0f}\n", count, settled(still),
              settled(moving) - settled(still), settled(update), settled(frustum_boxes) - settled(frustum));
@@ -319,8 +354,9 @@ int main(int argc, char** argv) {
   for (const std::size_t count : counts) {
     measure(count);
   }
-  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>13} {:>10} {:>12}\n", "instances", "static us",
-             "eyes us", "shadow us", "casters", "sight us", "set origin ms", "scatter us", "add one us");
+  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>13} {:>10} {:>12} {:>10} {:>6}\n", "instances",
+             "static us", "eyes us", "shadow us", "casters", "sight us", "set origin ms", "scatter us",
+             "add one us", "foreseen", "times");
   for (const std::size_t count : counts) {
     measureQuestions(count);
   }

@@ -8,6 +8,7 @@
 namespace sightline::hierarchy {
 namespace {
 
+constexpr std::uint32_t kStepsOfItem = 5;  // that building takes, for each item
 constexpr double kWorn = 4.0;  // times the surface area that a node had when it was built
 
 Box united(const Box& a, const Box& b) {
@@ -305,7 +306,7 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
     const std::uint32_t items = itemsBelow(node);
     if (items <= kMaxRebuilt) {
       rebuild(node);
-      steps -= std::min(items, steps);
+      steps -= std::min(kStepsOfItem * items, steps);
     }
   }
   return steps;

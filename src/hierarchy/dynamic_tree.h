@@ -51,8 +51,8 @@ class DynamicTree {
   // Replaces all items. Takes n log n time; far less than inserting them one by one.
   void build(std::span<const Item> items);
   // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps, and at most a
-  // thousand more: a step is a node that is looked at or an item of a subtree. Returns how many steps are
-  // left over.
+  // five thousand more: one for a node that is looked at, five for an item of a subtree. Returns how many
+  // steps are left over.
   std::uint32_t tidy(std::uint32_t steps);
 
   // kNone if there are no items.
