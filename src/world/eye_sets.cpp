@@ -54,10 +54,10 @@ void EyeSets::restrict(const WorldData& data, IdBits& instances) const {
     return;
   }
   instances.removeIf([&](std::uint32_t id) {
-    const InstanceData& own = data.instances[id];
-    return std::any_of(used_.begin(), used_.end(), [&](const Used& used) {
-      return used.id.value == own.sets && !used.everything && used.marks[own.baked] == 0;
-    });
+    const InstanceExtra& own = data.extras[id];
+    return data.instances[id].baked && std::any_of(used_.begin(), used_.end(), [&](const Used& used) {
+             return used.id.value == own.sets && !used.everything && used.marks[own.object] == 0;
+           });
   });
 }
 

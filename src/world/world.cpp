@@ -128,7 +128,8 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
   own = {.there = true, .shown = given.shown, .occludes = given.occludes, .listed = own.listed};
   own.moves = given.moves;
   own.groups = given.groups;
-  own.mark = given.mark;
+  extras.resize(instances.size());
+  extras[id] = {.mark = given.mark};
   own.displacement = static_cast<float>(given.displacement);
   if (!(double{own.displacement} >= given.displacement)) {
     own.displacement = std::nextafterf(own.displacement, std::numeric_limits<float>::infinity());
@@ -137,7 +138,7 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
   world_from_mesh[id] = given.world_from_mesh;
   if (given.mesh.value < meshes.size() && meshes[given.mesh.value].there) {
     own.mesh = given.mesh.value;
-    own.in_mesh = static_cast<std::uint32_t>(meshes[own.mesh].instances.size());
+    extras[id].in_mesh = static_cast<std::uint32_t>(meshes[own.mesh].instances.size());
     meshes[own.mesh].instances.emplace_back(id);
   }
   ++count;
@@ -234,8 +235,9 @@ void World::remove(InstanceId instance) {
   own.leaveSets(id);
   if (gone.mesh != InstanceData::kNone) {
     std::vector<InstanceId>& of_mesh = own.meshes[gone.mesh].instances;
-    own.instances[of_mesh.back().value].in_mesh = gone.in_mesh;
-    of_mesh[gone.in_mesh] = of_mesh.back();
+    const std::uint32_t place = own.extras[id].in_mesh;
+    own.extras[of_mesh.back().value].in_mesh = place;
+    of_mesh[place] = of_mesh.back();
     of_mesh.pop_back();
   }
   gone = {.listed = gone.listed};
@@ -298,7 +300,7 @@ MeshId World::meshOf(InstanceId instance) const {
   return has(instance) ? MeshId(data_->instances[instance.value].mesh) : MeshId();
 }
 std::uint64_t World::markOf(InstanceId instance) const {
-  return has(instance) ? data_->instances[instance.value].mark : 0;
+  return has(instance) ? data_->extras[instance.value].mark : 0;
 }
 Box World::boundsOf(InstanceId instance) const {
   return has(instance) ? data_->boundsOf(instance.value) : Box{};

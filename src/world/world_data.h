@@ -44,6 +44,8 @@ enum class Whereabouts : std::uint8_t {
   kUnbounded,  // in WorldData::unbounded
 };
 
+// What every change and every frame reads of an instance. Small, so that moving many of a large world misses
+// the caches seldom.
 struct InstanceData {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -52,16 +54,21 @@ struct InstanceData {
   Whereabouts where = Whereabouts::kNowhere;
   bool alone = true;   // it hides by its own mesh
   bool moves = false;  // it goes to the moving ones at once
+  bool baked = false;  // it belongs to sets
   float displacement = 0.0f;
   std::uint32_t mesh = kNone;
-  std::uint32_t in_mesh = 0;                   // its place in MeshData::instances
   std::uint32_t join = kNone, object = kNone;  // it is that object of that join
-  std::uint32_t sets = kNone, baked = kNone;   // it is that object of those sets
   std::uint32_t groups = 0;
   std::uint32_t last_moved = 0;  // number of the frame, in the moving tree
   std::uint64_t version = 0;     // of its last change
   std::uint64_t born = 0;        // the version in which it was added
+};
+
+struct InstanceExtra {
   std::uint64_t mark = 0;
+  std::uint32_t in_mesh = 0;  // its place in MeshData::instances
+  // With InstanceData::baked: it is that object of those sets.
+  std::uint32_t sets = InstanceData::kNone, object = InstanceData::kNone;
 };
 
 struct WorldData {
@@ -80,7 +87,8 @@ struct WorldData {
 
   std::vector<MeshData> meshes;
   std::vector<std::uint32_t> free_meshes;
-  std::vector<InstanceData> instances;  // by InstanceId, as is the next column
+  std::vector<InstanceData> instances;  // by InstanceId, as are the next columns
+  std::vector<InstanceExtra> extras;
   std::vector<Mat4> world_from_mesh;
   std::vector<std::uint32_t> free_instances;
   std::size_t count = 0;      // instances that are there

@@ -157,12 +157,13 @@ void WorldEye::takeCandidates(const WorldData& data, std::span<const InstanceId>
     members.clear();
   }
   alone_.clear();
+  const bool clips = !(clip_ == Plane());
   for (const InstanceId id : candidates) {
     if (id.value >= data.instances.size() || !data.hides(id.value)) {
       continue;
     }
     const InstanceData& own = data.instances[id.value];
-    if (!isDrawn(own) || sideOf(clip_, data.boxOf(id.value)) <= 0) {
+    if (!isDrawn(own) || (clips && sideOf(clip_, data.boxOf(id.value)) <= 0)) {
       continue;
     }
     const bool joined = own.join != InstanceData::kNone && isJoined(data, data.joins[own.join]);

@@ -31,15 +31,15 @@ bool sameBox(const Box& now, const Box& baked, const Vec3d& baked_from_now) {
 
 // Makes an instance a tombstone of the sets that it belongs to.
 void WorldData::leaveSets(std::uint32_t id) {
-  InstanceData& own = instances[id];
-  if (own.sets == InstanceData::kNone) {
+  if (!instances[id].baked) {
     return;
   }
+  const InstanceExtra& own = extras[id];
   BakedObjects& left = sets[own.sets];
-  left.instances[own.baked] = InstanceId();
-  left.tombstones.emplace_back(own.baked);
+  left.instances[own.object] = InstanceId();
+  left.tombstones.emplace_back(own.object);
   left.version = ++version;
-  own.sets = own.baked = InstanceData::kNone;
+  instances[id].baked = false;
 }
 
 }  // namespace world
@@ -63,11 +63,11 @@ SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, co
         continue;
       }
       own.leaveSets(id.value);
-      InstanceData& member = own.instances[id.value];
-      member.sets = number;
-      member.baked = object.value;
+      own.instances[id.value].baked = true;
+      own.extras[id.value].sets = number;
+      own.extras[id.value].object = object.value;
       own.sets[number].instances[object.value] = id;
-      own.sets[number].groups &= member.groups;
+      own.sets[number].groups &= own.instances[id.value].groups;
     }
   }
   own.sets[number].version = ++own.version;
@@ -81,7 +81,7 @@ void World::dropSets(SetsId sets) {
   }
   for (const InstanceId id : own.sets[sets.value].instances) {
     if (id.valid()) {
-      own.instances[id.value].sets = own.instances[id.value].baked = InstanceData::kNone;
+      own.instances[id.value].baked = false;
     }
   }
   own.sets[sets.value] = {};
