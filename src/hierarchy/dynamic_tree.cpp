@@ -9,7 +9,7 @@ namespace sightline::hierarchy {
 namespace {
 
 constexpr std::uint32_t kStepsOfItem = 5;  // that building takes, for each item
-constexpr double kWorn = 4.0;  // times the surface area that a node had when it was built
+constexpr double kWorn = 4.0;              // times the surface area that a node had when it was built
 
 Box united(const Box& a, const Box& b) {
   Box box = a;
@@ -108,6 +108,14 @@ void DynamicTree::insert(const Item& item) {
   }
   ++size_;
   addChild(leafFor(item.box), item.number, item.box);
+}
+
+void DynamicTree::rebuild() {
+  collected_.clear();
+  if (root_ != kNone) {
+    collect(root_, false);
+  }
+  build(std::vector<Item>(std::move(collected_)));
 }
 
 void DynamicTree::insert(std::span<const Item> items) {

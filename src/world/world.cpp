@@ -337,6 +337,11 @@ Vec3d World::origin() const {
   return data_->origin;
 }
 
+void World::rebuild() {
+  data_->settled.rebuild();
+  data_->moving.rebuild();
+}
+
 void World::tidy(std::uint32_t steps) {
   WorldData& own = *data_;
   ++own.frame;

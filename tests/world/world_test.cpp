@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "sightline/world/world_culler.h"
 #include "tests/world/world_story.h"
@@ -277,6 +278,32 @@ TEST(World, WhatIsOutsideTheViewIsLeftOut) {
     }
     story.world.tidy();
   }
+}
+
+TEST(World, AWorldThatIsRebuiltIsAsOneThatWasAddedAsAList) {
+  Story story(allShapes());
+  World listed;
+  addShape(listed, boxShape());
+  World empty;
+  empty.rebuild();
+  Chance chance(9);
+  std::vector<Instance> instances;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    instances.push_back({.mesh = story.meshes[0], .world_from_mesh = chance.placement(200.0, 6.0)});
+    story.world.add(instances.back());
+  }
+  std::vector<InstanceId> ids;
+  listed.add(instances, ids);
+  const View view = viewFrom({0, 1.5, 0}, {0, 0, -1});
+  const auto testedIn = [&](const World& world) {
+    WorldCuller culler;
+    culler.cull(world, view);
+    culler.cull(world, view);
+    return std::tuple(culler.stats().nodes_tested, culler.stats().boxes_tested, culler.visible().size());
+  };
+  EXPECT_NE(testedIn(story.world), testedIn(listed));
+  story.world.rebuild();
+  EXPECT_EQ(testedIn(story.world), testedIn(listed));
 }
 
 TEST(World, WhatCannotBePlacedIsAlwaysKept) {
