@@ -24,7 +24,8 @@ class VisibleHistory {
  public:
   explicit VisibleHistory(const VisibleHistorySettings& settings = {}) : settings_(settings) {}
 
-  // Call this after each cull() of the same culler. seconds: since the last call.
+  // Call this after each cull() of the same culler, and start with a new history when that was reset.
+  // seconds: since the last call.
   void update(const World& world, const WorldCuller& culler, double seconds);
 
   // Visible ones, and those that were so within hold_s and are still there; ascending.
