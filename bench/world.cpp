@@ -1,5 +1,5 @@
 // What does a changing world cost? A city of instances of one box, from 1,000 to 1,000,000 of them, a walk
-// along its streets. On the same frames, on one core:
+// along its streets. On the same frames, processor time of one thread, medians:
 //
 //   static     a cull of the world in which nothing changes
 //   moving     the same with up to 10,000 of the instances moving in every frame
@@ -8,10 +8,24 @@
 //   Culler     a Culler of the same boxes by the frustum alone, beside it to set the scale
 //   its edits  what a Culler does after any change: a hierarchy anew, and reset()
 //
+// Then, of the same worlds, what else can be asked in a frame, and what one by one costs:
+//
+//   two eyes   a cull for both, 64 mm apart
+//   shadows    the casters of a sun whose map is 120 m wide, after the camera's cull
+//   sight      a question whether a box may be seen from a point, up to 60 m away
+//   set origin boxes anew around another origin
+//   foreseen   of what appears, the share that viewsAhead() had in its views 0.4 seconds before, at 60 frames
+//              a second, and how many times as many instances as are visible it has
+//   one by one a static cull where instances were added one at a time instead of as a list
+//
+// And boxes that all move in every frame, beside the linear test of as many by a Culler.
+//
 //   world [INSTANCES...]
 
 #include <fmt/format.h>
+#include <time.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,8 +35,11 @@
 #include "bench/measuring.h"
 #include "sightline/culling/culler.h"
 #include "sightline/culling/frustum_method.h"
+#include "sightline/world/shadow_casters.h"
+#include "sightline/world/views_ahead.h"
 #include "sightline/world/world.h"
 #include "sightline/world/world_culler.h"
+#include "sightline/world/world_sight.h"
 
 namespace {
 
@@ -30,13 +47,26 @@ using namespace sightline;
 using namespace sightline::bench;
 
 constexpr int kFrames = 120, kUncounted = 20;
-constexpr double kBlock = 24.0;  // metres from street to street
+constexpr std::size_t kAhead = 24;  // frames, 0.4 s
+constexpr double kBlock = 24.0;     // metres from street to street
+
+// Processor time, which other work on the machine changes little.
+double processorUs(const auto& function) {
+  const auto now = [] {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return 1e6 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_nsec);
+  };
+  const double start = now();
+  function();
+  return now() - start;
+}
 
 Vec3f corner(int i) {
   return {(i & 1) != 0 ? 0.5f : -0.5f, (i & 2) != 0 ? 1.0f : 0.0f, (i & 4) != 0 ? 0.5f : -0.5f};
 }
 
-WorldMesh boxMesh() {
+WorldMesh unitBox() {
   std::vector<Vec3f> corners(8);
   for (int i = 0; i < 8; ++i) {
     corners[static_cast<std::size_t>(i)] = corner(i);
@@ -92,16 +122,21 @@ struct City {
   }
 };
 
+double settled(const std::vector<double>& values) {
+  return medianOf(
+      {values.begin() + std::min<std::ptrdiff_t>(kUncounted, std::ssize(values) - 1), values.end()});
+}
+
 void measure(std::size_t count) {
   City city(count);
   World world;
-  const MeshId box = world.addMesh(boxMesh());
+  const MeshId box = world.addMesh(unitBox());
   std::vector<Instance> instances;
   for (std::size_t i = 0; i < count; ++i) {
     instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
   }
   std::vector<InstanceId> ids;
-  const double build_us = microseconds([&] { world.add(instances, ids); });
+  const double build_us = processorUs([&] { world.add(instances, ids); });
 
   // The same boxes for a Culler.
   std::vector<Box> bounds;
@@ -122,11 +157,11 @@ void measure(std::size_t count) {
   WorldCuller culler;
   for (int frame = 0; frame < kFrames; ++frame) {
     const View view = city.view(frame);
-    still.push_back(microseconds([&] { culler.cull(world, view); }));
+    still.push_back(processorUs([&] { culler.cull(world, view); }));
     kept.push_back(static_cast<double>(culler.visible().size()));
-    frustum.push_back(microseconds([&] { by_frustum.cull(view); }));
+    frustum.push_back(processorUs([&] { by_frustum.cull(view); }));
   }
-  reset.push_back(microseconds([&] {
+  reset.push_back(processorUs([&] {
     hierarchy = buildHierarchy(bounds, {});
     by_frustum.reset();
   }));
@@ -138,14 +173,14 @@ void measure(std::size_t count) {
       goals.back()(0, 3) += 3.0 * std::sin(0.05 * frame + 0.1 * id.value);
       goals.back()(2, 3) += 3.0 * std::cos(0.05 * frame + 0.1 * id.value);
     }
-    update.push_back(microseconds([&] {
+    update.push_back(processorUs([&] {
       for (std::size_t i = 0; i < movers.size(); ++i) {
         world.setTransform(movers[i], goals[i]);
       }
       world.tidy();
     }));
     const View view = city.view(frame);
-    moving.push_back(microseconds([&] { culler.cull(world, view); }));
+    moving.push_back(processorUs([&] { culler.cull(world, view); }));
   }
   std::vector<InstanceId> added;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -153,7 +188,7 @@ void measure(std::size_t count) {
     for (int i = 0; i < 40; ++i) {
       more.push_back({.mesh = box, .world_from_mesh = city.small({0, 0, 0.25 * frame})});
     }
-    edits.push_back(microseconds([&] {
+    edits.push_back(processorUs([&] {
       for (const InstanceId id : added) {
         world.remove(id);
       }
@@ -165,13 +200,140 @@ void measure(std::size_t count) {
     }));
     culler.cull(world, city.view(frame));
   }
-  const auto settled = [](std::vector<double> values) {
-    return medianOf(
-        {values.begin() + std::min<std::ptrdiff_t>(kUncounted, std::ssize(values) - 1), values.end()});
-  };
   fmt::print("{:>9} {:>8} {:>8.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>9.0f} {:>11.0f} {:>10.0f}\n", count,
              movers.size(), meanOf(kept), settled(still), settled(moving), settled(update), settled(edits),
              settled(frustum), settled(reset), build_us / 1000.0);
+  std::fflush(stdout);
+}
+
+void measureQuestions(std::size_t count) {
+  City city(count);
+  World world, one_by_one;
+  const MeshId box = world.addMesh(unitBox());
+  one_by_one.addMesh(unitBox());
+  std::vector<Instance> instances;
+  for (std::size_t i = 0; i < count; ++i) {
+    instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
+  }
+  std::vector<InstanceId> ids;
+  world.add(instances, ids);
+  const double add_us = processorUs([&] {
+    for (const Instance& instance : instances) {
+      one_by_one.add(instance);
+    }
+  });
+  for (int i = 0; i < kFrames; ++i) {
+    one_by_one.tidy();
+  }
+  WorldCuller culler, both, apart, forecast;
+  std::vector<std::vector<std::uint64_t>> forecasts;
+  std::size_t appeared = 0, foreseen = 0, ahead_count = 0, visible_count = 0;
+  ShadowCasters sun;
+  WorldSight sight;
+  std::vector<double> still, eyes, shadows, looks, origins, scattered, casters;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const View view = city.view(frame);
+    std::array<View, 2> pair{view, view};
+    pair[1].eye = view.eye + view.right * 0.064;
+    View light;
+    light.orthographic = true;
+    light.ortho_height = 120.0;
+    light.aspect = 1.0;
+    setOrientation(light, {0.4, -0.8, 0.3}, {0, 1, 0});
+    light.eye = view.eye + view.forward * 50.0 - light.forward * 200.0;
+    light.far = 400.0;
+    still.push_back(processorUs([&] { culler.cull(world, view); }));
+    eyes.push_back(processorUs([&] { both.cull(world, pair); }));
+    shadows.push_back(processorUs([&] { sun.cull(world, light, culler); }));
+    std::array<View, 3> views;
+    viewsAhead(view, {.velocity = {0.0, 0.0, 0.25 * 60.0}, .spread = 2.0}, 0.5, views);
+    forecast.cull(world, views);
+    if (forecasts.size() >= kAhead) {
+      const std::vector<std::uint64_t>& before = forecasts[forecasts.size() - kAhead];
+      for (const InstanceId id : culler.appeared()) {
+        ++appeared;
+        foreseen += before[id.value / 64] >> (id.value % 64) & 1;
+      }
+      ahead_count += forecast.visible().size();
+      visible_count += culler.visible().size();
+    }
+    forecasts.emplace_back(forecast.visibleBits().begin(), forecast.visibleBits().end());
+    casters.push_back(static_cast<double>(sun.casters().size()));
+    scattered.push_back(processorUs([&] { apart.cull(one_by_one, view); }));
+    Box target;
+    const Vec3d at = view.eye + Vec3d(city.number(-40, 40), -1.0, city.number(-40, 40));
+    target.extend(Vec3f(at));
+    target.extend(Vec3f(at + Vec3d(0.5, 1.8, 0.5)));
+    looks.push_back(processorUs([&] { sight.look(world, view.eye, target); }));
+    if (frame % 20 == 19) {
+      origins.push_back(processorUs([&] { world.setOrigin({0.0, 0.0, frame % 40 == 19 ? 16.0 : 0.0}); }));
+    }
+  }
+  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>13.2f} {:>10.0f} {:>12.2f}", count,
+             settled(still), settled(eyes), settled(shadows), meanOf(casters), settled(looks),
+             medianOf(origins) / 1000.0, settled(scattered), add_us / static_cast<double>(count));
+  fmt::print(" {:>8.0f} % {:>6.2f}\n",
+             100.0 * static_cast<double>(foreseen) / static_cast<double>(std::max<std::size_t>(appeared, 1)),
+             static_cast<double>(ahead_count) / static_cast<double>(std::max<std::size_t>(visible_count, 1)));
+  std::fflush(stdout);
+}
+
+// Boxes that all move, among a hundred thousand instances that do not.
+void measureMovers(std::size_t count) {
+  City city(100000);
+  World world;
+  const MeshId mesh = world.addMesh(unitBox()), mover = world.addMesh(boxMesh({{-1, 0, -1}, {1, 2, 1}}));
+  std::vector<Instance> instances;
+  for (std::size_t i = 0; i < 100000; ++i) {
+    instances.push_back({.mesh = mesh, .world_from_mesh = city.next(i)});
+  }
+  std::vector<InstanceId> ids;
+  world.add(instances, ids);
+  std::vector<Box> bounds;
+  for (const InstanceId id : ids) {
+    bounds.push_back(world.boundsOf(id));
+  }
+  const Hierarchy hierarchy = buildHierarchy(bounds, {});
+  Culler linear({.hierarchy = &hierarchy, .object_bounds = bounds}, frustumCulling());
+  std::vector<InstanceId> movers;
+  std::vector<Instance> added;
+  std::vector<Mat4> goals;
+  for (std::size_t i = 0; i < count; ++i) {
+    goals.push_back(placed({city.number(-1200, 1200), 0, city.number(-1200, 1200)}, {1, 1, 1}, 0.0));
+    added.push_back({.mesh = mover, .world_from_mesh = goals.back(), .moves = true});
+  }
+  world.add(added, movers);
+  WorldCuller culler, without;
+  World empty_of_movers;
+  std::vector<InstanceId> other;
+  const MeshId same = empty_of_movers.addMesh(unitBox());
+  for (Instance& instance : instances) {
+    instance.mesh = same;
+  }
+  empty_of_movers.add(instances, other);
+  std::vector<double> still, moving, update, frustum, frustum_boxes;
+  std::vector<Box> boxes(count);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    for (std::size_t i = 0; i < count; ++i) {
+      goals[i](0, 3) += 0.1 * std::cos(0.02 * static_cast<double>(i));
+      goals[i](2, 3) += 0.1 * std::sin(0.02 * static_cast<double>(i));
+      boxes[i] = {{static_cast<float>(goals[i](0, 3)) - 1, 0, static_cast<float>(goals[i](2, 3)) - 1},
+                  {static_cast<float>(goals[i](0, 3)) + 1, 2, static_cast<float>(goals[i](2, 3)) + 1}};
+    }
+    update.push_back(processorUs([&] {
+      for (std::size_t i = 0; i < count; ++i) {
+        world.setTransform(movers[i], goals[i]);
+      }
+      world.tidy();
+    }));
+    const View view = city.view(frame);
+    moving.push_back(processorUs([&] { culler.cull(world, view); }));
+    still.push_back(processorUs([&] { without.cull(empty_of_movers, view); }));
+    frustum.push_back(processorUs([&] { linear.cull(view); }));
+    frustum_boxes.push_back(processorUs([&] { linear.cull(view, boxes); }));
+  }
+  fmt::print("{:>9} {:>9.0f} {:>12.0f} {:>9.0f} {:>14.0f}\n", count, settled(still),
+             settled(moving) - settled(still), settled(update), settled(frustum_boxes) - settled(frustum));
   std::fflush(stdout);
 }
 
@@ -191,5 +353,17 @@ int main(int argc, char** argv) {
              "static us", "moving us", "update us", "edits us", "Culler us", "its edits us", "added ms");
   for (const std::size_t count : counts) {
     measure(count);
+  }
+  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>13} {:>10} {:>12} {:>10} {:>6}\n", "instances",
+             "static us", "eyes us", "shadow us", "casters", "sight us", "set origin ms", "scatter us",
+             "add one us", "foreseen", "times");
+  for (const std::size_t count : counts) {
+    measureQuestions(count);
+  }
+  fmt::print("\n{:>9} {:>9} {:>12} {:>9} {:>14}\n", "movers", "static us", "+ movers us", "update us",
+             "Culler boxes us");
+  for (const std::size_t count : arguments.brief ? std::vector<std::size_t>{1000}
+                                                 : std::vector<std::size_t>{1000, 5000, 20000, 80000}) {
+    measureMovers(count);
   }
 }

@@ -8,7 +8,8 @@
 namespace sightline::hierarchy {
 namespace {
 
-constexpr double kWorn = 4.0;  // times the surface area that a node had when it was built
+constexpr std::uint32_t kStepsOfItem = 5;  // that building takes, for each item
+constexpr double kWorn = 4.0;              // times the surface area that a node had when it was built
 
 Box united(const Box& a, const Box& b) {
   Box box = a;
@@ -107,6 +108,14 @@ void DynamicTree::insert(const Item& item) {
   }
   ++size_;
   addChild(leafFor(item.box), item.number, item.box);
+}
+
+void DynamicTree::rebuild() {
+  collected_.clear();
+  if (root_ != kNone) {
+    collect(root_, false);
+  }
+  build(std::vector<Item>(std::move(collected_)));
 }
 
 void DynamicTree::insert(std::span<const Item> items) {
@@ -305,7 +314,7 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
     const std::uint32_t items = itemsBelow(node);
     if (items <= kMaxRebuilt) {
       rebuild(node);
-      steps -= std::min(items, steps);
+      steps -= std::min(kStepsOfItem * items, steps);
     }
   }
   return steps;

@@ -39,11 +39,22 @@ class DynamicTree {
   bool has(std::uint32_t number) const { return number < places_.size() && places_[number] != kNone; }
   std::size_t size() const { return size_; }
 
+  // Gives each item another box, boxOf(number), and leaves the tree as it is. A box that is not well formed
+  // is for the caller to remove or to move before anything else.
+  template <typename BoxOf>
+  void setBoxes(const BoxOf& box_of) {
+    if (root_ != kNone) {
+      setBoxes(root_, box_of);
+    }
+  }
+
   // Replaces all items. Takes n log n time; far less than inserting them one by one.
   void build(std::span<const Item> items);
+  // The same with the items that it has.
+  void rebuild();
   // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps, and at most a
-  // thousand more: a step is a node that is looked at or an item of a subtree. Returns how many steps are
-  // left over.
+  // five thousand more: one for a node that is looked at, five for an item of a subtree. Returns how many
+  // steps are left over.
   std::uint32_t tidy(std::uint32_t steps);
 
   // kNone if there are no items.
@@ -89,6 +100,16 @@ class DynamicTree {
   std::uint32_t itemsBelow(std::uint32_t node) const;
   void collect(std::uint32_t node, bool keep);
   void fill(std::uint32_t node, std::span<Item> items);
+  template <typename BoxOf>
+  Box setBoxes(std::uint32_t node, const BoxOf& box_of) {
+    Box bounds;
+    for (std::uint32_t place = node * kChildren; place < node * kChildren + nodes_[node].count; ++place) {
+      boxes_[place] =
+          nodes_[node].height == 0 ? box_of(children_[place]) : setBoxes(children_[place], box_of);
+      bounds.extend(boxes_[place]);
+    }
+    return bounds;
+  }
   std::uint32_t heightFor(std::size_t items) const;
 
   std::vector<NodeData> nodes_;

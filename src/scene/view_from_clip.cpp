@@ -89,7 +89,8 @@ bool tilted(const Vec3d& a, const Vec3d& b) {
 Error tiltedDepths() {
   return Error{
       "clip_from_scene has an oblique near plane or a sheared depth: z does not depend on the distance along "
-      "the viewing direction alone; give the matrix before its near plane was tilted"};
+      "the viewing direction alone; give the matrix before its near plane was tilted, or call "
+      "obliqueViewFromClip()"};
 }
 
 Error tiltedBorders() {
@@ -113,7 +114,8 @@ double farOf(const View& view, const Row& plane) {
   return far;
 }
 
-Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
+// A perspective view without its depths.
+Result<View> perspectivePicture(const Rows& rows) {
   const double q = rows.w.length();
   const Row depth = rows.w * (1.0 / q);
   const std::optional<Border> x = borderOf(rows.x, depth), y = borderOf(rows.y, depth);
@@ -122,10 +124,6 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
   }
   if (tilted(x->unit.normal, y->unit.normal)) {
     return tiltedBorders();
-  }
-  const double a = dot(rows.z.normal, depth.normal);
-  if (length(rows.z.normal - depth.normal * a) > kTilt * rows.z.length()) {
-    return tiltedDepths();
   }
   View view;
   view.forward = depth.normal;
@@ -136,6 +134,21 @@ Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
   view.aspect = y->scale / x->scale;
   view.shift_x = -x->along / q;
   view.shift_y = -y->along / q;
+  return view;
+}
+
+Result<View> perspectiveView(const Rows& rows, const DepthRange& range) {
+  const Result<View> picture = perspectivePicture(rows);
+  if (!picture) {
+    return picture;
+  }
+  View view = *picture;
+  const double q = rows.w.length();
+  const Row depth = rows.w * (1.0 / q);
+  const double a = dot(rows.z.normal, depth.normal);
+  if (length(rows.z.normal - depth.normal * a) > kTilt * rows.z.length()) {
+    return tiltedDepths();
+  }
   const double b = rows.z.offset - a * depth.offset;
   view.near = b / (range.near * q - a);
   view.far = farOf(view, rows.z - rows.w * range.far);
@@ -185,9 +198,22 @@ Result<View> orthographicView(const Rows& rows, const DepthRange& range) {
   return view;
 }
 
-}  // namespace
+// The depth of the nearest point of the picture's volume that is on the positive side of a plane: it lies on
+// a corner's ray, since reciprocal depth is linear over the picture. 0 if the eye is on that side; infinite
+// if there is no such point.
+double nearestBeyond(const View& view, const Row& plane) {
+  const double at_eye = dot(plane.normal, view.eye) + plane.offset;
+  const double up = view.tan_half_fovy, right = up * view.aspect;
+  double most = 0.0;
+  for (const double x : {view.shift_x - 1.0, view.shift_x + 1.0}) {
+    for (const double y : {view.shift_y - 1.0, view.shift_y + 1.0}) {
+      most = std::max(most, dot(plane.normal, view.forward + view.right * (x * right) + view.up * (y * up)));
+    }
+  }
+  return at_eye >= 0.0 ? 0.0 : -at_eye / most;
+}
 
-Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space) {
+Result<Rows> rowsOf(const Mat4& clip_from_scene, const ClipSpace& clip_space) {
   const auto finite = [](double value) { return std::isfinite(value); };
   if (!std::all_of(clip_from_scene.m.begin(), clip_from_scene.m.end(), finite)) {
     return Error{"clip_from_scene must be finite"};
@@ -195,6 +221,48 @@ Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_spa
   Rows rows{rowOf(clip_from_scene, 0), rowOf(clip_from_scene, 1), rowOf(clip_from_scene, 2),
             rowOf(clip_from_scene, 3)};
   rows.y = clip_space.y_down ? rows.y * -1.0 : rows.y;
+  return rows;
+}
+
+}  // namespace
+
+Result<ObliqueView> obliqueViewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space) {
+  const Result<Rows> rows = rowsOf(clip_from_scene, clip_space);
+  if (!rows) {
+    return rows.error();
+  }
+  const Result<View> picture = rows->w.length() > 0.0 ? perspectivePicture(*rows) : notAProjection();
+  if (!picture) {
+    return picture.error();
+  }
+  const DepthRange range = rangeOf(clip_space.depth);
+  const Row beyond = (rows->z - rows->w * range.near) * (range.far > range.near ? 1.0 : -1.0);
+  const double size = beyond.length();
+  if (!(size > 0.0)) {
+    return Error{"clip_from_scene has no near plane: is ClipSpace::depth that of the matrix?"};
+  }
+  const Row plane = beyond * (1.0 / size);
+  ObliqueView oblique{*picture, {plane.normal, plane.offset}};
+  constexpr double kRounding = 1e-9;
+  oblique.view.near = (1.0 - kRounding) * nearestBeyond(oblique.view, plane);
+  oblique.view.far = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(oblique.view.near)) {
+    return Error{"clip_from_scene has its near plane behind all that is in the picture"};
+  }
+  const Result<View> valid = validate(oblique.view);
+  if (!valid) {
+    return valid.error();
+  }
+  oblique.view = *valid;
+  return oblique;
+}
+
+Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space) {
+  const Result<Rows> taken = rowsOf(clip_from_scene, clip_space);
+  if (!taken) {
+    return taken.error();
+  }
+  const Rows& rows = *taken;
   const DepthRange range = rangeOf(clip_space.depth);
   // Row w of an orthographic projection may have some rounding in it, and then changes hardly over the range
   // of depths.

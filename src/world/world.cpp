@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "sightline/scene/scene.h"
 #include "src/world/world_data.h"
 
 namespace sightline {
@@ -18,42 +17,32 @@ namespace {
 constexpr std::uint32_t kNone = InstanceData::kNone;
 constexpr std::uint32_t kSettleAfter = 60;  // frames without movement
 
+// Rows of a matrix that are finite and have no perspective in them.
 bool isAffine(const Mat4& m) {
-  bool finite = true;
-  for (const double element : m.m) {
-    finite = finite && std::isfinite(element);
+  double none = 0.0;  // stays 0 unless a number is not finite
+  for (int column = 0; column < 4; ++column) {
+    none += (m(0, column) * 0.0 + m(1, column) * 0.0) + m(2, column) * 0.0;
   }
-  return finite && m(3, 0) == 0.0 && m(3, 1) == 0.0 && m(3, 2) == 0.0 && m(3, 3) == 1.0;
+  return none == 0.0 && m(3, 0) == 0.0 && m(3, 1) == 0.0 && m(3, 2) == 0.0 && m(3, 3) == 1.0;
 }
 
-// Takes a number out of use, and back into it.
-template <typename List>
-std::uint32_t numberIn(List& list, std::vector<std::uint32_t>& free) {
-  if (free.empty()) {
-    list.emplace_back();
-    return static_cast<std::uint32_t>(list.size() - 1);
-  }
-  const std::uint32_t number = free.back();
-  free.pop_back();
-  return number;
+// Numbers of single precision that are surely not above, and not below; by a few units in the last place.
+float below(double x) {
+  return static_cast<float>(x - 0x1p-22 * std::abs(x) - 0x1p-148);
 }
-
-// The clusters of a part count for nothing from now on, also where they adjoin other parts: their plane has
-// no side on which an eye could be.
-void removePart(SurfaceSet& set, std::uint32_t part) {
-  for (const SurfacePatch& patch : set.patchesOf(set.parts[part])) {
-    for (std::uint32_t i = 0; i < patch.cluster_count; ++i) {
-      SurfaceCluster& cluster = set.clusters[patch.first_cluster + i];
-      cluster.support = {{0.0, 0.0, 0.0}, -1.0};
-      cluster.double_sided = false;
-    }
-  }
-  set.parts[part].patch_count = 0;
+float above(double x) {
+  return static_cast<float>(x + 0x1p-22 * std::abs(x) + 0x1p-148);
 }
 
 }  // namespace
 
-Box boundsOf(const Box& mesh_bounds, const Mat4& m, double displacement) {
+// The box of an instance, grown by what single precision may move its points. Not well formed if it cannot be
+// told.
+Box WorldData::boundsOf(std::uint32_t id) const {
+  const InstanceData& own = instances[id];
+  const Box mesh_bounds = own.mesh < meshes.size() ? meshes[own.mesh].mesh.bounds : Box{};
+  const Mat4 m = originFromMesh(id);
+  const double displacement = own.displacement;
   Box box;
   if (!mesh_bounds.wellFormed() || !isAffine(m) || !(displacement >= 0.0)) {
     return box;
@@ -66,9 +55,8 @@ Box boundsOf(const Box& mesh_bounds, const Mat4& m, double displacement) {
     const Vec3d row{std::abs(m(axis, 0)), std::abs(m(axis, 1)), std::abs(m(axis, 2))};
     const double terms = dot(row, abs(middle) + half) + std::abs(m(axis, 3));
     const double reach = dot(row, half) + displacement + kRounding * terms;
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    box.min[axis] = std::nextafterf(static_cast<float>(at[axis] - reach), -kFar);
-    box.max[axis] = std::nextafterf(static_cast<float>(at[axis] + reach), kFar);
+    box.min[axis] = below(at[axis] - reach);
+    box.max[axis] = above(at[axis] + reach);
   }
   return box;
 }
@@ -76,19 +64,32 @@ Box boundsOf(const Box& mesh_bounds, const Mat4& m, double displacement) {
 // Puts an instance that is shown where those are found who cull.
 void WorldData::place(std::uint32_t id) {
   InstanceData& own = instances[id];
-  const Box box = own.mesh < meshes.size()
-                      ? boundsOf(meshes[own.mesh].mesh.bounds, world_from_mesh[id], own.displacement)
-                      : Box{};
+  const Box box = boundsOf(id);
   if (!box.wellFormed()) {
     unplace(id);
     own.where = Whereabouts::kUnbounded;
     unbounded.emplace_back(id);
   } else if (own.where == Whereabouts::kMoving) {
     moving.move({id, box});
+  } else if (own.moves) {
+    unplace(id);
+    moving.insert({id, box});
+    setMoving(id);
   } else {
     unplace(id);
     own.where = Whereabouts::kSettled;
     settled.insert({id, box});
+  }
+}
+
+// Of one that has just come into the moving tree.
+void WorldData::setMoving(std::uint32_t id) {
+  InstanceData& own = instances[id];
+  own.where = Whereabouts::kMoving;
+  own.last_moved = frame;
+  if (!own.listed) {
+    own.listed = true;
+    movers.emplace_back(id);
   }
 }
 
@@ -115,37 +116,9 @@ void WorldData::moved(std::uint32_t id) {
     const Box box = settled.boxOf(id);
     settled.remove(id);
     moving.insert({id, box});
-    own.where = Whereabouts::kMoving;
-    if (!own.listed) {
-      own.listed = true;
-      movers.emplace_back(id);
-    }
+    setMoving(id);
   }
   place(id);
-}
-
-// What was found together with the triangles of this object hides no longer, and the others that have some of
-// it do so by their own meshes.
-void WorldData::leave(Joined& joined, std::uint32_t object) {
-  for (const std::uint32_t part : joined.join.surfaces.partsOf(ObjectId(object))) {
-    for (const std::uint32_t other : joined.objects_of_part[part]) {
-      const InstanceId id = joined.join.instances[other];
-      if (id.valid()) {
-        instances[id.value].alone = true;
-      }
-    }
-    removePart(joined.join.surfaces, part);
-  }
-  joined.join.instances[object] = InstanceId();
-}
-
-void WorldData::leaveJoin(std::uint32_t id) {
-  InstanceData& own = instances[id];
-  if (own.join != kNone) {
-    leave(joins[own.join], own.object);
-    own.join = kNone;
-    own.alone = true;
-  }
 }
 
 std::uint32_t WorldData::addInstance(const Instance& given) {
@@ -153,6 +126,10 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
   world_from_mesh.resize(instances.size());
   InstanceData& own = instances[id];
   own = {.there = true, .shown = given.shown, .occludes = given.occludes, .listed = own.listed};
+  own.moves = given.moves;
+  own.groups = given.groups;
+  extras.resize(instances.size());
+  extras[id] = {.mark = given.mark};
   own.displacement = static_cast<float>(given.displacement);
   if (!(double{own.displacement} >= given.displacement)) {
     own.displacement = std::nextafterf(own.displacement, std::numeric_limits<float>::infinity());
@@ -161,7 +138,7 @@ std::uint32_t WorldData::addInstance(const Instance& given) {
   world_from_mesh[id] = given.world_from_mesh;
   if (given.mesh.value < meshes.size() && meshes[given.mesh.value].there) {
     own.mesh = given.mesh.value;
-    own.in_mesh = static_cast<std::uint32_t>(meshes[own.mesh].instances.size());
+    extras[id].in_mesh = static_cast<std::uint32_t>(meshes[own.mesh].instances.size());
     meshes[own.mesh].instances.emplace_back(id);
   }
   ++count;
@@ -226,16 +203,16 @@ InstanceId World::add(const Instance& instance) {
 
 void World::add(std::span<const Instance> given, std::vector<InstanceId>& ids) {
   WorldData& own = *data_;
-  std::vector<hierarchy::DynamicTree::Item> items;
+  std::vector<hierarchy::DynamicTree::Item> items, moving_items;
   for (const Instance& instance : given) {
     const std::uint32_t id = own.addInstance(instance);
     ids.emplace_back(id);
     InstanceData& added = own.instances[id];
-    const Box box = added.shown && added.mesh != InstanceData::kNone
-                        ? world::boundsOf(own.meshes[added.mesh].mesh.bounds, instance.world_from_mesh,
-                                          added.displacement)
-                        : Box{};
-    if (box.wellFormed()) {
+    const Box box = added.shown ? own.boundsOf(id) : Box{};
+    if (box.wellFormed() && added.moves) {
+      moving_items.push_back({id, box});
+      own.setMoving(id);
+    } else if (box.wellFormed()) {
       items.push_back({id, box});
       added.where = Whereabouts::kSettled;
     } else if (added.shown) {
@@ -243,6 +220,7 @@ void World::add(std::span<const Instance> given, std::vector<InstanceId>& ids) {
     }
   }
   own.settled.insert(items);
+  own.moving.insert(moving_items);
 }
 
 void World::remove(InstanceId instance) {
@@ -254,10 +232,12 @@ void World::remove(InstanceId instance) {
   InstanceData& gone = own.instances[id];
   own.unplace(id);
   own.leaveJoin(id);
+  own.leaveSets(id);
   if (gone.mesh != InstanceData::kNone) {
     std::vector<InstanceId>& of_mesh = own.meshes[gone.mesh].instances;
-    own.instances[of_mesh.back().value].in_mesh = gone.in_mesh;
-    of_mesh[gone.in_mesh] = of_mesh.back();
+    const std::uint32_t place = own.extras[id].in_mesh;
+    own.extras[of_mesh.back().value].in_mesh = place;
+    of_mesh[place] = of_mesh.back();
     of_mesh.pop_back();
   }
   gone = {.listed = gone.listed};
@@ -274,6 +254,7 @@ void World::setTransform(InstanceId instance, const Mat4& world_from_mesh) {
   own.world_from_mesh[instance.value] = world_from_mesh;
   own.instances[instance.value].version = ++own.version;
   own.leaveJoin(instance.value);
+  own.leaveSets(instance.value);
   own.moved(instance.value);
 }
 
@@ -289,8 +270,21 @@ void World::setShown(InstanceId instance, bool shown) {
     own.place(instance.value);
   } else {
     own.leaveJoin(instance.value);
+    own.leaveSets(instance.value);
     own.unplace(instance.value);
   }
+}
+
+void World::setGroups(InstanceId instance, std::uint32_t groups) {
+  WorldData& own = *data_;
+  if (!has(instance) || own.instances[instance.value].groups == groups) {
+    return;
+  }
+  InstanceData& changed = own.instances[instance.value];
+  changed.groups = groups;
+  changed.version = ++own.version;
+  own.leaveJoin(instance.value);
+  own.leaveSets(instance.value);
 }
 
 bool World::has(InstanceId instance) const {
@@ -305,109 +299,47 @@ std::size_t World::idBound() const {
 MeshId World::meshOf(InstanceId instance) const {
   return has(instance) ? MeshId(data_->instances[instance.value].mesh) : MeshId();
 }
+std::uint64_t World::markOf(InstanceId instance) const {
+  return has(instance) ? data_->extras[instance.value].mark : 0;
+}
 Box World::boundsOf(InstanceId instance) const {
-  if (!has(instance) || data_->instances[instance.value].mesh == InstanceData::kNone) {
-    return {};
-  }
-  const InstanceData& own = data_->instances[instance.value];
-  return world::boundsOf(data_->meshes[own.mesh].mesh.bounds, data_->world_from_mesh[instance.value],
-                         own.displacement);
+  return has(instance) ? data_->boundsOf(instance.value) : Box{};
 }
 
-WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings,
-                             const ParallelFor& parallel_for) const {
-  const WorldData& own = *data_;
-  WorldJoin join;
-  Box all;
-  for (const InstanceId id : instances) {
-    if (has(id) && own.hides(id.value) && boundsOf(id).wellFormed()) {
-      join.instances.push_back(id);
-      all.extend(boundsOf(id));
-    }
-  }
-  std::sort(join.instances.begin(), join.instances.end());
-  join.instances.erase(std::unique(join.instances.begin(), join.instances.end()), join.instances.end());
-  if (join.instances.empty()) {
-    return join;
-  }
-  // A whole number, so that positions that are short numbers stay so.
-  const Vec3d middle = center(all);
-  join.origin = {std::round(middle.x), std::round(middle.y), std::round(middle.z)};
-  Scene scene;
-  scene.materials = {{.double_sided = false}, {.double_sided = true}};
-  for (const InstanceId id : join.instances) {
-    join.versions.push_back(own.instances[id.value].version);
-    const Mat4& m = own.world_from_mesh[id.value];
-    const SurfaceSet& surfaces = own.meshes[own.instances[id.value].mesh].mesh.surfaces;
-    const auto first = static_cast<std::uint32_t>(scene.positions.size());
-    for (const Vec3f& vertex : surfaces.vertices) {
-      scene.positions.emplace_back(transformPoint(m, Vec3d(vertex)) - join.origin);
-    }
-    const bool mirrored = determinant3(m) < 0.0;
-    Object object;
-    object.first_index = static_cast<std::uint32_t>(scene.indices.size());
-    object.index_count = static_cast<std::uint32_t>(surfaces.triangles.size());
-    object.material = MaterialId(surfaces.clusters[0].double_sided ? 1u : 0u);
-    for (std::size_t i = 0; i < surfaces.triangles.size(); i += 3) {
-      scene.indices.push_back(first + surfaces.triangles[i]);
-      scene.indices.push_back(first + surfaces.triangles[i + (mirrored ? 2 : 1)]);
-      scene.indices.push_back(first + surfaces.triangles[i + (mirrored ? 1 : 2)]);
-    }
-    scene.objects.push_back(object);
-  }
-  updateBounds(scene);
-  join.surfaces = findSurfaces(scene.view(), settings, parallel_for);
-  return join;
-}
-
-JoinId World::use(WorldJoin given) {
+// The trees stay as they are: that all boxes move by the same vector changes nothing but their rounding.
+void World::setOrigin(const Vec3d& origin) {
   WorldData& own = *data_;
-  const std::uint32_t number = numberIn(own.joins, own.free_joins);
-  Joined& joined = own.joins[number];
-  joined.there = true;
-  joined.join = std::move(given);
-  const WorldJoin& join = joined.join;
-  joined.objects_of_part.group(join.surfaces.parts.size(), [&](auto&& body) {
-    for (std::uint32_t object = 0; object < join.instances.size(); ++object) {
-      for (const std::uint32_t part : join.surfaces.partsOf(ObjectId(object))) {
-        body(part, object);
-      }
-    }
-  });
-  // First all members, so that what one of them leaves alone is known to be a member.
-  for (std::uint32_t object = 0; object < join.instances.size(); ++object) {
-    const InstanceId id = join.instances[object];
-    if (has(id) && own.instances[id.value].version == join.versions[object]) {
-      own.leaveJoin(id.value);
-      InstanceData& member = own.instances[id.value];
-      member.join = number;
-      member.object = object;
-      member.alone = false;
-    }
-  }
-  for (std::uint32_t object = 0; object < join.instances.size(); ++object) {
-    const InstanceId id = join.instances[object];
-    if (!has(id) || own.instances[id.value].join != number || own.instances[id.value].object != object) {
-      joined.join.instances[object] = InstanceId();
-      own.leave(joined, object);
-    }
-  }
-  return JoinId(number);
-}
-
-void World::drop(JoinId join) {
-  WorldData& own = *data_;
-  if (join.value >= own.joins.size() || !own.joins[join.value].there) {
+  if (!isFinite(origin) || origin == own.origin) {
     return;
   }
-  for (const InstanceId id : own.joins[join.value].join.instances) {
-    if (id.valid()) {
-      own.instances[id.value].join = InstanceData::kNone;
-      own.instances[id.value].alone = true;
+  own.origin = origin;
+  const std::vector<InstanceId> unbounded = std::move(own.unbounded);
+  own.unbounded.clear();
+  std::vector<std::uint32_t> lost;  // overflow has left them without a box
+  const auto box = [&](std::uint32_t id) {
+    const Box now = own.boundsOf(id);
+    if (!now.wellFormed()) {
+      lost.push_back(id);
     }
+    return now;
+  };
+  own.settled.setBoxes(box);
+  own.moving.setBoxes(box);
+  for (const std::uint32_t id : lost) {
+    own.place(id);
   }
-  own.joins[join.value] = {};
-  own.free_joins.push_back(join.value);
+  for (const InstanceId id : unbounded) {
+    own.instances[id.value].where = Whereabouts::kNowhere;
+    own.place(id.value);
+  }
+}
+Vec3d World::origin() const {
+  return data_->origin;
+}
+
+void World::rebuild() {
+  data_->settled.rebuild();
+  data_->moving.rebuild();
 }
 
 void World::tidy(std::uint32_t steps) {

@@ -2,32 +2,13 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "src/scene/usable_view.h"
-#include "src/world/id_bits.h"
-#include "src/world/world_data.h"
-#include "src/world/world_eye.h"
+#include "src/world/culler_impl.h"
 
 namespace sightline {
 
 using namespace world;
-
-struct WorldCuller::Impl {
-  explicit Impl(const WorldCullerSettings& given) : settings(given) { eyes.emplace_back(given); }
-
-  void cull(const WorldData& data, std::span<const View> given);
-  bool takeViews(std::span<const View> given);
-  void keepEverything(const WorldData& data);
-
-  WorldCullerSettings settings;
-  std::vector<WorldEye> eyes;  // at least one; more than there are views after a cull() of more
-  std::vector<View> views;     // usable ones
-  WorldCullStats counts;
-  IdBits kept, last_kept;
-  std::vector<InstanceId> visible, appeared, disappeared;
-  std::uint64_t last_version = 0;  // of the world
-};
 
 WorldCuller::WorldCuller(const WorldCullerSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
 WorldCuller::~WorldCuller() = default;
@@ -45,6 +26,10 @@ bool WorldCuller::Impl::takeViews(std::span<const View> given) {
   }
   while (eyes.size() < views.size()) {
     eyes.emplace_back(settings);
+    eyes.back().clipBy(clip_plane);
+    for (const auto& [id, own] : sets) {
+      eyes.back().sets().use(id, own);
+    }
   }
   return true;
 }
@@ -52,6 +37,7 @@ bool WorldCuller::Impl::takeViews(std::span<const View> given) {
 void WorldCuller::Impl::keepEverything(const WorldData& data) {
   addAll(data.settled, data.settled.root(), kept);
   addAll(data.moving, data.moving.root(), kept);
+  kept.removeIf([&](std::uint32_t id) { return (data.instances[id].groups & settings.groups) == 0; });
   for (WorldEye& eye : eyes) {
     eye.forget();
   }
@@ -69,7 +55,9 @@ void WorldCuller::Impl::cull(const WorldData& data, std::span<const View> given)
     keepEverything(data);
   }
   for (const InstanceId id : data.unbounded) {
-    kept.insert(id.value);
+    if ((data.instances[id.value].groups & settings.groups) != 0) {
+      kept.insert(id.value);
+    }
   }
   visible.clear();
   kept.list(visible);
@@ -92,7 +80,27 @@ void WorldCuller::cull(const World& world, std::span<const View> views) {
 }
 
 void WorldCuller::reset() {
-  *this = WorldCuller(impl_->settings);
+  const std::unique_ptr<Impl> old = std::exchange(impl_, std::make_unique<Impl>(impl_->settings));
+  setClipPlane(old->clip_plane);
+  for (const auto& [id, sets] : old->sets) {
+    useSets(id, sets);
+  }
+}
+
+void WorldCuller::setClipPlane(const Plane& plane) {
+  impl_->clip_plane = plane;
+  for (WorldEye& eye : impl_->eyes) {
+    eye.clipBy(plane);
+  }
+}
+void WorldCuller::useSets(SetsId id, VisibleSets* sets) {
+  std::erase_if(impl_->sets, [&](const auto& used) { return used.first == id; });
+  if (sets != nullptr) {
+    impl_->sets.emplace_back(id, sets);
+  }
+  for (WorldEye& eye : impl_->eyes) {
+    eye.sets().use(id, sets);
+  }
 }
 
 std::span<const InstanceId> WorldCuller::visible() const {
@@ -120,7 +128,7 @@ Visibility WorldCuller::classify(const Box& box) const {
   }
   Visibility best = Visibility::kHidden;
   for (std::size_t i = 0; i < impl_->views.size(); ++i) {
-    best = std::max(best, impl_->eyes[i].pyramid().classify(box));
+    best = std::max(best, impl_->eyes[i].classify(box));
   }
   return best;
 }

@@ -16,6 +16,7 @@ namespace sightline::world {
 struct Joined {
   bool there = false;
   WorldJoin join;
+  std::uint32_t groups = 0;                   // that all members have
   base::Rows<std::uint32_t> objects_of_part;  // indices into join.instances, where members that left are not
                                               // valid any more
 };
@@ -26,6 +27,16 @@ struct MeshData {
   std::vector<InstanceId> instances;
 };
 
+// Objects of a baked scene.
+struct BakedObjects {
+  bool there = false;
+  std::vector<InstanceId> instances;  // by ObjectId; not valid for tombstones
+  std::vector<ObjectId> tombstones;
+  Vec3d origin;               // world space
+  std::uint32_t groups = 0;   // that all of them have
+  std::uint64_t version = 0;  // of the last change
+};
+
 enum class Whereabouts : std::uint8_t {
   kNowhere,    // not there, or hidden
   kSettled,    // in WorldData::settled
@@ -33,20 +44,31 @@ enum class Whereabouts : std::uint8_t {
   kUnbounded,  // in WorldData::unbounded
 };
 
+// What every change and every frame reads of an instance. Small, so that moving many of a large world misses
+// the caches seldom.
 struct InstanceData {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   bool there = false, shown = false, occludes = false;
   bool listed = false;  // in WorldData::movers
   Whereabouts where = Whereabouts::kNowhere;
-  bool alone = true;  // it hides by its own mesh
+  bool alone = true;   // it hides by its own mesh
+  bool moves = false;  // it goes to the moving ones at once
+  bool baked = false;  // it belongs to sets
   float displacement = 0.0f;
   std::uint32_t mesh = kNone;
-  std::uint32_t in_mesh = 0;                   // its place in MeshData::instances
   std::uint32_t join = kNone, object = kNone;  // it is that object of that join
-  std::uint32_t last_moved = 0;                // number of the frame, in the moving tree
-  std::uint64_t version = 0;                   // of its last change
-  std::uint64_t born = 0;                      // the version in which it was added
+  std::uint32_t groups = 0;
+  std::uint32_t last_moved = 0;  // number of the frame, in the moving tree
+  std::uint64_t version = 0;     // of its last change
+  std::uint64_t born = 0;        // the version in which it was added
+};
+
+struct InstanceExtra {
+  std::uint64_t mark = 0;
+  std::uint32_t in_mesh = 0;  // its place in MeshData::instances
+  // With InstanceData::baked: it is that object of those sets.
+  std::uint32_t sets = InstanceData::kNone, object = InstanceData::kNone;
 };
 
 struct WorldData {
@@ -58,38 +80,61 @@ struct WorldData {
            !meshes[own.mesh].mesh.surfaces.parts.empty();
   }
 
-  // Of an instance that hides and has a box; world space.
+  // Of an instance that hides and has a box; from the origin.
   const Box& boxOf(std::uint32_t id) const {
     return instances[id].where == Whereabouts::kMoving ? moving.boxOf(id) : settled.boxOf(id);
   }
 
   std::vector<MeshData> meshes;
   std::vector<std::uint32_t> free_meshes;
-  std::vector<InstanceData> instances;  // by InstanceId, as is the next column
+  std::vector<InstanceData> instances;  // by InstanceId, as are the next columns
+  std::vector<InstanceExtra> extras;
   std::vector<Mat4> world_from_mesh;
   std::vector<std::uint32_t> free_instances;
   std::size_t count = 0;      // instances that are there
   std::uint64_t version = 0;  // grows with each change
   std::vector<Joined> joins;
   std::vector<std::uint32_t> free_joins;
+  std::vector<BakedObjects> sets;
+  std::vector<std::uint32_t> free_sets;
 
-  hierarchy::DynamicTree settled, moving;  // boxes in world space
+  Vec3d origin;                            // world space; boxes are relative to it
+  hierarchy::DynamicTree settled, moving;  // boxes of what is shown
   std::vector<InstanceId> unbounded;       // shown, with no box that is well formed
   std::vector<InstanceId> movers;          // those in `moving`, and some that have left it; each once
   std::size_t next_mover = 0;              // that tidy() looks at
   std::uint32_t frame = 0;                 // calls of tidy()
 
   void place(std::uint32_t id);
+  void setMoving(std::uint32_t id);
   void unplace(std::uint32_t id);
   void moved(std::uint32_t id);
   void leave(Joined& joined, std::uint32_t object);
   void leaveJoin(std::uint32_t id);
+  void leaveSets(std::uint32_t id);
+  Box boundsOf(std::uint32_t id) const;
+  // The matrix that takes points of an instance's mesh to where boxes are.
+  Mat4 originFromMesh(std::uint32_t id) const { return fromOrigin(world_from_mesh[id]); }
+  Mat4 fromOrigin(Mat4 world_from_any) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      world_from_any(axis, 3) -= origin[axis];
+    }
+    return world_from_any;
+  }
   std::uint32_t addInstance(const Instance& instance);
   void settle(std::uint32_t looks);
 };
 
-// The box of an instance, grown by what single precision may move its points. Not well formed if it cannot be
-// told.
-Box boundsOf(const Box& mesh_bounds, const Mat4& world_from_mesh, double displacement);
+// A number that is not in use, of a list and of those of its numbers that were in use.
+template <typename List>
+std::uint32_t numberIn(List& list, std::vector<std::uint32_t>& free) {
+  if (free.empty()) {
+    list.emplace_back();
+    return static_cast<std::uint32_t>(list.size() - 1);
+  }
+  const std::uint32_t number = free.back();
+  free.pop_back();
+  return number;
+}
 
 }  // namespace sightline::world

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 namespace sightline::world {
@@ -22,6 +23,14 @@ double microsecondsSince(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
+int sideOf(const Plane& plane, const Box& box) {
+  const Vec3d middle = center(box), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
+  const Vec3d size = abs(plane.normal);
+  const double at = plane.evaluate(middle), reach = dot(size, half);
+  const double rounding = 0x1p-48 * (dot(size, abs(middle) + half) + std::abs(plane.offset));
+  return at - reach >= rounding ? 1 : at + reach < -rounding ? -1 : 0;
+}
+
 void addAll(const DynamicTree& tree, std::uint32_t number, IdBits& kept) {
   if (number == DynamicTree::kNone) {
     return;
@@ -36,13 +45,22 @@ void addAll(const DynamicTree& tree, std::uint32_t number, IdBits& kept) {
   }
 }
 
-void WorldEye::cull(const WorldData& data, const View& view, std::span<const InstanceId> last,
+View WorldEye::begin(const WorldData& data, const View& view_world) {
+  View view = view_world;
+  view.eye = view.eye - data.origin;
+  clip_ = {clip_world_.normal, clip_world_.evaluate(data.origin)};
+  pyramid_.begin(view);
+  return view;
+}
+
+void WorldEye::cull(const WorldData& data, const View& view_world, std::span<const InstanceId> last,
                     const IdBits& last_set, IdBits& kept, WorldCullStats& stats) {
   const auto start = std::chrono::steady_clock::now();
-  const bool jumped = last_view_.jumpsTo(view);
+  const bool jumped = last_view_.jumpsTo(view_world);
   ++frame_;
   counts_ = {};
-  pyramid_.begin(view);
+  const View view = begin(data, view_world);
+  sets_.find(data, view_world, clip_world_ == Plane() ? settings_.groups : 0);
   if (settings_.occlusion && jumped) {
     test(data, true);
     listed_.clear();
@@ -77,6 +95,13 @@ void WorldEye::test(const WorldData& data, bool view_only) {
   found_.clear(data.instances.size());
   test(data.settled, view_only);
   test(data.moving, view_only);
+  if (settings_.groups != 0xffffffffu || !(clip_ == Plane())) {
+    found_.removeIf([&](std::uint32_t id) {
+      const InstanceData& own = data.instances[id];
+      return !isDrawn(own) || sideOf(clip_, data.boxOf(id)) < 0;
+    });
+  }
+  sets_.restrict(data, found_);
 }
 
 void WorldEye::test(const DynamicTree& tree, bool view_only) {
@@ -113,26 +138,47 @@ void WorldEye::test(const DynamicTree& tree, bool view_only) {
   }
 }
 
-// Draws the surfaces of these instances, which may have been removed, hidden or moved since they were kept.
-void WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
-                    ViewStep step) {
+// Whether the surfaces of a join are wholly drawn in the view.
+bool WorldEye::isJoined(const WorldData& data, const Joined& joined) const {
+  if ((joined.groups & settings_.groups) == 0) {
+    return false;
+  }
+  if (clip_ == Plane()) {
+    return true;
+  }
+  const Vec3d to_origin = data.origin - joined.join.origin;
+  return sideOf({clip_.normal, clip_.evaluate(-to_origin)}, joined.join.surfaces.bounds) > 0;
+}
+
+// Sets of_join_ and alone_. The candidates may have been removed, hidden or moved since they were kept.
+void WorldEye::takeCandidates(const WorldData& data, std::span<const InstanceId> candidates) {
   of_join_.resize(std::max(of_join_.size(), data.joins.size()));
   for (std::vector<ObjectId>& members : of_join_) {
     members.clear();
   }
   alone_.clear();
+  const bool clips = !(clip_ == Plane());
   for (const InstanceId id : candidates) {
     if (id.value >= data.instances.size() || !data.hides(id.value)) {
       continue;
     }
     const InstanceData& own = data.instances[id.value];
-    if (own.join != InstanceData::kNone) {
+    if (!isDrawn(own) || (clips && sideOf(clip_, data.boxOf(id.value)) <= 0)) {
+      continue;
+    }
+    const bool joined = own.join != InstanceData::kNone && isJoined(data, data.joins[own.join]);
+    if (joined) {
       of_join_[own.join].emplace_back(own.object);
     }
-    if (own.alone) {
+    if (own.alone || !joined) {
       alone_.push_back(id.value);
     }
   }
+}
+
+void WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
+                    ViewStep step) {
+  takeCandidates(data, candidates);
   SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
   drawing.step = step;
   const std::uint32_t budget = drawing.budget;
@@ -152,7 +198,7 @@ void WorldEye::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
     const WorldJoin& joined = data.joins[join].join;
     MovingSurfaces placed{&joined.surfaces, {}};
     for (int axis = 0; axis < 3; ++axis) {
-      placed.scene_from_surfaces(axis, 3) = joined.origin[axis];
+      placed.scene_from_surfaces(axis, 3) = joined.origin[axis] - data.origin[axis];
     }
     const SurfaceStats drawn = pyramid_.draw(placed, of_join_[join], drawing);
     counts_.occluders += drawn.groups > 0 ? 1 : 0;
@@ -197,7 +243,7 @@ void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing
     }
     const InstanceData& own = data.instances[candidate.id];
     const SurfaceStats drawn = pyramid_.draw(
-        MovingSurfaces{&data.meshes[own.mesh].mesh.surfaces, data.world_from_mesh[candidate.id]}, drawing);
+        MovingSurfaces{&data.meshes[own.mesh].mesh.surfaces, data.originFromMesh(candidate.id)}, drawing);
     counts_.occluders += drawn.groups > 0 ? 1 : 0;
     counts_.edges += drawn.edges;
     drawing.budget -= std::min(drawing.budget, drawn.work);
@@ -211,6 +257,46 @@ void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing
       rest = {own.born, 0, 0};
     }
   }
+}
+
+Visibility WorldEye::classify(const Box& box) const {
+  return box.wellFormed() && sideOf(clip_, box) < 0 ? Visibility::kHidden : pyramid_.classify(box);
+}
+
+Visibility WorldEye::look(const WorldData& data, const View& view_world, const Box& box,
+                          std::span<const InstanceId> ignored) {
+  ++frame_;
+  counts_ = {};
+  const View view = begin(data, view_world);
+  test(data, true);
+  for (const InstanceId id : ignored) {
+    found_.remove(id.value);
+  }
+  listed_.clear();
+  found_.list(listed_);
+  takeCandidates(data, listed_);
+  // What an ignored member of a join hides is not known apart from what the others do.
+  for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
+    const auto of_this = [&](InstanceId id) {
+      return id.value < data.instances.size() && data.instances[id.value].join == join;
+    };
+    if (!of_join_[join].empty() && std::any_of(ignored.begin(), ignored.end(), of_this)) {
+      for (const ObjectId object : of_join_[join]) {
+        alone_.push_back(data.joins[join].join.instances[object.value].value);
+      }
+      of_join_[join].clear();
+    }
+  }
+  std::sort(alone_.begin(), alone_.end());
+  alone_.erase(std::unique(alone_.begin(), alone_.end()), alone_.end());
+  SurfaceDrawing drawing = settings_.drawing;
+  drawing.step = ViewStep::kJump;
+  const bool nothing_between = listed_.empty() && data.unbounded.empty();
+  drawJoins(data, drawing);
+  drawAlone(data, view, drawing);
+  pyramid_.finish();
+  const Visibility visibility = pyramid_.classify(box);
+  return visibility == Visibility::kVisible && !nothing_between ? Visibility::kPartial : visibility;
 }
 
 }  // namespace sightline::world

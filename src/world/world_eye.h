@@ -6,11 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "sightline/math/plane.h"
 #include "sightline/occlusion/depth_pyramid.h"
 #include "sightline/world/world_culler.h"
 #include "src/culling/last_view.h"
 #include "src/culling/usual_work.h"
 #include "src/occlusion/pixel_boxes.h"
+#include "src/world/eye_sets.h"
 #include "src/world/id_bits.h"
 #include "src/world/world_data.h"
 
@@ -20,13 +22,22 @@ class WorldEye {
  public:
   explicit WorldEye(const WorldCullerSettings& settings) : settings_(settings), pyramid_({settings.raster}) {}
 
-  // view: a usable one. last: what the last frame kept, as a list and as a set. Adds what may be seen to
-  // kept, which is as large as the world, and to the counts of stats.
-  void cull(const WorldData& data, const View& view, std::span<const InstanceId> last, const IdBits& last_set,
-            IdBits& kept, WorldCullStats& stats);
+  // view_world: a usable one. last: what the last frame kept, as a list and as a set. Adds what may be seen
+  // to kept, which is as large as the world, and to the counts of stats.
+  void cull(const WorldData& data, const View& view_world, std::span<const InstanceId> last,
+            const IdBits& last_set, IdBits& kept, WorldCullStats& stats);
   // Forgets the last frame.
   void forget() { last_view_.forget(); }
+  // What lies on the negative side of this plane, in world space, is not drawn. Plane(): all is drawn.
+  void clipBy(const Plane& plane_world) { clip_world_ = plane_world; }
+  EyeSets& sets() { return sets_; }
 
+  // Whether the box, of coordinates from the origin, may be seen in this view of its own, in which nothing
+  // hides that is in `ignored`.
+  Visibility look(const WorldData& data, const View& view_world, const Box& box,
+                  std::span<const InstanceId> ignored);
+
+  Visibility classify(const Box& box) const;
   const DepthPyramid& pyramid() const { return pyramid_; }
 
  private:
@@ -46,6 +57,11 @@ class WorldEye {
     std::uint32_t length = 0;  // frames
   };
 
+  // Begins a view; returns it as seen from the origin.
+  View begin(const WorldData& data, const View& view_world);
+  bool isDrawn(const InstanceData& instance) const { return (instance.groups & settings_.groups) != 0; }
+  bool isJoined(const WorldData& data, const Joined& joined) const;
+  void takeCandidates(const WorldData& data, std::span<const InstanceId> candidates);
   void draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates, ViewStep step);
   void drawJoins(const WorldData& data, SurfaceDrawing& drawing);
   void drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing);
@@ -54,6 +70,8 @@ class WorldEye {
   void test(const hierarchy::DynamicTree& tree, bool view_only);
 
   WorldCullerSettings settings_;
+  EyeSets sets_;
+  Plane clip_world_, clip_;  // the second one for coordinates from the origin
   DepthPyramid pyramid_;
   culling::LastView last_view_;
   culling::UsualWork usual_work_;
@@ -71,6 +89,9 @@ class WorldEye {
   std::vector<occlusion::PixelBox> images_;
   std::vector<Candidate> near_first_;
 };
+
+// On which side of a plane a box lies: 1 or -1 if all of it does, surely, otherwise 0. Plane(): 1.
+int sideOf(const Plane& plane, const Box& box);
 
 // Adds everything below a node, or nothing if it is kNone.
 void addAll(const hierarchy::DynamicTree& tree, std::uint32_t node, IdBits& kept);

@@ -67,6 +67,27 @@ TEST(Repository, NoRoomButThoseOfFilesOpensOne) {
   EXPECT_GT(files, 100);
 }
 
+// Engines replace operator new to see all memory, and are built without exceptions and run-time types.
+TEST(Repository, TheRuntimeTakesMemoryFromOperatorNewAloneAndNeedsNoExceptions) {
+  const std::regex runtime(
+      "(include/sightline|src)/(base|math|scene|geometry|hierarchy|occluders|occlusion|culling|world)/.*");
+  const std::regex other(R"(\b(malloc|calloc|realloc|mmap|aligned_alloc|posix_memalign|AllocateAligned) *\(|)"
+                         R"(\b(throw|dynamic_cast|typeid)\b|\btry *\{|\bcatch *\()");
+  int files = 0;
+  for (const std::string& file : projectFiles()) {
+    if (!std::regex_match(file, runtime)) {
+      continue;
+    }
+    ++files;
+    std::istringstream text(contentOf(file));
+    for (std::string line; std::getline(text, line);) {
+      const std::string code = line.substr(0, line.find("//"));
+      EXPECT_FALSE(std::regex_search(code, other)) << file << ": " << line;
+    }
+  }
+  EXPECT_GT(files, 150);
+}
+
 TEST(Repository, EveryMakeCommandInTheDocumentsIsATarget) {
   std::set<std::string> targets;
   const std::string makefile = contentOf("Makefile");

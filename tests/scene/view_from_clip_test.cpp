@@ -494,5 +494,67 @@ TEST(ViewFromClip, RefusesNumbersThatAreNotFinite) {
   }
 }
 
+// Lengyel's matrix: the row of depths is replaced so that the near plane is any plane before the eye.
+TEST(ViewFromClip, AnObliqueNearPlaneIsThePlaneThatItWasMadeOf) {
+  Random random(31);
+  for (int i = 0; i < 300; ++i) {
+    View view;
+    view.eye = random.point(50.0);
+    setOrientation(view, random.point(1.0), random.point(1.0));
+    view.shift_x = random.in(-0.5, 0.5);
+    view.tan_half_fovy = random.in(0.2, 1.5);
+    const Vec3d normal = normalized(view.forward + random.point(0.5));
+    const Vec3d on = view.eye + view.forward * random.in(0.5, 20.0);
+    const Plane plane{normal, -dot(normal, on)};
+    const double size = random.in(0.1, 10.0);
+    Mat4 matrix = clipFromScene(view);
+    const bool gl = i % 2 == 0;
+    for (int column = 0; column < 4; ++column) {
+      const double p = size * (column < 3 ? plane.normal[column] : plane.offset);
+      // z + w = p; or, of reversed depth, w - z = p.
+      matrix(2, column) = gl ? p - matrix(3, column) : matrix(3, column) - p;
+    }
+    const ClipSpace space{.depth = gl ? ClipDepth::kMinusOneToOne : ClipDepth::kOneToZero};
+    EXPECT_FALSE(viewFromClip(matrix, space));
+    const Result<ObliqueView> oblique = obliqueViewFromClip(matrix, space);
+    ASSERT_TRUE(oblique) << oblique.error().message;
+    EXPECT_LT(length(oblique->near_plane.normal - plane.normal), 1e-12);
+    EXPECT_NEAR(oblique->near_plane.offset, plane.offset, 1e-9);
+    EXPECT_LT(length(oblique->view.eye - view.eye), 1e-9);
+    EXPECT_LT(length(oblique->view.forward - view.forward), 1e-12);
+    EXPECT_NEAR(oblique->view.shift_x, view.shift_x, 1e-12);
+    EXPECT_EQ(oblique->view.far, kEndless);
+    // No point of the picture is drawn that is nearer, and one of its corners hardly farther.
+    double nearest = kEndless;
+    for (int corner = 0; corner < 4; ++corner) {
+      const double x = (corner & 1) != 0 ? 1.0 : -1.0, y = (corner & 2) != 0 ? 1.0 : -1.0;
+      const Vec3d ray = view.forward + view.right * ((x + view.shift_x) * view.tan_half_fovy * view.aspect) +
+                        view.up * ((y + view.shift_y) * view.tan_half_fovy);
+      const double along = dot(normal, ray);
+      nearest = along > 0.0 ? std::min(nearest, -plane.evaluate(view.eye) / along) : nearest;
+    }
+    EXPECT_LE(oblique->view.near, nearest);
+    EXPECT_GE(oblique->view.near, nearest * (1.0 - 1e-6));
+  }
+}
+
+TEST(ViewFromClip, ObliqueViewsHaveANearPlaneBeforeTheEye) {
+  View view;
+  view.right = {1, 0, 0}, view.up = {0, 1, 0}, view.forward = {0, 0, -1};
+  Mat4 matrix = clipFromScene(view);
+  EXPECT_TRUE(obliqueViewFromClip(matrix));
+  matrix(0, 0) = kNotANumber;
+  EXPECT_FALSE(obliqueViewFromClip(matrix));
+  EXPECT_FALSE(obliqueViewFromClip(Mat4()));
+  EXPECT_FALSE(obliqueViewFromClip(Mat4{{}}));
+  // All of the picture is behind the plane z = 5.
+  matrix = clipFromScene(view);
+  matrix(2, 3) = -5.0;
+  for (int column = 0; column < 3; ++column) {
+    matrix(2, column) = (column == 2 ? 1.0 : 0.0) - matrix(3, column);
+  }
+  EXPECT_FALSE(obliqueViewFromClip(matrix));
+}
+
 }  // namespace
 }  // namespace sightline

@@ -7,8 +7,12 @@
 #include <thread>
 #include <vector>
 
+#include "sightline/world/shadow_casters.h"
+#include "sightline/world/views_ahead.h"
+#include "sightline/world/visible_history.h"
 #include "sightline/world/world.h"
 #include "sightline/world/world_culler.h"
+#include "sightline/world/world_sight.h"
 #include "tests/support/count_allocations.h"
 #include "tests/world/world_story.h"
 
@@ -53,14 +57,36 @@ struct Crowd {
   }
 };
 
+View sunAt(int frame) {
+  View light;
+  light.orthographic = true;
+  light.ortho_height = 80.0;
+  light.aspect = 1.0;
+  light.eye = {0.25 * frame, 80.0, 0.0};
+  setOrientation(light, {0.3, -1.0, 0.2}, {0, 1, 0});
+  return light;
+}
+
 TEST(WorldFrames, AllocateNothingAfterAFew) {
   Crowd crowd(900);
-  WorldCuller culler;
+  WorldCuller culler, ahead;
+  ShadowCasters sun;
+  WorldSight sight;
+  VisibleHistory history;
   const auto round = [&] {
     const std::size_t before = allocations;
     for (int frame = 0; frame < 40; ++frame) {
       crowd.change(frame);
       culler.cull(crowd.story.world, viewAt(frame));
+      sun.cull(crowd.story.world, sunAt(frame), culler);
+      history.update(crowd.story.world, culler, 1.0 / 60.0);
+      std::array<View, 3> views;
+      viewsAhead(viewAt(frame), {.velocity = {15.0, 0.0, 0.0}}, 0.5, views);
+      ahead.cull(crowd.story.world, views);
+      for (std::size_t i = 0; i < 5; ++i) {
+        const InstanceId target = crowd.ids[static_cast<std::size_t>(frame) * 5 + i];
+        sight.look(crowd.story.world, viewAt(frame).eye, crowd.story.world.boundsOf(target), {&target, 1});
+      }
     }
     return allocations - before;
   };
@@ -75,6 +101,8 @@ TEST(WorldFrames, ThreadsThatCullOneWorldGiveTheSameAnswers) {
   Crowd crowd(900);
   constexpr std::size_t kViews = 4;
   std::array<WorldCuller, kViews> alone, together;
+  std::array<ShadowCasters, kViews> suns_alone, suns_together;
+  std::array<WorldSight, kViews> sights;
   for (int frame = 0; frame < 20; ++frame) {
     crowd.change(frame);
     std::vector<std::thread> threads;
@@ -85,6 +113,25 @@ TEST(WorldFrames, ThreadsThatCullOneWorldGiveTheSameAnswers) {
     }
     for (std::thread& thread : threads) {
       thread.join();
+    }
+    threads.clear();
+    // Lights and lines of sight, too: all of them read the first culler's answers.
+    const World& world = crowd.story.world;
+    std::array<Visibility, kViews> seen{};
+    const Box target = world.boundsOf(crowd.ids[static_cast<std::size_t>(frame)]);
+    for (std::size_t i = 0; i < kViews; ++i) {
+      suns_alone[i].cull(world, sunAt(frame + static_cast<int>(i)), alone[0]);
+      threads.emplace_back([&, i] {
+        suns_together[i].cull(world, sunAt(frame + static_cast<int>(i)), alone[0]);
+        seen[i] = sights[i].look(world, {0, 1.5, 0}, target);
+      });
+    }
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+    for (std::size_t i = 0; i < kViews; ++i) {
+      EXPECT_TRUE(std::ranges::equal(suns_alone[i].casters(), suns_together[i].casters())) << frame;
+      EXPECT_EQ(seen[i], seen[0]);
     }
     for (std::size_t i = 0; i < kViews; ++i) {
       EXPECT_TRUE(std::ranges::equal(alone[i].visible(), together[i].visible())) << frame;

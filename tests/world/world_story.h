@@ -90,7 +90,8 @@ struct Story {
     }
   }
   InstanceId add(std::size_t shape, const Mat4& m, bool shown = true) {
-    const InstanceId id = world.add({.mesh = meshes[shape], .world_from_mesh = m, .shown = shown});
+    const InstanceId id = world.add(
+        {.mesh = meshes[shape], .world_from_mesh = m, .shown = shown, .moves = world.idBound() % 3 == 0});
     told[id.value] = {shape, m, shown};
     return id;
   }
@@ -136,6 +137,10 @@ struct Story {
     return scene;
   }
 };
+
+inline bool keeps(const WorldCuller& culler, InstanceId id) {
+  return std::binary_search(culler.visible().begin(), culler.visible().end(), id);
+}
 
 struct Judged {
   std::size_t seen = 0, culled = 0;
@@ -277,6 +282,10 @@ struct RandomStory {
       change();
     }
     story.world.tidy(chance.below(100));
+    if (chance.below(24) == 0) {
+      story.world.setOrigin(
+          {chance.eighths(-500.0, 500.0), chance.eighths(-9.0, 9.0), chance.eighths(-500.0, 500.0)});
+    }
     const auto stay = [](double x) { return std::clamp(x, -25.0, 25.0); };
     eye = {stay(eye.x + chance.eighths(-0.5, 0.5)), 1.5, stay(eye.z + chance.eighths(-0.5, 0.5))};
     heading += chance.number(-0.1, 0.1) + (chance.below(16) == 0 ? 2.5 : 0.0);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "sightline/world/world_culler.h"
 #include "tests/world/world_story.h"
@@ -23,10 +24,6 @@ Mat4 boxAt(const Vec3d& corner, const Vec3d& size) {
     m(axis, 3) = corner[axis];
   }
   return m;
-}
-
-bool keeps(const WorldCuller& culler, InstanceId id) {
-  return std::binary_search(culler.visible().begin(), culler.visible().end(), id);
 }
 
 class WorldStory : public testing::TestWithParam<bool> {};
@@ -254,7 +251,8 @@ TEST(World, WhatIsOutsideTheViewIsLeftOut) {
     const double angle = 2.0 * 3.14159265358979 * i / 720.0;
     ring.push_back(
         {.mesh = story.meshes[0],
-         .world_from_mesh = boxAt({100.0 * std::sin(angle), 0, 100.0 * std::cos(angle)}, {0.1, 0.1, 0.1})});
+         .world_from_mesh = boxAt({100.0 * std::sin(angle), 0, 100.0 * std::cos(angle)}, {0.1, 0.1, 0.1}),
+         .moves = i % 5 == 0});
   }
   std::vector<InstanceId> ids;
   story.world.add(ring, ids);
@@ -282,6 +280,32 @@ TEST(World, WhatIsOutsideTheViewIsLeftOut) {
   }
 }
 
+TEST(World, AWorldThatIsRebuiltIsAsOneThatWasAddedAsAList) {
+  Story story(allShapes());
+  World listed;
+  addShape(listed, boxShape());
+  World empty;
+  empty.rebuild();
+  Chance chance(9);
+  std::vector<Instance> instances;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    instances.push_back({.mesh = story.meshes[0], .world_from_mesh = chance.placement(200.0, 6.0)});
+    story.world.add(instances.back());
+  }
+  std::vector<InstanceId> ids;
+  listed.add(instances, ids);
+  const View view = viewFrom({0, 1.5, 0}, {0, 0, -1});
+  const auto testedIn = [&](const World& world) {
+    WorldCuller culler;
+    culler.cull(world, view);
+    culler.cull(world, view);
+    return std::tuple(culler.stats().nodes_tested, culler.stats().boxes_tested, culler.visible().size());
+  };
+  EXPECT_NE(testedIn(story.world), testedIn(listed));
+  story.world.rebuild();
+  EXPECT_EQ(testedIn(story.world), testedIn(listed));
+}
+
 TEST(World, WhatCannotBePlacedIsAlwaysKept) {
   Story story(allShapes());
   World& world = story.world;
@@ -295,6 +319,7 @@ TEST(World, WhatCannotBePlacedIsAlwaysKept) {
       world.add({.mesh = story.meshes[0], .world_from_mesh = not_finite}),
       world.add({.mesh = story.meshes[0], .world_from_mesh = projective}),
       world.add({.mesh = endless}),
+      world.add({.mesh = world.addMesh(*makeMesh({}))}),
       world.add({.mesh = MeshId(1000u)}),
       world.add({.mesh = story.meshes[0], .displacement = std::numeric_limits<double>::quiet_NaN()}),
   };
@@ -320,6 +345,35 @@ TEST(World, WhatCannotBePlacedIsAlwaysKept) {
   EXPECT_EQ(std::vector(culler.visible().begin(), culler.visible().end()), std::vector{odd[0]});
 }
 
+// Matrices that flatten, that leave nothing, and of the largest and smallest numbers: whatever becomes of
+// them, exact visibility finds nothing that was left out wrongly.
+TEST(World, MatricesWithoutAnInverseHideNothingThatIsSeen) {
+  for (const double depth : {0.0, 1e-30, 1e-300}) {
+    WallAndCrate scene;
+    scene.story.move(scene.wall, boxAt({-8, 0, -11}, {16, 8, depth}));
+    scene.showsCrate();
+    EXPECT_EQ(judge(scene.story, scene.view, scene.culler).wrong, "") << depth;
+    EXPECT_TRUE(keeps(scene.culler, scene.wall));
+  }
+  for (const Vec3d& size : {Vec3d(0, 0, 0), Vec3d(1e38, 1e38, 1), Vec3d(1e300, 1, 1), Vec3d(16, 8e-7, 1),
+                            Vec3d(1e-320, 1e-320, 1e-320)}) {
+    WallAndCrate scene;
+    scene.story.world.setTransform(scene.wall, boxAt({-8, 0, -11}, size));
+    for (int frame = 0; frame < 3; ++frame) {
+      scene.culler.cull(scene.story.world, scene.view);
+      scene.story.world.tidy();
+    }
+    // None of these covers the crate.
+    EXPECT_TRUE(size.x > 1e30 || keeps(scene.culler, scene.crate));
+    // What hid nothing is drawn again after some frames.
+    scene.story.world.setTransform(scene.wall, boxAt({-8, 0, -11}, {16, 8, 1}));
+    for (int frame = 0; frame < 40; ++frame) {
+      scene.culler.cull(scene.story.world, scene.view);
+    }
+    EXPECT_FALSE(keeps(scene.culler, scene.crate));
+  }
+}
+
 TEST(World, CallsWithIdsThatAreNotThereHaveNoEffect) {
   Story story(allShapes());
   World& world = story.world;
@@ -328,12 +382,14 @@ TEST(World, CallsWithIdsThatAreNotThereHaveNoEffect) {
     world.remove(nothing);
     world.setTransform(nothing, Mat4());
     world.setShown(nothing, false);
+    world.setGroups(nothing, 0);
     EXPECT_FALSE(world.has(nothing));
     EXPECT_FALSE(world.boundsOf(nothing).wellFormed());
     EXPECT_FALSE(world.meshOf(nothing).valid());
   }
   world.drop(JoinId());
   world.drop(JoinId(3u));
+  EXPECT_EQ(world.tombstones(SetsId(3u)), 0u);
   world.removeMesh(MeshId());
   EXPECT_TRUE(world.has(id));
   world.removeMesh(story.meshes[0]);

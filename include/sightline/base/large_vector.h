@@ -6,12 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <new>
 #include <vector>
 
 namespace sightline {
 
-// Memory aligned for any type. Throws std::bad_alloc.
+// Memory aligned for any type; fails as operator new does.
 void* allocateLarge(std::size_t bytes);
 void freeLarge(void* memory, std::size_t bytes);  // bytes: as allocated
 
@@ -24,10 +23,8 @@ struct LargeAllocator {
   LargeAllocator(const LargeAllocator<U>&) {}
 
   T* allocate(std::size_t count) {
-    if (count > std::numeric_limits<std::size_t>::max() / sizeof(T)) {
-      throw std::bad_array_new_length();
-    }
-    return static_cast<T*>(allocateLarge(count * sizeof(T)));
+    constexpr auto kAll = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max());
+    return static_cast<T*>(allocateLarge(count > kAll / sizeof(T) ? kAll : count * sizeof(T)));
   }
   void deallocate(T* memory, std::size_t count) { freeLarge(memory, count * sizeof(T)); }
 

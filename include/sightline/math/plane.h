@@ -13,6 +13,7 @@ struct Plane {
   // Signed distance times the normal's length; positive on the side to which the normal points.
   constexpr double evaluate(const Vec3d& point) const { return dot(normal, point) + offset; }
   constexpr Plane flipped() const { return {-normal, -offset}; }
+  friend constexpr bool operator==(const Plane&, const Plane&) = default;
 };
 
 }  // namespace sightline

@@ -6,6 +6,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/math/mat4.h"
+#include "sightline/math/plane.h"
 #include "sightline/scene/camera.h"
 
 namespace sightline {
@@ -45,5 +46,19 @@ struct ClipSpace {
 // (oblique) or not in front of the eye, the planes are in the other order, borders of the picture are not at
 // right angles, or validate() rejects the view.
 Result<View> viewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space = {});
+
+// A perspective view whose near plane is tilted, as those of mirrors and portals are.
+struct ObliqueView {
+  View view{};         // near: of the nearest point that is drawn; far: infinite
+  Plane near_plane{};  // unit normal, towards what is drawn; scene space
+};
+
+// The same for such a matrix (E. Lengyel. Oblique View Frustum Depth Projection and Clipping. Journal of Game
+// Development 1, 2005). Its far plane, which follows from the near plane and is of no use, is left out. Where
+// the eye is on the drawn side of the near plane, view.near is 0, and hardly anything can hide.
+//
+//   culler.setClipPlane(oblique->near_plane);  // a WorldCuller
+//   culler.cull(world, oblique->view);
+Result<ObliqueView> obliqueViewFromClip(const Mat4& clip_from_scene, const ClipSpace& clip_space = {});
 
 }  // namespace sightline

@@ -7,8 +7,10 @@
 #include <span>
 
 #include "sightline/math/box.h"
+#include "sightline/math/plane.h"
 #include "sightline/occlusion/rasteriser.h"
 #include "sightline/occlusion/visibility.h"
+#include "sightline/occlusion/visible_sets.h"
 #include "sightline/scene/camera.h"
 #include "sightline/world/world.h"
 
@@ -19,6 +21,8 @@ struct WorldCullerSettings {
   // Of the surfaces of one instance, or of a join; `budget` is for all of a view. `step` has no effect.
   SurfaceDrawing drawing{};
   bool occlusion = true;  // false: by the view's volume alone
+  // Only instances that have one of these bits are drawn in the view (Instance::groups).
+  std::uint32_t groups = 0xffffffffu;
 };
 
 // Of the last cull().
@@ -55,10 +59,18 @@ class WorldCuller {
   void cull(const World& world, std::span<const View> views);
   void reset();
 
+  // For views with an oblique near plane or a user clip plane, as those of a mirror: nothing on the negative
+  // side of this plane, in world space, is drawn. It is not kept, and hides nothing. Holds for all views from
+  // the next cull() on; Plane() ends it.
+  void setClipPlane(const Plane& plane);
+  // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use;
+  // null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
+  void useSets(SetsId id, VisibleSets* sets);
+
   // Answers of the last cull(). Instances that may be seen, ascending.
   std::span<const InstanceId> visible() const;
   // The same as a set of bits: instance i is bit i % 64 of word i / 64. As many words as World::idBound()
-  // needs.
+  // needs. Uploaded as it is, it is bit i % 32 of word i / 32 to a shader (of a little-endian machine).
   std::span<const std::uint64_t> visibleBits() const;
   // Instances that the cull() before did not keep, or that were not there then, and instances that it kept
   // and that are not kept any more or have been removed; ascending.
@@ -67,11 +79,12 @@ class WorldCuller {
   const WorldCullStats& stats() const;
   DepthBufferView depthBuffer() const;  // of the first view
 
-  // Whether a box in the space of the world, of something that is no instance, may be seen in one of the
+  // Whether a box, relative to World::origin(), of something that is no instance, may be seen in one of the
   // views: kHidden also means outside of them. Several threads may ask at the same time.
   Visibility classify(const Box& box) const;
 
  private:
+  friend class ShadowCasters;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -24,7 +24,11 @@ struct MeshView {
   const void* indices = nullptr;
   std::uint32_t index_bytes = 4;
   std::size_t index_count = 0;
-  bool clockwise = false;  // as triangles appear that are seen from their front; else counter-clockwise
+  // As triangles appear in the picture that are seen from their front; else counter-clockwise.
+  bool clockwise = false;
+  // The mesh's space is left-handed, as those of Unity, Unreal and Direct3D samples are. This only tells what
+  // `clockwise` means: front faces of Unity and Unreal are clockwise, in left-handed spaces.
+  bool left_handed = false;
 };
 
 struct MeshSettings {
@@ -32,15 +36,36 @@ struct MeshSettings {
   bool double_sided = false;           // back faces are drawn, and hide too
   // False: instances never hide anything, as where a vertex shader moves vertices about.
   bool occludes = true;
+  // Not null: this mesh hides in place of the drawn one. It must lie inside all that is ever drawn of the
+  // other: each level of detail, each pose (checkInside()). Read during the call only.
+  const MeshView* occluder = nullptr;
+  // Not empty: all that is ever drawn lies in this box or in that of the mesh (levels of detail, poses).
+  Box drawn_bounds{};
   SurfaceSettings surfaces{};
 };
 
 // Made by makeMesh() and not to be changed by hand.
 struct WorldMesh {
-  Box bounds{};           // of all triangles; not well formed if one of them is not finite
-  SurfaceSet surfaces{};  // empty if the mesh never hides anything
-  std::uint32_t triangles = 0;
+  Box bounds{};                 // of all triangles; not well formed if one of them is not finite
+  SurfaceSet surfaces{};        // empty if the mesh never hides anything
+  std::uint32_t triangles = 0;  // of the drawn mesh
+  // Of the mesh that hides: vertices that triangles name, and different positions among them. Where both are
+  // equal and open_edges are many, positions that should be equal are not, and the mesh hides little.
+  std::uint32_t vertices = 0, positions = 0;
+  // Edges of the mesh that hides at which its triangles do not cancel: 0 for a closed mesh, whose triangles
+  // all run the same way around.
+  std::uint32_t open_edges = 0;
 };
+
+// A mesh for what has a place and hides nothing: lights, particles, sounds, triggers. Its instances are moved
+// and culled like all others.
+WorldMesh boxMesh(const Box& box);
+
+// Whether one mesh may stand for another as MeshSettings::occluder. Success: no point of the occluder lies
+// outside of the drawn mesh, or on it. Exact. Error, with the reason: the drawn mesh is not closed, the
+// occluder touches it, or part of it lies outside. Takes time as the product of their triangles, for pairs
+// whose boxes overlap; so call it when assets are built.
+Status checkInside(const MeshView& occluder, const MeshView& drawn);
 
 // Reads a mesh and finds its surfaces, once, on any thread. Equal positions are one vertex, whatever their
 // normals and texture coordinates are, so meshes need not be welded. Takes about two microseconds a triangle

@@ -1,0 +1,52 @@
+#include "sightline/world/views_ahead.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sightline {
+namespace {
+
+// Rodrigues' formula.
+Vec3d turned(const Vec3d& v, const Vec3d& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1.0 - c));
+}
+
+// The tangent of an angle of that tangent, made larger.
+double wider(double tangent, double angle) {
+  constexpr double kWidest = 1.3;  // radians
+  return angle == 0.0 ? tangent
+                      : std::tan(std::max(std::atan(tangent), std::min(std::atan(tangent) + angle, kWidest)));
+}
+
+}  // namespace
+
+void viewsAhead(const View& view, const CameraMotion& motion, double seconds, std::span<View> views) {
+  const double rate = length(motion.turn);
+  const Vec3d axis = normalized(motion.turn);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const double step = seconds / static_cast<double>(views.size());
+    const double time = step * static_cast<double>(i + 1);
+    View& ahead = views[i];
+    ahead = view;
+    ahead.eye = view.eye + motion.velocity * time;
+    if (rate > 0.0) {
+      ahead.right = turned(view.right, axis, rate * time);
+      ahead.up = turned(view.up, axis, rate * time);
+      ahead.forward = turned(view.forward, axis, rate * time);
+    }
+    if (view.orthographic) {
+      ahead.ortho_height += 2.0 * motion.spread * time;
+      continue;
+    }
+    // What is at the side of the frustum moves across it by what the eye may be off.
+    const double depth = std::isfinite(view.far) ? std::sqrt(std::max(view.near, 0.01) * view.far) : 10.0;
+    const double angle = rate * step + std::atan(motion.spread * time / depth);
+    const double high = wider(view.tan_half_fovy, angle),
+                 wide = wider(view.tan_half_fovy * view.aspect, angle);
+    ahead.tan_half_fovy = high;
+    ahead.aspect = wide / high;
+  }
+}
+
+}  // namespace sightline

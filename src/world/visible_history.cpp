@@ -1,0 +1,43 @@
+#include "sightline/world/visible_history.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace sightline {
+
+void VisibleHistory::update(const World& world, const WorldCuller& culler, double seconds) {
+  const double step = seconds > 0.0 ? seconds : 0.0;
+  time_s_ += step;
+  const float change =
+      settings_.fade_in_s > 0.0 ? static_cast<float>(std::min(step / settings_.fade_in_s, 1.0)) : 1.0f;
+  states_.resize(std::max(states_.size(), world.idBound()));
+  // An id that appears although it is held may be that of another instance, which was not visible before.
+  for (const InstanceId id : culler.appeared()) {
+    if (states_[id.value].held && states_[id.value].seen_at == time_s_ - step) {
+      states_[id.value] = {};
+    }
+  }
+  std::swap(held_, last_held_);
+  held_.clear();
+  std::set_union(last_held_.begin(), last_held_.end(), culler.visible().begin(), culler.visible().end(),
+                 std::back_inserter(held_));
+  std::erase_if(held_, [&](InstanceId id) {
+    State& state = states_[id.value];
+    const bool visible =
+        std::binary_search(culler.visible().begin(), culler.visible().end(), id) && world.has(id);
+    if (visible) {
+      state.seen_at = time_s_;
+      state.opacity = first_ ? 1.0f : std::min(state.opacity + change, 1.0f);
+    } else {
+      state.opacity = std::max(state.opacity - change, 0.0f);
+    }
+    state.held = world.has(id) && (visible || (state.held && time_s_ - state.seen_at < settings_.hold_s));
+    if (!state.held) {
+      state = {};
+    }
+    return !state.held;
+  });
+  first_ = false;
+}
+
+}  // namespace sightline

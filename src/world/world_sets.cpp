@@ -1,0 +1,95 @@
+// Instances that a baked scene knows as its objects.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sightline/world/world.h"
+#include "src/world/world_data.h"
+
+namespace sightline {
+
+using namespace world;
+
+namespace world {
+namespace {
+
+// Whether a box of a world is that of a baked scene, up to what rounding may have made of it.
+bool sameBox(const Box& now, const Box& baked, const Vec3d& baked_from_now) {
+  if (!now.wellFormed() || !baked.wellFormed()) {
+    return false;
+  }
+  constexpr double kRounding = 0x1p-17;
+  const auto size = [](const Box& box) {
+    return maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))));
+  };
+  const double allowed = kRounding * (size(now) + size(baked));
+  return maxComponent(abs(Vec3d(now.min) + baked_from_now - Vec3d(baked.min))) <= allowed &&
+         maxComponent(abs(Vec3d(now.max) + baked_from_now - Vec3d(baked.max))) <= allowed;
+}
+
+}  // namespace
+
+// Makes an instance a tombstone of the sets that it belongs to.
+void WorldData::leaveSets(std::uint32_t id) {
+  if (!instances[id].baked) {
+    return;
+  }
+  const InstanceExtra& own = extras[id];
+  BakedObjects& left = sets[own.sets];
+  left.instances[own.object] = InstanceId();
+  left.tombstones.emplace_back(own.object);
+  left.version = ++version;
+  instances[id].baked = false;
+}
+
+}  // namespace world
+
+SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin) {
+  WorldData& own = *data_;
+  const std::uint32_t number = numberIn(own.sets, own.free_sets);
+  own.sets[number] = {.there = true, .origin = baked_origin, .groups = 0xffffffffu};
+  own.sets[number].instances.resize(boxes.objects.size());
+  for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
+    if (!boxes.leaf(node)) {
+      continue;
+    }
+    for (const ObjectId object : boxes.objectsBelow(node)) {
+      const InstanceId id = object.value < objects.size() ? objects[object.value] : InstanceId();
+      const bool same = has(id) && own.instances[id.value].shown && own.instances[id.value].occludes &&
+                        own.instances[id.value].displacement == 0.0f &&
+                        sameBox(own.boundsOf(id.value), boxes.nodes[node].bounds, own.origin - baked_origin);
+      if (!same) {
+        own.sets[number].tombstones.push_back(object);
+        continue;
+      }
+      own.leaveSets(id.value);
+      own.instances[id.value].baked = true;
+      own.extras[id.value].sets = number;
+      own.extras[id.value].object = object.value;
+      own.sets[number].instances[object.value] = id;
+      own.sets[number].groups &= own.instances[id.value].groups;
+    }
+  }
+  own.sets[number].version = ++own.version;
+  return SetsId(number);
+}
+
+void World::dropSets(SetsId sets) {
+  WorldData& own = *data_;
+  if (sets.value >= own.sets.size() || !own.sets[sets.value].there) {
+    return;
+  }
+  for (const InstanceId id : own.sets[sets.value].instances) {
+    if (id.valid()) {
+      own.instances[id.value].baked = false;
+    }
+  }
+  own.sets[sets.value] = {};
+  own.free_sets.push_back(sets.value);
+}
+
+std::size_t World::tombstones(SetsId sets) const {
+  return sets.value < data_->sets.size() ? data_->sets[sets.value].tombstones.size() : 0;
+}
+
+}  // namespace sightline

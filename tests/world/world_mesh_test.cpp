@@ -1,0 +1,153 @@
+// Meshes: what is welded, what stands for another mesh, and whether it lies inside.
+
+#include "sightline/world/world_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/world/world_story.h"
+
+namespace sightline {
+namespace {
+
+using namespace world_story;
+
+MeshView viewOf(const std::vector<Vec3f>& corners) {
+  return {.positions = corners.data(), .vertex_count = static_cast<std::uint32_t>(corners.size())};
+}
+
+// A box shape with these corners.
+std::vector<Vec3f> boxFrom(const Vec3f& min, const Vec3f& max) {
+  std::vector<Vec3f> corners = boxShape().corners;
+  for (Vec3f& p : corners) {
+    p = {p.x > 0 ? max.x : min.x, p.y > 0 ? max.y : min.y, p.z > 0 ? max.z : min.z};
+  }
+  return corners;
+}
+
+std::string faultOf(const std::vector<Vec3f>& occluder, const std::vector<Vec3f>& drawn) {
+  const Status status = checkInside(viewOf(occluder), viewOf(drawn));
+  return status ? std::string() : status.error().message;
+}
+
+TEST(WorldMesh, SaysWhatWasWeldedAndWhatStaysOpen) {
+  const Shape box = boxShape();
+  const WorldMesh welded = *makeMesh(viewOf(box.corners));
+  EXPECT_EQ(welded.vertices, 36u);
+  EXPECT_EQ(welded.positions, 8u);
+  EXPECT_EQ(welded.open_edges, 0u);
+  // Vertices that are nearly equal are not welded; each of the twelve triangles is alone then.
+  std::vector<Vec3f> torn = box.corners;
+  for (std::size_t i = 0; i < torn.size(); ++i) {
+    torn[i].x += 0x1p-20f * static_cast<float>(i);
+  }
+  const WorldMesh open = *makeMesh(viewOf(torn));
+  EXPECT_EQ(open.positions, 36u);
+  EXPECT_EQ(open.open_edges, 36u);
+  const WorldMesh panel = *makeMesh(viewOf(panelShape(false).corners));
+  EXPECT_EQ(panel.positions, 4u);
+  EXPECT_EQ(panel.open_edges, 4u);
+  const WorldMesh nothing = *makeMesh({});
+  EXPECT_EQ(nothing.triangles + nothing.vertices + nothing.positions + nothing.open_edges, 0u);
+  const WorldMesh light = boxMesh({{-1, -1, -1}, {1, 1, 1}});
+  EXPECT_TRUE(light.bounds.wellFormed());
+  EXPECT_TRUE(light.surfaces.parts.empty());
+}
+
+// The drawn mesh is a box with a part that is drawn in other levels of detail; a smaller box hides for it.
+TEST(WorldMesh, AnotherMeshHidesInItsPlace) {
+  const std::vector<Vec3f> drawn = boxFrom({-4, -4, 0}, {4, 4, 1}),
+                           inner = boxFrom({-1, -1, 0.25f}, {1, 1, 0.75f});
+  EXPECT_EQ(faultOf(inner, drawn), "");
+  const MeshView hides = viewOf(inner);
+  const WorldMesh mesh =
+      *makeMesh(viewOf(drawn), {.occluder = &hides, .drawn_bounds = {{0, 0, 0}, {5, 1, 1}}});
+  EXPECT_EQ(mesh.bounds, (Box{{-4, -4, 0}, {5, 4, 1}}));
+  EXPECT_EQ(mesh.triangles, 12u);
+  World world;
+  world.add({.mesh = world.addMesh(mesh)});
+  const MeshId crate = world.addMesh(boxMesh({{-0.125f, -0.125f, -9}, {0.125f, 0.125f, -8}}));
+  const InstanceId behind = world.add({.mesh = crate});
+  Mat4 aside;
+  aside(0, 3) = 4.0;
+  const InstanceId beside = world.add({.mesh = crate, .world_from_mesh = aside});
+  WorldCuller culler;
+  culler.cull(world, viewFrom({0, 0, 6}, {0, 0, -1}));
+  culler.cull(world, viewFrom({0, 0, 6}, {0, 0, -1}));
+  EXPECT_EQ(culler.classify(world.boundsOf(behind)), Visibility::kHidden);
+  EXPECT_NE(culler.classify(world.boundsOf(beside)), Visibility::kHidden);
+  MeshView broken = hides;
+  broken.position_stride = 1;
+  EXPECT_FALSE(makeMesh(viewOf(drawn), {.occluder = &broken}));
+}
+
+TEST(WorldMesh, WhatTouchesOrCrossesTheDrawnMeshIsNotInside) {
+  const std::vector<Vec3f> drawn = boxFrom({0, 0, 0}, {4, 4, 4});
+  EXPECT_EQ(faultOf(boxFrom({1, 1, 1}, {3, 3, 3}), drawn), "");
+  for (const std::vector<Vec3f>& wrong :
+       {boxFrom({1, 1, 1}, {3, 3, 4}), boxFrom({1, 1, 1}, {3, 3, 5}), boxFrom({5, 1, 1}, {6, 3, 3}),
+        boxFrom({-1, -1, -1}, {5, 5, 5}), boxFrom({0, 0, 0}, {4, 4, 4}), boxFrom({4, 1, 1}, {6, 3, 3})}) {
+    EXPECT_NE(faultOf(wrong, drawn), "");
+  }
+  // Two pieces, one inside and one outside.
+  std::vector<Vec3f> pieces = boxFrom({1, 1, 1}, {3, 3, 3});
+  const std::vector<Vec3f> other = boxFrom({6, 6, 6}, {7, 7, 7});
+  pieces.insert(pieces.end(), other.begin(), other.end());
+  EXPECT_NE(faultOf(pieces, drawn), "");
+  // A hollow box: what is in the hollow is outside.
+  std::vector<Vec3f> hollow = drawn;
+  std::vector<Vec3f> hole = boxFrom({1, 1, 1}, {3, 3, 3});
+  for (std::size_t i = 0; i < hole.size(); i += 3) {
+    std::swap(hole[i + 1], hole[i + 2]);
+  }
+  hollow.insert(hollow.end(), hole.begin(), hole.end());
+  EXPECT_NE(faultOf(boxFrom({1.5f, 1.5f, 1.5f}, {2, 2, 2}), hollow), "");
+  EXPECT_EQ(faultOf(boxFrom({0.25f, 0.25f, 0.25f}, {0.5f, 3, 3}), hollow), "");
+  // Inside out, or open, there is no inside.
+  EXPECT_NE(faultOf(boxFrom({1.5f, 1.5f, 1.5f}, {2, 2, 2}), hole), "");
+  std::vector<Vec3f> open = drawn;
+  open.resize(open.size() - 3);
+  EXPECT_NE(faultOf(boxFrom({1, 1, 1}, {3, 3, 3}), open), "");
+  EXPECT_NE(faultOf({{1, 1, 1}, {2, HUGE_VALF, 1}, {2, 2, 2}}, drawn), "");
+  EXPECT_EQ(faultOf({}, drawn), "");
+  EXPECT_FALSE(checkInside({.position_stride = 3}, viewOf(drawn)));
+}
+
+// A tetrahedron is inside a box if all four of its corners are, since a box is convex.
+TEST(WorldMesh, InsideABoxIsWhatHasAllCornersInside) {
+  std::mt19937 engine(11);
+  std::size_t inside = 0;
+  for (int i = 0; i < 4000; ++i) {
+    // Whole numbers, so that touching is frequent.
+    std::array<Vec3f, 4> t;
+    bool all = true;
+    for (Vec3f& p : t) {
+      for (int axis = 0; axis < 3; ++axis) {
+        p[axis] = static_cast<float>(engine() % 10);
+        all = all && p[axis] > 0.0f && p[axis] < 9.0f;
+      }
+    }
+    const Vec3d a(t[1] - t[0]), b(t[2] - t[0]), c(t[3] - t[0]);
+    if (dot(cross(a, b), c) == 0.0) {
+      continue;
+    }
+    const std::vector<Vec3f> corners{t[0], t[1], t[2], t[0], t[2], t[3], t[0], t[3], t[1], t[1], t[3], t[2]};
+    EXPECT_EQ(faultOf(corners, boxFrom({0, 0, 0}, {9, 9, 9})) == "", all);
+    inside += all ? 1 : 0;
+  }
+  EXPECT_GT(inside, 50u);
+}
+
+TEST(World, MarksAreTheCallersOwn) {
+  World world;
+  const MeshId mesh = world.addMesh(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+  const InstanceId id = world.add({.mesh = mesh, .mark = 0xfedcba9876543210u});
+  EXPECT_EQ(world.markOf(id), 0xfedcba9876543210u);
+  world.remove(id);
+  EXPECT_EQ(world.markOf(id), 0u);
+  EXPECT_EQ(world.markOf(world.add({.mesh = mesh})), 0u);
+}
+
+}  // namespace
+}  // namespace sightline

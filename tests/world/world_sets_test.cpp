@@ -1,0 +1,202 @@
+// Baked sets of a world that changes: sets as tight as exact visibility allows, and objects that go.
+
+#include <gtest/gtest.h>
+
+#include "tests/culling/fake_sets.h"
+#include "tests/world/world_story.h"
+
+namespace sightline {
+namespace {
+
+using namespace world_story;
+
+// A story, and the set of what exact visibility sees from one view as if it had been baked for its eye.
+struct Baked {
+  Story story{allShapes()};
+  std::vector<InstanceId> ids;  // by ObjectId
+  std::vector<bool> members;
+  View view = viewFrom({0, 1.5, 12}, {0, 0, -1});
+  std::vector<Box> boxes;
+
+  Baked(Chance& chance, std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      story.add(chance.below(5), chance.placement(12.0, 5.0));
+    }
+    const Scene scene = story.scene(ids);
+    const ExactVisibility exact(scene.view());
+    std::vector<ObjectId> all;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      all.emplace_back(i);
+      boxes.push_back(scene.objects[i].bounds);
+    }
+    for (const Decision& decision : exact.decide(view, all, 50'000)) {
+      members.push_back(decision.verdict != Verdict::kHidden);
+    }
+  }
+};
+
+std::size_t countOf(const std::vector<bool>& members) {
+  return static_cast<std::size_t>(std::count(members.begin(), members.end(), true));
+}
+
+TEST(WorldSets, HoldUntilSomethingInThemGoes) {
+  std::size_t holding = 0, void_ones = 0;
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    Chance chance(seed);
+    Baked baked(chance, 40);
+    fake_sets::FakeSets sets(baked.boxes);
+    sets.use(7, baked.members);
+    World& world = baked.story.world;
+    const SetsId id = world.useSets(baked.ids, sets.boxes());
+    EXPECT_EQ(world.tombstones(id), 0u);
+    // Sets alone hide here, so that whatever they do wrong shows.
+    WorldCuller culler({.occlusion = false}), plain({.occlusion = false});
+    culler.useSets(id, &sets);
+    bool holds = true;
+    for (int change = 0; change < 12; ++change) {
+      culler.cull(world, baked.view);
+      EXPECT_EQ(judge(baked.story, baked.view, culler).wrong, "") << seed << " " << change;
+      if (change == 0) {
+        EXPECT_EQ(culler.visible().size(), countOf(baked.members));
+      }
+      plain.cull(world, baked.view);
+      (holds ? holding : void_ones) += 1;
+      for (std::size_t o = 0; o < baked.ids.size() && holds; ++o) {
+        EXPECT_FALSE(!baked.members[o] && baked.ids[o].valid() && keeps(culler, baked.ids[o]));
+      }
+      EXPECT_TRUE(holds || std::ranges::equal(culler.visible(), plain.visible()));
+      // In every other world only what is in no set goes for a while.
+      std::uint32_t object = chance.below(static_cast<std::uint32_t>(baked.ids.size()));
+      while (seed % 2 == 0 && change < 6 && baked.members[object]) {
+        object = (object + 1) % static_cast<std::uint32_t>(baked.ids.size());
+      }
+      const InstanceId gone = baked.ids[object];
+      const bool there = gone.valid();
+      holds = holds && !(there && baked.members[object]);
+      if (there && change % 3 == 0) {
+        baked.story.remove(gone);
+      } else if (there && change % 3 == 1) {
+        baked.story.move(gone, chance.placement(12.0, 5.0));
+      } else if (there) {
+        baked.story.show(gone, false);
+      }
+      // What came is in no set, whatever id it has.
+      const InstanceId came = baked.story.add(0, chance.placement(12.0, 5.0));
+      EXPECT_EQ(came == gone, there && change % 3 == 0);
+      baked.ids[object] = InstanceId();
+    }
+  }
+  EXPECT_GT(holding, 100u);
+  EXPECT_GT(void_ones, 100u);
+}
+
+TEST(WorldSets, NameOnlyWhatStandsWhereItWasBaked) {
+  Chance chance(3);
+  Baked baked(chance, 40);
+  World& world = baked.story.world;
+  fake_sets::FakeSets sets(baked.boxes);
+  sets.use(1, std::vector<bool>(baked.ids.size(), false));
+  // Nothing may be seen, says the set; but three are not what was baked.
+  baked.story.show(baked.ids[3], false);
+  Mat4 other = baked.story.told.at(baked.ids[4].value).world_from_mesh;
+  other(0, 3) += 0.5;
+  baked.story.move(baked.ids[4], other);
+  std::vector<InstanceId> given = baked.ids;
+  given[5] = InstanceId(4711u);
+  const SetsId id = world.useSets(given, sets.boxes());
+  EXPECT_EQ(world.tombstones(id), 3u);
+  WorldCuller culler({.occlusion = false}), plain({.occlusion = false});
+  culler.useSets(id, &sets);
+  View all = baked.view;
+  all.tan_half_fovy = 8.0;
+  all.eye = {0, 1.5, 60};
+  culler.cull(world, all);
+  EXPECT_EQ(std::vector(culler.visible().begin(), culler.visible().end()),
+            (std::vector{baked.ids[4], baked.ids[5]}));
+  // The moved one is a tombstone only of sets that name it.
+  std::vector<bool> members(baked.ids.size(), false);
+  members[4] = true;
+  sets.use(2, members);
+  plain.cull(world, all);
+  culler.cull(world, all);
+  EXPECT_TRUE(std::ranges::equal(culler.visible(), plain.visible()));
+  // Views in which not all is drawn, views that are orthographic, and sets that are dropped.
+  sets.use(1, std::vector<bool>(baked.ids.size(), false));
+  const auto keepsAll = [&] {
+    culler.cull(world, all);
+    plain.cull(world, all);
+    return std::ranges::equal(culler.visible(), plain.visible());
+  };
+  EXPECT_FALSE(keepsAll());
+  culler.setClipPlane({{0, 0, -1}, 60.0});
+  EXPECT_TRUE(keepsAll());
+  culler.setClipPlane(Plane());
+  EXPECT_FALSE(keepsAll());
+  culler.reset();
+  EXPECT_FALSE(keepsAll());
+  all.orthographic = true;
+  EXPECT_TRUE(keepsAll());
+  all.orthographic = false;
+  sets.useEverything();
+  EXPECT_TRUE(keepsAll());
+  sets.use(1, std::vector<bool>(baked.ids.size(), false));
+  EXPECT_FALSE(keepsAll());
+  world.setGroups(baked.ids[0], 2);
+  EXPECT_FALSE(keepsAll());
+  world.dropSets(id);
+  EXPECT_TRUE(keepsAll());
+  world.dropSets(id);
+  world.dropSets(SetsId());
+  // The number is used again by sets of another scene, with fewer objects.
+  const fake_sets::FakeSets fewer(std::span(baked.boxes).first(3));
+  EXPECT_EQ(world.useSets(given, fewer.boxes()), id);
+  EXPECT_TRUE(keepsAll());
+  culler.useSets(id, nullptr);
+  EXPECT_TRUE(keepsAll());
+}
+
+// A cell of the world that is streamed in elsewhere than it was baked, and goes again.
+TEST(WorldSets, ACellIsUsedWhereverItIsPut) {
+  for (const Vec3d& place : {Vec3d(0, 0, 0), Vec3d(4096, 0, -8192), Vec3d(1 << 20, 64, 1 << 20)}) {
+    Chance chance(5);
+    Baked baked(chance, 40);
+    fake_sets::FakeSets sets(baked.boxes);
+    sets.use(1, baked.members);
+    World world;
+    std::vector<MeshId> meshes;
+    for (const Shape& shape : allShapes()) {
+      meshes.push_back(addShape(world, shape));
+    }
+    world.setOrigin(place);
+    std::vector<InstanceId> ids;
+    std::vector<Instance> cell;
+    for (const InstanceId id : baked.ids) {
+      const Told& told = baked.story.told.at(id.value);
+      Mat4 m = told.world_from_mesh;
+      for (int axis = 0; axis < 3; ++axis) {
+        m(axis, 3) += place[axis];
+      }
+      cell.push_back({.mesh = meshes[told.shape], .world_from_mesh = m});
+    }
+    world.add(cell, ids);
+    const SetsId id = world.useSets(ids, sets.boxes(), place);
+    EXPECT_EQ(world.tombstones(id), 0u);
+    WorldCuller culler({.occlusion = false});
+    culler.useSets(id, &sets);
+    View view = baked.view;
+    view.eye = view.eye + place;
+    culler.cull(world, view);
+    EXPECT_EQ(sets.last_eye, baked.view.eye);
+    EXPECT_EQ(culler.visible().size(), countOf(baked.members));
+    for (const InstanceId gone : ids) {
+      world.remove(gone);
+    }
+    world.dropSets(id);
+    culler.useSets(id, nullptr);
+    culler.cull(world, view);
+    EXPECT_TRUE(culler.visible().empty());
+  }
+}
+
+}  // namespace
+}  // namespace sightline
