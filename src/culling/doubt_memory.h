@@ -12,53 +12,55 @@ namespace sightline::culling {
 
 // An object that a finer depth buffer hid is likely to be hidden by one again, and attracts windows. One that
 // could be seen in it all the same rests, for longer each time: some views pass before it is looked at again.
-// Four bytes an object.
 class DoubtMemory {
  public:
   static constexpr std::uint32_t kCertain = 256;
 
-  explicit DoubtMemory(std::size_t objects) : objects_(objects) {}
+  // objects: 0: it remembers nothing, and every object is as one that was never looked at. view: the number
+  // of the view before the first one; after the largest number comes 0.
+  explicit DoubtMemory(std::size_t objects, std::uint32_t view = 0)
+      : objects_(objects, Past{view}), view_(view) {}
 
-  void beginView() {
-    if (++view_ == kLastView) {
-      objects_.assign(objects_.size(), Doubt{});
-      view_ = 0;
-    }
-  }
+  void beginView() { ++view_; }
 
-  bool rests(ObjectId object) const { return objects_[object.value].until > view_; }
+  // What was last looked at before as many views as there are numbers may rest once more.
+  bool rests(ObjectId object) const { return of(object).rests_until - view_ - 1 < kMaxRest; }
   // Whether a finer buffer hid the object when it was last looked at.
-  bool wasHidden(ObjectId object) const { return objects_[object.value].halvings == 0; }
+  bool wasHidden(ObjectId object) const { return of(object).halvings == 0; }
   // How likely a finer buffer hides the object, at most kCertain.
-  std::uint32_t chance(ObjectId object) const { return kCertain >> objects_[object.value].halvings; }
+  std::uint32_t chance(ObjectId object) const { return kCertain >> of(object).halvings; }
 
-  // It can be seen in many pixels.
-  void clear(ObjectId object) { rest(object, kClearRest); }
-  void hidden(ObjectId object) { objects_[object.value] = {0, 0}; }
-  // A finer buffer did not hide it.
+  // The object shows in many pixels, so no finer buffer hides it.
+  void clear(ObjectId object) { set(object, kClearRest, std::max(of(object).halvings, kUntried)); }
+  void hidden(ObjectId object) { set(object, 0, 0); }
+  // A finer buffer did not hide the object.
   void seen(ObjectId object) {
-    const std::uint32_t halvings = std::min(objects_[object.value].halvings + 1u, kMostHalvings);
-    objects_[object.value].halvings = halvings & kMostHalvings;
-    rest(object, 1u << halvings);
+    const std::uint32_t halvings = std::min(of(object).halvings + 1, kMaxHalvings);
+    set(object, 1u << halvings, halvings);
   }
 
  private:
-  static constexpr std::uint32_t kClearRest = 20;                // views; up to 7 are added
-  static constexpr std::uint32_t kMostHalvings = 7;              // what three bits can hold
-  static constexpr std::uint32_t kLastView = (1u << 29) - 1000;  // far less than all bits of `until`
+  static constexpr std::uint32_t kUntried = 1, kMaxHalvings = 7;  // of the chance
+  static constexpr std::uint32_t kSpread = 8;                     // views by which rests differ
+  static constexpr std::uint32_t kClearRest = 20;                 // views
+  static constexpr std::uint32_t kMaxRest = (1u << kMaxHalvings) + kSpread;
 
-  struct Doubt {
-    std::uint32_t until : 29 = 0;    // the last view in which it rests
-    std::uint32_t halvings : 3 = 1;  // of the chance
+  struct Past {
+    std::uint32_t rests_until = 0;  // the last view in which the object rests
+    std::uint32_t halvings = kUntried;
   };
 
-  // The lengths differ, so that objects that came into view together are not all looked at in one view.
-  void rest(ObjectId object, std::uint32_t views) {
-    objects_[object.value].until = (view_ + views + (object.value & 7)) & ((1u << 29) - 1);
+  Past of(ObjectId object) const { return objects_.empty() ? Past{view_} : objects_[object.value]; }
+  // Rests differ in length, so that objects that came into view together are not all looked at in one view.
+  void set(ObjectId object, std::uint32_t rest, std::uint32_t halvings) {
+    if (!objects_.empty()) {
+      const std::uint32_t spread = rest > 0 ? object.value % kSpread : 0;
+      objects_[object.value] = {view_ + rest + spread, halvings};
+    }
   }
 
-  std::vector<Doubt> objects_;
-  std::uint32_t view_ = 0;
+  std::vector<Past> objects_;
+  std::uint32_t view_;
 };
 
 }  // namespace sightline::culling

@@ -47,12 +47,12 @@ void FocusChoice::add(std::span<const BufferPixel> pixels, std::uint32_t weight)
   any_ = any_ || (count > 0 && weight > 0);
 }
 
-std::uint32_t FocusChoice::next(double min_weight, PixelRange& range) {
+std::uint32_t FocusChoice::next(double min_weight, occlusion::PixelRange& range) {
   if (!any_) {
     return 0;
   }
   std::uint32_t max_sum = 0, best_column = 0, best_row = 0;
-  // The rows of windows that reach a weight.
+  // A window may begin in these rows: others have no weight in them.
   const std::uint32_t highest = rows_ - window_rows_;
   const std::uint32_t last = std::min(last_row_, highest);
   std::uint32_t row = std::min(first_row_ < window_rows_ ? 0 : first_row_ - window_rows_ + 1, highest);

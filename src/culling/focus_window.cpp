@@ -6,6 +6,9 @@
 #include "src/occlusion/box_depth_test.h"
 
 namespace sightline::culling {
+
+using occlusion::PixelRange;
+
 namespace {
 
 // The same point lies in the two buffers at places that differ by rounding in double precision alone, less

@@ -104,7 +104,7 @@ bool anyNearer(std::span<const DepthLevel> levels, std::uint32_t level, const Pi
 // Compares one box with cells by its own outline and depth.
 struct Refinement {
   std::span<const DepthLevel> levels;
-  const PixelBox& image;      // the pixels that are compared, and the box's depths
+  PixelBox image;             // the pixels that are compared, and the box's depths
   const BoxOutline& outline;  // its functions are of pixels from (x0, y0)
   float x0, y0;
   std::uint32_t rows_left = ~0u;  // of eight cells; then what is left counts as open
@@ -155,6 +155,14 @@ struct Refinement {
       row.surely_open = row.surely_open || !hn::AllFalse(d, hn::And(intersecting, surely));
     });
     return row;
+  }
+
+  // From now on these pixels are compared.
+  void compare(const PixelRange& range) {
+    image.x0 = range.x0;
+    image.y0 = range.y0;
+    image.x1 = range.x1;
+    image.y1 = range.y1;
   }
 
   // Whether in some pixel of these cells the box is not surely hidden.
@@ -240,13 +248,22 @@ float rounded(double value) {
   return static_cast<float>(std::min<double>(value, std::numeric_limits<float>::max()));
 }
 
+// The greatest distances of the box's points from the eye along each axis, metres.
+Vec3d farthestFrom(const Vec3d& eye, const Box& box) {
+  return max(abs(Vec3d(box.min) - eye), abs(Vec3d(box.max) - eye));
+}
+
+// Whether the outline and the faces of a box can be computed wherever it lies.
+bool hasOutline(const PixelView& view, const Box& box) {
+  constexpr double kLargest = 0x1p60;  // metres; products stay finite
+  return view.sane() && box.wellFormed() && maxComponent(farthestFrom(view.eye, box)) < kLargest;
+}
+
 // Whether the buffer hides all of a box that reaches the near plane. Such a box has no rectangle, but its
 // outline and its faces hold for those points of it that are before the eye.
 bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box) {
-  constexpr double kLargest = 0x1p60;           // metres; products stay finite
-  constexpr std::uint32_t kMostRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
-  const Vec3d size = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
-  if (!view.sane() || !box.wellFormed() || !(maxComponent(size) < kLargest)) {
+  constexpr std::uint32_t kMaxRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
+  if (!hasOutline(view, box)) {
     return false;
   }
   const DepthLevel &buffer = levels.front(), &top = levels.back();
@@ -256,7 +273,7 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, c
   image.x1 = static_cast<std::uint16_t>(buffer.width - 1);
   image.y1 = static_cast<std::uint16_t>(buffer.height - 1);
   image.nearest = rounded(view.reciprocalDepth(view.frustum_near));
-  image.farthest = rounded(view.reciprocalDepth(dot(abs(view.forward), size)));
+  image.farthest = rounded(view.reciprocalDepth(dot(abs(view.forward), farthestFrom(view.eye, box))));
   // An empty buffer hides nothing, not even what lies beside the view.
   if (!anyNearer(levels, level, image, all, kUncovered)) {
     return false;
@@ -265,7 +282,7 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, c
   const BoxOutline outline = outlineOf(view, box, 0, 0, reach);
   // Without faces the eye is in the box or on it, or nothing is known of them.
   Refinement refinement(levels, image, outline);
-  refinement.rows_left = kMostRows;
+  refinement.rows_left = kMaxRows;
   return outline.face_count > 0 && !refinement.anyOpen(level, all);
 }
 
@@ -320,7 +337,7 @@ std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& vi
   if (levels.empty() || image.place == BoxPlace::kUnbounded) {
     return kManyPixels;
   }
-  constexpr std::uint32_t kMostRows = 64;  // of eight cells; a box that takes more of them has many pixels
+  constexpr std::uint32_t kMaxRows = 64;  // of eight cells; a box that takes more of them has many pixels
   std::uint32_t level = 0;
   const CellRange range = finestRange(image, level);
   if (allNearer(levels[level], range, image.nearest)) {
@@ -329,7 +346,7 @@ std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& vi
   const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
   const std::size_t before = pixels.size();
   Refinement refinement(levels, image, outline);
-  refinement.rows_left = kMostRows;
+  refinement.rows_left = kMaxRows;
   if (!refinement.findOpen(level, range, before + max, pixels)) {
     pixels.resize(before);
     return kManyPixels;
@@ -339,12 +356,10 @@ std::uint32_t openPixels(std::span<const DepthLevel> levels, const PixelView& vi
 
 bool hidesWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
                  std::span<const PixelRange> ranges) {
-  constexpr double kLargest = 0x1p60;  // metres; products stay finite
-  const Vec3d size = max(abs(Vec3d(box.min) - view.eye), abs(Vec3d(box.max) - view.eye));
-  if (levels.empty() || !view.sane() || !box.wellFormed() || !(maxComponent(size) < kLargest)) {
+  if (levels.empty() || !hasOutline(view, box)) {
     return false;
   }
-  PixelBox image;
+  PixelBox image;                                     // the rectangle around the ranges
   image.nearest = std::numeric_limits<float>::max();  // its faces say more
   image.farthest = kUncovered;
   image.x0 = image.y0 = std::numeric_limits<std::uint16_t>::max();
@@ -362,11 +377,8 @@ bool hidesWithin(std::span<const DepthLevel> levels, const PixelView& view, cons
   }
   Refinement refinement(levels, image, outline);
   for (const PixelRange& range : ranges) {
-    image.x0 = range.x0;
-    image.y0 = range.y0;
-    image.x1 = range.x1;
-    image.y1 = range.y1;
-    const CellRange cells = finestRange(image, level);
+    refinement.compare(range);
+    const CellRange cells = finestRange(refinement.image, level);
     if (refinement.anyOpen(level, cells)) {
       return false;
     }

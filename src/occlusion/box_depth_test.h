@@ -9,6 +9,7 @@
 #include "sightline/occlusion/depth_pyramid.h"
 #include "src/occlusion/depth_levels.h"
 #include "src/occlusion/pixel_boxes.h"
+#include "src/occlusion/pixel_range.h"
 #include "src/scene/pixel_view.h"
 
 namespace sightline::occlusion {
@@ -27,7 +28,8 @@ void testBoxes(std::span<const DepthLevel> levels, const PixelView& view, std::s
 // without levels. image: of the box. Every instruction set gives the same pixels in the same order.
 std::uint32_t findOpenPixels(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
                              const PixelBox& image, std::uint32_t max, std::vector<BufferPixel>& pixels);
-// Whether the buffer surely hides what of a box lies in these pixels and beyond the near plane.
+// Whether the buffer surely hides what of a box lies in these pixels and beyond the near plane. ranges: not
+// empty.
 bool hidesBoxWithin(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
                     std::span<const PixelRange> ranges);
 

@@ -26,6 +26,13 @@ class DepthLevels {
  public:
   static constexpr std::uint32_t kMaxLevels = 6;
 
+  DepthLevels() = default;
+  // The levels of a copy would be those of the original.
+  DepthLevels(const DepthLevels&) = delete;
+  DepthLevels& operator=(const DepthLevels&) = delete;
+  DepthLevels(DepthLevels&&) noexcept = default;
+  DepthLevels& operator=(DepthLevels&&) noexcept = default;
+
   // Builds the levels of a depth buffer, which must outlive their use; it is copied only where its rows are
   // not whole groups of eight. The bits are the same with any number of threads and every instruction set.
   void build(const DepthBufferView& buffer, const ParallelFor& parallel_for = serialFor);

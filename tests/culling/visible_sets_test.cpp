@@ -214,7 +214,7 @@ TEST(VisibleSets, FrustumCullingHasNone) {
 }
 
 // The visibility tests of these methods do not depend on the set, so results are compared object by object.
-// Only the place of the focus window depends on the set, since it follows the objects that are kept.
+// Finer depth buffers are off: all objects that are kept decide where they lie, and so what they hide.
 TEST(VisibleSets, AMethodsAnswerWithinTheSetIsTheSameAsWithoutIt) {
   std::uint32_t id = 0;
   std::mt19937_64 random(77);

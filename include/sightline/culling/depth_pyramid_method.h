@@ -20,16 +20,16 @@ struct FocusSettings {
   RasterSettings raster{.width = 64, .height = 64};  // of each; coverage: that of the first one counts
   // Without surfaces: at most so many more occluders than in the first one.
   std::uint32_t occluder_count = 64;
-  // A window is drawn where it is likely to take away so many objects that its work is at most so many times
-  // what the view has cost for as many. With more, more windows are drawn.
+  // A window may cost so many times what the view costs for each object that the window takes away. Work is
+  // counted and not timed, and both costs are averages of the last views.
   double worth = 2.0;
 };
 
 struct DepthPyramidMethodSettings {
   RasterSettings raster{};
   FocusSettings focus{};  // with the conservative coverage only
-  // Surfaces that were of no use of late rest for a few frames; without surfaces, what was kept is not tested
-  // again for six to nine frames.
+  // Surfaces that were of no use of late rest for a few frames, and so do objects that finer depth buffers
+  // did not hide; without surfaces, what was kept is not tested again for six to nine frames.
   bool temporal_coherence = true;
   SurfaceUse surfaces = SurfaceUse::kAlone;
   SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame

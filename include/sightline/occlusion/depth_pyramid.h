@@ -38,11 +38,6 @@ struct BufferPixel {
   friend bool operator==(const BufferPixel&, const BufferPixel&) = default;
 };
 
-// The first and the last pixels of a rectangle.
-struct PixelRange {
-  std::uint16_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-};
-
 // What a caller knows of boxes that are tested view after view.
 struct BoxHints {
   // Empty, or one value for each box. Other than 0: the box was not hidden a short while ago and is not

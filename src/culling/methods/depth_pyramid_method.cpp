@@ -36,7 +36,7 @@ class DepthPyramidMethod final : public CullingMethod {
     focus_.reset();
     if (settings_.focus.windows > 0 && settings_.focus.magnification > 1.0 && drawsBodies()) {
       const DepthBufferView buffer = pyramid_->depthBuffer();
-      focus_.emplace(settings_.focus, scene_, buffer.width, buffer.height);
+      focus_.emplace(settings_.focus, scene_, buffer.width, buffer.height, settings_.temporal_coherence);
     }
   }
 
@@ -127,6 +127,7 @@ class DepthPyramidMethod final : public CullingMethod {
     traversal_->run(*pyramid_, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
     findNews(found_);
     surfaces_.drawMore(*pyramid_, news_);
+    work_ += pyramid_->surfaceStats().work;
     countSurfaces();
     pyramid_->finish(*frame.parallel_for);
   }

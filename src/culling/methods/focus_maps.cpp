@@ -10,18 +10,18 @@ namespace {
 
 constexpr std::uint32_t kMaxPixels = 24;  // in which an object that is in doubt may show
 // New doubts are looked for after so many views, or after more of them where no window was worth drawing.
-constexpr std::uint32_t kSearchViews = 4, kMostSearchViews = 32;
-constexpr double kCertain = DoubtMemory::kCertain;
+constexpr std::uint32_t kSearchViews = 4, kMaxSearchViews = 32;
 // Work, as FocusBudget counts it.
 constexpr double kOccluderWork = 10.0, kChoiceWork = 0.5, kTestWork = 0.5;
 
-// The least side of a window, in pixels of the first buffer.
+// The side of a window, pixels of the first buffer. fine: that of its own buffer, pixels.
 std::uint32_t coarseSize(std::uint32_t fine, double magnification) {
   return static_cast<std::uint32_t>(
       std::clamp<double>(std::round(fine / magnification), 1.0, kMaxBufferSize));
 }
 
-// Which objects are looked at differs from view to view; their storage depends on what is kept alone.
+// Makes room for what may be looked at in a view. How much really is differs from view to view, so the
+// storage depends on the number of objects that are kept alone.
 template <typename T>
 void makeRoom(std::vector<T>& list, std::size_t size) {
   if (list.capacity() < size) {
@@ -29,23 +29,24 @@ void makeRoom(std::vector<T>& list, std::size_t size) {
   }
 }
 
-bool intersect(const occlusion::PixelBox& image, const PixelRange& range) {
+bool intersect(const occlusion::PixelBox& image, const occlusion::PixelRange& range) {
   return image.x0 <= range.x1 && image.x1 >= range.x0 && image.y0 <= range.y1 && image.y1 >= range.y0;
 }
 
 }  // namespace
 
 FocusMaps::FocusMaps(const FocusSettings& settings, const CullingScene& scene, std::uint32_t width,
-                     std::uint32_t height)
+                     std::uint32_t height, bool coherent)
     : settings_(settings),
       scene_(scene),
       width_(width),
       height_(height),
+      coherent_(coherent),
       raster_({.width = settings.raster.width, .height = settings.raster.height}),
       choice_(width, height, coarseSize(raster_.settings().width, settings.magnification),
               coarseSize(raster_.settings().height, settings.magnification)),
       budget_(settings.worth),
-      memory_(scene.object_bounds.size()),
+      memory_(coherent ? scene.object_bounds.size() : 0),
       windows_(std::min(settings.windows, kMaxFocusWindows)) {
   for (FocusWindow& window : windows_) {
     window.take(raster_.depthBuffer());  // takes memory now rather than in some view
@@ -62,7 +63,7 @@ void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, co
                        double work, const CullStats& stats, bool changes, std::vector<ObjectId>& visible) {
   const double occluders = buffer.stats().raster.occluders, tests = stats.nodes_tested + stats.objects_tested;
   budget_.view(work + kOccluderWork * occluders + kTestWork * tests, static_cast<double>(visible.size()));
-  const bool searches = frame.jumped || changes || search_in_ == 0;
+  const bool searches = !coherent_ || frame.jumped || changes || search_in_ == 0;
   makeRoom(asked_, visible.size());
   makeRoom(boxes_, visible.size());
   makeRoom(counts_, visible.size());
@@ -79,7 +80,7 @@ void FocusMaps::refine(const DepthPyramid& buffer, const CullingFrame& frame, co
   }
   if (searches) {
     const bool found = window_count_ > 0 || frame.jumped;
-    search_views_ = found ? kSearchViews : std::min(2 * search_views_, kMostSearchViews);
+    search_views_ = found ? kSearchViews : std::min(2 * search_views_, kMaxSearchViews);
     search_in_ = search_views_;
   }
   --search_in_;
@@ -119,27 +120,32 @@ void FocusMaps::drawWindows(const CullingFrame& frame, const SurfaceDrawer& surf
     choice_.add(pixelsOf(doubt), memory_.chance(visible[doubt.at]));
   }
   while (window_count_ < windows_.size() && budget_.left() > 0.0) {
-    PixelRange range;
-    const double objects = choice_.next(budget_.minObjects() * kCertain, range) / kCertain;
-    if (objects == 0.0) {
+    occlusion::PixelRange range;
+    const std::uint32_t weight = choice_.next(budget_.minObjects() * DoubtMemory::kCertain, range);
+    if (weight == 0) {
       return;
-    }
-    if (window_count_ == 0) {
-      boxes_.clear();
-      for (const ObjectId object : visible) {
-        boxes_.push_back(scene_.object_bounds[object.value]);
-      }
-      images_.resize(boxes_.size());
-      occlusion::projectBoxes(PixelView(frame.view, width_, height_), width_, height_, boxes_, images_);
     }
     FocusWindow& window = windows_[window_count_];
     const RasterSettings& fine = raster_.settings();
     if (!window.place(frame.view, width_, height_, range, fine.width, fine.height)) {
-      return;
+      continue;
     }
+    if (window_count_ == 0) {
+      projectAll(frame.view, visible);
+    }
+    const double objects = static_cast<double>(weight) / DoubtMemory::kCertain;
     budget_.drawn(draw(window, frame, surfaces, visible, budget_.left(objects)));
     ++window_count_;
   }
+}
+
+void FocusMaps::projectAll(const View& view, std::span<const ObjectId> visible) {
+  boxes_.clear();
+  for (const ObjectId object : visible) {
+    boxes_.push_back(scene_.object_bounds[object.value]);
+  }
+  images_.resize(boxes_.size());
+  occlusion::projectBoxes(PixelView(view, width_, height_), width_, height_, boxes_, images_);
 }
 
 double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
@@ -154,8 +160,9 @@ double FocusMaps::draw(FocusWindow& window, const CullingFrame& frame, const Sur
   }
   raster_.begin(window.view());
   double work = drawOccluders(window, frame, surfaces.wantsOccluders() && frame.max_occluders > 0);
-  work += surfaces.drawOf(raster_, shown_, std::sqrt(settings_.magnification), budget);
-  work += surfaces.drawMoving(raster_, frame);
+  const double pixel_factor = std::sqrt(settings_.magnification);
+  work += surfaces.drawOf(raster_, shown_, pixel_factor, budget - work);
+  work += surfaces.drawMoving(raster_, frame, budget - work);
   window.take(raster_.depthBuffer());
   return work;
 }

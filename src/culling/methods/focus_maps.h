@@ -28,9 +28,10 @@ namespace sightline::culling {
 // view, and their occluders are those that it keeps.
 class FocusMaps {
  public:
-  // width, height: of the view's depth buffer, pixels.
+  // width, height: of the view's depth buffer, pixels. coherent: what windows showed of objects in earlier
+  // views decides which ones are looked at. Otherwise all are, in each view.
   FocusMaps(const FocusSettings& settings, const CullingScene& scene, std::uint32_t width,
-            std::uint32_t height);
+            std::uint32_t height, bool coherent);
 
   // A view begins: it has no windows yet.
   void begin();
@@ -53,16 +54,18 @@ class FocusMaps {
     kSeen,     // in some pixel that is in a window, it is not surely hidden
     kUnknown,  // some pixel in which it may show is in no window
   };
+  // An object in doubt.
   struct Doubt {
-    std::uint32_t at = 0;  // of the object, in the list of visible ones
-    std::uint32_t first_pixel = 0, pixel_count = 0;
+    std::uint32_t at = 0;                            // its index in the list of visible objects
+    std::uint32_t first_pixel = 0, pixel_count = 0;  // in pixels_: those in which it may show
   };
 
   // all: not only among objects that windows hid before.
   void findDoubts(const DepthPyramid& buffer, std::span<const ObjectId> visible, bool all);
+  void projectAll(const View& view, std::span<const ObjectId> visible);
   void drawWindows(const CullingFrame& frame, const SurfaceDrawer& surfaces,
                    std::span<const ObjectId> visible);
-  // Draws surfaces up to so much work. Returns the work.
+  // Draws surfaces until the work of all that is drawn is so much. Returns the work.
   double draw(FocusWindow& window, const CullingFrame& frame, const SurfaceDrawer& surfaces,
               std::span<const ObjectId> visible, double budget);
   // Returns the work.
@@ -78,23 +81,25 @@ class FocusMaps {
   FocusSettings settings_;
   CullingScene scene_;
   std::uint32_t width_, height_;
+  bool coherent_;
   Rasteriser raster_;  // draws one window after the other
   FocusChoice choice_;
   FocusBudget budget_;
   DoubtMemory memory_;
   std::vector<FocusWindow> windows_;
-  std::uint32_t window_count_ = 0;  // that are drawn in this view
-  std::uint32_t hidden_ = 0;
-  std::uint32_t search_in_ = 0, search_views_ = 1;  // views until all objects are looked at again
+  std::uint32_t window_count_ = 0;  // the first ones of windows_ are drawn in this view
+  std::uint32_t hidden_ = 0;        // objects that windows hid in this view
+  std::uint32_t search_views_ = 1;  // views from one search among all objects to the next
+  std::uint32_t search_in_ = 0;     // views before the next one
 
-  // Scratch of a view.
-  std::vector<Doubt> doubts_;  // ascending
+  // Scratch for one view; sized by the objects that a view keeps.
+  std::vector<Doubt> doubts_;  // ascending by `at`
   std::vector<BufferPixel> pixels_;
   std::vector<Box> boxes_;
   std::vector<std::uint32_t> asked_, counts_;
-  std::vector<occlusion::PixelBox> images_;  // of all visible objects, if there is a window
+  std::vector<occlusion::PixelBox> images_;  // of all visible objects, once a window is placed
   std::vector<ObjectId> shown_;              // objects that may appear in a window
-  std::vector<PixelRange> ranges_;
+  std::vector<occlusion::PixelRange> ranges_;
   OccluderChooser chooser_;
   std::vector<OccluderId> chosen_;
 };

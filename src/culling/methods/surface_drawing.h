@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -65,24 +66,24 @@ class SurfaceDrawer {
     timed_.frame(work_, stats.build_us, stats.totalUs() - stats.build_us);
   }
 
-  // Draws the surfaces of some of the objects in a view that follows no other and is so much magnified, up to
-  // so much work. Returns the work.
+  // Draws the surfaces of some of the objects in a view that follows no other, up to so much work. Where a
+  // surface must have some number of pixels to be drawn, it must have pixel_factor times as many. Returns the
+  // work.
   template <typename Buffer>
-  double drawOf(Buffer& buffer, std::span<const ObjectId> objects, double magnification,
-                double budget) const {
-    SurfaceDrawing drawing = drawing_;
-    drawing.min_pixels *= magnification;
-    drawing.min_patch_pixels *= magnification;
-    drawing.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, drawing_.budget));
+  double drawOf(Buffer& buffer, std::span<const ObjectId> objects, double pixel_factor, double budget) const {
+    SurfaceDrawing drawing = upTo(budget);
+    drawing.min_pixels *= pixel_factor;
+    drawing.min_patch_pixels *= pixel_factor;
     draw(buffer, objects, ViewStep::kJump, drawing);
     return draws() ? buffer.surfaceStats().work : 0.0;
   }
-  // Draws the surfaces that move. Returns the work.
+  // Draws the surfaces that move, up to so much work in all. Returns the work.
   template <typename Buffer>
-  double drawMoving(Buffer& buffer, const CullingFrame& frame) const {
+  double drawMoving(Buffer& buffer, const CullingFrame& frame,
+                    double budget = std::numeric_limits<double>::infinity()) const {
     double work = 0.0;
-    for (std::size_t i = 0; drawsMoving(frame) && i < frame.moving_surfaces.size(); ++i) {
-      work += buffer.draw(frame.moving_surfaces[i], drawing_, *parallel_for_).work;
+    for (std::size_t i = 0; drawsMoving(frame) && i < frame.moving_surfaces.size() && work < budget; ++i) {
+      work += buffer.draw(frame.moving_surfaces[i], upTo(budget - work), *parallel_for_).work;
     }
     return work;
   }
@@ -98,6 +99,11 @@ class SurfaceDrawer {
   }
 
  private:
+  SurfaceDrawing upTo(double budget) const {
+    SurfaceDrawing drawing = drawing_;
+    drawing.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, drawing.budget));
+    return drawing;
+  }
   template <typename Buffer>
   void draw(Buffer& buffer, std::span<const ObjectId> objects, ViewStep step, SurfaceDrawing drawing) const {
     if (draws()) {
