@@ -30,6 +30,7 @@ namespace {
 // The plan of a bake and what it was made from; every process of the bake makes its own.
 struct Planned {
   Scene scene;
+  CrackNote cracks;
   ViewerSpace viewers;
   Bake bake;
   double load_us = 0.0, plan_us = 0.0;
@@ -84,7 +85,7 @@ Result<Planned> planBake(const BakeOptions& options) {
     return scene.error();
   }
   const Threads threads(options.common.threads);
-  closeCracksOf(*scene, options.crack_width, threads.parallelFor());
+  const CrackNote cracks = closeCracksOf(*scene, options.crack_width, threads.parallelFor()).note();
   const double load_us = watch.lap();
   Result<ViewerSpace> viewers =
       findViewers(options.viewers, options.common.scene, *scene, threads.parallelFor());
@@ -97,7 +98,7 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!bake) {
     return bake.error();
   }
-  return Planned{std::move(*scene), std::move(*viewers), std::move(*bake), load_us, watch.lap()};
+  return Planned{std::move(*scene), cracks, std::move(*viewers), std::move(*bake), load_us, watch.lap()};
 }
 
 // Assembles all parts, writes the file and reports what is in it.
@@ -109,7 +110,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   }
   parts = {};
   baked->record.settings =
-      dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, options.crack_width));
+      dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, planned.cracks));
   Stopwatch watch;
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());

@@ -47,11 +47,12 @@ Json runJson(const SettingRecord& run, const BenchRecord& record) {
 }
 
 std::string recordJson(const BenchRecord& record) {
+  Json scene = {{"objects", record.scene.objects},
+                {"triangles", record.scene.triangles},
+                {"hash", fmt::format("{:016x}", record.scene.hash)}};
+  addCracks(scene, record.cracks);
   const Json head = {{"name", record.scene_name},
-                     {"scene",
-                      {{"objects", record.scene.objects},
-                       {"triangles", record.scene.triangles},
-                       {"hash", fmt::format("{:016x}", record.scene.hash)}}},
+                     {"scene", scene},
                      {"path", record.path_name},
                      {"views", fmt::format("{:016x}", record.views)},
                      {"frames", record.frames},

@@ -10,6 +10,7 @@
 
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/bench/frame_times.h"
+#include "tools/sightline/input/crack_note.h"
 #include "tools/sightline/methods/method_options.h"
 
 namespace sightline::tool {
@@ -71,6 +72,7 @@ struct Advice {
 struct BenchRecord {
   std::string scene_name{}, path_name{};
   SceneId scene{};
+  CrackNote cracks{};
   std::uint64_t views = 0;  // hash of the views of all frames
   std::size_t frames = 0, rounds = 0;
   std::optional<int> core{};    // to which the measuring thread was pinned; none: it was not

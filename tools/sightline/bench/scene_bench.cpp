@@ -41,9 +41,10 @@ BenchRecord SceneBench::measure(const std::string& name, BenchInput& input) {
   const Scene& scene = input.data.scene;
   const Walk& walk = input.data.walk;
   const std::vector<View> views = viewsOf(walk, scene);
-  BenchRecord record{.scene_name = name + crackText(input.data.closing),
+  BenchRecord record{.scene_name = name + crackText(input.data.closing.note()),
                      .path_name = walk.path.name.empty() ? "unnamed" : walk.path.name,
                      .scene = sceneId(scene.view()),
+                     .cracks = input.data.closing.note(),
                      .views = hashOf(views),
                      .frames = views.size(),
                      .rounds = settings_.rounds,

@@ -61,7 +61,7 @@ void print(const Setting& setting, const CullingData& data, const CrackClosing& 
            const Totals& sum) {
   const double n = static_cast<double>(frames);
   fmt::print("{} ({}){}, {} frames, means of a frame:\n", methodName(setting), optionsText(setting),
-             crackText(closing), frames);
+             crackText(closing.note()), frames);
   fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n, data.bounds().size());
   fmt::print("  their triangles   {:12.1f}\n", sum.triangles / n);
   fmt::print("  cull time         {:12.1f} us\n", sum.cull_us / n);

@@ -206,7 +206,7 @@ void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const S
   fmt::print("{} frames, {} objects, exactly visible {:.1f} to {:.1f} a frame{}\n", verifier.of_frame.size(),
              scene.objects.size(), a_frame(verifier.total.visible),
              a_frame(verifier.total.visible + verifier.total.undecided),
-             closing.width > 0.0 ? ", with" + crackText(closing) : "");
+             closing.width > 0.0 ? ", with" + crackText(closing.note()) : "");
   TextTable table{
       {"method", "options", "kept", "overestimate", "culled", "proved", "undecided", "false culls"}, {}, 2};
   for (const VerifyRun& run : runs) {

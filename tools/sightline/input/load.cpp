@@ -96,10 +96,6 @@ CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parall
   return closing;
 }
 
-std::string crackText(const CrackClosing& closing) {
-  return closing.width > 0.0 ? fmt::format(" --crack-width {}", closing.width) : "";
-}
-
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene) {
   if (file.empty()) {
     return std::optional<SightFile>();
@@ -109,13 +105,10 @@ Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene&
     return baked.error();
   }
   if (const Status same = baked->matches(sceneId(scene.view())); !same) {
-    const Json settings = Json::parse(baked->record().settings, nullptr, false);
-    const bool closed =
-        settings.is_object() && settings.contains("crack_width") && settings["crack_width"].is_number();
-    const double width = closed ? settings["crack_width"].get<double>() : 0.0;
-    return Error{same.error().message +
-                 (width > 0.0 ? fmt::format(", or give the --crack-width {} that it was baked with", width)
-                              : std::string())};
+    const CrackNote closed = cracksOf(baked->record());
+    return Error{same.error().message + (closed.width > 0.0
+                                             ? ", or give the" + crackText(closed) + " that it was baked with"
+                                             : std::string())};
   }
   if (const Status whole = baked->verifyAll(); !whole) {
     return whole.error();
@@ -163,8 +156,8 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!walk) {
     return walk.error();
   }
-  Result<PreparedFile> prepared =
-      openPrepared(method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()));
+  Result<PreparedFile> prepared = openPrepared(
+      method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()), closing.width);
   if (!prepared) {
     return prepared.error();
   }
@@ -397,10 +390,7 @@ std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const 
 
 Json sceneJson(const Scene& scene, const CrackClosing& closing) {
   Json json = {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
-  if (closing.width > 0.0) {
-    json["crack_width"] = closing.width;
-    json["crack_slack"] = closing.slack;
-  }
+  addCracks(json, closing.note());
   return json;
 }
 
