@@ -65,6 +65,9 @@ std::string recordJson(const BenchRecord& record) {
                      {"boxes", record.boxes},
                      {"undecided_boxes", record.undecided_boxes},
                      {"boxes_overestimate", intervalJson(record.leastOfBoxes())},
+                     {"several_boxes", record.several_boxes},
+                     {"undecided_several_boxes", record.undecided_several_boxes},
+                     {"several_boxes_overestimate", intervalJson(record.leastOfSeveralBoxes())},
                      {"frames_from_cache", record.frames_from_cache},
                      {"advised", record.advice.run},
                      {"advice", record.advice.sentence}};
