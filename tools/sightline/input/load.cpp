@@ -147,7 +147,15 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!scene) {
     return scene.error();
   }
+  if (method.clusters > 0 && !method.baked.empty()) {
+    return Error{"--clusters, --baked: the sets of a baked file are of whole objects; leave one of them out"};
+  }
   CrackClosing closing = closeCracksOf(*scene, method.crack_width);
+  Clustering clustering = divideIntoClusters(*scene, method.clusters, closing.margin);
+  if (clustering.on()) {
+    closing.given_indices.clear();  // no cluster has given triangles of its own
+    closing.given_objects.clear();
+  }
   Result<std::optional<SightFile>> file = loadBaked(method.baked, *scene);
   if (!file) {
     return file.error();
@@ -161,8 +169,8 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!prepared) {
     return prepared.error();
   }
-  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file), std::move(closing),
-                      std::move(*prepared)};
+  return SceneAndWalk{std::move(*scene),  std::move(*walk),      std::move(*file),
+                      std::move(closing), std::move(clustering), std::move(*prepared)};
 }
 
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
@@ -391,6 +399,16 @@ std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const 
 Json sceneJson(const Scene& scene, const CrackClosing& closing) {
   Json json = {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
   addCracks(json, closing.note());
+  return json;
+}
+
+Json sceneJson(const SceneAndWalk& input) {
+  Json json = sceneJson(input.scene, input.closing);
+  if (input.clustering.on()) {
+    json["clusters"] = json["objects"];
+    json["objects"] = input.clustering.objects;
+    json["cluster_triangles"] = input.clustering.max_triangles;
+  }
   return json;
 }
 

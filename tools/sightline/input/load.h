@@ -17,6 +17,7 @@
 #include "sightline/scene/scene.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/input/clustering.h"
 #include "tools/sightline/input/crack_note.h"
 #include "tools/sightline/input/prepared_file.h"
 #include "tools/sightline/methods/method_options.h"
@@ -69,6 +70,7 @@ struct SceneAndWalk {
   Walk walk;
   std::optional<SightFile> baked{};
   CrackClosing closing{};
+  Clustering clustering{};
   PreparedFile prepared{};
 
   // The triangles as the user gave them, for pictures.
@@ -78,7 +80,8 @@ struct SceneAndWalk {
                : SceneView{scene.positions, closing.given_indices, closing.given_objects, scene.materials};
   }
 };
-// Loads all of it. Of `method`, its baked and its prepared file, and the width of cracks.
+// Loads all of it. Of `method`, its baked and its prepared file, the width of cracks, and clusters. Error if
+// there are clusters and a baked file, whose sets are of objects.
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
                                       const MethodOptions& method = {});
 // loadSceneAndWalk for a command that writes no file but --json: checks first that this is none of the
@@ -168,6 +171,8 @@ class CullingData {
 
 // {"objects":n,"triangles":t}, and what addCracks() adds
 Json sceneJson(const Scene& scene, const CrackClosing& closing = {});
+// The same, and with clusters their number: "objects" are then those before.
+Json sceneJson(const SceneAndWalk& input);
 // Adds those that were built of "database" and "detail_database", each
 // {"cells":n,"directions":n,"bytes":n,"build_us":t}, and "viewpoints",
 // {"minimum-sets":{"points":n,"directions":n,"spacing":m,"bytes":n,"build_us":t},...}. Without `times` all
