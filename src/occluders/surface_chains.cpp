@@ -1,13 +1,18 @@
 #include "src/occluders/surface_chains.h"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 #include <vector>
 
 #include "src/base/parallel_rows.h"
+#include "src/geometry/exact_point.h"
+#include "src/geometry/whole.h"
 
 namespace sightline::occluders {
 namespace {
+
+using geometry::Lattice;
 
 constexpr std::size_t kEdgesOfPart = 32768, kClustersOfPart = 2048;
 
@@ -102,6 +107,26 @@ struct Chains {
   std::vector<Vec3f> vertices;
 };
 
+// Whether p lies exactly on the edge from a to b, between its ends.
+bool liesBetween(const Vec3f& a, const Vec3f& p, const Vec3f& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (p[axis] < std::min(a[axis], b[axis]) || p[axis] > std::max(a[axis], b[axis])) {
+      return false;
+    }
+  }
+  const std::array points{Vec3d(a), Vec3d(p), Vec3d(b)};
+  const Vec3d to_point = points[1] - points[0], to_end = points[2] - points[0];
+  // Most vertices are told apart by far more than rounding, which is below 1e-15 here.
+  if (length(cross(to_point, to_end)) > 1e-12 * length(to_point) * length(to_end) ||
+      !std::all_of(points.begin(), points.end(), [](const Vec3d& at) { return Lattice::allowed(at); })) {
+    return false;
+  }
+  const Lattice lattice = Lattice::of(points);
+  return geometry::orientation(lattice, 0, points[0], points[1], points[2]) == 0 &&
+         geometry::orientation(lattice, 1, points[0], points[1], points[2]) == 0 &&
+         geometry::orientation(lattice, 2, points[0], points[1], points[2]) == 0;
+}
+
 // Joins the edges of one cluster after the other.
 class ChainMaker {
  public:
@@ -136,6 +161,17 @@ class ChainMaker {
     return p.size() == q.size() ? 0 : p.size() < q.size() ? -1 : 1;
   }
 
+  // Adds the next vertex of a chain. The one before it goes if it lies on the edge from its own predecessor:
+  // the same clusters end on both sides of it, so any others that end at it are a boundary without it.
+  void addVertex(const Vec3f& vertex, std::uint32_t first_of_chain) {
+    std::vector<Vec3f>& vertices = made_.vertices;
+    if (vertices.size() >= first_of_chain + std::size_t{2} &&
+        liesBetween(*(vertices.end() - 2), vertices.back(), vertex)) {
+      vertices.pop_back();
+    }
+    vertices.push_back(vertex);
+  }
+
   // Joins edges with the same uses, ascending by `from`, end to end.
   void joinEdges(std::span<const BoundaryEdge> edges) {
     taken_.assign(edges.size(), 0);
@@ -167,7 +203,7 @@ class ChainMaker {
         made_.vertices.push_back(vertices_[edges[i].from]);
         for (std::size_t next = i; next < edges.size(); next = startingAt(edges[next].to)) {
           taken_[next] = 1;
-          made_.vertices.push_back(vertices_[edges[next].to]);
+          addVertex(vertices_[edges[next].to], chain.first_vertex);
         }
         chain.vertex_count = static_cast<std::uint32_t>(made_.vertices.size()) - chain.first_vertex;
         const std::span<const ChainUse> uses = usesOf(edges[i]);

@@ -55,7 +55,9 @@ LargeVector<Vec3d> unitNormals(const SurfaceMesh& mesh, const ParallelFor& paral
   return normals;
 }
 
-// Gathers triangles of the same sidedness from a first one on over its edges, one part after the other.
+// Gathers triangles of the same sidedness from a first one on over its edges, one part after the other. A part
+// that is half full grows no farther over T-junctions: what it reached there would be of many objects, and the
+// depth of a part is that of its farthest one.
 PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::span<const Vec3d> normals,
                           std::uint32_t max_triangles) {
   // Normals may be any. Those that are opposite but for rounding may have a cosine below this all the same:
@@ -75,9 +77,11 @@ PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::
     if (free < kFree) {
       continue;
     }
-    const std::uint32_t most = end + max_triangles;
+    const std::uint32_t most = end + max_triangles, half_full = end + max_triangles / 2;
+    std::uint32_t from = seed;
     const auto take = [&](std::uint32_t t) {
-      if (end < most && parts.place_of[t] == free && isSimilar(normals[t], normals[seed], min_cosine)) {
+      if (end < most && parts.place_of[t] == free && isSimilar(normals[t], normals[seed], min_cosine) &&
+          (end < half_full || !mesh.meetAtJunction(from, t))) {
         parts.place_of[t] = end;
         parts.triangles[end++] = t;
       }
@@ -86,7 +90,8 @@ PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::
     parts.place_of[seed] = end;
     parts.triangles[end++] = seed;
     for (; next < end; ++next) {
-      const Corner corner = 3 * parts.triangles[next];
+      from = parts.triangles[next];
+      const Corner corner = 3 * from;
       mesh.forEachBeyond(corner, take);
       mesh.forEachBeyond(corner + 1, take);
       mesh.forEachBeyond(corner + 2, take);

@@ -230,8 +230,10 @@ void divideEdges(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
       pieces.triangles.push_back(mesh.triangles[t]);
     }
     pieces.objects.resize(pieces.triangles.size(), mesh.objects[t]);
+    pieces.source.resize(pieces.triangles.size(), t);
   }
   pieces.vertices = std::move(mesh.vertices);
+  pieces.given = std::move(mesh.triangles);
   mesh = std::move(pieces);
   connect(mesh, parallel_for);
 }

@@ -2,6 +2,7 @@
 
 // The opaque triangles of a scene as one mesh: equal positions are one vertex, equal pairs of them one edge.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -39,6 +40,11 @@ struct SurfaceMesh {
   LargeVector<std::uint32_t> beyond;
   static constexpr std::uint32_t kNone = 0xffffffffu, kOther = 0x80000000u;
 
+  // Filled by divideEdges(), and empty if nothing was divided: by triangle, which of the `given` ones it is a
+  // piece of; and these as they were.
+  LargeVector<std::uint32_t> source;
+  LargeVector<std::array<std::uint32_t, 3>> given;
+
   std::size_t triangleCount() const { return triangles.size(); }
   // The vertices of an edge of the mesh, the lower one first.
   std::array<std::uint32_t, 2> endsOf(Side side) const {
@@ -46,6 +52,18 @@ struct SurfaceMesh {
     const std::uint32_t number = side.corner() % 3;
     const std::uint32_t from = triangle[number], to = triangle[number == 2 ? 0 : number + 1];
     return side.value() > 0 ? std::array{from, to} : std::array{to, from};
+  }
+  // Whether two triangles at an edge share it only because edges were divided: a corner of one of the given
+  // triangles lay on an edge of the other.
+  bool meetAtJunction(std::uint32_t a, std::uint32_t b) const {
+    if (given.empty() || source[a] == source[b]) {
+      return false;
+    }
+    int shared = 0;
+    for (const std::uint32_t vertex : given[source[a]]) {
+      shared += std::count(given[source[b]].begin(), given[source[b]].end(), vertex) > 0 ? 1 : 0;
+    }
+    return shared < 2;
   }
   // Calls visit(triangle) for all other triangles at the edge from a corner on, ascending, and maybe for the
   // corner's own.

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <random>
 #include <tuple>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "scenes/landscapes.h"
 #include "scenes/procedural.h"
 #include "sightline/occluders/surface_set.h"
+#include "tests/occluders/triangle_soup.h"
 #include "tests/support/cut_work.h"
 
 namespace sightline {
@@ -87,6 +91,129 @@ TEST(FindSurfaces, HaveAVertexForEachDifferentPositionInTheOrderOfUse) {
   EXPECT_LT(expected.size(), scene.positions.size() / 2);
   EXPECT_TRUE(std::equal(set.vertices.begin(), set.vertices.end(), expected.begin(), expected.end()));
   EXPECT_EQ(set.triangles.size(), 3 * triangles);
+}
+
+// One opaque object of a soup's triangles, whose coordinates must be of single precision.
+Scene sceneOf(const test::Soup& soup) {
+  Scene scene;
+  for (const Vec3d& v : soup.vertices) {
+    scene.positions.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+  }
+  scene.indices = soup.triangles;
+  scene.materials.push_back({.name = "plain"});
+  Object object{.index_count = static_cast<std::uint32_t>(scene.indices.size()), .material = MaterialId{0u}};
+  for (const Vec3f& p : scene.positions) {
+    object.bounds.extend(p);
+  }
+  scene.objects.push_back(object);
+  scene.object_names.emplace_back("soup");
+  return scene;
+}
+
+// A boundary in pieces that have no other point of the lattice of whole numbers: how often each is run
+// along, less how often it is run back. Pieces run upwards.
+using Pieces = std::map<std::array<int, 6>, int>;
+
+void addPieces(const Vec3f& from, const Vec3f& to, int value, Pieces& pieces) {
+  std::array<int, 3> at{}, step{};
+  int steps = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    at[axis] = static_cast<int>(from[axis]);
+    step[axis] = static_cast<int>(to[axis]) - at[axis];
+    steps = std::gcd(steps, step[axis]);
+  }
+  for (int i = 0; i < steps; ++i) {
+    std::array<int, 3> next = at;
+    for (int axis = 0; axis < 3; ++axis) {
+      next[axis] += step[axis] / steps;
+    }
+    const bool up = at < next;
+    const std::array<int, 3>&low = up ? at : next, &high = up ? next : at;
+    const std::array key{low[0], low[1], low[2], high[0], high[1], high[2]};
+    if ((pieces[key] += up ? value : -value) == 0) {
+      pieces.erase(key);
+    }
+    at = next;
+  }
+}
+
+TEST(FindSurfaces, ChainsAreTheBoundariesOfTheirClusters) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    test::Soup soup = test::greedyVoxels(seed, 5);
+    test::SoupRandom random(seed);
+    const auto corner = [&] { return Vec3d(random.below(7), random.below(7), random.below(7)); };
+    for (int i = 0; i < 60; ++i) {  // which cross and touch whatever is there
+      soup.add(corner(), corner(), corner());
+    }
+    const SurfaceSet set = findSurfaces(sceneOf(soup).view(), {.cluster_triangles = 1 + seed % 7});
+    for (std::uint32_t c = 0; c < set.clusters.size(); ++c) {
+      Pieces of_triangles, of_chains;
+      const std::span<const std::uint32_t> corners = set.trianglesOf(set.clusters[c]);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        addPieces(set.vertices[corners[i]], set.vertices[corners[i % 3 == 2 ? i - 2 : i + 1]], 1,
+                  of_triangles);
+      }
+      for (const std::uint32_t number : set.chainsOf(set.clusters[c])) {
+        const std::span<const Vec3f> vertices = set.verticesOf(set.chains[number]);
+        for (const ChainUse& use : set.usesOf(set.chains[number])) {
+          for (std::size_t i = 1; use.cluster == c && i < vertices.size(); ++i) {
+            addPieces(vertices[i - 1], vertices[i], use.value, of_chains);
+          }
+        }
+      }
+      ASSERT_EQ(of_triangles, of_chains) << "seed " << seed << ", cluster " << c;
+    }
+  }
+}
+
+// A sheet of width x 1 squares at a height, from x on.
+void addRow(test::Soup& soup, int x, int width, double y) {
+  for (int i = x; i < x + width; ++i) {
+    soup.addQuad({double(i), y, 0}, {i + 1.0, y, 0}, {i + 1.0, y + 1, 0}, {double(i), y + 1, 0});
+  }
+}
+
+TEST(FindSurfaces, AVertexOnAStraightBoundaryIsLeftOut) {
+  test::Soup sheet;
+  for (int y = 0; y < 10; ++y) {
+    addRow(sheet, 0, 10, y);
+  }
+  const SurfaceSet flat = findSurfaces(sceneOf(sheet).view());
+  ASSERT_EQ(flat.patches.size(), 1u);
+  EXPECT_GT(flat.clusters.size(), 1u);
+  // The outline is cut only where one cluster ends and another begins.
+  std::uint32_t corners = 0;
+  for (const PatchChain& chain : flat.chainsOf(flat.patches[0])) {
+    corners += flat.chains[chain.chain].vertex_count - 2;
+  }
+  EXPECT_LE(corners, 4u);
+  EXPECT_LT(flat.patches[0].edge_count, 40u);
+
+  // A vertex that is off by a unit in the last place stays.
+  test::Soup row;
+  addRow(row, 1, 6, 0);
+  const auto edgesOf = [](const test::Soup& soup) {
+    const SurfaceSet set = findSurfaces(sceneOf(soup).view());
+    EXPECT_EQ(set.clusters.size(), 1u);
+    return set.patches.at(0).edge_count;
+  };
+  EXPECT_EQ(edgesOf(row), 4u);
+  for (Vec3d& v : row.vertices) {
+    v.y = v == Vec3d{4, 1, 0} ? double{std::nextafterf(1.0f, 2.0f)} : v.y;
+  }
+  EXPECT_EQ(edgesOf(row), 7u);  // the upper side has four: to the left, up, down, to the right
+}
+
+TEST(FindSurfaces, APartThatIsHalfFullEndsAtAJunction) {
+  const auto partsOf = [](int width) {
+    test::Soup soup;
+    addRow(soup, 0, width, 0);
+    // Its lower corners lie on the upper edge of the last square.
+    soup.addQuad({width - 0.75, 1, 0}, {width - 0.25, 1, 0}, {width - 0.25, 2, 0}, {width - 0.75, 2, 0});
+    return findSurfaces(sceneOf(soup).view(), {.part_triangles = 40}).parts.size();
+  };
+  EXPECT_EQ(partsOf(5), 1u);
+  EXPECT_EQ(partsOf(15), 2u);
 }
 
 }  // namespace

@@ -94,6 +94,10 @@ TEST(Bench, CountsAreConsistentAndFrustumCullingIsTheBaseline) {
     EXPECT_LE(numberOf(row, "boxes"), numberOf(row, "kept"))
         << "a conservative test of one box keeps at least the visible boxes";
     EXPECT_EQ(numberOf(row, "undecided_boxes"), 0.0);
+    EXPECT_LE(numberOf(row, "several_boxes"), numberOf(row, "boxes")) << "they lie in the one box";
+    EXPECT_GE(numberOf(row, "several_boxes"), numberOf(row, "witnessed"));
+    EXPECT_NEAR(numberOf(row, "several_boxes_overestimate_high"),
+                numberOf(row, "several_boxes") / numberOf(row, "witnessed"), 1e-6);
     EXPECT_EQ(row.at("frames"), "4");
     EXPECT_EQ(row.at("rounds"), "2");
     for (const std::string time : {"cull_us_median", "cull_us_mean", "cull_us_p99", "cpu_us_mean"}) {
@@ -109,6 +113,35 @@ TEST(Bench, CountsAreConsistentAndFrustumCullingIsTheBaseline) {
   }
   EXPECT_EQ(advised, 1);
   EXPECT_EQ(settings.size(), rows.size());
+}
+
+// A wall, and an object of two triangles behind it, one near, one far and to the side: a corner of the box
+// around both looks out beside the wall, those around each do not.
+TEST(Bench, SeveralBoxesAnObjectAreFewerThanOne) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("wall.obj",
+                                         "o wall\nv -4 -4 -5\nv 1 -4 -5\nv 1 4 -5\nv -4 4 -5\nf 1 2 3 4\n"
+                                         "o two\nv -1 -1 -10\nv 0 -1 -10\nv 0 0 -10\n"
+                                         "v 2 -1 -13\nv 2.5 -1 -13\nv 2.5 0 -13\nf 5 6 7\nf 8 9 10\n"),
+                    path = folder.write("path.json", R"({"frames":[{"eye":[0,0,0],"forward":[0,0,-1]}]})");
+  const std::vector<std::string> bench{"bench", scene, "--path", path, "--no-cache", "--method", "frustum"};
+  const json result = parse(runTool(joined(bench, {"--json", "-"})).out)["scenes"][0];
+  EXPECT_EQ(result["witnessed"], 1);
+  EXPECT_EQ(result["boxes"], 2);
+  EXPECT_EQ(result["several_boxes"], 1);
+  EXPECT_EQ(result["undecided_several_boxes"], 0);
+  EXPECT_EQ(result["several_boxes_overestimate"], json::parse("[1.0, 1.0]"));
+  EXPECT_NE(runTool(bench).out.find("1.00 that of several (1 objects)"), std::string::npos);
+  const TemporaryFolder kept;
+  std::vector<std::string> cached = joined(bench, {"--json", "-"});
+  std::erase(cached, "--no-cache");
+  cached.insert(cached.end(), {"--cache", kept.file("cache")});
+  for (int run = 0; run < 2; ++run) {
+    const json again = parse(runTool(cached).out)["scenes"][0];
+    EXPECT_EQ(again["frames_from_cache"], run);
+    EXPECT_EQ(again["several_boxes"], 1) << "the answers for several boxes have a file of their own";
+    EXPECT_EQ(again["boxes"], 2);
+  }
 }
 
 // A wall, an object behind it that is hidden while the far corner of its box looks out beside the wall, and

@@ -51,6 +51,26 @@ TEST(CrackWidth, InfoCountsCracksAndWhatClosingThemHides) {
   expectDocumented(info, {"info"});
 }
 
+TEST(CrackWidth, InfoWalksOnceForEachWidth) {
+  const SlitScene slit;
+  const std::vector<std::string> arguments{"info",    slit.scene,      "--path",
+                                           slit.path, "--crack-width", "0.0001,0,0.001"};
+  const json cracks = of(arguments)["cracks"];
+  ASSERT_EQ(cracks["closings"].size(), 2u) << "0 is the scene as it is";
+  EXPECT_EQ(cracks["closings"][0]["crack_width"], 0.0001);
+  EXPECT_EQ(cracks["closings"][0]["kept_closed"], 3.0) << "the slit is wider";
+  EXPECT_EQ(cracks["closings"][1]["crack_width"], 0.001);
+  EXPECT_EQ(cracks["closings"][1]["kept_closed"], 2.0);
+  EXPECT_EQ(cracks["closed"], cracks["closings"][0]);
+  const Outcome text = runTool(arguments);
+  EXPECT_NE(text.out.find("below 0.0001 m closed, 3.0 objects a frame are kept instead of 3.0"),
+            std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("below 0.001 m closed, 2.0 objects a frame are kept instead of 3.0"),
+            std::string::npos)
+      << text.out;
+}
+
 TEST(CrackWidth, EveryOutputNamesIt) {
   const SlitScene slit;
   const std::string sight = slit.folder.file("slit.sight");
@@ -73,11 +93,29 @@ TEST(CrackWidth, EveryOutputNamesIt) {
   expectDocumented(verified, {"verify"});
   const json walked = of(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
   EXPECT_EQ(walked["scene"]["crack_width"], 0.001);
+  const Outcome walk_text = runTool(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
+  EXPECT_NE(walk_text.out.find("--crack-width 0.001"), std::string::npos) << walk_text.out;
   const Outcome text = runTool(with({"cull", slit.scene}));
   EXPECT_NE(text.out.find("--crack-width 0.001"), std::string::npos) << text.out;
   EXPECT_NE(text.err.find("count as closed"), std::string::npos) << text.err;
   const Outcome bench = runTool(with({"bench", slit.scene, "--csv", "-", "--method", "frustum"}));
   EXPECT_NE(bench.out.find("--crack-width 0.001"), std::string::npos) << bench.out << bench.err;
+  const json measured = of(with({"bench", slit.scene, "--method", "frustum"}));
+  EXPECT_EQ(measured["scenes"][0]["scene"]["crack_width"], 0.001);
+}
+
+TEST(CrackWidth, PreparedSurfacesBelongToTheirWidth) {
+  const SlitScene slit;
+  const std::string file = slit.folder.file("slit.surfaces");
+  const std::vector<std::string> open{"cull",     slit.scene,      "--path",     slit.path,
+                                      "--method", "depth-pyramid", "--prepared", file};
+  std::vector<std::string> closed = open;
+  closed.insert(closed.end(), {"--crack-width", "0.001"});
+  EXPECT_EQ(of(closed)["frames"][0]["visible"], json({0, 1}));
+  EXPECT_EQ(runTool(closed).err.find("written anew"), std::string::npos) << "they are there";
+  const Outcome other = runTool(open);
+  EXPECT_NE(other.err.find("written anew: it is of --crack-width 0.001"), std::string::npos) << other.err;
+  EXPECT_EQ(of(open)["frames"][0]["visible"], json({0, 1, 2}));
 }
 
 TEST(CrackWidth, ABakedFileBelongsToItsWidth) {
@@ -85,7 +123,18 @@ TEST(CrackWidth, ABakedFileBelongsToItsWidth) {
   const std::string sight = slit.folder.file("slit.sight");
   const Outcome baked = runTool({"bake", slit.scene, "-o", sight, "--depth", "1", "--crack-width", "0.001"});
   ASSERT_EQ(baked.code, 0) << baked.err;
-  EXPECT_EQ(of({"info", sight})["settings"]["all"]["crack_width"], 0.001);
+  EXPECT_NE(baked.out.find("--crack-width 0.001"), std::string::npos) << baked.out;
+  const json facts = of({"info", sight});
+  EXPECT_EQ(facts["settings"]["all"]["crack_width"], 0.001);
+  EXPECT_EQ(facts["scene"]["crack_width"], 0.001);
+  EXPECT_LE(facts["scene"]["crack_slack"], 0.002);
+  expectDocumented(facts, {"info of a baked file"});
+  EXPECT_NE(runTool({"info", sight}).out.find("closed by --crack-width 0.001"), std::string::npos);
+  const json answered = of({"query", sight, "--points", "0,0,0"});
+  EXPECT_EQ(answered["scene"]["crack_width"], 0.001);
+  EXPECT_EQ(answered["scene"]["crack_slack"], facts["scene"]["crack_slack"]);
+  const Outcome query = runTool({"query", sight, "--points", "0,0,0"});
+  EXPECT_NE(query.out.find("closed by --crack-width 0.001"), std::string::npos) << query.out;
   std::vector<std::string> cull{"cull",    slit.scene, "--path",         slit.path,
                                 "--baked", sight,      "--visible-sets", "on"};
   const Outcome without = runTool(cull);

@@ -30,6 +30,7 @@ namespace {
 // The plan of a bake and what it was made from; every process of the bake makes its own.
 struct Planned {
   Scene scene;
+  CrackNote cracks;
   ViewerSpace viewers;
   Bake bake;
   double load_us = 0.0, plan_us = 0.0;
@@ -98,7 +99,7 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!bake) {
     return bake.error();
   }
-  return Planned{std::move(*scene), std::move(*viewers), std::move(*bake), load_us, watch.lap()};
+  return Planned{std::move(*scene), closing.note(), std::move(*viewers), std::move(*bake), load_us, watch.lap()};
 }
 
 // Assembles all parts, writes the file and reports what is in it.
@@ -110,7 +111,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   }
   parts = {};
   baked->record.settings =
-      dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, options.crack_width));
+      dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, planned.cracks));
   Stopwatch watch;
   const Threads threads(options.common.threads);
   baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());

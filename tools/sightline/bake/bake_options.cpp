@@ -132,7 +132,7 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const 
   return settings;
 }
 
-Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, double crack_width) {
+Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, const CrackNote& cracks) {
   const BakeSettings& settings = bake.settings();
   const OccluderCounts& occluders = bake.occluders();
   Json json = {{"triangle_budget", settings.triangle_budget},
@@ -156,9 +156,7 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                  {"of_use", occluders.of_use},
                  {"largest_area", occluders.largest_area}}},
                {"origin", {origin.x, origin.y, origin.z}}};
-  if (crack_width > 0.0) {
-    json["crack_width"] = crack_width;
-  }
+  addCracks(json, cracks);
   return json;
 }
 

@@ -10,6 +10,7 @@
 #include "sightline/pvs/bake/bake.h"
 #include "tools/sightline/bake/viewer_options.h"
 #include "tools/sightline/command_line/options.h"
+#include "tools/sightline/input/crack_note.h"
 #include "tools/sightline/methods/method_options.h"
 
 namespace sightline::tool {
@@ -42,6 +43,6 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const 
 // The text of BakeRecord::settings: everything that the parts depend on, the scene's origin (so that queries
 // can use world space), and facts about the occluders. It holds neither the threads nor the limit of their
 // memory.
-Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, double crack_width);
+Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, const CrackNote& cracks);
 
 }  // namespace sightline::tool

@@ -43,6 +43,7 @@ std::string bakeText(const BakeReport& report, const std::string& name, const Si
                       report.budget_chosen ? " (chosen; --triangle-budget sets it)" : "");
   text += fmt::format("depth         {} levels{}\n", file.record().max_depth,
                       report.depth_chosen ? " (chosen; --depth sets it)" : "");
+  text += cracksText(file);
   text += fmt::format("occluders     {} convex ones\n", report.occluders);
   text += fmt::format("parts         {}, {} of them from the checkpoint; {} processes of {} threads\n",
                       report.parts, effort.parts_before, effort.processes, effort.threads);

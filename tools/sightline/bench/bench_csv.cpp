@@ -116,6 +116,13 @@ void addTightness(std::vector<CsvColumn>& columns) {
                      }});
   addInterval(columns, "boxes_overestimate",
               [](const Record& record, const Run&) { return record.leastOfBoxes(); });
+  columns.push_back({"several_boxes",
+                     [](const Record& record, const Run&) { return std::to_string(record.several_boxes); }});
+  columns.push_back({"undecided_several_boxes", [](const Record& record, const Run&) {
+                       return std::to_string(record.undecided_several_boxes);
+                     }});
+  addInterval(columns, "several_boxes_overestimate",
+              [](const Record& record, const Run&) { return record.leastOfSeveralBoxes(); });
   columns.push_back({"answers", [](const Record&, const Run& run) { return answersText(run); }});
 }
 

@@ -47,11 +47,12 @@ Json runJson(const SettingRecord& run, const BenchRecord& record) {
 }
 
 std::string recordJson(const BenchRecord& record) {
+  Json scene = {{"objects", record.scene.objects},
+                {"triangles", record.scene.triangles},
+                {"hash", fmt::format("{:016x}", record.scene.hash)}};
+  addCracks(scene, record.cracks);
   const Json head = {{"name", record.scene_name},
-                     {"scene",
-                      {{"objects", record.scene.objects},
-                       {"triangles", record.scene.triangles},
-                       {"hash", fmt::format("{:016x}", record.scene.hash)}}},
+                     {"scene", scene},
                      {"path", record.path_name},
                      {"views", fmt::format("{:016x}", record.views)},
                      {"frames", record.frames},
@@ -64,6 +65,9 @@ std::string recordJson(const BenchRecord& record) {
                      {"boxes", record.boxes},
                      {"undecided_boxes", record.undecided_boxes},
                      {"boxes_overestimate", intervalJson(record.leastOfBoxes())},
+                     {"several_boxes", record.several_boxes},
+                     {"undecided_several_boxes", record.undecided_several_boxes},
+                     {"several_boxes_overestimate", intervalJson(record.leastOfSeveralBoxes())},
                      {"frames_from_cache", record.frames_from_cache},
                      {"advised", record.advice.run},
                      {"advice", record.advice.sentence}};

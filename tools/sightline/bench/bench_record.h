@@ -10,6 +10,7 @@
 
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/bench/frame_times.h"
+#include "tools/sightline/input/crack_note.h"
 #include "tools/sightline/methods/method_options.h"
 
 namespace sightline::tool {
@@ -71,6 +72,7 @@ struct Advice {
 struct BenchRecord {
   std::string scene_name{}, path_name{};
   SceneId scene{};
+  CrackNote cracks{};
   std::uint64_t views = 0;  // hash of the views of all frames
   std::size_t frames = 0, rounds = 0;
   std::optional<int> core{};    // to which the measuring thread was pinned; none: it was not
@@ -81,6 +83,8 @@ struct BenchRecord {
   // Objects whose bounding boxes are visible, over all frames: any test of one box an object must keep them.
   std::uint64_t boxes = 0;
   std::uint64_t undecided_boxes = 0;  // not among them
+  // The same with the up to kMaxObjectBoxes boxes that findObjectBoxes() gives an object.
+  std::uint64_t several_boxes = 0, undecided_several_boxes = 0;
   std::size_t frames_from_cache = 0;  // frames whose exact visibility was kept from an earlier run
   std::vector<SettingRecord> runs{};  // [0] is the baseline: view-frustum culling
   Advice advice{};
@@ -90,6 +94,8 @@ struct BenchRecord {
   std::optional<Interval> overestimate(const SettingRecord& run) const { return overestimateOf(run.kept); }
   // The least that a test of one bounding box an object can have.
   std::optional<Interval> leastOfBoxes() const { return overestimateOf(boxes); }
+  // The same with several boxes an object.
+  std::optional<Interval> leastOfSeveralBoxes() const { return overestimateOf(several_boxes); }
 
  private:
   std::optional<Interval> overestimateOf(std::uint64_t objects) const {

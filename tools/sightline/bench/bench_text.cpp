@@ -31,12 +31,15 @@ std::vector<std::string> rowOf(const SettingRecord& run, const BenchRecord& reco
 
 // The least kept/exact of any test of boxes.
 std::string boxesText(const BenchRecord& record) {
-  const std::string undecided =
-      record.undecided_boxes == 0 ? "" : fmt::format(" and {} undecided ones", record.undecided_boxes);
+  const auto undecided = [](std::uint64_t boxes) {
+    return boxes == 0 ? "" : fmt::format(" and {} undecided ones", boxes);
+  };
   return fmt::format(
       "boxes: {} kept/exact is the least that any test of one bounding box an object can have ({} visible "
-      "boxes{}).",
-      intervalText(record.leastOfBoxes()), record.boxes, undecided);
+      "boxes{}), {} that of several ({} objects{}).",
+      intervalText(record.leastOfBoxes()), record.boxes, undecided(record.undecided_boxes),
+      intervalText(record.leastOfSeveralBoxes()), record.several_boxes,
+      undecided(record.undecided_several_boxes));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "tools/sightline/bench/machine.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/stopwatch.h"
+#include "tools/sightline/exact/exact_several_boxes.h"
 
 #define XXH_INLINE_ALL
 #include "src/pvs/format/checksum.h"
@@ -41,15 +42,17 @@ BenchRecord SceneBench::measure(const std::string& name, BenchInput& input) {
   const Scene& scene = input.data.scene;
   const Walk& walk = input.data.walk;
   const std::vector<View> views = viewsOf(walk, scene);
-  BenchRecord record{.scene_name = name + crackText(input.data.closing),
+  BenchRecord record{.scene_name = name + crackText(input.data.closing.note()),
                      .path_name = walk.path.name.empty() ? "unnamed" : walk.path.name,
                      .scene = sceneId(scene.view()),
+                     .cracks = input.data.closing.note(),
                      .views = hashOf(views),
                      .frames = views.size(),
                      .rounds = settings_.rounds,
                      .load_us = input.load_us};
   const PictureOptions size = pictureSize(settings_.picture, walk.path);
   const std::vector<ExactObjects> exact = exactFrames(scene, views, record);
+  countSeveralBoxes(input.data, views, exact, record);
   run(input, views, exact, size, record);
   markFront(record);
   record.advice = adviceFor(record);
@@ -58,7 +61,7 @@ BenchRecord SceneBench::measure(const std::string& name, BenchInput& input) {
 
 std::vector<ExactObjects> SceneBench::exactFrames(const Scene& scene, const std::vector<View>& views,
                                                   BenchRecord& record) {
-  const ExactSettings settings{.width = kRayColumns, .height = kRayRows, .steps = settings_.steps};
+  const ExactSettings settings = exactSettings();
   std::unique_ptr<ExactVisibility> oracle;  // made when the first view needs it
   std::vector<ExactObjects> frames;
   ProgressBar progress("exact visibility of " + record.scene_name);
@@ -83,6 +86,33 @@ std::vector<ExactObjects> SceneBench::exactFrames(const Scene& scene, const std:
     progress.update(static_cast<double>(i + 1) / static_cast<double>(views.size()));
   }
   return frames;
+}
+
+void SceneBench::countSeveralBoxes(const SceneAndWalk& input, const std::vector<View>& views,
+                                   const std::vector<ExactObjects>& exact, BenchRecord& record) {
+  const ExactSettings settings = exactSettings();
+  const SceneView scene = input.scene.view();
+  const ObjectBoxes boxes = findObjectBoxes(scene, {.margin = input.closing.margin}, threads_.parallelFor());
+  std::unique_ptr<ExactSeveralBoxes> oracle;  // made when the first view needs it
+  ProgressBar progress("exact visibility of boxes of " + record.scene_name);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const ExactKey key = severalBoxesKey({record.scene, views[i], settings}, boxes);
+    std::optional<ExactObjects> left = cache_.find(key);
+    if (!left) {
+      if (!oracle) {
+        oracle = std::make_unique<ExactSeveralBoxes>(scene, boxes);
+      }
+      left = oracle->left(views[i], exact[i], settings, threads_.parallelFor());
+      keep(key, *left);
+    }
+    record.several_boxes += exact[i].witnessed.size() + left->boxes.size();
+    record.undecided_several_boxes += left->undecided_boxes.size();
+    progress.update(static_cast<double>(i + 1) / static_cast<double>(views.size()));
+  }
+}
+
+ExactSettings SceneBench::exactSettings() const {
+  return {.width = kRayColumns, .height = kRayRows, .steps = settings_.steps};
 }
 
 void SceneBench::keep(const ExactKey& key, const ExactObjects& frame) {

@@ -39,6 +39,10 @@ class SceneBench {
   // Exact visibility of all views, from the cache as far as it is there.
   std::vector<ExactObjects> exactFrames(const Scene& scene, const std::vector<View>& views,
                                         BenchRecord& record);
+  // Which objects a test of several boxes must keep, likewise.
+  void countSeveralBoxes(const SceneAndWalk& input, const std::vector<View>& views,
+                         const std::vector<ExactObjects>& exact, BenchRecord& record);
+  ExactSettings exactSettings() const;
   // A cache that cannot be written does not change the results, so it is only said, once.
   void keep(const ExactKey& key, const ExactObjects& frame);
   void run(BenchInput& input, const std::vector<View>& views, const std::vector<ExactObjects>& exact,

@@ -120,6 +120,16 @@ void addCrackWidthOption(CLI::App& command, double& width) {
                    "through them, or within twice this width beside an edge, may be culled");
 }
 
+void addCrackWidthsOption(CLI::App& command, std::vector<double>& widths) {
+  command
+      .add_option("--crack-width", widths,
+                  "says what closing cracks narrower than this, in metres, hides on the scene's walk; several "
+                  "widths with commas")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(decimal(0.0, kMaxCrackWidth));
+}
+
 void addPictureOptions(CLI::App& command, PictureOptions& options) {
   command.add_option("--width", options.width, "width of the pictures, pixels (default: the path's)")
       ->check(CLI::Range(1u, kMaxPixels));

@@ -73,6 +73,8 @@ void addPathOptions(CLI::App& command, PathOptions& options);
 
 // The width in metres below which cracks count as closed (closeCracks); 0: all stay open.
 void addCrackWidthOption(CLI::App& command, double& width);
+// Several of them, separated by commas.
+void addCrackWidthsOption(CLI::App& command, std::vector<double>& widths);
 
 // Options of commands that draw pictures.
 struct PictureOptions {

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/progress_bar.h"
@@ -26,8 +27,8 @@ struct CullOptions {
 
 // Sums over all frames.
 struct Totals {
-  double objects = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0, tested_share = 0.0,
-         occluders = 0.0;
+  double objects = 0.0, clusters = 0.0, triangles = 0.0, cull_us = 0.0, nodes_tested = 0.0,
+         tested_share = 0.0, occluders = 0.0;
   std::vector<double> statistics{};  // in the order of statisticsOf
 };
 
@@ -40,8 +41,9 @@ std::vector<std::uint64_t> valuesOf(const std::vector<Statistic>& statistics, co
   return values;
 }
 
-std::string frameJson(std::uint32_t frame, const CullRun& run, const std::vector<Statistic>& statistics,
-                      const std::vector<std::uint64_t>& values, double tested_share, bool times) {
+std::string frameJson(std::uint32_t frame, const CullRun& run, const Clustering& clustering,
+                      const std::vector<Statistic>& statistics, const std::vector<std::uint64_t>& values,
+                      double tested_share, bool times) {
   std::vector<std::uint32_t> ids;
   for (const ObjectId object : run.culler.visible()) {
     ids.push_back(object.value);
@@ -53,16 +55,22 @@ std::string frameJson(std::uint32_t frame, const CullRun& run, const std::vector
                {"nodes_tested", stats.nodes_tested},
                {"nodes_tested_share", tested_share},
                {"occluders", stats.occluders}};
+  if (clustering.on()) {
+    json["visible_clusters"] = std::exchange(json["visible"], objectsWith(clustering, run.culler.visible()));
+  }
   addStatistics(json, statistics, [&](std::size_t i) { return values[i]; });
   return dump(json);
 }
 
-void print(const Setting& setting, const CullingData& data, const CrackClosing& closing, std::size_t frames,
-           const Totals& sum) {
-  const double n = static_cast<double>(frames);
-  fmt::print("{} ({}){}, {} frames, means of a frame:\n", methodName(setting), optionsText(setting),
-             crackText(closing), frames);
-  fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n, data.bounds().size());
+void print(const Setting& setting, const CullingData& data, const SceneAndWalk& input, const Totals& sum) {
+  const double n = static_cast<double>(input.walk.frames.size());
+  fmt::print("{} ({}){}{}, {} frames, means of a frame:\n", methodName(setting), optionsText(setting),
+             crackText(input.closing.note()), clustersText(input.clustering), input.walk.frames.size());
+  if (input.clustering.on()) {
+    fmt::print("  visible clusters  {:12.1f} of {}\n", sum.clusters / n, data.bounds().size());
+  }
+  fmt::print("  visible objects   {:12.1f} of {}\n", sum.objects / n,
+             input.clustering.on() ? input.clustering.objects : data.bounds().size());
   fmt::print("  their triangles   {:12.1f}\n", sum.triangles / n);
   fmt::print("  cull time         {:12.1f} us\n", sum.cull_us / n);
   fmt::print("  nodes tested      {:12.1f} ({:.1f} % of the hierarchy)\n", sum.nodes_tested / n,
@@ -102,9 +110,13 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
     const double tested_share = testedShare(stats, data.hierarchy(setting.hierarchy).nodes.size());
     const std::vector<std::uint64_t> values = valuesOf(statistics, run.culler, !options.no_times);
     if (!options.common.json.empty()) {
-      frames.push_back(frameJson(frame, run, statistics, values, tested_share, !options.no_times));
+      frames.push_back(
+          frameJson(frame, run, input.clustering, statistics, values, tested_share, !options.no_times));
     }
-    sum.objects += static_cast<double>(run.culler.visible().size());
+    sum.clusters += static_cast<double>(run.culler.visible().size());
+    sum.objects +=
+        static_cast<double>(input.clustering.on() ? objectsWith(input.clustering, run.culler.visible()).size()
+                                                  : run.culler.visible().size());
     sum.triangles += static_cast<double>(data.trianglesOf(run.culler.visible()));
     sum.cull_us += options.no_times ? 0.0 : run.cull_us;
     sum.nodes_tested += stats.nodes_tested;
@@ -116,15 +128,17 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
     progress.update(static_cast<double>(frame + 1) / static_cast<double>(walk.frames.back() + 1));
   }
   data.noteUnknownSets();
-  Json head = {{"scene", sceneJson(scene, input.closing)},
-               {"method", methodName(setting)},
-               {"options", optionsJson(setting)}};
+  Json head = {
+      {"scene", sceneJson(input)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
   addDatabases(head, data, !options.no_times);
+  if (input.clustering.on()) {
+    head["clusters"] = clustersJson(input.clustering, scene);
+  }
   if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", frames)); !ok) {
     return ok.error();
   }
   if (options.common.textOnStdout()) {
-    print(setting, data, input.closing, walk.frames.size(), sum);
+    print(setting, data, input, sum);
   }
   return kOk;
 }
@@ -149,6 +163,7 @@ void addCull(CLI::App& app, Command& chosen) {
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
   addMethodOptions(*command, options->method, false);
+  addClustersOption(*command, options->method.clusters);
   command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
   command->footer(
       "Examples:\n"

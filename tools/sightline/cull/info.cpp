@@ -20,7 +20,7 @@ namespace {
 struct InfoOptions {
   CommonOptions common;
   PathOptions path;
-  double crack_width = 0.0;
+  std::vector<double> crack_widths;
 };
 
 Json pointJson(const Vec3d& p) {
@@ -259,6 +259,8 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data, co
 }
 
 Result<ExitCode> runInfo(const InfoOptions& options) {
+  std::vector<double> widths = options.crack_widths;
+  std::erase(widths, 0.0);  // that is the scene as it is
   if (const Status ok = checkFiles({.scenes = {options.common.scene},
                                     .inputs = walkInputs(options.common.scene, options.path),
                                     .outputs = {{"--json", options.common.json}}});
@@ -270,14 +272,14 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
       return Error{fmt::format("--threads {}: a baked file is read with one thread; leave it out",
                                options.common.threads)};
     }
-    if (options.crack_width > 0.0 || !options.path.path.empty() || !options.path.frames.empty()) {
+    if (!widths.empty() || !options.path.path.empty() || !options.path.frames.empty()) {
       return Error{
           "--crack-width, --path, --frames: a baked file has no surfaces to walk past; leave them out"};
     }
     const Status ok = informOnSight(options.common.scene, options.common.json);
     return ok ? Result<ExitCode>(kOk) : ok.error();
   }
-  if (options.crack_width == 0.0 && !(options.path.path.empty() && options.path.frames.empty())) {
+  if (widths.empty() && !(options.path.path.empty() && options.path.frames.empty())) {
     return Error{"--path, --frames: a walk shows what closing cracks hides; give --crack-width as well"};
   }
   Result<Scene> loaded = loadScene(options.common.scene);
@@ -288,13 +290,13 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
   const Scene& scene = input.scene;
   const Threads threads(options.common.threads);
   CrackFacts cracks = crackFactsOf(scene, threads.parallelFor());
-  if (options.crack_width > 0.0) {
+  if (!widths.empty()) {
     Result<Walk> walk = loadWalk(options.path, options.common.scene, scene);
     if (!walk) {
       return walk.error();
     }
     input.walk = std::move(*walk);
-    cracks.effect = effectOfClosing(input, options.crack_width, threads.parallelFor());
+    cracks.effect = effectOfClosing(input, widths, threads.parallelFor());
   }
   CullingData data(scene, threads.parallelFor());
   if (!options.common.json.empty()) {
@@ -318,12 +320,12 @@ void addInfo(CLI::App& app, Command& chosen) {
   const auto options = std::make_shared<InfoOptions>();
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
-  addCrackWidthOption(*command, options->crack_width);
+  addCrackWidthsOption(*command, options->crack_widths);
   command->footer(
       "Examples:\n"
       "  sightline info city.glb\n"
       "  sightline info \"demo:city?copies=30&seed=1\" --json city.json\n"
-      "  sightline info city.glb --crack-width 0.001    what closing cracks hides on the scene's walk\n"
+      "  sightline info city.glb --crack-width 0.001,0.01    what closing cracks hides on the scene's walk\n"
       "  sightline info city.sight");
   command->callback([options, &chosen] { chosen = [options] { return runInfo(*options); }; });
 }

@@ -7,23 +7,30 @@
 #include <map>
 #include <utility>
 
+#include "tools/sightline/command_line/progress_bar.h"
+
 namespace sightline::tool {
 namespace {
 
 // Cracks up to a centimetre: what is wider is meant to be there.
 constexpr std::array<double, 5> kWidths{1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 
-double keptOn(const SceneAndWalk& input, const ParallelFor& parallel_for) {
+// Objects kept a frame. done(part): the part of the walk that is done.
+template <typename Done>
+double keptOn(const SceneAndWalk& input, const ParallelFor& parallel_for, const Done& done) {
   Setting setting;
   setting.method = &methodNamed("depth-pyramid");
   CullingData data(input, parallel_for);
   Culler culler = data.makeCuller(setting);
+  const auto frames = static_cast<double>(input.walk.frames.size());
   std::size_t kept = 0;
+  double walked = 0.0;
   for (const std::uint32_t frame : input.walk.frames) {
     culler.cull(input.walk.view(frame, input.scene));
     kept += culler.visible().size();
+    done(++walked / frames);
   }
-  return static_cast<double>(kept) / static_cast<double>(input.walk.frames.size());
+  return static_cast<double>(kept) / frames;
 }
 
 Json pointJson(const Vec3f& p, const Scene& scene) {
@@ -55,11 +62,24 @@ CrackFacts crackFactsOf(const Scene& scene, const ParallelFor& parallel_for) {
   return facts;
 }
 
-CrackEffect effectOfClosing(const SceneAndWalk& input, double width, const ParallelFor& parallel_for) {
-  SceneAndWalk closed = input;
-  closed.closing = closeCracksOf(closed.scene, width, parallel_for);
-  return {input.walk.frames.size(), keptOn(input, parallel_for), keptOn(closed, parallel_for), width,
-          closed.closing.slack};
+CrackEffect effectOfClosing(const SceneAndWalk& input, std::span<const double> widths,
+                            const ParallelFor& parallel_for) {
+  ProgressBar progress("closing cracks");
+  const auto walks = static_cast<double>(widths.size() + 1);
+  double walked = 0.0;
+  const auto keep = [&](const SceneAndWalk& of) {
+    const double kept =
+        keptOn(of, parallel_for, [&](double part) { progress.update((walked + part) / walks); });
+    ++walked;
+    return kept;
+  };
+  CrackEffect effect{.frames = input.walk.frames.size(), .kept_open = keep(input)};
+  for (const double width : widths) {
+    SceneAndWalk closed = input;
+    closed.closing = closeCracksOf(closed.scene, width, parallel_for);
+    effect.closed.push_back({closed.closing.note(), keep(closed)});
+  }
+  return effect;
 }
 
 Json cracksJson(const CrackFacts& facts, const Scene& scene) {
@@ -75,11 +95,16 @@ Json cracksJson(const CrackFacts& facts, const Scene& scene) {
   }
   Json json = {{"counts", counts}, {"places", places}};
   if (facts.effect) {
-    json["closed"] = {{"crack_width", facts.effect->width},
-                      {"crack_slack", facts.effect->slack},
-                      {"frames", facts.effect->frames},
-                      {"kept_open", facts.effect->kept_open},
-                      {"kept_closed", facts.effect->kept_closed}};
+    const CrackEffect& effect = *facts.effect;
+    Json all = Json::array();
+    for (const CrackEffect::Closed& closed : effect.closed) {
+      Json item = {
+          {"frames", effect.frames}, {"kept_open", effect.kept_open}, {"kept_closed", closed.kept}};
+      addCracks(item, closed.note);
+      all.push_back(item);
+    }
+    json["closed"] = all.front();
+    json["closings"] = all;
   }
   return json;
 }
@@ -104,10 +129,12 @@ void printCracks(const CrackFacts& facts, const Scene& scene) {
                world.x, world.y, world.z);
   }
   if (facts.effect) {
-    fmt::print(
-        "              with those below {} m closed, {:.1f} objects a frame are kept instead of {:.1f} "
-        "(depth-pyramid, {} frames)\n",
-        facts.effect->width, facts.effect->kept_closed, facts.effect->kept_open, facts.effect->frames);
+    for (const CrackEffect::Closed& closed : facts.effect->closed) {
+      fmt::print(
+          "              with those below {} m closed, {:.1f} objects a frame are kept instead of {:.1f} "
+          "(depth-pyramid, {} frames; closing moves nothing by more than {:.3g} m)\n",
+          closed.note.width, closed.kept, facts.effect->kept_open, facts.effect->frames, closed.note.slack);
+    }
   }
 }
 

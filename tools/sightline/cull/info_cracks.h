@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
@@ -26,11 +27,15 @@ struct CrackPlace {
   Crack widest{};
 };
 
-// What a walk shows with the depth pyramid.
+// What a walk shows with the depth pyramid, with all cracks open and with those of several widths closed.
 struct CrackEffect {
+  struct Closed {
+    CrackNote note{};
+    double kept = 0.0;  // objects a frame
+  };
   std::size_t frames = 0;
-  double kept_open = 0.0, kept_closed = 0.0;  // objects a frame
-  double width = 0.0, slack = 0.0;            // metres
+  double kept_open = 0.0;  // objects a frame
+  std::vector<Closed> closed{};
 };
 
 struct CrackFacts {
@@ -43,8 +48,9 @@ struct CrackFacts {
 
 CrackFacts crackFactsOf(const Scene& scene, const ParallelFor& parallel_for);
 
-// Walks with cracks open, and with those closed that are narrower than the width.
-CrackEffect effectOfClosing(const SceneAndWalk& input, double width, const ParallelFor& parallel_for);
+// Walks with cracks open, and for each width with those closed that are narrower.
+CrackEffect effectOfClosing(const SceneAndWalk& input, std::span<const double> widths,
+                            const ParallelFor& parallel_for);
 
 Json cracksJson(const CrackFacts& facts, const Scene& scene);
 void printCracks(const CrackFacts& facts, const Scene& scene);

@@ -10,6 +10,7 @@
 #include "tools/sightline/bake/bake_warning.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/text_table.h"
+#include "tools/sightline/input/crack_note.h"
 
 namespace sightline::tool {
 namespace {
@@ -114,6 +115,7 @@ void print(const std::string& name, const SightFile& file, const SightFacts& fac
   const Vec3d min = file.octree().min + originOf(record), max = file.octree().max + originOf(record);
   fmt::print("file          {} ({} bytes)\n", name, file.fileBytes());
   fmt::print("scene         {:016x}, {} objects, {} triangles\n", scene.hash, scene.objects, scene.triangles);
+  fmt::print("{}", cracksText(file));
   fmt::print("octree        from {:.3f} {:.3f} {:.3f}\n", min.x, min.y, min.z);
   fmt::print("              to   {:.3f} {:.3f} {:.3f}\n", max.x, max.y, max.z);
   fmt::print("              for viewers whose near plane clips nothing beyond {} m of the eye\n",
@@ -281,18 +283,27 @@ std::optional<OccluderFacts> occludersOf(const BakeRecord& record) {
       .none = *inner < 1.0, .none_of_use = *of_use < 1.0, .largest_area = *area, .size = *size};
 }
 
+std::string cracksText(const SightFile& file) {
+  const CrackNote cracks = cracksOf(file.record());
+  return cracks.width > 0.0 ? fmt::format("cracks        closed by{}\n", crackText(cracks)) : "";
+}
+
+Json bakedSceneJson(const SightFile& file) {
+  Json json = {{"objects", file.scene().objects}, {"triangles", file.scene().triangles}};
+  addCracks(json, cracksOf(file.record()));
+  return json;
+}
+
 Json sightJson(const SightFile& file, const SightFacts& facts) {
-  const SceneId& scene = file.scene();
   Json sections = Json::array();
   for (const SightFile::Section& section : file.sections()) {
     sections.push_back({{"name", section.name}, {"bytes", section.bytes}, {"raw_bytes", section.raw_bytes}});
   }
   const OctreeView octree = file.octree();
   const Vec3d min = octree.min + originOf(file.record()), max = octree.max + originOf(file.record());
-  Json json = {{"scene",
-                {{"hash", fmt::format("{:016x}", scene.hash)},
-                 {"objects", scene.objects},
-                 {"triangles", scene.triangles}}},
+  Json of_scene = bakedSceneJson(file);
+  of_scene["hash"] = fmt::format("{:016x}", file.scene().hash);
+  Json json = {{"scene", of_scene},
                {"bytes", file.fileBytes()},
                {"settings", recordJson(file)},
                {"min", {min.x, min.y, min.z}},

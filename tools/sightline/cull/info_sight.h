@@ -49,6 +49,10 @@ Result<SightFacts> factsOf(const SightFile& file);
 Json factsJson(const SightFacts& facts);
 Json sightJson(const SightFile& file, const SightFacts& facts);
 std::string factsText(const SightFacts& facts);  // the lines that `info` prints
+// A line that names the width of the cracks that were closed; empty if none were.
+std::string cracksText(const SightFile& file);
+// {"objects":n,"triangles":t}, and what addCracks() adds
+Json bakedSceneJson(const SightFile& file);
 
 // The baked scene's origin in world space; zero if the file does not tell.
 Vec3d originOf(const BakeRecord& record);

@@ -136,8 +136,7 @@ std::string toJson(const SightFile& file, const std::vector<PointAnswer>& answer
   for (const PointAnswer& answer : answers) {
     items.push_back(pointJson(answer));
   }
-  const Json head = {{"scene", {{"objects", file.scene().objects}, {"triangles", file.scene().triangles}}},
-                     {"outside", outsideCount(answers)}};
+  const Json head = {{"scene", bakedSceneJson(file)}, {"outside", outsideCount(answers)}};
   return dumpWithList(head, "points", items);
 }
 
@@ -167,8 +166,8 @@ void print(const SightFile& file, const std::vector<PointAnswer>& answers) {
   std::sort(cells.begin(), cells.end());
   const auto different = std::unique(cells.begin(), cells.end()) - cells.begin();
   const Spread o = spreadOf(objects), t = spreadOf(triangles);
-  fmt::print("{} points in {} cells; of {} objects with {} triangles:\n", answers.size(), different,
-             file.scene().objects, file.scene().triangles);
+  fmt::print("{} points in {} cells; of {} objects with {} triangles:\n{}", answers.size(), different,
+             file.scene().objects, file.scene().triangles, cracksText(file));
   fmt::print("  objects    mean {:.1f}, deviation {:.1f}, from {:.0f} to {:.0f}\n", o.mean, o.deviation,
              o.min, o.max);
   fmt::print("  triangles  mean {:.1f}, deviation {:.1f}, from {:.0f} to {:.0f}\n", t.mean, t.deviation,

@@ -163,18 +163,18 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
           {"witnesses", witnesses}};
 }
 
-std::string toJson(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene,
-                   const CrackClosing& closing) {
+std::string toJson(const std::vector<VerifyRun>& runs, const Verifier& verifier, const SceneAndWalk& input) {
+  const Scene& scene = input.scene;
   if (runs.size() == 1) {
     Json json = runJson(runs.front(), verifier, scene);
-    json["scene"] = sceneJson(scene, closing);
+    json["scene"] = sceneJson(input);
     return dump(json);
   }
   std::vector<std::string> items;
   for (const VerifyRun& run : runs) {
     items.push_back(dump(runJson(run, verifier, scene)));
   }
-  return dumpWithList({{"scene", sceneJson(scene, closing)}}, "runs", items);
+  return dumpWithList({{"scene", sceneJson(input)}}, "runs", items);
 }
 
 void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
@@ -197,16 +197,16 @@ void printFalseCulls(const std::vector<VerifyRun>& runs, const Scene& scene) {
   }
 }
 
-void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const Scene& scene,
-           const CrackClosing& closing) {
-  printFalseCulls(runs, scene);
+void print(const std::vector<VerifyRun>& runs, const Verifier& verifier, const SceneAndWalk& input) {
+  printFalseCulls(runs, input.scene);
+  const std::string with = crackText(input.closing.note()) + clustersText(input.clustering);
   const auto a_frame = [&](std::size_t count) {
     return static_cast<double>(count) / static_cast<double>(verifier.of_frame.size());
   };
-  fmt::print("{} frames, {} objects, exactly visible {:.1f} to {:.1f} a frame{}\n", verifier.of_frame.size(),
-             scene.objects.size(), a_frame(verifier.total.visible),
-             a_frame(verifier.total.visible + verifier.total.undecided),
-             closing.width > 0.0 ? ", with" + crackText(closing) : "");
+  fmt::print("{} frames, {} {}, exactly visible {:.1f} to {:.1f} a frame{}\n", verifier.of_frame.size(),
+             input.scene.objects.size(), input.clustering.on() ? "clusters" : "objects",
+             a_frame(verifier.total.visible), a_frame(verifier.total.visible + verifier.total.undecided),
+             with.empty() ? "" : ", with" + with);
   TextTable table{
       {"method", "options", "kept", "overestimate", "culled", "proved", "undecided", "false culls"}, {}, 2};
   for (const VerifyRun& run : runs) {
@@ -239,13 +239,12 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
     }
   }
   if (!options.common.json.empty()) {
-    if (const Status ok = writeOutput(options.common.json, toJson(runs, verifier, scene, input.closing));
-        !ok) {
+    if (const Status ok = writeOutput(options.common.json, toJson(runs, verifier, input)); !ok) {
       return ok.error();
     }
   }
   if (options.common.textOnStdout()) {
-    print(runs, verifier, scene, input.closing);
+    print(runs, verifier, input);
   }
   data.noteUnknownSets();
   const bool clean =
@@ -281,6 +280,7 @@ void addVerify(CLI::App& app, Command& chosen) {
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
   addMethodOptions(*command, options->method, true);
+  addClustersOption(*command, options->method.clusters);
   command->add_option("--width", options->width, "rays in a row, one a pixel")
       ->check(CLI::Range(1u, 16384u))
       ->capture_default_str();

@@ -129,7 +129,7 @@ void print(const RegionsReport& report, const Scene& scene, const CrackClosing& 
     fmt::print("... and {} more false culls; --json lists all\n", report.falseCulls() - listed);
   }
   fmt::print("{} pairs of a cell and an object that is not in its set{}; {} false culls\n",
-             report.answers.size(), closing.width > 0.0 ? ", with" + crackText(closing) : "",
+             report.answers.size(), closing.width > 0.0 ? ", with" + crackText(closing.note()) : "",
              report.falseCulls());
   fmt::print("searched {} lines, {} planes of lines and {} eyes; exact pictures: {} hidden, {} undecided\n",
              report.sum(&RegionAnswer::lines), report.sum(&RegionAnswer::planes),

@@ -96,10 +96,6 @@ CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parall
   return closing;
 }
 
-std::string crackText(const CrackClosing& closing) {
-  return closing.width > 0.0 ? fmt::format(" --crack-width {}", closing.width) : "";
-}
-
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene) {
   if (file.empty()) {
     return std::optional<SightFile>();
@@ -109,13 +105,10 @@ Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene&
     return baked.error();
   }
   if (const Status same = baked->matches(sceneId(scene.view())); !same) {
-    const Json settings = Json::parse(baked->record().settings, nullptr, false);
-    const bool closed =
-        settings.is_object() && settings.contains("crack_width") && settings["crack_width"].is_number();
-    const double width = closed ? settings["crack_width"].get<double>() : 0.0;
-    return Error{same.error().message +
-                 (width > 0.0 ? fmt::format(", or give the --crack-width {} that it was baked with", width)
-                              : std::string())};
+    const CrackNote closed = cracksOf(baked->record());
+    return Error{same.error().message + (closed.width > 0.0
+                                             ? ", or give the" + crackText(closed) + " that it was baked with"
+                                             : std::string())};
   }
   if (const Status whole = baked->verifyAll(); !whole) {
     return whole.error();
@@ -154,7 +147,15 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!scene) {
     return scene.error();
   }
+  if (method.clusters > 0 && !method.baked.empty()) {
+    return Error{"--clusters, --baked: the sets of a baked file are of whole objects; leave one of them out"};
+  }
   CrackClosing closing = closeCracksOf(*scene, method.crack_width);
+  Clustering clustering = divideIntoClusters(*scene, method.clusters, closing.margin);
+  if (clustering.on()) {
+    closing.given_indices.clear();  // no cluster has given triangles of its own
+    closing.given_objects.clear();
+  }
   Result<std::optional<SightFile>> file = loadBaked(method.baked, *scene);
   if (!file) {
     return file.error();
@@ -163,13 +164,13 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!walk) {
     return walk.error();
   }
-  Result<PreparedFile> prepared =
-      openPrepared(method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()));
+  Result<PreparedFile> prepared = openPrepared(
+      method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()), closing.width);
   if (!prepared) {
     return prepared.error();
   }
-  return SceneAndWalk{std::move(*scene), std::move(*walk), std::move(*file), std::move(closing),
-                      std::move(*prepared)};
+  return SceneAndWalk{std::move(*scene),  std::move(*walk),      std::move(*file),
+                      std::move(closing), std::move(clustering), std::move(*prepared)};
 }
 
 Result<SceneAndWalk> checkAndLoad(const CommonOptions& common, const PathOptions& path,
@@ -397,9 +398,16 @@ std::uint64_t CullingData::trianglesOf(std::span<const ObjectId> objects) const 
 
 Json sceneJson(const Scene& scene, const CrackClosing& closing) {
   Json json = {{"objects", scene.objects.size()}, {"triangles", scene.triangleCount()}};
-  if (closing.width > 0.0) {
-    json["crack_width"] = closing.width;
-    json["crack_slack"] = closing.slack;
+  addCracks(json, closing.note());
+  return json;
+}
+
+Json sceneJson(const SceneAndWalk& input) {
+  Json json = sceneJson(input.scene, input.closing);
+  if (input.clustering.on()) {
+    json["clusters"] = json["objects"];
+    json["objects"] = input.clustering.objects;
+    json["cluster_triangles"] = input.clustering.max_triangles;
   }
   return json;
 }

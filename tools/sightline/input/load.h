@@ -17,6 +17,8 @@
 #include "sightline/scene/scene.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/output_files.h"
+#include "tools/sightline/input/clustering.h"
+#include "tools/sightline/input/crack_note.h"
 #include "tools/sightline/input/prepared_file.h"
 #include "tools/sightline/methods/method_options.h"
 
@@ -30,13 +32,13 @@ struct CrackClosing {
   double width = 0.0, slack = 0.0, margin = 0.0;  // metres: see ClosedScene
   std::vector<std::uint32_t> given_indices{};     // those of the scene before; empty: the same
   std::vector<Object> given_objects{};
+
+  CrackNote note() const { return {width, slack}; }
 };
 // Closes the scene's cracks that are narrower than the width, and says so on stderr. The scene is then that
 // of the command: what is found, culled, baked and exactly visible is so in it; only pictures are drawn of
 // what was given.
 CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parallel_for = serialFor);
-// What an output says of it: " --crack-width 0.001" after the scene's name; empty for a width of 0.
-std::string crackText(const CrackClosing& closing);
 
 // Opens a .sight file. Error if it was baked from another scene. None if `file` is empty.
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene);
@@ -68,6 +70,7 @@ struct SceneAndWalk {
   Walk walk;
   std::optional<SightFile> baked{};
   CrackClosing closing{};
+  Clustering clustering{};
   PreparedFile prepared{};
 
   // The triangles as the user gave them, for pictures.
@@ -77,7 +80,8 @@ struct SceneAndWalk {
                : SceneView{scene.positions, closing.given_indices, closing.given_objects, scene.materials};
   }
 };
-// Loads all of it. Of `method`, its baked and its prepared file, and the width of cracks.
+// Loads all of it. Of `method`, its baked and its prepared file, the width of cracks, and clusters. Error if
+// there are clusters and a baked file, whose sets are of objects.
 Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathOptions& path,
                                       const MethodOptions& method = {});
 // loadSceneAndWalk for a command that writes no file but --json: checks first that this is none of the
@@ -165,8 +169,10 @@ class CullingData {
   std::vector<std::unique_ptr<SetQuery>> queries_;  // one for each culler that uses visible sets
 };
 
-// {"objects":n,"triangles":t}, and if cracks were closed "crack_width" and "crack_slack"
+// {"objects":n,"triangles":t}, and what addCracks() adds
 Json sceneJson(const Scene& scene, const CrackClosing& closing = {});
+// The same, and with clusters their number: "objects" are then those before.
+Json sceneJson(const SceneAndWalk& input);
 // Adds those that were built of "database" and "detail_database", each
 // {"cells":n,"directions":n,"bytes":n,"build_us":t}, and "viewpoints",
 // {"minimum-sets":{"points":n,"directions":n,"spacing":m,"bytes":n,"build_us":t},...}. Without `times` all

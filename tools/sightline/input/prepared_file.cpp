@@ -1,9 +1,11 @@
-// A file: surfaceBytes(), and behind them eight letters, the scene's id and a checksum of all before it.
+// A file: surfaceBytes(), and behind them eight letters, the scene's id, the width of the
+// cracks that were closed and a checksum of all before it.
 
 #include "tools/sightline/input/prepared_file.h"
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <span>
@@ -19,8 +21,9 @@ namespace sightline::tool {
 namespace {
 
 struct Tail {
-  char letters[8] = {'S', 'L', 'p', 'r', 'e', 'p', '0', '1'};
+  char letters[8] = {'S', 'L', 'p', 'r', 'e', 'p', '0', '2'};
   SceneId scene{};
+  std::uint64_t crack_width = 0;  // the bits of a double, metres
   std::uint64_t checksum = 0;
 };
 static_assert(std::has_unique_object_representations_v<Tail>);
@@ -41,6 +44,9 @@ std::string read(std::string_view text, PreparedFile& file) {
   if (tail.checksum != pvs::checksumOf(bytes.first(bytes.size() - sizeof(tail.checksum)))) {
     return "it is damaged";
   }
+  if (tail.crack_width != std::bit_cast<std::uint64_t>(file.crack_width)) {
+    return fmt::format("it is of --crack-width {}", std::bit_cast<double>(tail.crack_width));
+  }
   if (tail.scene != file.scene) {
     return "it is of another scene";
   }
@@ -55,8 +61,8 @@ std::string read(std::string_view text, PreparedFile& file) {
 
 }  // namespace
 
-Result<PreparedFile> openPrepared(const std::string& name, const SceneId& scene) {
-  PreparedFile file{name, scene};
+Result<PreparedFile> openPrepared(const std::string& name, const SceneId& scene, double crack_width) {
+  PreparedFile file{name, scene, crack_width};
   std::error_code ignored;
   if (name.empty() || !std::filesystem::exists(name, ignored)) {
     return file;
@@ -79,6 +85,7 @@ void keepPrepared(const PreparedFile& file, const SurfaceSet& surfaces) {
   const std::size_t size = bytes.size();
   Tail tail;
   tail.scene = file.scene;
+  tail.crack_width = std::bit_cast<std::uint64_t>(file.crack_width);
   bytes.resize(size + sizeof(tail));
   std::memcpy(&bytes[size], &tail, sizeof(tail));
   tail.checksum = pvs::checksumOf(std::span(bytes).first(bytes.size() - sizeof(tail.checksum)));

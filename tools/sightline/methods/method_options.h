@@ -85,6 +85,7 @@ struct MethodOptions {
   std::string baked;                  // a .sight file; empty: none
   std::string prepared;               // a file for surfaces (openPrepared); empty: none
   double crack_width = 0.0;           // metres
+  std::uint32_t clusters = 0;         // triangles of a cluster (addClustersOption); 0: objects stay whole
 };
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 

@@ -89,7 +89,7 @@ Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const 
     return baked.error();
   }
   effort.bake_s = 1e-6 * watch.lap();
-  baked->record.settings = settingsJson(*bake, {}, scene.origin, 0.0).dump();
+  baked->record.settings = settingsJson(*bake, {}, scene.origin, {}).dump();
   Result<SightFile> file = written(*baked);
   if (!file) {
     return file.error();

@@ -249,12 +249,15 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   data.noteUnknownSets();
   record->width = width;
   record->height = height;
-  const std::string name = options.common.scene + crackText(input.closing);
+  const std::string name = options.common.scene + crackText(input.closing.note());
   const WalkInput walked{name, scene, walk, data, input.closing};
   if (const Status written = writeAll(options, walked, *record, drawing); !written) {
     return written.error();
   }
   if (options.common.textOnStdout()) {
+    if (input.closing.width > 0.0) {
+      fmt::print("{}:\n", name);
+    }
     printWalk(*record);
     fmt::print("report: {}\n", (std::filesystem::path(options.folder) / "index.html").string());
   }
