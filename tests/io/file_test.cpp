@@ -195,5 +195,17 @@ TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
   }
 }
 
+// Assimp 5.2 aborts on this file, which must not be the end of the program that reads it.
+TEST_F(Files, WhatBringsAssimpDownIsOneError) {
+  const std::string file = put("a.off",
+                               "OFF\n4 2 0\n0 0 0-11 0 0\n0 1 0\n0 0 1\x7f"
+                               "3 0 1 2\x97"
+                               "3 ");
+  const Result<Scene> scene = importScene(file);
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().message.find(file + ": could not be read: "), 0u) << scene.error().message;
+  EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
+}
+
 }  // namespace
 }  // namespace sightline
