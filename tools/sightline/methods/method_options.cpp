@@ -361,6 +361,10 @@ const std::vector<Option>& allOptions() {
       {"set-area", kAny, usesMinimumSets, kOne, kWhenChanged,
        "minimum sets: weight of the pixels of occluders",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.area; })},
+      {"set-rest", kAny, usesMinimumSets, kOne, kWhenChanged,
+       "minimum sets: where they end, lists go on by first hit",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.viewpoints.first_hit_after_sets; })},
   };
   return kOptions;
 }
