@@ -6,16 +6,29 @@
 #include <assimp/scene.h>
 
 #include <assimp/config.h>
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <exception>
+#include <new>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "sightline/math/mat4.h"
+#include "src/io/apart.h"
 #include "src/io/failure.h"
+#include "src/io/scene_bytes.h"
 
 namespace sightline::io {
 namespace {
+
+// What the process that reads a file may take: 1 GiB and 100 bytes for each of the file's; a minute, and a
+// second for each 100,000 bytes.
+constexpr std::uint64_t kReaderBytes = 1024 * 1024 * 1024, kReaderBytesEach = 100;
+constexpr std::uint64_t kReaderSeconds = 60, kReaderBytesInSecond = 100'000;
+constexpr unsigned char kScene = 1, kError = 2;  // what an answer of that process begins with
 
 constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_RemoveComponent |
                             aiProcess_JoinIdenticalVertices;
@@ -97,12 +110,18 @@ class AssimpConverter {
                      number, source_.mNumMeshes);
     }
     const aiMesh& mesh = *source_.mMeshes[number];
-    if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0 || mesh.mNumFaces == 0) {
+    const std::span<const aiFace> faces(mesh.mFaces, mesh.mNumFaces);
+    if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0 ||
+        std::none_of(faces.begin(), faces.end(), [](const aiFace& face) { return face.mNumIndices == 3; })) {
       return Success{};
     }
     if (mesh.mMaterialIndex >= source_.mNumMaterials) {
       return failure("{}: mesh {}: material {} does not exist (the file has {})", name_, number,
                      mesh.mMaterialIndex, source_.mNumMaterials);
+    }
+    if (++objects_ > limits_.objects) {
+      return failure("{}: node \"{}\": the scene exceeds {} objects", name_, node.mName.C_Str(),
+                     limits_.objects);
     }
     if (!builder_.fits(mesh.mNumFaces)) {
       return failure("{}: mesh {}: with its {} triangles the scene exceeds {} triangles", name_, number,
@@ -156,6 +175,7 @@ class AssimpConverter {
   const std::string& name_;
   const ImportLimits& limits_;
   SceneBuilder builder_;
+  std::uint64_t objects_ = 0;
 };
 
 }  // namespace
@@ -173,14 +193,49 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
     const aiScene* const source = importer.ReadFile(file, kSteps);
     if (source == nullptr || source->mRootNode == nullptr ||
         (source->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
+      // Assimp catches this one too.
+      if (const std::exception_ptr& thrown = importer.GetException()) {
+        std::rethrow_exception(thrown);
+      }
       const std::string reason = importer.GetErrorString();
       return failure("{}: could not be read: {}", file,
                      reason.empty() ? "it holds no complete scene" : reason);
     }
     return AssimpConverter(*source, file, limits).convert();
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& exception) {
     return failure("{}: could not be read: {}", file, exception.what());
   }
+}
+
+Result<Scene> importAssimpApart(const std::string& file, std::uint64_t file_bytes, const ImportLimits& limits,
+                                std::uint32_t most_seconds) {
+  const std::uint64_t seconds = kReaderSeconds + file_bytes / kReaderBytesInSecond;
+  const ApartLimits own{.memory_bytes = kReaderBytes + kReaderBytesEach * file_bytes,
+                        .seconds = static_cast<std::uint32_t>(std::min<std::uint64_t>(seconds, most_seconds))};
+  // The first byte tells a scene from an error's text.
+  const Result<std::vector<std::byte>> answer = runApart(own, [&] {
+    const Result<Scene> scene = importAssimp(file, limits);
+    std::vector<std::byte> bytes{std::byte{scene ? kScene : kError}};
+    const auto append = [&bytes](std::span<const std::byte> more) {
+      bytes.insert(bytes.end(), more.begin(), more.end());
+    };
+    append(scene ? std::span<const std::byte>(sceneBytes(*scene))
+                 : std::as_bytes(std::span(scene.error().message)));
+    return bytes;
+  });
+  if (!answer || answer->empty()) {
+    return failure("{}: could not be read: {}", file,
+                   answer ? "its reader gave no answer" : answer.error().message);
+  }
+  const std::span<const std::byte> rest = std::span(*answer).subspan(1);
+  if (answer->front() == std::byte{kError}) {
+    return failure("{}", std::string_view(reinterpret_cast<const char*>(rest.data()), rest.size()));
+  }
+  std::optional<Scene> scene = sceneFromBytes(rest);
+  return scene ? Result<Scene>(std::move(*scene))
+               : failure("{}: could not be read: its reader gave a broken answer", file);
 }
 
 }  // namespace sightline::io

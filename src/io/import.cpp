@@ -42,8 +42,9 @@ Result<Scene> importScene(const std::string& file) {
       return whole.error();
     }
   }
+  const std::uint64_t file_bytes = bytes->size();
   *bytes = {};  // Assimp reads the file itself, with the others that it names
-  return importAssimp(file, ImportLimits{});
+  return importAssimpApart(file, file_bytes, ImportLimits{});
 }
 
 }  // namespace sightline

@@ -135,6 +135,24 @@ TEST(ViewpointDatabase, MinimumSetsHaveNothingButWhatHidesSomething) {
   EXPECT_EQ(list.size(), 2u);
 }
 
+TEST(ViewpointDatabase, MinimumSetsGoOnByFirstHitIfAsked) {
+  const Criteria scene;
+  Ids expected = scene.list(OccluderCriterion::kMinimumSets, {.view_angle_deg = 120.0});
+  const Ids sets = expected;
+  for (const OccluderId id : scene.list(OccluderCriterion::kFirstHit, {.view_angle_deg = 120.0})) {
+    if (std::find(sets.begin(), sets.end(), id) == sets.end()) {
+      expected.push_back(id);
+    }
+  }
+  ASSERT_GT(expected.size(), sets.size());
+  EXPECT_EQ(
+      scene.list(OccluderCriterion::kMinimumSets, {.view_angle_deg = 120.0, .first_hit_after_sets = true}),
+      expected);
+  EXPECT_EQ(scene.list(OccluderCriterion::kMinimumSets,
+                       {.occluder_count = 3, .view_angle_deg = 120.0, .first_hit_after_sets = true}),
+            Ids(expected.begin(), expected.begin() + 3));
+}
+
 TEST(ViewpointDatabase, MinimumSetsLeaveOutOccludeesWithFewTriangles) {
   const Criteria scene;
   EXPECT_TRUE(scene.list(OccluderCriterion::kMinimumSets, {.min_triangles = 200}).empty());

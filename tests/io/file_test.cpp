@@ -9,6 +9,7 @@
 
 #include "sightline/io/image.h"
 #include "sightline/io/import.h"
+#include "src/io/assimp.h"
 
 namespace sightline {
 namespace {
@@ -193,6 +194,28 @@ TEST_F(Files, BrokenFilesOfOtherKindsGiveOneLine) {
     EXPECT_EQ(scene.error().message.find(file + ": "), 0u) << scene.error().message;
     EXPECT_EQ(scene.error().message.find('\n'), std::string::npos) << scene.error().message;
   }
+}
+
+TEST_F(Files, WhatExceedsTheLimitsIsRefused) {
+  put("a.mtl", kMtl);
+  const std::string file = put("a.obj", kObj);  // two objects of three triangles
+  EXPECT_TRUE(io::importAssimp(file, {.triangles = 3, .objects = 2}));
+  EXPECT_NE(io::importAssimp(file, {.triangles = 2}).error().message.find("exceeds 2 triangles"),
+            std::string::npos);
+  EXPECT_NE(io::importAssimp(file, {.objects = 1}).error().message.find("exceeds 1 objects"),
+            std::string::npos);
+}
+
+// Assimp 5.2 aborts on this file, which must not be the end of the program that reads it.
+TEST_F(Files, WhatBringsAssimpDownIsOneError) {
+  const std::string file = put("a.off",
+                               "OFF\n4 2 0\n0 0 0-11 0 0\n0 1 0\n0 0 1\x7f"
+                               "3 0 1 2\x97"
+                               "3 ");
+  const Result<Scene> scene = importScene(file);
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().message.find(file + ": could not be read: "), 0u) << scene.error().message;
+  EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ inline std::set<std::string> wordsOfSection(const std::string& heading) {
 inline const std::map<std::string, std::string>& sharedObjects() {
   static const std::map<std::string, std::string> kShared{{"scene", "### scene"},
                                                           {"options", "### options of a method"},
+                                                          {"chosen", "### what auto chose"},
                                                           {"sets", "### statistics of a method"},
                                                           {"map", "### statistics of a method"},
                                                           {"relations", "### statistics of a method"},

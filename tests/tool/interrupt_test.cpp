@@ -94,6 +94,45 @@ TEST(Interrupted, AWalkReportsTheFramesBefore) {
   }
 }
 
+// Whatever the moment, what is there is whole.
+TEST(Interrupted, FilesAreWholeOrAbsentWheneverTheSignalComes) {
+  const std::vector<std::string> scene{"demo:building?floors=1"};
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"info", scene[0], "--json", "@a.json"},
+        {"cull", scene[0], "--frames", "0:100", "--json", "@a.json"},
+        {"cull", scene[0], "--method", "depth-pyramid", "--frames", "0:9", "--prepared", "@kept", "--json",
+         "@a.json"},
+        {"bench", scene[0], "--frames", "0:2", "--repeats", "1", "--no-cache", "-o", "@bench"},
+        {"walk", scene[0], "--frames", "0:60", "--no-pictures", "-o", "@walk"}}) {
+    for (const int delay : {20, 60, 120, 250}) {
+      const TemporaryFolder folder;
+      std::vector<std::string> arguments = words;
+      for (std::string& word : arguments) {
+        word = word[0] == '@' ? folder.file(word.substr(1)) : word;
+      }
+      Started tool(toolWords(0, arguments));
+      std::this_thread::sleep_for(milliseconds(delay));
+      tool.kill(SIGTERM);
+      const Outcome outcome = tool.wait();
+      const std::string shown = ::testing::PrintToString(arguments) + outcome.err;
+      EXPECT_TRUE(outcome.code == 0 || outcome.code == 143 || outcome.code == -1) << shown;
+      for (const auto& entry : fs::recursive_directory_iterator(folder.file(""))) {
+        const std::string name = entry.path().filename().string();
+        EXPECT_EQ(name.find("unfinished"), std::string::npos) << shown << name;
+        if (entry.path().extension() == ".json") {
+          EXPECT_FALSE(parse(contents(entry.path().string())).is_discarded()) << shown << name;
+        }
+      }
+      if (fs::exists(folder.file("kept"))) {
+        const Outcome again = runTool({"cull", scene[0], "--method", "depth-pyramid", "--frames", "0",
+                                       "--prepared", folder.file("kept")});
+        EXPECT_EQ(again.code, 0);
+        EXPECT_EQ(again.err, "") << "the surfaces are read";
+      }
+    }
+  }
+}
+
 TEST(Interrupted, DrawingsOfFramesAreWholeOrAbsent) {
   const TemporaryFolder folder;
   Started tool(toolWords(

@@ -257,6 +257,28 @@ TEST(MethodOptions, ABakedFileThatIsNoneIsRefused) {
   expectRefused({"verify", kCity, "--baked", text}, text);
 }
 
+TEST(MethodOptions, BakedViewpointsLieNearThePathThatBakeWasGiven) {
+  const TemporaryFolder folder;
+  const std::string scene = "demo:building?floors=1";
+  const std::string path = folder.write("path.json", R"({"frames":[{"eye":[10,1.7,10],"forward":[1,0,0]}]})");
+  const auto viewpoints = [&](const std::vector<std::string>& options) {
+    const std::string file = folder.file("building.sight");
+    const Outcome baked =
+        runTool(joined({"bake", scene, "-o", file, "--depth", "1", "--databases", "minimum-sets"}, options));
+    EXPECT_EQ(baked.code, 0) << baked.err;
+    const Outcome outcome = runTool(
+        {"cull", scene, "--baked", file, "--occluders", "minimum-sets", "--frames", "0", "--json", "-"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return parse(outcome.out)["viewpoints"]["minimum-sets"];
+  };
+  const json near_path = viewpoints({"--viewpoint-path", path, "--viewpoint-spacing", "3"});
+  EXPECT_EQ(near_path["spacing"], 3.0);
+  EXPECT_LE(near_path["points"], 8) << "the corners around one viewpoint";
+  EXPECT_GT(viewpoints({})["points"], 8) << "all over the scene";
+  expectRefused({"bake", scene, "-o", folder.file("b.sight"), "--viewpoint-path", "nothing.json"},
+                "nothing.json");
+}
+
 // A baked building, made once.
 class BakedMethods : public ::testing::Test {
  protected:

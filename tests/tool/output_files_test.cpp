@@ -74,6 +74,15 @@ TEST_F(OutputFiles, AreNoFilesThatTheSceneNames) {
   EXPECT_EQ(contents(buffer), "bytes");
 }
 
+TEST_F(OutputFiles, OfASceneThatNamesADeviceAreCheckedAllTheSame) {
+  const std::string scene =
+      folder_.write("device.obj", "mtllib /dev/zero\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string there = folder_.write("there.json", "{}");
+  const Outcome outcome = runTool({"info", scene, "--json", there});
+  EXPECT_NE(outcome.code, -1) << "it ended by itself";
+  EXPECT_LE(outcome.errorLines(), 1) << outcome.err;
+}
+
 TEST_F(OutputFiles, AreNotThePathBesideTheScene) {
   const std::string beside = folder_.write("walk.path.json", kPath);
   expectKept({"cull", scene_, "--json", beside});

@@ -51,6 +51,9 @@ struct ViewpointDatabaseSettings {
   std::uint32_t sets_per_occludee = 4;  // the cheapest that are kept, 0 to 64
   std::uint32_t search_limit = 256;     // occluders tried in the search for one occludee's sets, up to 2^20
   MinimumSetWeights weights{};
+  // Where the minimum sets end, the list goes on with the others that are seen from the grid point, by first
+  // hit: they hide nothing more from there, but may beside it. Not in the paper.
+  bool first_hit_after_sets = false;
 };
 
 // Lists of occluders for the points of a grid. Does not change once it is built, so that any number of

@@ -119,6 +119,21 @@ void ListMaker::byMinimumSets(std::vector<OccluderId>& list) {
        selection_.select(picture_, pool_, occludees_, settings.weights, settings.occluder_count)) {
     list.push_back(shown[occluder].id);
   }
+  if (settings.first_hit_after_sets) {
+    goOnByFirstHit(list);
+  }
+}
+
+void ListMaker::goOnByFirstHit(std::vector<OccluderId>& list) {
+  std::vector<OccluderId> by_first_hit, known(list);
+  std::sort(known.begin(), known.end());
+  byFirstHit(by_first_hit);
+  for (const OccluderId occluder : by_first_hit) {
+    if (list.size() < source_.settings.occluder_count &&
+        !std::binary_search(known.begin(), known.end(), occluder)) {
+      list.push_back(occluder);
+    }
+  }
 }
 
 }  // namespace sightline::comparison

@@ -47,6 +47,7 @@ class ListMaker {
   void byProjectedSize(std::vector<OccluderId>& list);
   void byFirstHit(std::vector<OccluderId>& list);
   void byMinimumSets(std::vector<OccluderId>& list);
+  void goOnByFirstHit(std::vector<OccluderId>& list);
   void drawNearest();
 
   const PictureSource& source_;

@@ -34,6 +34,7 @@ struct Planned {
   ViewerSpace viewers;
   Bake bake;
   double load_us = 0.0, plan_us = 0.0;
+  std::vector<Vec3d> viewpoints{};  // scene space: see DatabaseChoice::places
 };
 
 CheckpointUse useOf(const BakeOptions& options) {
@@ -92,6 +93,16 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!viewers) {
     return viewers.error();
   }
+  std::vector<Vec3d> viewpoints;
+  if (!options.viewpoint_path.empty()) {
+    const Result<Walk> walk = loadWalk({.path = options.viewpoint_path}, options.common.scene, *scene);
+    if (!walk) {
+      return walk.error();
+    }
+    for (const std::uint32_t frame : walk->frames) {
+      viewpoints.push_back(walk->view(frame, *scene).eye);
+    }
+  }
   BakeSettings settings = bakeSettings(options, *scene, *viewers);
   settings.box_margin = closing.margin;
   const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
@@ -99,7 +110,8 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!bake) {
     return bake.error();
   }
-  return Planned{std::move(*scene), closing.note(), std::move(*viewers), std::move(*bake), load_us, watch.lap()};
+  return Planned{std::move(*scene), closing.note(), std::move(*viewers),  std::move(*bake),
+                 load_us,           watch.lap(),    std::move(viewpoints)};
 }
 
 // Assembles all parts, writes the file and reports what is in it.
@@ -114,7 +126,9 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
       dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, planned.cracks));
   Stopwatch watch;
   const Threads threads(options.common.threads);
-  baked->databases = buildDatabases(planned.scene, *databaseNames(options), threads.parallelFor());
+  baked->databases =
+      buildDatabases(planned.scene, {*databaseNames(options), options.viewpoints, planned.viewpoints},
+                     threads.parallelFor());
   report.times.databases = watch.lap();
   const SignalGuard guard;  // from here on finishing is faster than stopping
   if (const Status ok = writeSight(options.output, *baked); !ok) {

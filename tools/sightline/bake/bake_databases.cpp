@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/occluders/occluder_database.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "tools/sightline/command_line/names.h"
@@ -12,7 +11,7 @@
 namespace sightline::tool {
 namespace {
 
-std::vector<std::byte> buildDatabase(const std::string& name, CullingData& data,
+std::vector<std::byte> buildDatabase(const std::string& name, const DatabaseChoice& choice, CullingData& data,
                                      const ParallelFor& parallel_for) {
   ProgressBar bar("occluder database: " + name);
   const Progress progress = [&](double done) { bar.update(done); };
@@ -23,11 +22,11 @@ std::vector<std::byte> buildDatabase(const std::string& name, CullingData& data,
                                    parallel_for, progress)
         .save();
   }
-  ViewpointDatabaseSettings settings;
-  const auto choice = std::ranges::find(kOccluderChoices, name, &Name<OccluderChoice>::text);
-  settings.criterion = criterionOf(choice->value);
-  return ViewpointDatabase::build(data.hierarchy(HierarchyKind::kBvh), data.occluders(), {}, settings,
-                                  parallel_for, progress)
+  ViewpointDatabaseSettings settings = choice.viewpoints;
+  const auto occluders = std::ranges::find(kOccluderChoices, name, &Name<OccluderChoice>::text);
+  settings.criterion = criterionOf(occluders->value);
+  return ViewpointDatabase::build(data.hierarchy(HierarchyKind::kBvh), data.occluders(), choice.places,
+                                  settings, parallel_for, progress)
       .save();
 }
 
@@ -41,16 +40,16 @@ std::string listBakedDatabases() {
   return list;
 }
 
-std::vector<DatabaseBlob> buildDatabases(const Scene& scene, const std::vector<std::string>& names,
+std::vector<DatabaseBlob> buildDatabases(const Scene& scene, const DatabaseChoice& choice,
                                          const ParallelFor& parallel_for) {
   std::vector<DatabaseBlob> databases;
-  if (names.empty()) {
+  if (choice.names.empty()) {
     return databases;
   }
   CullingData data(scene, parallel_for);
   const std::uint64_t occluders = occluderSetHash(data.occluders());
-  for (const std::string& name : names) {
-    databases.push_back({name, occluders, buildDatabase(name, data, parallel_for)});
+  for (const std::string& name : choice.names) {
+    databases.push_back({name, occluders, buildDatabase(name, choice, data, parallel_for)});
   }
   return databases;
 }

@@ -88,6 +88,23 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   command
       .add_option("--databases", options.databases, "occluder databases to store as well (several: a,b,c)")
       ->check(isOneOf({kBakedDatabases.begin(), kBakedDatabases.end()}, true));
+  command
+      .add_option(
+          "--viewpoint-path", options.viewpoint_path,
+          "minimum-sets, first-hit, projected-size: grid points lie near this camera path, a JSON file "
+          "or the name of a walk of the scene (default: all over the scene)")
+      ->type_name(kFileType);
+  ViewpointDatabaseSettings& viewpoints = options.viewpoints;
+  addDecimalOption(command, "--viewpoint-spacing", viewpoints.spacing, 0.0, kMax,
+                   "the same: metres between grid points; 0: chosen");
+  addDecimalOption(command, "--set-gain", viewpoints.weights.gain, 0.0, kMax,
+                   "minimum-sets: weight of what a set hides");
+  addDecimalOption(command, "--set-count", viewpoints.weights.count, 0.0, kMax,
+                   "minimum-sets: weight of the number of occluders");
+  addDecimalOption(command, "--set-area", viewpoints.weights.area, 0.0, kMax,
+                   "minimum-sets: weight of the pixels of occluders");
+  command.add_flag("--set-rest", viewpoints.first_hit_after_sets,
+                   "minimum-sets: where they end, lists go on by first hit");
   CLI::Option* resume = command.add_flag("--resume", options.resume,
                                          "go on with an unfinished bake of the same scene and settings");
   command.add_flag("--restart", options.restart, "throw away what an unfinished bake left")->excludes(resume);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sightline/base/result.h"
+#include "sightline/comparison/viewpoint_database.h"
 #include "sightline/pvs/bake/bake.h"
 #include "tools/sightline/bake/viewer_options.h"
 #include "tools/sightline/command_line/options.h"
@@ -23,7 +24,9 @@ struct BakeOptions {
   std::string occlusion = "convex";
   ViewerOptions viewers;
   std::uint32_t sample_mib = 1024;
-  std::string databases;  // names, separated by commas
+  std::string databases;       // names, separated by commas
+  std::string viewpoint_path;  // a camera path; empty: none
+  ViewpointDatabaseSettings viewpoints{};
   bool resume = false, restart = false;
   bool force = false;  // overwrites a file even if it is not a baked one
 

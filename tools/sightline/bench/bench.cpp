@@ -169,6 +169,9 @@ Result<ExitCode> runBench(const BenchOptions& options) {
   if (!chosen) {
     return chosen.error();
   }
+  if (asksForChoice(options.method)) {
+    return Error{"--method auto: bench measures methods to choose from; walk, cull and verify can choose"};
+  }
   if (const Status ok = checkFilesOf(options); !ok) {
     return ok.error();
   }

@@ -71,6 +71,10 @@ std::vector<std::string> namesInGltf(const std::string& file, bool is_glb) {
 template <typename Act>
 void forEachLine(const std::string& file, Act&& act) {
   constexpr const char* kSpaces = " \t\r";
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) {
+    return;  // a device or a pipe might never end
+  }
   std::ifstream stream(file, std::ios::binary);
   for (std::string line; std::getline(stream, line);) {
     const std::size_t begin = line.find_first_not_of(kSpaces);

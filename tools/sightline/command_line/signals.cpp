@@ -64,6 +64,7 @@ void endWhenTold(const std::string& command) {
       sigaction(signal, &action, nullptr);
     }
   }
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of the write
 }
 
 void keepWhenTold(const std::string& kept) {

@@ -12,7 +12,7 @@
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/cull_run.h"
-#include "tools/sightline/input/load.h"
+#include "tools/sightline/input/scene_facts.h"
 #include "tools/sightline/methods/statistics.h"
 
 namespace sightline::tool {
@@ -63,6 +63,9 @@ std::string frameJson(std::uint32_t frame, const CullRun& run, const Clustering&
 }
 
 void print(const Setting& setting, const CullingData& data, const SceneAndWalk& input, const Totals& sum) {
+  if (setting.choice != nullptr) {
+    fmt::print("{}\n", choiceText({setting}));
+  }
   const double n = static_cast<double>(input.walk.frames.size());
   fmt::print("{} ({}){}{}, {} frames, means of a frame:\n", methodName(setting), optionsText(setting),
              crackText(input.closing.note()), clustersText(input.clustering), input.walk.frames.size());
@@ -82,15 +85,14 @@ void print(const Setting& setting, const CullingData& data, const SceneAndWalk& 
   }
 }
 
-Result<Setting> singleSetting(const MethodOptions& options) {
-  Result<std::vector<Setting>> settings = settingsOf(options);
+Status checkSingle(const Result<std::vector<Setting>>& settings) {
   if (!settings) {
     return settings.error();
   }
   if (settings->size() != 1) {
     return Error{"cull takes one value an option; walk and verify take lists"};
   }
-  return settings->front();
+  return Success{};
 }
 
 Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, const SceneAndWalk& input) {
@@ -130,6 +132,7 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
   data.noteUnknownSets();
   Json head = {
       {"scene", sceneJson(input)}, {"method", methodName(setting)}, {"options", optionsJson(setting)}};
+  addChoice(head, setting);
   addDatabases(head, data, !options.no_times);
   if (input.clustering.on()) {
     head["clusters"] = clustersJson(input.clustering, scene);
@@ -144,15 +147,19 @@ Result<ExitCode> cullWalk(const CullOptions& options, const Setting& setting, co
 }
 
 Result<ExitCode> runCull(const CullOptions& options) {
-  const Result<Setting> setting = singleSetting(options.method);
-  if (!setting) {
-    return setting.error();
+  const Result<std::vector<Setting>> checked = settingsOf(options.method);
+  if (const Status single = checkSingle(checked); !single) {
+    return single.error();
   }
   const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method);
   if (!input) {
     return input.error();
   }
-  return cullWalk(options, *setting, *input);
+  const Result<std::vector<Setting>> settings = settingsFor(options.method, *checked, *input);
+  if (const Status single = checkSingle(settings); !single) {
+    return single.error();
+  }
+  return cullWalk(options, settings->front(), *input);
 }
 
 }  // namespace
@@ -171,6 +178,7 @@ void addCull(CLI::App& app, Command& chosen) {
       "  sightline cull demo:city --path worst --variant FSE --occluder-count 32 --json -\n"
       "  sightline cull demo:building --method supporting-planes --hierarchy kd --occluders database\n"
       "  sightline cull demo:building --method frustum --frames 0:400:10\n"
+      "  sightline cull city.glb --method auto --json visible.json\n"
       "  sightline cull demo:ship --method visibility-octree --baked ship.sight");
   command->callback([options, &chosen] { chosen = [options] { return runCull(*options); }; });
 }

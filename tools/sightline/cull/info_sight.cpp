@@ -11,6 +11,7 @@
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/input/crack_note.h"
+#include "tools/sightline/input/points_file.h"
 
 namespace sightline::tool {
 namespace {
@@ -248,15 +249,6 @@ std::string factsText(const SightFacts& facts) {
   text += fmt::format("from anywhere {:10.0f} triangles, mean over the viewers' space\n",
                       facts.mean_triangles_by_volume);
   return text + levelsText(facts);
-}
-
-std::optional<Vec3d> pointOf(const Json& json) {
-  if (!json.is_array() || json.size() != 3 ||
-      !std::all_of(json.begin(), json.end(), [](const Json& number) { return number.is_number(); })) {
-    return std::nullopt;
-  }
-  const Vec3d point(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-  return isFinite(point) ? std::optional(point) : std::nullopt;
 }
 
 Vec3d originOf(const BakeRecord& record) {

@@ -66,9 +66,6 @@ struct OccluderFacts {
 };
 std::optional<OccluderFacts> occludersOf(const BakeRecord& record);
 
-// The point, if the JSON is a list of three finite numbers.
-std::optional<Vec3d> pointOf(const Json& json);
-
 bool beginsAsSightFile(const std::string& name);  // by its first bytes
 bool isSightFile(const std::string& name);        // by its name or its first bytes
 

@@ -16,7 +16,7 @@
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/info_sight.h"
-#include "tools/sightline/input/camera_path_file.h"
+#include "tools/sightline/input/points_file.h"
 
 namespace sightline::tool {
 namespace {
@@ -44,30 +44,7 @@ Result<std::vector<Vec3d>> pointsOfFile(const std::string& name) {
   if (!text) {
     return text.error();
   }
-  const Json json = Json::parse(*text, nullptr, false);
-  std::vector<Vec3d> points;
-  if (json.is_object() && json.contains("frames")) {
-    const Result<CameraPath> path = parseCameraPathFile(*text, name);
-    if (!path) {
-      return path.error();
-    }
-    for (const CameraFrame& frame : path->frames) {
-      points.push_back(frame.eye);
-    }
-    return points;
-  }
-  const std::string form = R"(give {"points":[[x,y,z],...]} in metres, or a camera path)";
-  if (!json.is_object() || !json.contains("points") || !json["points"].is_array()) {
-    return Error{fmt::format("{}: has no points; {}", name, form)};
-  }
-  for (const Json& item : json["points"]) {
-    const std::optional<Vec3d> point = pointOf(item);
-    if (!point) {
-      return Error{fmt::format("{}: point {} is not three finite numbers; {}", name, points.size(), form)};
-    }
-    points.push_back(*point);
-  }
-  return points;
+  return parsePointsFile(*text, name);
 }
 
 Result<std::vector<Vec3d>> allPoints(const std::vector<std::string>& texts) {

@@ -15,7 +15,7 @@
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/verify_regions.h"
 #include "tools/sightline/exact/exact_frame.h"
-#include "tools/sightline/input/load.h"
+#include "tools/sightline/input/scene_facts.h"
 
 namespace sightline::tool {
 namespace {
@@ -152,15 +152,17 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
   const double overestimate = run.overestimate(verifier.total.visible),
                at_least = run.overestimate(verifier.total.visible + verifier.total.undecided);
   const FrameCounts total = run.total();
-  return {{"method", methodName(run.setting)},
-          {"options", optionsJson(run.setting)},
-          {"false_culls", run.false_culls.size()},
-          {"proved", total.proved},
-          {"undecided", total.undecided},
-          {"overestimate", std::isfinite(overestimate) ? Json(overestimate) : Json()},
-          {"overestimate_at_least", std::isfinite(at_least) ? Json(at_least) : Json()},
-          {"frames", frames},
-          {"witnesses", witnesses}};
+  Json json = {{"method", methodName(run.setting)},
+               {"options", optionsJson(run.setting)},
+               {"false_culls", run.false_culls.size()},
+               {"proved", total.proved},
+               {"undecided", total.undecided},
+               {"overestimate", std::isfinite(overestimate) ? Json(overestimate) : Json()},
+               {"overestimate_at_least", std::isfinite(at_least) ? Json(at_least) : Json()},
+               {"frames", frames},
+               {"witnesses", witnesses}};
+  addChoice(json, run.setting);
+  return json;
 }
 
 std::string toJson(const std::vector<VerifyRun>& runs, const Verifier& verifier, const SceneAndWalk& input) {
@@ -244,6 +246,8 @@ Result<ExitCode> verifyWalk(const VerifyOptions& options, const std::vector<Sett
     }
   }
   if (options.common.textOnStdout()) {
+    const std::string choice = choiceText(settings);
+    fmt::print("{}{}", choice, choice.empty() ? "" : "\n");
     print(runs, verifier, input);
   }
   data.noteUnknownSets();
@@ -260,15 +264,16 @@ Result<ExitCode> runVerify(const VerifyOptions& options, const CLI::App& command
   if (*regions) {
     return verifyRegions(options.common, options.method, options.regions);
   }
-  const Result<std::vector<Setting>> settings = settingsOf(options.method);
-  if (!settings) {
-    return settings.error();
+  const Result<std::vector<Setting>> checked = settingsOf(options.method);
+  if (!checked) {
+    return checked.error();
   }
   const Result<SceneAndWalk> input = checkAndLoad(options.common, options.path, options.method);
   if (!input) {
     return input.error();
   }
-  return verifyWalk(options, *settings, *input);
+  const Result<std::vector<Setting>> settings = settingsFor(options.method, *checked, *input);
+  return settings ? verifyWalk(options, *settings, *input) : settings.error();
 }
 
 }  // namespace

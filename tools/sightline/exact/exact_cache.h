@@ -11,20 +11,9 @@
 #include "sightline/base/result.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "sightline/scene/camera.h"
-#include "tools/sightline/exact/exact_frame.h"
+#include "tools/sightline/exact/exact_bytes.h"
 
 namespace sightline::tool {
-
-// The numbers of a view, as bytes that are the same on every machine.
-std::vector<std::byte> viewBytes(const View& view);
-
-// Everything that an ExactObjects depends on: the scene, the view, the settings and kExactFrameVersion.
-struct ExactKey {
-  ExactKey(const SceneId& scene, const View& view, const ExactSettings& settings);
-
-  std::vector<std::byte> bytes;
-  std::uint64_t object_count;
-};
 
 class ExactCache {
  public:

@@ -9,6 +9,7 @@ std::vector<Setting> withBaseline(std::vector<Setting> settings) {
   const auto frustum = std::find_if(settings.begin(), settings.end(), is_frustum);
   Setting baseline = settings.front();
   baseline.method = &methodNamed("frustum");
+  baseline.choice = nullptr;
   if (frustum != settings.end()) {
     baseline = *frustum;
     settings.erase(frustum);

@@ -13,6 +13,7 @@
 
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/parse_text.h"
+#include "tools/sightline/methods/method_choice.h"
 #include "tools/sightline/methods/method_names.h"
 
 namespace sightline::tool {
@@ -62,7 +63,12 @@ Value methodName() {
     setting.method = known ? &methodNamed(text) : setting.method;
     return known;
   };
-  return {"", "one of: " + list, set, [](Setting setting) { return Json(setting.method->name); }, names};
+  names.emplace_back(kAutomaticMethod);
+  return {"; auto: chosen for the scene, and said which and why", "one of: " + list + ", " + kAutomaticMethod,
+          [set](const std::string& text, Setting& setting) {
+            return text == kAutomaticMethod || set(text, setting);
+          },
+          [](Setting setting) { return Json(setting.method->name); }, names};
 }
 
 Value whole(std::uint32_t min, std::uint32_t max, Field<std::uint32_t> field) {
@@ -357,6 +363,10 @@ const std::vector<Option>& allOptions() {
       {"set-area", kAny, usesMinimumSets, kOne, kWhenChanged,
        "minimum sets: weight of the pixels of occluders",
        decimal(+[](Setting& s) -> double& { return s.viewpoints.weights.area; })},
+      {"set-rest", kAny, usesMinimumSets, kOne, kWhenChanged,
+       "minimum sets: where they end, lists go on by first hit",
+       oneOf(
+           kSwitch, +[](Setting& s) -> bool& { return s.viewpoints.first_hit_after_sets; })},
   };
   return kOptions;
 }
@@ -364,6 +374,10 @@ const std::vector<Option>& allOptions() {
 const Option& optionNamed(std::string_view name) {
   return *std::find_if(allOptions().begin(), allOptions().end(),
                        [&](const Option& option) { return option.name == name; });
+}
+
+std::size_t indexOf(std::string_view name) {
+  return static_cast<std::size_t>(&optionNamed(name) - allOptions().data());
 }
 
 // Returns a JSON value as text; strings have no quotes.
@@ -425,6 +439,44 @@ std::vector<Setting> multiply(const std::vector<Setting>& settings, const Option
     }
   }
   return all;
+}
+
+// All combinations of the options' values.
+Result<std::vector<Setting>> combinationsOf(const MethodOptions& options) {
+  Setting usual;
+  usual.baked = !options.baked.empty();
+  std::vector<Setting> settings{usual};
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const Result<std::vector<std::string>> values = valuesOf(option, options.texts[i]);
+    if (!values) {
+      return values.error();
+    }
+    settings = multiply(settings, option, *values);
+  }
+  return settings;
+}
+
+// The options with what was chosen in place of the defaults.
+MethodOptions withChoice(MethodOptions options, const MethodChoice& choice) {
+  for (const auto& [name, text] : choice.options) {
+    if (options.texts[indexOf(name)] == options.defaults[indexOf(name)]) {
+      options.setDefault(name, text);
+    }
+  }
+  return options;
+}
+
+// Names on stderr the given options that no method has.
+void noteUseless(const MethodOptions& options, const std::vector<Setting>& settings) {
+  for (std::size_t i = 0; i < allOptions().size(); ++i) {
+    const Option& option = allOptions()[i];
+    const bool given = options.texts[i] != options.defaults[i];
+    if (given && std::none_of(settings.begin(), settings.end(),
+                              [&](const Setting& setting) { return option.belongs(setting); })) {
+      fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);
+    }
+  }
 }
 
 }  // namespace
@@ -509,8 +561,7 @@ MethodOptions::MethodOptions() {
 }
 
 void MethodOptions::setDefault(std::string_view name, const std::string& text) {
-  const auto option = static_cast<std::size_t>(&optionNamed(name) - allOptions().data());
-  texts[option] = defaults[option] = text;
+  texts[indexOf(name)] = defaults[indexOf(name)] = text;
 }
 
 void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
@@ -541,28 +592,32 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
   }
 }
 
-Result<std::vector<Setting>> settingsOf(const MethodOptions& options) {
-  Setting usual;
-  usual.baked = !options.baked.empty();
-  std::vector<Setting> settings{usual};
-  for (std::size_t i = 0; i < allOptions().size(); ++i) {
-    const Option& option = allOptions()[i];
-    const Result<std::vector<std::string>> values = valuesOf(option, options.texts[i]);
-    if (!values) {
-      return values.error();
+bool asksForChoice(const MethodOptions& options) {
+  const std::vector<std::string> methods = splitAt(options.texts[indexOf("method")], ',');
+  return std::find(methods.begin(), methods.end(), kAutomaticMethod) != methods.end();
+}
+
+Result<std::vector<Setting>> settingsOf(const MethodOptions& options,
+                                        const std::shared_ptr<const MethodChoice>& choice) {
+  std::vector<Setting> settings;
+  for (const std::string& method : splitAt(options.texts[indexOf("method")], ',')) {
+    const bool chosen = method == kAutomaticMethod && choice != nullptr;
+    MethodOptions one = chosen ? withChoice(options, *choice) : options;
+    one.texts[indexOf("method")] = chosen ? choice->method : method;
+    Result<std::vector<Setting>> of_method = combinationsOf(one);
+    if (!of_method) {
+      return of_method.error();
     }
-    settings = multiply(settings, option, *values);
+    for (Setting& setting : *of_method) {
+      setting.choice = chosen ? choice : nullptr;
+      settings.push_back(std::move(setting));
+    }
   }
   if (const Status served = checkBaked(options, settings); !served) {
     return served.error();
   }
-  for (std::size_t i = 0; i < allOptions().size(); ++i) {
-    const Option& option = allOptions()[i];
-    const bool given = options.texts[i] != options.defaults[i];
-    if (given && std::none_of(settings.begin(), settings.end(),
-                              [&](const Setting& setting) { return option.belongs(setting); })) {
-      fmt::print(stderr, "sightline: --{} changes nothing here: no method in use has it\n", option.name);
-    }
+  if (choice != nullptr || !asksForChoice(options)) {
+    noteUseless(options, settings);
   }
   for (Setting& setting : settings) {
     setting.database.area_angle_direction = setting.culler.occluders.area_angle_direction;

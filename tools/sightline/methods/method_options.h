@@ -31,6 +31,8 @@ namespace sightline::tool {
 
 using Json = nlohmann::ordered_json;
 
+struct MethodChoice;
+
 // One method with one value of each option: the settings of every method, of which its own counts.
 struct Setting {
   HierarchyKind hierarchy = HierarchySettings{}.kind;
@@ -53,7 +55,8 @@ struct Setting {
   RasterSettings raster{};  // for the opacity map and the depth pyramid
   OpacityMapMethodSettings opacity_map{};
   FocusSettings focus{};
-  bool baked = false;  // there is a baked file
+  bool baked = false;                            // there is a baked file
+  std::shared_ptr<const MethodChoice> choice{};  // by which --method auto became this; null: the user's own
 
   SurfaceUse surfaces() const;
   // The most boxes of an object; if none were asked for, those of the depth pyramid, and one of other
@@ -91,8 +94,12 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists);
 
 // Returns all combinations of the options' values, in the order of the lists. A method is combined only with
 // the options that it has. Names on stderr the given options that no method has. Returns an error if a
-// combination needs a baked file and there is none.
-Result<std::vector<Setting>> settingsOf(const MethodOptions& options);
+// combination needs a baked file and there is none. --method auto stands for what was chosen; what the user
+// gave wins over it. Before there is a choice, null only checks the options: auto stands for some method.
+Result<std::vector<Setting>> settingsOf(const MethodOptions& options,
+                                        const std::shared_ptr<const MethodChoice>& choice = nullptr);
+// Whether --method auto is among the methods.
+bool asksForChoice(const MethodOptions& options);
 
 // The criterion of a choice that uses the viewpoint database.
 OccluderCriterion criterionOf(OccluderChoice choice);

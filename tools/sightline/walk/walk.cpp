@@ -21,6 +21,7 @@
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
+#include "tools/sightline/input/scene_facts.h"
 #include "tools/sightline/methods/baseline.h"
 #include "tools/sightline/report/plot.h"
 #include "tools/sightline/walk/walk_pictures.h"
@@ -278,9 +279,9 @@ Status checkFilesOf(const WalkOptions& options, const std::vector<std::string>& 
 }
 
 Result<ExitCode> runWalk(const WalkOptions& options) {
-  const Result<std::vector<Setting>> settings = settingsOf(options.method);
-  if (!settings) {
-    return settings.error();
+  const Result<std::vector<Setting>> checked = settingsOf(options.method);
+  if (!checked) {
+    return checked.error();
   }
   if (const Status ok = checkFilesOf(options, filesOfFolder()); !ok) {
     return ok.error();
@@ -288,6 +289,10 @@ Result<ExitCode> runWalk(const WalkOptions& options) {
   const Result<SceneAndWalk> input = loadSceneAndWalk(options.common.scene, options.path, options.method);
   if (!input) {
     return input.error();
+  }
+  const Result<std::vector<Setting>> settings = settingsFor(options.method, *checked, *input);
+  if (!settings) {
+    return settings.error();
   }
   if (const Status ok =
           checkFilesOf(options, filesOfFolder(input->walk.frames, withBaseline(*settings).size()));
@@ -325,6 +330,7 @@ void addWalk(CLI::App& app, Command& chosen) {
       "Interrupted (Ctrl-C), it writes the report of the frames walked so far and ends with exit code 130.\n"
       "Examples:\n"
       "  sightline walk demo:city -o report\n"
+      "  sightline walk city.glb --method auto -o report\n"
       "  sightline walk city.glb --path walk.json --variant FSE,FME --occluder-count 8,16,32 -o report\n"
       "  sightline walk demo:city --method occlusion-tree,supporting-planes --hierarchy kd "
       "--occluders area-angle,database -o report\n"

@@ -7,6 +7,7 @@
 
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/text_table.h"
+#include "tools/sightline/methods/method_choice.h"
 #include "tools/sightline/methods/statistics.h"
 
 namespace sightline::tool {
@@ -123,11 +124,12 @@ Json meanJson(const WalkRun& run, const ReportRow& row) {
 
 std::string runJson(const WalkRun& run, const WalkRecord& record) {
   const ReportRow row = rowOf(run, record);
-  const Json head = {{"method", row.method},
-                     {"options", optionsJson(run.setting)},
-                     {"mean", asDrawn(meanJson(run, row), record)},
-                     {"differing_frames", run.differingFrames()},
-                     {"tie_frames", run.tieFrames()}};
+  Json head = {{"method", row.method},
+               {"options", optionsJson(run.setting)},
+               {"mean", asDrawn(meanJson(run, row), record)},
+               {"differing_frames", run.differingFrames()},
+               {"tie_frames", run.tieFrames()}};
+  addChoice(head, run.setting);
   std::vector<std::string> frames;
   for (const FrameRecord& frame : run.frames) {
     frames.push_back(frameJson(frame, run, record));
@@ -186,6 +188,15 @@ std::vector<std::string> notesOf(const WalkRecord& record) {
       "Every frame's picture is compared with the one of view-frustum culling, pixel by pixel, and this one, "
       "every tenth frame, with a picture of all objects.",
       "Pictures, coverage maps and plan views show " + name + "."};
+}
+
+// What --method auto stands for, and why; empty if it was not asked for.
+std::string choiceOf(const WalkRecord& record) {
+  std::vector<Setting> settings;
+  for (const WalkRun& run : record.runs) {
+    settings.push_back(run.setting);
+  }
+  return choiceText(settings);
 }
 
 }  // namespace
@@ -297,6 +308,9 @@ std::string walkJson(const WalkInput& input, const WalkRecord& record) {
 }
 
 void printWalk(const WalkRecord& record) {
+  if (const std::string choice = choiceOf(record); !choice.empty()) {
+    fmt::print("{}\n", choice);
+  }
   TextTable table{{"method", "options", "triangles", "share", "nodes", "cull ms", "draw ms", "frame ms",
                    "speed-up", "differ", "ties"},
                   {},
@@ -342,6 +356,9 @@ Report walkReport(const WalkInput& input, const WalkRecord& record, std::vector<
     report.pictures.push_back({changed.file, changed.caption, changed.frame, false});
   }
   report.notes = notesOf(record);
+  if (const std::string choice = choiceOf(record); !choice.empty()) {
+    report.notes.insert(report.notes.begin(), "--method " + choice + ".");
+  }
   for (std::size_t r = 1; r < record.runs.size(); ++r) {
     report.notes.push_back(statisticsText(record.runs[r]) + ".");
   }

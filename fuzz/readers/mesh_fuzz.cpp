@@ -1,0 +1,48 @@
+// Feeds bytes to the readers of all formats that Assimp parses. The first byte chooses the format. What
+// crashes or hangs Assimp must be one error; what it can read must be a valid scene. That is read once more
+// in this process, so that the fuzzer sees how our part of the reader gets on.
+
+#include <array>
+
+#include "fuzz/readers/fuzz_input.h"
+#include "src/io/assimp.h"
+
+using namespace sightline;
+using namespace sightline::fuzz;
+
+namespace {
+
+constexpr std::array kFormats{".obj", ".ply", ".stl",  ".off", ".dae", ".fbx", ".3ds", ".x",
+                              ".ac",  ".lwo", ".ms3d", ".md2", ".md3", ".smd", ".b3d", ".ase"};
+const io::ImportLimits kLimits{.triangles = 100'000, .objects = 10'000};
+
+void requireSound(const Scene& scene) {
+  require(scene.objects.size() == scene.object_names.size());
+  std::size_t next_index = 0;
+  for (const Object& object : scene.objects) {
+    require(object.first_index == next_index && object.index_count > 0 && object.index_count % 3 == 0);
+    require(object.material.value < scene.materials.size() && object.bounds.wellFormed());
+    next_index += object.index_count;
+  }
+  require(next_index == scene.indices.size());
+  for (const std::uint32_t index : scene.indices) {
+    require(index < scene.positions.size());
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string_view text = textOf(data, size);
+  const char* const format = kFormats[takeByte(text) % kFormats.size()];
+  const std::string file = folder().write(std::string("fuzz") + format, text);
+  const Result<Scene> apart = io::importAssimpApart(file, text.size(), kLimits, /*most_seconds=*/1);
+  if (!apart) {
+    requireOneLine(apart.error());
+    return 0;
+  }
+  requireSound(*apart);
+  const Result<Scene> here = io::importAssimp(file, kLimits);
+  require(here && here->positions == apart->positions && here->indices == apart->indices);
+  return 0;
+}

@@ -1,0 +1,179 @@
+#include "src/io/apart.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <span>
+
+#include "src/io/failure.h"
+
+namespace sightline::io {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr int kThrew = 3, kOutOfMemory = 4;  // exit codes of the child
+constexpr std::uint64_t kMebibyte = 1024 * 1024;
+
+// The address space that this process has, in bytes; 0 if unknown.
+std::uint64_t addressSpace() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void limit(__rlimit_resource resource, std::uint64_t most) {
+  struct rlimit known {};
+  ::getrlimit(resource, &known);
+  const rlim_t wanted = std::min<rlim_t>(most, known.rlim_max);
+  const struct rlimit limits { wanted, wanted };
+  ::setrlimit(resource, &limits);
+}
+
+void limitChild(const ApartLimits& limits, std::uint64_t address_space) {
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, limits.seconds);
+  limit(RLIMIT_AS, address_space + limits.memory_bytes);
+}
+
+// The child has no output, is ended by signals as any program is, and ends with its parent.
+void detachChild(pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) {
+    ::_exit(kThrew);
+  }
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
+    std::signal(signal, SIG_DFL);
+  }
+  const int nothing = ::open("/dev/null", O_RDWR);
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    ::dup2(nothing, descriptor);
+  }
+}
+
+void writeAll(int descriptor, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) {
+      ::_exit(kThrew);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+  }
+}
+
+[[noreturn]] void runChild(const std::function<std::vector<std::byte>()>& work, int descriptor) {
+  try {
+    writeAll(descriptor, work());
+  } catch (const std::bad_alloc&) {
+    ::_exit(kOutOfMemory);
+  } catch (...) {
+    ::_exit(kThrew);
+  }
+  ::_exit(0);
+}
+
+// Reads until the child closes its end. Returns false if the time is over before.
+bool readAll(int descriptor, steady_clock::time_point until, std::vector<std::byte>& bytes) {
+  std::array<std::byte, 65536> chunk{};
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - steady_clock::now());
+    struct pollfd ready {
+      descriptor, POLLIN, 0
+    };
+    const int events =
+        ::poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 1'000'000)));
+    if (events < 0 && errno == EINTR) {
+      continue;
+    }
+    if (events <= 0) {
+      return false;
+    }
+    const ssize_t count = ::read(descriptor, chunk.data(), chunk.size());
+    if (count > 0) {
+      bytes.insert(bytes.end(), chunk.begin(), chunk.begin() + count);
+    } else if (count == 0 || errno != EINTR) {
+      return true;
+    }
+  }
+}
+
+int waitFor(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+// What went wrong in a child that ended in this way.
+Error endingOf(int status, bool in_time, const ApartLimits& limits) {
+  const std::uint64_t mebibytes = limits.memory_bytes / kMebibyte;
+  // Some systems kill where the time is over, others signal it; where memory is short, all kill.
+  if (!in_time || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))) {
+    return failure("its reader was ended: it took more than {} s, or more memory than there is",
+                   limits.seconds);
+  }
+  if (WIFSIGNALED(status)) {
+    return failure("its reader crashed ({}); the file is damaged, or needs more than {} MiB",
+                   ::strsignal(WTERMSIG(status)), mebibytes);
+  }
+  if (WEXITSTATUS(status) == kOutOfMemory) {
+    return failure("its reader needs more than {} MiB", mebibytes);
+  }
+  return failure("its reader failed");
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> runApart(const ApartLimits& limits,
+                                        const std::function<std::vector<std::byte>()>& work) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    return failure("its reader could not be started: {}", std::strerror(errno));
+  }
+  const pid_t parent = ::getpid();
+  const std::uint64_t address_space = addressSpace();
+  // No handler of this process may run in the child.
+  sigset_t all, before;
+  sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, &before);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    detachChild(parent);
+    ::sigprocmask(SIG_SETMASK, &before, nullptr);
+    limitChild(limits, address_space);
+    runChild(work, ends[1]);
+  }
+  const int reason = errno;
+  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  ::close(ends[1]);
+  if (child < 0) {
+    ::close(ends[0]);
+    return failure("its reader could not be started: {}", std::strerror(reason));
+  }
+  std::vector<std::byte> bytes;
+  const auto until = steady_clock::now() + std::chrono::seconds(10ull * limits.seconds);
+  const bool in_time = readAll(ends[0], until, bytes);
+  if (!in_time) {
+    ::kill(child, SIGKILL);
+  }
+  ::close(ends[0]);
+  const int status = waitFor(child);
+  if (!in_time || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    return endingOf(status, in_time, limits);
+  }
+  return bytes;
+}
+
+}  // namespace sightline::io
