@@ -21,6 +21,7 @@
 #include "tools/sightline/layers/layer_lens.h"
 #include "tools/sightline/layers/layer_line_picture.h"
 #include "tools/sightline/layers/layer_pictures.h"
+#include "tools/sightline/layers/layer_replacement.h"
 #include "tools/sightline/layers/layer_totals.h"
 
 namespace sightline::tool {
@@ -67,7 +68,8 @@ PartChoice partChoiceOf(const LayersOptions& options) {
   }
   const auto needed = needOpaqueLayers(options);
   const bool picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty();
-  return picture && std::none_of(needed.begin(), needed.end(), [](const auto& n) { return n.second; })
+  return picture && options.pictures.layer_file.empty() &&
+                 std::none_of(needed.begin(), needed.end(), [](const auto& n) { return n.second; })
              ? PartChoice::kSeeThrough
              : PartChoice::kAll;
 }
@@ -314,6 +316,7 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
 std::vector<NamedFile> outputsOf(const LayersOptions& options) {
   return {{"--json", options.common.json},
           {"--image", options.pictures.image, ".png"},
+          {"--layer-file", options.pictures.layer_file, ".exr"},
           {"--by-distance", options.pictures.by_distance, ".png"},
           {"--blurred", options.lens.blurred, ".png"},
           {"--compare", options.lens.compare, ".png"},
@@ -322,11 +325,17 @@ std::vector<NamedFile> outputsOf(const LayersOptions& options) {
           {"--line-picture", options.drawings.line_picture, ".png"}};
 }
 
-Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs) {
+// frames: those whose pictures are read if --replace names a sequence; empty: not known yet.
+Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs,
+                    const std::vector<std::uint32_t>& frames = {}) {
   std::vector<NamedFile> inputs = walkInputs(options.common.scene, options.path);
   for (const std::string& replace : options.pictures.replace) {
     const std::size_t equals = std::min(replace.find('='), replace.size() - 1);
-    inputs.push_back({"--replace", replace.substr(equals + 1)});
+    const std::string pattern = replace.substr(equals + 1);
+    inputs.push_back({"--replace", pattern});
+    for (const std::uint32_t frame : frames) {
+      inputs.push_back({"--replace", replacementFile(pattern, frame)});
+    }
   }
   return checkFiles({.scenes = {options.common.scene}, .inputs = inputs, .outputs = outputs});
 }
@@ -346,12 +355,13 @@ Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::u
       outputs.push_back({output.option, frameFile(output.file, frame, frames.size() > 1), output.extension});
     }
   }
-  return checkFilesOf(options, outputs);
+  return checkFilesOf(options, outputs, frames);
 }
 
 Status checkPictureOptions(const LayersOptions& options) {
   const bool any_picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty() ||
-                           !options.lens.blurred.empty() || !options.lens.compare.empty();
+                           !options.pictures.layer_file.empty() || !options.lens.blurred.empty() ||
+                           !options.lens.compare.empty();
   const bool any_option = options.samples != 1 || options.tints != "on";
   return any_picture || !any_option
              ? Status(Success{})
@@ -489,6 +499,7 @@ void addLayers(CLI::App& app, Command& chosen) {
       "  sightline layers demo:canyon --frames 0:250:50 --width 640 --height 360 --samples 4 --image "
       "canyon.png\n"
       "  sightline layers demo:glass --frames 100 --image part.png --without 12,13 --replace 3=poster.png\n"
+      "  sightline layers demo:glass --frames 100 --layer-file glass.exr\n"
       "  sightline layers demo:toothpicks --frames 100 --depth-of-field layers --focus 3 --aperture 0.06 "
       "--blurred out.png\n"
       "  sightline layers demo:city --frames 0 --svg city.svg --pdf city.pdf\n"
