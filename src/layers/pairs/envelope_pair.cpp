@@ -23,8 +23,15 @@ Vec3d outerPoint(const ConvexSet& set, const Vec3d& direction, const Vec3d& abov
   const Vec3d far = set.around->farthest(p.toHull(direction));
   const Vec3d point = p.x * far.x + p.y * far.y + p.z * far.z + (p.origin - above);
   if (set.kind == ConvexSet::Kind::kWithEye) {
-    const Vec3d eye = set.eye_or_sweep - above;
-    return dot(direction, eye) > dot(direction, point) ? eye : point;
+    Vec3d farthest = point;
+    const auto take = [&](const Vec3d& eye) {
+      farthest = dot(direction, eye) > dot(direction, farthest) ? eye : farthest;
+    };
+    take(set.eye_or_sweep - above);
+    for (const Vec3d& eye : set.more_eyes) {
+      take(eye - above);
+    }
+    return farthest;
   }
   return set.kind == ConvexSet::Kind::kSwept && dot(direction, set.eye_or_sweep) > 0.0
              ? point + set.eye_or_sweep
@@ -53,8 +60,14 @@ Vec3d nearestOnSegment(const Vec3d& p, const Vec3d& q) {
 double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above) {
   double height = outerHeight(*set.around, set.placement, set.placement.origin - above, direction);
   if (set.kind == ConvexSet::Kind::kWithEye) {
-    const double of_eye = outerHeight(set.eye_or_sweep - above, direction);
-    height = std::isnan(height) || of_eye <= height ? height : of_eye;
+    const auto take = [&](const Vec3d& eye) {
+      const double of_eye = outerHeight(eye - above, direction);
+      height = std::isnan(height) || of_eye <= height ? height : of_eye;
+    };
+    take(set.eye_or_sweep);
+    for (const Vec3d& eye : set.more_eyes) {
+      take(eye);
+    }
   } else if (set.kind == ConvexSet::Kind::kSwept) {
     const double along = outerHeight(set.eye_or_sweep, direction);
     height = along <= 0.0 ? height : height + along;
