@@ -53,7 +53,8 @@ TEST(Layers, AnUnknownSearchIsRefusedByTheNamesOfTheKnownOnes) {
 
 std::set<std::pair<int, int>> arcsOf(const std::vector<std::string>& more) {
   std::set<std::pair<int, int>> arcs;
-  for (const json& arc : layered(joined({"--arcs", "all", "--frames", "40"}, more))["frames"][0]["arcs"]) {
+  const json result = layered(joined({"--arcs", "all", "--frames", "40"}, more));
+  for (const json& arc : result["frames"][0]["arcs"]) {
     arcs.emplace(arc[0], arc[1]);
   }
   return arcs;
