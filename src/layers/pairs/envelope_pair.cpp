@@ -23,13 +23,10 @@ Vec3d outerPoint(const ConvexSet& set, const Vec3d& direction, const Vec3d& abov
   const Vec3d far = set.around->farthest(p.toHull(direction));
   const Vec3d point = p.x * far.x + p.y * far.y + p.z * far.z + (p.origin - above);
   if (set.kind == ConvexSet::Kind::kWithEye) {
-    Vec3d farthest = point;
-    const auto take = [&](const Vec3d& eye) {
-      farthest = dot(direction, eye) > dot(direction, farthest) ? eye : farthest;
-    };
-    take(set.eye_or_sweep - above);
-    for (const Vec3d& eye : set.more_eyes) {
-      take(eye - above);
+    const Vec3d eye = set.eye_or_sweep - above;
+    Vec3d farthest = dot(direction, eye) > dot(direction, point) ? eye : point;
+    for (const Vec3d& more : set.more_eyes) {
+      farthest = dot(direction, more - above) > dot(direction, farthest) ? more - above : farthest;
     }
     return farthest;
   }
@@ -60,13 +57,11 @@ Vec3d nearestOnSegment(const Vec3d& p, const Vec3d& q) {
 double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above) {
   double height = outerHeight(*set.around, set.placement, set.placement.origin - above, direction);
   if (set.kind == ConvexSet::Kind::kWithEye) {
-    const auto take = [&](const Vec3d& eye) {
-      const double of_eye = outerHeight(eye - above, direction);
-      height = std::isnan(height) || of_eye <= height ? height : of_eye;
-    };
-    take(set.eye_or_sweep);
+    const double of_eye = outerHeight(set.eye_or_sweep - above, direction);
+    height = std::isnan(height) || of_eye <= height ? height : of_eye;
     for (const Vec3d& eye : set.more_eyes) {
-      take(eye);
+      const double of_other = outerHeight(eye - above, direction);
+      height = std::isnan(height) || of_other <= height ? height : of_other;
     }
   } else if (set.kind == ConvexSet::Kind::kSwept) {
     const double along = outerHeight(set.eye_or_sweep, direction);

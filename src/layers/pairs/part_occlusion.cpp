@@ -264,13 +264,13 @@ bool PartOcclusion::stillApart(std::uint32_t front, std::uint32_t i, std::uint32
       outerHeight(parts_->envelopes[parts_->part_hulls[i]], of_front, Vec3d(), direction);
   const double highest_of_back =
       outerHeight(parts_->envelopes[parts_->part_hulls[j]], of_back, of_back.origin - origin, -direction);
-  const auto isApart = [&](const Vec3d& eye) {
-    return highest_of_front + outerHeight(eye - origin, -direction) < -room;
-  };
   // An eye at infinity is on one side of the plane.
-  const bool eyes_are_apart =
-      view_.orthographic ? outerHeight(view_.forward, direction) <= 0.0
-                         : isApart(view_.eye) && std::all_of(more_eyes_.begin(), more_eyes_.end(), isApart);
+  bool eyes_are_apart = view_.orthographic
+                            ? outerHeight(view_.forward, direction) <= 0.0
+                            : highest_of_front + outerHeight(view_.eye - origin, -direction) < -room;
+  for (const Vec3d& eye : more_eyes_) {
+    eyes_are_apart = eyes_are_apart && highest_of_front + outerHeight(eye - origin, -direction) < -room;
+  }
   return eyes_are_apart && highest_of_front + highest_of_back < -room;
 }
 

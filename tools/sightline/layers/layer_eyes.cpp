@@ -65,14 +65,13 @@ EyeSorter::EyeSorter(const LayerEyeOptions& options, const LayerLensOptions& len
       motion_blur_(lens.motion_blur),
       sorter_(makeSorter(input.moving, settings)) {}
 
-const LayerOrder& EyeSorter::update(std::uint32_t frame, const View& view) {
+void EyeSorter::place(std::uint32_t frame, const View& view) {
   if (moves() && input_.moving.pose && motionFrame(input_.walk, frame)) {
     sweep(frame);
   } else {
     pose(input_.moving, frame, poses_, sorter_);
   }
   findEyes(frame, view);
-  return sorter_.update(view, more_eyes_);
 }
 
 void EyeSorter::findEyes(std::uint32_t frame, const View& view) {

@@ -31,8 +31,10 @@ class EyeSorter {
   EyeSorter(const LayerEyeOptions& options, const LayerLensOptions& lens, const LayerInput& input,
             const LayerSettings& settings);
 
-  // Sorts a frame from its view; the result is valid until the next call.
-  const LayerOrder& update(std::uint32_t frame, const View& view);
+  // Moves the parts to their places in a frame and finds its eyes.
+  void place(std::uint32_t frame, const View& view);
+  // Sorts the frame last placed, from its view; the result is valid until the next call.
+  const LayerOrder& sort(const View& view) { return sorter_.update(view, more_eyes_); }
 
  private:
   bool moves() const { return for_lens_ && motion_blur_ > 0.0; }

@@ -192,8 +192,9 @@ class WalkSorter {
   Status sort(std::uint32_t frame, const std::function<void(double)>& progress) {
     View view = input_.walk.view(frame, input_.moving.scene);
     view.aspect = aspect_;
+    sorter_.place(frame, view);
     Stopwatch watch;
-    const LayerOrder& order = sorter_.update(frame, view);
+    const LayerOrder& order = sorter_.sort(view);
     const double sort_us = options_.no_times ? 0.0 : watch.lap();
     const FrameLayers& layers = merger_.merge(order);
     const CompositingProgram& program = compiler_.compile(layers, formOf(options_.sort));
