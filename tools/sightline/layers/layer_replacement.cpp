@@ -151,10 +151,10 @@ std::string replacementFile(const std::string& pattern, std::uint32_t frame) {
 }
 
 ShapedPixel linearPixel(const Image& image, std::uint32_t x, std::uint32_t y) {
-  static const std::array<float, 256> light = linearOfSrgb();
+  static const std::array<float, 256> kLight = linearOfSrgb();
   const std::uint8_t* p = &image.rgba[4 * (std::size_t{y} * image.width + x)];
   const float alpha = static_cast<float>(p[3]) / 255.0f;
-  return {light[p[0]] * alpha, light[p[1]] * alpha, light[p[2]] * alpha, alpha};
+  return {kLight[p[0]] * alpha, kLight[p[1]] * alpha, kLight[p[2]] * alpha, alpha};
 }
 
 Status checkPartNumber(const std::string& option, std::uint32_t part, std::size_t parts) {
