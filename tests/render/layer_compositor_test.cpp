@@ -375,6 +375,33 @@ TEST_F(LayerCompositorTest, ARingOfGlassByExpressionsIsTheSame) {
   EXPECT_LE(measureDifference(studio.composite({.peel = Peel::kNever}), studio.atOnce()).largest, kRounding);
 }
 
+TEST_F(LayerCompositorTest, ACycleBehindAnotherGroupIsInThePicture) {
+  Studio studio(glass());
+  for (std::uint32_t part = 0; part < studio.moving().parts.size(); ++part) {
+    studio.enable(part, studio.moving().parts[part].name.rfind("ring", 0) == 0);
+  }
+  studio.goTo(0);
+  // The same cycle as the second of two groups, with a transparent image in the first one.
+  FrameLayers layers = studio.layers();
+  ASSERT_EQ(layers.groups(), 1u);
+  const PartId other(studio.partNamed("floor"));
+  layers.parts.insert(layers.parts.begin(), other);
+  layers.first_part.insert(layers.first_part.begin(), 0u);
+  for (std::size_t i = 1; i < layers.first_part.size(); ++i) {
+    ++layers.first_part[i];
+  }
+  layers.first_layer = {0, 1, 7};
+  for (LayerOcclusion& occlusion : layers.occlusions) {
+    ++occlusion.front.value, ++occlusion.back.value;
+  }
+  ASSERT_TRUE(checkLayers(layers));
+  LayerImage nothing;
+  nothing.clear(studio.renderer().width(), studio.renderer().height());
+  CompositeSettings settings{.peel = Peel::kNever};
+  settings.replaced = {{LayerId(0u), &nothing}};
+  EXPECT_LE(measureDifference(studio.compositeLayers(layers, settings), studio.atOnce()).largest, kRounding);
+}
+
 TEST_F(LayerCompositorTest, WhatMayCoverItselfIsPeeledAndNothingElse) {
   Studio studio(glass());
   studio.goTo(100);

@@ -200,6 +200,84 @@ TEST_F(LayerPictures, PixelsAreSquareWhateverThePathsSize) {
   EXPECT_LT(different, 60u);  // rounding at outlines
 }
 
+Image grey(std::uint8_t value) {
+  Image image{.width = 160, .height = 90, .rgba = {}};
+  for (int i = 0; i < 160 * 90; ++i) {
+    image.rgba.insert(image.rgba.end(), {value, value, value, 255});
+  }
+  return image;
+}
+
+std::size_t pixelsOf(const Image& image, int value) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    count += image.rgba[i] == value && image.rgba[i + 1] == value && image.rgba[i + 2] == value ? 1 : 0;
+  }
+  return count;
+}
+
+// Values of sRGB 10, 128 and 240 in linear light are 0.003035, 0.215861 and 0.871367; pictures hold 255 times
+// their square roots.
+TEST_F(LayerPictures, ASequenceHasAPictureForEachFrameDecodedInSrgb) {
+  const std::vector<std::pair<int, int>> values{{10, 14}, {128, 118}, {240, 238}};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    ASSERT_TRUE(writePng(grey(static_cast<std::uint8_t>(values[i].first)),
+                         folder_.file("wall_0" + std::to_string(120 + i) + ".png")));
+  }
+  draw("demo:glass?panes=0&bottles=0", {"--frames", "120:123", "--image", folder_.file("out.png"),
+                                        "--replace", "1=" + folder_.file("wall_####.png")});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Image out = read("out_0" + std::to_string(120 + i) + ".png");
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const std::size_t pixels = pixelsOf(out, values[k].second);
+      EXPECT_TRUE(k == i ? pixels > 1000 : pixels < 20) << i << " " << k << " " << pixels;
+    }
+  }
+}
+
+TEST_F(LayerPictures, ASequenceWithAFrameMissingOrBrokenIsRefused) {
+  ASSERT_TRUE(writePng(grey(9), folder_.file("s_8.png")));
+  ASSERT_TRUE(writePng(grey(9), folder_.file("s_9.png")));
+  const std::string whole = contents(folder_.file("s_8.png"));
+  const auto refused = [&](const std::string& frames, const std::string& pattern, const std::string& about) {
+    expectRefused(layersOf("demo:glass", {"--frames", frames, "--image", folder_.file("out.png"), "--replace",
+                                          "1=" + folder_.file(pattern)}),
+                  about);
+  };
+  refused("8:11", "s_#.png", "frame 10, " + folder_.file("s_10.png"));
+  refused("8:10", "s_##.png", "s_08.png");
+  refused("8:10", "#/s_#.png", "s_#.png");
+  refused("8:10", "#_s_#.png", "single run of #");
+  refused("8:10", std::string(5000, '#') + ".png", "there is no picture");
+  std::filesystem::create_directory(folder_.file("s_11.png"));
+  refused("9:12", "s_#.png", "s_10.png");
+  refused("11", "s_#.png", "s_11.png");
+  // The first frame's picture is read before any work, the others when they are needed.
+  folder_.write("s_8.png", whole.substr(0, whole.size() / 2));
+  refused("8:10", "s_#.png", "s_8.png");
+  ASSERT_FALSE(std::filesystem::exists(folder_.file("out_0008.png")));
+  folder_.write("s_8.png", whole);
+  folder_.write("s_9.png", "\x89PNG\r\n\x1a\n");
+  const Outcome second =
+      runTool(layersOf("demo:glass", {"--frames", "8:10", "--image", folder_.file("out.png"), "--replace",
+                                      "1=" + folder_.file("s_#.png")}));
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(second.errorLines(), 1) << second.err;
+  EXPECT_NE(second.err.find("s_9.png"), std::string::npos) << second.err;
+  // No output is one of the sequence's pictures.
+  expectRefused(layersOf("demo:glass", {"--frames", "8:10", "--image", folder_.file("t.png"), "--replace",
+                                        "1=" + folder_.file("t_####.png")}),
+                "--replace");
+}
+
+// A file that has a # in its name is no sequence.
+TEST_F(LayerPictures, AFileNamedWithANumberSignIsItself) {
+  ASSERT_TRUE(writePng(grey(128), folder_.file("no #1.png")));
+  draw("demo:glass?panes=0&bottles=0", {"--frames", "120", "--image", folder_.file("out.png"), "--replace",
+                                        "1=" + folder_.file("no #1.png")});
+  EXPECT_GT(pixelsOf(read("out.png"), 118), 1000u);
+}
+
 TEST_F(LayerPictures, TheTextTellsOfEachFrame) {
   const Outcome outcome = runTool(
       layersOf("demo:glass", {"--frames", "0:60:40", "--image", folder_.file("a.png"), "--peel", "never"}));

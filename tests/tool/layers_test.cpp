@@ -1,7 +1,9 @@
 // sightline layers: the order of parts, as JSON and as text.
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
@@ -47,6 +49,100 @@ TEST(Layers, AnUnknownSearchIsRefusedByTheNamesOfTheKnownOnes) {
   const Outcome outcome = runTool({"layers", "demo:toothpicks?n=60", "--search", "automatic"});
   EXPECT_NE(outcome.code, 0);
   EXPECT_NE(outcome.err.find("'automatic' is not one of: scan, tree"), std::string::npos) << outcome.err;
+}
+
+std::set<std::pair<int, int>> arcsOf(const std::vector<std::string>& more) {
+  std::set<std::pair<int, int>> arcs;
+  const json result = layered(joined({"--arcs", "all", "--frames", "40"}, more));
+  for (const json& arc : result["frames"][0]["arcs"]) {
+    arcs.emplace(arc[0], arc[1]);
+  }
+  return arcs;
+}
+
+bool holds(const std::set<std::pair<int, int>>& all, const std::set<std::pair<int, int>>& some) {
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+TEST(Layers, AnOrderForTwoEyesOrALensHasMoreArcsTheFartherItReaches) {
+  const std::string scene = "demo:toothpicks?n=60";
+  const auto eye = arcsOf({scene}), near = arcsOf({scene, "--stereo", "0.1"}),
+             far = arcsOf({scene, "--stereo", "1"});
+  EXPECT_TRUE(holds(near, eye));
+  EXPECT_TRUE(holds(far, near));
+  EXPECT_GT(far.size(), near.size());
+  EXPECT_GT(near.size(), eye.size());
+}
+
+TEST(Layers, AnOrderForAShutterHoldsThatOfItsMiddle) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> blur{"demo:toothpicks?n=60",
+                                      "--width",
+                                      "64",
+                                      "--height",
+                                      "36",
+                                      "--motion-blur",
+                                      "1",
+                                      "--blurred",
+                                      folder.file("a.png"),
+                                      "--depth-of-field",
+                                      "layers",
+                                      "--focus",
+                                      "2",
+                                      "--aperture",
+                                      "0.1"};
+  const auto eye = arcsOf(joined(blur, {"--order-for", "eye"})), lens = arcsOf(blur);
+  EXPECT_TRUE(holds(lens, eye));
+  EXPECT_GT(lens.size(), eye.size());
+  EXPECT_EQ(layered(joined(blur, {"--frames", "40"}))["options"]["order_for"], "lens");
+  EXPECT_EQ(layered({"demo:toothpicks?n=60", "--frames", "0"})["options"]["order_for"], "eye");
+}
+
+// A ring around the y axis and a pole through it.
+std::string ringAndPole() {
+  std::string obj = "o ring\n";
+  const auto vertex = [&](double x, double y, double z) {
+    obj += "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+  };
+  const auto face = [&](int a, int b, int c, int d) {
+    obj += "f " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + " " +
+           std::to_string(d) + "\n";
+  };
+  constexpr int kAround = 24;
+  for (int i = 0; i < kAround; ++i) {
+    const double x = std::cos(6.283185307 * i / kAround), z = std::sin(6.283185307 * i / kAround);
+    vertex(x, -0.1, z), vertex(1.1 * x, -0.1, 1.1 * z), vertex(1.1 * x, 0.1, 1.1 * z), vertex(x, 0.1, z);
+  }
+  for (int i = 0; i < kAround; ++i) {
+    const int at = 4 * i + 1, next = 4 * ((i + 1) % kAround) + 1;
+    for (int k = 0; k < 4; ++k) {
+      face(at + k, next + k, next + (k + 1) % 4, at + (k + 1) % 4);
+    }
+  }
+  obj += "o pole\n";
+  for (int i = 0; i < 8; ++i) {
+    vertex((i & 1) != 0 ? 0.1 : -0.1, (i & 2) != 0 ? 2 : -2, (i & 4) != 0 ? 0.1 : -0.1);
+  }
+  const int first = 4 * kAround + 1;
+  face(first, first + 1, first + 3, first + 2), face(first + 4, first + 5, first + 7, first + 6);
+  return obj;
+}
+
+TEST(Layers, WithPiecesAPoleThroughARingHasAnOrder) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("ring.obj", ringAndPole());
+  const std::string path =
+      folder.write("above.json", R"({"fovy_deg": 60, "width": 64, "height": 36, "near": 0.1, "far": 100,
+                        "frames": [{"eye": [0.3, 9, 0.2], "forward": [0, -1, 0.001], "up": [0, 0, 1]}]})");
+  const json one = layered({scene, "--path", path}),
+             pieces = layered({scene, "--path", path, "--pieces", "16"});
+  ASSERT_EQ(one["parts"], 2);
+  EXPECT_EQ(one["frames"][0]["order"].size(), 1u);
+  EXPECT_EQ(pieces["frames"][0]["order"].size(), 2u);
+  EXPECT_EQ(pieces["options"]["pieces"], 16);
+  expectRefused({"layers", scene, "--path", path, "--pieces", "0"}, "--pieces");
+  expectRefused({"layers", scene, "--path", path, "--pieces", "99999"}, "--pieces");
+  expectRefused({"layers", "demo:toothpicks", "--frames", "0", "--pieces", "2"}, "hulls of their own");
 }
 
 TEST(Layers, ArcsGoFromTheFrontToTheBack) {

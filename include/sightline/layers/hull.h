@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/base/result.h"
+#include "sightline/math/mat4.h"
 #include "sightline/math/plane.h"
 #include "sightline/math/vec3.h"
 
@@ -48,5 +49,13 @@ struct ConvexHull {
 // Errors: no points, a coordinate that is not finite or is beyond 1e100, more than 2^24 points, or no memory.
 // Source: Barber, Dobkin, Huhdanpaa. The Quickhull algorithm for convex hulls. ACM TOMS 1996.
 Result<ConvexHull> buildHull(std::span<const Vec3d> points);
+
+// Builds the convex hull, in world space, of all places of a hull whose transform goes evenly from one affine
+// transform to another: at the share t of the way it is from * (1 - t) + to * t, so that every point moves
+// along a line. Something that turns does not move so: take it from one angle to the next in steps, and the
+// hull of the steps' vertices.
+// Errors: those of buildHull().
+Result<ConvexHull> sweptHull(const ConvexHull& hull, const Mat4& world_from_first,
+                             const Mat4& world_from_last);
 
 }  // namespace sightline

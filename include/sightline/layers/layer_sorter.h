@@ -167,7 +167,14 @@ class LayerSorter {
   // Forgets the last order, so that the next one starts from distances. For a cut to another view.
   void reset();
 
-  const LayerOrder& update(const View& view);
+  const LayerOrder& update(const View& view) { return update(view, {}); }
+  // The same for a set of eyes: the convex hull of the view's eye and these, such as two eyes, the points of
+  // a lens, or the way of a camera. One part occludes another if it does for some eye of the set, so the
+  // order is right for each of them. In an orthographic view more_eyes are ignored. Rules are asked for each
+  // of these eyes, and allow what one of them allows; that is right for all eyes between them if the eyes for
+  // which a PairCallback excludes an occlusion form a convex set, and if none is in a joint's sphere or
+  // cylinder. Parts are not left out for being outside the view. At most 65,535 eyes; the rest is ignored.
+  const LayerOrder& update(const View& view, std::span<const Vec3d> more_eyes);
 
  private:
   struct Impl;

@@ -20,6 +20,16 @@ struct LayerReplacement {
   const LayerImage* image = nullptr;  // must have the renderer's size
 };
 
+// The images of one group of a frame and the steps that composited them. Valid during the call.
+struct CompositedGroup {
+  std::uint32_t first_layer = 0, end_layer = 0;  // the frame's layers that are in the group
+  // One image for each of these layers, null for one that was left out; or a single image of all of them,
+  // which were drawn together. Images that were drawn have depths; replacements have those of their own.
+  std::span<const LayerImage* const> images{};
+  // A program with images numbered from 0 (checkProgram). Its result lies behind the groups before it.
+  std::span<const CompositingStep> steps{};
+};
+
 struct CompositeSettings {
   // Which layers are peeled (LayerDraw::peel).
   enum class Peel : std::uint8_t {
@@ -39,6 +49,9 @@ struct CompositeSettings {
   // Called in place of LayerRenderer::draw for each layer's image (for depth of field, motion blur or reuse),
   // which must have the renderer's size. Empty: LayerRenderer::draw.
   std::function<void(std::span<const ObjectId> objects, const LayerDraw& how, LayerImage& image)> draw_layer;
+  // Called for each group of which something was drawn, front to back, to keep its images (for a file of
+  // layers). The sky is in none. Empty: nothing is kept, and no depths are drawn.
+  std::function<void(const CompositedGroup& group)> keep_group;
 };
 
 struct CompositeStats {

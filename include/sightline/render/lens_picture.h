@@ -89,7 +89,8 @@ struct LensStats {
 //
 // Limits of kLayers: each layer is drawn from the lens's middle at the shutter's middle, so what it hides of
 // itself is missing where a blur should show it, unless the layer is accumulated. The order is that of the
-// middle too. Surfaces outside the picture are not drawn and not blurred into it; what is not in the picture
+// layers given: LayerSorter::update() takes the eyes of a whole lens, and sweptHull() the parts' motion.
+// Surfaces outside the picture are not drawn and not blurred into it; what is not in the picture
 // at the shutter's middle is missing. Motion blur moves a layer as a whole, as the middle of its visible
 // pixels moves on the screen: turning, growing and bending are lost, and edges of layers that move together
 // do not hide the same things at all times. kAccumulate draws the layer at its places in time and loses

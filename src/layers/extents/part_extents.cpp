@@ -25,9 +25,10 @@ PartExtents::PartExtents(std::vector<ExtentAxis> axes) : axes_(std::move(axes)) 
 }
 
 std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
-                                  std::span<const std::uint8_t> moved, std::span<const std::uint8_t> used) {
+                                  std::span<const std::uint8_t> moved, std::span<const std::uint8_t> used,
+                                  std::span<const Vec3d> more_eyes) {
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << axes_.size()) - 1);
-  const std::uint32_t turned = lookFrom(view);
+  const std::uint32_t turned = lookFrom(view, view.orthographic ? std::span<const Vec3d>() : more_eyes);
   addParts(parts);
   stale_.resize(parts.parts(), all);
   axes_of_.resize(parts.parts());
@@ -42,7 +43,7 @@ std::uint64_t PartExtents::update(const View& view, const PartStore& parts,
 }
 
 // Measures all axes for the view. Returns a bit for each axis whose extents must be recomputed for all parts.
-std::uint32_t PartExtents::lookFrom(const View& view) {
+std::uint32_t PartExtents::lookFrom(const View& view, std::span<const Vec3d> more_eyes) {
   if (!has_reference_ && isFinite(view.eye)) {
     has_reference_ = true;
     reference_ = view.eye;
@@ -51,12 +52,21 @@ std::uint32_t PartExtents::lookFrom(const View& view) {
   own_.rows.clear();
   for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
     MeasuredAxis& own = own_.axes[axis];
-    const AxisLook look = lookAlong(axes_[axis], view, reference_);
+    AxisLook look = lookAlong(axes_[axis], view, reference_);
+    if (!more_eyes.empty() && look.measure == AxisLook::Measure::kAngles) {
+      look.measure = AxisLook::Measure::kHeights;
+      look.zero = {};
+    }
     turned |= (look == own.look ? 0u : 1u) << axis;
     own.look = look;
     own.along = rowOf({look.direction, look.from});
     own.zero = look.measure == AxisLook::Measure::kAngles ? rowOf({look.zero, look.from}) : 0;
     to_eye_[axis] = eyeHeights(look, view);
+    View other = view;
+    for (const Vec3d& eye : more_eyes) {
+      other.eye = eye;
+      to_eye_[axis] = unite(to_eye_[axis], eyeHeights(look, other));
+    }
     eye_[axis] = dot(look.direction, view.eye - look.from);
     away_[axis] = !view.orthographic ? 0.0 : std::copysign(1.0, dot(look.direction, view.forward));
     table_.kinds[axis] = hulls_.kinds[axis] = look.kind();

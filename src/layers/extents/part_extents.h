@@ -32,8 +32,10 @@ class PartExtents {
   // In an orthographic view, angular axes hold positions across the view, as table().kinds says.
   // moved: one element per part, whether its placement changed since the last call; new parts count as moved.
   // used: one element per part; the extents of the others are left as they are until they are used.
+  // more_eyes: of a perspective view; queries then reach to all eyes. Since each eye has angles of its own,
+  // angular axes hold positions across the view.
   std::uint64_t update(const View& view, const PartStore& parts, std::span<const std::uint8_t> moved,
-                       std::span<const std::uint8_t> used);
+                       std::span<const std::uint8_t> used, std::span<const Vec3d> more_eyes = {});
 
   // Takes a hull anew from the parts. Parts that have it must count as moved in the next update().
   void replaceHull(std::uint32_t hull, const PartStore& parts);
@@ -57,7 +59,7 @@ class PartExtents {
   double distanceAlong(std::size_t axis, std::uint32_t part) const;
 
  private:
-  std::uint32_t lookFrom(const View& view);
+  std::uint32_t lookFrom(const View& view, std::span<const Vec3d> more_eyes);
   void addParts(const PartStore& parts);
   std::uint32_t rowOf(const ExtentRow& row);
   Extent query(const ExtentTable& table, std::span<const std::uint32_t> group) const;

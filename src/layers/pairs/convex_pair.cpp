@@ -29,8 +29,8 @@ void recall(const PairWitness& witness, PairQuestion& question) {
   for (std::size_t i = std::min<std::size_t>(witness.pairs, witness.first.size()); i-- > 0;) {
     const std::uint32_t first = knownVertex(question.first, witness.first[i]);
     const std::uint32_t second = knownVertex(question.second, witness.second[i]);
-    question.first_hull = first == PairWitness::kEye ? question.first_hull : first;
-    question.second_hull = second == PairWitness::kEye ? question.second_hull : second;
+    question.first_hull = PairWitness::isEye(first) ? question.first_hull : first;
+    question.second_hull = PairWitness::isEye(second) ? question.second_hull : second;
   }
   if (witness.pairs > 0 && isUnit(witness.direction)) {
     question.direction = witness.direction;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "sightline/layers/hull.h"
 #include "src/layers/hull/hull_envelope.h"
@@ -13,7 +14,8 @@ namespace sightline::layers {
 
 // A placed hull, or the set that it sweeps towards the eye: the convex hull of it and the eye (perspective),
 // or all segments from its points along the sweep (orthographic). An occluder of the hull intersects this
-// set, which makes occlusion a question of intersection.
+// set, which makes occlusion a question of intersection. For several eyes the set is the convex hull of it
+// and all eyes: it is the union of those of all eyes in the eyes' convex hull.
 struct ConvexSet {
   enum class Kind : std::uint8_t { kHull, kWithEye, kSwept };
   const ConvexHull* hull = nullptr;
@@ -21,6 +23,7 @@ struct ConvexSet {
   Kind kind = Kind::kHull;
   Vec3d eye_or_sweep;  // world space: the eye, or a segment long enough to pass the other set
   const HullEnvelope* around = nullptr;  // the hull's envelope; null: disjoint pairs take longer
+  std::span<const Vec3d> more_eyes{};    // of kWithEye, world space; at most kMaxMoreEyes
 };
 
 enum class Intersection : std::uint8_t {
@@ -29,10 +32,15 @@ enum class Intersection : std::uint8_t {
   kUndecided,     // they touch, nearly touch, or are not finite; counts as intersecting
 };
 
+inline constexpr std::size_t kMaxMoreEyes = 0xffff;
+
 // What is kept of a pair from one test to the next.
 struct PairWitness {
-  static constexpr std::uint32_t kEye = 0xffffffffu;       // vertex number of the eye
+  static constexpr std::uint32_t kEye =
+      0xffffffffu;  // vertex number of the eye; of more_eyes[i]: kEye - 1 - i
   static constexpr std::uint32_t kSweptBit = 0x80000000u;  // in a vertex number: the far end of its segment
+
+  static constexpr bool isEye(std::uint32_t vertex) { return vertex >= kEye - kMaxMoreEyes; }
 
   bool disjoint = false;   // result of the last test
   bool near = false;       // whether the envelopes were not found disjoint then, so that vertices decided

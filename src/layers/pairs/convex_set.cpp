@@ -29,7 +29,7 @@ constexpr double kTiny = 1e-200;
 }  // namespace
 
 LocalSet localSet(const ConvexSet& set, const Vec3d& local_origin) {
-  LocalSet local{set.hull, set.placement, set.kind, set.eye_or_sweep};
+  LocalSet local{set.hull, set.placement, set.kind, set.eye_or_sweep, set.more_eyes, local_origin};
   local.placement.origin = set.placement.origin - local_origin;
   const ConvexHull& hull = *set.hull;
   const double stretch = l1Norm(set.placement.x) + l1Norm(set.placement.y) + l1Norm(set.placement.z);
@@ -40,7 +40,12 @@ LocalSet localSet(const ConvexSet& set, const Vec3d& local_origin) {
     if (set.kind == ConvexSet::Kind::kWithEye) {
       local.eye_or_sweep = set.eye_or_sweep - local_origin;
     }
-    const double far_size = l1Norm(local.eye_or_sweep);
+    double far_size = l1Norm(local.eye_or_sweep);
+    for (const Vec3d& eye : set.more_eyes) {
+      // Unlike std::max, this keeps a NaN.
+      const double size = l1Norm(eye - local_origin);
+      far_size = size <= far_size ? far_size : size;
+    }
     local.far_error = kRounding * far_size + kTiny;
     local.size += far_size;
   }
@@ -56,8 +61,18 @@ Reach reach(const LocalSet& set, const Vec3d& direction, std::uint32_t start) {
   if (set.kind == ConvexSet::Kind::kWithEye) {
     const double eye_height = dot(direction, set.eye_or_sweep);
     result.upper = std::max(result.upper, eye_height + set.far_error);
-    if (eye_height > height) {
+    double highest = height;
+    if (eye_height > highest) {
+      highest = eye_height;
       result.vertex = PairWitness::kEye;
+    }
+    for (std::size_t i = 0; i < set.more_eyes.size(); ++i) {
+      const double other = dot(direction, set.more_eyes[i] - set.local_origin);
+      result.upper = std::max(result.upper, other + set.far_error);
+      if (other > highest) {
+        highest = other;
+        result.vertex = PairWitness::kEye - 1 - static_cast<std::uint32_t>(i);
+      }
     }
   } else if (set.kind == ConvexSet::Kind::kSwept) {
     const double along = dot(direction, set.eye_or_sweep);
@@ -70,7 +85,7 @@ Reach reach(const LocalSet& set, const Vec3d& direction, std::uint32_t start) {
 }
 
 std::uint32_t knownVertex(const LocalSet& set, std::uint32_t vertex) {
-  if (vertex == PairWitness::kEye && set.kind == ConvexSet::Kind::kWithEye) {
+  if (set.kind == ConvexSet::Kind::kWithEye && PairWitness::kEye - vertex <= set.more_eyes.size()) {
     return vertex;
   }
   const std::uint32_t last = static_cast<std::uint32_t>(set.hull->vertices.size() - 1);
@@ -81,6 +96,9 @@ std::uint32_t knownVertex(const LocalSet& set, std::uint32_t vertex) {
 Vec3d pointOf(const LocalSet& set, std::uint32_t vertex) {
   if (vertex == PairWitness::kEye) {
     return set.eye_or_sweep;
+  }
+  if (PairWitness::isEye(vertex)) {
+    return set.more_eyes[PairWitness::kEye - 1 - vertex] - set.local_origin;
   }
   const Vec3d point = set.placement.point(set.hull->vertices[vertex & ~PairWitness::kSweptBit]);
   return (vertex & PairWitness::kSweptBit) != 0 ? point + set.eye_or_sweep : point;

@@ -14,7 +14,9 @@ struct LocalSet {
   const ConvexHull* hull = nullptr;
   Placement placement;  // with an origin relative to the local one
   ConvexSet::Kind kind = ConvexSet::Kind::kHull;
-  Vec3d eye_or_sweep;       // the eye relative to the local origin, or the sweep
+  Vec3d eye_or_sweep;                  // the eye relative to the local origin, or the sweep
+  std::span<const Vec3d> more_eyes{};  // relative to the world's origin
+  Vec3d local_origin;
   double hull_error = 0.0;  // bound of the error of the heights of the hull's points
   double far_error = 0.0;   // bound of the error of the height of the eye or the sweep
   double size = 0.0;        // bound of the distance from the local origin along an axis

@@ -24,7 +24,11 @@ Vec3d outerPoint(const ConvexSet& set, const Vec3d& direction, const Vec3d& abov
   const Vec3d point = p.x * far.x + p.y * far.y + p.z * far.z + (p.origin - above);
   if (set.kind == ConvexSet::Kind::kWithEye) {
     const Vec3d eye = set.eye_or_sweep - above;
-    return dot(direction, eye) > dot(direction, point) ? eye : point;
+    Vec3d farthest = dot(direction, eye) > dot(direction, point) ? eye : point;
+    for (const Vec3d& more : set.more_eyes) {
+      farthest = dot(direction, more - above) > dot(direction, farthest) ? more - above : farthest;
+    }
+    return farthest;
   }
   return set.kind == ConvexSet::Kind::kSwept && dot(direction, set.eye_or_sweep) > 0.0
              ? point + set.eye_or_sweep
@@ -55,6 +59,10 @@ double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& ab
   if (set.kind == ConvexSet::Kind::kWithEye) {
     const double of_eye = outerHeight(set.eye_or_sweep - above, direction);
     height = std::isnan(height) || of_eye <= height ? height : of_eye;
+    for (const Vec3d& eye : set.more_eyes) {
+      const double of_other = outerHeight(eye - above, direction);
+      height = std::isnan(height) || of_other <= height ? height : of_other;
+    }
   } else if (set.kind == ConvexSet::Kind::kSwept) {
     const double along = outerHeight(set.eye_or_sweep, direction);
     height = along <= 0.0 ? height : height + along;

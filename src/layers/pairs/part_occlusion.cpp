@@ -36,10 +36,14 @@ Heights heightsAlong(const ConvexSet& set, const Vec3d& direction) {
 }  // namespace
 
 void PartOcclusion::beginFrame(const View& view, const PartStore& parts, const ExtentTable& extents,
-                               const PairRules& rules, std::uint32_t expiry) {
+                               const PairRules& rules, std::uint32_t expiry,
+                               std::span<const Vec3d> more_eyes) {
   view_ = view;
-  view_is_finite_ =
-      view.orthographic ? isFinite(view.forward) && l1Norm(view.forward) > 0.0 : isFinite(view.eye);
+  more_eyes_ = view.orthographic ? std::span<const Vec3d>() : more_eyes;
+  view_is_finite_ = view.orthographic
+                        ? isFinite(view.forward) && l1Norm(view.forward) > 0.0
+                        : isFinite(view.eye) && std::all_of(more_eyes.begin(), more_eyes.end(),
+                                                            [](const Vec3d& eye) { return isFinite(eye); });
   parts_ = &parts;
   extents_ = &extents;
   rules_ = &rules;
@@ -116,21 +120,32 @@ PairOrder PartOcclusion::ruleOrder(std::uint32_t number) {
   if (known.frame == frame_) {
     return known.order;
   }
-  const PairRule& rule = rules_->rule(number);
+  PairOrder order = ruleOrder(rules_->rule(number), view_);
+  View other = view_;
+  for (const Vec3d& eye : more_eyes_) {
+    other.eye = eye;
+    const PairOrder for_other = ruleOrder(rules_->rule(number), other);
+    order.first_may_occlude = order.first_may_occlude || for_other.first_may_occlude;
+    order.second_may_occlude = order.second_may_occlude || for_other.second_may_occlude;
+  }
+  known = {frame_, order};
+  return order;
+}
+
+PairOrder PartOcclusion::ruleOrder(const PairRule& rule, const View& view) const {
   PairOrder order;
   if (const auto* callback = std::get_if<PairCallback>(&rule.what)) {
     if (callback->order != nullptr) {
-      order = callback->order(callback->user, view_);
+      order = callback->order(callback->user, view);
     }
   } else {
-    const PairEye eye = pairEye(view_, parts_->placements[rule.first]);
+    const PairEye eye = pairEye(view, parts_->placements[rule.first]);
     if (const auto* plane = std::get_if<PairPlane>(&rule.what)) {
       order = orderOf(*plane, eye);
     } else if (const auto* joint = std::get_if<SphereCylinderJoint>(&rule.what)) {
       order = orderOf(*joint, eye);
     }
   }
-  known = {frame_, order};
   return order;
 }
 
@@ -250,10 +265,13 @@ bool PartOcclusion::stillApart(std::uint32_t front, std::uint32_t i, std::uint32
   const double highest_of_back =
       outerHeight(parts_->envelopes[parts_->part_hulls[j]], of_back, of_back.origin - origin, -direction);
   // An eye at infinity is on one side of the plane.
-  const bool eye_is_apart = view_.orthographic
-                                ? outerHeight(view_.forward, direction) <= 0.0
-                                : highest_of_front + outerHeight(view_.eye - origin, -direction) < -room;
-  return eye_is_apart && highest_of_front + highest_of_back < -room;
+  bool eyes_are_apart = view_.orthographic
+                            ? outerHeight(view_.forward, direction) <= 0.0
+                            : highest_of_front + outerHeight(view_.eye - origin, -direction) < -room;
+  for (const Vec3d& eye : more_eyes_) {
+    eyes_are_apart = eyes_are_apart && highest_of_front + outerHeight(eye - origin, -direction) < -room;
+  }
+  return eyes_are_apart && highest_of_front + highest_of_back < -room;
 }
 
 // Whether the hull in front intersects the set that the hull behind sweeps to the eye, both made smaller by
@@ -280,6 +298,7 @@ bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint
   } else {
     swept.kind = ConvexSet::Kind::kWithEye;
     swept.eye_or_sweep = view_.eye;
+    swept.more_eyes = more_eyes_;
   }
   return testIntersection(in_front, swept, witness, counts_) != Intersection::kDisjoint;
 }

@@ -34,11 +34,13 @@ class PartOcclusion {
 
   // Begins a frame. Parts, extents and rules must not change until its last question.
   // extents: only those of spatial axes are used. expiry: frames for which a pair's result is kept after its
-  // last use.
+  // last use. more_eyes: in a perspective view, questions are about all eyes in the convex hull of the view's
+  // and these, which must not change either; at most kMaxMoreEyes.
   void beginFrame(const View& view, const PartStore& parts, const ExtentTable& extents,
-                  const PairRules& rules, std::uint32_t expiry);
-  // Whether some ray from the eye hits part `front` and then part `back`. Conservative: true if it is not
-  // certain. A part that is not finite occludes all others and is occluded by all.
+                  const PairRules& rules, std::uint32_t expiry, std::span<const Vec3d> more_eyes = {});
+  // Whether some ray from the eye, or from one of the eyes, hits part `front` and then part `back`.
+  // Conservative: true if it is not certain. A part that is not finite occludes all others and is occluded by
+  // all.
   bool occludes(std::uint32_t front, std::uint32_t back);
   // Returns the pairs of parts that were asked about in this frame, have no rule, and intersect, touch, or
   // nearly touch, or overlap by more than the contact tolerance: front < back, each once, ascending. Valid
@@ -55,6 +57,7 @@ class PartOcclusion {
   enum class Verdict : std::uint8_t { kOpen, kOccludes, kDoesNot };
 
   PairOrder ruleOrder(std::uint32_t number);
+  PairOrder ruleOrder(const PairRule& rule, const View& view) const;
   bool spatialExtentsOverlap(std::uint32_t a, std::uint32_t b) const;
   // Which pairs of hulls matter: those that may occlude in this order, or those that may intersect.
   enum class Reach : std::uint8_t { kToTheEye, kOwn };
@@ -83,6 +86,7 @@ class PartOcclusion {
   double contact_tolerance_;
   const PartExtents* hull_extents_;
   View view_;
+  std::span<const Vec3d> more_eyes_;  // empty in orthographic views
   bool view_is_finite_ = false;
   const PartStore* parts_ = nullptr;
   const ExtentTable* extents_ = nullptr;

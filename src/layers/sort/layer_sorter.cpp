@@ -80,7 +80,7 @@ struct LayerSorter::Impl {
   bool isEnabled(std::uint32_t part) const { return enabled[part] != 0 && removed[part] == 0; }
   bool areParts(PartId first, PartId second) const { return isPart(first) && isPart(second); }
   std::uint32_t makeRoom(std::size_t hulls);
-  void chooseParts(const View& view);
+  void chooseParts(const View& view, bool one_eye);
   void place(const View& view);
   void sort();
   void condition();
@@ -314,11 +314,11 @@ void LayerSorter::Impl::sortByDistance(const View& view, std::span<std::uint32_t
   });
 }
 
-void LayerSorter::Impl::chooseParts(const View& view) {
+void LayerSorter::Impl::chooseParts(const View& view, bool one_eye) {
   to_sort.resize(store.parts());
   outside = 0;
   const std::optional<ViewVolume> volume =
-      settings.frustum_culling ? std::optional<ViewVolume>(view) : std::nullopt;
+      settings.frustum_culling && one_eye ? std::optional<ViewVolume>(view) : std::nullopt;
   for (std::uint32_t part = 0; part < store.parts(); ++part) {
     bool sorts = isEnabled(part) && part_settings[part].place == Place::kSorted;
     if (sorts && volume && volume->isOutside(store, part)) {
@@ -464,14 +464,16 @@ LayerStats LayerSorter::Impl::stats() const {
           .outside = outside};
 }
 
-const LayerOrder& LayerSorter::update(const View& given) {
+const LayerOrder& LayerSorter::update(const View& given, std::span<const Vec3d> more_eyes) {
   Impl& own = *impl_;
   const View view = scaled(given);
-  own.chooseParts(view);
-  own.extent_updates = own.extents.update(view, own.store, own.moved, own.to_sort);
+  more_eyes = more_eyes.first(std::min(more_eyes.size(), kMaxMoreEyes));
+  own.chooseParts(view, more_eyes.empty() || view.orthographic);
+  own.extent_updates = own.extents.update(view, own.store, own.moved, own.to_sort, more_eyes);
   std::fill(own.moved.begin(), own.moved.end(), 0);
   std::fill(own.sorted.begin(), own.sorted.end(), 1);
-  own.occlusion.beginFrame(view, own.store, own.extents.table(), own.rules, own.settings.pair_expiry);
+  own.occlusion.beginFrame(view, own.store, own.extents.table(), own.rules, own.settings.pair_expiry,
+                           more_eyes);
   own.place(view);
   own.sort();
   own.condition();

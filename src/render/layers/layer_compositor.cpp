@@ -43,6 +43,7 @@ struct LayerCompositor::Impl {
   std::vector<LayerUse> uses;        // one for each layer of the frame
   std::vector<LayerImage> images;    // of one group's layers; never shrinks
   std::vector<ShapedImage> operands;
+  std::vector<const LayerImage*> kept;  // the images of one group, for CompositeSettings::keep_group
   std::vector<ObjectId> objects;
   std::array<ShapedPixel, kCompositingScratch> scratch;
   LayerImage composited, sky;
@@ -64,8 +65,10 @@ struct LayerCompositor::Impl {
   void addGroup(const View& view, const FrameLayers& layers, std::uint32_t group,
                 const CompositingProgram& program, const CompositeSettings& settings, LayerImage& picture,
                 CompositeStats& stats);
+  void addImage(const CompositeSettings& settings, std::uint32_t first, std::uint32_t end,
+                const LayerImage& image, LayerImage& picture);
   void evaluateGroup(std::span<const CompositingStep> steps, std::uint32_t first, std::uint32_t count,
-                     LayerImage& picture);
+                     const CompositeSettings& settings, LayerImage& picture);
 };
 
 Status LayerCompositor::Impl::readUses(const FrameLayers& layers, const CompositeSettings& settings) {
@@ -145,6 +148,7 @@ void LayerCompositor::Impl::drawObjects(const View& view, const CompositeSetting
                                         LayerImage& image, CompositeStats& stats) {
   LayerDraw how;
   how.hidden = hidden;
+  how.depths = static_cast<bool>(settings.keep_group);
   how.peel = settings.peel == CompositeSettings::Peel::kWhereNeeded && needsPeel();
   ++stats.layers;
   stats.peeled += how.peel ? 1 : 0;
@@ -166,12 +170,23 @@ void LayerCompositor::Impl::addLayer(const View& view, const FrameLayers& layers
     return;
   }
   if (uses[layer].replacement != nullptr) {
-    compositeOver(picture, *uses[layer].replacement);
+    addImage(settings, layer, layer + 1, *uses[layer].replacement, picture);
     return;
   }
   collect(layers, layer, layer + 1);
   drawObjects(view, settings, isHidden(layers, layer), images.front(), stats);
-  compositeOver(picture, images.front());
+  addImage(settings, layer, layer + 1, images.front(), picture);
+}
+
+// Puts the image of all layers from `first` up to `end` under the picture.
+void LayerCompositor::Impl::addImage(const CompositeSettings& settings, std::uint32_t first,
+                                     std::uint32_t end, const LayerImage& image, LayerImage& picture) {
+  compositeOver(picture, image);
+  if (settings.keep_group) {
+    const LayerImage* const only = &image;
+    const CompositingStep step{CompositingOp::kStartImage, LayerId(0u)};
+    settings.keep_group({first, end, {&only, 1}, {&step, 1}});
+  }
 }
 
 void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers, std::uint32_t group,
@@ -193,12 +208,13 @@ void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers
   if (unordered && !any_replaced && settings.peel == CompositeSettings::Peel::kWhereNeeded) {
     collect(layers, first, end);
     drawObjects(view, settings, isHidden(layers, first), images.front(), stats);
-    compositeOver(picture, images.front());
+    addImage(settings, first, end, images.front(), picture);
     return;
   }
   const std::uint32_t count = end - first;
   images.resize(std::max<std::size_t>(images.size(), count));
   operands.assign(count, {});
+  kept.assign(count, nullptr);
   for (std::uint32_t i = 0; i < count; ++i) {
     const LayerUse& use = uses[first + i];
     if (use.left_out) {
@@ -208,24 +224,35 @@ void LayerCompositor::Impl::addGroup(const View& view, const FrameLayers& layers
       collect(layers, first + i, first + i + 1);
       drawObjects(view, settings, isHidden(layers, first + i), images[i], stats);
     }
-    operands[i] = (use.replacement != nullptr ? *use.replacement : images[i]).view();
+    kept[i] = use.replacement != nullptr ? use.replacement : &images[i];
+    operands[i] = kept[i]->view();
   }
-  evaluateGroup(program.group(group), first, count, picture);
+  evaluateGroup(program.group(group), first, count, settings, picture);
 }
 
 void LayerCompositor::Impl::evaluateGroup(std::span<const CompositingStep> steps, std::uint32_t first,
-                                          std::uint32_t count, LayerImage& picture) {
+                                          std::uint32_t count, const CompositeSettings& settings,
+                                          LayerImage& picture) {
   group_program.steps.assign(steps.begin(), steps.end());
+  bool is_started = false;
   for (CompositingStep& step : group_program.steps) {
     if (step.layer.valid()) {
       step.layer.value -= first;
     }
+    // The compiled program puts the group over those before it; here it is composited alone.
+    if (step.op == CompositingOp::kOver && !is_started) {
+      step.op = CompositingOp::kStartImage;
+    }
+    is_started = is_started || step.op == CompositingOp::kStartImage;
   }
   group_program.first_of.assign({0, static_cast<std::uint32_t>(steps.size())});
   group_program.layers = count;
   composited.clear(picture.width, picture.height);
   if (evaluate(group_program, operands, composited.target(), scratch)) {
     compositeOver(picture, composited);
+    if (settings.keep_group) {
+      settings.keep_group({first, first + count, kept, group_program.steps});
+    }
   }
 }
 

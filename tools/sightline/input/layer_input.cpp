@@ -3,42 +3,59 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "scenes/procedural.h"
+#include "sightline/layers/convex_pieces.h"
 #include "tools/sightline/command_line/progress_bar.h"
 
 namespace sightline::tool {
 namespace {
 
-// The hull of an object's vertices.
-Result<ConvexHull> hullOf(const Scene& scene, std::size_t object) {
-  std::vector<std::uint32_t> corners(
-      scene.indices.begin() + scene.objects[object].first_index,
-      scene.indices.begin() + scene.objects[object].first_index + scene.objects[object].index_count);
+// The hull of an object's vertices, or several of pieces of its triangles.
+Result<std::vector<ConvexHull>> hullsOf(const Scene& scene, std::size_t object, std::uint32_t max_pieces) {
+  const std::span<const std::uint32_t> indices = scene.view().indicesOf(scene.objects[object]);
+  std::vector<std::uint32_t> corners(indices.begin(), indices.end());
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<Vec3d> points;
   for (const std::uint32_t corner : corners) {
     points.emplace_back(scene.positions[corner]);
   }
-  Result<ConvexHull> hull = buildHull(points);
-  return hull ? std::move(hull)
-              : Error{fmt::format("object {} ({}) has no convex hull: {}", object, scene.object_names[object],
-                                  hull.error().message)};
+  Result<std::vector<ConvexHull>> hulls = std::vector<ConvexHull>();
+  if (max_pieces > 1) {
+    std::vector<std::array<std::uint32_t, 3>> triangles(indices.size() / 3);
+    for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
+      const auto corner = std::lower_bound(corners.begin(), corners.end(), indices[i]);
+      triangles[i / 3][i % 3] = static_cast<std::uint32_t>(corner - corners.begin());
+    }
+    hulls = convexPieces(points, triangles, {.max_pieces = max_pieces});
+  } else if (Result<ConvexHull> hull = buildHull(points)) {
+    hulls->push_back(std::move(*hull));
+  } else {
+    hulls = hull.error();
+  }
+  return hulls ? std::move(hulls)
+               : Error{fmt::format("object {} ({}) has no convex hull: {}", object,
+                                   scene.object_names[object], hulls.error().message)};
 }
 
-Result<MovingScene> withoutMotion(Scene scene) {
+Result<MovingScene> withoutMotion(Scene scene, std::uint32_t max_pieces) {
   MovingScene moving;
   ProgressBar progress("convex hulls");
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {
-    Result<ConvexHull> hull = hullOf(scene, object);
-    if (!hull) {
-      return hull.error();
+    Result<std::vector<ConvexHull>> hulls = hullsOf(scene, object, max_pieces);
+    if (!hulls) {
+      return hulls.error();
     }
-    moving.hulls.push_back(std::move(*hull));
-    moving.parts.push_back({.name = scene.object_names[object],
-                            .hulls = {static_cast<std::uint32_t>(object)},
-                            .settings = {.is_static = true}});
+    MovingPart& part = moving.parts.emplace_back();
+    part.name = scene.object_names[object];
+    part.settings.is_static = true;
+    for (ConvexHull& hull : *hulls) {
+      part.hulls.push_back(static_cast<std::uint32_t>(moving.hulls.size()));
+      moving.hulls.push_back(std::move(hull));
+    }
     progress.update(static_cast<double>(object + 1) / static_cast<double>(scene.objects.size()));
   }
   moving.frames = 0;
@@ -46,12 +63,16 @@ Result<MovingScene> withoutMotion(Scene scene) {
   return moving;
 }
 
-Result<MovingScene> loadMoving(const std::string& name) {
+Result<MovingScene> loadMoving(const std::string& name, std::uint32_t max_pieces) {
   if (isMovingDemoUrl(name)) {
+    if (max_pieces > 1) {
+      return Error{
+          fmt::format("--pieces {}: the parts of {} move and have hulls of their own", max_pieces, name)};
+    }
     return makeMovingDemoScene(name);
   }
   Result<Scene> scene = loadScene(name);
-  return scene ? withoutMotion(std::move(*scene)) : scene.error();
+  return scene ? withoutMotion(std::move(*scene), max_pieces) : scene.error();
 }
 
 Status setPlaces(MovingScene& scene, const std::vector<std::uint32_t>& parts, PartSettings::Place place,
@@ -69,8 +90,8 @@ Status setPlaces(MovingScene& scene, const std::vector<std::uint32_t>& parts, Pa
 }  // namespace
 
 Result<LayerInput> loadLayerInput(const std::string& scene_name, const PathOptions& path,
-                                  const LayerPlaces& places) {
-  Result<MovingScene> scene = loadMoving(scene_name);
+                                  const LayerPlaces& places, std::uint32_t max_pieces) {
+  Result<MovingScene> scene = loadMoving(scene_name, max_pieces);
   if (!scene) {
     return scene.error();
   }

@@ -13,7 +13,7 @@
 namespace sightline::tool {
 
 struct LayerInput {
-  MovingScene moving;  // if the scene does not move, each object is a static part
+  MovingScene moving;  // if the scene does not move, each object is a static part of one hull or of pieces
   Walk walk;
 };
 
@@ -24,7 +24,8 @@ struct LayerPlaces {
 
 // Loads a scene and a walk. If the scene moves, frame i of the walk shows frame i of the motion; a camera
 // path of the user's own may be longer than the motion.
+// max_pieces: hulls of each object of a scene that does not move, at most; 1: its hull.
 Result<LayerInput> loadLayerInput(const std::string& scene_name, const PathOptions& path,
-                                  const LayerPlaces& places = {});
+                                  const LayerPlaces& places = {}, std::uint32_t max_pieces = 1);
 
 }  // namespace sightline::tool

@@ -93,14 +93,13 @@ class LayerLens : public FrameMaker {
   // motion.
   void setMotion(const SortedFrame& frame) {
     const Walk& walk = input_.input.walk;
-    const std::size_t frames = walk.path.frames.size();
     settings_.motion.reset();
-    if (options_.motion_blur == 0.0 || frames < 2) {
+    const std::optional<std::uint32_t> other = motionFrame(walk, frame.number);
+    if (options_.motion_blur == 0.0 || !other) {
       return;
     }
-    const std::uint32_t other = frame.number + 1 < frames ? frame.number + 1 : frame.number - 1;
-    placements(input_.input.moving, other, other_stored_);
-    View later = walk.view(other, input_.input.moving.scene);
+    placements(input_.input.moving, *other, other_stored_);
+    View later = walk.view(*other, input_.input.moving.scene);
     later.aspect = frame.view.aspect;
     settings_.motion = FrameMotion{.later = later,
                                    .stored = frame.scene_from_stored,
@@ -231,6 +230,14 @@ Result<LensSettings> settingsOf(const LayerLensOptions& options, const FrameMake
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> motionFrame(const Walk& walk, std::uint32_t frame) {
+  const std::size_t frames = walk.path.frames.size();
+  if (frames < 2) {
+    return std::nullopt;
+  }
+  return frame + 1 < frames ? frame + 1 : frame - 1;
+}
 
 void addLayerLensOptions(CLI::App& command, LayerLensOptions& options) {
   CLI::Option* focus = command.add_option("--focus", options.focus, "metres to what is sharp");

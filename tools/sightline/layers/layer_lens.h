@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct LayerLensOptions {
 
   bool operator==(const LayerLensOptions&) const = default;
 };
+// The frame whose difference from this one is the motion of motion blur: the next, or of the last frame the
+// one before. None if there is only one frame.
+std::optional<std::uint32_t> motionFrame(const Walk& walk, std::uint32_t frame);
 void addLayerLensOptions(CLI::App& command, LayerLensOptions& options);
 
 Result<std::unique_ptr<FrameMaker>> makeLayerLens(const LayerLensOptions& options,

@@ -6,15 +6,15 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "sightline/io/image.h"
 #include "sightline/render/layer_compositor.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/output_files.h"
-#include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/layers/layer_by_distance.h"
+#include "tools/sightline/layers/layer_recorder.h"
+#include "tools/sightline/layers/layer_replacement.h"
 #include "tools/sightline/layers/picture_difference.h"
 
 namespace sightline::tool {
@@ -25,56 +25,10 @@ constexpr std::array<Name<CompositeSettings::Peel>, 2> kPeels{{
     {"never", CompositeSettings::Peel::kNever},
 }};
 
-struct ReplacedPart {
-  std::uint32_t part = 0;
-  Image file;
-  LayerImage image;  // the file fitted into this frame's picture
-};
-
-// Converts a pixel back to linear light; the inverse of toImage().
-ShapedPixel pixelOf(const Image& image, std::uint32_t x, std::uint32_t y) {
-  const std::uint8_t* p = &image.rgba[4 * (std::size_t{y} * image.width + x)];
-  const float alpha = static_cast<float>(p[3]) / 255.0f;
-  const auto linear = [&](std::uint8_t value) {
-    const float root = static_cast<float>(value) / 255.0f;
-    return root * root * alpha;
-  };
-  return {linear(p[0]), linear(p[1]), linear(p[2]), alpha};
-}
-
-struct Rectangle {
-  std::uint32_t left = 0, top = 0, right = 0, bottom = 0;  // right and bottom are exclusive
-};
-
-// Returns the smallest rectangle of all pixels that are not transparent.
-Rectangle rectangleOf(const LayerImage& image) {
-  Rectangle found{image.width, image.height, 0, 0};
-  for (std::uint32_t y = 0; y < image.height; ++y) {
-    for (std::uint32_t x = 0; x < image.width; ++x) {
-      if (image.pixels[std::size_t{y} * image.width + x].alpha > 0.0f) {
-        found = {std::min(found.left, x), std::min(found.top, y), std::max(found.right, x + 1), y + 1};
-      }
-    }
-  }
-  return found;
-}
-
-// Stretches the file over a rectangle, with the nearest pixel for each.
-void fit(const Image& file, const Rectangle& to, LayerImage& image) {
-  for (std::uint32_t y = to.top; y < to.bottom; ++y) {
-    const std::uint64_t row = std::uint64_t{y - to.top} * file.height / (to.bottom - to.top);
-    for (std::uint32_t x = to.left; x < to.right; ++x) {
-      const std::uint64_t column = std::uint64_t{x - to.left} * file.width / (to.right - to.left);
-      image.pixels[std::size_t{y} * image.width + x] =
-          pixelOf(file, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
-    }
-  }
-}
-
 class LayerPictures : public FrameMaker {
  public:
   LayerPictures(const LayerPictureOptions& options, const FrameMakerInput& input, LayerRenderer renderer,
-                std::vector<ReplacedPart> replaced)
+                std::vector<LayerReplacementFile> replaced)
       : options_(options),
         input_(input),
         scene_(input.input.moving.scene.view()),
@@ -84,7 +38,15 @@ class LayerPictures : public FrameMaker {
 
   Result<Json> make(const SortedFrame& frame) override {
     renderer_.setTransforms(frame.scene_from_stored);
-    setUses(frame);
+    if (const Status ok = setUses(frame); !ok) {
+      return ok.error();
+    }
+    if (!options_.layer_file.empty()) {
+      recorder_.beginFrame();
+      settings_.keep_group = [&](const CompositedGroup& group) {
+        recorder_.add(group, frame.layers, input_.input.moving.parts);
+      };
+    }
     const Result<CompositeStats> stats = compositor_.composite(frame.view, frame.layers, settings_, picture_);
     if (!stats) {
       return stats.error();
@@ -111,6 +73,15 @@ class LayerPictures : public FrameMaker {
       }
       json["file"] = file;
     }
+    if (!options_.layer_file.empty()) {
+      const std::string file = frameFile(options_.layer_file, frame.number, input_.several_frames);
+      renderer_.drawSky(frame.view, sky_);
+      recorder_.addSky(sky_);
+      if (const Status ok = recorder_.write(file, frame, picture_); !ok) {
+        return ok.error();
+      }
+      json["layer_file"] = file;
+    }
     return Json{{"picture", json}};
   }
 
@@ -126,7 +97,7 @@ class LayerPictures : public FrameMaker {
   }
 
   // Finds the layers of the parts that the options name, and the objects to draw.
-  void setUses(const SortedFrame& frame) {
+  Status setUses(const SortedFrame& frame) {
     settings_ = {};
     settings_.peel = valueOf(kPeels, options_.peel);
     settings_.form = input_.form;
@@ -141,28 +112,35 @@ class LayerPictures : public FrameMaker {
       for (const PartId part : parts) {
         objects_.push_back(ObjectId(part.value));
       }
-      for (ReplacedPart& replaced : replaced_) {
+      for (LayerReplacementFile& replaced : replaced_) {
         if (std::find(parts.begin(), parts.end(), PartId(replaced.part)) != parts.end()) {
-          prepare(replaced, frame.view);
+          if (const Status ok = prepare(replaced, frame); !ok) {
+            return ok;
+          }
           settings_.replaced.push_back({layer, &replaced.image});
         }
       }
     }
     std::sort(objects_.begin(), objects_.end());
+    return Success{};
   }
 
-  // Prepares the image: the file itself if it has the pictures' size, else stretched over the part's
-  // rectangle.
-  void prepare(ReplacedPart& replaced, const View& view) {
-    LayerImage& image = replaced.image;
-    Rectangle to{0, 0, input_.width, input_.height};
-    if (replaced.file.width != input_.width || replaced.file.height != input_.height) {
-      const ObjectId object(replaced.part);
-      renderer_.draw(view, {&object, 1}, {}, image);
-      to = rectangleOf(image);
+  // Reads this frame's file and fits it: as it is if it has the pictures' size, else stretched over the
+  // part's rectangle.
+  Status prepare(LayerReplacementFile& replaced, const SortedFrame& frame) {
+    if (const Status ok = replaced.read(frame.number); !ok) {
+      return ok;
     }
-    image.clear(input_.width, input_.height);
-    fit(replaced.file, to, image);
+    LayerImage& image = replaced.image;
+    if (!replaced.hasSize(input_.width, input_.height)) {
+      const ObjectId object(replaced.part);
+      renderer_.draw(frame.view, {&object, 1}, {}, image);
+      replaced.fitOver(image);
+    } else {
+      image.clear(input_.width, input_.height);
+      replaced.fill(image);
+    }
+    return Success{};
   }
 
   void compareWithAllAtOnce(const SortedFrame& frame, Json& json) {
@@ -267,49 +245,17 @@ class LayerPictures : public FrameMaker {
   LayerRenderer renderer_;
   LayerCompositor compositor_;
   CompositeSettings settings_;
-  std::vector<ReplacedPart> replaced_;
+  std::vector<LayerReplacementFile> replaced_;
   std::vector<ObjectId> objects_;  // this frame's objects without those left out, ascending
   LayerImage picture_, other_, sky_;
+  LayerRecorder recorder_;
   std::string line_;
   std::vector<std::string> lines_;
 };
 
-Status checkPart(const std::string& option, std::uint32_t part, std::size_t parts) {
-  return part < parts ? Status(Success{})
-                      : Error{fmt::format("{} {}: there is no such part; the scene has {}, numbered from 0",
-                                          option, part, parts)};
-}
-
-Result<ReplacedPart> readReplacement(const std::string& text, std::size_t parts) {
-  const std::size_t equals = text.find('=');
-  const std::optional<std::uint32_t> part = parseWhole(text.substr(0, equals));
-  if (!part || equals == std::string::npos || equals + 1 == text.size()) {
-    return Error{fmt::format("--replace {}: is not of the form PART=FILE.png", text)};
-  }
-  if (const Status ok = checkPart("--replace", *part, parts); !ok) {
-    return ok.error();
-  }
-  Result<Image> file = readPng(text.substr(equals + 1));
-  if (!file) {
-    return file.error();
-  }
-  return ReplacedPart{*part, std::move(*file), {}};
-}
-
-Status checkOnce(const ReplacedPart& part, const std::vector<std::uint32_t>& without,
-                 const std::vector<ReplacedPart>& before) {
-  if (std::find(without.begin(), without.end(), part.part) != without.end()) {
-    return Error{fmt::format("--replace {}: the part is left out by --without", part.part)};
-  }
-  const auto is_same = [&](const ReplacedPart& other) { return other.part == part.part; };
-  return std::none_of(before.begin(), before.end(), is_same)
-             ? Status(Success{})
-             : Error{fmt::format("--replace {}: the part has two pictures", part.part)};
-}
-
 Status checkOptions(const LayerPictureOptions& options, const FrameMakerInput& input) {
   for (const std::uint32_t part : options.without) {
-    if (const Status ok = checkPart("--without", part, input.input.moving.parts.size()); !ok) {
+    if (const Status ok = checkPartNumber("--without", part, input.input.moving.parts.size()); !ok) {
       return ok;
     }
   }
@@ -324,6 +270,12 @@ void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
           "--image", options.image,
           "write a picture of each frame, composited from layers, to this .png file; of several frames, the "
           "frame's number goes before .png")
+      ->type_name(kFileType)
+      ->check(isNotEmpty());
+  command
+      .add_option("--layer-file", options.layer_file,
+                  "write the images of each frame's layers, with opacity, depths and the program that "
+                  "composites them, to this OpenEXR file")
       ->type_name(kFileType)
       ->check(isNotEmpty());
   CLI::Option* by_distance = command.add_option(
@@ -342,16 +294,18 @@ void addLayerPictureOptions(CLI::App& command, LayerPictureOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false);
   command
-      .add_option("--replace", options.replace,
-                  "PART=FILE.png: the file's picture in place of the part's layer; stretched over what the "
-                  "part covers, unless it has the whole picture's size")
+      .add_option(
+          "--replace", options.replace,
+          "PART=FILE.png: the file's picture (sRGB) in place of the part's layer; stretched over what "
+          "the part covers, unless it has the whole picture's size. FILE_####.png: a sequence, with "
+          "the frame's number in place of the #")
       ->allow_extra_args(false)
       ->excludes(by_distance);
 }
 
 Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions& options,
                                                       const FrameMakerInput& input) {
-  if (options.image.empty() && options.by_distance.empty()) {
+  if (options.image.empty() && options.by_distance.empty() && options.layer_file.empty()) {
     if (options != LayerPictureOptions{}) {
       return Error{"--without, --replace and --peel change pictures; give --image too"};
     }
@@ -360,23 +314,17 @@ Result<std::unique_ptr<FrameMaker>> makeLayerPictures(const LayerPictureOptions&
   if (const Status ok = checkOptions(options, input); !ok) {
     return ok.error();
   }
-  std::vector<ReplacedPart> replaced;
-  for (const std::string& text : options.replace) {
-    Result<ReplacedPart> part = readReplacement(text, input.input.moving.parts.size());
-    if (!part) {
-      return part.error();
-    }
-    if (const Status ok = checkOnce(*part, options.without, replaced); !ok) {
-      return ok.error();
-    }
-    replaced.push_back(std::move(*part));
+  Result<std::vector<LayerReplacementFile>> replaced =
+      replacementFiles(options.replace, options.without, input.input);
+  if (!replaced) {
+    return replaced.error();
   }
   Result<LayerRenderer> renderer = makeRenderer(input);
   if (!renderer) {
     return renderer.error();
   }
   return std::unique_ptr<FrameMaker>(
-      std::make_unique<LayerPictures>(options, input, std::move(*renderer), std::move(replaced)));
+      std::make_unique<LayerPictures>(options, input, std::move(*renderer), std::move(*replaced)));
 }
 
 }  // namespace sightline::tool

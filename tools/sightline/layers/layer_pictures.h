@@ -1,7 +1,7 @@
 #pragma once
 
-// `layers --image` and `--by-distance`: pictures composited from layers, and their difference from other
-// methods.
+// `layers --image`, `--layer-file` and `--by-distance`: pictures composited from layers, and their difference
+// from other methods.
 
 #include <memory>
 #include <string>
@@ -12,10 +12,10 @@
 namespace sightline::tool {
 
 struct LayerPictureOptions {
-  std::string image, by_distance;  // files; empty: none
+  std::string image, by_distance, layer_file;  // files; empty: none
   std::string peel = "where-needed";
   std::vector<std::uint32_t> without;  // parts
-  std::vector<std::string> replace;    // PART=FILE.png
+  std::vector<std::string> replace;    // PART=FILE.png or PART=FILE_####.png
 
   bool operator==(const LayerPictureOptions&) const = default;
 };

@@ -8,8 +8,8 @@
 #include <functional>
 #include <memory>
 
-#include "sightline/comparison/layer_sorting.h"
 #include "sightline/layers/compositing.h"
+#include "sightline/layers/convex_pieces.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/progress_bar.h"
@@ -17,10 +17,13 @@
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/layers/layer_drawings.h"
+#include "tools/sightline/layers/layer_eyes.h"
 #include "tools/sightline/layers/layer_frames.h"
 #include "tools/sightline/layers/layer_lens.h"
 #include "tools/sightline/layers/layer_line_picture.h"
 #include "tools/sightline/layers/layer_pictures.h"
+#include "tools/sightline/layers/layer_replacement.h"
+#include "tools/sightline/layers/layer_sort_options.h"
 #include "tools/sightline/layers/layer_totals.h"
 
 namespace sightline::tool {
@@ -30,11 +33,11 @@ struct LayersOptions {
   SceneOptions common;
   PathOptions path;
   LayerPlaces places;
+  std::uint32_t pieces = 1;
   std::string parts;  // a name of kPartChoices; empty: chosen by partChoiceOf()
-  std::string sort = "depth-first", search = "scan", extents = "camera", arcs = "groups",
-              expression = "cheapest", conditioning = "on", exact = "on", frustum_culling = "off",
-              tints = "on";
-  double contact_tolerance = 1e-6;
+  LayerSortOptions sort;
+  LayerEyeOptions eyes;
+  std::string tints = "on";
   bool no_times = false;
   PictureOptions size;
   std::uint32_t samples = 1;
@@ -67,26 +70,11 @@ PartChoice partChoiceOf(const LayersOptions& options) {
   }
   const auto needed = needOpaqueLayers(options);
   const bool picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty();
-  return picture && std::none_of(needed.begin(), needed.end(), [](const auto& n) { return n.second; })
+  return picture && options.pictures.layer_file.empty() &&
+                 std::none_of(needed.begin(), needed.end(), [](const auto& n) { return n.second; })
              ? PartChoice::kSeeThrough
              : PartChoice::kAll;
 }
-
-// What --sort and --search choose.
-constexpr std::array<Name<MakeLayerSort (*)()>, 2> kSorts{{
-    {"depth-first", [] { return MakeLayerSort(); }},
-    {"incremental", incrementalSort},
-}};
-constexpr std::array<Name<MakeCandidateSearch (*)()>, 2> kSearches{{
-    {"scan", [] { return MakeCandidateSearch(); }},
-    {"tree", [] { return extentTree(); }},
-}};
-
-// What --arcs reports.
-constexpr std::array<Name<LayerArcs>, 2> kArcs{{
-    {"groups", LayerArcs::kWithinGroups},
-    {"all", LayerArcs::kAll},
-}};
 
 using FrameMakers = std::vector<std::unique_ptr<FrameMaker>>;
 
@@ -113,35 +101,6 @@ Json orderJson(const LayerOrder& order) {
     json.push_back(numbersOf(order.group(i)));
   }
   return json;
-}
-
-LayerSettings settingsOf(const LayersOptions& options) {
-  LayerSettings settings;
-  settings.sort = valueOf(kSorts, options.sort)();
-  settings.search = valueOf(kSearches, options.search)();
-  settings.extents = options.extents == "world" ? worldExtents() : cameraExtents();
-  settings.exact = valueOf(kSwitch, options.exact);
-  settings.frustum_culling = valueOf(kSwitch, options.frustum_culling);
-  settings.contact_tolerance = options.contact_tolerance;
-  settings.arcs = needAllArcs(options.drawings) ? LayerArcs::kAll : valueOf(kArcs, options.arcs);
-  // None of the world's axes measures the distance from the camera.
-  if (!valueOf(kSwitch, options.conditioning) || options.extents == "world") {
-    settings.conditioning_axis = -1;
-  }
-  return settings;
-}
-
-Json optionsJson(const LayersOptions& options) {
-  return {{"parts", nameOf(kPartChoices, partChoiceOf(options))},
-          {"sort", options.sort},
-          {"search", options.search},
-          {"extents", options.extents},
-          {"arcs", options.arcs},
-          {"expression", options.expression},
-          {"conditioning", options.conditioning},
-          {"exact", options.exact},
-          {"frustum_culling", options.frustum_culling},
-          {"contact_tolerance", options.contact_tolerance}};
 }
 
 Json layersJson(const FrameLayers& layers) {
@@ -227,24 +186,23 @@ class WalkSorter {
         input_(input),
         makers_(makers),
         aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
-        sorter_(makeSorter(input.moving, settingsOf(options))) {}
+        sorter_(options.eyes, options.lens, input, settingsOf(options.sort, needAllArcs(options.drawings))) {}
 
   // Sorts a frame and makes its files. progress: called with the share of the frame that is done.
   Status sort(std::uint32_t frame, const std::function<void(double)>& progress) {
     View view = input_.walk.view(frame, input_.moving.scene);
     view.aspect = aspect_;
-    pose(input_.moving, frame, poses_, sorter_);
+    sorter_.place(frame, view);
     Stopwatch watch;
-    const LayerOrder& order = sorter_.update(view);
+    const LayerOrder& order = sorter_.sort(view);
     const double sort_us = options_.no_times ? 0.0 : watch.lap();
     const FrameLayers& layers = merger_.merge(order);
-    const CompositingProgram& program =
-        compiler_.compile(layers, valueOf(kCompositingForms, options_.expression));
+    const CompositingProgram& program = compiler_.compile(layers, formOf(options_.sort));
     totals_.add(order, static_cast<double>(layers.layers()),
                 static_cast<double>(countSteps(program.steps).operations()), sort_us);
     Json json;
     if (!options_.common.json.empty()) {
-      json = frameJson(frame, order, layers, program, sort_us, options_.search);
+      json = frameJson(frame, order, layers, program, sort_us, options_.sort.search);
     }
     if (!makers_.empty()) {
       placements(input_.moving, frame, scene_from_stored_);
@@ -274,10 +232,10 @@ class WalkSorter {
   const LayerInput& input_;
   const FrameMakers& makers_;
   double aspect_;  // aspect of the pictures
-  LayerSorter sorter_;
+  EyeSorter sorter_;
   LayerMerger merger_;
   CompositingCompiler compiler_;
-  std::vector<Mat4> poses_, scene_from_stored_;
+  std::vector<Mat4> scene_from_stored_;
   LayerTotals totals_;
   std::vector<std::string> frames_;
 };
@@ -295,9 +253,13 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
     }
     progressOf(1.0);
   }
-  const Json head = {{"scene", sceneJson(input.moving.scene)},
-                     {"parts", input.moving.parts.size()},
-                     {"options", optionsJson(options)}};
+  Json chosen = optionsJson(options.sort);
+  chosen["parts"] = nameOf(kPartChoices, partChoiceOf(options));
+  chosen["pieces"] = options.pieces;
+  chosen["order_for"] = orderFor(options.eyes, options.lens);
+  chosen["stereo"] = options.eyes.stereo;
+  const Json head = {
+      {"scene", sceneJson(input.moving.scene)}, {"parts", input.moving.parts.size()}, {"options", chosen}};
   if (const Status ok = writeOutput(options.common.json, dumpWithList(head, "frames", sorter.frames()));
       !ok) {
     return ok.error();
@@ -314,6 +276,7 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
 std::vector<NamedFile> outputsOf(const LayersOptions& options) {
   return {{"--json", options.common.json},
           {"--image", options.pictures.image, ".png"},
+          {"--layer-file", options.pictures.layer_file, ".exr"},
           {"--by-distance", options.pictures.by_distance, ".png"},
           {"--blurred", options.lens.blurred, ".png"},
           {"--compare", options.lens.compare, ".png"},
@@ -322,11 +285,17 @@ std::vector<NamedFile> outputsOf(const LayersOptions& options) {
           {"--line-picture", options.drawings.line_picture, ".png"}};
 }
 
-Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs) {
+// frames: those whose pictures are read if --replace names a sequence; empty: not known yet.
+Status checkFilesOf(const LayersOptions& options, const std::vector<NamedFile>& outputs,
+                    const std::vector<std::uint32_t>& frames = {}) {
   std::vector<NamedFile> inputs = walkInputs(options.common.scene, options.path);
   for (const std::string& replace : options.pictures.replace) {
     const std::size_t equals = std::min(replace.find('='), replace.size() - 1);
-    inputs.push_back({"--replace", replace.substr(equals + 1)});
+    const std::string pattern = replace.substr(equals + 1);
+    inputs.push_back({"--replace", pattern});
+    for (const std::uint32_t frame : frames) {
+      inputs.push_back({"--replace", replacementFile(pattern, frame)});
+    }
   }
   return checkFiles({.scenes = {options.common.scene}, .inputs = inputs, .outputs = outputs});
 }
@@ -346,12 +315,13 @@ Status checkFilesOfFrames(const LayersOptions& options, const std::vector<std::u
       outputs.push_back({output.option, frameFile(output.file, frame, frames.size() > 1), output.extension});
     }
   }
-  return checkFilesOf(options, outputs);
+  return checkFilesOf(options, outputs, frames);
 }
 
 Status checkPictureOptions(const LayersOptions& options) {
   const bool any_picture = !options.pictures.image.empty() || !options.pictures.by_distance.empty() ||
-                           !options.lens.blurred.empty() || !options.lens.compare.empty();
+                           !options.pictures.layer_file.empty() || !options.lens.blurred.empty() ||
+                           !options.lens.compare.empty();
   const bool any_option = options.samples != 1 || options.tints != "on";
   return any_picture || !any_option
              ? Status(Success{})
@@ -390,7 +360,8 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
       return ok.error();
     }
   }
-  Result<LayerInput> input = loadLayerInput(options.common.scene, options.path, options.places);
+  Result<LayerInput> input =
+      loadLayerInput(options.common.scene, options.path, options.places, options.pieces);
   if (!input) {
     return input.error();
   }
@@ -407,7 +378,7 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .height = size.height,
                                   .samples = options.samples,
                                   .tints = valueOf(kSwitch, options.tints),
-                                  .form = valueOf(kCompositingForms, options.expression),
+                                  .form = formOf(options.sort),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
   if (makers && !makers->empty()) {
@@ -416,35 +387,18 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
   return makers ? sortWalk(options, *input, *makers) : makers.error();
 }
 
-void addChoice(CLI::App& command, const char* name, std::string& value,
-               const std::vector<std::string>& values, const char* help) {
-  command.add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
-}
-
-void addSortOptions(CLI::App& command, LayersOptions& options) {
+void addPartOptions(CLI::App& command, LayersOptions& options) {
   command
       .add_option("--parts", options.parts,
                   "which parts are sorted: all, or the see-through ones, if a depth buffer takes care of the "
                   "others (default: see-through for --image and --by-distance alone, else all)")
       ->check(isOneOf(textsOf(kPartChoices)));
-  addChoice(command, "--sort", options.sort, textsOf(kSorts),
-            "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
-  addChoice(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
-  addChoice(command, "--extents", options.extents, {"camera", "world"},
-            "two angles and depth of the camera, or x, y, z of the world");
-  addChoice(command, "--arcs", options.arcs, textsOf(kArcs),
-            "who occludes whom: within groups, or of all pairs");
-  addChoice(command, "--expression", options.expression, textsOf(kCompositingForms),
-            "how cycles without mutual occlusion are composited");
-  addChoice(command, "--conditioning", options.conditioning, textsOf(kSwitch),
-            "let near groups move forward in the order (camera extents only)");
-  addChoice(command, "--exact", options.exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
-  addChoice(command, "--frustum-culling", options.frustum_culling, textsOf(kSwitch),
-            "on: parts outside the view are left out of the order");
-  addDecimalOption(
-      command, "--contact-tolerance", options.contact_tolerance, 0.0, 1000.0,
-      "parts that touch, or overlap by less than a quarter of this, have an order, metres; 0: they "
-      "are drawn together");
+  command
+      .add_option("--pieces", options.pieces,
+                  "hulls that stand for each object at most, of convex pieces of it: objects with holes or "
+                  "bends are then grouped with fewer others (1: its hull)")
+      ->check(CLI::Range(1u, kMaxConvexPieces))
+      ->capture_default_str();
   command.add_option("--backdrop", options.places.backdrops, "parts behind all others, by number")
       ->check(isNotEmpty())
       ->delimiter(',');
@@ -464,7 +418,9 @@ void addLayers(CLI::App& app, Command& chosen) {
   for (const char* option : {"SCENE", "--json"}) {
     command->get_option(option)->check(isNotEmpty());
   }
-  addSortOptions(*command, *options);
+  addPartOptions(*command, *options);
+  addLayerSortOptions(*command, options->sort);
+  addLayerEyeOptions(*command, options->eyes);
   addLayerPictureOptions(*command, options->pictures);
   addLayerLensOptions(*command, options->lens);
   addLayerDrawingOptions(*command, options->drawings);
@@ -472,13 +428,16 @@ void addLayers(CLI::App& app, Command& chosen) {
   command->add_option("--samples", options->samples, "a side of each pixel of the pictures: 1, 2 or 4")
       ->check(isOneOf({"1", "2", "4"}))
       ->capture_default_str();
-  addChoice(
-      *command, "--tints", options->tints, textsOf(kSwitch),
-      "pictures: objects of one material differ a little in lightness; off: where objects overlap in one "
-      "surface, it does not matter which of them is drawn");
+  command
+      ->add_option("--tints", options->tints,
+                   "pictures: objects of one material differ a little in lightness; off: where objects "
+                   "overlap in one surface, it does not matter which of them is drawn")
+      ->check(isOneOf(textsOf(kSwitch)))
+      ->capture_default_str();
   command->add_flag("--no-times", options->no_times, "write all times as 0: runs can be compared bit by bit");
   command->footer(
-      "A part is an object of the scene, taken as its convex hull. Groups are parts that occlude each other "
+      "A part is an object of the scene, taken as its convex hull or as those of its pieces. Groups are "
+      "parts that occlude each other "
       "in a cycle; layers, what must be drawn together within them. Of several frames each "
       "picture or drawing has the frame's number before its ending.\n"
       "Examples:\n"
@@ -489,10 +448,12 @@ void addLayers(CLI::App& app, Command& chosen) {
       "  sightline layers demo:canyon --frames 0:250:50 --width 640 --height 360 --samples 4 --image "
       "canyon.png\n"
       "  sightline layers demo:glass --frames 100 --image part.png --without 12,13 --replace 3=poster.png\n"
+      "  sightline layers demo:glass --frames 100 --layer-file glass.exr\n"
       "  sightline layers demo:toothpicks --frames 100 --depth-of-field layers --focus 3 --aperture 0.06 "
       "--blurred out.png\n"
       "  sightline layers demo:city --frames 0 --svg city.svg --pdf city.pdf\n"
       "  sightline layers demo:city --frames 0 --plot --svg plot.svg\n"
+      "  sightline layers demo:glass --stereo 0.065 --pieces 8\n"
       "  sightline layers model.glb --path walk.json --arcs all --backdrop 0");
   command->callback([options, &chosen] { chosen = [options] { return runLayers(*options); }; });
 }
