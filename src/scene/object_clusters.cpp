@@ -10,9 +10,9 @@ namespace sightline {
 namespace {
 
 // The triangles of one object, and into which clusters they go.
-class Divider {
+class ClusterDivider {
  public:
-  Divider(const SceneView& scene, const Object& object, const ObjectClustersSettings& settings)
+  ClusterDivider(const SceneView& scene, const Object& object, const ObjectClustersSettings& settings)
       : scene_(scene),
         object_(object),
         indices_(scene.indicesOf(object)),
@@ -124,7 +124,7 @@ ObjectClusters findObjectClusters(const SceneView& scene, const ObjectClustersSe
   };
   std::vector<Divided> of_object(scene.objects.size());
   base::forEach(parallel_for, of_object.size(), [&](std::uint32_t object) {
-    Divider(scene, scene.objects[object], settings)
+    ClusterDivider(scene, scene.objects[object], settings)
         .divide(of_object[object].clusters, of_object[object].indices);
   });
   ObjectClusters found;

@@ -56,7 +56,7 @@ std::vector<Setting> allSettings() {
 }
 
 // All that is measured on one scene.
-struct Measured {
+struct SceneTimes {
   const std::string& name;
   const SceneAndWalk& input;
   CullingData data;
@@ -77,7 +77,7 @@ std::size_t nodesInFrustum(const Hierarchy& hierarchy, const View& view) {
 }
 
 // Without a renderer (null) nothing is drawn.
-void walkThrough(Measured& measured, Renderer* renderer) {
+void walkThrough(SceneTimes& measured, Renderer* renderer) {
   const Walk& walk = measured.input.walk;
   const Hierarchy& kd_tree = measured.data.hierarchy(HierarchyKind::kKdTree);
   measured.record.runs = makeRuns(allSettings(), measured.data);
@@ -97,7 +97,7 @@ void walkThrough(Measured& measured, Renderer* renderer) {
 
 // Adds one row for each of kCullings from `first` on.
 template <typename RowOf>
-void addRows(Experiment& experiment, const Measured& measured, std::size_t first, RowOf&& row_of) {
+void addRows(Experiment& experiment, const SceneTimes& measured, std::size_t first, RowOf&& row_of) {
   for (std::size_t c = first; c < measured.record.runs.size(); ++c) {
     Json row = {{"scene", measured.name}, {"culling", kCullings[c].name}};
     row.update(row_of(measured.record.runs[c], rowOf(measured.record.runs[c], measured.record)));
@@ -105,7 +105,7 @@ void addRows(Experiment& experiment, const Measured& measured, std::size_t first
   }
 }
 
-Experiment polygonsDrawn(const std::vector<Measured>& scenes) {
+Experiment polygonsDrawn(const std::vector<SceneTimes>& scenes) {
   Experiment experiment{"polygons_drawn",
                         "1. Polygons drawn, mean of the walk",
                         "occlusion culling reduces the polygons drawn by a factor against view-frustum "
@@ -116,7 +116,7 @@ Experiment polygonsDrawn(const std::vector<Measured>& scenes) {
                          {"percent", "% of scene", 2},
                          {"percent_of_frustum", "% of frustum's", 2},
                          {"objects", "objects", 1}}};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     const auto all = static_cast<double>(measured.input.scene.triangleCount());
     addRows(experiment, measured, kBaseline, [&](const WalkRun&, const ReportRow& row) -> Json {
       return {{"triangles", row.triangles},
@@ -128,17 +128,17 @@ Experiment polygonsDrawn(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
-Experiment frameTime(const std::vector<Measured>& scenes) {
+Experiment frameTime(const std::vector<SceneTimes>& scenes) {
   Experiment experiment{"frame_time",
                         "2. Time of a frame, mean of the walk",
                         "the total falls, too; the slower the graphics hardware, the more is gained.",
                         {{"scene", "scene"}, {"culling", "culling"}, {"cull_ms", "cull ms", 3}}};
-  if (std::any_of(scenes.begin(), scenes.end(), [](const Measured& scene) { return scene.drawn(); })) {
+  if (std::any_of(scenes.begin(), scenes.end(), [](const SceneTimes& scene) { return scene.drawn(); })) {
     experiment.columns.insert(
         experiment.columns.end(),
         {{"draw_ms", "draw ms", 3}, {"total_ms", "total ms", 3}, {"speed_up", "speed-up", 2}});
   }
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     addRows(experiment, measured, kBaseline, [&](const WalkRun&, const ReportRow& row) {
       Json json = {{"cull_ms", row.cull_ms}};
       if (measured.drawn()) {
@@ -157,13 +157,13 @@ double modelledMs(const ReportRow& row, double triangle_us) {
   return row.cull_ms + 1e-3 * triangle_us * row.triangles;
 }
 
-double modelledSpeedUp(const Measured& measured, std::size_t culling, double triangle_us) {
+double modelledSpeedUp(const SceneTimes& measured, std::size_t culling, double triangle_us) {
   const WalkRecord& record = measured.record;
   return modelledMs(rowOf(record.baseline(), record), triangle_us) /
          modelledMs(rowOf(record.runs[culling], record), triangle_us);
 }
 
-Experiment rendererModels(const std::vector<Measured>& scenes) {
+Experiment rendererModels(const std::vector<SceneTimes>& scenes) {
   Experiment experiment{
       "renderer_models",
       "2b. The same with models of renderers, in which each triangle takes the same time to draw",
@@ -175,7 +175,7 @@ Experiment rendererModels(const std::vector<Measured>& scenes) {
        {"draw_ms", "draw ms", 3},
        {"total_ms", "total ms", 3},
        {"speed_up", "speed-up", 2}}};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     for (std::size_t c = 0; c < measured.record.runs.size(); ++c) {
       const ReportRow row = rowOf(measured.record.runs[c], measured.record);
       for (const double triangle_us : kTriangleUs) {
@@ -192,7 +192,7 @@ Experiment rendererModels(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
-Experiment visibilityTime(const std::vector<Measured>& scenes) {
+Experiment visibilityTime(const std::vector<SceneTimes>& scenes) {
   Experiment experiment{
       "visibility_time",
       "3. Visibility time of a frame at several speeds (1: 1.4 m/s at 60 frames a second), occluders of the "
@@ -209,7 +209,7 @@ Experiment visibilityTime(const std::vector<Measured>& scenes) {
        {"reused", "reused", 1},
        {"unchanged", "unchanged", 1},
        {"rebuilt", "rebuilt", 1}}};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     for (const SpeedResult& result : measured.speeds) {
       experiment.rows.push_back({{"scene", measured.name},
                                  {"speed", result.speed},
@@ -239,7 +239,7 @@ double reusedPercent(const WalkRun& run) {
   return 100.0 * reused / std::max(1.0, reused + rebuilt);
 }
 
-Experiment nodesTested(const std::vector<Measured>& scenes) {
+Experiment nodesTested(const std::vector<SceneTimes>& scenes) {
   Experiment experiment{"nodes_tested",
                         "4. Nodes of the kd-tree tested for occlusion, mean of the walk",
                         "only a part of the kd-tree's nodes in the view frustum is tested in a frame: "
@@ -257,7 +257,7 @@ Experiment nodesTested(const std::vector<Measured>& scenes) {
                          {"node_pairs", "pairs tested", 1},
                          {"pairs_percent", "% of k n", 3},
                          {"reused_percent", "% reused", 1}}};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     addRows(experiment, measured, kKeptPlanes, [&](const WalkRun& run, const ReportRow& row) -> Json {
       Json json = {
           {"height", run.hierarchy_depth},
@@ -278,7 +278,7 @@ Experiment nodesTested(const std::vector<Measured>& scenes) {
   return experiment;
 }
 
-Experiment memory(const std::vector<Measured>& scenes) {
+Experiment memory(const std::vector<SceneTimes>& scenes) {
   Experiment experiment{"memory",
                         "5. Memory: relations kept at their peak, and the occluder database",
                         "",
@@ -292,7 +292,7 @@ Experiment memory(const std::vector<Measured>& scenes) {
                          {"database_directions", "directions", 0},
                          {"database_mib", "database MiB", 2},
                          {"database_build_ms", "built in ms", 0}}};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     const WalkRun& kept = measured.record.runs[kKeptPlanes];
     const OccluderDatabase& database = measured.data.database()->database;
     experiment.rows.push_back(
@@ -312,8 +312,8 @@ Experiment memory(const std::vector<Measured>& scenes) {
 
 // Calls use(measured, run) for the paper's own method in each scene.
 template <typename Use>
-void forKeptPlanes(const std::vector<Measured>& scenes, Use&& use) {
-  for (const Measured& measured : scenes) {
+void forKeptPlanes(const std::vector<SceneTimes>& scenes, Use&& use) {
+  for (const SceneTimes& measured : scenes) {
     use(measured, measured.record.runs[kKeptPlanes]);
   }
 }
@@ -322,9 +322,9 @@ std::string listed(const std::string& list, const std::string& item) {
   return list.empty() ? item : list + "; " + item;
 }
 
-Finding polygonsFinding(const std::vector<Measured>& scenes) {
+Finding polygonsFinding(const std::vector<SceneTimes>& scenes) {
   Finding finding{"occlusion culling reduces the polygons drawn by a factor", true, ""};
-  forKeptPlanes(scenes, [&](const Measured& measured, const WalkRun& run) {
+  forKeptPlanes(scenes, [&](const SceneTimes& measured, const WalkRun& run) {
     const double factor = 1.0 / std::max(1e-9, rowOf(run, measured.record).triangles_share);
     finding.agrees = finding.agrees && factor > 1.0;
     finding.text = listed(finding.text, fmt::format("by {:.1f} in {}", factor, measured.name));
@@ -332,9 +332,9 @@ Finding polygonsFinding(const std::vector<Measured>& scenes) {
   return finding;
 }
 
-Finding rendererFinding(const std::vector<Measured>& scenes) {
+Finding rendererFinding(const std::vector<SceneTimes>& scenes) {
   Finding finding{"the slower the graphics hardware, the more is gained", true, ""};
-  forKeptPlanes(scenes, [&](const Measured& measured, const WalkRun&) {
+  forKeptPlanes(scenes, [&](const SceneTimes& measured, const WalkRun&) {
     std::string text;
     double last = 0.0;
     for (const double triangle_us : kTriangleUs) {
@@ -351,9 +351,9 @@ Finding rendererFinding(const std::vector<Measured>& scenes) {
   return finding;
 }
 
-Finding speedFinding(const std::vector<Measured>& scenes) {
+Finding speedFinding(const std::vector<SceneTimes>& scenes) {
   Finding finding{"less time is spent for slow observers", true, ""};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     if (!measured.speeds.empty()) {
       const SpeedResult &slow = measured.speeds.front(), &fast = measured.speeds.back();
       const double ratio =
@@ -366,9 +366,9 @@ Finding speedFinding(const std::vector<Measured>& scenes) {
   return finding;
 }
 
-Finding pairsFinding(const std::vector<Measured>& scenes) {
+Finding pairsFinding(const std::vector<SceneTimes>& scenes) {
   Finding finding{"of the k n pairs of an occluder and a node only a fraction s is compared", true, ""};
-  forKeptPlanes(scenes, [&](const Measured& measured, const WalkRun& run) {
+  forKeptPlanes(scenes, [&](const SceneTimes& measured, const WalkRun& run) {
     finding.agrees = finding.agrees && pairsPercent(run) < 10.0;
     finding.text =
         listed(finding.text, fmt::format("s = {:.4f} in {}, and {:.0f} % of the relations were there from "
@@ -394,7 +394,7 @@ Plot speedPlot(const std::vector<SpeedResult>& speeds) {
   return plot;
 }
 
-Report reportOf(const Measured& measured, const std::vector<Experiment>& experiments,
+Report reportOf(const SceneTimes& measured, const std::vector<Experiment>& experiments,
                 const ReproduceOptions& options) {
   const WalkRecord& record = measured.record;
   const ReportRow best = rowOf(record.runs[kKeptPlanes], record);
@@ -431,12 +431,12 @@ Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
                                           const std::vector<SceneAndWalk>& inputs) {
   const Threads threads(options.threads);
   Reproduction result;
-  std::vector<Measured> scenes;
+  std::vector<SceneTimes> scenes;
   scenes.reserve(inputs.size());  // cullers hold on to their scene's data
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const SceneAndWalk& input = inputs[i];
-    Measured& measured = scenes.emplace_back(
-        Measured{options.scenes[i], input, CullingData(input.scene, threads.parallelFor(), input.walk)});
+    SceneTimes& measured = scenes.emplace_back(
+        SceneTimes{options.scenes[i], input, CullingData(input.scene, threads.parallelFor(), input.walk)});
     const auto [width, height] = pictureSize(options.picture, input.walk.path);
     Result<Renderer> renderer = Renderer::create(input.scene.view(), width, height);
     measured.record.width = width;
@@ -456,7 +456,7 @@ Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
                         visibilityTime(scenes), nodesTested(scenes), memory(scenes)};
   result.findings = {polygonsFinding(scenes), rendererFinding(scenes), speedFinding(scenes),
                      pairsFinding(scenes)};
-  for (const Measured& measured : scenes) {
+  for (const SceneTimes& measured : scenes) {
     result.reports.push_back(reportOf(measured, result.experiments, options));
   }
   return result;

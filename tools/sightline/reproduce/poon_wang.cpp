@@ -106,7 +106,7 @@ Viewpoint viewpointOf(const SceneAndWalk& input, const Walk& walk, const Paralle
 }
 
 // The results of one setting along one route or at one viewpoint.
-struct Measured {
+struct SceneRuns {
   std::string name;
   double cull_ms = 0.0, draw_ms = 0.0;  // means of a frame
   double triangles = 0.0;
@@ -117,8 +117,8 @@ struct Measured {
   double fps() const { return 1e3 / frameMs(); }
 };
 
-Measured measuredOf(const std::string& name, const WalkRun& run) {
-  Measured measured{name};
+SceneRuns measuredOf(const std::string& name, const WalkRun& run) {
+  SceneRuns measured{name};
   measured.cull_ms = run.mean([](const FrameRecord& frame) { return frame.cull_us * 1e-3; });
   measured.draw_ms = run.mean([](const FrameRecord& frame) { return frame.draw_us * 1e-3; });
   measured.triangles = run.mean([](const FrameRecord& frame) { return frame.triangles; });
@@ -208,10 +208,10 @@ class Experiments {
   }
 
   // Walks a route with all settings side by side. "Nil", which culls nothing, comes first if it is asked for.
-  std::vector<Measured> walkRoute(const Walk& route, const std::vector<std::string>& names,
-                                  const std::vector<Setting>& settings, bool with_nil) {
+  std::vector<SceneRuns> walkRoute(const Walk& route, const std::vector<std::string>& names,
+                                   const std::vector<Setting>& settings, bool with_nil) {
     std::vector<WalkRun> runs = makeRuns(settings, data_);
-    Measured nil{"nil"};
+    SceneRuns nil{"nil"};
     nil.triangles = static_cast<double>(input_.scene.triangleCount());
     ProgressBar progress("walking " + route.path.name);
     for (std::size_t i = 0; i < route.frames.size(); ++i) {
@@ -226,7 +226,7 @@ class Experiments {
       }
       progress.update(static_cast<double>(i + 1) / static_cast<double>(route.frames.size()));
     }
-    std::vector<Measured> measured;
+    std::vector<SceneRuns> measured;
     if (with_nil) {
       measured.push_back(nil);
     }
@@ -241,11 +241,11 @@ class Experiments {
   double triangleUs(const Walk& route) {
     Walk start = route;
     start.frames.resize(std::min<std::size_t>(route.frames.size(), 5));
-    const Measured frustum = walkRoute(start, {poon_wang::kFrustum}, {frustumSetting()}, false).front();
+    const SceneRuns frustum = walkRoute(start, {poon_wang::kFrustum}, {frustumSetting()}, false).front();
     return frustum.triangles > 0.0 ? 1e3 * frustum.draw_ms / frustum.triangles : 0.0;
   }
 
-  Json row(const Measured& measured, const Measured& frustum) const {
+  Json row(const SceneRuns& measured, const SceneRuns& frustum) const {
     Json json = {{"scene", name_},
                  {"culling", measured.name},
                  {"triangles", measured.triangles},
@@ -259,14 +259,14 @@ class Experiments {
     return json;
   }
 
-  void addPlot(const std::string& title, const std::string& y_label, const std::vector<Measured>& measured) {
+  void addPlot(const std::string& title, const std::string& y_label, const std::vector<SceneRuns>& measured) {
     if (!drawn()) {
       return;
     }
     Plot plot;
     plot.title = title;
     plot.y_label = y_label;
-    for (const Measured& one : measured) {
+    for (const SceneRuns& one : measured) {
       plot.series.push_back({one.name, one.frame_ms});
     }
     plots_.push_back(std::move(plot));
@@ -277,7 +277,7 @@ class Experiments {
     const View view = walk_.view(viewpoint_.frame, input_.scene);
     const auto measureAt = [&](const std::string& name, const Setting& setting) {
       Culler culler = data_.makeCuller(setting);
-      Measured measured{name};
+      SceneRuns measured{name};
       std::vector<double> cull, draw;
       for (std::size_t i = 0; i < kRepeats; ++i) {
         culler.cull(view);
@@ -290,7 +290,7 @@ class Experiments {
       return measured;
     };
     measureAt("", frustumSetting());  // warms up
-    const Measured frustum = measureAt(poon_wang::kFrustum, frustumSetting());
+    const SceneRuns frustum = measureAt(poon_wang::kFrustum, frustumSetting());
     Plot rates{.title = "Figure 6: frame rate by the number of occluders",
                .x_label = "number of occluders: "};
     Plot culled{.title = "Figure 6: triangles culled by the number of occluders", .x_label = rates.x_label};
@@ -304,7 +304,7 @@ class Experiments {
       rates.series.push_back({name});
       culled.series.push_back({name});
       for (const std::uint32_t count : kCounts) {
-        const Measured measured = measureAt(name, opacitySetting(criterion, count));
+        const SceneRuns measured = measureAt(name, opacitySetting(criterion, count));
         Json json = row(measured, frustum);
         json["occluders"] = count;
         json["visible_objects"] = viewpoint_.objects;
@@ -321,15 +321,15 @@ class Experiments {
 
   // The rows of one route: the way of comparing depths for each of `measured` that tests depths as the paper
   // does.
-  void addDepthComparisons(const std::string& route, const std::vector<Measured>& measured,
+  void addDepthComparisons(const std::string& route, const std::vector<SceneRuns>& measured,
                            Experiment& experiment) const {
     const auto named = [&](const char* name) {
       return *std::find_if(measured.begin(), measured.end(),
-                           [&](const Measured& one) { return one.name == name; });
+                           [&](const SceneRuns& one) { return one.name == name; });
     };
     const double pixels = std::max(1.0, named(poon_wang::kPixelwise).depths_compared);
     for (const char* name : {poon_wang::kPixelwise, poon_wang::kOpacityMap, poon_wang::kPeaksAlways}) {
-      const Measured one = named(name);
+      const SceneRuns one = named(name);
       experiment.rows.push_back({{"scene", name_},
                                  {"route", route},
                                  {"culling", name},
@@ -357,8 +357,8 @@ class Experiments {
         names.push_back("OM, adaptive");
         settings.push_back(adaptive);
       }
-      const std::vector<Measured> measured = walkRoute(route, names, settings, true);
-      for (const Measured& one : measured) {
+      const std::vector<SceneRuns> measured = walkRoute(route, names, settings, true);
+      for (const SceneRuns& one : measured) {
         experiment.rows.push_back(row(one, measured[1]));
         experiment.rows.back()["route"] = route.path.name;
       }
@@ -375,8 +375,8 @@ class Experiments {
       names.push_back(nameOf(kOccluderChoices, criterion));
       settings.push_back(opacitySetting(criterion, kOccluders));
     }
-    const std::vector<Measured> measured = walkRoute(routes_.front(), names, settings, false);
-    for (const Measured& one : measured) {
+    const std::vector<SceneRuns> measured = walkRoute(routes_.front(), names, settings, false);
+    for (const SceneRuns& one : measured) {
       experiment.rows.push_back(row(one, measured[0]));
       experiment.rows.back()["route"] = routes_.front().path.name;
     }
@@ -385,16 +385,16 @@ class Experiments {
 
   // Figure 10, on the first route.
   void pictureSizes(Experiment& experiment) {
-    std::vector<Measured> all;
+    std::vector<SceneRuns> all;
     for (const double factor : kPictures) {
       const PictureOptions picture = scaled(picture_, factor);
       if (drawn() && factor != 1.0) {
         useRenderer(picture);
       }
-      const std::vector<Measured> measured =
+      const std::vector<SceneRuns> measured =
           walkRoute(routes_.front(), {poon_wang::kFrustum, poon_wang::kOpacityMap},
                     {frustumSetting(), opacitySetting(OccluderChoice::kMinimumSets, kOccluders)}, false);
-      for (const Measured& one : measured) {
+      for (const SceneRuns& one : measured) {
         experiment.rows.push_back(row(one, measured[0]));
         experiment.rows.back()["picture"] = sizeText(picture);
         all.push_back(one);
