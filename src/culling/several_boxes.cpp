@@ -12,23 +12,13 @@ bool areRows(const ObjectBoxes& boxes, std::size_t objects) {
          std::is_sorted(boxes.first.begin(), boxes.first.end()) && boxes.first.back() == boxes.boxes.size();
 }
 
-// Whether the boxes may be those of an object with these bounds.
-bool mayBeOf(std::span<const Box> boxes, const Box& bounds) {
-  Box around;
-  for (const Box& box : boxes) {
-    around.extend(box);
-  }
-  return boxes.size() <= kMaxObjectBoxes && bounds.wellFormed() && around == bounds &&
-         std::all_of(boxes.begin(), boxes.end(), [](const Box& box) { return box.wellFormed(); });
-}
-
 }  // namespace
 
 SeveralBoxes::SeveralBoxes(const ObjectBoxes& boxes, std::span<const Box> object_bounds)
     : boxes_(boxes), used_(object_bounds.size(), 0), seen_(object_bounds.size(), 0) {
   const bool rows = areRows(boxes, object_bounds.size());
   for (std::size_t i = 0; rows && i < object_bounds.size(); ++i) {
-    used_[i] = mayBeOf(boxes.of(ObjectId(i)), object_bounds[i]) ? 1 : 0;
+    used_[i] = areBoxesOf(boxes.of(ObjectId(i)), object_bounds[i]) ? 1 : 0;
   }
 }
 

@@ -212,8 +212,9 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
 Result<Scene> importAssimpApart(const std::string& file, std::uint64_t file_bytes, const ImportLimits& limits,
                                 std::uint32_t most_seconds) {
   const std::uint64_t seconds = kReaderSeconds + file_bytes / kReaderBytesInSecond;
-  const ApartLimits own{.memory_bytes = kReaderBytes + kReaderBytesEach * file_bytes,
-                        .seconds = static_cast<std::uint32_t>(std::min<std::uint64_t>(seconds, most_seconds))};
+  const ApartLimits own{
+      .memory_bytes = kReaderBytes + kReaderBytesEach * file_bytes,
+      .seconds = static_cast<std::uint32_t>(std::min<std::uint64_t>(seconds, most_seconds))};
   // The first byte tells a scene from an error's text.
   const Result<std::vector<std::byte>> answer = runApart(own, [&] {
     const Result<Scene> scene = importAssimp(file, limits);

@@ -55,9 +55,9 @@ LargeVector<Vec3d> unitNormals(const SurfaceMesh& mesh, const ParallelFor& paral
   return normals;
 }
 
-// Gathers triangles of the same sidedness from a first one on over its edges, one part after the other. A part
-// that is half full grows no farther over T-junctions: what it reached there would be of many objects, and the
-// depth of a part is that of its farthest one.
+// Gathers triangles of the same sidedness from a first one on over its edges, one part after the other. A
+// part that is half full grows no farther over T-junctions: what it reached there would be of many objects,
+// and the depth of a part is that of its farthest one.
 PartTriangles gatherParts(const SceneView& scene, const SurfaceMesh& mesh, std::span<const Vec3d> normals,
                           std::uint32_t max_triangles) {
   // Normals may be any. Those that are opposite but for rounding may have a cosine below this all the same:

@@ -462,6 +462,15 @@ void Divider::divide(const SceneView& scene, const Object& object, std::vector<B
 
 }  // namespace
 
+bool areBoxesOf(std::span<const Box> boxes, const Box& bounds) {
+  Box around;
+  for (const Box& box : boxes) {
+    around.extend(box);
+  }
+  return boxes.size() <= kMaxObjectBoxes && bounds.wellFormed() && around == bounds &&
+         std::all_of(boxes.begin(), boxes.end(), [](const Box& box) { return box.wellFormed(); });
+}
+
 ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& settings,
                             const ParallelFor& parallel_for) {
   const auto count = static_cast<std::uint32_t>(scene.objects.size());

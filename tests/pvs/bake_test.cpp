@@ -455,19 +455,24 @@ TEST(Bake, FusedSetsAreSmallerAndLeaveOutNothingThatIsSeen) {
   EXPECT_GT(judge.hidden, judge_convex.hidden + judge_convex.hidden / 10);
 }
 
-TEST(Bake, FusedSetsLeaveOutAnObjectOfWhichEachBoxIsHidden) {
-  // An L behind a wall that lacks a corner, through which the empty corner of the L's own box shows.
-  test::Solid shape = test::block({2, -2, -2}, {2.5f, 3, -1});
+// An L, lying on its longer side.
+test::Solid bentSolid() {
+  test::Solid solid = test::block({2, -2, -2}, {2.5f, 3, -1});
   const test::Solid upright = test::block({2, -2, -1}, {2.5f, -1.5f, 3});
   for (std::vector<std::uint32_t> face : upright.faces) {
     for (std::uint32_t& corner : face) {
-      corner += static_cast<std::uint32_t>(shape.points.size());
+      corner += static_cast<std::uint32_t>(solid.points.size());
     }
-    shape.faces.push_back(face);
+    solid.faces.push_back(face);
   }
-  shape.points.insert(shape.points.end(), upright.points.begin(), upright.points.end());
+  solid.points.insert(solid.points.end(), upright.points.begin(), upright.points.end());
+  return solid;
+}
+
+TEST(Bake, FusedSetsLeaveOutAnObjectOfWhichEachBoxIsHidden) {
+  // The wall lacks a corner, through which the empty corner of the L's own box shows.
   const Scene scene = test::sceneOf(
-      {test::block({-0.25f, -4, -4}, {0, 4, 2}), test::block({-0.25f, -4, 2}, {0, 0, 4}), shape});
+      {test::block({-0.25f, -4, -4}, {0, 4, 2}), test::block({-0.25f, -4, 2}, {0, 0, 4}), bentSolid()});
   for (const std::uint32_t boxes : {1u, kMaxObjectBoxes}) {
     const BakedVisibility result = baked(scene, {.occlusion = BakeOcclusion::kFused,
                                                  .max_depth = 0,
@@ -478,12 +483,26 @@ TEST(Bake, FusedSetsLeaveOutAnObjectOfWhichEachBoxIsHidden) {
   }
 }
 
+// Bounds may be wider than the triangles, to hold what was moved for the bake; then boxes of the triangles do
+// not count.
+TEST(Bake, FusedSetsKeepAnObjectWhoseWiderBoundsShow) {
+  Scene scene = test::sceneOf({test::block({-0.25f, -4, -4}, {0, 4, 4}), bentSolid()});
+  const auto isKept = [&]() -> bool {
+    const BakedVisibility result = baked(scene, {.occlusion = BakeOcclusion::kFused,
+                                                 .max_depth = 0,
+                                                 .near_distance = 0.1,
+                                                 .viewers = {{{-6, -0.5, -0.5}, {-5, 0.5, 0.5}}}});
+    return test::membersOf(result, 0)[1];
+  };
+  EXPECT_FALSE(isKept());
+  scene.objects[1].bounds.max.z = 9.0f;
+  EXPECT_TRUE(isKept());
+}
+
 TEST(Bake, FusedSetsAreTheSameWhoeverBakesTheParts) {
   const Scene scene = randomScene(3);
-  const BakeSettings settings{.occlusion = BakeOcclusion::kFused,
-                              .max_depth = 3,
-                              .near_distance = 0.05,
-                              .narrowings = 1};
+  const BakeSettings settings{
+      .occlusion = BakeOcclusion::kFused, .max_depth = 3, .near_distance = 0.05, .narrowings = 1};
   const Result<Bake> bake = Bake::plan(scene.view(), allOccluders(scene), settings);
   ASSERT_TRUE(bake);
   Bake::Worker one(*bake);

@@ -256,6 +256,21 @@ TEST(RegionOcclusion, NarrowingLooksAlongEveryAxisAndBothWays) {
   }
 }
 
+// What lines reach is rounded outwards: a flat region and a flat target that see each other through a slit
+// along just one line have a window as narrow as that line.
+TEST(RegionOcclusion, NarrowingKeepsEveryLineHoweverFlatItsEndsAre) {
+  const Scene scene = sceneOf({block({0, -9, -9}, {0.25f, 9, 0.3f}), block({0, -9, 0.6f}, {0.25f, 9, 9})});
+  const Panels panels = findPanels(scene.view());
+  RegionOcclusion occlusion(panels, kNear, 20.0);
+  std::mt19937 random(1);
+  const auto any = [&random] { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); };
+  for (int i = 0; i < 500; ++i) {
+    const double x = -5.5 + any(), y = 1.7 * any() * any(), to_x = 8.0 + any(), to_y = 1.3 * any() * any();
+    const CellBox region{{x, y, -0.5}, {x, y, 0.5}}, target{{to_x, to_y, -3}, {to_x, to_y, 3}};
+    EXPECT_FALSE(occlusion.hides(region, {target, kNoObject}, {.narrowings = 3})) << i;
+  }
+}
+
 TEST(RegionOcclusion, NoWindowIsCloserThanTheNearPlane) {
   // What hides the target from a window between may be clipped for viewers this close.
   const CellBox close{{-0.75, -0.5, -0.5}, {-0.25, 0.5, 0.5}};

@@ -93,7 +93,8 @@ TEST(CrackWidth, EveryOutputNamesIt) {
   expectDocumented(verified, {"verify"});
   const json walked = of(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
   EXPECT_EQ(walked["scene"]["crack_width"], 0.001);
-  const Outcome walk_text = runTool(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
+  const Outcome walk_text =
+      runTool(with({"walk", slit.scene, "--no-pictures", "-o", slit.folder.file("walk")}));
   EXPECT_NE(walk_text.out.find("--crack-width 0.001"), std::string::npos) << walk_text.out;
   const Outcome text = runTool(with({"cull", slit.scene}));
   EXPECT_NE(text.out.find("--crack-width 0.001"), std::string::npos) << text.out;

@@ -38,6 +38,11 @@ struct ObjectBoxesSettings {
   double margin = 0.0;
 };
 
+// Whether the boxes may be those of an object with these bounds: they are well formed and together reach
+// exactly as far. Others, of an object that has changed or whose bounds are wider than its triangles, must
+// not be tested in place of the bounds.
+bool areBoxesOf(std::span<const Box> boxes, const Box& bounds);
+
 // Finds the boxes of all objects, in time linear in the number of triangles. Objects with coordinates that
 // are not finite have one box. The result does not depend on parallel_for.
 ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& settings = {},

@@ -102,7 +102,7 @@ void ObjectMask::complement(Runs& out) const {
 CellBaker::CellBaker(const BakeScene& scene)
     : scene_(scene),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
-      fused_(scene.panels, scene.settings.near_distance, magnitudeOf(scene)) {}
+      surfaces_(scene.panels, scene.settings.near_distance, magnitudeOf(scene)) {}
 
 CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) const {
   const CellBox box = scene_.boxOf(cell);
@@ -222,15 +222,19 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
 
 bool CellBaker::hidesObject(const CellBox& region, const Box& bounds, ObjectId object) {
   const RegionEffort effort{scene_.settings.narrowings, scene_.settings.divisions};
-  const auto hides = [&](const Box& box) { return hidesBox(region, box, object.value, effort); };
   const std::span<const Box> several = scene_.object_boxes.of(object);
-  return hides(bounds) || (!several.empty() && std::all_of(several.begin(), several.end(), hides));
+  if (several.empty() || !areBoxesOf(several, bounds)) {
+    return hidesBox(region, bounds, object.value, effort);
+  }
+  return hidesBox(region, bounds, object.value, {}) ||
+         std::all_of(several.begin(), several.end(),
+                     [&](const Box& box) { return hidesBox(region, box, object.value, effort); });
 }
 
 bool CellBaker::hidesBox(const CellBox& region, const Box& box, std::uint32_t object,
                          const RegionEffort& effort) {
   return box.wellFormed() && !intersects(region, box) &&
-         fused_.hides(region, {.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object}, effort);
+         surfaces_.hides(region, {.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object}, effort);
 }
 
 // Skips an occluder whose object is already hidden. Its shadow lies within that of what hides it, from every
@@ -310,7 +314,7 @@ double CellBaker::shareSeenFrom(const Vec3d& point, const Runs& seen) {
           random = random * 1664525u + 1013904223u;
           to[axis] += double{leaf.bounds.max[axis] - leaf.bounds.min[axis]} * (random >> 8) * 0x1p-24;
         }
-        if (fused_.isClear(point, to)) {
+        if (surfaces_.isClear(point, to)) {
           clear += leaf.triangles;
           break;
         }

@@ -91,7 +91,7 @@ class CellBaker {
 
   const BakeScene& scene_;
   SampleStore samples_;
-  RegionOcclusion fused_;
+  RegionOcclusion surfaces_;
   // Scratch for the current cell.
   std::vector<std::uint32_t> chosen_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;

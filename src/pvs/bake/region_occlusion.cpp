@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sightline::pvs {
 namespace {
@@ -38,7 +39,7 @@ bool narrowToLines(CellBox& box, const CellBox& first, const CellBox& second, in
     if (across == axis) {
       continue;
     }
-    Interval reach{box.max[across], box.min[across]};
+    Interval reach{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const double at : {own.low, own.high}) {
       for (const double a : {one.low, one.high}) {
         for (const double b : {other.low, other.high}) {

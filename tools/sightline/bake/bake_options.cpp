@@ -149,7 +149,8 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const 
   return settings;
 }
 
-Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin, const CrackNote& cracks) {
+Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& origin,
+                  const CrackNote& cracks) {
   const BakeSettings& settings = bake.settings();
   const OccluderCounts& occluders = bake.occluders();
   Json json = {{"triangle_budget", settings.triangle_budget},

@@ -122,9 +122,10 @@ void addCrackWidthOption(CLI::App& command, double& width) {
 
 void addCrackWidthsOption(CLI::App& command, std::vector<double>& widths) {
   command
-      .add_option("--crack-width", widths,
-                  "says what closing cracks narrower than this, in metres, hides on the scene's walk; several "
-                  "widths with commas")
+      .add_option(
+          "--crack-width", widths,
+          "says what closing cracks narrower than this, in metres, hides on the scene's walk; several "
+          "widths with commas")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(decimal(0.0, kMaxCrackWidth));

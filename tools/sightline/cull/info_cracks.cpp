@@ -98,8 +98,7 @@ Json cracksJson(const CrackFacts& facts, const Scene& scene) {
     const CrackEffect& effect = *facts.effect;
     Json all = Json::array();
     for (const CrackEffect::Closed& closed : effect.closed) {
-      Json item = {
-          {"frames", effect.frames}, {"kept_open", effect.kept_open}, {"kept_closed", closed.kept}};
+      Json item = {{"frames", effect.frames}, {"kept_open", effect.kept_open}, {"kept_closed", closed.kept}};
       addCracks(item, closed.note);
       all.push_back(item);
     }

@@ -14,7 +14,7 @@ namespace sightline::tool {
 struct PreparedFile {
   std::string name;  // empty: none
   SceneId scene{};
-  double crack_width = 0.0;  // with which the scene's cracks were closed, metres
+  double crack_width = 0.0;                      // with which the scene's cracks were closed, metres
   std::shared_ptr<const SurfaceSet> surfaces{};  // null: they are not there
 };
 
