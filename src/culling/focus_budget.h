@@ -1,5 +1,7 @@
 #pragma once
 
+// How much work a view may spend on finer depth buffers, and what each must take away.
+
 #include <algorithm>
 
 namespace sightline::culling {

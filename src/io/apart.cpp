@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <mutex>
 #include <new>
 #include <span>
 
@@ -48,15 +49,23 @@ void limitChild(const ApartLimits& limits, std::uint64_t address_space) {
   limit(RLIMIT_AS, address_space + limits.memory_bytes);
 }
 
+// No handler of this process may run in the child. What is ignored stays so.
+void resetHandlers() {
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction known {};
+    if (::sigaction(signal, nullptr, &known) == 0 && known.sa_handler != SIG_IGN) {
+      std::signal(signal, SIG_DFL);
+    }
+  }
+}
+
 // The child has no output, is ended by signals as any program is, and ends with its parent.
 void detachChild(pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) {
     ::_exit(kThrew);
   }
-  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
-    std::signal(signal, SIG_DFL);
-  }
+  resetHandlers();
   const int nothing = ::open("/dev/null", O_RDWR);
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     ::dup2(nothing, descriptor);
@@ -109,11 +118,81 @@ bool readAll(int descriptor, steady_clock::time_point until, std::vector<std::by
   }
 }
 
-int waitFor(pid_t child) {
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+// A child that is killed and waited for at the end, unless it was waited for before.
+class Child {
+ public:
+  explicit Child(pid_t id) : id_(id) {}
+  ~Child() {
+    if (id_ > 0) {
+      kill();
+      wait();
+    }
   }
-  return status;
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void kill() const { ::kill(id_, SIGKILL); }
+  // Returns how it ended.
+  int wait() {
+    int status = 0;
+    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+    }
+    id_ = 0;
+    return status;
+  }
+
+ private:
+  pid_t id_;
+};
+
+// A pipe whose ends are closed at the end.
+class Pipe {
+ public:
+  Pipe() = default;
+  ~Pipe() {
+    closeReadEnd();
+    closeWriteEnd();
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  // Returns false, and sets errno, if there is none.
+  bool open() {
+    return ::pipe2(ends_.data(), O_CLOEXEC) == 0 && moveFromStandard(ends_[0]) && moveFromStandard(ends_[1]);
+  }
+  int readEnd() const { return ends_[0]; }
+  int writeEnd() const { return ends_[1]; }
+  void closeReadEnd() { close(ends_[0]); }
+  void closeWriteEnd() { close(ends_[1]); }
+
+ private:
+  // Where this process has closed its standard descriptors, a pipe gets their numbers, which the child needs.
+  static bool moveFromStandard(int& end) {
+    if (end <= STDERR_FILENO) {
+      const int moved = ::fcntl(end, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+      if (moved < 0) {
+        return false;
+      }
+      ::close(end);
+      end = moved;
+    }
+    return true;
+  }
+  static void close(int& end) {
+    if (end >= 0) {
+      ::close(end);
+      end = -1;
+    }
+  }
+
+  std::array<int, 2> ends_{-1, -1};
+};
+
+// Held while a pipe's write end is open here. A child made by another thread meanwhile would have that end
+// too, and what is read from the pipe would not end before that child does.
+std::mutex& startMutex() {
+  static std::mutex mutex;
+  return mutex;
 }
 
 // What went wrong in a child that ended in this way.
@@ -138,38 +217,41 @@ Error endingOf(int status, bool in_time, const ApartLimits& limits) {
 
 Result<std::vector<std::byte>> runApart(const ApartLimits& limits,
                                         const std::function<std::vector<std::byte>()>& work) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return failure("its reader could not be started: {}", std::strerror(errno));
-  }
   const pid_t parent = ::getpid();
   const std::uint64_t address_space = addressSpace();
-  // No handler of this process may run in the child.
+  Pipe pipe;
+  std::unique_lock<std::mutex> start(startMutex());
+  if (!pipe.open()) {
+    return failure("its reader could not be started: {}", std::strerror(errno));
+  }
+  // Signals wait until the child has reset their handlers.
   sigset_t all, before;
   sigfillset(&all);
-  ::sigprocmask(SIG_SETMASK, &all, &before);
-  const pid_t child = ::fork();
-  if (child == 0) {
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t id = ::fork();
+  if (id == 0) {
+    start.unlock();
     detachChild(parent);
-    ::sigprocmask(SIG_SETMASK, &before, nullptr);
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     limitChild(limits, address_space);
-    runChild(work, ends[1]);
+    runChild(work, pipe.writeEnd());
   }
   const int reason = errno;
-  ::sigprocmask(SIG_SETMASK, &before, nullptr);
-  ::close(ends[1]);
-  if (child < 0) {
-    ::close(ends[0]);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  pipe.closeWriteEnd();
+  start.unlock();
+  if (id < 0) {
     return failure("its reader could not be started: {}", std::strerror(reason));
   }
+  Child child(id);
   std::vector<std::byte> bytes;
   const auto until = steady_clock::now() + std::chrono::seconds(10ull * limits.seconds);
-  const bool in_time = readAll(ends[0], until, bytes);
+  const bool in_time = readAll(pipe.readEnd(), until, bytes);
   if (!in_time) {
-    ::kill(child, SIGKILL);
+    child.kill();
   }
-  ::close(ends[0]);
-  const int status = waitFor(child);
+  pipe.closeReadEnd();
+  const int status = child.wait();
   if (!in_time || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     return endingOf(status, in_time, limits);
   }

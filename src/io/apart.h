@@ -20,6 +20,10 @@ struct ApartLimits {
 // Calls work() in a child of this process and returns the bytes that it returned there. Whatever else it does
 // stays there: it has no output, and ends with this process. The error says that it crashed, took too long or
 // needed too much memory, and is to be read after "NAME: ".
+//
+// May be called by several threads at once. The child is a fork with the calling thread alone, so work() must
+// not wait for a lock that another thread may hold just then, nor for another thread; allocating is safe.
+// Nothing is left of the child when this returns or throws std::bad_alloc.
 Result<std::vector<std::byte>> runApart(const ApartLimits& limits,
                                         const std::function<std::vector<std::byte>()>& work);
 

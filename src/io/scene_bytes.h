@@ -1,5 +1,7 @@
 #pragma once
 
+// How a scene comes back from the process that reads it (apart.h).
+
 #include <cstddef>
 #include <optional>
 #include <span>

@@ -1,5 +1,7 @@
 #pragma once
 
+// A rectangle of a depth buffer's pixels.
+
 #include <cstdint>
 
 #include "sightline/occlusion/depth_pyramid.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+// Copies the caller's meshes, and joins their vertices that have the same place.
+
 #include <cstdint>
 #include <vector>
 

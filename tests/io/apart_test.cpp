@@ -2,16 +2,24 @@
 
 #include "src/io/apart.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "src/io/scene_bytes.h"
 #include "tests/io/scene_checks.h"
@@ -86,7 +94,106 @@ TEST(RunApart, WaitingForeverEnds) {
   EXPECT_EQ(error, "its reader was ended: it took more than 0 s, or more memory than there is");
 }
 
+// The exit code of a process of its own that runs `work`; -1 if it crashed.
+int exitCodeOf(const std::function<int()>& work) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::_exit(work());
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// How many descriptors of this process are open and fulfil the condition.
+int countDescriptors(const std::function<bool(int)>& counts) {
+  int count = 0;
+  for (int descriptor = 0; descriptor < 256; ++descriptor) {
+    count += ::fcntl(descriptor, F_GETFD) >= 0 && counts(descriptor) ? 1 : 0;
+  }
+  return count;
+}
+
+// Beyond the standard ones, which a child has not from its parent.
+bool isWriteEnd(int descriptor) {
+  struct stat status {};
+  return descriptor > STDERR_FILENO && ::fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode) &&
+         (::fcntl(descriptor, F_GETFL) & O_ACCMODE) == O_WRONLY;
+}
+
+// Whoever has the write end of another's pipe too makes that one's answer wait for it.
+TEST(RunApart, NoChildHasTheWriteEndOfAnother) {
+  const int before = countDescriptors(isWriteEnd);
+  std::atomic<int> most = 0, failed = 0;
+  std::vector<std::thread> threads;
+  for (int thread = 0; thread < 4; ++thread) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 50; ++i) {
+        const Result<Bytes> answer =
+            runApart(kLimits, [] { return Bytes(static_cast<std::size_t>(countDescriptors(isWriteEnd))); });
+        failed += answer ? 0 : 1;
+        const int count = answer ? static_cast<int>(answer->size()) : 0;
+        for (int known = most; count > known && !most.compare_exchange_weak(known, count);) {
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(failed, 0);
+  EXPECT_EQ(most, before + 1);
+}
+
+TEST(RunApart, AnswersWithoutStandardDescriptors) {
+  const int code = exitCodeOf([] {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+      ::close(descriptor);
+    }
+    const Result<Bytes> answer = runApart(kLimits, [] { return Bytes(5); });
+    return answer ? static_cast<int>(answer->size()) : 100;
+  });
+  EXPECT_EQ(code, 5);
+}
+
+TEST(RunApart, HandlersOfThisProcessDoNotRunThereAndIgnoredSignalsStayIgnored) {
+  const auto by_handler = std::signal(SIGUSR1, [](int) {});
+  const auto ignored = std::signal(SIGINT, SIG_IGN);
+  const auto after = [](int signal) {
+    return errorOf(kLimits, [signal] {
+      std::raise(signal);
+      return Bytes();
+    });
+  };
+  EXPECT_NE(after(SIGUSR1).find("its reader crashed"), std::string::npos) << after(SIGUSR1);
+  EXPECT_EQ(after(SIGINT), "an answer");
+  std::signal(SIGUSR1, by_handler);
+  std::signal(SIGINT, ignored);
+}
+
 #if !defined(__SANITIZE_ADDRESS__)
+// An answer of 512 MiB, where this process may have no more.
+TEST(RunApart, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
+  constexpr int kNoMemory = 7, kChildLeft = 8, kDescriptorLeft = 9;
+  const int code = exitCodeOf([] {
+    const auto any = [](int) { return true; };
+    const int descriptors = countDescriptors(any);
+    struct rlimit limits {};
+    ::getrlimit(RLIMIT_AS, &limits);
+    limits.rlim_cur = 512u << 20;
+    ::setrlimit(RLIMIT_AS, &limits);
+    try {
+      static_cast<void>(
+          runApart({.memory_bytes = 1u << 30, .seconds = 10}, [] { return Bytes(512u << 20); }));
+    } catch (const std::bad_alloc&) {
+      const bool no_child = ::waitpid(-1, nullptr, WNOHANG) < 0 && errno == ECHILD;
+      return !no_child ? kChildLeft : countDescriptors(any) != descriptors ? kDescriptorLeft : kNoMemory;
+    }
+    return 0;
+  });
+  EXPECT_EQ(code, kNoMemory);
+}
+
 TEST(RunApart, AllMemoryIsNotTaken) {
   const std::string error = errorOf(kLimits, [] {
     std::vector<std::unique_ptr<Bytes>> all;

@@ -1,6 +1,7 @@
 // sightline layers: the order of parts, as JSON and as text.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -51,9 +52,9 @@ TEST(Layers, AnUnknownSearchIsRefusedByTheNamesOfTheKnownOnes) {
   EXPECT_NE(outcome.err.find("'automatic' is not one of: scan, tree"), std::string::npos) << outcome.err;
 }
 
-std::set<std::pair<int, int>> arcsOf(const std::vector<std::string>& more) {
+std::set<std::pair<int, int>> arcsOf(const std::vector<std::string>& more, const char* frame = "40") {
   std::set<std::pair<int, int>> arcs;
-  const json result = layered(joined({"--arcs", "all", "--frames", "40"}, more));
+  const json result = layered(joined({"--arcs", "all", "--frames", frame}, more));
   for (const json& arc : result["frames"][0]["arcs"]) {
     arcs.emplace(arc[0], arc[1]);
   }
@@ -96,6 +97,44 @@ TEST(Layers, AnOrderForAShutterHoldsThatOfItsMiddle) {
   EXPECT_GT(lens.size(), eye.size());
   EXPECT_EQ(layered(joined(blur, {"--frames", "40"}))["options"]["order_for"], "lens");
   EXPECT_EQ(layered({"demo:toothpicks?n=60", "--frames", "0"})["options"]["order_for"], "eye");
+}
+
+using Eye = std::array<double, 3>;
+// Arcs of the first frame of a camera path with these eyes.
+std::set<std::pair<int, int>> arcsFrom(const std::vector<Eye>& eyes, const std::vector<std::string>& more) {
+  const TemporaryFolder folder;
+  json path = {{"frames", json::array()}};
+  for (const Eye& eye : eyes) {
+    path["frames"].push_back({{"eye", eye}, {"forward", {0, 0, -1}}});
+  }
+  return arcsOf(joined({"demo:toothpicks?n=60", "--width", "64", "--height", "36", "--path",
+                        folder.write("path.json", path.dump())},
+                       more),
+                "0");
+}
+
+// Two eyes 0.6 m apart, as the shutter opens and as it closes.
+TEST(Layers, AnOrderForAShutterHoldsThoseOfBothEyesAtItsEnds) {
+  const TemporaryFolder folder;
+  const auto all = arcsFrom({Eye{0.0, 0.0, 2.5}, Eye{0.0, 0.6, 2.5}},
+                            {"--stereo", "0.6", "--motion-blur", "1", "--blurred", folder.file("a.png")});
+  for (const double x : {-0.3, 0.3}) {
+    for (const double y : {-0.3, 0.3}) {
+      EXPECT_TRUE(holds(all, arcsFrom({Eye{x, y, 2.5}}, {}))) << x << ", " << y;
+    }
+  }
+}
+
+// Of the lenses of two eyes 0.6 m apart, 0.4 m wide, the points that are highest and farthest apart.
+TEST(Layers, AnOrderForALensHoldsThoseOfTheLensesOfBothEyes) {
+  const TemporaryFolder folder;
+  const auto all =
+      arcsFrom({Eye{0.0, 0.0, 2.5}}, {"--stereo", "0.6", "--depth-of-field", "layers", "--focus", "2",
+                                      "--aperture", "0.4", "--blurred", folder.file("a.png")});
+  for (const auto& [x, y] :
+       {std::pair{0.3, 0.2}, {0.3, -0.2}, {-0.3, 0.2}, {-0.3, -0.2}, {0.5, 0.0}, {-0.5, 0.0}}) {
+    EXPECT_TRUE(holds(all, arcsFrom({Eye{x, y, 2.5}}, {}))) << x << ", " << y;
+  }
 }
 
 // A ring around the y axis and a pole through it.

@@ -87,6 +87,17 @@ TEST(MethodChoice, TheUsersOwnOptionsWin) {
   EXPECT_EQ(own["options"]["surfaces"], "none");
 }
 
+// For the ship the rules choose other surfaces than the default.
+TEST(MethodChoice, TheUsersOwnOptionsWinEvenIfTheyAreTheDefaults) {
+  const json by_rules = culled({"demo:ship", "--method", "auto"});
+  const json usual = culled({"demo:ship", "--method", "depth-pyramid"});
+  ASSERT_NE(by_rules["options"]["surfaces"], usual["options"]["surfaces"]);
+  const json own = culled(
+      {"demo:ship", "--method", "auto", "--surfaces", usual["options"]["surfaces"].get<std::string>()});
+  EXPECT_EQ(own["chosen"]["by"], "auto");
+  EXPECT_EQ(own["options"], usual["options"]);
+}
+
 TEST(MethodChoice, AnOptionThatTheChosenMethodLacksIsNamed) {
   const Outcome outcome =
       runTool({"cull", "demo:glass", "--method", "auto", "--variant", "FSE", "--frames", "0"});

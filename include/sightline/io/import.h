@@ -17,6 +17,10 @@ namespace sightline {
 // else, and skins and morph targets keep their rest pose. Marks: "extras": {"occluder": true | false} on a
 // glTF node, mesh or material; the node's mark is stronger than the mesh's, and this than the material's. An
 // error names the file and the element, and nothing partial is returned.
+//
+// Several threads may import at once, while others run. Assimp reads in a fork of this process, which has the
+// calling thread alone: locks that other threads hold at that moment stay locked there, and handlers of
+// pthread_atfork() run. A file that crashes or hangs Assimp is an error.
 Result<Scene> importScene(const std::string& file);
 
 // Reads a .glb, or the JSON text of a .gltf, from memory. Bytes of any origin are safe. Buffers in other

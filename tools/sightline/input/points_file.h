@@ -1,5 +1,7 @@
 #pragma once
 
+// Files of points: the viewpoints that a command is asked about.
+
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>

@@ -77,9 +77,7 @@ double meanInFrustum(const Scene& scene, const Walk& walk, std::span<const Objec
 SceneFacts lookAt(const SceneAndWalk& input) {
   const Scene& scene = input.scene;
   const std::vector<Object> objects = sampled(scene);
-  return {.objects = scene.objects.size(),
-          .triangles = scene.triangleCount(),
-          .see_through = seeThroughShare(scene),
+  return {.see_through = seeThroughShare(scene),
           .occluder_area = occluderArea(scene, objects),
           .in_frustum = meanInFrustum(scene, input.walk, objects),
           .baked = input.baked.has_value()};

@@ -1,5 +1,7 @@
 #pragma once
 
+// --method auto: counts in a loaded scene what the rules ask for, and replaces it by what they choose.
+
 #include "tools/sightline/input/load.h"
 #include "tools/sightline/methods/method_choice.h"
 

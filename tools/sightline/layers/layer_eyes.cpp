@@ -79,10 +79,10 @@ void EyeSorter::findEyes(std::uint32_t frame, const View& view) {
   if (view.orthographic) {
     return;
   }
-  if (stereo_ > 0.0) {
-    more_eyes_ = {view.eye - view.right * (0.5 * stereo_), view.eye + view.right * (0.5 * stereo_)};
-  }
   if (!for_lens_) {
+    if (stereo_ > 0.0) {
+      more_eyes_ = {view.eye - view.right * (0.5 * stereo_), view.eye + view.right * (0.5 * stereo_)};
+    }
     return;
   }
   std::vector<View> ends{view};
@@ -93,7 +93,8 @@ void EyeSorter::findEyes(std::uint32_t frame, const View& view) {
     ends[1].eye = between(view.eye, later, 0.5 * motion_blur_);
   }
   for (const View& end : ends) {
-    const std::vector<Vec3d> eyes = lensEyes(end, aperture_);
+    // The cube holds the lenses of both eyes, also where the camera turns while the shutter is open.
+    const std::vector<Vec3d> eyes = lensEyes(end, aperture_ + stereo_);
     more_eyes_.push_back(end.eye);
     more_eyes_.insert(more_eyes_.end(), eyes.begin(), eyes.end());
   }

@@ -26,28 +26,30 @@ constexpr std::array<Name<LayerArcs>, 2> kArcs{{
     {"all", LayerArcs::kAll},
 }};
 
-void addChoice(CLI::App& command, const char* name, std::string& value,
-               const std::vector<std::string>& values, const char* help) {
+void addWordOption(CLI::App& command, const char* name, std::string& value,
+                   const std::vector<std::string>& values, const char* help) {
   command.add_option(name, value, help)->check(isOneOf(values))->capture_default_str();
 }
 
 }  // namespace
 
 void addLayerSortOptions(CLI::App& command, LayerSortOptions& options) {
-  addChoice(command, "--sort", options.sort, textsOf(kSorts),
-            "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
-  addChoice(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
-  addChoice(command, "--extents", options.extents, {"camera", "world"},
-            "two angles and depth of the camera, or x, y, z of the world");
-  addChoice(command, "--arcs", options.arcs, textsOf(kArcs),
-            "who occludes whom: within groups, or of all pairs");
-  addChoice(command, "--expression", options.expression, textsOf(kCompositingForms),
-            "how cycles without mutual occlusion are composited");
-  addChoice(command, "--conditioning", options.conditioning, textsOf(kSwitch),
-            "let near groups move forward in the order (camera extents only)");
-  addChoice(command, "--exact", options.exact, textsOf(kSwitch), "off: extents alone decide, groups grow");
-  addChoice(command, "--frustum-culling", options.frustum_culling, textsOf(kSwitch),
-            "on: parts outside the view are left out of the order");
+  addWordOption(
+      command, "--sort", options.sort, textsOf(kSorts),
+      "depth-first search for strongly connected components, or the paper's reinsertion (incremental)");
+  addWordOption(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
+  addWordOption(command, "--extents", options.extents, {"camera", "world"},
+                "two angles and depth of the camera, or x, y, z of the world");
+  addWordOption(command, "--arcs", options.arcs, textsOf(kArcs),
+                "who occludes whom: within groups, or of all pairs");
+  addWordOption(command, "--expression", options.expression, textsOf(kCompositingForms),
+                "how cycles without mutual occlusion are composited");
+  addWordOption(command, "--conditioning", options.conditioning, textsOf(kSwitch),
+                "let near groups move forward in the order (camera extents only)");
+  addWordOption(command, "--exact", options.exact, textsOf(kSwitch),
+                "off: extents alone decide, groups grow");
+  addWordOption(command, "--frustum-culling", options.frustum_culling, textsOf(kSwitch),
+                "on: parts outside the view are left out of the order");
   addDecimalOption(
       command, "--contact-tolerance", options.contact_tolerance, 0.0, 1000.0,
       "parts that touch, or overlap by less than a quarter of this, have an order, metres; 0: they "

@@ -3,7 +3,6 @@
 // --method auto: which method a scene gets, by rules about what a look at the scene counts. docs/using.md has
 // the measurements on which the rules rest.
 
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,7 +16,6 @@ inline constexpr const char* kAutomaticMethod = "auto";
 
 // What the rules know of a scene. All of it is counted, so that the same scene and walk give the same choice.
 struct SceneFacts {
-  std::uint64_t objects = 0, triangles = 0;
   double see_through = 0.0;    // part of the triangles that are blended or alpha-tested: glass, foliage
   double occluder_area = 0.0;  // area of the polygons that can hide, over the surface of the scene's box
   double in_frustum = 0.0;     // objects in the view frustum, mean over some frames of the walk

@@ -460,7 +460,7 @@ Result<std::vector<Setting>> combinationsOf(const MethodOptions& options) {
 // The options with what was chosen in place of the defaults.
 MethodOptions withChoice(MethodOptions options, const MethodChoice& choice) {
   for (const auto& [name, text] : choice.options) {
-    if (options.texts[indexOf(name)] == options.defaults[indexOf(name)]) {
+    if (!options.given[indexOf(name)]) {
       options.setDefault(name, text);
     }
   }
@@ -558,6 +558,7 @@ MethodOptions::MethodOptions() {
     texts.push_back(plainText(option.value.get(Setting{})));
   }
   defaults = texts;
+  given.resize(texts.size());
 }
 
 void MethodOptions::setDefault(std::string_view name, const std::string& text) {
@@ -571,6 +572,7 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
         option.help + option.value.help + (lists && option.list ? " (several: a,b,c)" : "");
     CLI::Option* added = command.add_option("--" + option.name, options.texts[i], help);
     added->capture_default_str();
+    added->each([&options, i](const std::string&) { options.given[i] = true; });
     if (!option.value.words.empty()) {
       added->check(isOneOf(option.value.words, option.list));
     }

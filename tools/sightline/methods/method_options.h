@@ -85,6 +85,7 @@ struct MethodOptions {
 
   std::vector<std::string> texts;
   std::vector<std::string> defaults;  // texts that the user has not given
+  std::vector<bool> given;            // whether the user has, be it the default
   std::string baked;                  // a .sight file; empty: none
   std::string prepared;               // a file for surfaces (openPrepared); empty: none
   double crack_width = 0.0;           // metres
