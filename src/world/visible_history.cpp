@@ -7,13 +7,14 @@ namespace sightline {
 
 void VisibleHistory::update(const World& world, const WorldCuller& culler, double seconds) {
   const double step = seconds > 0.0 ? seconds : 0.0;
+  const double last_time_s = time_s_;
   time_s_ += step;
   const float change =
       settings_.fade_in_s > 0.0 ? static_cast<float>(std::min(step / settings_.fade_in_s, 1.0)) : 1.0f;
   states_.resize(std::max(states_.size(), world.idBound()));
   // An id that appears although it is held may be that of another instance, which was not visible before.
   for (const InstanceId id : culler.appeared()) {
-    if (states_[id.value].held && states_[id.value].seen_at == time_s_ - step) {
+    if (states_[id.value].held && states_[id.value].seen_at == last_time_s) {
       states_[id.value] = {};
     }
   }

@@ -211,6 +211,25 @@ TEST(WorldViews, AxesMayBeAnyAndOfEitherHand) {
   }
 }
 
+TEST(WorldViews, HistoryFadesInWhatTakesThePlaceOfARemovedOneAfterAnySteps) {
+  Story story(allShapes());
+  Mat4 at;
+  at(2, 3) = -5.0;
+  const InstanceId crate = story.add(0, at);
+  const View view = viewFrom({0, 0, 4}, {0, 0, -1});
+  WorldCuller culler;
+  VisibleHistory history({.hold_s = 1.0, .fade_in_s = 0.5});
+  culler.cull(story.world, view);
+  history.update(story.world, culler, 0.0);
+  for (int frame = 0; frame < 100; ++frame) {
+    story.remove(crate);
+    ASSERT_EQ(story.add(0, at), crate);
+    culler.cull(story.world, view);
+    history.update(story.world, culler, 0.1);
+    ASSERT_FLOAT_EQ(history.opacity(crate), 0.2f) << frame;
+  }
+}
+
 TEST(WorldViews, HistoryHoldsAndFades) {
   Story story(allShapes());
   Mat4 at;
