@@ -1,6 +1,7 @@
 #include "sightline/world/world_culler.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "src/scene/usable_view.h"
@@ -69,6 +70,12 @@ void WorldCuller::Impl::cull(const WorldData& data, std::span<const View> given)
   }
   disappeared.clear();
   last_kept.listWithout(kept, disappeared);
+  // Those whose id another instance has now are gone as well.
+  const auto reused = [&](InstanceId id) {
+    return last_kept.has(id.value) && data.instances[id.value].born > last_version;
+  };
+  std::copy_if(visible.begin(), visible.end(), std::back_inserter(disappeared), reused);
+  std::sort(disappeared.begin(), disappeared.end());
   last_version = data.version;
 }
 

@@ -96,7 +96,6 @@ struct WorldData {
   std::vector<Joined> joins;
   std::vector<std::uint32_t> free_joins;
   std::vector<BakedObjects> sets;
-  std::vector<std::uint32_t> free_sets;
 
   Vec3d origin;                            // world space; boxes are relative to it
   hierarchy::DynamicTree settled, moving;  // boxes of what is shown

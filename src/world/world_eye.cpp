@@ -225,7 +225,10 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
     const Rest& rest = rests_[alone_[i]];
     const bool rests =
         drawing.step == ViewStep::kNext && rest.until > frame_ && rest.born == data.instances[alone_[i]].born;
-    if (image.place != occlusion::BoxPlace::kOutside && !rests && (near || pixels >= drawing.min_pixels)) {
+    // Through the hole that the near plane cuts into a drawn mesh one sees past what hides in its place.
+    const bool open = near && data.meshes[data.instances[alone_[i]].mesh].mesh.has_occluder;
+    if (image.place != occlusion::BoxPlace::kOutside && !open && !rests &&
+        (near || pixels >= drawing.min_pixels)) {
       near_first_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
     }
   }

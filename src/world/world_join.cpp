@@ -56,13 +56,26 @@ void WorldData::leaveJoin(std::uint32_t id) {
 
 }  // namespace world
 
+namespace {
+
+// Whether it is certain on which side a transform turns a mesh: it flattens nothing.
+bool isSolid(const Mat4& m) {
+  const auto column = [&m](int i) { return Vec3d(m(0, i), m(1, i), m(2, i)); };
+  const double size = std::max({length(column(0)), length(column(1)), length(column(2))});
+  return std::abs(determinant3(m)) > 0x1p-36 * size * size * size;
+}
+
+}  // namespace
+
 WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings,
                              const ParallelFor& parallel_for) const {
   const WorldData& own = *data_;
   WorldJoin join;
   Box all;
   for (const InstanceId id : instances) {
-    if (has(id) && own.hides(id.value) && boundsOf(id).wellFormed()) {
+    if (has(id) && own.hides(id.value) && boundsOf(id).wellFormed() &&
+        !own.meshes[own.instances[id.value].mesh].mesh.has_occluder &&
+        isSolid(own.world_from_mesh[id.value])) {
       join.instances.push_back(id);
       all.extend(boundsOf(id));
     }

@@ -30,6 +30,7 @@ Result<WorldMesh> makeMesh(const MeshView& mesh, const MeshSettings& settings,
   if (!other) {
     return Error{"the occluder: " + other.error().message};
   }
+  made.has_occluder = settings.occluder != nullptr;
   const ReadMesh& hides = settings.occluder != nullptr ? *other : *drawn;
   const WeldedMesh welded = weldMesh(hides);
   made.vertices = welded.vertices;

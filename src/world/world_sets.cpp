@@ -18,7 +18,7 @@ bool sameBox(const Box& now, const Box& baked, const Vec3d& baked_from_now) {
   if (!now.wellFormed() || !baked.wellFormed()) {
     return false;
   }
-  constexpr double kRounding = 0x1p-17;
+  constexpr double kRounding = 0x1p-20;
   const auto size = [](const Box& box) {
     return maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))));
   };
@@ -46,7 +46,9 @@ void WorldData::leaveSets(std::uint32_t id) {
 
 SetsId World::useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin) {
   WorldData& own = *data_;
-  const std::uint32_t number = numberIn(own.sets, own.free_sets);
+  // A number is never used again: a culler may not have been told that its sets were dropped.
+  const auto number = static_cast<std::uint32_t>(own.sets.size());
+  own.sets.emplace_back();
   own.sets[number] = {.there = true, .origin = baked_origin, .groups = 0xffffffffu};
   own.sets[number].instances.resize(boxes.objects.size());
   for (std::uint32_t node = 0; node < boxes.nodes.size(); ++node) {
@@ -85,7 +87,6 @@ void World::dropSets(SetsId sets) {
     }
   }
   own.sets[sets.value] = {};
-  own.free_sets.push_back(sets.value);
 }
 
 std::size_t World::tombstones(SetsId sets) const {

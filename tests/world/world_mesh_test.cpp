@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <random>
 
 #include "tests/world/world_story.h"
@@ -53,6 +55,29 @@ TEST(WorldMesh, SaysWhatWasWeldedAndWhatStaysOpen) {
   const WorldMesh light = boxMesh({{-1, -1, -1}, {1, 1, 1}});
   EXPECT_TRUE(light.bounds.wellFormed());
   EXPECT_TRUE(light.surfaces.parts.empty());
+}
+
+// Within the drawn box its far sides show their backs, which are not drawn, so one sees past the box that
+// hides in its place.
+TEST(WorldMesh, AnotherMeshHidesNothingFromWithinTheDrawnOne) {
+  const std::vector<Vec3f> drawn = boxFrom({-4, -4, -4}, {4, 4, 4}), inner = boxFrom({-1, -1, -1}, {1, 1, 1});
+  const MeshView hides = viewOf(inner);
+  World world;
+  const InstanceId box = world.add({.mesh = world.addMesh(*makeMesh(viewOf(drawn), {.occluder = &hides}))});
+  const InstanceId behind =
+      world.add({.mesh = world.addMesh(boxMesh({{-0.125f, -0.125f, -9}, {0.125f, 0.125f, -8}}))});
+  for (const bool joined : {false, true}) {
+    if (joined) {
+      const InstanceId both[] = {box};
+      world.use(world.prepareJoin(both));
+    }
+    for (const double z : {2.0, 9.0}) {
+      WorldCuller culler;
+      culler.cull(world, viewFrom({0, 0, z}, {0, 0, -1}));
+      culler.cull(world, viewFrom({0, 0, z}, {0, 0, -1}));
+      EXPECT_EQ(culler.classify(world.boundsOf(behind)) == Visibility::kHidden, z > 4.0) << z << joined;
+    }
+  }
 }
 
 // The drawn mesh is a box with a part that is drawn in other levels of detail; a smaller box hides for it.

@@ -243,6 +243,18 @@ TEST(World, WhatComesIntoViewHidesInTheSameFrame) {
             std::vector{scene.crate});
 }
 
+TEST(World, WhatIsReplacedDisappearsAndAppears) {
+  WallAndCrate scene;
+  scene.culler.cull(scene.story.world, scene.view);
+  const InstanceId old = scene.wall;
+  scene.story.remove(old);
+  scene.wall = scene.story.add(0, boxAt({-8, 0, -11}, {16, 8, 1}));
+  ASSERT_EQ(scene.wall.value, old.value) << "numbers are used again";
+  scene.culler.cull(scene.story.world, scene.view);
+  EXPECT_EQ(std::ranges::count(scene.culler.appeared(), scene.wall), 1);
+  EXPECT_EQ(std::ranges::count(scene.culler.disappeared(), old), 1);
+}
+
 // Many boxes all around, none before another: what is kept is what is in the view, up to the width of a box.
 TEST(World, WhatIsOutsideTheViewIsLeftOut) {
   Story story(allShapes());

@@ -37,7 +37,8 @@ struct MeshSettings {
   // False: instances never hide anything, as where a vertex shader moves vertices about.
   bool occludes = true;
   // Not null: this mesh hides in place of the drawn one. It must lie inside all that is ever drawn of the
-  // other: each level of detail, each pose (checkInside()). Read during the call only.
+  // other: each level of detail, each pose (checkInside()). It hides nothing where the near plane may cut the
+  // drawn mesh open, and is in no join. Read during the call only.
   const MeshView* occluder = nullptr;
   // Not empty: all that is ever drawn lies in this box or in that of the mesh (levels of detail, poses).
   Box drawn_bounds{};
@@ -49,6 +50,7 @@ struct WorldMesh {
   Box bounds{};                 // of all triangles; not well formed if one of them is not finite
   SurfaceSet surfaces{};        // empty if the mesh never hides anything
   std::uint32_t triangles = 0;  // of the drawn mesh
+  bool has_occluder = false;    // MeshSettings::occluder was given
   // Of the mesh that hides: vertices that triangles name, and different positions among them. Where both are
   // equal and open_edges are many, positions that should be equal are not, and the mesh hides little.
   std::uint32_t vertices = 0, positions = 0;
