@@ -23,11 +23,12 @@ double microsecondsSince(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-int sideOf(const Plane& plane, const Box& box) {
+int sideOf(const Plane& plane, const Box& box, double offset_rounding) {
   const Vec3d middle = center(box), half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
   const Vec3d size = abs(plane.normal);
   const double at = plane.evaluate(middle), reach = dot(size, half);
-  const double rounding = 0x1p-48 * (dot(size, abs(middle) + half) + std::abs(plane.offset));
+  const double rounding =
+      0x1p-48 * (dot(size, abs(middle) + half) + std::abs(plane.offset)) + offset_rounding;
   return at - reach >= rounding ? 1 : at + reach < -rounding ? -1 : 0;
 }
 
@@ -48,7 +49,9 @@ void addAll(const DynamicTree& tree, std::uint32_t number, IdBits& kept) {
 View WorldEye::begin(const WorldData& data, const View& view_world) {
   View view = view_world;
   view.eye = view.eye - data.origin;
+  // The two parts of the offset may be much larger than their sum.
   clip_ = {clip_world_.normal, clip_world_.evaluate(data.origin)};
+  clip_rounding_ = 0x1p-48 * (dot(abs(clip_world_.normal), abs(data.origin)) + std::abs(clip_world_.offset));
   pyramid_.begin(view);
   return view;
 }
@@ -98,7 +101,7 @@ void WorldEye::test(const WorldData& data, bool view_only) {
   if (settings_.groups != 0xffffffffu || !(clip_ == Plane())) {
     found_.removeIf([&](std::uint32_t id) {
       const InstanceData& own = data.instances[id];
-      return !isDrawn(own) || sideOf(clip_, data.boxOf(id)) < 0;
+      return !isDrawn(own) || sideOf(clip_, data.boxOf(id), clip_rounding_) < 0;
     });
   }
   sets_.restrict(data, found_);
@@ -147,7 +150,8 @@ bool WorldEye::isJoined(const WorldData& data, const Joined& joined) const {
     return true;
   }
   const Vec3d to_origin = data.origin - joined.join.origin;
-  return sideOf({clip_.normal, clip_.evaluate(-to_origin)}, joined.join.surfaces.bounds) > 0;
+  const double rounding = clip_rounding_ + 0x1p-48 * dot(abs(clip_.normal), abs(to_origin));
+  return sideOf({clip_.normal, clip_.evaluate(-to_origin)}, joined.join.surfaces.bounds, rounding) > 0;
 }
 
 // Sets of_join_ and alone_. The candidates may have been removed, hidden or moved since they were kept.
@@ -163,7 +167,7 @@ void WorldEye::takeCandidates(const WorldData& data, std::span<const InstanceId>
       continue;
     }
     const InstanceData& own = data.instances[id.value];
-    if (!isDrawn(own) || (clips && sideOf(clip_, data.boxOf(id.value)) <= 0)) {
+    if (!isDrawn(own) || (clips && sideOf(clip_, data.boxOf(id.value), clip_rounding_) <= 0)) {
       continue;
     }
     const bool joined = own.join != InstanceData::kNone && isJoined(data, data.joins[own.join]);
@@ -263,7 +267,8 @@ void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing
 }
 
 Visibility WorldEye::classify(const Box& box) const {
-  return box.wellFormed() && sideOf(clip_, box) < 0 ? Visibility::kHidden : pyramid_.classify(box);
+  return box.wellFormed() && sideOf(clip_, box, clip_rounding_) < 0 ? Visibility::kHidden
+                                                                    : pyramid_.classify(box);
 }
 
 Visibility WorldEye::look(const WorldData& data, const View& view_world, const Box& box,

@@ -71,7 +71,8 @@ class WorldEye {
 
   WorldCullerSettings settings_;
   EyeSets sets_;
-  Plane clip_world_, clip_;  // the second one for coordinates from the origin
+  Plane clip_world_, clip_;     // the second one for coordinates from the origin
+  double clip_rounding_ = 0.0;  // of its offset
   DepthPyramid pyramid_;
   culling::LastView last_view_;
   culling::UsualWork usual_work_;
@@ -91,7 +92,8 @@ class WorldEye {
 };
 
 // On which side of a plane a box lies: 1 or -1 if all of it does, surely, otherwise 0. Plane(): 1.
-int sideOf(const Plane& plane, const Box& box);
+// offset_rounding: how far the plane's offset may be off, on top of its own rounding.
+int sideOf(const Plane& plane, const Box& box, double offset_rounding = 0.0);
 
 // Adds everything below a node, or nothing if it is kNone.
 void addAll(const hierarchy::DynamicTree& tree, std::uint32_t node, IdBits& kept);
