@@ -82,7 +82,7 @@ void WorldData::place(std::uint32_t id) {
   }
 }
 
-// Of one that has just come into the moving tree.
+// Notes that an instance has just come into the moving tree.
 void WorldData::setMoving(std::uint32_t id) {
   InstanceData& own = instances[id];
   own.where = Whereabouts::kMoving;

@@ -80,7 +80,7 @@ struct WorldData {
            !meshes[own.mesh].mesh.surfaces.parts.empty();
   }
 
-  // Of an instance that hides and has a box; from the origin.
+  // Returns the box, from the origin, of an instance that hides and has one.
   const Box& boxOf(std::uint32_t id) const {
     return instances[id].where == Whereabouts::kMoving ? moving.boxOf(id) : settled.boxOf(id);
   }

@@ -125,7 +125,7 @@ TEST(Layers, AnOrderForAShutterHoldsThoseOfBothEyesAtItsEnds) {
   }
 }
 
-// Of the lenses of two eyes 0.6 m apart, 0.4 m wide, the points that are highest and farthest apart.
+// The eyes are 0.6 m apart and each lens is 0.4 m wide. Their highest and farthest points are looked from.
 TEST(Layers, AnOrderForALensHoldsThoseOfTheLensesOfBothEyes) {
   const TemporaryFolder folder;
   const auto all =

@@ -13,7 +13,7 @@ namespace {
 
 using namespace world_story;
 
-// Of a story with instances that are in other groups, what a view of some groups shows.
+// Tells the part of a story that a view of some groups shows. `groups` holds those of each instance.
 Story storyOf(const Story& all, const std::map<std::uint32_t, std::uint32_t>& groups, std::uint32_t of_view) {
   Story part(all.shapes);
   for (const auto& [id, told] : all.told) {

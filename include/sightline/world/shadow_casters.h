@@ -14,7 +14,7 @@
 namespace sightline {
 
 struct ShadowCasterSettings {
-  // Of the culling from the light. `groups`: of those instances that cast shadows.
+  // How the view from the light is culled. `groups` names the instances that cast shadows.
   WorldCullerSettings culler{};
   std::uint32_t mask_pixels = 128;  // of each side of the light's picture of what is seen, 1 to 1024
   // Metres: how far beside a point's own line to the light the map is read for it, at the point. A texel at

@@ -51,11 +51,11 @@ struct WorldMesh {
   SurfaceSet surfaces{};        // empty if the mesh never hides anything
   std::uint32_t triangles = 0;  // of the drawn mesh
   bool has_occluder = false;    // MeshSettings::occluder was given
-  // Of the mesh that hides: vertices that triangles name, and different positions among them. Where both are
-  // equal and open_edges are many, positions that should be equal are not, and the mesh hides little.
+  // How many vertices the triangles of the mesh that hides name, and how many different positions these have.
+  // Where both are equal and open_edges are many, positions that should be equal are not: it hides little.
   std::uint32_t vertices = 0, positions = 0;
-  // Edges of the mesh that hides at which its triangles do not cancel: 0 for a closed mesh, whose triangles
-  // all run the same way around.
+  // At so many edges of the mesh that hides its triangles do not cancel. A closed mesh has none if all of its
+  // triangles run the same way around.
   std::uint32_t open_edges = 0;
 };
 

@@ -7,10 +7,10 @@
 namespace sightline::pvs {
 namespace {
 
-// Of a place that is computed from two others on the same line, for each metre of their coordinates and each
-// time that they are apart.
+// A place on a line is computed from two others on it. This bounds its error in metres, for each metre of
+// their coordinates and each time that it is as far away from them as they are from each other.
 constexpr double kPlaceRounding = 0x1p-44;
-constexpr int kMaxHalves = 16;  // that are cut off one end of a part in a row
+constexpr int kMaxHalves = 16;  // so many are cut off one end of a part in a row, at most
 
 struct Interval {
   double low, high;
@@ -171,7 +171,6 @@ RegionOcclusion::Answer RegionOcclusion::cutOff(Passage& passage, Part part, int
   return Answer::kUndecided;
 }
 
-// Whether the lines of the passage through a piece of one part are blocked. kClear: one of all is not.
 RegionOcclusion::Answer RegionOcclusion::answerThrough(const Passage& passage, Part part,
                                                        const CellBox& piece) {
   if (part == Part::kTarget) {

@@ -45,7 +45,8 @@ class RegionOcclusion {
   Answer narrow(Passage& passage, std::uint32_t times);
   // Cuts off one end of a part, half of it at a time. cut: set to true if it does.
   Answer cutOff(Passage& passage, Part part, int axis, bool high, bool& cut);
-  // Of the lines of the passage through a piece of one part. kClear: one of all lines of sight is clear.
+  // Whether the lines of the passage through a piece of one part are blocked. kClear means that some line of
+  // sight from the region to the target is clear.
   Answer answerThrough(const Passage& passage, Part part, const CellBox& piece);
   // Narrows each part to where lines through both others pass. False: there are none.
   bool tighten(Passage& passage) const;
