@@ -115,16 +115,24 @@ TEST(Bench, CountsAreConsistentAndFrustumCullingIsTheBaseline) {
   EXPECT_EQ(settings.size(), rows.size());
 }
 
+// How `bench` is called on a wall with objects behind it, which are given as OBJ and whose first vertex is
+// the fifth, as seen from the origin.
+std::vector<std::string> benchOfWall(const TemporaryFolder& folder, const std::string& objects) {
+  const std::string scene = folder.write(
+                        "wall.obj",
+                        "o wall\nv -4 -4 -5\nv 1 -4 -5\nv 1 4 -5\nv -4 4 -5\nf 1 2 3 4\n" + objects),
+                    path = folder.write("path.json", R"({"frames":[{"eye":[0,0,0],"forward":[0,0,-1]}]})");
+  return {"bench", scene, "--path", path, "--no-cache", "--method", "frustum"};
+}
+
 // A wall, and an object of two triangles behind it, one near, one far and to the side: a corner of the box
 // around both looks out beside the wall, those around each do not.
 TEST(Bench, SeveralBoxesAnObjectAreFewerThanOne) {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("wall.obj",
-                                         "o wall\nv -4 -4 -5\nv 1 -4 -5\nv 1 4 -5\nv -4 4 -5\nf 1 2 3 4\n"
-                                         "o two\nv -1 -1 -10\nv 0 -1 -10\nv 0 0 -10\n"
-                                         "v 2 -1 -13\nv 2.5 -1 -13\nv 2.5 0 -13\nf 5 6 7\nf 8 9 10\n"),
-                    path = folder.write("path.json", R"({"frames":[{"eye":[0,0,0],"forward":[0,0,-1]}]})");
-  const std::vector<std::string> bench{"bench", scene, "--path", path, "--no-cache", "--method", "frustum"};
+  const std::vector<std::string> bench =
+      benchOfWall(folder,
+                  "o two\nv -1 -1 -10\nv 0 -1 -10\nv 0 0 -10\n"
+                  "v 2 -1 -13\nv 2.5 -1 -13\nv 2.5 0 -13\nf 5 6 7\nf 8 9 10\n");
   const json result = parse(runTool(joined(bench, {"--json", "-"})).out)["scenes"][0];
   EXPECT_EQ(result["witnessed"], 1);
   EXPECT_EQ(result["boxes"], 2);
@@ -148,12 +156,10 @@ TEST(Bench, SeveralBoxesAnObjectAreFewerThanOne) {
 // one whose box is hidden as well.
 TEST(Bench, BoxesAreThoseThatAnyTestOfBoxesMustKeep) {
   const TemporaryFolder folder;
-  const std::string scene = folder.write("wall.obj",
-                                         "o wall\nv -4 -4 -5\nv 1 -4 -5\nv 1 4 -5\nv -4 4 -5\nf 1 2 3 4\n"
-                                         "o slanted\nv -1 -1 -10\nv 1 -1 -10\nv 2.5 1 -13\nf 5 6 7\n"
-                                         "o hidden\nv -1 -1 -8\nv 0 -1 -8\nv 0 0 -9\nf 8 9 10\n"),
-                    path = folder.write("path.json", R"({"frames":[{"eye":[0,0,0],"forward":[0,0,-1]}]})");
-  const std::vector<std::string> bench{"bench", scene, "--path", path, "--no-cache", "--method", "frustum"};
+  const std::vector<std::string> bench =
+      benchOfWall(folder,
+                  "o slanted\nv -1 -1 -10\nv 1 -1 -10\nv 2.5 1 -13\nf 5 6 7\n"
+                  "o hidden\nv -1 -1 -8\nv 0 -1 -8\nv 0 0 -9\nf 8 9 10\n");
   const json result = parse(runTool(joined(bench, {"--json", "-"})).out)["scenes"][0];
   EXPECT_EQ(result["witnessed"], 1);
   EXPECT_EQ(result["boxes"], 2);
