@@ -261,6 +261,51 @@ void DynamicTree::move(const Item& item) {
   loosen(node);
 }
 
+void DynamicTree::move(std::span<const Item> items) {
+  constexpr std::size_t kMany = 4;
+  const bool many = items.size() * kMany > size_;
+  leaving_.clear();
+  for (const Item& item : items) {
+    if (item.number == kNone) {
+      continue;
+    }
+    if (!many) {
+      move(item);
+      continue;
+    }
+    assert(has(item.number) && item.box.wellFormed());
+    const std::uint32_t place = places_[item.number];
+    const std::uint32_t parent = nodes_[place / kChildren].parent;
+    if (parent != kNone && !overlaps(boxes_[parent], item.box)) {
+      leaving_.push_back(item);
+    } else {
+      boxes_[place] = item.box;
+    }
+  }
+  if (many && root_ != kNone) {
+    refit(root_);
+  }
+  for (const Item& item : leaving_) {
+    move(item);
+  }
+}
+
+// Makes the boxes of all nodes below a node anew, and returns its own.
+Box DynamicTree::refit(std::uint32_t node) {
+  const NodeData& data = nodes_[node];
+  Box bounds;
+  for (std::uint32_t place = node * kChildren; place < node * kChildren + data.count; ++place) {
+    if (data.height > 0) {
+      boxes_[place] = refit(children_[place]);
+    }
+    bounds.extend(boxes_[place]);
+  }
+  if (data.parent != kNone && surfaceArea(bounds) > kWorn * data.built_area) {
+    wear(data.parent / kChildren);
+  }
+  return bounds;
+}
+
 void DynamicTree::loosen(std::uint32_t node) {
   NodeData& data = nodes_[node];
   if (!data.loose) {

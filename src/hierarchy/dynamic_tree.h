@@ -35,6 +35,9 @@ class DynamicTree {
   // The following are for items of the tree alone.
   void remove(std::uint32_t number);
   void move(const Item& item);
+  // The same for many; those whose number is kNone are passed over. If they are many beside what the tree
+  // holds, the boxes of all nodes are made anew, once.
+  void move(std::span<const Item> items);
   const Box& boxOf(std::uint32_t number) const { return boxes_[places_[number]]; }
   bool has(std::uint32_t number) const { return number < places_.size() && places_[number] != kNone; }
   std::size_t size() const { return size_; }
@@ -96,6 +99,7 @@ class DynamicTree {
   void loosen(std::uint32_t node);
   void wear(std::uint32_t node);
   void tighten(std::uint32_t node);
+  Box refit(std::uint32_t node);
   void rebuild(std::uint32_t node);
   std::uint32_t itemsBelow(std::uint32_t node) const;
   void collect(std::uint32_t node, bool keep);
@@ -123,6 +127,7 @@ class DynamicTree {
   std::array<std::vector<std::uint32_t>, kMaxHeight> loose_;  // nodes, by height
   std::vector<std::uint32_t> worn_;
   std::vector<Item> collected_;  // scratch for rebuild()
+  std::vector<Item> leaving_;    // scratch for move()
 };
 
 }  // namespace sightline::hierarchy

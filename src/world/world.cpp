@@ -1,6 +1,8 @@
 #include "sightline/world/world.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,21 +12,13 @@
 namespace sightline {
 
 using namespace world;
+using hierarchy::DynamicTree;
 
 namespace world {
 namespace {
 
 constexpr std::uint32_t kNone = InstanceData::kNone;
 constexpr std::uint32_t kSettleAfter = 60;  // frames without movement
-
-// Rows of a matrix that are finite and have no perspective in them.
-bool isAffine(const Mat4& m) {
-  double none = 0.0;  // stays 0 unless a number is not finite
-  for (int column = 0; column < 4; ++column) {
-    none += (m(0, column) * 0.0 + m(1, column) * 0.0) + m(2, column) * 0.0;
-  }
-  return none == 0.0 && m(3, 0) == 0.0 && m(3, 1) == 0.0 && m(3, 2) == 0.0 && m(3, 3) == 1.0;
-}
 
 // Numbers of single precision that are surely not above, and not below; by a few units in the last place.
 float below(double x) {
@@ -34,38 +28,68 @@ float above(double x) {
   return static_cast<float>(x + 0x1p-22 * std::abs(x) + 0x1p-148);
 }
 
+// Whether all numbers are the same bits.
+bool same(const Mat4& a, const Mat4& b) {
+  const auto x = std::bit_cast<std::array<std::uint64_t, 16>>(a.m),
+             y = std::bit_cast<std::array<std::uint64_t, 16>>(b.m);
+  std::uint64_t differing = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    differing |= x[i] ^ y[i];
+  }
+  return differing == 0;
+}
+
 }  // namespace
 
-// The box of an instance, grown by what single precision may move its points. Not well formed if it cannot be
-// told.
-Box WorldData::boundsOf(std::uint32_t id) const {
-  const InstanceData& own = instances[id];
-  const Box mesh_bounds = own.mesh < meshes.size() ? meshes[own.mesh].mesh.bounds : Box{};
-  const Mat4 m = originFromMesh(id);
-  const double displacement = own.displacement;
-  Box box;
-  if (!mesh_bounds.wellFormed() || !isAffine(m) || !(displacement >= 0.0)) {
-    return box;
+MeshExtent::MeshExtent(const Box& bounds) : known(bounds.wellFormed()) {
+  if (known) {
+    middle = center(bounds);
+    half = (Vec3d(bounds.max) - Vec3d(bounds.min)) * 0.5;
+    farthest = abs(middle) + half;
   }
-  const Vec3d middle = center(mesh_bounds), half = (Vec3d(mesh_bounds.max) - Vec3d(mesh_bounds.min)) * 0.5;
-  const Vec3d at = transformPoint(m, middle);
+}
+
+// The box of what has this extent and matrix, grown by what single precision may move its points. It is well
+// formed, or empty if it cannot be told, as where a number of the matrix is not finite.
+Box WorldData::boundsOf(const MeshExtent& extent, const Mat4& matrix, double displacement) const {
+  const std::array<double, 16>& m = matrix.m;
+  const bool affine = m[3] == 0.0 && m[7] == 0.0 && m[11] == 0.0 && m[15] == 1.0;
+  if (!extent.known || !affine || !(displacement >= 0.0)) {
+    return {};
+  }
   // Single precision, in which renderers transform vertices, is off by less than this part of all terms.
   constexpr double kRounding = 0x1p-21;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3d row{std::abs(m(axis, 0)), std::abs(m(axis, 1)), std::abs(m(axis, 2))};
-    const double terms = dot(row, abs(middle) + half) + std::abs(m(axis, 3));
-    const double reach = dot(row, half) + displacement + kRounding * terms;
-    box.min[axis] = below(at[axis] - reach);
-    box.max[axis] = above(at[axis] + reach);
+  std::array<float, 4> low, high, zero;  // zero: NaN where the others are not finite
+  // By rows of the matrix, of which the fourth only makes vectors full.
+  for (std::size_t row = 0; row < 4; ++row) {
+    const double x = m[row], y = m[row + 4], z = m[row + 8], w = m[row + 12] - origin_rows[row];
+    const double at = x * extent.middle.x + y * extent.middle.y + z * extent.middle.z + w;
+    const double terms = std::abs(x) * extent.farthest.x + std::abs(y) * extent.farthest.y +
+                         std::abs(z) * extent.farthest.z + std::abs(w);
+    const double reach = std::abs(x) * extent.half.x + std::abs(y) * extent.half.y +
+                         std::abs(z) * extent.half.z + displacement + kRounding * terms;
+    low[row] = below(at - reach);
+    high[row] = above(at + reach);
+    zero[row] = low[row] * 0.0f + high[row] * 0.0f;
   }
-  return box;
+  if (!((zero[0] + zero[1]) + (zero[2] + zero[3]) == 0.0f)) {
+    return {};
+  }
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+Box WorldData::boundsOf(std::uint32_t id) const {
+  const InstanceData& own = instances[id];
+  return own.mesh < meshes.size()
+             ? boundsOf(meshes[own.mesh].extent, world_from_mesh[id], double{own.displacement})
+             : Box{};
 }
 
 // Puts an instance that is shown where those are found who cull.
 void WorldData::place(std::uint32_t id) {
   InstanceData& own = instances[id];
   const Box box = boundsOf(id);
-  if (!box.wellFormed()) {
+  if (box.empty()) {
     unplace(id);
     own.where = Whereabouts::kUnbounded;
     unbounded.emplace_back(id);
@@ -121,6 +145,29 @@ void WorldData::moved(std::uint32_t id) {
   place(id);
 }
 
+// Gives another matrix to an instance that is in the moving tree and stays there, and returns its box for
+// that tree. Of all others, and where the matrix is the same, it changes nothing, and the number it returns
+// is not valid.
+DynamicTree::Item WorldData::movedInPlace(InstanceId instance, const Mat4& to, std::uint64_t new_version) {
+  const DynamicTree::Item none{kNone, {}};
+  if (instance.value >= instances.size()) {
+    return none;
+  }
+  InstanceData& own = instances[instance.value];
+  if (own.where != Whereabouts::kMoving || own.join != kNone || own.baked ||
+      same(world_from_mesh[instance.value], to)) {
+    return none;
+  }
+  const Box box = boundsOf(meshes[own.mesh].extent, to, double{own.displacement});
+  if (box.empty()) {
+    return none;
+  }
+  world_from_mesh[instance.value] = to;
+  own.version = new_version;
+  own.last_moved = frame;
+  return {instance.value, box};
+}
+
 std::uint32_t WorldData::addInstance(const Instance& given) {
   const std::uint32_t id = numberIn(instances, free_instances);
   world_from_mesh.resize(instances.size());
@@ -151,15 +198,15 @@ void WorldData::settle(std::uint32_t looks) {
     next_mover = next_mover < movers.size() ? next_mover : 0;
     const std::uint32_t id = movers[next_mover].value;
     InstanceData& own = instances[id];
-    const bool moves = own.where == Whereabouts::kMoving;
-    if (moves && frame - own.last_moved < kSettleAfter) {
+    const bool in_tree = own.where == Whereabouts::kMoving;
+    if (in_tree && frame - own.last_moved < kSettleAfter) {
       ++next_mover;
       continue;
     }
     own.listed = false;
     movers[next_mover] = movers.back();
     movers.pop_back();
-    if (moves) {
+    if (in_tree) {
       const Box box = moving.boxOf(id);
       moving.remove(id);
       settled.insert({id, box});
@@ -177,7 +224,8 @@ World& World::operator=(World&&) noexcept = default;
 
 MeshId World::addMesh(WorldMesh mesh) {
   const std::uint32_t number = numberIn(data_->meshes, data_->free_meshes);
-  data_->meshes[number] = {.there = true, .mesh = std::move(mesh), .instances = {}};
+  const MeshExtent extent(mesh.bounds);
+  data_->meshes[number] = {.there = true, .extent = extent, .mesh = std::move(mesh), .instances = {}};
   return MeshId(number);
 }
 
@@ -189,7 +237,7 @@ void World::removeMesh(MeshId mesh) {
   while (!own.meshes[mesh.value].instances.empty()) {
     remove(own.meshes[mesh.value].instances.back());
   }
-  own.meshes[mesh.value] = {};
+  own.meshes[mesh.value] = MeshData();
   own.free_meshes.push_back(mesh.value);
 }
 
@@ -203,16 +251,16 @@ InstanceId World::add(const Instance& instance) {
 
 void World::add(std::span<const Instance> given, std::vector<InstanceId>& ids) {
   WorldData& own = *data_;
-  std::vector<hierarchy::DynamicTree::Item> items, moving_items;
+  std::vector<DynamicTree::Item> items, moving_items;
   for (const Instance& instance : given) {
     const std::uint32_t id = own.addInstance(instance);
     ids.emplace_back(id);
     InstanceData& added = own.instances[id];
     const Box box = added.shown ? own.boundsOf(id) : Box{};
-    if (box.wellFormed() && added.moves) {
+    if (!box.empty() && added.moves) {
       moving_items.push_back({id, box});
       own.setMoving(id);
-    } else if (box.wellFormed()) {
+    } else if (!box.empty()) {
       items.push_back({id, box});
       added.where = Whereabouts::kSettled;
     } else if (added.shown) {
@@ -248,7 +296,7 @@ void World::remove(InstanceId instance) {
 
 void World::setTransform(InstanceId instance, const Mat4& world_from_mesh) {
   WorldData& own = *data_;
-  if (!has(instance) || own.world_from_mesh[instance.value].m == world_from_mesh.m) {
+  if (!has(instance) || same(own.world_from_mesh[instance.value], world_from_mesh)) {
     return;
   }
   own.world_from_mesh[instance.value] = world_from_mesh;
@@ -256,6 +304,25 @@ void World::setTransform(InstanceId instance, const Mat4& world_from_mesh) {
   own.leaveJoin(instance.value);
   own.leaveSets(instance.value);
   own.moved(instance.value);
+}
+
+void World::setTransforms(std::span<const InstanceId> instances, std::span<const Mat4> world_from_mesh,
+                          const ParallelFor& parallel_for) {
+  WorldData& own = *data_;
+  const std::size_t count = std::min(instances.size(), world_from_mesh.size());
+  own.moves.resize(std::max(own.moves.size(), count));
+  parallel_for(static_cast<std::uint32_t>(count), [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      own.moves[i] = own.movedInPlace(instances[i], world_from_mesh[i], own.version + i + 1);
+    }
+  });
+  own.version += count;
+  own.moving.move(std::span(own.moves).first(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (own.moves[i].number == kNone) {
+      setTransform(instances[i], world_from_mesh[i]);
+    }
+  }
 }
 
 void World::setShown(InstanceId instance, bool shown) {
@@ -313,12 +380,13 @@ void World::setOrigin(const Vec3d& origin) {
     return;
   }
   own.origin = origin;
+  own.origin_rows = {origin.x, origin.y, origin.z, 0.0};
   const std::vector<InstanceId> unbounded = std::move(own.unbounded);
   own.unbounded.clear();
   std::vector<std::uint32_t> lost;  // overflow has left them without a box
   const auto box = [&](std::uint32_t id) {
     const Box now = own.boundsOf(id);
-    if (!now.wellFormed()) {
+    if (now.empty()) {
       lost.push_back(id);
     }
     return now;

@@ -2,6 +2,7 @@
 
 // What a World holds, as those who cull it read it.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,8 +22,18 @@ struct Joined {
                                               // valid any more
 };
 
+// The box of a mesh, as boxes of its instances are made from it.
+struct MeshExtent {
+  MeshExtent() = default;
+  explicit MeshExtent(const Box& bounds);
+  bool known = false;  // else the box is not well formed
+  Vec3d middle, half;  // half: from the middle to the faces
+  Vec3d farthest;      // the largest coordinates, without their signs
+};
+
 struct MeshData {
   bool there = false;
+  MeshExtent extent;
   WorldMesh mesh;
   std::vector<InstanceId> instances;
 };
@@ -98,11 +109,13 @@ struct WorldData {
   std::vector<BakedObjects> sets;
 
   Vec3d origin;                            // world space; boxes are relative to it
+  std::array<double, 4> origin_rows{};     // the same as the last column of a matrix, less its 1
   hierarchy::DynamicTree settled, moving;  // boxes of what is shown
   std::vector<InstanceId> unbounded;       // shown, with no box that is well formed
   std::vector<InstanceId> movers;          // those in `moving`, and some that have left it; each once
-  std::size_t next_mover = 0;              // that tidy() looks at
-  std::uint32_t frame = 0;                 // calls of tidy()
+  std::vector<hierarchy::DynamicTree::Item> moves;  // scratch for World::setTransforms()
+  std::size_t next_mover = 0;                       // that tidy() looks at
+  std::uint32_t frame = 0;                          // calls of tidy()
 
   void place(std::uint32_t id);
   void setMoving(std::uint32_t id);
@@ -111,7 +124,9 @@ struct WorldData {
   void leave(Joined& joined, std::uint32_t object);
   void leaveJoin(std::uint32_t id);
   void leaveSets(std::uint32_t id);
+  hierarchy::DynamicTree::Item movedInPlace(InstanceId instance, const Mat4& to, std::uint64_t new_version);
   Box boundsOf(std::uint32_t id) const;
+  Box boundsOf(const MeshExtent& extent, const Mat4& matrix, double displacement) const;
   // The matrix that takes points of an instance's mesh to where boxes are.
   Mat4 originFromMesh(std::uint32_t id) const { return fromOrigin(world_from_mesh[id]); }
   Mat4 fromOrigin(Mat4 world_from_any) const {

@@ -167,6 +167,39 @@ TEST(DynamicTree, IsBuiltOfAnyNumberOfItems) {
   }
 }
 
+// A few or all at once, by small steps or anywhere: no box of a node is too small, and after all have moved
+// none of one that stayed in its node is too large either.
+TEST(DynamicTree, ManyMoveAtOnce) {
+  for (std::uint32_t seed = 0; seed < 8; ++seed) {
+    RandomBoxes random(seed);
+    Boxes boxes;
+    for (std::uint32_t i = 0; i < (seed % 2 == 0 ? 9u : 700u); ++i) {
+      boxes[2 * i] = random.next(100.0f, 2.0f);
+    }
+    DynamicTree tree;
+    tree.build(itemsOf(boxes));
+    for (std::uint32_t frame = 0; frame < 60; ++frame) {
+      std::vector<Item> moved;
+      for (auto& [number, box] : boxes) {
+        if (random.below(frame % 2 == 0 ? 1 : 20) == 0) {
+          const Box step = random.next(1.5f, 0.0f);
+          box =
+              random.below(50) == 0 ? random.next(300.0f, 2.0f) : Box{box.min + step.min, box.max + step.min};
+          moved.push_back({number, box});
+          moved.push_back({DynamicTree::kNone, {}});
+        }
+      }
+      tree.move(moved);
+      ASSERT_EQ(whatIsWrong(tree, boxes), "") << seed << " " << frame;
+      tree.tidy(random.below(3) * 50);
+    }
+    tree.move(itemsOf(boxes));
+    while (tree.tidy(100) < 100) {
+    }
+    EXPECT_EQ(whatIsWrong(tree, boxes, true), "") << seed;
+  }
+}
+
 // A world in which everything moves and comes and goes stays about as good as one built anew.
 TEST(DynamicTree, StaysGoodWhateverChanges) {
   RandomBoxes random(3);

@@ -1,0 +1,161 @@
+// Instances that move, one at a time and many at once, and the boxes they have.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "sightline/world/world.h"
+#include "sightline/world/world_culler.h"
+#include "tests/support/cut_work.h"
+#include "tests/support/random_numbers.h"
+#include "tests/world/world_story.h"
+
+namespace sightline {
+namespace {
+
+using namespace world_story;
+
+// As a GPU computes it, in single precision; sums from the front or from the back.
+Vec3f transformedInFloats(const Mat4& m, const Vec3f& p, bool from_back) {
+  Vec3f at;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::array<float, 4> terms{static_cast<float>(m(axis, 0)) * p.x,
+                                     static_cast<float>(m(axis, 1)) * p.y,
+                                     static_cast<float>(m(axis, 2)) * p.z, static_cast<float>(m(axis, 3))};
+    float sum = from_back ? terms[3] : terms[0];
+    for (std::size_t i = 1; i < 4; ++i) {
+      sum += terms[from_back ? 3 - i : i];
+    }
+    at[axis] = sum;
+  }
+  return at;
+}
+
+TEST(WorldMoves, ABoxHoldsWhatSinglePrecisionMakesOfTheMesh) {
+  std::mt19937 engine(5);
+  auto number = test::numbersFrom<double>(engine);
+  World world;
+  for (int round = 0; round < 400; ++round) {
+    // From flat meshes to large ones, near their origin and far from it.
+    const double size = std::ldexp(1.0, round % 20 - 10), away = round % 3 == 0 ? 0.0 : 1000.0 * size;
+    std::vector<Vec3f> corners;
+    for (int i = 0; i < 30; ++i) {
+      corners.emplace_back(Vec3d(number(-size, size) + away, number(-size, size) - away,
+                                 round % 4 == 0 ? away : number(-size, size)));
+    }
+    const MeshId mesh = world.addMesh(*makeMesh({.positions = corners.data(), .vertex_count = 30}));
+    Mat4 m;
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 3; ++row) {
+        m(row, column) = column < 3       ? number(-4.0, 4.0)
+                         : round % 2 == 0 ? number(-9.0, 9.0)
+                                          : number(-5e4, 5e4);
+      }
+    }
+    const InstanceId id = world.add({.mesh = mesh, .moves = round % 2 == 0});
+    world.setTransforms(std::array{id}, std::array{m});
+    const Box box = world.boundsOf(id);
+    for (const Vec3f& corner : corners) {
+      for (const bool from_back : {false, true}) {
+        const Vec3f at = transformedInFloats(m, corner, from_back);
+        EXPECT_TRUE(contains(box, Box{at, at})) << round;
+      }
+      const Vec3f exact(transformPoint(m, Vec3d(corner)));
+      EXPECT_TRUE(contains(box, Box{exact, exact})) << round;
+    }
+  }
+}
+
+// Instances of all sorts: settled, moving, hidden, in a join, removed, and with matrices that place nothing.
+TEST(WorldMoves, ManyAtOnceAreAsManyOneByOne) {
+  for (const std::uint32_t count : {40u, 900u}) {
+    Chance chance(count);
+    Story one(allShapes()), many(allShapes()), threads(allShapes());
+    const std::array<Story*, 3> all{&one, &many, &threads};
+    std::vector<InstanceId> ids;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Mat4 m = chance.placement(60.0, 6.0);
+      for (Story* story : all) {
+        const InstanceId id = story->add(i % 5, m, i % 11 != 0);
+        if (story == &one) {
+          ids.push_back(id);
+        }
+      }
+    }
+    for (Story* story : all) {
+      story->world.use(story->world.prepareJoin(std::span(ids).first(count / 4)));
+      story->world.remove(ids[7]);
+    }
+    ids.push_back(InstanceId(100000u));
+    std::array<WorldCuller, 3> cullers;
+    for (int frame = 0; frame < 30; ++frame) {
+      std::vector<InstanceId> moved;
+      std::vector<Mat4> to;
+      for (const InstanceId id : ids) {
+        // In some frames all of them, in others a few.
+        if (chance.below(frame % 3 == 0 ? 1 : 10) == 0) {
+          moved.push_back(id);
+          to.push_back(chance.placement(60.0, 6.0));
+          if (chance.below(40) == 0) {
+            to.back()(1, 2) = std::numeric_limits<double>::quiet_NaN();
+          } else if (chance.below(40) == 0) {
+            to.back()(0, 0) = std::numeric_limits<double>::infinity();
+          } else if (chance.below(40) == 0) {
+            to.back()(3, 3) = 2.0;
+          } else if (chance.below(10) == 0 && one.world.has(id)) {
+            to.back() = one.told.at(id.value).world_from_mesh;
+          }
+        }
+      }
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        one.world.setTransform(moved[i], to[i]);
+        if (one.told.contains(moved[i].value)) {
+          one.told.at(moved[i].value).world_from_mesh = to[i];
+        }
+      }
+      many.world.setTransforms(moved, to);
+      threads.world.setTransforms(moved, to, onThreads(3));
+      const View view = viewFrom({0.0, 1.5, 0.25 * frame}, {0.2, 0.0, frame % 2 == 0 ? 1.0 : -1.0});
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        World& world = all[i]->world;
+        EXPECT_EQ(world.boundsOf(ids[1]), one.world.boundsOf(ids[1]));
+        for (const InstanceId id : moved) {
+          ASSERT_EQ(world.boundsOf(id), one.world.boundsOf(id)) << frame;
+        }
+        // By the frustum alone, which asks the trees and not what is drawn in which order.
+        WorldCuller by_frustum({.occlusion = false});
+        by_frustum.cull(world, view);
+        WorldCuller other({.occlusion = false});
+        other.cull(one.world, view);
+        ASSERT_TRUE(std::ranges::equal(by_frustum.visible(), other.visible())) << frame;
+        cullers[i].cull(world, view);
+        ASSERT_TRUE(std::ranges::equal(cullers[i].visible(), cullers[0].visible())) << frame;
+        world.tidy(chance.below(2) == 0 ? 3 : 1000);
+      }
+    }
+  }
+}
+
+TEST(WorldMoves, InstancesWithoutAMatrixStay) {
+  Story story(allShapes());
+  std::vector<InstanceId> ids;
+  for (int i = 0; i < 30; ++i) {
+    ids.push_back(story.add(0, Mat4()));
+  }
+  Mat4 first, second;
+  first(0, 3) = 5.0;
+  second(0, 3) = -5.0;
+  // Fewer matrices than instances: the others stay.
+  story.world.setTransforms(ids, std::array{first, second});
+  EXPECT_GT(story.world.boundsOf(ids[0]).min.x, 4.0f);
+  EXPECT_LT(story.world.boundsOf(ids[1]).max.x, -3.0f);
+  EXPECT_GT(story.world.boundsOf(ids[2]).min.x, -1.0f);
+  story.world.setTransforms({}, {});
+}
+
+}  // namespace
+}  // namespace sightline
