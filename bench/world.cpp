@@ -18,6 +18,15 @@
 //              a second, and how many times as many instances as are visible it has
 //   one by one a static cull where instances were added one at a time instead of as a list
 //
+// Of worlds whose instances were added one by one:
+//
+//   list       a static cull of the same world added as a list
+//   single     a static cull before tidy() is called
+//   tidied     a static cull after so many calls of tidy(), of which one takes so long, and the longest
+//   stream     then a thousand instances removed and a thousand added in a frame, one by one, with tidy();
+//   and
+//              the worst of 1,200 such frames
+//
 // And boxes that all move in every frame, in one call or singly, beside the linear test of as many by a
 // Culler.
 //
@@ -26,6 +35,7 @@
 #include <fmt/format.h>
 #include <time.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -342,6 +352,74 @@ void measureMovers(std::size_t count) {
   std::fflush(stdout);
 }
 
+// A world of instances that were added one by one, while tidy() builds its hierarchy anew; then cells that
+// come and go in it.
+void measureChanges(std::size_t count) {
+  City city(count);
+  World world, as_list;
+  const MeshId box = world.addMesh(unitBox());
+  as_list.addMesh(unitBox());
+  world.reserve(count);
+  std::vector<Instance> instances;
+  std::vector<double> adding;
+  std::vector<InstanceId> ids;
+  for (std::size_t i = 0; i < count; ++i) {
+    instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
+    const double us = processorUs([&] { ids.push_back(world.add(instances.back())); });
+    adding.push_back(us);
+  }
+  std::vector<InstanceId> listed;
+  as_list.add(instances, listed);
+  const auto culled = [&](const World& of) {
+    WorldCuller culler;
+    std::vector<double> times;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const View view = city.view(frame);
+      times.push_back(processorUs([&] { culler.cull(of, view); }));
+    }
+    return settled(times);
+  };
+  const double before = culled(world);
+  std::vector<double> calls;
+  for (int idle = 0; idle < 60; ++idle) {
+    const double us = processorUs([&] { world.tidy(); });
+    if (us > 2.0) {
+      calls.push_back(us);
+      idle = 0;
+    }
+  }
+  const double after = culled(world), list = culled(as_list);
+  const auto largest = [](const std::vector<double>& values) {
+    return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+  };
+
+  // As streamed cells: of each frame's thousand, all went in together and go together.
+  constexpr std::size_t kOfFrame = 1000;
+  std::vector<double> stream, cull;
+  WorldCuller culler;
+  for (int frame = 0; frame < 10 * kFrames && count >= 10 * kOfFrame; ++frame) {
+    const std::size_t first = static_cast<std::size_t>(frame) % (count / kOfFrame) * kOfFrame;
+    stream.push_back(processorUs([&] {
+      for (std::size_t i = first; i < first + kOfFrame; ++i) {
+        world.remove(ids[i]);
+      }
+      for (std::size_t i = first; i < first + kOfFrame; ++i) {
+        ids[i] = world.add(instances[i]);
+      }
+      world.tidy();
+    }));
+    const View view = city.view(frame % kFrames);
+    cull.push_back(processorUs([&] { culler.cull(world, view); }));
+  }
+  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>7} {:>9.0f} {:>10.0f}", count, list, before, after,
+             calls.size(), settled(calls), largest(calls));
+  if (!stream.empty()) {
+    fmt::print(" {:>10.0f} {:>9.0f} {:>9.0f}", settled(stream), largest(stream), settled(cull));
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -364,6 +442,11 @@ int main(int argc, char** argv) {
              "add one us", "foreseen", "times");
   for (const std::size_t count : counts) {
     measureQuestions(count);
+  }
+  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>10} {:>10} {:>9} {:>9}\n", "instances", "list us",
+             "single us", "tidied us", "calls", "call us", "longest us", "stream us", "worst us", "cull us");
+  for (const std::size_t count : counts) {
+    measureChanges(count);
   }
   fmt::print("\n{:>9} {:>9} {:>12} {:>9} {:>9} {:>14}\n", "movers", "static us", "+ movers us", "update us",
              "singly us", "Culler boxes us");

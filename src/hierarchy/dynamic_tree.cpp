@@ -17,24 +17,6 @@ Box united(const Box& a, const Box& b) {
   return box;
 }
 
-// The axis along which the centres of boxes are spread most.
-int longestAxis(std::span<const DynamicTree::Item> items) {
-  Vec3d low = center(items[0].box), high = low;
-  for (const DynamicTree::Item& item : items) {
-    low = min(low, center(item.box));
-    high = max(high, center(item.box));
-  }
-  const Vec3d size = high - low;
-  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-}
-
-void sortAlong(std::span<DynamicTree::Item> items, int axis) {
-  std::sort(items.begin(), items.end(), [axis](const DynamicTree::Item& a, const DynamicTree::Item& b) {
-    const float x = a.box.min[axis] + a.box.max[axis], y = b.box.min[axis] + b.box.max[axis];
-    return x != y ? x < y : a.number < b.number;
-  });
-}
-
 }  // namespace
 
 std::uint32_t DynamicTree::newNode(std::uint32_t height) {
@@ -48,6 +30,7 @@ std::uint32_t DynamicTree::newNode(std::uint32_t height) {
     boxes_.resize(boxes_.size() + kChildren);
     children_.resize(children_.size() + kChildren);
   }
+  ++nodes_of_height_[height];
   NodeData& data = nodes_[node];
   // It may still be listed as loose or worn from its earlier use.
   data = {.height = static_cast<std::uint8_t>(height), .loose = data.loose, .worn = data.worn};
@@ -55,6 +38,7 @@ std::uint32_t DynamicTree::newNode(std::uint32_t height) {
 }
 
 void DynamicTree::freeNode(std::uint32_t node) {
+  --nodes_of_height_[nodes_[node].height];
   nodes_[node].count = 0;
   nodes_[node].parent = kNone;
   free_.push_back(node);
@@ -99,6 +83,12 @@ std::uint32_t DynamicTree::leafFor(const Box& box) const {
 }
 
 void DynamicTree::insert(const Item& item) {
+  insertOne(item);
+  ++scattered_;
+  noteChange(item.number);
+}
+
+void DynamicTree::insertOne(const Item& item) {
   assert(item.box.wellFormed() && !has(item.number));
   if (places_.size() <= item.number) {
     places_.resize(std::size_t{item.number} + 1, kNone);
@@ -111,11 +101,11 @@ void DynamicTree::insert(const Item& item) {
 }
 
 void DynamicTree::rebuild() {
-  collected_.clear();
+  scratch_.clear();
   if (root_ != kNone) {
     collect(root_, false);
   }
-  build(std::vector<Item>(std::move(collected_)));
+  build(std::vector<Item>(std::move(scratch_)));
 }
 
 void DynamicTree::insert(std::span<const Item> items) {
@@ -126,12 +116,12 @@ void DynamicTree::insert(std::span<const Item> items) {
     }
     return;
   }
-  collected_.clear();
+  scratch_.clear();
   if (root_ != kNone) {
     collect(root_, false);
   }
-  collected_.insert(collected_.end(), items.begin(), items.end());
-  build(std::vector<Item>(std::move(collected_)));
+  scratch_.insert(scratch_.end(), items.begin(), items.end());
+  build(std::vector<Item>(std::move(scratch_)));
 }
 
 void DynamicTree::addChild(std::uint32_t node, std::uint32_t child, const Box& box) {
@@ -167,7 +157,7 @@ void DynamicTree::split(std::uint32_t node, std::uint32_t child, const Box& box)
   std::array<Item, kChildren + 1> best = all;
   std::size_t first_count = (kChildren + 1) / 2;
   for (int axis = 0; axis < 3; ++axis) {
-    sortAlong(all, axis);
+    std::sort(all.begin(), all.end(), AlongAxis{axis});
     std::array<double, kChildren + 1> behind{};
     Box bounds;
     for (std::size_t i = kChildren + 1; i-- > 0;) {
@@ -215,6 +205,11 @@ void DynamicTree::split(std::uint32_t node, std::uint32_t child, const Box& box)
 }
 
 void DynamicTree::remove(std::uint32_t number) {
+  removeOne(number);
+  noteChange(number);
+}
+
+void DynamicTree::removeOne(std::uint32_t number) {
   assert(has(number));
   const std::uint32_t place = places_[number];
   places_[number] = kNone;
@@ -246,14 +241,19 @@ void DynamicTree::removeChild(std::uint32_t place) {
   }
 }
 
-// What leaves its node altogether is put where it belongs, unless it is alone there.
 void DynamicTree::move(const Item& item) {
+  moveOne(item);
+  noteChange(item.number);
+}
+
+// What leaves its node altogether is put where it belongs, unless it is alone there.
+void DynamicTree::moveOne(const Item& item) {
   assert(has(item.number) && item.box.wellFormed());
   const std::uint32_t place = places_[item.number], node = place / kChildren;
   const std::uint32_t parent = nodes_[node].parent;
   if (parent != kNone && !overlaps(boxes_[parent], item.box)) {
-    remove(item.number);
-    insert(item);
+    removeOne(item.number);
+    insertOne(item);
     return;
   }
   boxes_[place] = item.box;
@@ -280,6 +280,7 @@ void DynamicTree::move(std::span<const Item> items) {
       leaving_.push_back(item);
     } else {
       boxes_[place] = item.box;
+      noteChange(item.number);
     }
   }
   if (many && root_ != kNone) {
@@ -339,6 +340,11 @@ void DynamicTree::tighten(std::uint32_t node) {
   }
 }
 
+void DynamicTree::spend(std::uint32_t& steps, std::uint32_t spent) {
+  steps -= std::min(steps, spent);
+  steps_taken_ += spent;
+}
+
 std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
   for (std::vector<std::uint32_t>& list : loose_) {
     while (!list.empty() && steps > 0) {
@@ -346,7 +352,7 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
       list.pop_back();
       nodes_[node].loose = false;
       tighten(node);
-      --steps;
+      spend(steps, 1);
     }
   }
   while (!worn_.empty() && steps > 0) {
@@ -356,33 +362,49 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
     if (nodes_[node].count == 0 || nodes_[node].height == 0) {
       continue;  // it is gone, or is another node by now
     }
-    const std::uint32_t items = itemsBelow(node);
+    const std::uint32_t items = itemsBelow(node, kMaxRebuilt);
     if (items <= kMaxRebuilt) {
       rebuild(node);
-      steps -= std::min(kStepsOfItem * items, steps);
+      spend(steps, kStepsOfItem * items);
+    } else {
+      countWorn(node);
+      spend(steps, kMaxRebuilt / kStepsOfItem);
     }
   }
+  proceedReplacement(steps);
   return steps;
 }
 
-std::uint32_t DynamicTree::itemsBelow(std::uint32_t number) const {
+// Returns a number above the limit as soon as there are more.
+std::uint32_t DynamicTree::itemsBelow(std::uint32_t number, std::uint32_t limit) const {
   const Node children = node(number);
   if (children.leaf) {
     return static_cast<std::uint32_t>(children.boxes.size());
   }
   std::uint32_t items = 0;
-  for (const std::uint32_t child : children.children) {
-    items += itemsBelow(child);
+  for (std::size_t i = 0; i < children.children.size() && items <= limit; ++i) {
+    items += itemsBelow(children.children[i], limit - items);
   }
   return items;
 }
 
-// Appends the items below a node to collected_ and frees all nodes below it, and the node unless it is kept.
+// Counts what is below those children of a node that have worn, each child once.
+void DynamicTree::countWorn(std::uint32_t number) {
+  for (const std::uint32_t child : node(number).children) {
+    NodeData& data = nodes_[child];
+    if (!data.counted && surfaceArea(boxes_[data.parent]) > kWorn * data.built_area) {
+      data.counted = true;
+      scattered_ += size_ / nodes_of_height_[data.height];
+    }
+  }
+}
+
+// Appends the items below a node to scratch_ and frees all nodes below it, and the node unless it is kept.
 void DynamicTree::collect(std::uint32_t number, bool keep) {
   const Node children = node(number);
   for (std::size_t i = 0; i < children.boxes.size(); ++i) {
     if (children.leaf) {
-      collected_.push_back({children.children[i], children.boxes[i]});
+      scratch_.push_back({children.children[i], children.boxes[i]});
     } else {
       collect(children.children[i], false);
     }
@@ -393,13 +415,20 @@ void DynamicTree::collect(std::uint32_t number, bool keep) {
 }
 
 void DynamicTree::rebuild(std::uint32_t node) {
-  collected_.clear();
+  scratch_.clear();
   collect(node, true);
   nodes_[node].count = 0;
-  fill(node, collected_);
-  loosen(node);
-  if (nodes_[node].count < kFew && nodes_[node].parent != kNone) {
-    wear(nodes_[node].parent / kChildren);
+  const std::uint64_t taken = steps_taken_;
+  open(node, 0, scratch_.size());
+  std::uint32_t all = kNone;
+  fill(all);
+  steps_taken_ = taken;  // the caller counts all of it
+  const std::uint32_t parent = nodes_[node].parent;
+  if (parent != kNone) {
+    loosen(parent / kChildren);
+  }
+  if (nodes_[node].count < kFew && parent != kNone) {
+    wear(parent / kChildren);
   }
 }
 
@@ -412,58 +441,64 @@ std::uint32_t DynamicTree::heightFor(std::size_t items) const {
   return height;
 }
 
-// Divides items among the children of an empty node, by medians.
-void DynamicTree::fill(std::uint32_t node, std::span<Item> items) {
+// Says that these items of scratch_ are to be divided among the children of an empty node, by medians.
+void DynamicTree::open(std::uint32_t node, std::size_t first, std::size_t count) {
+  shares_.push_back({node, 0, 0, 0});
   const std::uint32_t height = nodes_[node].height;
   if (height == 0) {
-    nodes_[node].count = static_cast<std::uint8_t>(items.size());
-    for (std::uint32_t i = 0; i < items.size(); ++i) {
+    nodes_[node].count = static_cast<std::uint8_t>(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t place = node * kChildren + i;
-      children_[place] = items[i].number;
-      boxes_[place] = items[i].box;
+      children_[place] = scratch_[first + i].number;
+      boxes_[place] = scratch_[first + i].box;
       setPlace(place, true);
     }
-  } else {
-    std::size_t room = kChildren * 3 / 4;
-    for (std::uint32_t h = 1; h < height; ++h) {
-      room *= kChildren;
+    return;
+  }
+  std::size_t room = kChildren * 3 / 4;
+  for (std::uint32_t h = 1; h < height; ++h) {
+    room *= kChildren;
+  }
+  // Even shares, so that the divisions are in the middle.
+  shares_.push_back({node, first, count, std::clamp<std::size_t>((count + room - 1) / room, 1, kChildren)});
+}
+
+// Fills all nodes that are open, as far as the steps go. Returns whether that is done.
+bool DynamicTree::fill(std::uint32_t& steps) {
+  while (!shares_.empty() && steps > 0) {
+    const Share share = shares_.back();
+    if (share.children > 1) {
+      const std::size_t left = share.children / 2, count = share.count * left / share.children;
+      if (!dividing_) {
+        division_.begin(share.first, share.count, count);
+      }
+      const std::uint32_t before = steps;
+      dividing_ = !division_.proceed(scratch_, steps);
+      steps_taken_ += before - steps;
+      if (!dividing_) {
+        shares_.back() = {share.node, share.first + count, share.count - count, share.children - left};
+        shares_.push_back({share.node, share.first, count, left});
+      }
+      continue;
     }
-    // Even shares, so that the divisions are in the middle.
-    const std::size_t shares = std::clamp<std::size_t>((items.size() + room - 1) / room, 1, kChildren);
-    struct Share {
-      std::size_t first, count, shares;
-    };
-    std::array<Share, kChildren> open;
-    std::size_t opened = 0;
-    open[opened++] = {0, items.size(), shares};
-    while (opened > 0) {
-      const Share share = open[--opened];
-      if (share.shares > 1) {
-        const std::size_t left = share.shares / 2, count = share.count * left / share.shares;
-        const std::span<Item> part = items.subspan(share.first, share.count);
-        const int axis = longestAxis(part);
-        std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count), part.end(),
-                         [axis](const Item& a, const Item& b) {
-                           const float x = a.box.min[axis] + a.box.max[axis],
-                                       y = b.box.min[axis] + b.box.max[axis];
-                           return x != y ? x < y : a.number < b.number;
-                         });
-        open[opened++] = {share.first + count, share.count - count, share.shares - left};
-        open[opened++] = {share.first, count, left};
-        continue;
+    shares_.pop_back();
+    NodeData& data = nodes_[share.node];
+    if (share.children == 0) {
+      const Box bounds = boundsOf(share.node);
+      data.built_area = surfaceArea(bounds);
+      if (data.parent != kNone) {
+        boxes_[data.parent] = bounds;
       }
-      if (share.count == 0) {
-        continue;
-      }
-      const std::uint32_t child = newNode(height - 1);
-      const std::uint32_t place = node * kChildren + nodes_[node].count++;
+      spend(steps, data.height == 0 ? kStepsOfItem * data.count : 1);
+    } else if (share.count > 0) {
+      const std::uint32_t place = share.node * kChildren + data.count++;
+      const std::uint32_t child = newNode(data.height - 1u);
       children_[place] = child;
       setPlace(place, false);
-      fill(child, items.subspan(share.first, share.count));
-      boxes_[place] = boundsOf(child);
+      open(child, share.first, share.count);
     }
   }
-  nodes_[node].built_area = surfaceArea(boundsOf(node));
+  return shares_.empty();
 }
 
 void DynamicTree::build(std::span<const Item> items) {
@@ -477,11 +512,24 @@ void DynamicTree::build(std::span<const Item> items) {
     bound = std::max(bound, item.number + 1);
   }
   places_.assign(bound, kNone);
-  collected_.assign(items.begin(), items.end());
+  scratch_.assign(items.begin(), items.end());
   size_ = items.size();
   root_ = newNode(heightFor(items.size()));
-  fill(root_, collected_);
-  collected_ = {};
+  open(root_, 0, items.size());
+  std::uint32_t all = kNone;
+  while (!fill(all)) {
+    all = kNone;
+  }
+  scratch_ = {};
+  steps_taken_ = 0;
+}
+
+void DynamicTree::reserve(std::size_t items) {
+  const std::size_t nodes = items / kFew;  // leaves are mostly fuller, which leaves room for the nodes above
+  nodes_.reserve(nodes);
+  boxes_.reserve(nodes * kChildren);
+  children_.reserve(nodes * kChildren);
+  places_.reserve(items);
 }
 
 }  // namespace sightline::hierarchy

@@ -5,14 +5,17 @@
 //
 // Based on: Guttman. R-Trees: A Dynamic Index Structure for Spatial Searching. SIGMOD 1984; Beckmann et al.
 // The R*-Tree. SIGMOD 1990. Differs from the papers in: nodes are split by surface area; boxes of nodes grow
-// at once and shrink later; subtrees that have worn are built anew, as many at a time as the caller allows.
+// at once and shrink later; small subtrees that have worn are built anew at once, and the whole tree, where
+// much of it has, in slices, while the old one stays in use.
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "sightline/math/box.h"
+#include "src/hierarchy/sliced_division.h"
 
 namespace sightline::hierarchy {
 
@@ -23,11 +26,7 @@ class DynamicTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::uint32_t kChildren = 16;  // at most, of a node
 
-  // A number of the caller's, not used by another item of the tree, and a well-formed box.
-  struct Item {
-    std::uint32_t number = 0;
-    Box box;
-  };
+  using Item = NumberedBox;  // the number is not that of another item of the tree
 
   void insert(const Item& item);
   // Builds the tree anew if these are many beside what it holds.
@@ -46,6 +45,7 @@ class DynamicTree {
   // is for the caller to remove or to move before anything else.
   template <typename BoxOf>
   void setBoxes(const BoxOf& box_of) {
+    replacement_.stage = Replacement::Stage::kNone;  // it has the old boxes, and is begun again
     if (root_ != kNone) {
       setBoxes(root_, box_of);
     }
@@ -55,10 +55,16 @@ class DynamicTree {
   void build(std::span<const Item> items);
   // The same with the items that it has.
   void rebuild();
-  // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps, and at most a
-  // five thousand more: one for a node that is looked at, five for an item of a subtree. Returns how many
-  // steps are left over.
+  // Makes room for so many items, with numbers below the same, so that inserting them does not copy the tree.
+  void reserve(std::size_t items);
+  // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps of about 20
+  // nanoseconds, and at most five thousand more. Returns how many steps are left over.
+  //
+  // Where more than half of the tree has worn or was inserted one by one, another tree is built of the same
+  // items, over as many calls as that takes, and then replaces it. Its memory is kept for the next time.
   std::uint32_t tidy(std::uint32_t steps);
+  // Steps that tidy() took so far, all calls together.
+  std::uint64_t stepsTaken() const { return steps_taken_; }
 
   // kNone if there are no items.
   std::uint32_t root() const { return root_; }
@@ -81,16 +87,42 @@ class DynamicTree {
     std::uint8_t height = 0;  // all leaves have 0
     bool loose = false;       // its box in its parent may be too large; listed in loose_
     bool worn = false;        // listed in worn_
+    bool counted = false;     // in scattered_, as worn
     double built_area = 0.0;  // surface area when it was built or split
   };
-  static constexpr std::uint32_t kMaxHeight = 10;     // more than 2^32 items of the fewest children need
-  static constexpr std::uint32_t kFew = 4;            // children of a node after a split, at least
-  static constexpr std::uint32_t kMaxRebuilt = 1024;  // items of a subtree that is built anew, at most
+  static constexpr std::uint32_t kMaxHeight = 10;  // more than 2^32 items of the fewest children need
+  static constexpr std::uint32_t kFew = 4;         // children of a node after a split, at least
+  static constexpr std::uint32_t kMaxRebuilt =
+      1024;  // items of a subtree that is built anew at once, at most
+
+  // Items of scratch_ that are to be divided among so many new children of a node; none: all of the node's
+  // children are there and have been filled.
+  struct Share {
+    std::uint32_t node = kNone;
+    std::size_t first = 0, count = 0, children = 0;
+  };
+
+  // Another tree of the same items that tidy() builds in slices.
+  struct Replacement {
+    enum class Stage : std::uint8_t {
+      kNone,      // it is empty, and only keeps its memory
+      kCollects,  // items are copied, by number
+      kFills,     // they are divided among nodes
+      kFollows,   // changes are made to it as to this tree, and those of the stages before are made up for
+    };
+    Stage stage = Stage::kNone;
+    std::uint32_t next = 0;                // number of an item that is looked at next
+    std::vector<std::uint64_t> changed{};  // a bit by number: inserted, moved or removed, and not made up for
+    std::unique_ptr<DynamicTree> tree{};
+  };
 
   std::uint32_t newNode(std::uint32_t height);
   void freeNode(std::uint32_t node);
   Box boundsOf(std::uint32_t node) const;
   std::uint32_t leafFor(const Box& box) const;
+  void insertOne(const Item& item);
+  void removeOne(std::uint32_t number);
+  void moveOne(const Item& item);
   void addChild(std::uint32_t node, std::uint32_t child, const Box& box);
   void setPlace(std::uint32_t place, bool leaf);
   void split(std::uint32_t node, std::uint32_t child, const Box& box);
@@ -101,9 +133,19 @@ class DynamicTree {
   void tighten(std::uint32_t node);
   Box refit(std::uint32_t node);
   void rebuild(std::uint32_t node);
-  std::uint32_t itemsBelow(std::uint32_t node) const;
+  std::uint32_t itemsBelow(std::uint32_t node, std::uint32_t limit) const;
+  void countWorn(std::uint32_t node);
   void collect(std::uint32_t node, bool keep);
-  void fill(std::uint32_t node, std::span<Item> items);
+  void open(std::uint32_t node, std::size_t first, std::size_t count);
+  bool fill(std::uint32_t& steps);
+  void clear();
+  void spend(std::uint32_t& steps, std::uint32_t spent);
+  void noteChange(std::uint32_t number);
+  std::uint32_t follow(std::uint32_t number);
+  void beginReplacement();
+  void proceedReplacement(std::uint32_t& steps);
+  void collectForReplacement(std::uint32_t& steps);
+  void finishReplacement();
   template <typename BoxOf>
   Box setBoxes(std::uint32_t node, const BoxOf& box_of) {
     Box bounds;
@@ -126,8 +168,17 @@ class DynamicTree {
   std::size_t size_ = 0;
   std::array<std::vector<std::uint32_t>, kMaxHeight> loose_;  // nodes, by height
   std::vector<std::uint32_t> worn_;
-  std::vector<Item> collected_;  // scratch for rebuild()
-  std::vector<Item> leaving_;    // scratch for move()
+  std::array<std::uint32_t, kMaxHeight> nodes_of_height_{};
+  // Items that were inserted one by one since the tree was built, and about as many as are below nodes that
+  // have worn where these are not built anew at once.
+  std::size_t scattered_ = 0;
+  std::uint64_t steps_taken_ = 0;
+  Replacement replacement_;
+  std::vector<Item> scratch_;  // items that the tree, or a subtree, is built of
+  std::vector<Share> shares_;  // of these, that are not done
+  SlicedDivision division_;    // of the last one, if dividing_
+  bool dividing_ = false;
+  std::vector<Item> leaving_;  // scratch for move()
 };
 
 }  // namespace sightline::hierarchy

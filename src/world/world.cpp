@@ -241,6 +241,13 @@ void World::removeMesh(MeshId mesh) {
   own.free_meshes.push_back(mesh.value);
 }
 
+void World::reserve(std::size_t instances) {
+  data_->instances.reserve(instances);
+  data_->extras.reserve(instances);
+  data_->world_from_mesh.reserve(instances);
+  data_->settled.reserve(instances);
+}
+
 InstanceId World::add(const Instance& instance) {
   const std::uint32_t id = data_->addInstance(instance);
   if (instance.shown) {

@@ -200,6 +200,142 @@ TEST(DynamicTree, ManyMoveAtOnce) {
   }
 }
 
+// All numbers that a search for what overlaps a box finds, ascending.
+std::vector<std::uint32_t> found(const DynamicTree& tree, const Box& wanted) {
+  std::vector<std::uint32_t> open, numbers;
+  if (tree.root() != DynamicTree::kNone) {
+    open.push_back(tree.root());
+  }
+  while (!open.empty()) {
+    const DynamicTree::Node node = tree.node(open.back());
+    open.pop_back();
+    for (std::size_t i = 0; i < node.boxes.size(); ++i) {
+      if (overlaps(node.boxes[i], wanted)) {
+        (node.leaf ? numbers : open).push_back(node.children[i]);
+      }
+    }
+  }
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+// Items that come, go and move in every call of tidy() while the whole tree is built anew, time after time:
+// searches find what a search of all boxes finds, and no call does more than it may.
+TEST(DynamicTree, IsBuiltAnewInSlicesWhileItChanges) {
+  constexpr std::uint32_t kNumbers = 12000;
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    RandomBoxes random(seed);
+    DynamicTree tree;
+    Boxes boxes;
+    // Wide apart; all in one place; or a few that all move in every call.
+    const float spread = seed % 3 == 1 ? 0.0f : 100.0f;
+    const std::uint32_t numbers = seed % 3 == 2 ? 1500 : kNumbers;
+    const auto change = [&](std::uint32_t number) {
+      const Box box = random.next(spread, 2.0f);
+      if (!tree.has(number)) {
+        tree.insert({number, box});
+        boxes[number] = box;
+      } else if (random.below(3) == 0) {
+        tree.remove(number);
+        boxes.erase(number);
+      } else {
+        tree.move({number, box});
+        boxes[number] = box;
+      }
+    };
+    for (std::uint32_t number = 0; number < numbers / 2; ++number) {
+      change(number);
+    }
+    for (std::uint32_t call = 0; call < 1500; ++call) {
+      for (std::uint32_t changes = random.below(20); changes > 0; --changes) {
+        change(random.below(numbers));
+      }
+      if (seed % 3 == 2) {
+        std::vector<Item> moved = itemsOf(boxes);
+        for (Item& item : moved) {
+          const Box step = random.next(1.5f, 0.0f);
+          item.box = {item.box.min + step.min, item.box.max + step.min};
+          boxes[item.number] = item.box;
+        }
+        tree.move(moved);
+      }
+      if (call == 700) {
+        tree.setBoxes([&](std::uint32_t number) {
+          return boxes[number] = {boxes[number].min + Vec3f{1, 2, 3}, boxes[number].max + Vec3f{1, 2, 3}};
+        });
+      }
+      const std::uint32_t steps = 20 + random.below(call % 200 < 100 ? 100 : 4000);
+      const std::uint64_t before = tree.stepsTaken();
+      tree.tidy(steps);
+      EXPECT_LE(tree.stepsTaken() - before, steps + 5 * 1024) << seed << " " << call;
+      const Box wanted = random.next(spread, 30.0f);
+      std::vector<std::uint32_t> expected;
+      for (const auto& [number, box] : boxes) {
+        if (overlaps(box, wanted)) {
+          expected.push_back(number);
+        }
+      }
+      ASSERT_EQ(found(tree, wanted), expected) << seed << " " << call;
+      if (call % 25 == 0) {
+        ASSERT_EQ(whatIsWrong(tree, boxes), "") << seed << " " << call;
+      }
+    }
+    while (tree.tidy(100000) < 100000) {
+    }
+    ASSERT_EQ(whatIsWrong(tree, boxes, true), "") << seed;
+    while (!boxes.empty()) {
+      tree.remove(boxes.begin()->first);
+      boxes.erase(boxes.begin());
+    }
+    EXPECT_EQ(tree.root(), DynamicTree::kNone);
+    tree.tidy(1000);
+    tree.insert({3, random.next(1.0f, 1.0f)});
+    EXPECT_EQ(tree.size(), 1u);
+  }
+}
+
+// The nodes of a tree, each as the numbers of its items; of leaves alone.
+std::vector<std::vector<std::uint32_t>> leavesOf(const DynamicTree& tree) {
+  std::vector<std::uint32_t> open{tree.root()};
+  std::vector<std::vector<std::uint32_t>> leaves;
+  while (!open.empty()) {
+    const DynamicTree::Node node = tree.node(open.back());
+    open.pop_back();
+    if (node.leaf) {
+      leaves.emplace_back(node.children.begin(), node.children.end());
+      std::sort(leaves.back().begin(), leaves.back().end());
+    } else {
+      open.insert(open.end(), node.children.begin(), node.children.end());
+    }
+  }
+  std::sort(leaves.begin(), leaves.end());
+  return leaves;
+}
+
+// However many slices it takes, and nothing stops for it: the tree becomes the one that is built at once.
+TEST(DynamicTree, ThatWasFilledOneByOneBecomesTheOneThatIsBuiltOfAList) {
+  for (const std::uint32_t count : {1100u, 30000u}) {
+    for (const std::uint32_t steps : {50u, 3000u}) {
+      RandomBoxes random(count);
+      Boxes boxes;
+      DynamicTree tree, list;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        boxes[i] = random.next(100.0f, 2.0f);
+        tree.insert({i, boxes[i]});
+      }
+      list.build(itemsOf(boxes));
+      EXPECT_NE(leavesOf(tree), leavesOf(list));
+      std::uint32_t calls = 0;
+      while (tree.tidy(steps) < steps) {
+        ++calls;
+      }
+      EXPECT_EQ(leavesOf(tree), leavesOf(list)) << count << " " << steps;
+      EXPECT_EQ(whatIsWrong(tree, boxes, true), "");
+      EXPECT_GT(calls, count / steps);
+    }
+  }
+}
+
 // A world in which everything moves and comes and goes stays about as good as one built anew.
 TEST(DynamicTree, StaysGoodWhateverChanges) {
   RandomBoxes random(3);

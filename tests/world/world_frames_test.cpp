@@ -68,7 +68,7 @@ View sunAt(int frame) {
 }
 
 TEST(WorldFrames, AllocateNothingAfterAFew) {
-  Crowd crowd(900);
+  Crowd crowd(4000);  // so many that their hierarchies are built anew in slices
   WorldCuller culler, ahead;
   ShadowCasters sun;
   WorldSight sight;

@@ -82,6 +82,8 @@ class World {
   // Also removes its instances.
   void removeMesh(MeshId mesh);
 
+  // Makes room for so many instances, so that adding them one by one never copies what is there.
+  void reserve(std::size_t instances);
   // Takes about a microsecond. An instance with a matrix that is not finite, or of a mesh that is not there,
   // is in every answer while it is shown.
   InstanceId add(const Instance& instance);
@@ -139,10 +141,12 @@ class World {
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew
 
   // Call this once a frame: keeps the hierarchy good, in at most about so many steps of some 20 nanoseconds.
-  // Answers are right without it, but culling becomes slower.
+  // Answers are right without it, but culling becomes slower. Where most instances were added one by one, it
+  // builds another hierarchy in the calls to come, about one for 400 instances, and uses the old one until
+  // that is done.
   void tidy(std::uint32_t steps = 10000);
-  // Builds the hierarchy anew, as if all had been added as one list: after a loading screen, where much was
-  // added one by one. Takes half a second for a million instances; no frame needs it.
+  // Builds the hierarchy anew at once, as if all had been added as one list: after a loading screen, where
+  // much was added one by one. Takes half a second for a million instances; no frame needs it.
   void rebuild();
 
  private:

@@ -1,0 +1,165 @@
+// A tree of which much has worn is built anew in slices and then replaced.
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "src/hierarchy/dynamic_tree.h"
+
+namespace sightline::hierarchy {
+namespace {
+
+constexpr std::uint32_t kNumbersInStep = 16;  // that are looked at
+constexpr std::uint32_t kStepsOfCopy = 2;     // that an item takes
+// That an item takes which has come, or has moved or gone, meanwhile.
+constexpr std::uint32_t kStepsOfInsertion = 40, kStepsOfChange = 5;
+constexpr std::size_t kBits = 64;
+
+}  // namespace
+
+// Leaves the tree empty, with its memory.
+void DynamicTree::clear() {
+  nodes_.clear();
+  boxes_.clear();
+  children_.clear();
+  places_.clear();
+  free_.clear();
+  root_ = kNone;
+  size_ = 0;
+  for (std::vector<std::uint32_t>& list : loose_) {
+    list.clear();
+  }
+  worn_.clear();
+  nodes_of_height_ = {};
+  scattered_ = 0;
+  scratch_.clear();
+  shares_.clear();
+  dividing_ = false;
+}
+
+// To be called after each change of an item.
+void DynamicTree::noteChange(std::uint32_t number) {
+  if (replacement_.stage == Replacement::Stage::kNone) {
+    return;
+  }
+  std::vector<std::uint64_t>& changed = replacement_.changed;
+  const bool follows = replacement_.stage == Replacement::Stage::kFollows;
+  if (!follows) {
+    changed.resize(std::max(changed.size(), number / kBits + 1));
+    changed[number / kBits] |= std::uint64_t{1} << number % kBits;
+  } else if (number / kBits >= changed.size() || (changed[number / kBits] >> number % kBits & 1) == 0) {
+    follow(number);
+  }
+}
+
+// Makes an item of the replacement what it is here. Returns how many steps that takes.
+std::uint32_t DynamicTree::follow(std::uint32_t number) {
+  DynamicTree& tree = *replacement_.tree;
+  if (!has(number)) {
+    if (tree.has(number)) {
+      tree.remove(number);
+    }
+    return kStepsOfChange;
+  }
+  if (tree.has(number)) {
+    tree.move({number, boxOf(number)});
+    return kStepsOfChange;
+  }
+  tree.insert({number, boxOf(number)});
+  return kStepsOfInsertion;
+}
+
+void DynamicTree::beginReplacement() {
+  if (replacement_.tree == nullptr) {
+    replacement_.tree = std::make_unique<DynamicTree>();
+  }
+  DynamicTree& tree = *replacement_.tree;
+  tree.clear();
+  tree.reserve(std::max(size_, places_.size()));
+  tree.scratch_.reserve(size_);
+  replacement_.changed.assign((places_.size() + kBits - 1) / kBits, 0);
+  replacement_.next = 0;
+  replacement_.stage = Replacement::Stage::kCollects;
+}
+
+void DynamicTree::proceedReplacement(std::uint32_t& steps) {
+  using Stage = Replacement::Stage;
+  if (replacement_.stage == Stage::kNone) {
+    if (size_ <= kMaxRebuilt || scattered_ * 2 <= size_ || steps == 0) {
+      return;
+    }
+    beginReplacement();
+  }
+  DynamicTree& tree = *replacement_.tree;
+  if (replacement_.stage == Stage::kCollects) {
+    collectForReplacement(steps);
+  }
+  if (replacement_.stage == Stage::kFills) {
+    const std::uint64_t before = tree.steps_taken_;
+    const bool done = tree.fill(steps);
+    steps_taken_ += tree.steps_taken_ - before;
+    if (done) {
+      replacement_.stage = Stage::kFollows;
+      replacement_.next = 0;
+    }
+  }
+  if (replacement_.stage == Stage::kFollows) {
+    std::vector<std::uint64_t>& changed = replacement_.changed;
+    while (steps > 0 && replacement_.next < changed.size()) {
+      std::uint64_t& bits = changed[replacement_.next];
+      if (bits == 0) {
+        ++replacement_.next;
+        spend(steps, replacement_.next % kNumbersInStep == 0 ? 1 : 0);
+        continue;
+      }
+      const auto bit = static_cast<std::uint32_t>(std::countr_zero(bits));
+      bits &= bits - 1;
+      spend(steps, follow(static_cast<std::uint32_t>(replacement_.next * kBits) + bit));
+    }
+    if (replacement_.next == changed.size()) {
+      finishReplacement();
+    }
+  }
+}
+
+// Copies items whose numbers come next. More than there were at first have no room; they are made up for.
+void DynamicTree::collectForReplacement(std::uint32_t& steps) {
+  DynamicTree& tree = *replacement_.tree;
+  std::uint32_t& next = replacement_.next;
+  for (; steps > 0 && next < places_.size(); ++next) {
+    tree.places_.push_back(kNone);
+    if (!has(next)) {
+      spend(steps, next % kNumbersInStep == 0 ? 1 : 0);
+      continue;
+    }
+    if (tree.scratch_.size() < tree.scratch_.capacity()) {
+      tree.scratch_.push_back({next, boxOf(next)});
+    } else {
+      noteChange(next);
+    }
+    spend(steps, kStepsOfCopy);
+  }
+  if (next < places_.size()) {
+    return;
+  }
+  tree.size_ = tree.scratch_.size();
+  if (tree.size_ > 0) {
+    tree.root_ = tree.newNode(tree.heightFor(tree.size_));
+    tree.open(tree.root_, 0, tree.size_);
+  }
+  replacement_.stage = Replacement::Stage::kFills;
+}
+
+void DynamicTree::finishReplacement() {
+  std::unique_ptr<DynamicTree> tree = std::move(replacement_.tree);
+  std::swap(*this, *tree);
+  // What belongs to no tree in particular stays where it was.
+  std::swap(replacement_, tree->replacement_);
+  std::swap(scratch_, tree->scratch_);
+  std::swap(steps_taken_, tree->steps_taken_);
+  tree->clear();
+  replacement_.stage = Replacement::Stage::kNone;
+  replacement_.tree = std::move(tree);
+}
+
+}  // namespace sightline::hierarchy
