@@ -8,6 +8,7 @@
 namespace sightline::hierarchy {
 namespace {
 
+constexpr std::uint32_t kStepsOfNode = 2;  // that tightening takes
 constexpr std::uint32_t kStepsOfItem = 5;  // that building takes, for each item
 constexpr double kWorn = 4.0;              // times the surface area that a node had when it was built
 
@@ -352,7 +353,7 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
       list.pop_back();
       nodes_[node].loose = false;
       tighten(node);
-      spend(steps, 1);
+      spend(steps, kStepsOfNode);
     }
   }
   while (!worn_.empty() && steps > 0) {

@@ -1,0 +1,194 @@
+// Where rounding might decide: matrices that flatten, boxes that stand almost where they were baked, and clip
+// planes far from the origin.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "tests/culling/fake_sets.h"
+#include "tests/support/random_numbers.h"
+#include "tests/world/world_story.h"
+
+namespace sightline {
+namespace {
+
+using namespace world_story;
+
+// A wall of eight panels whose matrices have this third column, joined, and a crate behind it. Single-sided
+// panels lie in the plane of their first two columns, so the third one changes nothing but the sign and size
+// of the determinant, which says what their fronts are.
+struct JoinedWall {
+  Story story{allShapes()};
+  std::vector<InstanceId> panels;
+  InstanceId crate;
+  std::size_t joined = 0;
+
+  explicit JoinedWall(const Vec3d& third_column) {
+    for (int i = 0; i < 8; ++i) {
+      Mat4 m;
+      m(0, 0) = 0.5;
+      m(1, 1) = 4.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        m(axis, 2) = third_column[axis];
+        m(axis, 3) = Vec3d(-2.0 + 0.5 * i, -2.0, -4.0)[axis];
+      }
+      panels.push_back(story.add(1, m));
+    }
+    Mat4 behind;
+    behind(2, 3) = -9.0;
+    crate = story.add(0, behind);
+    WorldJoin join = story.world.prepareJoin(panels);
+    joined = join.instances.size();
+    story.world.use(std::move(join));
+  }
+  bool showsCrate() const {
+    WorldCuller culler({.raster = {.width = 64, .height = 36}});
+    const View view = viewFrom({0, 0, 0}, {0, 0, -1});
+    culler.cull(story.world, view);
+    culler.cull(story.world, view);
+    return keeps(culler, crate);
+  }
+};
+
+TEST(WorldMargins, FlattenedMembersOfJoinsHaveNoSides) {
+  // Thin ones have sides: fronts that are seen hide.
+  for (const double thickness : {1.0, 0x1p-10}) {
+    const JoinedWall wall({0, 0, thickness});
+    EXPECT_EQ(wall.joined, 8u) << thickness;
+    EXPECT_FALSE(wall.showsCrate()) << thickness;
+  }
+  // Mirrored ones turn their backs, and hide nothing.
+  const JoinedWall mirrored({0, 0, -0x1p-10});
+  EXPECT_EQ(mirrored.joined, 8u);
+  EXPECT_TRUE(mirrored.showsCrate());
+  // Flattened: the determinant is 0, or its sign one that rounding may turn.
+  for (const Vec3d& column : {Vec3d(0, 0, 0), Vec3d(0.1, 0.3, 0), Vec3d(0.1, 0.3, 0x1p-60),
+                              Vec3d(0.1, 0.3, -0x1p-60), Vec3d(3.0, 1.0, 0x1p-50)}) {
+    const JoinedWall flat(column);
+    EXPECT_EQ(flat.joined, 0u) << column.x << " " << column.z;
+    EXPECT_TRUE(flat.showsCrate()) << column.x << " " << column.z;
+  }
+}
+
+// Instances of a mesh, turned and scaled, around an origin.
+struct Field {
+  std::mt19937 engine;
+  World world;
+  std::vector<InstanceId> ids;
+  std::vector<Mat4> matrices;
+
+  Field(std::uint32_t seed, const Vec3d& origin) : engine(seed) {
+    auto number = test::numbersFrom<double>(engine);
+    std::vector<Vec3f> corners;
+    for (int i = 0; i < 60; ++i) {
+      corners.emplace_back(Vec3d(number(-1, 1), number(0, 2), number(-1, 1)));
+    }
+    const MeshId mesh = world.addMesh(*makeMesh({.positions = corners.data(), .vertex_count = 60}));
+    world.setOrigin(origin);
+    for (int i = 0; i < 100; ++i) {
+      const double turn = number(0.0, 6.0), size = std::exp2(number(-3.0, 3.0));
+      const Vec3d at = origin + Vec3d(number(-500, 500), number(-20, 20), number(-500, 500));
+      Mat4 m;
+      m(0, 0) = m(2, 2) = size * std::cos(turn);
+      m(0, 2) = size * std::sin(turn);
+      m(2, 0) = -m(0, 2);
+      m(1, 1) = size;
+      for (int axis = 0; axis < 3; ++axis) {
+        m(axis, 3) = at[axis];
+      }
+      ids.push_back(world.add({.mesh = mesh, .world_from_mesh = m}));
+      matrices.push_back(m);
+    }
+  }
+};
+
+TEST(WorldMargins, WhatStandsWhereItWasBakedIsNoTombstoneAndWhatWasMovedIs) {
+  for (const Vec3d& origin : {Vec3d(), Vec3d(1 << 20, 0, -(1 << 22))}) {
+    Field field(3, origin);
+    // Turned meshes have larger boxes in a world than in a bake, so the baked ones are the world's, as
+    // rounding may have left them: a unit in the last place of single precision off, towards either side.
+    std::vector<Box> rounded;
+    for (const InstanceId id : field.ids) {
+      Box box = field.world.boundsOf(id);
+      for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = std::nextafterf(box.min[axis], field.engine() % 2 == 0 ? -1e9f : 1e9f);
+        box.max[axis] = std::nextafterf(box.max[axis], field.engine() % 2 == 0 ? -1e9f : 1e9f);
+      }
+      rounded.push_back(box);
+    }
+    fake_sets::FakeSets sets(rounded);
+    const SetsId standing = field.world.useSets(field.ids, sets.boxes(), origin);
+    EXPECT_EQ(field.world.tombstones(standing), 0u);
+    field.world.dropSets(standing);
+    // Each moved along one axis by eight millionths of its largest coordinate: that is no rounding.
+    for (std::size_t i = 0; i < field.ids.size(); ++i) {
+      const Box& box = rounded[i];
+      const double size = maxComponent(max(abs(Vec3d(box.min)), abs(Vec3d(box.max))));
+      Mat4 moved = field.matrices[i];
+      moved(static_cast<int>(i % 3), 3) += (i % 2 == 0 ? 8e-6 : -8e-6) * size;
+      field.world.setTransform(field.ids[i], moved);
+    }
+    const SetsId shifted = field.world.useSets(field.ids, sets.boxes(), origin);
+    EXPECT_EQ(field.world.tombstones(shifted), field.ids.size());
+  }
+}
+
+// Boxes that reach over a clip plane by less than double precision can tell so far from the origin.
+TEST(WorldMargins, NoBoxThatReachesOverAClipPlaneIsHiddenByItFarAway) {
+  if (std::numeric_limits<long double>::digits < 64) {
+    GTEST_SKIP() << "needs a long double of more digits to judge";
+  }
+  std::size_t over = 0, behind_in_double = 0, hidden = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    std::mt19937 engine(seed);
+    auto number = test::numbersFrom<double>(engine);
+    World world;
+    const double far = std::ldexp(1.0, 20 + static_cast<int>(seed % 12));
+    const Vec3d away(number(-far, far), number(-far, far), number(-far, far));
+    world.setOrigin(away);
+    const Vec3d normal = normalized(Vec3d(number(-1, 1), number(-1, 1), number(-1, 1)));
+    const Plane plane{normal, -dot(normal, away)};
+    WorldCuller culler;
+    culler.setClipPlane(plane);
+    culler.cull(world, viewFrom(away + Vec3d(0, 0, 4), {0, 0, -1}));
+    for (int i = 0; i < 500; ++i) {
+      // A small box around a point of the plane, up to how well double precision knows it.
+      const double error = 0x1p-52 * far;
+      Box box;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double at = number(-4.0, 4.0) * error;
+        box.min[axis] = static_cast<float>(at - 0.25 * error);
+        box.max[axis] = static_cast<float>(at + 0.25 * error);
+      }
+      long double reach = static_cast<long double>(plane.offset);
+      double at_far_corner = plane.evaluate(away);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double corner = normal[axis] > 0.0 ? box.max[axis] : box.min[axis];
+        reach += static_cast<long double>(normal[axis]) *
+                 (static_cast<long double>(away[axis]) + static_cast<long double>(corner));
+        at_far_corner += normal[axis] * corner;
+      }
+      if (reach > 0x1p-60L * far) {
+        ++over;
+        behind_in_double += at_far_corner < 0.0 ? 1 : 0;
+        EXPECT_NE(culler.classify(box), Visibility::kHidden) << seed << " " << i;
+      }
+      // What is surely behind the plane is hidden.
+      const Vec3d below = normal * (-0x1p-40 * far);
+      Box behind;
+      behind.extend(Vec3f(below));
+      hidden += culler.classify(behind) == Visibility::kHidden ? 1 : 0;
+    }
+  }
+  EXPECT_GT(over, 5000u);
+  EXPECT_GT(behind_in_double, 100u);  // which a plane without a margin would have hidden
+  EXPECT_EQ(hidden, 40u * 500u);
+}
+
+}  // namespace
+}  // namespace sightline
