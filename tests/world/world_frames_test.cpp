@@ -16,6 +16,53 @@
 #include "tests/support/count_allocations.h"
 #include "tests/world/world_story.h"
 
+// Counts what this program takes from the C library itself, which operator new does too. Sanitizers have
+// functions of their own.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define SIGHTLINE_TEST_NO_MALLOC
+#endif
+#endif
+#else
+#define SIGHTLINE_TEST_NO_MALLOC
+#endif
+
+namespace {
+std::atomic<std::size_t> from_c{0};
+}
+
+#ifndef SIGHTLINE_TEST_NO_MALLOC
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) noexcept {
+  ++from_c;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  ++from_c;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) noexcept {
+  ++from_c;
+  return __libc_realloc(memory, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  ++from_c;
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  ++from_c;
+  *memory = __libc_memalign(alignment, size);
+  return *memory == nullptr ? 12 : 0;
+}
+}
+#endif
+
 namespace sightline {
 namespace {
 
@@ -95,6 +142,35 @@ TEST(WorldFrames, AllocateNothingAfterAFew) {
     round();
   }
   EXPECT_EQ(round(), 0u);
+}
+
+// So that an engine that replaces operator new sees all memory of a world.
+TEST(WorldFrames, TakeAllMemoryFromOperatorNew) {
+#ifdef SIGHTLINE_TEST_NO_MALLOC
+  GTEST_SKIP() << "the C library's functions cannot be counted here";
+#else
+  const std::size_t c_before = from_c, new_before = allocations;
+  {
+    Crowd crowd(1500);
+    WorldCuller culler;
+    ShadowCasters sun;
+    WorldSight sight;
+    VisibleHistory history;
+    std::vector<Instance> more(2000, {.mesh = crowd.story.meshes[0], .world_from_mesh = Mat4()});
+    std::vector<InstanceId> added;
+    crowd.story.world.add(more, added);
+    for (int frame = 0; frame < 40; ++frame) {
+      crowd.change(frame);
+      culler.cull(crowd.story.world, viewAt(frame));
+      sun.cull(crowd.story.world, sunAt(frame), culler);
+      history.update(crowd.story.world, culler, 1.0 / 60.0);
+      sight.look(crowd.story.world, viewAt(frame).eye, crowd.story.world.boundsOf(added[0]));
+    }
+    crowd.story.world.rebuild();
+  }
+  EXPECT_GT(allocations - new_before, 1000u);
+  EXPECT_EQ(from_c - c_before, allocations - new_before);
+#endif
 }
 
 TEST(WorldFrames, ThreadsThatCullOneWorldGiveTheSameAnswers) {

@@ -69,6 +69,10 @@ struct WorldJoin {
 // origin(), which moves with the camera where the world is large. The axes may be any: nothing depends on
 // which one is up. Calls with an id that is not there have no effect.
 //
+// Memory: all of it, as that of WorldCuller, ShadowCasters and WorldSight, comes from operator new, also the
+// aligned one; replacing that is the hook. About 250 bytes an instance, and from the first time that tidy()
+// builds the hierarchy anew about 100 more.
+//
 // Everything that is not const is for one thread, while no other one reads. Between two changes any number of
 // threads may cull, each with a WorldCuller of its own.
 class World {
