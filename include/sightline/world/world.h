@@ -71,7 +71,7 @@ struct WorldJoin {
 //
 // Memory: all of it, as that of WorldCuller, ShadowCasters and WorldSight, comes from operator new, also the
 // aligned one; replacing that is the hook. About 250 bytes an instance, and from the first time that tidy()
-// builds the hierarchy anew about 100 more.
+// builds the hierarchy anew about 75 more.
 //
 // Everything that is not const is for one thread, while no other one reads. Between two changes any number of
 // threads may cull, each with a WorldCuller of its own.
@@ -146,7 +146,7 @@ class World {
 
   // Call this once a frame: keeps the hierarchy good, in at most about so many steps of some 20 nanoseconds.
   // Answers are right without it, but culling becomes slower. Where most instances were added one by one, it
-  // builds another hierarchy in the calls to come, about one for 400 instances, and uses the old one until
+  // builds another hierarchy in the calls to come, about one for 500 instances, and uses the old one until
   // that is done.
   void tidy(std::uint32_t steps = 10000);
   // Builds the hierarchy anew at once, as if all had been added as one list: after a loading screen, where
