@@ -7,6 +7,21 @@ namespace sightline {
 
 using namespace world;
 
+namespace {
+
+// The sum of the tetrahedra between the triangles and a point near them.
+double volumeOf(const WeldedMesh& mesh) {
+  double six_volumes = 0.0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const Vec3d from(mesh.positions[0]);
+    const auto corner = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.indices[i + k]]) - from; };
+    six_volumes += dot(corner(0), cross(corner(1), corner(2)));
+  }
+  return six_volumes / 6.0;
+}
+
+}  // namespace
+
 Result<WorldMesh> makeMesh(const MeshView& mesh, const MeshSettings& settings,
                            const ParallelFor& parallel_for) {
   const Result<ReadMesh> drawn = readMesh(mesh);
@@ -36,6 +51,7 @@ Result<WorldMesh> makeMesh(const MeshView& mesh, const MeshSettings& settings,
   made.vertices = welded.vertices;
   made.positions = static_cast<std::uint32_t>(welded.positions.size());
   made.open_edges = welded.open_edges;
+  made.volume = volumeOf(welded);
   const Material material{.opacity = Opacity::kOpaque, .double_sided = settings.double_sided};
   const Object object{.index_count = static_cast<std::uint32_t>(hides.indices.size()),
                       .material = MaterialId(0u),

@@ -57,6 +57,21 @@ TEST(WorldMesh, SaysWhatWasWeldedAndWhatStaysOpen) {
   EXPECT_TRUE(light.surfaces.parts.empty());
 }
 
+TEST(WorldMesh, SaysWhetherItIsInsideOut) {
+  Shape box = boxShape();
+  for (Vec3f& corner : box.corners) {
+    corner = {2.0f * corner.x + 100.0f, 3.0f * corner.y, corner.z - 50.0f};
+  }
+  MeshView view = viewOf(box.corners);
+  EXPECT_EQ(makeMesh(view)->volume, 6.0);
+  view.clockwise = true;
+  EXPECT_EQ(makeMesh(view)->volume, -6.0);
+  view.left_handed = true;
+  EXPECT_EQ(makeMesh(view)->volume, 6.0);
+  view.clockwise = false;
+  EXPECT_EQ(makeMesh(view)->volume, -6.0);
+}
+
 // Within the drawn box its far sides show their backs, which are not drawn, so one sees past the box that
 // hides in its place.
 TEST(WorldMesh, AnotherMeshHidesNothingFromWithinTheDrawnOne) {

@@ -57,6 +57,10 @@ struct WorldMesh {
   // At so many edges of the mesh that hides its triangles do not cancel. A closed mesh has none if all of its
   // triangles run the same way around.
   std::uint32_t open_edges = 0;
+  // Cubic metres in the mesh that hides, if it is closed; more where its triangles run counter-clockwise as
+  // seen from outside. Negative: it is inside out. If it is not drawn so, MeshView::clockwise or
+  // MeshView::left_handed is wrong, and it would hide what can be seen.
+  double volume = 0.0;
 };
 
 // A mesh for what has a place and hides nothing: lights, particles, sounds, triggers. Its instances are moved
