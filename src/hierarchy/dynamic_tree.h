@@ -60,8 +60,8 @@ class DynamicTree {
   // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps of about 20
   // nanoseconds, and at most five thousand more. Returns how many steps are left over.
   //
-  // Where more than half of the tree has worn or was inserted one by one, another tree is built of the same
-  // items, over as many calls as that takes, and then replaces it. Its memory is kept for the next time.
+  // Where more than a quarter of the tree has worn or was inserted one by one, another tree is built of the
+  // same items, over as many calls as that takes, and then replaces it. Its memory is kept for the next time.
   std::uint32_t tidy(std::uint32_t steps);
   // Steps that tidy() took so far, all calls together.
   std::uint64_t stepsTaken() const { return steps_taken_; }

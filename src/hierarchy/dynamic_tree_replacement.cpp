@@ -85,7 +85,7 @@ void DynamicTree::beginReplacement() {
 void DynamicTree::proceedReplacement(std::uint32_t& steps) {
   using Stage = Replacement::Stage;
   if (replacement_.stage == Stage::kNone) {
-    if (size_ <= kMaxRebuilt || scattered_ * 2 <= size_ || steps == 0) {
+    if (size_ <= kMaxRebuilt || scattered_ * 4 <= size_ || steps == 0) {
       return;
     }
     beginReplacement();

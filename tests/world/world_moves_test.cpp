@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -138,6 +139,79 @@ TEST(WorldMoves, ManyAtOnceAreAsManyOneByOne) {
       }
     }
   }
+}
+
+// Whether a point is in a view's frustum, and not so near to its sides that rounding might matter.
+bool isWithin(const View& view, const Vec3d& point) {
+  const Vec3d at = point - view.eye;
+  const double depth = dot(at, view.forward), height = 0.999 * depth * view.tan_half_fovy;
+  return depth > 1.001 * view.near && depth < 0.999 * view.far && std::abs(dot(at, view.up)) < height &&
+         std::abs(dot(at, view.right)) < height * view.aspect;
+}
+
+// So many instances that their hierarchies are built anew in slices, all the while they change.
+TEST(WorldMoves, WhateverIsInTheViewIsKeptWhileTheHierarchyIsBuiltAnew) {
+  std::size_t kept = 0, shown = 0;
+  for (std::uint32_t seed = 0; seed < 3; ++seed) {
+    Chance chance(seed);
+    Story story(allShapes());
+    std::vector<InstanceId> ids;
+    const auto add = [&] {
+      ids.push_back(story.add(0, chance.placement(200.0, 6.0), chance.below(20) != 0));
+    };
+    for (int i = 0; i < 3000; ++i) {
+      add();
+    }
+    WorldCuller culler({.occlusion = false});
+    for (int frame = 0; frame < 300; ++frame) {
+      for (int change = 0; change < 20; ++change) {
+        const std::size_t which = chance.below(static_cast<std::uint32_t>(ids.size()));
+        const std::uint32_t kind = chance.below(4);
+        if (kind == 0) {
+          add();
+        } else if (kind == 1) {
+          story.remove(ids[which]);
+          ids[which] = ids.back();
+          ids.pop_back();
+        } else if (kind == 2) {
+          story.show(ids[which], chance.below(3) != 0);
+        } else {
+          story.move(ids[which], chance.placement(200.0, 6.0));
+        }
+      }
+      std::vector<InstanceId> moved;
+      std::vector<Mat4> to;
+      for (std::size_t i = frame % 7; i < ids.size() && frame % 2 == 0; i += 7) {
+        moved.push_back(ids[i]);
+        Told& told = story.told.at(ids[i].value);
+        told.world_from_mesh(0, 3) += chance.eighths(-2.0, 2.0);
+        to.push_back(told.world_from_mesh);
+      }
+      story.world.setTransforms(moved, to);
+      if (frame % 90 == 60) {
+        story.world.setOrigin({chance.eighths(-50.0, 50.0), 0.0, chance.eighths(-50.0, 50.0)});
+      }
+      story.world.tidy(frame % 100 < 50 ? 300 : 3000);
+      const double heading = 0.1 * frame;
+      const View view =
+          viewFrom({chance.eighths(-50, 50), 1.5, 0}, {std::sin(heading), 0.0, std::cos(heading)});
+      culler.cull(story.world, view);
+      kept += culler.visible().size();
+      for (const auto& [id, told] : story.told) {
+        if (!told.shown) {
+          ASSERT_FALSE(keeps(culler, InstanceId(id))) << seed << " " << frame;
+          continue;
+        }
+        ++shown;
+        for (const Vec3f& corner : story.shapes[0].corners) {
+          if (isWithin(view, transformPoint(told.world_from_mesh, Vec3d(corner)))) {
+            ASSERT_TRUE(keeps(culler, InstanceId(id))) << seed << " " << frame;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_LT(2 * kept, shown);
 }
 
 TEST(WorldMoves, InstancesWithoutAMatrixStay) {

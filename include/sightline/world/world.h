@@ -145,9 +145,9 @@ class World {
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew
 
   // Call this once a frame: keeps the hierarchy good, in at most about so many steps of some 20 nanoseconds.
-  // Answers are right without it, but culling becomes slower. Where most instances were added one by one, it
-  // builds another hierarchy in the calls to come, about one for 500 instances, and uses the old one until
-  // that is done.
+  // Answers are right without it, but culling becomes slower. Where a quarter of the instances was added one
+  // by one, it builds another hierarchy in the calls to come, about one for 500 instances, and uses the old
+  // one until that is done.
   void tidy(std::uint32_t steps = 10000);
   // Builds the hierarchy anew at once, as if all had been added as one list: after a loading screen, where
   // much was added one by one. Takes half a second for a million instances; no frame needs it.
