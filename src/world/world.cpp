@@ -303,6 +303,12 @@ void World::remove(InstanceId instance) {
 
 void World::setTransform(InstanceId instance, const Mat4& world_from_mesh) {
   WorldData& own = *data_;
+  const DynamicTree::Item moved = own.movedInPlace(instance, world_from_mesh, own.version + 1);
+  if (moved.number != kNone) {
+    ++own.version;
+    own.moving.move(moved);
+    return;
+  }
   if (!has(instance) || same(own.world_from_mesh[instance.value], world_from_mesh)) {
     return;
   }

@@ -246,7 +246,7 @@ TEST(DynamicTree, IsBuiltAnewInSlicesWhileItChanges) {
     for (std::uint32_t number = 0; number < numbers / 2; ++number) {
       change(number);
     }
-    for (std::uint32_t call = 0; call < 1500; ++call) {
+    for (std::uint32_t call = 0; call < 900; ++call) {
       for (std::uint32_t changes = random.below(20); changes > 0; --changes) {
         change(random.below(numbers));
       }
