@@ -20,6 +20,7 @@
 //
 // Of worlds whose instances were added one by one:
 //
+//   add        the longest time that one of them took, after World::reserve()
 //   list       a static cull of the same world added as a list
 //   single     a static cull before tidy() is called
 //   tidied     a static cull after so many calls of tidy(), of which one takes so long, and the longest
@@ -411,8 +412,8 @@ void measureChanges(std::size_t count) {
     const View view = city.view(frame % kFrames);
     cull.push_back(processorUs([&] { culler.cull(world, view); }));
   }
-  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>7} {:>9.0f} {:>10.0f}", count, list, before, after,
-             calls.size(), settled(calls), largest(calls));
+  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>7} {:>9.0f} {:>10.0f}", count, largest(adding),
+             list, before, after, calls.size(), settled(calls), largest(calls));
   if (!stream.empty()) {
     fmt::print(" {:>10.0f} {:>9.0f} {:>9.0f}", settled(stream), largest(stream), settled(cull));
   }
@@ -443,8 +444,9 @@ int main(int argc, char** argv) {
   for (const std::size_t count : counts) {
     measureQuestions(count);
   }
-  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>10} {:>10} {:>9} {:>9}\n", "instances", "list us",
-             "single us", "tidied us", "calls", "call us", "longest us", "stream us", "worst us", "cull us");
+  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>10} {:>10} {:>9} {:>9}\n", "instances", "add us",
+             "list us", "single us", "tidied us", "calls", "call us", "longest us", "stream us", "worst us",
+             "cull us");
   for (const std::size_t count : counts) {
     measureChanges(count);
   }

@@ -242,6 +242,8 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
 }
 
 void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
+  rests_.reserve(
+      data.instances.capacity());  // so that a world that grows as was reserved copies nothing here
   rests_.resize(std::max(rests_.size(), data.instances.size()));
   listNearFirst(data, view, drawing);
   for (const Candidate& candidate : near_first_) {

@@ -144,6 +144,24 @@ TEST(WorldFrames, AllocateNothingAfterAFew) {
   EXPECT_EQ(round(), 0u);
 }
 
+TEST(WorldFrames, AReservedWorldGrowsWithoutCopyingWhatIsThere) {
+  const auto allocationsFor = [](bool reserves) {
+    World world;
+    const MeshId box = world.addMesh(boxMesh({{0, 0, 0}, {1, 1, 1}}));
+    Chance chance(3);
+    if (reserves) {
+      world.reserve(20000);
+    }
+    const std::size_t before = allocations;
+    for (int i = 0; i < 20000; ++i) {
+      world.add({.mesh = box, .world_from_mesh = chance.placement(60.0, 6.0)});
+    }
+    return allocations - before;
+  };
+  // What remains is lists of numbers: of the mesh's instances, and of nodes that have changed.
+  EXPECT_LT(2 * allocationsFor(true), allocationsFor(false));
+}
+
 // So that an engine that replaces operator new sees all memory of a world.
 TEST(WorldFrames, TakeAllMemoryFromOperatorNew) {
 #ifdef SIGHTLINE_TEST_NO_MALLOC
