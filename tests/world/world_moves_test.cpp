@@ -181,7 +181,7 @@ TEST(WorldMoves, WhateverIsInTheViewIsKeptWhileTheHierarchyIsBuiltAnew) {
       }
       std::vector<InstanceId> moved;
       std::vector<Mat4> to;
-      for (std::size_t i = frame % 7; i < ids.size() && frame % 2 == 0; i += 7) {
+      for (std::size_t i = static_cast<std::size_t>(frame % 7); i < ids.size() && frame % 2 == 0; i += 7) {
         moved.push_back(ids[i]);
         Told& told = story.told.at(ids[i].value);
         told.world_from_mesh(0, 3) += chance.eighths(-2.0, 2.0);
