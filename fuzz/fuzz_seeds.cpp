@@ -8,8 +8,11 @@
 #include <string>
 #include <utility>
 
+#include "sightline/hierarchy/hierarchy.h"
 #include "sightline/io/image.h"
+#include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
+#include "sightline/scene/object_boxes.h"
 #include "src/comparison/occluders/grid_points.h"
 #include "src/occluders/database_cells.h"
 #include "src/occluders/direction_lists.h"
@@ -84,7 +87,37 @@ bool writeSurfaces(const std::string& file) {
   set.cluster_chains = {0};
   set.patch_chains = {{.value = 1}};
   set.chain_vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}};
-  return surfacesFrom(surfaceBytes(set), 1) && write(file, surfaceBytes(set), std::string(1, '\1'));
+  const LargeVector<std::byte> bytes = surfaceBytes(set);
+  return surfacesFrom({bytes}, 1) && write(file, bytes, std::string(1, '\1'));
+}
+
+// One object with two boxes, a polygon and a node of its own. See prepared_fuzz.cpp for the byte before.
+bool writePrepared(const std::string& folder) {
+  const std::string objects(1, '\1');
+  const Box box{{0, 0, 0}, {1, 1, 1}}, half{{0, 0, 0}, {1, 1, 0.5f}};
+  const Hierarchy hierarchy{.nodes = {{.bounds = box, .cost = 2, .is_leaf = 1}},
+                            .objects = {ObjectId(0u)},
+                            .object_count = 1,
+                            .depth = 1};
+  OccluderSet set;
+  set.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  set.lines = {{set.vertices[0], set.vertices[1]}};
+  set.edges = {{.neighbour_count = 1, .mesh_edge_count = 2}, {}, {}};
+  set.neighbours = {{OccluderId(0u), 1}};
+  set.edge_vertices = {{0.5f, 0, 0}};
+  set.occluders = {{.vertex_count = 3, .object = ObjectId(0u), .area = 0.5f, .plane = {{0, 0, 1}, 0}}};
+  set.objects = {ObjectId(0u)};
+  set.first_of_object = set.first_unit_of_object = {0, 1};
+  set.of_object = set.unit_of_object = {OccluderId(0u)};
+  set.bodies = {{.vertex_count = 1, .edge_count = 1, .face_count = 1, .bounds = box}};
+  set.body_vertices = {{0, 0, 0}};
+  set.body_edges = {{}};
+  set.body_faces = {{.plane = {{0, 0, 1}, 0}, .occluder = OccluderId(0u)}};
+  set.body_of = {0};
+  return write(folder + "occluders", occluderBytes(set), objects) && occludersFrom({occluderBytes(set)}, 1) &&
+         write(folder + "hierarchy", hierarchyBytes(hierarchy), objects) &&
+         hierarchyFrom(hierarchyBytes(hierarchy), 1) &&
+         write(folder + "boxes", objectBoxesBytes({{0, 2}, {half, box}}), objects);
 }
 
 template <typename Places>
@@ -139,8 +172,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::string folder = std::string(argv[1]) + "/";
-  const bool written = writeSightFiles(folder + "sight/") && writeSurfaces(folder + "surfaces/triangle") &&
-                       writeDatabases(folder + "database/") && writeCheckpoint(folder + "checkpoint/parts") &&
-                       writeExact(folder + "exact/frame") && writePicture(folder + "png/picture.png");
+  const bool written = writeSightFiles(folder + "sight/") && writeSurfaces(folder + "prepared/triangle") &&
+                       writePrepared(folder + "prepared/") && writeDatabases(folder + "database/") &&
+                       writeCheckpoint(folder + "checkpoint/parts") && writeExact(folder + "exact/frame") &&
+                       writePicture(folder + "png/picture.png");
   return written ? 0 : 1;
 }

@@ -50,6 +50,10 @@ Result<std::string> readFile(const std::string& file) {
 }
 
 Status writeFile(const std::string& file, std::string_view bytes) {
+  return writeFile(file, std::span(&bytes, 1));
+}
+
+Status writeFile(const std::string& file, std::span<const std::string_view> pieces) {
   std::error_code code;
   const fs::file_status status = fs::status(file, code);
   // A device or a pipe is written to, not replaced.
@@ -60,7 +64,9 @@ Status writeFile(const std::string& file, std::string_view bytes) {
     if (!stream) {
       return failure("{}: cannot be written: {}", file, std::strerror(errno));
     }
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    for (const std::string_view bytes : pieces) {
+      stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
     stream.close();
     if (!stream) {
       const std::string reason = std::strerror(errno);

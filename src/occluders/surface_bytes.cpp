@@ -1,5 +1,4 @@
-// Surfaces as bytes: a head, then each array of SurfaceSet as its number of elements and their memory, which
-// begins at a multiple of 16 bytes.
+// Surfaces as bytes: a head, then the arrays of SurfaceSet (src/base/array_bytes.h).
 
 #include <algorithm>
 #include <cmath>
@@ -11,27 +10,20 @@
 #include <type_traits>
 
 #include "sightline/occluders/surface_set.h"
+#include "src/base/array_bytes.h"
 
 namespace sightline {
 namespace {
 
-constexpr std::size_t kAlignment = 16;
-
-// What has to be the same where the bytes are read.
-struct Head {
-  char letters[8] = {'S', 'L', 's', 'u', 'r', 'f', '0', '2'};  // the last two: raise with every change of the
-                                                               // arrays or of findSurfaces()
-  std::uint32_t byte_order = 0x01020304;
-  std::uint32_t sizes = sizeof(SurfaceCluster) | sizeof(SurfacePatch) << 8 | sizeof(SurfaceChain) << 16 |
-                        (offsetof(SurfaceCluster, double_sided) ^ offsetof(SurfacePatch, double_sided)) << 24;
-
-  friend bool operator==(const Head&, const Head&) = default;
-};
-static_assert(sizeof(Head) == kAlignment);
+// The last two letters: raise them with every change of the arrays or of findSurfaces().
+constexpr base::ArraysHead kSurfacesHead{
+    {'S', 'L', 's', 'u', 'r', 'f', '0', '2'},
+    sizeof(SurfaceCluster) | sizeof(SurfacePatch) << 8 | sizeof(SurfaceChain) << 16 |
+        (offsetof(SurfaceCluster, double_sided) ^ offsetof(SurfacePatch, double_sided)) << 24};
 
 // Calls visit(array) for all arrays, always in this order. Set: a SurfaceSet, const or not.
 template <typename Set, typename Visit>
-void forEachArray(Set& set, Visit&& visit) {
+void forEachSurfaceArray(Set& set, Visit&& visit) {
   visit(set.vertices);
   visit(set.triangles);
   visit(set.clusters);
@@ -54,18 +46,8 @@ void forEachArray(Set& set, Visit&& visit) {
   visit(set.chain_vertices);
 }
 
-std::size_t padded(std::size_t bytes) {
-  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
-}
-
 bool isRange(std::uint64_t first, std::uint64_t count, std::size_t size) {
   return first + count <= size;
-}
-
-// first: where each row of the items begins, and one more.
-bool areRows(std::span<const std::uint32_t> first, std::size_t rows, std::size_t items) {
-  return first.size() == rows + 1 && first.front() == 0 && first.back() == items &&
-         std::is_sorted(first.begin(), first.end());
 }
 
 bool allBelow(std::span<const std::uint32_t> numbers, std::size_t end) {
@@ -181,11 +163,11 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
       set.part_bounds.size() != set.parts.size()) {
     return "its parts are broken";
   }
-  if (!areRows(set.first_adjoining, set.parts.size(), set.adjoining.size()) ||
+  if (!base::areRowStarts(set.first_adjoining, set.parts.size(), set.adjoining.size()) ||
       !allBelow(set.adjoining, set.clusters.size())) {
     return "its lists of adjoining clusters are broken";
   }
-  if (!areRows(set.first_of_object, objects, set.of_object.size()) ||
+  if (!base::areRowStarts(set.first_of_object, objects, set.of_object.size()) ||
       !allBelow(set.of_object, set.parts.size()) || set.sizes_of_object.size() != set.of_object.size() ||
       set.object_bounds.size() != objects ||
       !all(set.objects, [objects](ObjectId id) { return id.value < objects; }) ||
@@ -218,56 +200,27 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
 }  // namespace
 
 LargeVector<std::byte> surfaceBytes(const SurfaceSet& set) {
-  std::size_t size = sizeof(Head);
-  forEachArray(set, [&](const auto& array) { size += kAlignment + padded(array.size() * sizeof(array[0])); });
-  LargeVector<std::byte> bytes(size);
-  const Head head;
-  std::memcpy(bytes.data(), &head, sizeof(head));
-  std::size_t at = sizeof(head);
-  forEachArray(set, [&](const auto& array) {
-    using Item = typename std::decay_t<decltype(array)>::value_type;
-    static_assert(std::is_trivially_copyable_v<Item> && alignof(Item) <= kAlignment);
-    const std::uint64_t count = array.size();
-    std::memcpy(&bytes[at], &count, sizeof(count));
-    at += kAlignment;
-    if (count > 0) {
-      std::memcpy(&bytes[at], array.data(), count * sizeof(Item));
-    }
-    at += padded(count * sizeof(Item));
-  });
-  return bytes;
+  std::size_t size = sizeof(kSurfacesHead);
+  forEachSurfaceArray(set, [&](const auto& array) { size += base::ArrayWriter::sizeOf(array); });
+  base::ArrayWriter writer(size);
+  writer.value(kSurfacesHead);
+  forEachSurfaceArray(set, [&](const auto& array) { writer.array(array); });
+  return writer.take();
 }
 
-Result<SurfaceSet> surfacesFrom(std::span<const std::byte> bytes, std::uint32_t object_count) {
-  Head head;
-  if (bytes.size() < sizeof(head)) {
+Result<SurfaceSet> surfacesFrom(const SharedBytes& bytes, std::uint32_t object_count) {
+  if (bytes.bytes.size() < sizeof(kSurfacesHead)) {
     return Error{"the surfaces are cut off: find them again"};
   }
-  std::memcpy(&head, bytes.data(), sizeof(head));
-  if (head != Head{}) {
+  base::ArrayReader reader(bytes);
+  base::ArraysHead head;
+  reader.value(head);
+  if (head != kSurfacesHead) {
     return Error{"these are no surfaces, or those of another version or machine: find them again"};
   }
-  std::size_t at = sizeof(head);
-  bool whole = true;
   SurfaceSet set;
-  forEachArray(set, [&](auto& array) {
-    using Item = typename std::decay_t<decltype(array)>::value_type;
-    std::uint64_t count = 0;
-    whole = whole && bytes.size() - at >= kAlignment;
-    if (!whole) {
-      return;
-    }
-    std::memcpy(&count, &bytes[at], sizeof(count));
-    at += kAlignment;
-    whole = count <= (bytes.size() - at) / sizeof(Item) &&
-            padded(static_cast<std::size_t>(count) * sizeof(Item)) <= bytes.size() - at;
-    if (whole && count > 0) {
-      array.resize(static_cast<std::size_t>(count));
-      std::memcpy(static_cast<void*>(array.data()), &bytes[at], array.size() * sizeof(Item));
-    }
-    at += whole ? padded(static_cast<std::size_t>(count) * sizeof(Item)) : 0;
-  });
-  if (!whole || at != bytes.size()) {
+  forEachSurfaceArray(set, [&](auto& array) { reader.array(array); });
+  if (!reader.complete()) {
     return Error{"the surfaces are cut off, or something follows them: find them again"};
   }
   if (const std::string flaw = flawOf(set, object_count); !flaw.empty()) {

@@ -21,7 +21,7 @@ struct Village {
 TEST(SurfaceBytes, AreReadAsTheyWereWritten) {
   const Village village;
   const LargeVector<std::byte> bytes = surfaceBytes(village.surfaces);
-  const Result<SurfaceSet> read = surfacesFrom(bytes, village.objects);
+  const Result<SurfaceSet> read = surfacesFrom({bytes}, village.objects);
   ASSERT_TRUE(read) << read.error().message;
   const SurfaceSet& set = village.surfaces;
   EXPECT_EQ(read->vertices, set.vertices);
@@ -37,22 +37,22 @@ TEST(SurfaceBytes, AreReadAsTheyWereWritten) {
   }
   EXPECT_EQ(surfaceBytes(*read), bytes);
   const LargeVector<std::byte> none = surfaceBytes(findSurfaces({}));
-  EXPECT_TRUE(surfacesFrom(none, 0)) << "a scene without triangles";
-  EXPECT_FALSE(surfacesFrom(none, 1)) << "of another number of objects";
-  EXPECT_FALSE(surfacesFrom(bytes, village.objects + 1));
+  EXPECT_TRUE(surfacesFrom({none}, 0)) << "a scene without triangles";
+  EXPECT_FALSE(surfacesFrom({none}, 1)) << "of another number of objects";
+  EXPECT_FALSE(surfacesFrom({bytes}, village.objects + 1));
 }
 
 TEST(SurfaceBytes, CutOffAnywhereTheyAreRefused) {
   const Village village;
   const LargeVector<std::byte> bytes = surfaceBytes(village.surfaces);
   for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    const Result<SurfaceSet> read = surfacesFrom(std::span(bytes).first(size), village.objects);
+    const Result<SurfaceSet> read = surfacesFrom({std::span(bytes).first(size)}, village.objects);
     ASSERT_FALSE(read) << size;
     EXPECT_NE(read.error().message.find("find them again"), std::string::npos);
   }
   LargeVector<std::byte> longer = bytes;
   longer.resize(bytes.size() + 16);
-  EXPECT_FALSE(surfacesFrom(longer, village.objects));
+  EXPECT_FALSE(surfacesFrom({longer}, village.objects));
 }
 
 // Whatever is read can be walked through: every index stays within its array.
@@ -93,7 +93,7 @@ TEST(SurfaceBytes, WithAnyBytesChangedTheyAreRefusedOrHarmless) {
     for (int k = 0; k < 3; ++k) {
       changed[random() % changed.size()] = static_cast<std::byte>(random());
     }
-    const Result<SurfaceSet> read = surfacesFrom(changed, village.objects);
+    const Result<SurfaceSet> read = surfacesFrom({changed}, village.objects);
     refused += read ? 0 : 1;
     if (read) {
       walkThrough(*read);
@@ -107,7 +107,8 @@ TEST(SurfaceBytes, WithNumbersThatDrawingCannotComputeWithTheyAreRefused) {
   const auto refuses = [&](auto&& change) {
     SurfaceSet set = village.surfaces;
     change(set);
-    return !surfacesFrom(surfaceBytes(set), village.objects);
+    const LargeVector<std::byte> bytes_of_set = surfaceBytes(set);
+    return !surfacesFrom({bytes_of_set}, village.objects);
   };
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();

@@ -302,5 +302,35 @@ TEST(ObjectBoxes, DoNotDependOnTheThreads) {
   EXPECT_EQ(serial.boxes, other.boxes);
 }
 
+TEST(ObjectBoxes, AreReadAsTheyWereWrittenOrRefused) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> coordinate(-10.0f, 10.0f);
+  Shapes shapes;
+  for (int o = 0; o < 20; ++o) {
+    shapes.addTriangles(20, [&] { return coordinate(random); });
+    shapes.endObject();
+  }
+  const ObjectBoxes boxes = findObjectBoxes(shapes.scene.view());
+  const LargeVector<std::byte> bytes = objectBoxesBytes(boxes);
+  const Result<ObjectBoxes> read = objectBoxesFrom(bytes, 20);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->first, boxes.first);
+  EXPECT_EQ(read->boxes, boxes.boxes);
+  EXPECT_FALSE(objectBoxesFrom(bytes, 21)) << "of another number of objects";
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
+    EXPECT_FALSE(objectBoxesFrom(std::span(bytes).first(size), 20)) << size;
+  }
+  const auto refuses = [&](auto&& change) {
+    ObjectBoxes changed = boxes;
+    change(changed);
+    return !objectBoxesFrom(objectBoxesBytes(changed), 20);
+  };
+  EXPECT_FALSE(refuses([](ObjectBoxes&) {}));
+  EXPECT_TRUE(refuses([](ObjectBoxes& b) { ++b.first.back(); }));
+  EXPECT_TRUE(refuses([](ObjectBoxes& b) { std::swap(b.first[1], b.first[2]); }));
+  EXPECT_TRUE(refuses([](ObjectBoxes& b) { b.boxes[0].max.y = b.boxes[0].min.y - 1.0f; }));
+  EXPECT_TRUE(refuses([](ObjectBoxes& b) { b.first[1] = b.first[2] = b.first[3]; })) << "nine or more boxes";
+}
+
 }  // namespace
 }  // namespace sightline

@@ -70,13 +70,13 @@ TEST(Limits, AFullDiskIsToldWhereverOutputGoes) {
   EXPECT_EQ(printed.err, "sightline: cannot write to standard output\n");
 }
 
-TEST(Limits, SurfacesThatCannotBeKeptAreOnlyTold) {
+TEST(Limits, WhatIsPreparedAndCannotBeKeptIsOnlyTold) {
   const TemporaryFolder folder;
   const Outcome outcome = runLimited("-f 4", {"cull", "demo:building?floors=1", "--method", "depth-pyramid",
                                               "--frames", "0", "--prepared", folder.file("kept")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.errorLines(), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("are not kept"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("is not kept"), std::string::npos) << outcome.err;
   EXPECT_EQ(folder.entries(), 0u);
 }
 

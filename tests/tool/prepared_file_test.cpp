@@ -1,4 +1,4 @@
-// --prepared: surfaces are found once and read from then on.
+// --prepared: what is found in a scene once is read from then on.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@ struct PreparedRun {
   TemporaryFolder folder;
   std::string file = folder.file("city.prepared");
 
-  Outcome cull(const std::string& scene = kSmallCity) const {
-    return runTool({"cull", scene, "--method", "depth-pyramid", "--frames", "0:40:10", "--no-times",
-                    "--prepared", file, "--json", "-"});
+  Outcome cull(const std::string& scene = kSmallCity, const std::string& method = "depth-pyramid") const {
+    return runTool({"cull", scene, "--method", method, "--frames", "0:40:10", "--no-times", "--prepared",
+                    file, "--json", "-"});
   }
   void spoil(std::streamoff at) const {
     std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
@@ -40,6 +40,29 @@ TEST(Prepared, TheSecondRunReadsWhatTheFirstOneFound) {
   EXPECT_EQ(second.err, "");
   EXPECT_EQ(second.out, first.out);
   EXPECT_EQ(std::filesystem::last_write_time(run.file), written);
+}
+
+TEST(Prepared, TheFileGrowsByWhatOtherMethodsNeed) {
+  const PreparedRun run;
+  const std::string without = runTool({"cull", kSmallCity, "--method", "occlusion-tree", "--frames",
+                                       "0:40:10", "--no-times", "--json", "-"})
+                                  .out;
+  ASSERT_EQ(run.cull(kSmallCity, "frustum").code, 0);
+  const auto hierarchy = std::filesystem::file_size(run.file);
+  const Outcome surfaces = run.cull();
+  const auto with_surfaces = std::filesystem::file_size(run.file);
+  EXPECT_GT(with_surfaces, hierarchy);
+  EXPECT_EQ(run.cull(kSmallCity, "occlusion-tree").out, without);
+  const auto with_occluders = std::filesystem::file_size(run.file);
+  EXPECT_GT(with_occluders, with_surfaces);
+  EXPECT_EQ(run.cull(kSmallCity, "occlusion-tree").out, without) << "with occluders of the file";
+  EXPECT_EQ(run.cull().out, surfaces.out);
+  EXPECT_EQ(std::filesystem::file_size(run.file), with_occluders) << "nothing was missing";
+  const Outcome info = runTool({"info", kSmallCity, "--prepared", run.file, "--json", "-"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_GT(std::filesystem::file_size(run.file), with_occluders) << "the other hierarchy";
+  const Outcome again = runTool({"info", kSmallCity, "--prepared", run.file});
+  EXPECT_EQ(again.err, "");
 }
 
 TEST(Prepared, WhatDoesNotFitIsFoundAnew) {
@@ -66,10 +89,11 @@ TEST(Prepared, WhatDoesNotFitIsFoundAnew) {
 
 TEST(Prepared, OtherFilesAreNotWrittenOver) {
   const PreparedRun run;
-  const std::string text = run.folder.write("notes.txt", "not surfaces");
+  const std::string text = run.folder.write("notes.txt", "not prepared");
+  EXPECT_EQ(runTool({"info", "missing.sight", "--prepared", run.file}).code, 2);
   const Outcome notes = runTool({"cull", kSmallCity, "--frames", "0", "--prepared", text});
   EXPECT_EQ(notes.code, 2);
-  EXPECT_NE(notes.err.find("holds no surfaces"), std::string::npos) << notes.err;
+  EXPECT_NE(notes.err.find("holds nothing prepared"), std::string::npos) << notes.err;
   EXPECT_EQ(std::filesystem::file_size(text), 12u);
   const Outcome nowhere =
       runTool({"cull", kSmallCity, "--frames", "0", "--prepared", run.folder.file("no/where.prepared")});

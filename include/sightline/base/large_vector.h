@@ -6,6 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <new>
+#include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace sightline {
@@ -14,27 +19,80 @@ namespace sightline {
 void* allocateLarge(std::size_t bytes);
 void freeLarge(void* memory, std::size_t bytes);  // bytes: as allocated
 
+// Bytes that somebody else owns, such as those of a mapped file. Nobody may change them while they are used.
+struct SharedBytes {
+  std::span<const std::byte> bytes{};
+  std::shared_ptr<const void> owner{};  // the bytes are there for as long as this is
+};
+
+namespace base {
+
+// Items of a vector that are in memory before it is.
+struct GivenItems {
+  std::shared_ptr<const void> owner{};
+  void* begin = nullptr;
+  bool taken = false;     // by the vector, which asks for memory once more if it grows
+  bool complete = false;  // the vector is made: items that it adds are its own
+};
+
+}  // namespace base
+
 template <typename T>
-struct LargeAllocator {
+class LargeAllocator {
+ public:
   using value_type = T;
+  using propagate_on_container_move_assignment = std::true_type;
+  using propagate_on_container_swap = std::true_type;
 
   LargeAllocator() = default;
+  explicit LargeAllocator(std::shared_ptr<base::GivenItems> given) : given_(std::move(given)) {}
   template <typename U>
   LargeAllocator(const LargeAllocator<U>&) {}
+  // A copy of a vector has memory of its own.
+  LargeAllocator select_on_container_copy_construction() const { return {}; }
 
   T* allocate(std::size_t count) {
+    if (given_ != nullptr && !std::exchange(given_->taken, true)) {
+      return static_cast<T*>(given_->begin);
+    }
     constexpr auto kAll = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max());
     return static_cast<T*>(allocateLarge(count > kAll / sizeof(T) ? kAll : count * sizeof(T)));
   }
-  void deallocate(T* memory, std::size_t count) { freeLarge(memory, count * sizeof(T)); }
-
-  template <typename U>
-  friend bool operator==(const LargeAllocator&, const LargeAllocator<U>&) {
-    return true;
+  void deallocate(T* memory, std::size_t count) {
+    if (given_ == nullptr || memory != given_->begin) {
+      freeLarge(memory, count * sizeof(T));
+    }
   }
+  template <typename U>
+  void construct(U* at) {
+    if (given_ == nullptr || given_->complete) {
+      ::new (static_cast<void*>(at)) U();
+    }
+  }
+
+  friend bool operator==(const LargeAllocator& a, const LargeAllocator& b) { return a.given_ == b.given_; }
+
+ private:
+  std::shared_ptr<base::GivenItems> given_;
 };
 
 template <typename T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
+
+// A vector of the items that the bytes hold, without a copy of them: their memory is that of the vector,
+// until it grows. Precondition: the bytes begin where a T may, and are whole ones.
+template <typename T>
+LargeVector<T> vectorOver(const SharedBytes& shared) {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+  if (shared.bytes.empty()) {
+    return {};
+  }
+  // Nothing is written there: see SharedBytes.
+  void* const begin = const_cast<std::byte*>(shared.bytes.data());
+  const auto given = std::make_shared<base::GivenItems>(base::GivenItems{shared.owner, begin});
+  LargeVector<T> items(shared.bytes.size() / sizeof(T), LargeAllocator<T>(given));
+  given->complete = true;
+  return items;
+}
 
 }  // namespace sightline

@@ -3,12 +3,15 @@
 // A binary hierarchy over objects in one flat layout, shared by the kd-tree and the bounding-volume
 // hierarchy.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sightline/base/ids.h"
+#include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
+#include "sightline/base/result.h"
 #include "sightline/math/box.h"
 
 namespace sightline {
@@ -64,5 +67,13 @@ struct HierarchySettings {
 // Bounding-volume hierarchy: binned surface-area heuristic (Wald 2007), with each object in one leaf.
 Hierarchy buildHierarchy(std::span<const Box> object_bounds, std::span<const std::uint32_t> object_cost,
                          const HierarchySettings& settings = {});
+
+// The hierarchy as bytes, to be read again instead of built: on a machine of the same kind, by a program of
+// the same version. They say neither of which objects nor with which settings it was built.
+LargeVector<std::byte> hierarchyBytes(const Hierarchy& hierarchy);
+// Error if they are cut off, of another version, no tree, or do not have all of so many objects. Whether they
+// are those that were written, of these boxes, is for the caller to check, by a checksum: a hierarchy of
+// other boxes hides what is visible.
+Result<Hierarchy> hierarchyFrom(std::span<const std::byte> bytes, std::uint32_t object_count);
 
 }  // namespace sightline

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "sightline/base/ids.h"
 #include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
+#include "sightline/base/result.h"
 #include "sightline/math/box.h"
 #include "sightline/math/plane.h"
 #include "sightline/scene/scene.h"
@@ -185,5 +187,14 @@ struct OccluderPolygon {
 // points are watertight between their polygons. Polygons without area, and those that deviate from convex or
 // planar by more than rounding, are left out, which is conservative: they hide nothing.
 OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons);
+
+// The occluders as bytes, to be read again instead of found: on a machine of the same kind, by a program of
+// the same version. They say neither of which scene nor with which settings they were found.
+LargeVector<std::byte> occluderBytes(const OccluderSet& set);
+// Error if they are cut off, of another version, or name what they do not have; such a set cannot be read
+// beyond its arrays, and all of its numbers are finite. Whether they are those that were written, of this
+// scene, is for the caller to check, by a checksum: occluders of another scene hide what is visible. If the
+// bytes have an owner and begin at a multiple of 16, the arrays of the set lie in them and keep the owner.
+Result<OccluderSet> occludersFrom(const SharedBytes& bytes, std::uint32_t object_count);
 
 }  // namespace sightline

@@ -169,8 +169,9 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings 
 LargeVector<std::byte> surfaceBytes(const SurfaceSet& set);
 // Error if they are cut off, of another version, or name what they do not have; such a set cannot be read
 // beyond its arrays, and all of its numbers are finite. Whether they are those that were written, of this
-// scene, is for the caller to check, by a checksum: surfaces of another scene hide what is visible.
+// scene, is for the caller to check, by a checksum: surfaces of another scene hide what is visible. If the
+// bytes have an owner and begin at a multiple of 16, the arrays of the set lie in them and keep the owner.
 // object_count: of the scene.
-Result<SurfaceSet> surfacesFrom(std::span<const std::byte> bytes, std::uint32_t object_count);
+Result<SurfaceSet> surfacesFrom(const SharedBytes& bytes, std::uint32_t object_count);
 
 }  // namespace sightline

@@ -3,12 +3,15 @@
 // Several boxes an object. One box around an L-shaped house, a diagonal beam or a row of lamps is mostly
 // empty, and the object is kept wherever one corner of that box shows.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sightline/base/ids.h"
+#include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
+#include "sightline/base/result.h"
 #include "sightline/math/box.h"
 #include "sightline/scene/scene.h"
 
@@ -47,5 +50,12 @@ bool areBoxesOf(std::span<const Box> boxes, const Box& bounds);
 // are not finite have one box. The result does not depend on parallel_for.
 ObjectBoxes findObjectBoxes(const SceneView& scene, const ObjectBoxesSettings& settings = {},
                             const ParallelFor& parallel_for = serialFor);
+
+// The boxes as bytes, to be read again instead of found: on a machine of the same kind, by a program of the
+// same version. They say neither of which scene nor with which settings they were found.
+LargeVector<std::byte> objectBoxesBytes(const ObjectBoxes& boxes);
+// Error if they are cut off, of another version or another number of objects, or some are not well formed.
+// Whether they are those that were written, of this scene, is for the caller to check, by a checksum.
+Result<ObjectBoxes> objectBoxesFrom(std::span<const std::byte> bytes, std::uint32_t object_count);
 
 }  // namespace sightline

@@ -58,8 +58,8 @@ std::vector<Setting> distinctSettings(const std::vector<Setting>& settings) {
 Result<std::vector<BenchInput>> loadInputs(const BenchOptions& options) {
   std::vector<BenchInput> inputs;
   if (options.scenes.size() > 1 && !options.method.prepared.empty()) {
-    return Error{fmt::format("--prepared {}: a file has the surfaces of one scene; give one scene",
-                             options.method.prepared)};
+    return Error{
+        fmt::format("--prepared {}: a file is of one scene; give one scene", options.method.prepared)};
   }
   for (const std::string& scene : options.scenes) {
     Stopwatch watch;

@@ -120,6 +120,14 @@ void addCrackWidthOption(CLI::App& command, double& width) {
                    "through them, or within twice this width beside an edge, may be culled");
 }
 
+void addPreparedOption(CLI::App& command, std::string& file) {
+  command
+      .add_option("--prepared", file,
+                  "a file for what is found in the scene once: surfaces, occluders, objects' boxes, "
+                  "hierarchies; read as far as it has them, and written if not")
+      ->type_name(kFileType);
+}
+
 void addCrackWidthsOption(CLI::App& command, std::vector<double>& widths) {
   command
       .add_option(

@@ -73,6 +73,8 @@ void addPathOptions(CLI::App& command, PathOptions& options);
 
 // The width in metres below which cracks count as closed (closeCracks); 0: all stay open.
 void addCrackWidthOption(CLI::App& command, double& width);
+// --prepared: see PreparedFile.
+void addPreparedOption(CLI::App& command, std::string& file);
 // Several of them, separated by commas.
 void addCrackWidthsOption(CLI::App& command, std::vector<double>& widths);
 

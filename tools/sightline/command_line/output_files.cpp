@@ -173,10 +173,14 @@ Status makeFolder(const std::string& folder) {
 }
 
 Status saveFile(const std::string& file, std::string_view bytes) {
+  return saveFile(file, std::span(&bytes, 1));
+}
+
+Status saveFile(const std::string& file, std::span<const std::string_view> pieces) {
   Status saved = Success{};
   {
     const SignalGuard guard;
-    saved = writeFile(file, bytes);
+    saved = writeFile(file, pieces);
   }
   endIfTold();
   return saved;

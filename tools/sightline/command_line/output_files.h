@@ -3,6 +3,7 @@
 // Checks, before the work starts, that no output file of a command is one of its inputs or another output.
 // Writes files whole or not at all.
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,7 @@ Status makeFolder(const std::string& folder);
 // writeFile and writePng, except that a process that is told to end meanwhile ends only when the file is
 // whole.
 Status saveFile(const std::string& file, std::string_view bytes);
+Status saveFile(const std::string& file, std::span<const std::string_view> pieces);
 Status savePicture(const Image& image, const std::string& file);
 
 }  // namespace sightline::tool

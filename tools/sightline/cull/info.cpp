@@ -21,6 +21,7 @@ struct InfoOptions {
   CommonOptions common;
   PathOptions path;
   std::vector<double> crack_widths;
+  std::string prepared;
 };
 
 Json pointJson(const Vec3d& p) {
@@ -261,9 +262,10 @@ void print(const InfoOptions& options, const Scene& scene, CullingData& data, co
 Result<ExitCode> runInfo(const InfoOptions& options) {
   std::vector<double> widths = options.crack_widths;
   std::erase(widths, 0.0);  // that is the scene as it is
-  if (const Status ok = checkFiles({.scenes = {options.common.scene},
-                                    .inputs = walkInputs(options.common.scene, options.path),
-                                    .outputs = {{"--json", options.common.json}}});
+  if (const Status ok =
+          checkFiles({.scenes = {options.common.scene},
+                      .inputs = walkInputs(options.common.scene, options.path),
+                      .outputs = {{"--json", options.common.json}, {"--prepared", options.prepared}}});
       !ok) {
     return ok.error();
   }
@@ -275,6 +277,9 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
     if (!widths.empty() || !options.path.path.empty() || !options.path.frames.empty()) {
       return Error{
           "--crack-width, --path, --frames: a baked file has no surfaces to walk past; leave them out"};
+    }
+    if (!options.prepared.empty()) {
+      return Error{"--prepared: nothing is prepared for a baked file; leave it out"};
     }
     const Status ok = informOnSight(options.common.scene, options.common.json);
     return ok ? Result<ExitCode>(kOk) : ok.error();
@@ -298,7 +303,13 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
     input.walk = std::move(*walk);
     cracks.effect = effectOfClosing(input, widths, threads.parallelFor());
   }
-  CullingData data(scene, threads.parallelFor());
+  Result<PreparedFile> prepared =
+      PreparedFile::open(options.prepared, options.prepared.empty() ? SceneId{} : sceneId(scene.view()), 0.0);
+  if (!prepared) {
+    return prepared.error();
+  }
+  input.prepared = std::move(*prepared);
+  CullingData data(input, threads.parallelFor());
   if (!options.common.json.empty()) {
     if (const Status written = writeOutput(options.common.json, toJson(scene, data, cracks)); !written) {
       return written.error();
@@ -307,6 +318,7 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
   if (options.common.textOnStdout()) {
     print(options, scene, data, cracks);
   }
+  data.keepPrepared();
   return kOk;
 }
 
@@ -321,6 +333,7 @@ void addInfo(CLI::App& app, Command& chosen) {
   addCommonOptions(*command, options->common);
   addPathOptions(*command, options->path);
   addCrackWidthsOption(*command, options->crack_widths);
+  addPreparedOption(*command, options->prepared);
   command->footer(
       "Examples:\n"
       "  sightline info city.glb\n"

@@ -164,7 +164,7 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!walk) {
     return walk.error();
   }
-  Result<PreparedFile> prepared = openPrepared(
+  Result<PreparedFile> prepared = PreparedFile::open(
       method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()), closing.width);
   if (!prepared) {
     return prepared.error();
@@ -213,35 +213,47 @@ const Made& CullingData::makeOnce(std::unique_ptr<Made>& made, const std::string
   return *made;
 }
 
+std::uint32_t CullingData::objectCount() const {
+  return static_cast<std::uint32_t>(bounds_.size());
+}
+
 const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
-  return makeOnce(hierarchies_[static_cast<std::size_t>(kind)], "hierarchy " + nameOf(kHierarchies, kind),
-                  [&] {
-                    HierarchySettings settings;
-                    settings.kind = kind;
-                    return buildHierarchy(bounds_, triangles_, settings);
-                  });
+  const std::string name = nameOf(kHierarchies, kind);
+  return makeOnce(hierarchies_[static_cast<std::size_t>(kind)], "hierarchy " + name, [&] {
+    return prepared_.get(
+        name,
+        [&] {
+          HierarchySettings settings;
+          settings.kind = kind;
+          return buildHierarchy(bounds_, triangles_, settings);
+        },
+        [&](const SharedBytes& bytes) { return hierarchyFrom(bytes.bytes, objectCount()); }, hierarchyBytes);
+  });
 }
 
 const OccluderSet& CullingData::occluders() const {
-  return makeOnce(occluders_, "occluders", [&] { return findOccluders(scene_, {}, parallel_for_); });
+  return makeOnce(occluders_, "occluders", [&] {
+    return prepared_.get(
+        "occluders", [&] { return findOccluders(scene_, {}, parallel_for_); },
+        [&](const SharedBytes& bytes) { return occludersFrom(bytes, objectCount()); }, occluderBytes);
+  });
 }
 
 const SurfaceSet& CullingData::surfaces() {
-  if (prepared_.surfaces) {
-    return *prepared_.surfaces;
-  }
   return makeOnce(surfaces_, "surfaces", [&] {
-    SurfaceSet surfaces = findSurfaces(scene_, {}, parallel_for_);
-    if (!prepared_.name.empty()) {
-      keepPrepared(prepared_, surfaces);
-    }
-    return surfaces;
+    return prepared_.get(
+        "surfaces", [&] { return findSurfaces(scene_, {}, parallel_for_); },
+        [&](const SharedBytes& bytes) { return surfacesFrom(bytes, objectCount()); }, surfaceBytes);
   });
 }
 
 const ObjectBoxes& CullingData::objectBoxes(std::uint32_t most) {
   return makeOnce(object_boxes_[most], "object boxes", [&] {
-    return findObjectBoxes(scene_, {.max_boxes = most, .margin = box_margin_}, parallel_for_);
+    return prepared_.get(
+        fmt::format("boxes {}", most),
+        [&] { return findObjectBoxes(scene_, {.max_boxes = most, .margin = box_margin_}, parallel_for_); },
+        [&](const SharedBytes& bytes) { return objectBoxesFrom(bytes.bytes, objectCount()); },
+        objectBoxesBytes);
   });
 }
 
@@ -364,6 +376,7 @@ Culler CullingData::makeCuller(const Setting& setting) {
     queries_.push_back(std::make_unique<SetQuery>(*baked_));
     scene.sets = queries_.back().get();
   }
+  keepPrepared();
   Culler culler(scene, makeMethod(setting), setting.culler);
   culler.setParallelFor(parallel_for_);
   return culler;

@@ -116,6 +116,8 @@ class CullingData {
   const OccluderSet& occluders() const;
   const SurfaceSet& surfaces();
   const ObjectBoxes& objectBoxes(std::uint32_t most);  // at most so many an object
+  // Keeps them in the prepared file, if there is one and they are not in it. makeCuller() does so too.
+  void keepPrepared() { prepared_.keep(); }
   // What was made of these, in order, and how long it took.
   struct Stage {
     std::string name;
@@ -140,6 +142,7 @@ class CullingData {
   std::uint64_t trianglesOf(std::span<const ObjectId> objects) const;
 
  private:
+  std::uint32_t objectCount() const;
   void countTriangles(const SceneView& scene);
   const OccluderDatabase* databaseFor(const Setting& setting, bool turned_away,
                                       std::unique_ptr<TimedDatabase>& database);
@@ -153,7 +156,7 @@ class CullingData {
 
   ParallelFor parallel_for_;
   double box_margin_ = 0.0;  // ObjectBoxesSettings::margin
-  PreparedFile prepared_;
+  mutable PreparedFile prepared_;
   std::vector<Vec3d> walk_;  // the walk's viewpoints in scene space
   std::vector<Box> bounds_;
   std::vector<std::uint32_t> triangles_;

@@ -1,17 +1,18 @@
-// A file: surfaceBytes(), and behind them eight letters, the scene's id, the width of the
-// cracks that were closed and a checksum of all before it.
+// A file: Head, a Row for each section, and the sections, each of which begins at a multiple of 16 bytes.
 
 #include "tools/sightline/input/prepared_file.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string_view>
 
-#include "sightline/io/file.h"
+#include "src/pvs/query/mapped_file.h"
 #include "tools/sightline/command_line/output_files.h"
 
 #define XXH_INLINE_ALL
@@ -20,79 +21,165 @@
 namespace sightline::tool {
 namespace {
 
-struct Tail {
-  char letters[8] = {'S', 'L', 'p', 'r', 'e', 'p', '0', '2'};
+constexpr char kLetters[8] = {'S', 'L', 'p', 'r', 'e', 'p', '0', '3'};  // the last two: the version
+constexpr std::size_t kLettersOfAll = 6;                                // versions have the same ones
+
+struct Head {
+  char letters[8];
   SceneId scene{};
   std::uint64_t crack_width = 0;  // the bits of a double, metres
-  std::uint64_t checksum = 0;
+  std::uint64_t sections = 0;
+  std::uint64_t checksum = 0;  // of all before it, and of the rows
 };
-static_assert(std::has_unique_object_representations_v<Tail>);
+struct Row {
+  char name[16];  // ends with at least one 0
+  std::uint64_t begin = 0, size = 0;
+  std::uint64_t checksum = 0;  // of the section
+  std::uint64_t unused = 0;
+};
+static_assert(std::has_unique_object_representations_v<Head> &&
+              std::has_unique_object_representations_v<Row>);
 
-constexpr std::string_view kBegin = "SLsurf";  // of surfaceBytes()
+constexpr std::size_t kAlignment = 16;
 
-// Why the surfaces in the file cannot be used; empty if they can.
-std::string read(std::string_view text, PreparedFile& file) {
-  Tail tail;
-  if (text.size() < sizeof(tail)) {
-    return "it is cut off";
-  }
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
-  std::memcpy(&tail, bytes.last(sizeof(tail)).data(), sizeof(tail));
-  if (std::memcmp(tail.letters, Tail{}.letters, sizeof(tail.letters)) != 0) {
-    return "it is cut off, or of another version";
-  }
-  if (tail.checksum != pvs::checksumOf(bytes.first(bytes.size() - sizeof(tail.checksum)))) {
-    return "it is damaged";
-  }
-  if (tail.crack_width != std::bit_cast<std::uint64_t>(file.crack_width)) {
-    return fmt::format("it is of --crack-width {}", std::bit_cast<double>(tail.crack_width));
-  }
-  if (tail.scene != file.scene) {
-    return "it is of another scene";
-  }
-  Result<SurfaceSet> surfaces =
-      surfacesFrom(bytes.first(bytes.size() - sizeof(tail)), static_cast<std::uint32_t>(file.scene.objects));
-  if (!surfaces) {
-    return surfaces.error().message;
-  }
-  file.surfaces = std::make_shared<SurfaceSet>(std::move(*surfaces));
-  return "";
+std::size_t aligned(std::size_t size) {
+  return (size + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+std::uint64_t checksumOf(const Head& head, std::span<const Row> rows) {
+  pvs::Checksum sum;
+  sum.add(std::as_bytes(std::span(&head, 1)).first(offsetof(Head, checksum)));
+  sum.add(std::as_bytes(rows));
+  return sum.value();
 }
 
 }  // namespace
 
-Result<PreparedFile> openPrepared(const std::string& name, const SceneId& scene, double crack_width) {
-  PreparedFile file{name, scene, crack_width};
+Result<PreparedFile> PreparedFile::open(const std::string& name, const SceneId& scene, double crack_width) {
+  PreparedFile file;
+  file.name_ = name;
+  file.scene_ = scene;
+  file.crack_width_ = crack_width;
   std::error_code ignored;
   if (name.empty() || !std::filesystem::exists(name, ignored)) {
     return file;
   }
-  const Result<std::string> text = readFile(name);
-  if (!text) {
-    return Error{"--prepared " + text.error().message};
+  Result<pvs::MappedFile> opened = pvs::MappedFile::open(name);
+  if (!opened) {
+    return Error{fmt::format("--prepared {}: {}", name, opened.error().message)};
   }
-  if (!text->empty() && !text->starts_with(kBegin)) {
-    return Error{fmt::format("--prepared {}: is there and holds no surfaces; name another file", name)};
+  const auto mapped = std::make_shared<pvs::MappedFile>(std::move(*opened));
+  const std::span<const std::byte> bytes = mapped->bytes();
+  if (!bytes.empty() &&
+      (bytes.size() < kLettersOfAll || std::memcmp(bytes.data(), kLetters, kLettersOfAll) != 0)) {
+    return Error{fmt::format("--prepared {}: is there and holds nothing prepared; name another file", name)};
   }
-  if (const std::string reason = read(*text, file); !reason.empty()) {
-    fmt::print(stderr, "sightline: {} is written anew: {}\n", name, reason);
+  if (const std::string reason = file.read({bytes, mapped}); !reason.empty()) {
+    file.sections_.clear();
+    file.refuse(reason);
   }
   return file;
 }
 
-void keepPrepared(const PreparedFile& file, const SurfaceSet& surfaces) {
-  LargeVector<std::byte> bytes = surfaceBytes(surfaces);
-  const std::size_t size = bytes.size();
-  Tail tail;
-  tail.scene = file.scene;
-  tail.crack_width = std::bit_cast<std::uint64_t>(file.crack_width);
-  bytes.resize(size + sizeof(tail));
-  std::memcpy(&bytes[size], &tail, sizeof(tail));
-  tail.checksum = pvs::checksumOf(std::span(bytes).first(bytes.size() - sizeof(tail.checksum)));
-  std::memcpy(&bytes[size], &tail, sizeof(tail));
-  const Status kept = saveFile(file.name, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  if (!kept) {
-    fmt::print(stderr, "sightline: the surfaces are not kept: {}\n", kept.error().message);
+std::string PreparedFile::read(const SharedBytes& file) {
+  const std::span<const std::byte> bytes = file.bytes;
+  Head head;
+  if (bytes.size() < sizeof(head)) {
+    return "it is cut off";
+  }
+  std::memcpy(&head, bytes.data(), sizeof(head));
+  if (std::memcmp(head.letters, kLetters, sizeof(kLetters)) != 0) {
+    return "it is of another version";
+  }
+  if (head.sections > (bytes.size() - sizeof(head)) / sizeof(Row)) {
+    return "it is cut off";
+  }
+  std::vector<Row> rows(static_cast<std::size_t>(head.sections));
+  if (!rows.empty()) {
+    std::memcpy(rows.data(), &bytes[sizeof(head)], rows.size() * sizeof(Row));
+  }
+  if (head.checksum != checksumOf(head, rows)) {
+    return "it is damaged";
+  }
+  if (head.crack_width != std::bit_cast<std::uint64_t>(crack_width_)) {
+    return fmt::format("it is of --crack-width {}", std::bit_cast<double>(head.crack_width));
+  }
+  if (head.scene != scene_) {
+    return "it is of another scene";
+  }
+  for (const Row& row : rows) {
+    if (row.begin > bytes.size() || row.size > bytes.size() - row.begin) {
+      return "it is cut off";
+    }
+    sections_.push_back(
+        {row.name,
+         {bytes.subspan(static_cast<std::size_t>(row.begin), static_cast<std::size_t>(row.size)), file.owner},
+         row.checksum});
+  }
+  return "";
+}
+
+std::optional<SharedBytes> PreparedFile::find(const std::string& name) {
+  const auto section = std::find_if(sections_.begin(), sections_.end(),
+                                    [&](const Section& candidate) { return candidate.name == name; });
+  if (section == sections_.end()) {
+    return {};
+  }
+  if (section->checksum && *section->checksum != pvs::checksumOf(section->bytes.bytes)) {
+    refuse("it is damaged");
+    sections_.erase(section);
+    return {};
+  }
+  section->checksum.reset();
+  return section->bytes;
+}
+
+void PreparedFile::add(const std::string& name, LargeVector<std::byte> bytes) {
+  std::erase_if(sections_, [&](const Section& section) { return section.name == name; });
+  const auto owner = std::make_shared<const LargeVector<std::byte>>(std::move(bytes));
+  sections_.push_back({name, {*owner, owner}});
+  grown_ = true;
+}
+
+void PreparedFile::refuse(const std::string& reason) const {
+  fmt::print(stderr, "sightline: {} is written anew: {}\n", name_, reason);
+}
+
+void PreparedFile::keep() {
+  if (!std::exchange(grown_, false)) {
+    return;
+  }
+  Head head;
+  std::memcpy(head.letters, kLetters, sizeof(kLetters));
+  head.scene = scene_;
+  head.crack_width = std::bit_cast<std::uint64_t>(crack_width_);
+  head.sections = sections_.size();
+  std::vector<Row> rows;
+  std::vector<std::string_view> pieces;
+  static constexpr char kPadding[kAlignment] = {};
+  std::size_t end = sizeof(head) + sections_.size() * sizeof(Row);
+  for (const Section& section : sections_) {
+    const std::span<const std::byte> bytes = section.bytes.bytes;
+    Row row{};
+    section.name.copy(row.name, sizeof(row.name) - 1);
+    row.begin = aligned(end);
+    row.size = bytes.size();
+    row.checksum = section.checksum ? *section.checksum : pvs::checksumOf(bytes);
+    rows.push_back(row);
+    pieces.push_back({kPadding, aligned(end) - end});
+    pieces.push_back({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    end = aligned(end) + bytes.size();
+  }
+  head.checksum = checksumOf(head, rows);
+  pieces.insert(pieces.begin(), {{reinterpret_cast<const char*>(&head), sizeof(head)},
+                                 {reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(Row)}});
+  if (const Status kept = saveFile(name_, pieces); !kept) {
+    fmt::print(stderr, "sightline: what was prepared is not kept: {}\n", kept.error().message);
+    return;
+  }
+  // From now on the sections lie in the file, and not in memory besides.
+  if (Result<PreparedFile> written = open(name_, scene_, crack_width_)) {
+    *this = std::move(*written);
   }
 }
 

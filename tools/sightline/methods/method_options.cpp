@@ -582,10 +582,7 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
                   "a .sight file of the scene: its visible sets, and its occluder databases in place of "
                   "those that would be built")
       ->type_name(kFileType);
-  command
-      .add_option("--prepared", options.prepared,
-                  "a file for the surfaces of the scene: read if it has them, and written if not")
-      ->type_name(kFileType);
+  addPreparedOption(command, options.prepared);
   addCrackWidthOption(command, options.crack_width);
   if (CLI::Option* path = command.get_option_no_throw("--path")) {
     path->description(path->get_description() +
