@@ -24,8 +24,9 @@ help:
 	@echo "make tidy                   clang-tidy over the library and the tool (TIDY=src: over that folder; CHECKS=-x: less x)"
 	@echo "PRESET=dev|release|sanitize and JOBS=N hold for all of them. Packages that are missing get installed."
 
+# The sanitizers are clang's.
 setup:
-	@scripts/setup
+	@scripts/setup $(if $(filter sanitize,$(PRESET)),--checks)
 
 # What a first picture needs is built first.
 demo: setup
@@ -61,13 +62,9 @@ format:
 
 format-check:
 	@scripts/setup --checks
-	@$(cpp_files) | xargs clang-format --dry-run -Werror
+	@$(cpp_files) | xargs -P $(JOBS) -n 100 clang-format --dry-run -Werror
 	@echo "format: as .clang-format says"
 
-# Of the preset dev, which compiles each source alone, so that clang-tidy finds how.
 tidy:
 	@scripts/setup --checks
-	@cmake --preset dev --log-level=WARNING
-	@cmake --build build/dev --target sight_schema_header
-	@{ find $(TIDY) -name '*.cpp' | sort | xargs -P $(JOBS) -n 1 clang-tidy --quiet $(if $(CHECKS),--checks=$(CHECKS)) -p build/dev; } 2> /dev/null
-	@echo "tidy: nothing to say"
+	@JOBS=$(JOBS) CHECKS="$(CHECKS)" scripts/tidy $(TIDY)

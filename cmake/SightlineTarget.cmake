@@ -60,6 +60,8 @@ function(sightline_unity target)
     endif()
   endforeach()
   set_source_files_properties(${own_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_target_properties(${target} PROPERTIES
+    UNITY_BUILD_CODE_BEFORE_INCLUDE "// NOLINTNEXTLINE(bugprone-suspicious-include)")
 endfunction()
 
 function(sightline_library name)

@@ -240,7 +240,8 @@ TEST(Culler, KeepsEverythingWhereTheHierarchyIsOfOtherBoxes) {
     invalid.objects.back() = ObjectId();
     twice.objects.front() = twice.objects.back();
     for (const auto& [name, settings, stands_for_method] : allMethods()) {
-      const auto keptBy = [&](const Hierarchy& hierarchy, std::span<const Box> bounds) {
+      const auto keptBy = [&, &name = name, &settings = settings](const Hierarchy& hierarchy,
+                                                                  std::span<const Box> bounds) {
         AnyCuller culler(hierarchy, bounds, occluders, settings);
         visibleOf(culler, street.view);
         const Objects kept = visibleOf(culler, street.view);

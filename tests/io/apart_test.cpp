@@ -171,7 +171,7 @@ TEST(RunApart, HandlersOfThisProcessDoNotRunThereAndIgnoredSignalsStayIgnored) {
   std::signal(SIGINT, ignored);
 }
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(SIGHTLINE_SANITIZED)
 // An answer of 512 MiB, where this process may have no more.
 TEST(RunApart, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
   constexpr int kNoMemory = 7, kChildLeft = 8, kDescriptorLeft = 9;

@@ -14,7 +14,6 @@ namespace sightline {
 namespace {
 
 using made::Answer;
-using made::Way;
 
 // Compares all sorters in every `step`th frame, and in some frames with a fresh sorter.
 void expectSameInAllFrames(const MovingScene& scene, const std::vector<ExtentAxis>& extents,
@@ -91,7 +90,7 @@ TEST(LayerSorterScenes, ToothpicksOfAnySizeAnywhereAreGroupedTheSame) {
        {std::pair(1e-6, 0.0), {1e6, 0.0}, {1.0, 1e6}, {1e-6, 1.0}, {1e6, -1e9}}) {
     SCOPED_TRACE(::testing::Message() << "scale " << scale << ", shift " << shift);
     MovingScene elsewhere = scene;
-    elsewhere.pose = [&](std::uint32_t frame, std::span<Mat4> world_from_part) {
+    elsewhere.pose = [&, scale = scale, shift = shift](std::uint32_t frame, std::span<Mat4> world_from_part) {
       scene.pose(frame, world_from_part);
       for (Mat4& m : world_from_part) {
         for (int row = 0; row < 3; ++row) {

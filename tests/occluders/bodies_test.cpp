@@ -213,7 +213,8 @@ TEST(Bodies, ABoxWithAVertexOfOneSideAloneOnAnEdgeIsNone) {
       if (face[i] == 0 && face[(i + 1) % face.size()] == 1) {
         face.insert(face.begin() + static_cast<std::ptrdiff_t>(i) + 1, 8);
         // The fan starts where no triangle has all its corners on the edge.
-        std::ranges::rotate(face, face.begin() + static_cast<std::ptrdiff_t>((i + 3) % face.size()));
+        std::rotate(face.begin(), face.begin() + static_cast<std::ptrdiff_t>((i + 3) % face.size()),
+                    face.end());
         expectNoBody(cracked, 6);
         return;
       }

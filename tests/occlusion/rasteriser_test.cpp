@@ -108,7 +108,8 @@ TEST(Rasteriser, NeverCoversAPixelThatAGapCrosses) {
   for (const auto& [width, height] : {std::pair(64u, 36u), {128u, 128u}, {320u, 180u}, {1u, 1u}}) {
     for (const double yaw : {0.0, 0.5, -0.8}) {
       for (const bool orthographic : {false, true}) {
-        forEachGap([&](std::span<const OraclePolygon> walls, const Box&, const std::string& what) {
+        forEachGap([&, width = width, height = height](std::span<const OraclePolygon> walls, const Box&,
+                                                       const std::string& what) {
           View view = turned(kLookingBack, yaw, orthographic);
           view.aspect = static_cast<double>(width) / height;
           const Drawn drawn(view, walls, {width, height});

@@ -39,6 +39,27 @@ TEST(Repository, NoFileHoldsAMarkOfUnfinishedWork) {
   }
 }
 
+// clang-tidy looks for them only in sources that are compiled alone, which most are not.
+TEST(Repository, EveryUsingDeclarationAndNamespaceAliasOfASourceIsUsed) {
+  const std::regex declaration(R"(using [\w:]+::(\w+);|namespace (\w+) = [\w:]+;)");
+  int declarations = 0;
+  for (const std::string& file : projectFiles()) {
+    if (std::filesystem::path(file).extension() != ".cpp") {
+      continue;
+    }
+    const std::string text = contentOf(file);
+    for (const std::smatch& found : allMatches(text, declaration)) {
+      ++declarations;
+      const std::string name = found[1].matched ? found[1] : found[2];
+      const std::regex use("\\b" + name + "\\b");
+      EXPECT_TRUE(std::regex_search(text.cbegin(), found[0].first, use) ||
+                  std::regex_search(found[0].second, text.cend(), use))
+          << file << ": " << found[0];
+    }
+  }
+  EXPECT_GT(declarations, 50);
+}
+
 TEST(Repository, NoFileIsLargerThanTwoMebibytes) {
   for (const std::string& file : projectFiles()) {
     EXPECT_LE(std::filesystem::file_size(sourceRoot() / file), 2u << 20) << file;

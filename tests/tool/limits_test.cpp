@@ -80,7 +80,7 @@ TEST(Limits, WhatIsPreparedAndCannotBeKeptIsOnlyTold) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // which reserves more memory than there is
+#if !defined(SIGHTLINE_SANITIZED)  // which reserves more memory than there is
 TEST(Limits, TooLittleMemoryIsTold) {
   const Outcome outcome = runLimited("-v 700000", {"info", "demo:boxes?boxes=1000000"});
   EXPECT_EQ(outcome.code, 2) << outcome.err;
