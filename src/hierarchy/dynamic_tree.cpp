@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "src/math/longest_axis.h"
+
 namespace sightline::hierarchy {
 namespace {
 
@@ -18,14 +20,13 @@ Box united(const Box& a, const Box& b) {
 }
 
 // The axis along which the centres of boxes are spread most.
-int longestAxis(std::span<const DynamicTree::Item> items) {
+int axisOfSpread(std::span<const DynamicTree::Item> items) {
   Vec3d low = center(items[0].box), high = low;
   for (const DynamicTree::Item& item : items) {
     low = min(low, center(item.box));
     high = max(high, center(item.box));
   }
-  const Vec3d size = high - low;
-  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return math::longestAxis(high - low);
 }
 
 void sortAlong(std::span<DynamicTree::Item> items, int axis) {
@@ -396,7 +397,7 @@ void DynamicTree::fill(std::uint32_t node, std::span<Item> items) {
       if (share.shares > 1) {
         const std::size_t left = share.shares / 2, count = share.count * left / share.shares;
         const std::span<Item> part = items.subspan(share.first, share.count);
-        const int axis = longestAxis(part);
+        const int axis = axisOfSpread(part);
         std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count), part.end(),
                          [axis](const Item& a, const Item& b) {
                            const float x = a.box.min[axis] + a.box.max[axis],
