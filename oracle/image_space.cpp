@@ -1,5 +1,7 @@
 #include "oracle/image_space.h"
 
+#include "src/math/longest_axis.h"
+
 namespace sightline {
 namespace {
 
@@ -24,8 +26,7 @@ ImageSpace::ImageSpace(const View& view, std::span<const Vec3f> positions, int l
   if (!view.orthographic) {
     return;
   }
-  const Vec3d along = abs(view.forward);
-  axis_ = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
+  axis_ = math::longestAxis(abs(view.forward));
   const double shift = std::max(std::abs(view.shift_x), std::abs(view.shift_y));
   const int size = std::ilogb(0.5 * view.ortho_height * std::max(view.aspect, 1.0) * (1.0 + shift));
   last_ = std::ldexp(view.forward[axis_] > 0.0 ? 1.0 : -1.0, size);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "src/math/longest_axis.h"
+
 namespace sightline {
 
 // Widened by far more than the rounding of this test and of a direction in double precision, which over the
@@ -69,8 +71,7 @@ std::uint32_t TriangleTree::join(std::vector<std::uint32_t>& parts) {
     for (std::size_t i = begin; i < end; ++i) {
       node.box.extend(nodes_[parts[i]].box);
     }
-    const Vec3f extent = node.box.extent();
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const int axis = math::longestAxis(node.box.extent());
     const std::size_t middle = (begin + end) / 2;
     const auto at = [&](std::size_t i) { return parts.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {

@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string_view text = textOf(data, size);
   const char* const format = kFormats[takeByte(text) % kFormats.size()];
   const std::string file = folder().write(std::string("fuzz") + format, text);
-  const Result<Scene> apart = io::importAssimpApart(file, text.size(), kLimits, /*most_seconds=*/1);
+  const Result<Scene> apart = io::importAssimpInChild(file, text.size(), kLimits, /*most_seconds=*/1);
   if (!apart) {
     requireOneLine(apart.error());
     return 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/math/longest_axis.h"
+
 namespace sightline::hierarchy {
 namespace {
 
@@ -38,7 +40,7 @@ bool SlicedDivision::proceed(std::span<NumberedBox> items, std::uint32_t& steps)
       return false;
     }
     const Vec3d size = most_ - least_;
-    before_.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    before_.axis = math::longestAxis(size);
   }
   while (low_ < middle_ && middle_ < high_) {
     if (!partitioning_ && high_ - low_ <= std::max(kFew, std::size_t{steps} * kSelectedInStep)) {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "sightline/math/mat4.h"
-#include "src/io/apart.h"
+#include "src/io/child_process.h"
 #include "src/io/failure.h"
 #include "src/io/scene_bytes.h"
 
@@ -209,14 +209,14 @@ Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits) 
   }
 }
 
-Result<Scene> importAssimpApart(const std::string& file, std::uint64_t file_bytes, const ImportLimits& limits,
-                                std::uint32_t most_seconds) {
+Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_bytes,
+                                  const ImportLimits& limits, std::uint32_t most_seconds) {
   const std::uint64_t seconds = kReaderSeconds + file_bytes / kReaderBytesInSecond;
-  const ApartLimits own{
+  const ChildLimits own{
       .memory_bytes = kReaderBytes + kReaderBytesEach * file_bytes,
       .seconds = static_cast<std::uint32_t>(std::min<std::uint64_t>(seconds, most_seconds))};
   // The first byte tells a scene from an error's text.
-  const Result<std::vector<std::byte>> answer = runApart(own, [&] {
+  const Result<std::vector<std::byte>> answer = runInChild(own, [&] {
     const Result<Scene> scene = importAssimp(file, limits);
     std::vector<std::byte> bytes{std::byte{scene ? kScene : kError}};
     const auto append = [&bytes](std::span<const std::byte> more) {

@@ -9,6 +9,7 @@
 
 #include "sightline/io/file.h"
 #include "src/io/failure.h"
+#include "src/io/point_json.h"
 
 namespace sightline {
 
@@ -112,15 +113,11 @@ Result<Vec3d> readVector(const json& object, const char* key, const std::string&
   if (found == object.end()) {
     return failure("{}: \"{}\" is missing", where, key);
   }
-  const bool numbers = found->is_array() && found->size() == 3 && (*found)[0].is_number() &&
-                       (*found)[1].is_number() && (*found)[2].is_number();
-  const Vec3d vector =
-      numbers ? Vec3d((*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>())
-              : Vec3d(NAN, NAN, NAN);
-  if (!isFinite(vector)) {
+  const std::optional<Vec3d> vector = pointOf(*found);
+  if (!vector) {
     return missing(where, key, "three finite numbers");
   }
-  return vector;
+  return *vector;
 }
 
 Result<CameraFrame> readFrame(const json& object, const std::string& where) {
@@ -207,10 +204,6 @@ Result<CameraPath> readPath(const json& document, const std::string& name) {
   return path;
 }
 
-json toArray(const Vec3d& vector) {
-  return json::array({vector.x, vector.y, vector.z});
-}
-
 }  // namespace
 
 Result<CameraPath> parseCameraPath(std::string_view text, const std::string& name_in_errors,
@@ -249,7 +242,7 @@ std::string toJson(const CameraPath& path) {
   document["frames"] = json::array();
   for (const CameraFrame& frame : path.frames) {
     document["frames"].push_back(
-        {{"eye", toArray(frame.eye)}, {"forward", toArray(frame.forward)}, {"up", toArray(frame.up)}});
+        {{"eye", pointJson(frame.eye)}, {"forward", pointJson(frame.forward)}, {"up", pointJson(frame.up)}});
   }
   // Invalid UTF-8 in a name must not throw.
   return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

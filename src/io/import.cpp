@@ -44,7 +44,7 @@ Result<Scene> importScene(const std::string& file) {
   }
   const std::uint64_t file_bytes = bytes->size();
   *bytes = {};  // Assimp reads the file itself, with the others that it names
-  return importAssimpApart(file, file_bytes, ImportLimits{});
+  return importAssimpInChild(file, file_bytes, ImportLimits{});
 }
 
 }  // namespace sightline

@@ -1,6 +1,6 @@
 #pragma once
 
-// How a scene comes back from the process that reads it (apart.h).
+// How a scene comes back from the process that reads it (child_process.h).
 
 #include <cstddef>
 #include <optional>

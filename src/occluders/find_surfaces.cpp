@@ -155,6 +155,7 @@ SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
     occluders::divideEdges(mesh, parallel_for);
   }
   const occluders::Gathered gathered = occluders::gatherTriangles(scene, mesh, settings, parallel_for, set);
+  mesh.forgetGiven();
   listByObject(mesh, gathered.part_of, scene.objects.size(), parallel_for, set);
   occluders::findChains(mesh, gathered.cluster_of, parallel_for, set);
   set.vertices = std::move(mesh.vertices);

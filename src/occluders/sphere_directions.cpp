@@ -4,6 +4,7 @@
 // azimuths come from repeated rotation, so that every platform gets the same bits.
 
 #include "src/occluders/sphere_directions.h"
+#include "src/math/longest_axis.h"
 
 #include <algorithm>
 #include <array>
@@ -119,7 +120,7 @@ std::uint32_t SphereDirections::nearest(const Vec3d& direction) const {
   if (!isFinite(direction) || !(largest > 0.0)) {
     return 0;
   }
-  const int axis = size.x == largest ? 0 : size.y == largest ? 1 : 2;
+  const int axis = math::longestAxis(size);
   const Vec3d on_cube = direction / largest;
   const std::uint32_t last = texels_per_edge_ - 1;
   const auto texelAlong = [&](double coordinate) {

@@ -53,6 +53,11 @@ struct SurfaceMesh {
     const std::uint32_t from = triangle[number], to = triangle[number == 2 ? 0 : number + 1];
     return side.value() > 0 ? std::array{from, to} : std::array{to, from};
   }
+  // Frees what only meetAtJunction() reads, which is not to be called afterwards.
+  void forgetGiven() {
+    LargeVector<std::uint32_t>().swap(source);
+    LargeVector<std::array<std::uint32_t, 3>>().swap(given);
+  }
   // Whether two triangles at an edge share it only because edges were divided: a corner of one of the given
   // triangles lay on an edge of the other.
   bool meetAtJunction(std::uint32_t a, std::uint32_t b) const {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/base/parts.h"
+#include "src/math/longest_axis.h"
 
 namespace sightline {
 namespace {
@@ -70,8 +71,7 @@ class ClusterDivider {
       low = min(low, middles_[t]);
       high = max(high, middles_[t]);
     }
-    const Vec3d extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const int axis = math::longestAxis(high - low);
     const auto half = static_cast<std::ptrdiff_t>(part.size() / 2);
     std::nth_element(part.begin(), part.begin() + half, part.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(middles_[a][axis], a) < std::pair(middles_[b][axis], b);

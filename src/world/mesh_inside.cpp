@@ -81,7 +81,9 @@ bool meet(const Lattice& lattice, const Triangle& a, const Triangle& b) {
   return edgeMeets(lattice, a, b, a_sides) || edgeMeets(lattice, b, a, b_sides);
 }
 
-// Nothing if the segment meets an edge or a vertex.
+// How often the segment leaves the drawn mesh, less how often it enters it. `point` is on no triangle of the
+// mesh, and `far` is beyond all of them. Nothing if the segment passes through an edge or a vertex, or lies
+// in the plane of a triangle.
 std::optional<int> winding(const Lattice& lattice, const Vec3d& point, const Vec3d& far,
                            const WeldedMesh& mesh) {
   int winding = 0;
@@ -89,14 +91,19 @@ std::optional<int> winding(const Lattice& lattice, const Vec3d& point, const Vec
     const Triangle t = triangleAt(mesh, i);
     const int from = orientation(lattice, t[0], t[1], t[2], point),
               to = orientation(lattice, t[0], t[1], t[2], far);
-    if (from == to && from != 0) {
+    if (from == 0 && to == 0) {
+      if (geometry::longestAxis(lattice, {t[0], t[1], t[2]}) < 0) {
+        continue;  // it has no area
+      }
+      return std::nullopt;
+    }
+    // The segment crosses the plane only if its ends are on different sides. If just one end is in the plane,
+    // that end is all of the segment that is, and neither end is on the triangle.
+    if (from * to >= 0) {
       continue;
     }
-    if (geometry::longestAxis(lattice, {t[0], t[1], t[2]}) < 0) {
-      continue;  // it has no area
-    }
     const std::optional<int> at = through(lattice, point, far, t);
-    if (from == 0 || to == 0 || (at && *at == 0)) {
+    if (at && *at == 0) {
       return std::nullopt;
     }
     winding += at ? to : 0;

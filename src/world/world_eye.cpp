@@ -12,7 +12,7 @@ using hierarchy::DynamicTree;
 namespace {
 
 constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
-constexpr std::uint32_t kLongestRest = 15;
+constexpr std::uint32_t kLongestDelay = 15;
 // Where more than one of so many instances that were kept is new, the view changes fast, and what the last
 // frame kept is not enough to hide what is behind the new ones.
 constexpr std::size_t kCalm = 16;
@@ -211,7 +211,7 @@ void WorldEye::drawJoins(const WorldData& data, SurfaceDrawing& drawing) {
   }
 }
 
-// Sets near_first_ to those of alone_ that are large enough and do not rest.
+// Sets near_first_ to those of alone_ that are large enough and whose retest delay is over.
 void WorldEye::listNearFirst(const WorldData& data, const View& view, const SurfaceDrawing& drawing) {
   boxes_.clear();
   for (const std::uint32_t id : alone_) {
@@ -226,12 +226,12 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
     const occlusion::PixelBox& image = images_[i];
     const bool near = image.place == occlusion::BoxPlace::kUnbounded;
     const double pixels = static_cast<double>(image.x1 - image.x0 + 1) * (image.y1 - image.y0 + 1);
-    const Rest& rest = rests_[alone_[i]];
-    const bool rests =
-        drawing.step == ViewStep::kNext && rest.until > frame_ && rest.born == data.instances[alone_[i]].born;
+    const RetestDelay& delay = retest_delays_[alone_[i]];
+    const bool waits = drawing.step == ViewStep::kNext && delay.until > frame_ &&
+                       delay.born == data.instances[alone_[i]].born;
     // Through the hole that the near plane cuts into a drawn mesh one sees past what hides in its place.
     const bool open = near && data.meshes[data.instances[alone_[i]].mesh].mesh.has_occluder;
-    if (image.place != occlusion::BoxPlace::kOutside && !open && !rests &&
+    if (image.place != occlusion::BoxPlace::kOutside && !open && !waits &&
         (near || pixels >= drawing.min_pixels)) {
       near_first_.push_back({alone_[i], near ? std::numeric_limits<float>::infinity() : image.nearest});
     }
@@ -242,9 +242,9 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
 }
 
 void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
-  rests_.reserve(
-      data.instances.capacity());  // so that a world that grows as was reserved copies nothing here
-  rests_.resize(std::max(rests_.size(), data.instances.size()));
+  // So that a world that grows as was reserved copies nothing here.
+  retest_delays_.reserve(data.instances.capacity());
+  retest_delays_.resize(std::max(retest_delays_.size(), data.instances.size()));
   listNearFirst(data, view, drawing);
   for (const Candidate& candidate : near_first_) {
     if (drawing.budget == 0) {
@@ -256,14 +256,14 @@ void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing
     counts_.occluders += drawn.groups > 0 ? 1 : 0;
     counts_.edges += drawn.edges;
     drawing.budget -= std::min(drawing.budget, drawn.work);
-    Rest& rest = rests_[candidate.id];
+    RetestDelay& delay = retest_delays_[candidate.id];
     if (drawn.groups == 0 || drawn.gain < kMinGain * drawn.work) {
-      // Those that begin to rest in the same frame come back in different ones.
-      const std::uint32_t last = rest.born == own.born ? rest.length : 0;
-      const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
-      rest = {own.born, frame_ + 1 + length + candidate.id % (length / 2 + 1), length};
+      // Instances whose delay begins in the same frame are drawn again in different ones.
+      const std::uint32_t last = delay.born == own.born ? delay.length : 0;
+      const std::uint32_t length = std::min(2 * last + 1, kLongestDelay);
+      delay = {own.born, frame_ + 1 + length + candidate.id % (length / 2 + 1), length};
     } else {
-      rest = {own.born, 0, 0};
+      delay = {own.born, 0, 0};
     }
   }
 }

@@ -50,8 +50,8 @@ class WorldEye {
     std::uint32_t id;
     float nearest;  // reciprocal depth
   };
-  // What is not worth its cost is left out for some frames.
-  struct Rest {
+  // An instance that hides too little for its cost is not drawn for some frames.
+  struct RetestDelay {
     std::uint64_t born = 0;    // of the instance for which it holds
     std::uint32_t until = 0;   // number of the frame in which it is drawn again
     std::uint32_t length = 0;  // frames
@@ -77,8 +77,8 @@ class WorldEye {
   culling::LastView last_view_;
   culling::UsualWork usual_work_;
   std::uint32_t frame_ = 0;
-  std::vector<Rest> rests_;  // by InstanceId
-  WorldCullStats counts_;    // of this frame
+  std::vector<RetestDelay> retest_delays_;  // by InstanceId
+  WorldCullStats counts_;                   // of this frame
 
   IdBits found_;
   std::vector<InstanceId> listed_;  // scratch: what is drawn

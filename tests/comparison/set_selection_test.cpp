@@ -187,6 +187,29 @@ TEST(SetSelection, TakesTheSetWithTheLargestGainForItsCostFirst) {
   EXPECT_TRUE(select(seen, pool, 0).empty());
 }
 
+TEST(SetSelection, WhatIsHiddenAlreadyIsNoGain) {
+  // Beside the first wall, which hides four boxes, the second hides one box more, the third two.
+  Model model;
+  model.addRectangle(-9.0, -1.0, -5.0, 5.0, -10.0);
+  model.addRectangle(-6.6, 3.0, -5.0, 5.0, -12.0);
+  model.addRectangle(3.0, 9.5, -5.0, 5.0, -10.0);
+  for (const float x : {-17.0f, -13.0f, -9.0f, -5.0f, 0.5f, 8.0f, 14.0f}) {
+    model.addBox({x, -1, -21}, {x + 1, 1, -20});
+  }
+  const Seen seen(std::move(model));
+  const std::uint32_t first = seen.at(-5.0, -10), second = seen.at(-1.8, -12), third = seen.at(6.25, -10);
+  std::vector<std::pair<Members, std::uint32_t>> sets;
+  const auto hides = [&](std::uint32_t wall, std::initializer_list<double> middles) {
+    for (const double x : middles) {
+      sets.push_back({{wall}, seen.boxAt(x, -20.5)});
+    }
+  };
+  hides(first, {-16.5, -12.5, -8.5, -4.5});
+  hides(second, {-8.5, -4.5, 1.0});
+  hides(third, {8.5, 14.5});
+  EXPECT_EQ(select(seen, seen.poolOf(sets), 2), (Members{first, third}));
+}
+
 TEST(SetSelection, FollowsTheUsersPreference) {
   // A large wall that hides two boxes, or two small ones that hide one of them.
   Model model;

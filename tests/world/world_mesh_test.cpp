@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
+#include <array>
+#include <cmath>
 #include <random>
 
 #include "tests/world/world_story.h"
@@ -152,6 +152,37 @@ TEST(WorldMesh, WhatTouchesOrCrossesTheDrawnMeshIsNotInside) {
   EXPECT_NE(faultOf({{1, 1, 1}, {2, HUGE_VALF, 1}, {2, 2, 2}}, drawn), "");
   EXPECT_EQ(faultOf({}, drawn), "");
   EXPECT_FALSE(checkInside({.position_stride = 3}, viewOf(drawn)));
+}
+
+// The drawn mesh is a cross of five cubes, not convex, so the planes of its faces run through its inside.
+// Each corner of the occluders is in such a plane, so whichever one is asked about is.
+TEST(WorldMesh, ACornerInThePlaneOfADrawnTriangleDoesNotDecideWhatIsInside) {
+  const std::array<std::array<float, 2>, 5> cubes{{{0, 0}, {2, 0}, {-2, 0}, {0, 2}, {0, -2}}};
+  std::vector<Vec3f> cross;
+  for (const auto& [x, z] : cubes) {
+    const std::vector<Vec3f> cube = boxFrom({x - 1, -1, z - 1}, {x + 1, 1, z + 1});
+    for (std::size_t i = 0; i < cube.size(); i += 3) {
+      // Faces between two of the cubes are not drawn.
+      const Vec3f middle =
+          (min(min(cube[i], cube[i + 1]), cube[i + 2]) + max(max(cube[i], cube[i + 1]), cube[i + 2])) * 0.5f;
+      const bool is_between = middle.y == 0.0f && std::abs(middle.x) + std::abs(middle.z) == 1.0f;
+      if (!is_between) {
+        cross.insert(cross.end(), cube.begin() + static_cast<std::ptrdiff_t>(i),
+                     cube.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+      }
+    }
+  }
+  ASSERT_EQ(cross.size(), 3u * 2u * 22u);
+  // These reach from the plane x = -1 to the plane x = 1, and from z = -1 to z = 1.
+  EXPECT_EQ(faultOf(boxFrom({-1, -0.5f, -0.5f}, {1, 0.5f, 0.5f}), cross), "");
+  EXPECT_EQ(faultOf(boxFrom({-0.5f, -0.5f, -1}, {0.5f, 0.5f, 1}), cross), "");
+  // Outside are boxes beyond an arm, between the planes of its sides, and boxes beside two arms, between the
+  // planes of the cross's top and bottom.
+  for (const std::vector<Vec3f>& outside :
+       {boxFrom({-1, -0.5f, 4}, {1, 0.5f, 5}), boxFrom({-1, -0.5f, -9}, {1, 0.5f, -8}),
+        boxFrom({1.5f, -1, 1.5f}, {2.5f, 1, 2.5f}), boxFrom({-2.5f, -1, 1.5f}, {-1.5f, 1, 2.5f})}) {
+    EXPECT_NE(faultOf(outside, cross).find("lies outside"), std::string::npos);
+  }
 }
 
 // A tetrahedron is inside a box if all four of its corners are, since a box is convex.

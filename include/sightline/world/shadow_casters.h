@@ -17,8 +17,9 @@ struct ShadowCasterSettings {
   // How the view from the light is culled. `groups` names the instances that cast shadows.
   WorldCullerSettings culler{};
   std::uint32_t mask_pixels = 128;  // of each side of the light's picture of what is seen, 1 to 1024
-  // Metres: how far beside a point's own line to the light the map is read for it, at the point. A texel at
-  // least, and the radius of the filter. 0 is right for shadows that are exact.
+  // Metres. A shadow map is read for a point beside the point's own line to the light too, up to this far
+  // from it: give the size of a texel plus the radius of the map's filter, at the farthest point that is
+  // shaded. Casters are widened by it. 0 is right for shadows that are exact.
   double filter = 0.0;
 };
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <set>
 
+#include "src/math/longest_axis.h"
+
 namespace sightline::comparison {
 namespace {
 
@@ -147,8 +149,7 @@ void PointTree::split(std::size_t begin, std::size_t end) {
     low = min(low, nodes_[i].point);
     high = max(high, nodes_[i].point);
   }
-  const Vec3d size = high - low;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const int axis = math::longestAxis(high - low);
   const std::size_t middle = begin + (end - begin) / 2;
   const auto at = [this](std::size_t i) { return nodes_.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(begin), at(middle), at(end), [axis](const Node& a, const Node& b) {

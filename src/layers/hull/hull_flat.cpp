@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/layers/pairs/exact_volume.h"
+#include "src/math/longest_axis.h"
 
 namespace sightline::layers {
 namespace {
@@ -28,8 +29,7 @@ double distance(const FlatPoint& a, const FlatPoint& b) {
 }
 
 std::vector<FlatPoint> flattened(std::span<const Vec3d> points, const Vec3d& normal) {
-  const Vec3d steep = abs(normal);
-  const int dropped = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
+  const int dropped = math::longestAxis(abs(normal));
   std::vector<FlatPoint> flat;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     flat.push_back({points[i][(dropped + 1) % 3], points[i][(dropped + 2) % 3], i});

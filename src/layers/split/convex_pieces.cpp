@@ -7,6 +7,7 @@
 // no point of the mesh is left out, however thin it is.
 
 #include "sightline/layers/convex_pieces.h"
+#include "src/math/longest_axis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +128,7 @@ std::optional<Halves> bestHalves(const Piece& piece) {
     }
   }
   const Vec3d size = high - low;
-  const int longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const int longest = math::longestAxis(size);
   const bool has_many = piece.polygons.size() > kManyPolygons;
   std::optional<Halves> best;
   for (int axis = 0; axis < 3; ++axis) {

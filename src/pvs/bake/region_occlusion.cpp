@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "src/math/longest_axis.h"
+
 namespace sightline::pvs {
 namespace {
 
@@ -18,10 +20,6 @@ struct Interval {
 
 Interval along(const CellBox& box, int axis) {
   return {box.min[axis], box.max[axis]};
-}
-
-int longestAxis(const Vec3d& extent) {
-  return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
 }
 
 // Where, along one axis, a line is that passes through places a and b of it, `share` of the way from a to b.
@@ -71,14 +69,14 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
                                                 const RegionEffort& effort) {
   Answer answer = fused_.ask(region, target, near_distance_);
   if (answer == Answer::kUndecided && effort.narrowings > 0) {
-    answer = narrow(region, target.box, target.object, effort.narrowings);
+    answer = narrowThroughWindows(region, target.box, target.object, effort.narrowings);
   }
   if (answer != Answer::kUndecided || effort.divisions == 0) {
     return answer;
   }
   const RegionEffort less{effort.narrowings, effort.divisions - 1};
   CellBox& larger = maxComponent(region.extent()) >= maxComponent(target.box.extent()) ? region : target.box;
-  const int axis = longestAxis(larger.extent());
+  const int axis = math::longestAxis(larger.extent());
   const double middle = larger.centre()[axis], end = larger.max[axis];
   larger.max[axis] = middle;
   answer = decide(region, target, less);
@@ -90,8 +88,8 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   return decide(region, target, less);
 }
 
-RegionOcclusion::Answer RegionOcclusion::narrow(CellBox& region, CellBox& target, std::uint32_t object,
-                                                std::uint32_t times) {
+RegionOcclusion::Answer RegionOcclusion::narrowThroughWindows(CellBox& region, CellBox& target,
+                                                              std::uint32_t object, std::uint32_t times) {
   for (int axis = 0; axis < 3; ++axis) {
     const bool before = region.max[axis] < target.min[axis];
     if (!before && !(target.max[axis] < region.min[axis])) {
@@ -107,7 +105,7 @@ RegionOcclusion::Answer RegionOcclusion::narrow(CellBox& region, CellBox& target
     const double far = fused_.magnitude();
     Passage passage{region, {{-far, -far, -far}, {far, far, far}}, target, axis, object};
     passage.window.min[axis] = passage.window.max[axis] = middle;
-    const Answer answer = narrow(passage, times);
+    const Answer answer = narrowPassage(passage, times);
     if (answer != Answer::kUndecided) {
       return answer;
     }
@@ -117,7 +115,7 @@ RegionOcclusion::Answer RegionOcclusion::narrow(CellBox& region, CellBox& target
   return Answer::kUndecided;
 }
 
-RegionOcclusion::Answer RegionOcclusion::narrow(Passage& passage, std::uint32_t times) {
+RegionOcclusion::Answer RegionOcclusion::narrowPassage(Passage& passage, std::uint32_t times) {
   if (!tighten(passage)) {
     return Answer::kHidden;
   }

@@ -40,9 +40,11 @@ class RegionOcclusion {
   enum class Part { kTarget, kWindow, kRegion };
 
   Answer decide(CellBox region, FusedTarget target, const RegionEffort& effort);
-  // Narrows the region and the target.
-  Answer narrow(CellBox& region, CellBox& target, std::uint32_t object, std::uint32_t times);
-  Answer narrow(Passage& passage, std::uint32_t times);
+  // Narrows the region and the target to the ends of the lines through a window halfway between them, for
+  // each axis along which they are far enough apart.
+  Answer narrowThroughWindows(CellBox& region, CellBox& target, std::uint32_t object, std::uint32_t times);
+  // Narrows all boxes of a passage, so many times at the most.
+  Answer narrowPassage(Passage& passage, std::uint32_t times);
   // Cuts off one end of a part, half of it at a time. cut: set to true if it does.
   Answer cutOff(Passage& passage, Part part, int axis, bool high, bool& cut);
   // Whether the lines of the passage through a piece of one part are blocked. kClear means that some line of

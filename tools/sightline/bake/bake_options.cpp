@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "src/io/point_json.h"
 #include "tools/sightline/bake/bake_databases.h"
 #include "tools/sightline/command_line/parse_text.h"
 
@@ -173,7 +174,7 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                  {"inner", occluders.inner},
                  {"of_use", occluders.of_use},
                  {"largest_area", occluders.largest_area}}},
-               {"origin", {origin.x, origin.y, origin.z}}};
+               {"origin", io::pointJson(origin)}};
   addCracks(json, cracks);
   return json;
 }

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "src/io/point_json.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
 #include "tools/sightline/command_line/output_files.h"
@@ -24,9 +25,6 @@ struct InfoOptions {
   std::string prepared;
 };
 
-Json pointJson(const Vec3d& p) {
-  return {p.x, p.y, p.z};
-}
 Vec3d toWorld(const Vec3f& p, const Scene& scene) {
   return Vec3d(p) + scene.origin;
 }
@@ -163,9 +161,9 @@ Json headJson(const Scene& scene, CullingData& data, const CrackFacts& cracks) {
   Json json = {{"scene", sceneJson(scene)},
                {"triangles", scene.triangleCount()},
                {"vertices", scene.positions.size()},
-               {"origin", pointJson(scene.origin)},
-               {"min", pointJson(toWorld(bounds.min, scene))},
-               {"max", pointJson(toWorld(bounds.max, scene))},
+               {"origin", io::pointJson(scene.origin)},
+               {"min", io::pointJson(toWorld(bounds.min, scene))},
+               {"max", io::pointJson(toWorld(bounds.max, scene))},
                {"materials", materials},
                {"paths", paths},
                {"occluders", occludersJson(data.occluders())},
@@ -185,8 +183,8 @@ std::string toJson(const Scene& scene, CullingData& data, const CrackFacts& crac
                             {"name", scene.object_names[o]},
                             {"triangles", object.triangleCount()},
                             {"material", object.material.value},
-                            {"min", pointJson(toWorld(object.bounds.min, scene))},
-                            {"max", pointJson(toWorld(object.bounds.max, scene))}}));
+                            {"min", io::pointJson(toWorld(object.bounds.min, scene))},
+                            {"max", io::pointJson(toWorld(object.bounds.max, scene))}}));
   }
   return dumpWithList(headJson(scene, data, cracks), "objects", objects);
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "src/io/point_json.h"
 #include "tools/sightline/command_line/progress_bar.h"
 
 namespace sightline::tool {
@@ -31,11 +32,6 @@ double keptOn(const SceneAndWalk& input, const ParallelFor& parallel_for, const 
     done(++walked / frames);
   }
   return static_cast<double>(kept) / frames;
-}
-
-Json pointJson(const Vec3f& p, const Scene& scene) {
-  const Vec3d world = Vec3d(p) + scene.origin;
-  return {world.x, world.y, world.z};
 }
 
 }  // namespace
@@ -91,7 +87,7 @@ Json cracksJson(const CrackFacts& facts, const Scene& scene) {
     places.push_back({{"count", place.count},
                       {"objects", {place.widest.object.value, place.widest.other.value}},
                       {"widest", place.widest.width},
-                      {"at", pointJson(place.widest.at, scene)}});
+                      {"at", io::pointJson(Vec3d(place.widest.at) + scene.origin)}});
   }
   Json json = {{"counts", counts}, {"places", places}};
   if (facts.effect) {

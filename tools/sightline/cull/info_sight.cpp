@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "src/io/point_json.h"
 #include "tools/sightline/bake/bake_warning.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/text_table.h"
@@ -298,8 +299,8 @@ Json sightJson(const SightFile& file, const SightFacts& facts) {
   Json json = {{"scene", of_scene},
                {"bytes", file.fileBytes()},
                {"settings", recordJson(file)},
-               {"min", {min.x, min.y, min.z}},
-               {"max", {max.x, max.y, max.z}},
+               {"min", io::pointJson(min)},
+               {"max", io::pointJson(max)},
                {"different_sets", file.setCount()},
                {"boxes", file.boxes().nodes.size()},
                {"planes", octree.planes.size()}};

@@ -9,6 +9,7 @@
 
 #include "sightline/io/file.h"
 #include "sightline/pvs/query/set_query.h"
+#include "src/io/point_json.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/output_files.h"
@@ -92,9 +93,9 @@ PointAnswer answerOf(const Vec3d& point, const Vec3d& origin, const SightFile& f
   return answer;
 }
 
-std::string pointJson(const PointAnswer& answer) {
+std::string answerJson(const PointAnswer& answer) {
   const bool inside = !answer.outside();
-  return dump({{"point", {answer.point.x, answer.point.y, answer.point.z}},
+  return dump({{"point", io::pointJson(answer.point)},
                {"cell", inside ? Json(answer.place.leaf) : Json()},
                {"level", inside ? Json(answer.place.cell.level) : Json()},
                {"side", answer.side != nullptr ? Json(answer.side) : Json()},
@@ -111,7 +112,7 @@ std::size_t outsideCount(const std::vector<PointAnswer>& answers) {
 std::string toJson(const SightFile& file, const std::vector<PointAnswer>& answers) {
   std::vector<std::string> items;
   for (const PointAnswer& answer : answers) {
-    items.push_back(pointJson(answer));
+    items.push_back(answerJson(answer));
   }
   const Json head = {{"scene", bakedSceneJson(file)}, {"outside", outsideCount(answers)}};
   return dumpWithList(head, "points", items);

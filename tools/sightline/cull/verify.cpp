@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "oracle/exact_visibility.h"
+#include "src/io/point_json.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/text_table.h"
@@ -146,7 +147,7 @@ Json runJson(const VerifyRun& run, const Verifier& verifier, const Scene& scene)
     witnesses.push_back({{"object", wrong.sighting.witness.object.value},
                          {"name", scene.object_names[wrong.sighting.witness.object.value]},
                          {"frame", wrong.frame},
-                         {"point", {point.x, point.y, point.z}},
+                         {"point", io::pointJson(point)},
                          {"by", nameOf(wrong.sighting.by)}});
   }
   const double overestimate = run.overestimate(verifier.total.visible),

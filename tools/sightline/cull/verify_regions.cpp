@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "oracle/region_search.h"
+#include "src/io/point_json.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/threads.h"
@@ -88,8 +89,8 @@ std::string toJson(const RegionsReport& report, const Scene& scene, const CrackC
                            {"part", nameOf(pair.part)},
                            {"object", pair.object.value},
                            {"name", scene.object_names[pair.object.value]},
-                           {"eye", {eye.x, eye.y, eye.z}},
-                           {"point", {point.x, point.y, point.z}},
+                           {"eye", io::pointJson(eye)},
+                           {"point", io::pointJson(point)},
                            {"by", nameOf(answer.by)}});
     }
   }

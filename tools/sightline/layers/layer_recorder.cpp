@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "src/io/point_json.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/signals.h"
 
@@ -16,14 +17,10 @@ FileLayer fileLayer(std::string name, const LayerImage& image) {
   return croppedLayer(std::move(name), image.width, image.height, colors, image.depths);
 }
 
-Json vectorJson(const Vec3d& v) {
-  return {v.x, v.y, v.z};
-}
-
 Json viewJson(const View& view) {
-  return {{"eye", vectorJson(view.eye)},
-          {"forward", vectorJson(view.forward)},
-          {"up", vectorJson(view.up)},
+  return {{"eye", io::pointJson(view.eye)},
+          {"forward", io::pointJson(view.forward)},
+          {"up", io::pointJson(view.up)},
           {"orthographic", view.orthographic}};
 }
 

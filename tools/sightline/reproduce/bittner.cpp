@@ -14,6 +14,7 @@
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
+#include "tools/sightline/reproduce/renderer_or_note.h"
 #include "tools/sightline/walk/walk_report.h"
 #include "tools/sightline/walk/walk_runs.h"
 
@@ -251,14 +252,10 @@ Result<Reproduction> reproduceBittner(const ReproduceOptions& options,
     const SceneAndWalk& input = inputs[i];
     Measured& measured = scenes.emplace_back(Measured{
         options.scenes[i], input, CullingData(input.scene, threads.parallelFor(), input.walk), allCases()});
-    const auto [width, height] = pictureOf(options, input.walk.path);
-    Result<Renderer> renderer = Renderer::create(input.scene.view(), width, height);
-    measured.record.width = width;
-    measured.record.height = height;
-    if (!renderer) {
-      result.notes.push_back(
-          fmt::format("{}: nothing was drawn: {}", measured.name, renderer.error().message));
-    }
+    const PictureOptions size = pictureOf(options, input.walk.path);
+    std::optional<Renderer> renderer = rendererOrNote(input.scene.view(), size, measured.name, result.notes);
+    measured.record.width = size.width;
+    measured.record.height = size.height;
     walkThrough(measured, renderer ? &*renderer : nullptr);
   }
   result.experiments = tablesOf(scenes);

@@ -13,6 +13,7 @@
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/observer_speeds.h"
 #include "tools/sightline/reproduce/papers.h"
+#include "tools/sightline/reproduce/renderer_or_note.h"
 #include "tools/sightline/walk/walk_report.h"
 #include "tools/sightline/walk/walk_runs.h"
 
@@ -437,14 +438,10 @@ Result<Reproduction> reproduceCoorgTeller(const ReproduceOptions& options,
     const SceneAndWalk& input = inputs[i];
     SceneTimes& measured = scenes.emplace_back(
         SceneTimes{options.scenes[i], input, CullingData(input.scene, threads.parallelFor(), input.walk)});
-    const auto [width, height] = pictureSize(options.picture, input.walk.path);
-    Result<Renderer> renderer = Renderer::create(input.scene.view(), width, height);
-    measured.record.width = width;
-    measured.record.height = height;
-    if (!renderer) {
-      result.notes.push_back(
-          fmt::format("{}: nothing was drawn: {}", measured.name, renderer.error().message));
-    }
+    const PictureOptions size = pictureSize(options.picture, input.walk.path);
+    std::optional<Renderer> renderer = rendererOrNote(input.scene.view(), size, measured.name, result.notes);
+    measured.record.width = size.width;
+    measured.record.height = size.height;
     walkThrough(measured, renderer ? &*renderer : nullptr);
     measured.speeds = measureSpeeds(input, measured.data, allSettings()[kKeptPlanes],
                                     options.fewer_frames ? kFewerStretchFrames : kStretchFrames);

@@ -20,6 +20,7 @@
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
+#include "tools/sightline/reproduce/renderer_or_note.h"
 #include "tools/sightline/reproduce/timed_bake.h"
 #include "tools/sightline/walk/walk_runs.h"
 
@@ -229,11 +230,9 @@ Result<Measured> bakeAndMeasure(const std::string& name, const Scene& scene, con
 
 void navigateAll(Measured& measured, const std::vector<Walk>& walks, std::vector<std::string>& notes) {
   for (const Walk& walk : walks) {
-    Result<Renderer> renderer = Renderer::create(measured.scene.view(), walk.path.width, walk.path.height);
-    if (!renderer) {
-      notes.push_back(fmt::format("{}, {}: nothing was drawn: {}", measured.name, walk.path.name,
-                                  renderer.error().message));
-    }
+    std::optional<Renderer> renderer =
+        rendererOrNote(measured.scene.view(), {walk.path.width, walk.path.height},
+                       measured.name + ", " + walk.path.name, notes);
     measured.navigations.push_back({walk});
     navigate(measured, measured.navigations.back(), renderer ? &*renderer : nullptr);
   }

@@ -1,4 +1,4 @@
-#include "src/io/apart.h"
+#include "src/io/child_process.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -43,7 +43,7 @@ void limit(__rlimit_resource resource, std::uint64_t most) {
   ::setrlimit(resource, &limits);
 }
 
-void limitChild(const ApartLimits& limits, std::uint64_t address_space) {
+void limitChild(const ChildLimits& limits, std::uint64_t address_space) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.seconds);
   limit(RLIMIT_AS, address_space + limits.memory_bytes);
@@ -196,7 +196,7 @@ std::mutex& startMutex() {
 }
 
 // What went wrong in a child that ended in this way.
-Error endingOf(int status, bool in_time, const ApartLimits& limits) {
+Error endingOf(int status, bool in_time, const ChildLimits& limits) {
   const std::uint64_t mebibytes = limits.memory_bytes / kMebibyte;
   // Some systems kill where the time is over, others signal it; where memory is short, all kill.
   if (!in_time || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))) {
@@ -215,8 +215,8 @@ Error endingOf(int status, bool in_time, const ApartLimits& limits) {
 
 }  // namespace
 
-Result<std::vector<std::byte>> runApart(const ApartLimits& limits,
-                                        const std::function<std::vector<std::byte>()>& work) {
+Result<std::vector<std::byte>> runInChild(const ChildLimits& limits,
+                                          const std::function<std::vector<std::byte>()>& work) {
   const pid_t parent = ::getpid();
   const std::uint64_t address_space = addressSpace();
   Pipe pipe;

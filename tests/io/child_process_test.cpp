@@ -1,6 +1,6 @@
 // What runs in a process of its own: its answer comes back, and whatever goes wrong there is one error.
 
-#include "src/io/apart.h"
+#include "src/io/child_process.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -28,30 +28,30 @@ namespace sightline::io {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-constexpr ApartLimits kLimits{.memory_bytes = 256 << 20, .seconds = 10};
+constexpr ChildLimits kLimits{.memory_bytes = 256 << 20, .seconds = 10};
 
-std::string errorOf(const ApartLimits& limits, const std::function<Bytes()>& work) {
-  const Result<Bytes> answer = runApart(limits, work);
+std::string errorOf(const ChildLimits& limits, const std::function<Bytes()>& work) {
+  const Result<Bytes> answer = runInChild(limits, work);
   return answer ? "an answer" : answer.error().message;
 }
 
-TEST(RunApart, ReturnsWhatTheWorkReturns) {
+TEST(RunInChild, ReturnsWhatTheWorkReturns) {
   Bytes large(3'000'000);
   for (std::size_t i = 0; i < large.size(); ++i) {
     large[i] = static_cast<std::byte>(i * 31 + i / 256);
   }
-  const Result<Bytes> answer = runApart(kLimits, [&] { return large; });
+  const Result<Bytes> answer = runInChild(kLimits, [&] { return large; });
   ASSERT_TRUE(answer) << answer.error().message;
   EXPECT_EQ(*answer, large);
-  const Result<Bytes> nothing = runApart(kLimits, [] { return Bytes(); });
+  const Result<Bytes> nothing = runInChild(kLimits, [] { return Bytes(); });
   ASSERT_TRUE(nothing);
   EXPECT_TRUE(nothing->empty());
 }
 
-TEST(RunApart, LeavesThisProcessAsItWas) {
+TEST(RunInChild, LeavesThisProcessAsItWas) {
   int here = 1;
   const pid_t own = ::getpid();
-  const Result<Bytes> answer = runApart(kLimits, [&] {
+  const Result<Bytes> answer = runInChild(kLimits, [&] {
     here = 2;
     return Bytes(::getpid() == own ? 1 : 2);
   });
@@ -60,7 +60,7 @@ TEST(RunApart, LeavesThisProcessAsItWas) {
   EXPECT_EQ(answer->size(), 2u) << "another process";
 }
 
-TEST(RunApart, ACrashIsAnError) {
+TEST(RunInChild, ACrashIsAnError) {
   EXPECT_NE(errorOf(kLimits, []() -> Bytes { std::abort(); }).find("its reader crashed"), std::string::npos);
   // What a library of others prints as it crashes stays with it.
   testing::internal::CaptureStderr();
@@ -71,14 +71,14 @@ TEST(RunApart, ACrashIsAnError) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(RunApart, ExceptionsAndEarlyEndsAreErrors) {
+TEST(RunInChild, ExceptionsAndEarlyEndsAreErrors) {
   EXPECT_EQ(errorOf(kLimits, []() -> Bytes { throw std::runtime_error("x"); }), "its reader failed");
   EXPECT_EQ(errorOf(kLimits, []() -> Bytes { ::_exit(7); }), "its reader failed");
   EXPECT_EQ(errorOf(kLimits, []() -> Bytes { throw std::bad_alloc(); }),
             "its reader needs more than 256 MiB");
 }
 
-TEST(RunApart, AnEndlessLoopEnds) {
+TEST(RunInChild, AnEndlessLoopEnds) {
   const std::string error = errorOf({.memory_bytes = 256 << 20, .seconds = 1}, []() -> Bytes {
     for (std::atomic<unsigned> i = 0;; ++i) {
     }
@@ -86,7 +86,7 @@ TEST(RunApart, AnEndlessLoopEnds) {
   EXPECT_EQ(error, "its reader was ended: it took more than 1 s, or more memory than there is");
 }
 
-TEST(RunApart, WaitingForeverEnds) {
+TEST(RunInChild, WaitingForeverEnds) {
   const std::string error = errorOf({.memory_bytes = 256 << 20, .seconds = 0}, []() -> Bytes {
     ::pause();
     return {};
@@ -122,7 +122,7 @@ bool isWriteEnd(int descriptor) {
 }
 
 // Whoever has the write end of another's pipe too makes that one's answer wait for it.
-TEST(RunApart, NoChildHasTheWriteEndOfAnother) {
+TEST(RunInChild, NoChildHasTheWriteEndOfAnother) {
   const int before = countDescriptors(isWriteEnd);
   std::atomic<int> most = 0, failed = 0;
   std::vector<std::thread> threads;
@@ -130,7 +130,7 @@ TEST(RunApart, NoChildHasTheWriteEndOfAnother) {
     threads.emplace_back([&] {
       for (int i = 0; i < 50; ++i) {
         const Result<Bytes> answer =
-            runApart(kLimits, [] { return Bytes(static_cast<std::size_t>(countDescriptors(isWriteEnd))); });
+            runInChild(kLimits, [] { return Bytes(static_cast<std::size_t>(countDescriptors(isWriteEnd))); });
         failed += answer ? 0 : 1;
         const int count = answer ? static_cast<int>(answer->size()) : 0;
         for (int known = most; count > known && !most.compare_exchange_weak(known, count);) {
@@ -145,18 +145,18 @@ TEST(RunApart, NoChildHasTheWriteEndOfAnother) {
   EXPECT_EQ(most, before + 1);
 }
 
-TEST(RunApart, AnswersWithoutStandardDescriptors) {
+TEST(RunInChild, AnswersWithoutStandardDescriptors) {
   const int code = exitCodeOf([] {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
       ::close(descriptor);
     }
-    const Result<Bytes> answer = runApart(kLimits, [] { return Bytes(5); });
+    const Result<Bytes> answer = runInChild(kLimits, [] { return Bytes(5); });
     return answer ? static_cast<int>(answer->size()) : 100;
   });
   EXPECT_EQ(code, 5);
 }
 
-TEST(RunApart, HandlersOfThisProcessDoNotRunThereAndIgnoredSignalsStayIgnored) {
+TEST(RunInChild, HandlersOfThisProcessDoNotRunThereAndIgnoredSignalsStayIgnored) {
   const auto by_handler = std::signal(SIGUSR1, [](int) {});
   const auto ignored = std::signal(SIGINT, SIG_IGN);
   const auto after = [](int signal) {
@@ -173,7 +173,7 @@ TEST(RunApart, HandlersOfThisProcessDoNotRunThereAndIgnoredSignalsStayIgnored) {
 
 #if !defined(SIGHTLINE_SANITIZED)
 // An answer of 512 MiB, where this process may have no more.
-TEST(RunApart, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
+TEST(RunInChild, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
   constexpr int kNoMemory = 7, kChildLeft = 8, kDescriptorLeft = 9;
   const int code = exitCodeOf([] {
     const auto any = [](int) { return true; };
@@ -184,7 +184,7 @@ TEST(RunApart, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
     ::setrlimit(RLIMIT_AS, &limits);
     try {
       static_cast<void>(
-          runApart({.memory_bytes = 1u << 30, .seconds = 10}, [] { return Bytes(512u << 20); }));
+          runInChild({.memory_bytes = 1u << 30, .seconds = 10}, [] { return Bytes(512u << 20); }));
     } catch (const std::bad_alloc&) {
       const bool no_child = ::waitpid(-1, nullptr, WNOHANG) < 0 && errno == ECHILD;
       return !no_child ? kChildLeft : countDescriptors(any) != descriptors ? kDescriptorLeft : kNoMemory;
@@ -194,7 +194,7 @@ TEST(RunApart, LeavesNothingIfMemoryEndsWhileTheAnswerIsRead) {
   EXPECT_EQ(code, kNoMemory);
 }
 
-TEST(RunApart, AllMemoryIsNotTaken) {
+TEST(RunInChild, AllMemoryIsNotTaken) {
   const std::string error = errorOf(kLimits, [] {
     std::vector<std::unique_ptr<Bytes>> all;
     for (int i = 0; i < 1000; ++i) {

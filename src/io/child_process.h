@@ -12,7 +12,7 @@
 
 namespace sightline::io {
 
-struct ApartLimits {
+struct ChildLimits {
   std::uint64_t memory_bytes = 0;  // beyond what this process has already
   std::uint32_t seconds = 0;       // of processor time; of real time, ten times as many
 };
@@ -24,7 +24,7 @@ struct ApartLimits {
 // May be called by several threads at once. The child is a fork with the calling thread alone, so work() must
 // not wait for a lock that another thread may hold just then, nor for another thread; allocating is safe.
 // Nothing is left of the child when this returns or throws std::bad_alloc.
-Result<std::vector<std::byte>> runApart(const ApartLimits& limits,
-                                        const std::function<std::vector<std::byte>()>& work);
+Result<std::vector<std::byte>> runInChild(const ChildLimits& limits,
+                                          const std::function<std::vector<std::byte>()>& work);
 
 }  // namespace sightline::io
