@@ -50,7 +50,7 @@ class DynamicTree {
 
   // Replaces all items. Takes n log n time; far less than inserting them one by one.
   void build(std::span<const Item> items);
-  // The same with the items that it has.
+  // Builds the tree anew from the items that it has, as build() does.
   void rebuild();
   // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps, and at most a
   // five thousand more: one for a node that is looked at, five for an item of a subtree. Returns how many
