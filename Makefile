@@ -24,9 +24,8 @@ help:
 	@echo "make tidy                   clang-tidy over the library and the tool (TIDY=src: over that folder; CHECKS=-x: less x)"
 	@echo "PRESET=dev|release|sanitize and JOBS=N hold for all of them. Packages that are missing get installed."
 
-# The sanitizers are clang's.
 setup:
-	@scripts/setup $(if $(filter sanitize,$(PRESET)),--checks)
+	@scripts/setup
 
 # What a first picture needs is built first.
 demo: setup

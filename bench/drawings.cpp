@@ -232,7 +232,7 @@ std::vector<Primitive> primitivesOf(const Scene& scene, const View& view) {
   return primitives;
 }
 
-// In microseconds.
+// Returns the time, in microseconds.
 double printWithGl2ps(std::vector<Primitive>& primitives, const View& view, GLint format, bool culled,
                       const std::string& file) {
   std::FILE* stream = std::fopen(file.c_str(), "wb");

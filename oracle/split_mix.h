@@ -16,7 +16,7 @@ struct SplitMix {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
     return z ^ (z >> 31);
   }
-  // In [0, 1).
+  // Returns a number in [0, 1).
   double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double in(double low, double high) { return low + (high - low) * unit(); }
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(next() % count); }

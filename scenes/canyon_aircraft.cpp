@@ -67,7 +67,7 @@ void buildBody(MeshBuilder& mesh) {
 }
 
 void buildEngine(MeshBuilder& mesh) {
-  // From the inside of the nozzle around its rim to the front.
+  // The profile runs from the inside of the nozzle around its rim to the front.
   constexpr Point2 kInside[] = {{0.0, -3.8}, {0.3, -4.0}, {0.42, -4.6}};
   constexpr Point2 kOutside[] = {{0.55, -4.8}, {0.68, -4.0}, {0.7, -2.5},
                                  {0.62, -1.0}, {0.4, -0.6},  {0.0, -0.4}};

@@ -31,7 +31,7 @@ CameraPath smoothWalk(const CityPlan& plan) {
   return walkAlong(roundedRoute(route, 5.0), options);
 }
 
-// Around the centre of a closed court.
+// The walk goes around the centre of a closed court.
 CameraPath bestWalk(const CityPlan& plan) {
   const auto at = [&](double x, double y) {
     return Vec3d(plan.courtyard.x + x, plan.courtyard.y + y, kEyeHeight + kKerb);
@@ -41,7 +41,7 @@ CameraPath bestWalk(const CityPlan& plan) {
   return walkAlong(roundedRoute(route, 2.5), options);
 }
 
-// At the height of a fourth floor's balcony, above a street.
+// The walk is at the height of a fourth floor's balcony, above a street.
 CameraPath averageWalk(const CityPlan& plan) {
   const std::vector<Vec3d> route = inMiddleQuarter(plan, {{kStreet, 20.0, 11.5}, {kStreet, 55.0, 11.5}});
   WalkOptions options{.name = "average", .frames = 100, .glance = 0.5, .glance_turns = 1, .far = plan.far};

@@ -68,7 +68,7 @@ inline MaterialId id(Paint paint) {
 
 // Half the breadth of the hull at the outside of the shell, above the bilge.
 double halfBreadth(double x, double z);
-// The same at the middle of the shell's thickness, including the bilge.
+// Half the breadth of the hull at the middle of the shell's thickness, including the bilge.
 double halfBreadthInShell(double x, double z);
 
 struct Plan {

@@ -29,7 +29,7 @@ class OccluderChoice {
   OccluderChoice(const CullingScene& scene, const OccluderChoiceSettings& settings)
       : scene_(scene), settings_(settings), search_(*scene.hierarchy, scene.object_bounds) {}
 
-  // At most settings.count occluders of the scene's set, valid until the next call.
+  // Returns at most settings.count occluders of the scene's set, valid until the next call.
   std::span<const OccluderId> choose(const ChoiceFrame& frame);
 
  private:

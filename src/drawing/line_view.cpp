@@ -6,7 +6,7 @@
 namespace sightline::drawing {
 namespace {
 
-// In page units. On larger pages doubles do not hold thousandths of a unit.
+// Sizes are in page units. On larger pages doubles do not hold thousandths of a unit.
 constexpr double kLargestPage = 1e15;
 constexpr double kSmallestPage = 1e-15;
 

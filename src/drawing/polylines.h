@@ -1,6 +1,6 @@
 #pragma once
 
-// From visible pieces of lines to strokes.
+// Joins visible pieces of lines to strokes.
 
 #include <array>
 #include <cstdint>

@@ -8,9 +8,9 @@
 //     likewise for the other edges,
 //   - behind the plane: n . (X - p) > 0,
 //   - beyond a part of the triangle that is drawn: the ray intersects it at the near plane or farther.
-// With p, q, r turned so that n = (q - p) x (r - p) points away from the eye. All of these are linear in X,
-// hence in t, also for triangles that reach behind the eye: nothing is clipped, and t is a share of the line
-// in space.
+// Here p, q, r are turned so that n = (q - p) x (r - p) points away from the eye. All of these are linear in
+// X, hence in t, also for triangles that reach behind the eye: nothing is clipped, and t is a share of the
+// line in space.
 //
 // Rounding. Camera points are off by some 2^-51 of their distance, so (p x q) . X is off by less than 2^-48
 // of |p| |q| |X|. The pyramid is widened by that, so that adjacent triangles leave no gap. Corners are

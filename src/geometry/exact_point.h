@@ -47,7 +47,7 @@ ExactPoint pointOfPlanes(const Lattice& lattice, std::span<const PlanePoints, 3>
 int orientation(int axis, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c);
 // -1, 0 or 1: the order of two points by one of their coordinates.
 int compareAlong(int axis, const ExactPoint& a, const ExactPoint& b);
-// By the coordinate after `axis`, then the one after that; 0 only for equal points of the same plane.
+// Compares the coordinates after `axis`, then those after them; 0 only for equal points of the same plane.
 inline int compareInPlane(int axis, const ExactPoint& a, const ExactPoint& b) {
   const int order = compareAlong((axis + 1) % 3, a, b);
   return order != 0 ? order : compareAlong((axis + 2) % 3, a, b);

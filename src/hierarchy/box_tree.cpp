@@ -201,7 +201,7 @@ class Flattener {
         {.bounds = bounds, .first_object = static_cast<std::uint32_t>(tree_.objects.size())});
     return static_cast<std::uint32_t>(tree_.nodes.size() - 1);
   }
-  // After all that lies below the node.
+  // Call this when all that lies below the node has been added.
   void finish(std::uint32_t node) {
     BoxNode& n = tree_.nodes[node];
     n.end = static_cast<std::uint32_t>(tree_.nodes.size());

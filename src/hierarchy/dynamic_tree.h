@@ -53,7 +53,7 @@ class DynamicTree {
 
   // Replaces all items. Takes n log n time; far less than inserting them one by one.
   void build(std::span<const Item> items);
-  // The same with the items that it has.
+  // Builds the tree anew from the items that it has, as build() does.
   void rebuild();
   // Makes room for so many items, with numbers below the same, so that inserting them does not copy the tree.
   void reserve(std::size_t items);

@@ -14,7 +14,7 @@ bool isAssimpExtension(const std::string& extension);
 
 // Reads the file in this process, which Assimp may bring down.
 Result<Scene> importAssimp(const std::string& file, const ImportLimits& limits);
-// The same in a process of its own, with limits of time and memory that grow with the file's size.
+// Reads the file in a child process, with limits of time and memory that grow with the file's size.
 Result<Scene> importAssimpInChild(const std::string& file, std::uint64_t file_bytes,
                                   const ImportLimits& limits, std::uint32_t most_seconds = 0xffffffffu);
 

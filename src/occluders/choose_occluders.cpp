@@ -18,7 +18,7 @@ bool insideFrustum(const Frustum& frustum, const OccluderSet& set, const Occlude
   return true;
 }
 
-// The same of all its corners, by the box around it.
+// Whether the box around an occluder may intersect the frustum.
 bool insideFrustum(const Frustum& frustum, const Box& box) {
   std::uint8_t cut = kAllFrustumPlanes;
   return classify(frustum, box, cut) != FrustumSide::kOutside;

@@ -266,7 +266,7 @@ class Closing {
     double along = 0.0, distance = 0.0;
   };
 
-  // Of a vertex exactly on an edge, between its ends.
+  // Returns the place of a vertex that is exactly on an edge, between its ends.
   Place placeOn(const OpenEdge& edge, std::uint32_t v) const {
     const Vec3d &low = at(edge.low), &high = at(edge.high), &p = at(v);
     for (int axis = 0; axis < 3; ++axis) {

@@ -61,7 +61,7 @@ Split splitOf(const Hierarchy& tree, NodeIndex n) {
   return split;
 }
 
-// As above, of the first node below n that really divides the region; moves n there. Where all of one child
+// Splits the region at the first node below n that really divides it; moves n there. Where all of one child
 // is flat in the region's border, the other child has the whole region.
 Split splitRegion(const Hierarchy& tree, const Box& region, NodeIndex& n) {
   for (;;) {

@@ -106,7 +106,7 @@ ListFinder::ListFinder(const CandidateTree& tree, const occluders::SphereDirecti
   sin_covering_ = std::max(0.0, std::sin(covering));
 }
 
-// For all directions and everything below the node.
+// The bound holds for all directions and everything below the node.
 double ListFinder::boundOf(const CandidateTree::Node& node) const {
   return std::min(kFullSolidAngle, node.max_area / squaredGap(node.min, node.max, cell_.min, cell_.max));
 }

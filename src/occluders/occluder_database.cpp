@@ -38,7 +38,7 @@ std::uint32_t cellLimit(std::size_t max_bytes, std::size_t bytes_without_cells, 
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(available / a_cell, 1, kMaxCells));
 }
 
-// By cell * directions + direction.
+// Returns the lists in rows, numbered cell * directions + direction.
 PackedLists findLists(const CandidateTree& candidates, const SphereDirections& directions,
                       const CellTree& tree, const ListSettings& settings, const ParallelFor& parallel_for,
                       const Progress& progress) {

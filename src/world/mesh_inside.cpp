@@ -39,7 +39,7 @@ Box boundsOf(const Triangle& triangle) {
   return box;
 }
 
-// On which sides of the plane of b the corners of a are; true if all are strictly on one.
+// Sets `sides` to those of the plane of b on which the corners of a are; true if all are strictly on one.
 bool aside(const Lattice& lattice, const Triangle& a, const Triangle& b, std::array<int, 3>& sides) {
   for (std::size_t i = 0; i < 3; ++i) {
     sides[i] = orientation(lattice, b[0], b[1], b[2], a[i]);
@@ -58,7 +58,7 @@ std::optional<int> through(const Lattice& lattice, const Vec3d& p, const Vec3d& 
   return a == b && b == c ? a : 0;
 }
 
-// Whether an edge of a meets b. sides: of the corners of a.
+// Whether an edge of a meets b. sides: those of the plane of b on which the corners of a are.
 bool edgeMeets(const Lattice& lattice, const Triangle& a, const Triangle& b,
                const std::array<int, 3>& sides) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -130,7 +130,7 @@ Result<WeldedMesh> weldedFrom(const MeshView& view, const char* name) {
   return mesh;
 }
 
-// Points far from all of a box, whole numbers, so that the lattice stays coarse.
+// Points far from all of a box. Their coordinates are whole numbers, so that the lattice stays coarse.
 std::vector<Vec3d> pointsBeyond(const Box& box) {
   const Vec3d size = abs(center(box)) + Vec3d(box.extent());
   const double far = std::ceil(4.0 * maxComponent(size)) + 64.0;

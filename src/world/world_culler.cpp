@@ -70,7 +70,7 @@ void WorldCuller::Impl::cull(const WorldData& data, std::span<const View> given)
   }
   disappeared.clear();
   last_kept.listWithout(kept, disappeared);
-  // Those whose id another instance has now are gone as well.
+  // Instances whose id another one has now are gone as well.
   const auto reused = [&](InstanceId id) {
     return last_kept.has(id.value) && data.instances[id.value].born > last_version;
   };

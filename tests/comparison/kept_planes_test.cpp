@@ -28,7 +28,7 @@ TEST_P(KeptRelations, ChangeNoAnswer) {
     View view = scene.view;
     std::vector<OccluderId> ids = all(set);
     for (int frame = 0; frame < 120; ++frame) {
-      const std::uint64_t dice = scene.random.engine() % 20;
+      const std::uint64_t dice = scene.random.bits() % 20;
       if (dice == 0) {
         view.eye = scene.random.point(10.0);  // a jump
       } else if (dice == 1) {
@@ -39,12 +39,12 @@ TEST_P(KeptRelations, ChangeNoAnswer) {
       if (dice % 3 == 0) {
         setOrientation(view, view.forward + scene.random.point(0.3), {0, 1, 0});
       }
-      std::shuffle(ids.begin(), ids.end(), scene.random.engine);
-      const std::span<const OccluderId> chosen(ids.data(), 1 + scene.random.engine() % ids.size());
+      std::shuffle(ids.begin(), ids.end(), scene.random.engine());
+      const std::span<const OccluderId> chosen(ids.data(), 1 + scene.random.bits() % ids.size());
       kept.build(view, set, chosen);
       fresh.build(view, set, chosen);
       for (std::uint32_t item = 0; item < boxes.size(); ++item) {
-        if (scene.random.engine() % 8 == 0) {
+        if (scene.random.bits() % 8 == 0) {
           kept.forget(item);
           continue;
         }

@@ -43,7 +43,7 @@ std::vector<Members> setsOf(const std::vector<Members>& slots, const std::vector
   return sets;
 }
 
-// As bits of a number, by trying all subsets.
+// Finds the set, as bits of a number, by trying all subsets.
 struct Exhaustive {
   std::vector<std::uint32_t> slots;  // bits
   std::vector<std::uint32_t> minimal;

@@ -92,7 +92,7 @@ TEST_P(MovingOccluders, HideNothingThatARayReachesAndNothingWhenTheyAreGone) {
     for (std::size_t i = 0; i < scene.bounds.size(); ++i) {
       const bool hidden = !kept(culler, i);
       if (hidden) {
-        EXPECT_FALSE(test::lookAt(scene.bounds[i], view, polygons, 80, scene.random.engine).seen)
+        EXPECT_FALSE(test::lookAt(scene.bounds[i], view, polygons, 80, scene.random.engine()).seen)
             << "frame " << frame << " object " << i;
       }
       hidden_by_it += hidden && kept(still, i) ? 1 : 0;
@@ -100,7 +100,8 @@ TEST_P(MovingOccluders, HideNothingThatARayReachesAndNothingWhenTheyAreGone) {
       hidden_before[i] = hidden;
     }
     if (culler.dynamicStates()[0] == Visibility::kHidden) {
-      EXPECT_FALSE(test::lookAt(follower, view, polygons, 80, scene.random.engine).seen) << "frame " << frame;
+      EXPECT_FALSE(test::lookAt(follower, view, polygons, 80, scene.random.engine()).seen)
+          << "frame " << frame;
     }
     if (there && x > -8.0f && x < 4.0f) {
       EXPECT_EQ(culler.dynamicStates()[0], Visibility::kHidden) << "frame " << frame;

@@ -343,7 +343,8 @@ TEST(ResetCuller, HidesNothingThatARayReachesWhenAllMovedInPlace) {
             }
             ++hidden;
             EXPECT_FALSE(
-                test::lookAt(scene.bounds[i], test::kLookingBack, scene.walls, 100, scene.random.engine).seen)
+                test::lookAt(scene.bounds[i], test::kLookingBack, scene.walls, 100, scene.random.engine())
+                    .seen)
                 << structure.name << " step " << step << " object " << i;
           }
         }

@@ -122,7 +122,7 @@ TEST(WideTraversal, NothingThatARayReachesIsCulledWhateverTheHierarchy) {
           }
           ++judged;
           const test::Sight sight = test::lookAt(bed.boxes[object.value], bed.scene.view, bed.scene.polygons,
-                                                 200, bed.scene.random.engine);
+                                                 200, bed.scene.random.engine());
           EXPECT_FALSE(sight.seen) << nameOf(kind) << ", " << family.name << ", seed " << seed << ", object "
                                    << object.value;
         }

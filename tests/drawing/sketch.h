@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sightline/drawing/hidden_lines.h"
+#include "tests/support/square_view.h"
 
 namespace sightline::test {
 
@@ -15,13 +16,7 @@ inline constexpr double kPage = 100.0;
 
 // A view along -z with the eye at zero and a square page whose borders are at 45 degrees.
 inline View squareView() {
-  View view;
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.tan_half_fovy = 1.0;
-  view.aspect = 1.0;
-  view.near = 1.0;
-  view.far = 100.0;
-  return view;
+  return squareView(1.0, 100.0);
 }
 
 inline View flatView(double height) {

@@ -40,7 +40,7 @@ int signOf(Exact value) {
   return (value > 0 ? 1 : 0) - (value < 0 ? 1 : 0);
 }
 
-// By clipping the line with the three slabs, in exact fractions.
+// Clips the line with the three slabs, in exact fractions.
 bool lineMeetsBox(const Case& c) {
   struct Fraction {
     Exact over, under;  // under > 0
@@ -109,7 +109,7 @@ class Random {
   double whole(int low, int high) {
     return static_cast<double>(low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1)));
   }
-  // Of up to `bits` bits.
+  // Returns a whole number of up to `bits` bits, with either sign.
   double wide(int bits) {
     const double size = static_cast<double>(engine_() >> (64 - bits));
     return oneIn(2) ? size : -size;

@@ -3,32 +3,22 @@
 // Seeded families of boxes for tests of hierarchies.
 
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "sightline/math/box.h"
+#include "tests/support/random_numbers.h"
 
 namespace sightline::box_families {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  std::uint64_t below(std::uint64_t n) { return engine_() % n; }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-  Vec3d within(const Box& box) {
-    Vec3d p;
-    for (int axis = 0; axis < 3; ++axis) {
-      p[axis] = in(box.min[axis], box.max[axis]);
-    }
-    return p;
-  }
+using test::Random;
 
- private:
-  std::mt19937_64 engine_;
-};
+inline Vec3d pointWithin(const Box& box, Random& random) {
+  Vec3d p;
+  for (int axis = 0; axis < 3; ++axis) {
+    p[axis] = random.in(box.min[axis], box.max[axis]);
+  }
+  return p;
+}
 
 enum class Family {
   kScattered,   // small boxes anywhere

@@ -231,7 +231,7 @@ TEST(BoxTree, HoldsTheDemoScenesAtACostNearThatOfASurfaceAreaHierarchy) {
     std::vector<Box> shuffled = scene.boxes;
     Random random(9);
     for (std::size_t i = shuffled.size(); i > 1; --i) {
-      std::swap(shuffled[i - 1], shuffled[random.below(i)]);
+      std::swap(shuffled[i - 1], shuffled[random.below(static_cast<std::uint32_t>(i))]);
     }
     const double at_random = costInOrder(shuffled, surfaceArea(tree.nodes[0].bounds));
     EXPECT_LT(cost, 1.5 * by_area) << url;
@@ -247,7 +247,8 @@ TEST(BoxTree, ObjectsWithEmptyOrNonFiniteBoxesAreInfiniteLeavesBelowTheRoot) {
     Random random(5 + good);
     std::vector<Box> boxes = boxesOf(Family::kScattered, good, random);
     for (const Box& box : bad) {
-      boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(random.below(boxes.size() + 1)), box);
+      const std::uint32_t at = random.below(static_cast<std::uint32_t>(boxes.size()) + 1);
+      boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(at), box);
     }
     const BoxTree tree = buildBoxTree(boxes, {});
     EXPECT_EQ(whatIsWrong(tree, boxes), "") << "with " << good << " good boxes";

@@ -135,7 +135,9 @@ std::size_t uncoveredPoints(const Hierarchy& hierarchy, std::span<const Box> box
   std::size_t uncovered = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (int s = 0; s < samples; ++s) {
-      const Vec3d p = s == 0 ? Vec3d(boxes[i].min) : s == 1 ? Vec3d(boxes[i].max) : random.within(boxes[i]);
+      const Vec3d p = s == 0   ? Vec3d(boxes[i].min)
+                      : s == 1 ? Vec3d(boxes[i].max)
+                               : pointWithin(boxes[i], random);
       uncovered += std::none_of(leaves_of[i].begin(), leaves_of[i].end(),
                                 [&](std::uint32_t n) { return inside(hierarchy.nodes[n].bounds, p); })
                        ? 1
@@ -264,7 +266,8 @@ TEST(Hierarchy, ObjectsWithEmptyOrNonFiniteBoxesLieInInfiniteLeaves) {
       Random random(5 + good);
       std::vector<Box> boxes = boxesOf(Family::kScattered, good, random);
       for (const Box& box : bad) {
-        boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(random.below(boxes.size() + 1)), box);
+        const std::uint32_t at = random.below(static_cast<std::uint32_t>(boxes.size()) + 1);
+        boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(at), box);
       }
       const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = kind});
       EXPECT_EQ(whatIsWrong(hierarchy, boxes), "") << nameOf(kind) << " with " << good << " good boxes";

@@ -114,7 +114,8 @@ TEST(WideHierarchy, ReachesObjectsWhoseBoxesAreNotWellFormed) {
       Random random(good);
       std::vector<Box> boxes = boxesOf(Family::kScattered, good, random);
       for (const Box& box : {Box{}, Box{{nan, 0, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {1, inf, 1}}}) {
-        boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(random.below(boxes.size() + 1)), box);
+        const std::uint32_t at = random.below(static_cast<std::uint32_t>(boxes.size()) + 1);
+        boxes.insert(boxes.begin() + static_cast<std::ptrdiff_t>(at), box);
       }
       const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = kind});
       const WideHierarchy wide = collapse(hierarchy, boxes);

@@ -3,25 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <random>
 #include <string>
 
 #include "sightline/scene/camera.h"
+#include "tests/support/random_numbers.h"
+#include "tests/support/square_view.h"
 
 namespace sightline {
 namespace {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-
- private:
-  std::mt19937_64 engine_;
-};
+using test::Random;
 
 View randomView(Random& random, bool orthographic, double scale) {
   View view;
@@ -206,13 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Views, FrustumOfView,
                          [](const auto& param) { return std::string(param.param.name); });
 
 View looksAlongMinusZ() {
-  View view;
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.tan_half_fovy = 1.0;
-  view.aspect = 1.0;
-  view.near = 1.0;
-  view.far = 16.0;
-  return view;
+  return test::squareView(1.0, 16.0);
 }
 
 FrustumSide sideOf(const View& view, const Box& box) {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/occluders/flat_mesh.h"
+#include "tests/support/square_view.h"
 
 namespace sightline {
 namespace {
@@ -15,13 +16,7 @@ using namespace flat_mesh;
 constexpr AreaAngleDirection kDirections[] = {AreaAngleDirection::kView, AreaAngleDirection::kOccluder};
 
 View frontView() {
-  View view;
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.tan_half_fovy = 1.0;
-  view.aspect = 1.0;
-  view.near = 0.1;
-  view.far = 100.0;
-  return view;
+  return test::squareView(0.1, 100.0);
 }
 
 // A square facing +z.

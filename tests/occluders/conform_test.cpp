@@ -336,7 +336,7 @@ TEST(Conform, EdgesAloneAreDividedAtVerticesThatAreThere) {
   }
 }
 
-// As conform() would return it.
+// Returns what conform() would.
 ConformedMesh joined(const Soup& soup, std::span<const std::uint8_t> open) {
   ClosedCracks joined = joinEdges(soup.input(), open);
   EXPECT_EQ(joined.slack, 0.0);

@@ -4,26 +4,15 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "sightline/occluders/occluder_set.h"
+#include "tests/support/random_numbers.h"
 
 namespace sightline::flat_mesh {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_() % n); }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-
- private:
-  std::mt19937_64 engine_;
-};
+using test::Random;
 
 struct Point2 {
   double x = 0.0, y = 0.0;

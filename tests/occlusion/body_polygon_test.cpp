@@ -134,11 +134,11 @@ constexpr Place kPlaces[] = {Place::kBefore,        Place::kHalfOff,     Place::
                              Place::kOnPixelCorners};
 
 Solid anyShape(Random& random) {
-  switch (random.engine() % 4) {
+  switch (random.bits() % 4) {
     case 0:
       return octahedron();
     case 1:
-      return prism(static_cast<std::uint32_t>(3 + random.engine() % 6));
+      return prism(static_cast<std::uint32_t>(3 + random.bits() % 6));
     case 2:
       return tetrahedron();
     default:
@@ -149,7 +149,7 @@ Solid anyShape(Random& random) {
 // Makes solids of any proportions, with slabs and slivers among them.
 Vec3d anyScale(Random& random, bool& thin) {
   Vec3d scale(random.in(0.5, 3.0), random.in(0.5, 3.0), random.in(0.5, 3.0));
-  const std::uint64_t kind = random.engine() % 6;
+  const std::uint64_t kind = random.bits() % 6;
   thin = kind < 2;
   if (kind == 0) {
     scale.z *= random.in(1e-4, 1e-2);
@@ -200,7 +200,7 @@ struct BodyScene {
     }
     const double reach = view.orthographic ? 0.5 * view.ortho_height : depth * view.tan_half_fovy;
     const double aside = place == Place::kHalfOff ? 1.0 : 0.2;
-    const double right = (random.engine() % 2 == 0 ? aside : random.in(-aside, aside)) * reach * view.aspect;
+    const double right = (random.bits() % 2 == 0 ? aside : random.in(-aside, aside)) * reach * view.aspect;
     const Vec3d middle =
         view.eye + view.forward * depth + view.right * right + view.up * (random.in(-aside, aside) * reach);
     solids.push_back(
@@ -219,7 +219,7 @@ struct BodyScene {
       const double depth = random.in(5.0, 9.0), reach = view.orthographic ? half : half * depth;
       const auto border = [&](std::uint32_t size) {
         const auto last = std::max(size / 8 * 8, 1u);
-        return 2.0 * static_cast<double>(random.engine() % (last + 1) / 8 * 8) / size - 1.0;
+        return 2.0 * static_cast<double>(random.bits() % (last + 1) / 8 * 8) / size - 1.0;
       };
       const Vec3d point(reach * view.aspect * border(settings.width), reach * border(settings.height),
                         -depth);
@@ -241,14 +241,14 @@ struct BodyScene {
   void addAxisAligned(Random& random, Place place) {
     const auto whole = [&](int low, int high) {
       return static_cast<float>(low +
-                                static_cast<int>(random.engine() % static_cast<unsigned>(high - low + 1)));
+                                static_cast<int>(random.bits() % static_cast<unsigned>(high - low + 1)));
     };
     const Vec3f low(whole(-4, 0), whole(-4, 0), whole(-12, -8)),
         high(whole(1, 4), whole(1, 4), whole(-7, -5));
     view.eye = {whole(-3, 3), whole(-3, 3), 0};
     if (place == Place::kInFacePlane) {
       view.eye.x = high.x;
-      if (random.engine() % 3 == 0) {
+      if (random.bits() % 3 == 0) {
         view.eye.y = low.y;
       }
     }

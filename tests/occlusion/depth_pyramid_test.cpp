@@ -165,7 +165,7 @@ TEST_P(DepthPyramidFamilies, NothingThatARayReachesIsHidden) {
       BoxAnswer in_view;
       pyramid.classifyInView({&box, 1}, {&in_view, 1});
       hidden += in_view.visibility == Visibility::kHidden ? 0 : 1;
-      const Sight sight = lookAt(box, scene.view, scene.polygons, 300, scene.random.engine);
+      const Sight sight = lookAt(box, scene.view, scene.polygons, 300, scene.random.engine());
       EXPECT_FALSE(sight.seen) << GetParam().name << ", seed " << seed << ", box " << b;
     }
   }

@@ -295,13 +295,13 @@ TEST(OcclusionTree, NeverHidesWhatShowsAmongSilhouettesThatCoincide) {
     for (int i = 0; i < 3000; ++i) {
       const double s = orthographic ? 1.0 : 3.5;
       const auto at = [&](int from, int to) {
-        const double exact = 0.25 * (from + static_cast<int>(random.engine() % (to - from)));
-        return static_cast<float>(s * (exact + (random.engine() % 3 == 0 ? random.in(-1e-6, 1e-6) : 0.0)));
+        const double exact = 0.25 * (from + static_cast<int>(random.bits() % (to - from)));
+        return static_cast<float>(s * (exact + (random.bits() % 3 == 0 ? random.in(-1e-6, 1e-6) : 0.0)));
       };
       Box box;
       box.extend(Vec3f(at(-16, 16), at(-8, 8), -14.0f));
-      box.extend(Vec3f(at(-16, 16), at(-8, 8), random.engine() % 2 == 0 ? -14.0f : -15.0f));
-      const test::Sight sight = test::lookAt(box, view, panels, 300, random.engine);
+      box.extend(Vec3f(at(-16, 16), at(-8, 8), random.bits() % 2 == 0 ? -14.0f : -15.0f));
+      const test::Sight sight = test::lookAt(box, view, panels, 300, random.engine());
       for (std::size_t v = 0; v < trees.size(); ++v) {
         const bool hides = trees[v].classify(box) == Visibility::kHidden;
         hidden += hides ? 1 : 0;
@@ -337,7 +337,7 @@ TEST_P(OcclusionTreeFamilies, NothingThatARayReachesIsHidden) {
       const bool any_hidden = std::count(states.begin(), states.end(), Visibility::kHidden) > 0;
       hidden += any_hidden ? 1 : 0;
       if (any_hidden) {
-        const test::Sight sight = test::lookAt(box, scene.view, scene.polygons, 400, scene.random.engine);
+        const test::Sight sight = test::lookAt(box, scene.view, scene.polygons, 400, scene.random.engine());
         EXPECT_FALSE(sight.seen) << family.name << " seed " << seed << " box " << i << " variants "
                                  << static_cast<int>(states[0]) << static_cast<int>(states[1])
                                  << static_cast<int>(states[2]) << static_cast<int>(states[3]);
@@ -372,7 +372,7 @@ TEST(OcclusionTree, TheExactVariantFindsAllThatTheOccludersHide) {
       const Vec3d c = Vec3d(0, 0, -18) + random.point(6.0);
       const Vec3d h = abs(random.point(0.6)) + Vec3d(0.05, 0.05, 0.05);
       const Box box{Vec3f(c - h), Vec3f(c + h)};
-      const test::Sight sight = test::lookAt(box, view, polygons, 3000, random.engine);
+      const test::Sight sight = test::lookAt(box, view, polygons, 3000, random.engine());
       if (!sight.seen && sight.blocked) {
         ++blocked;
         missed += tree.classify(box) != Visibility::kHidden ? 1 : 0;
@@ -394,14 +394,14 @@ TEST(OcclusionTree, TheOrderOfTheChosenOccludersDoesNotMatterForSafety) {
   const OccluderSet set = setOf(polygons);
   std::vector<OccluderId> ids = all(set);
   for (int round = 0; round < 20; ++round) {
-    std::shuffle(ids.begin(), ids.end(), random.engine);
+    std::shuffle(ids.begin(), ids.end(), random.engine());
     OcclusionTree tree;
     tree.build(kLookingBack, set, ids);
     for (int i = 0; i < 60; ++i) {
       const Vec3d c = Vec3d(0, 0, -16) + random.point(8.0);
       const Box box{Vec3f(c - Vec3d(0.3, 0.3, 0.3)), Vec3f(c + Vec3d(0.3, 0.3, 0.3))};
       if (tree.classify(box) == Visibility::kHidden) {
-        EXPECT_FALSE(test::lookAt(box, kLookingBack, polygons, 300, random.engine).seen);
+        EXPECT_FALSE(test::lookAt(box, kLookingBack, polygons, 300, random.engine()).seen);
       }
     }
   }
@@ -423,7 +423,7 @@ TEST(OcclusionTree, TooFewNodesCostTightnessButNeverSafety) {
     const Vec3d c = Vec3d(0, 0, -16) + random.point(8.0);
     const Box box{Vec3f(c - Vec3d(0.3, 0.3, 0.3)), Vec3f(c + Vec3d(0.3, 0.3, 0.3))};
     if (tree.classify(box) == Visibility::kHidden) {
-      EXPECT_FALSE(test::lookAt(box, kLookingBack, polygons, 300, random.engine).seen);
+      EXPECT_FALSE(test::lookAt(box, kLookingBack, polygons, 300, random.engine()).seen);
     }
   }
 }

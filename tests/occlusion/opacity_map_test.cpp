@@ -284,7 +284,7 @@ TEST_P(OpacityMapFamilies, NothingThatARayReachesIsHidden) {
         EXPECT_EQ(state, byScanning(maps->sparse(), scene.view, box)) << "seed " << seed << " box " << i;
         if (state == Visibility::kHidden) {
           hidden += maps->sparse().stats().overlap_tests != tests ? 1 : 0;
-          EXPECT_FALSE(lookAt(box, scene.view, scene.polygons, 200, scene.random.engine).seen)
+          EXPECT_FALSE(lookAt(box, scene.view, scene.polygons, 200, scene.random.engine()).seen)
               << GetParam().name << " seed " << seed << " box " << i;
         }
       }

@@ -236,7 +236,7 @@ TEST(PixelBoxes, EveryInstructionSetAndEverySplitGiveTheSameBits) {
       EXPECT_EQ(images, whole) << hwy::TargetName(target) << ", seed " << seed;
       hwy::SetSupportedTargetsForTest(0);
     }
-    const std::size_t cut = random.below(boxes.size() + 1);
+    const std::size_t cut = random.below(static_cast<std::uint32_t>(boxes.size()) + 1);
     std::vector<PixelBox> parts(boxes.size());
     projectBoxes(projection, std::span(boxes).first(cut), std::span(parts).first(cut));
     projectBoxes(projection, std::span(boxes).subspan(cut), std::span(parts).subspan(cut));

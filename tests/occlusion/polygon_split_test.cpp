@@ -4,24 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
+
+#include "tests/support/random_numbers.h"
 
 namespace sightline::occlusion {
 namespace {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_() % n); }
-
- private:
-  std::mt19937_64 engine_;
-};
+using test::Random;
 
 Piece push(PolygonStack& stack, std::span<const Vec3d> corners) {
   const Piece piece{static_cast<std::uint32_t>(stack.corners.size()),

@@ -3,26 +3,18 @@
 // Seeded views of every kind, and boxes before them.
 
 #include <cmath>
-#include <random>
 
 #include "sightline/math/box.h"
 #include "sightline/scene/camera.h"
+#include "tests/support/random_numbers.h"
 
 namespace sightline::test {
 
-class ViewRandom {
+class ViewRandom : public Random {
  public:
-  explicit ViewRandom(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
+  using Random::Random;
   // Returns a number between two limits; its logarithm is uniformly distributed.
   double sized(double low, double high) { return std::exp(in(std::log(low), std::log(high))); }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-  std::uint64_t below(std::uint64_t n) { return engine_() % n; }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 inline View randomView(ViewRandom& random) {

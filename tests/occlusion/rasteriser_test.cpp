@@ -455,14 +455,14 @@ void addTJunction(Random& random, const Family& family, const Vec3d& around,
   const auto add = [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {
     triangles.push_back({{Vec3f(p), Vec3f(q), Vec3f(r)}, true});
   };
-  const int parts = 2 + static_cast<int>(random.engine() % 3);
+  const int parts = 2 + static_cast<int>(random.bits() % 3);
   for (int i = 0; i < parts; ++i) {
     const Vec3d p = first + along * i, q = p + along;
     add(first + down, q, p);
     const Vec3d top =
         p + along * random.in(-0.2, 1.2) - down * random.in(0.3, 1.0) + random.point(0.3) * family.scale;
     add(p, q, top);
-    if (random.engine() % 2 == 0) {
+    if (random.bits() % 2 == 0) {
       add(q, top + along * random.in(0.3, 1.0), top);
     }
   }

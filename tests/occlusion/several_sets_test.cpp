@@ -108,7 +108,7 @@ TEST(SeveralSets, HideNothingThatARayReaches) {
       // The polygons are distributed to the sets at random, so connected walls get into different sets.
       std::vector<OraclePolygon> parts[2];
       for (const OraclePolygon& polygon : scene.polygons) {
-        parts[scene.random.engine() % 2].push_back(polygon);
+        parts[scene.random.bits() % 2].push_back(polygon);
       }
       const OccluderSet first = setOf(parts[0]), second = setOf(parts[1]);
       const std::vector<OccluderId> of_first = all(first), of_second = all(second);
@@ -124,7 +124,7 @@ TEST(SeveralSets, HideNothingThatARayReaches) {
             continue;
           }
           ++hidden;
-          EXPECT_FALSE(lookAt(box, scene.view, scene.polygons, 60, scene.random.engine).seen)
+          EXPECT_FALSE(lookAt(box, scene.view, scene.polygons, 60, scene.random.engine()).seen)
               << name << ", " << family.name << ", seed " << seed;
         }
       });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sightline/occluders/occluder_set.h"
+#include "tests/support/random_numbers.h"
 #include "tests/support/visibility_oracle.h"
 
 namespace sightline::test {
@@ -79,32 +80,22 @@ struct Family {
   bool slivers;
 };
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1p-53;
-  }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-  std::mt19937_64 engine;
-};
-
 inline OraclePolygon randomPolygon(Random& random, const Family& family, const Vec3d& around) {
   const Vec3d center = around + random.point(6.0) * family.scale;
   const Vec3d normal = normalized(random.point(1.0));
   const Vec3d u = normalized(cross(normal, Vec3d(0.3, 0.5, 0.8)));
   const Vec3d v = cross(normal, u);
-  const int n = 3 + static_cast<int>(random.engine() % 4);
+  const int n = 3 + static_cast<int>(random.bits() % 4);
   const double a = random.in(0.5, 4.0) * family.scale;
   const double b =
-      family.slivers && random.engine() % 2 ? a * random.in(1e-6, 1e-2) : random.in(0.5, 4.0) * family.scale;
+      family.slivers && random.bits() % 2 ? a * random.in(1e-6, 1e-2) : random.in(0.5, 4.0) * family.scale;
   OraclePolygon polygon;
   const double start = random.in(0.0, 6.0);
   for (int i = 0; i < n; ++i) {
     const double t = start + 6.283185307179586 * i / n;
     polygon.vertices.push_back(Vec3f(center + u * (a * std::cos(t)) + v * (b * std::sin(t))));
   }
-  polygon.double_sided = random.engine() % 2 == 0;
+  polygon.double_sided = random.bits() % 2 == 0;
   return polygon;
 }
 
@@ -113,7 +104,7 @@ inline void addConnected(Random& random, const Family& family, const Vec3d& arou
                          std::vector<OraclePolygon>& polygons) {
   const Vec3d up(0, random.in(1, 4) * family.scale, 0);
   Vec3d at = around + random.point(4.0) * family.scale;
-  const bool double_sided = random.engine() % 2 == 0;
+  const bool double_sided = random.bits() % 2 == 0;
   for (int i = 0; i < 5; ++i) {
     const Vec3d next = at + Vec3d(random.in(-2, 2), 0, random.in(-2, 2)) * family.scale;
     polygons.push_back({{Vec3f(at - up), Vec3f(next - up), Vec3f(next + up), Vec3f(at + up)}, double_sided});

@@ -428,7 +428,7 @@ TEST(SupportingPlanes, AConvexBodysFacesHideWhatTheBodyHides) {
     if (state == Visibility::kHidden) {
       ++hidden;
       joint_only += ask(view, cube, box, false) != Visibility::kHidden ? 1 : 0;
-      EXPECT_FALSE(lookAt(box, view, cube, 100, random.engine).seen) << i;
+      EXPECT_FALSE(lookAt(box, view, cube, 100, random.engine()).seen) << i;
     }
   }
   EXPECT_GT(hidden, 300);
@@ -453,7 +453,7 @@ TEST_P(SupportingPlanesFamilies, NothingThatARayReachesIsHidden) {
                                    by_all_vertices.classify(box)};
       if (std::count(std::begin(states), std::end(states), Visibility::kHidden) > 0) {
         ++hidden;
-        EXPECT_FALSE(lookAt(box, scene.view, scene.polygons, 400, scene.random.engine).seen)
+        EXPECT_FALSE(lookAt(box, scene.view, scene.polygons, 400, scene.random.engine()).seen)
             << GetParam().name << " seed " << seed << " box " << i;
       }
     }

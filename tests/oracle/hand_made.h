@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sightline/scene/scene.h"
+#include "tests/support/square_view.h"
 
 namespace sightline::hand_made {
 
@@ -37,15 +38,8 @@ inline ObjectId addWall(Scene& scene, MaterialId material, float z, float x0, fl
   return addTriangles(scene, material, turned ? back : front);
 }
 
-// A view from the origin along -z, 90 degrees wide in both directions.
 inline View frontView() {
-  View view;
-  setOrientation(view, {0, 0, -1}, {0, 1, 0});
-  view.tan_half_fovy = 1.0;
-  view.aspect = 1.0;
-  view.near = 0.1;
-  view.far = 100.0;
-  return view;
+  return test::squareView(0.1, 100.0);
 }
 
 }  // namespace sightline::hand_made

@@ -33,7 +33,7 @@ struct Claim {
   }
 };
 
-// As many random lines as the search may try lines in all, and nothing else.
+// Tries as many random lines as the search may try lines in all, and nothing else.
 RegionSearchSettings raysAlone() {
   const RegionSearchSettings all;
   return {.lines = all.lines + all.planes * all.plane_steps, .planes = 0, .eyes = 0};

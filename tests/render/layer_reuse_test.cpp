@@ -323,7 +323,7 @@ TEST_F(LayerReuseTest, OrthographicViewsShiftExactlyWhereverThingsAre) {
   EXPECT_LT(largestDifference(reused.image, reused.expected), 2e-3);
 }
 
-// As jitter between frames does.
+// The window moves as jitter between frames moves it.
 TEST_F(LayerReuseTest, AWindowMovedByWholePixelsShiftsTheImageExactly) {
   maker.wall(0.0, 1.43, kRed);
   Reused reused(maker.scene, {.tolerance_px = 0.01});

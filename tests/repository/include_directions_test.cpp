@@ -16,7 +16,7 @@
 namespace sightline::repository {
 namespace {
 
-// From the bottom to the top.
+// Rooms are listed from the bottom to the top.
 constexpr std::array<std::string_view, 15> kRooms{
     "base",  "math",   "geometry", "scene", "hierarchy", "occluders", "occlusion", "culling",
     "world", "layers", "drawing",  "pvs",   "io",        "render",    "comparison"};

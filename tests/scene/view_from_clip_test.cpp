@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sightline/math/frustum.h"
+#include "tests/support/random_numbers.h"
 
 namespace sightline {
 namespace {
@@ -16,18 +17,11 @@ namespace {
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  Vec3d point(double r) { return {in(-r, r), in(-r, r), in(-r, r)}; }
-  bool chance() { return (engine_() >> 20 & 1) != 0; }
+using test::Random;
 
- private:
-  std::mt19937_64 engine_;
-};
+bool chance(Random& random) {
+  return (random.bits() >> 20 & 1) != 0;
+}
 
 Mat4 fromRows(const std::array<double, 16>& rows) {
   return transposed(Mat4{rows});
@@ -256,16 +250,16 @@ TEST(ViewFromClip, ReadsTheDepthOfAnOrthographicViewInAnyRange) {
 
 View randomView(Random& random, bool orthographic) {
   View view;
-  view.eye = random.point(random.chance() ? 20.0 : 1e5);
+  view.eye = random.point(chance(random) ? 20.0 : 1e5);
   setOrientation(view, random.point(1.0), random.point(1.0));
   view.orthographic = orthographic;
   view.ortho_height = random.in(1.0, 40.0);
   view.tan_half_fovy = random.in(0.05, 3.0);
   view.aspect = random.in(0.3, 3.0);
   view.shift_x = random.in(-3.0, 3.0);
-  view.shift_y = random.chance() ? random.in(-3.0, 3.0) : 0.0;
+  view.shift_y = chance(random) ? random.in(-3.0, 3.0) : 0.0;
   view.near = random.in(0.01, 1.0);
-  view.far = random.chance() && !orthographic ? kEndless : view.near + random.in(1.0, 1000.0);
+  view.far = chance(random) && !orthographic ? kEndless : view.near + random.in(1.0, 1000.0);
   return view;
 }
 
@@ -294,7 +288,7 @@ TEST(ViewFromClip, IsTheInverseOfClipFromScene) {
   }
 }
 
-// From OpenGL's depths to others.
+// Changes OpenGL's depths to others.
 Mat4 withDepth(Mat4 clip, ClipDepth depth) {
   for (int column = 0; column < 4 && depth != ClipDepth::kMinusOneToOne; ++column) {
     const double z = 0.5 * (clip(3, column) + clip(2, column));
@@ -325,7 +319,7 @@ TEST(ViewFromClip, HasThePlanesOfTheMatrixEvenInSinglePrecision) {
     const View view = randomView(random, orthographic);
     const ClipDepth depth = static_cast<ClipDepth>(seed % 3);
     Mat4 clip = withDepth(clipFromScene(view), depth);
-    if (random.chance()) {
+    if (chance(random)) {
       // The two matrices of a program, in single precision.
       View camera = view;
       camera.eye = {};
@@ -485,9 +479,9 @@ TEST(ViewFromClip, RefusesNumbersThatAreNotFinite) {
   // Any numbers at all give a view that validate() accepts, or an error.
   for (std::uint64_t seed = 1; seed <= 20000; ++seed) {
     Random random(seed);
-    Mat4 clip = random.chance() ? glFrustum(kWindow) : Mat4{};
+    Mat4 clip = chance(random) ? glFrustum(kWindow) : Mat4{};
     for (double& element : clip.m) {
-      element = random.chance() ? element : random.in(-1, 1) * std::exp2(random.in(-1074.0, 1023.0));
+      element = chance(random) ? element : random.in(-1, 1) * std::exp2(random.in(-1074.0, 1023.0));
     }
     const Result<View> view = viewFromClip(clip, {.depth = static_cast<ClipDepth>(seed % 3)});
     EXPECT_TRUE(!view || validate(*view)) << "seed " << seed;

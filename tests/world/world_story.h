@@ -41,7 +41,7 @@ inline Shape boxShape() {
   return shape;
 }
 
-// In the plane z = 0, with its front towards +z.
+// The panel is in the plane z = 0, with its front towards +z.
 inline Shape panelShape(bool double_sided, Opacity opacity = Opacity::kOpaque) {
   Shape shape;
   addQuad(shape, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});

@@ -5,7 +5,7 @@
 namespace sightline::tool {
 namespace {
 
-// In the order in which --help lists them.
+// Adds the commands in the order in which --help lists them.
 void addAllCommands(CLI::App& app, Command& chosen) {
   addInfo(app, chosen);
   addWalk(app, chosen);

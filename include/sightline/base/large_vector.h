@@ -40,6 +40,7 @@ struct GivenItems {
 template <typename T>
 class LargeAllocator {
  public:
+  // NOLINTBEGIN(readability-identifier-naming): the names of the standard library
   using value_type = T;
   using propagate_on_container_move_assignment = std::true_type;
   using propagate_on_container_swap = std::true_type;
@@ -50,6 +51,7 @@ class LargeAllocator {
   LargeAllocator(const LargeAllocator<U>&) {}
   // A copy of a vector has memory of its own.
   LargeAllocator select_on_container_copy_construction() const { return {}; }
+  // NOLINTEND(readability-identifier-naming)
 
   T* allocate(std::size_t count) {
     if (given_ != nullptr && !std::exchange(given_->taken, true)) {

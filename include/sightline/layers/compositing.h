@@ -120,13 +120,13 @@ enum class CompositingForm : std::uint8_t {
   // fewest occluders in its cycle; ties go to the one that occludes most, then to the first. Its occluders
   // are composited by expression 3. The rest without L is divided into cycles again, and so on.
   kOverAtop,
-  // For each cycle the form with fewer operations or, at a tie, fewer steps; also for cycles of a rest.
+  // Each cycle, also one of a rest, gets the form with fewer operations or, at a tie, fewer steps.
   kCheapest,
 };
 
 // Compiles layers to a program. A layer in no cycle takes one step. The time is linear except for cycles by
 // expression 4, which take up to layers * occlusions of the cycle. compile() does not allocate after warm-up.
-// For one thread at a time.
+// Use by one thread at a time.
 class CompositingCompiler {
  public:
   CompositingCompiler();

@@ -17,9 +17,9 @@ struct VisibleHistorySettings {
   double fade_in_s = 0.25;  // and becomes opaque within so long after it appeared; 0: at once
 };
 
-// For what should not be dropped and fetched again whenever something passes before it (textures, skeletons,
-// sounds, finer levels of detail), and for what should not pop up. Adds to what may be seen and takes nothing
-// away. For one thread at a time.
+// Holds what was visible a moment ago, so that it is not dropped and fetched again whenever something passes
+// before it (textures, skeletons, sounds, finer levels of detail), and fades in what appears. It adds to what
+// may be seen and takes nothing away. Use by one thread at a time.
 class VisibleHistory {
  public:
   explicit VisibleHistory(const VisibleHistorySettings& settings = {}) : settings_(settings) {}

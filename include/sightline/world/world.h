@@ -83,7 +83,7 @@ class World {
   World& operator=(World&&) noexcept;
 
   MeshId addMesh(WorldMesh mesh);
-  // Also removes its instances.
+  // Removes a mesh and its instances.
   void removeMesh(MeshId mesh);
 
   // Makes room for so many instances, all together. Without it, some of those that are added one by one take
@@ -92,7 +92,7 @@ class World {
   // Takes about a microsecond. An instance with a matrix that is not finite, or of a mesh that is not there,
   // is in every answer while it is shown.
   InstanceId add(const Instance& instance);
-  // The same for many, whose ids are appended; after it, the hierarchy is as one built for all that is there.
+  // Adds many and appends their ids. Afterwards the hierarchy is as one that is built for all that is there.
   // Takes n log n time.
   void add(std::span<const Instance> instances, std::vector<InstanceId>& ids);
   void remove(InstanceId instance);

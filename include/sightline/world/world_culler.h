@@ -18,14 +18,14 @@ namespace sightline {
 
 struct WorldCullerSettings {
   RasterSettings raster{};  // of the depth buffer into which surfaces are drawn
-  // Of the surfaces of one instance, or of a join; `budget` is for all of a view. `step` has no effect.
+  // How the surfaces of an instance or a join are drawn; `budget` is for all of a view. `step` has no effect.
   SurfaceDrawing drawing{};
   bool occlusion = true;  // false: by the view's volume alone
   // Only instances that have one of these bits are drawn in the view (Instance::groups).
   std::uint32_t groups = 0xffffffffu;
 };
 
-// Of the last cull().
+// What the last cull() did.
 struct WorldCullStats {
   // What is wrong with the view, in the words of validate(); null where nothing is. Otherwise everything that
   // is shown was kept.

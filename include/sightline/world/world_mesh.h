@@ -24,7 +24,7 @@ struct MeshView {
   const void* indices = nullptr;
   std::uint32_t index_bytes = 4;
   std::size_t index_count = 0;
-  // As triangles appear in the picture that are seen from their front; else counter-clockwise.
+  // Whether triangles that are seen from their front run clockwise in the picture.
   bool clockwise = false;
   // The mesh's space is left-handed, as those of Unity, Unreal and Direct3D samples are. This only tells what
   // `clockwise` means: front faces of Unity and Unreal are clockwise, in left-handed spaces.
@@ -54,8 +54,8 @@ struct WorldMesh {
   // How many vertices the triangles of the mesh that hides name, and how many different positions these have.
   // Where both are equal and open_edges are many, positions that should be equal are not: it hides little.
   std::uint32_t vertices = 0, positions = 0;
-  // At so many edges of the mesh that hides its triangles do not cancel. A closed mesh has none if all of its
-  // triangles run the same way around.
+  // The number of edges of the mesh that hides at which its triangles do not cancel. A closed mesh has none
+  // if all of its triangles run the same way around.
   std::uint32_t open_edges = 0;
   // Cubic metres in the mesh that hides, if it is closed; more where its triangles run counter-clockwise as
   // seen from outside. Negative: it is inside out. If it is not drawn so, MeshView::clockwise or

@@ -100,7 +100,8 @@ void ExtentTree::closeFrame() {
   ++window.frames;
   frame_ = {};
   if (recent_.frames == kWindowFrames) {
-    // At least one part, so that a scene whose first queries visited nothing is not rebuilt for ever.
+    // The usual work is one part at least: a scene whose first queries visited nothing is not rebuilt for
+    // ever.
     const double usual = std::max(first_.average(), 1.0);
     imbalanced_ = settings_.rebuild_imbalance > 0 && recent_.average() > settings_.rebuild_imbalance * usual;
     recent_ = {};

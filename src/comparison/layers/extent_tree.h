@@ -17,7 +17,7 @@ namespace sightline::comparison {
 
 using layers::Extent;
 
-// For one thread at a time.
+// Use by one thread at a time.
 class ExtentTree {
  public:
   explicit ExtentTree(const ExtentTreeSettings& settings);

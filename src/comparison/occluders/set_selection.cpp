@@ -183,7 +183,7 @@ void SetSelection::prepare(const OccluderPicture& picture, const SetPool& pool,
   buffer_.clear(picture);
 }
 
-// Of what is left of its gain and its cost.
+// Divides what is left of the set's gain by what is left of its cost.
 double SetSelection::score(std::uint32_t set) const {
   return worth_of_[set_gain_[set]] / std::max(set_cost_[set], kMinCost);
 }
@@ -260,7 +260,7 @@ void SetSelection::takeOthers(const OccluderPicture& picture, const SetPool& poo
   }
 }
 
-// Those taken from number `first` on.
+// Appends the occluders that were taken, from number `first` on.
 void SetSelection::appendTaken(const OccluderPicture& picture, std::size_t first, std::uint32_t limit) {
   for (const std::uint32_t occluder : std::span(taken_).subspan(first)) {
     if (buffer_.pixelsOf(occluder) > 0) {

@@ -150,7 +150,8 @@ class CameraAdder {
     return Success{};
   }
 
-  // From the camera's node to its root, with the tracks of the first animation that moves any of them.
+  // Lists the camera's node and those above it, with the tracks of the first animation that moves any of
+  // them.
   Result<std::vector<Link>> chainOf(int node) {
     std::vector<int> nodes;
     std::size_t animation = document_.file.animations.size();

@@ -32,7 +32,7 @@ class AccessorView {
 
   // Component of an element, normalised where the accessor says so. Precondition: element < count().
   double number(std::uint64_t element, int component) const;
-  // Of integer accessors.
+  // Precondition: the accessor holds integers, and element < count().
   std::uint32_t index(std::uint64_t element) const;
 
  private:

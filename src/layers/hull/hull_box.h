@@ -9,7 +9,7 @@
 
 namespace sightline::layers {
 
-// In the hull's space.
+// A box around a hull, in the hull's space.
 struct HullBox {
   Vec3d centre;
   std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};  // orthonormal, up to rounding

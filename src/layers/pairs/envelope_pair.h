@@ -22,12 +22,12 @@ inline double outerHeight(const HullEnvelope& around, const Placement& placement
   return around.height(placement.toHull(direction)) + dot(direction, offset) +
          0x1p-45 * (stretch * around.reach() + l1Norm(offset)) + 1e-150;
 }
-// The same for a single point.
+// The outer height of a single point.
 inline double outerHeight(const Vec3d& point, const Vec3d& direction) {
   return dot(direction, point) + 0x1p-45 * l1Norm(point);
 }
 
-// The same for a set with an envelope, above a point.
+// The outer height above a point of a set with an envelope.
 double outerHeight(const ConvexSet& set, const Vec3d& direction, const Vec3d& above);
 
 inline bool isUnit(const Vec3d& direction) {

@@ -181,7 +181,7 @@ void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
   const auto removeFrom = [&](std::span<const Vec3d> corners, Runs& side) {
     intersect(side, sets.whole, scratch_);
     side.swap(scratch_);
-    // From the box around a side; that of a slanted plane is often the cell, which has been asked about.
+    // The box around a side of a slanted plane is often the cell, which has been asked about.
     if (corners.empty()) {
       return;
     }

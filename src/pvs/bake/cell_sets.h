@@ -76,7 +76,7 @@ class CellBaker {
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen);
-  // The same by surfaces, of what lies in the boxes of the tree.
+  // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
   void removeFused(const CellBox& box, CellSets& sets);
   void removeFusedFrom(const CellBox& region, Runs& seen);
   void removeFusedBelow(std::uint32_t node, const CellBox& region);

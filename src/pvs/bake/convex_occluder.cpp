@@ -24,7 +24,7 @@ double smaller(double a, double b) {
   return b < a || std::isnan(b) ? b : a;
 }
 
-// At least |x| + |y| + |z| of each of these points.
+// Returns a number that |x| + |y| + |z| of none of these points exceeds.
 double sizeOf(std::span<const Vec3f> points) {
   Vec3d largest;
   for (const Vec3f& point : points) {

@@ -214,7 +214,7 @@ void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const V
                doubt = doubtOf(l1Norm(along) + error_, far, far, error_);
   Crossing crossing{.panel = number};
   anySheet(panels_, number, [&](const Sheet& sheet) {
-    // On which side of its three edges the line passes.
+    // The signs tell on which side of the sheet's three edges the line passes.
     const Vec3d a = sheet.a - from, b = sheet.b - from, c = sheet.c - from;
     const double ab = dot(along, cross(a, b)), bc = dot(along, cross(b, c)), ca = dot(along, cross(c, a));
     const double least = std::min({ab, bc, ca}), most = std::max({ab, bc, ca});

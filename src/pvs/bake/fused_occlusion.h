@@ -17,7 +17,7 @@ struct FusedTarget {
   std::uint32_t object = kNoObject;  // the only one that is asked about, or kNoObject
 };
 
-// For use by one thread at a time.
+// Use by one thread at a time.
 class FusedOcclusion {
  public:
   // kHidden: every line of sight from the region to the target meets the front of a sheet. kClear: one of
@@ -69,7 +69,7 @@ class FusedOcclusion {
   double error_;         // of a coordinate relative to another point, metres
   double sheet_margin_;  // around the corners of a sheet in single precision, metres
 
-  // Of the last question.
+  // These describe the last question.
   CellBox region_, target_;
   double near_distance_ = 0.0;
   std::uint32_t left_out_ = kNoObject;  // its sheets hide nothing

@@ -235,7 +235,7 @@ class PanelMaker {
     }
   }
 
-  // From the borders inwards.
+  // Counts each panel's steps to the nearest border, from the borders inwards.
   void countSteps() {
     panels_.steps_to_border.assign(panels_.panels.size(), kNone);
     std::vector<std::uint32_t> reached;

@@ -59,7 +59,8 @@ struct Panels {
   }
 };
 
-// Of all opaque triangles that may be occluders and are finite. The result does not depend on the threads.
+// Makes panels of all opaque triangles that may be occluders and are finite. The result does not depend on
+// the threads.
 Panels findPanels(const SceneView& scene, const ParallelFor& parallel_for = serialFor);
 
 }  // namespace sightline::pvs

@@ -15,7 +15,7 @@ struct RegionEffort {
   std::uint32_t divisions = 0;   // how often the region or the target, whichever is larger, is halved
 };
 
-// For use by one thread at a time.
+// Use by one thread at a time.
 class RegionOcclusion {
  public:
   // near_distance: what is closer to a viewer, in metres, hides nothing. magnitude: an upper bound of the

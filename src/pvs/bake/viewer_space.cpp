@@ -33,7 +33,7 @@ class VoxelBits {
   }
   bool at(const Place& p) const { return (row(p[1], p[2])[wordOf(p)] & bitOf(p)) != 0; }
   void set(const Place& p) { row(p[1], p[2])[wordOf(p)] |= bitOf(p); }
-  // For several threads at a time.
+  // Does what set() does; several threads may call it at a time.
   void setTogether(const Place& p) {
     std::uint64_t& word = row(p[1], p[2])[wordOf(p)];
     std::atomic_ref<std::uint64_t>(word).fetch_or(bitOf(p), std::memory_order_relaxed);

@@ -9,7 +9,7 @@ namespace sightline {
 
 namespace {
 
-// From 0...1 to 0...255, clamped; NaN becomes 0.
+// Maps 0...1 to 0...255, clamped; NaN becomes 0.
 std::uint8_t toByte(float value) {
   return value > 0.0f ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0f) * 255.0f))
                       : std::uint8_t{0};

@@ -92,7 +92,7 @@ std::string whyNone(const BenchRecord& record, const SettingRecord& chosen) {
                      keptAndTime(record, chosen));
 }
 
-// On what the choice is based.
+// What the choice is based on.
 enum class Ground : std::uint8_t { kDrawing, kKnee, kNothingHidden };
 
 Ground groundOf(const BenchRecord& record) {

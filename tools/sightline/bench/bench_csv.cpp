@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "tools/sightline/bench/bench_text.h"
+#include "tools/sightline/command_line/text_table.h"
 
 namespace sightline::tool {
 namespace {
@@ -153,18 +154,6 @@ std::vector<CsvColumn> makeColumns() {
   return columns;
 }
 
-// The text as one field: in quotes if it has a comma, a quote or a line break (RFC 4180).
-std::string fieldOf(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string field = "\"";
-  for (const char c : text) {
-    field += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return field + "\"";
-}
-
 }  // namespace
 
 std::vector<std::string> benchCsvColumns() {
@@ -185,7 +174,7 @@ std::string benchCsv(const std::vector<BenchRecord>& records) {
     for (const SettingRecord& run : record.runs) {
       text += "\n";
       for (std::size_t c = 0; c < columns.size(); ++c) {
-        text += (c == 0 ? "" : ",") + fieldOf(columns[c].text(record, run));
+        text += (c == 0 ? "" : ",") + csvText(columns[c].text(record, run));
       }
     }
   }

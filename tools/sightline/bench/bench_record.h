@@ -83,7 +83,7 @@ struct BenchRecord {
   // Objects whose bounding boxes are visible, over all frames: any test of one box an object must keep them.
   std::uint64_t boxes = 0;
   std::uint64_t undecided_boxes = 0;  // not among them
-  // The same with the up to kMaxObjectBoxes boxes that findObjectBoxes() gives an object.
+  // Objects of which a box is visible, of the up to kMaxObjectBoxes that findObjectBoxes() gives an object.
   std::uint64_t several_boxes = 0, undecided_several_boxes = 0;
   std::size_t frames_from_cache = 0;  // frames whose exact visibility was kept from an earlier run
   std::vector<SettingRecord> runs{};  // [0] is the baseline: view-frustum culling
@@ -94,7 +94,7 @@ struct BenchRecord {
   std::optional<Interval> overestimate(const SettingRecord& run) const { return overestimateOf(run.kept); }
   // The least that a test of one bounding box an object can have.
   std::optional<Interval> leastOfBoxes() const { return overestimateOf(boxes); }
-  // The same with several boxes an object.
+  // The least that a test of several boxes an object can have.
   std::optional<Interval> leastOfSeveralBoxes() const { return overestimateOf(several_boxes); }
 
  private:

@@ -37,7 +37,7 @@ void warmUp(std::vector<BenchRun>& runs, const std::vector<View>& views,
 void measureCulling(std::vector<BenchRun>& runs, const std::vector<View>& views, std::size_t rounds,
                     const Done& done);
 
-// The same for drawing what each setting keeps.
+// Measures, in rounds as measureCulling() does, how long drawing takes of what each setting keeps.
 void measureDrawing(std::vector<BenchRun>& runs, const std::vector<View>& views, std::size_t rounds,
                     Renderer& renderer, const Done& done);
 

@@ -16,4 +16,8 @@ struct TextTable {
 // The table as text, one line for each row.
 std::string toText(const TextTable& table);
 
+// The text as one value of comma-separated values: in quotes if it has a comma, a quote or a line break
+// (RFC 4180).
+std::string csvText(const std::string& text);
+
 }  // namespace sightline::tool

@@ -29,9 +29,10 @@ struct HiddenPairs {
   std::vector<HiddenPair> pairs;
 };
 
-// At most `count` pairs, each once. Parts of cells are drawn at random. Of each, four hidden objects are
-// drawn: any, one that looks large from the cell, one that is close to it, and one that is close to a visible
-// object. Fewer pairs if the file hides less. The same seed gives the same pairs. Error if a set is corrupt.
+// Draws at most `count` pairs, each once. Parts of cells are drawn at random. Of each, four hidden objects
+// are drawn: any, one that looks large from the cell, one that is close to it, and one that is close to a
+// visible object. There are fewer pairs if the file hides less. The same seed gives the same pairs. Error if
+// a set is corrupt.
 Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, const Scene& scene, std::uint32_t count,
                                       std::uint64_t seed);
 

@@ -53,7 +53,7 @@ struct ExactObjects {
 
   friend bool operator==(const ExactObjects&, const ExactObjects&) = default;
 };
-// Without boxes.
+// What the frame says of objects; boxes are left empty.
 ExactObjects objectsOf(const ExactFrame& frame);
 
 // Fills in the boxes, of which ExactVisibility::decideBoxes() says what is visible. object_count: of the

@@ -150,15 +150,7 @@ void addLegend(std::string& out, const Plot& plot, const std::vector<LegendEntry
 std::string toSvg(const Plot& plot) {
   const std::vector<LegendEntry> legend = placeLegend(plot);
   const Canvas canvas = canvasOf(plot, legend.empty() ? kTop + 8.0 : legend.back().y + 20.0);
-  const std::string title = escapeMarkup(plot.title);
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "role=\"img\" "
-      "aria-label=\"{2}\" font-family=\"system-ui, -apple-system, Segoe UI, Roboto, Helvetica, Arial, "
-      "sans-serif\" "
-      "font-size=\"13\" fill=\"currentColor\">\n"
-      "<text x=\"{3:.1f}\" y=\"22\" font-size=\"16\" font-weight=\"600\">{2}</text>\n",
-      plot.width, plot.height, title, kLeft);
+  std::string out = beginningOfPlot(plot.width, plot.height, plot.title, kLeft);
   addAxes(out, plot, canvas);
   addLegend(out, plot, legend);
   for (std::size_t i = 0; i < plot.series.size(); ++i) {

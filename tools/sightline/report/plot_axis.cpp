@@ -87,4 +87,14 @@ std::string tickLabel(double value) {
   return label;
 }
 
+std::string beginningOfPlot(std::uint32_t width, std::uint32_t height, const std::string& title,
+                            double title_x) {
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "role=\"img\" aria-label=\"{2}\" font-family=\"system-ui, -apple-system, Segoe UI, Roboto, Helvetica, "
+      "Arial, sans-serif\" font-size=\"13\" fill=\"currentColor\">\n"
+      "<text x=\"{3:.1f}\" y=\"22\" font-size=\"16\" font-weight=\"600\">{2}</text>\n",
+      width, height, escapeMarkup(title), title_x);
+}
+
 }  // namespace sightline::tool

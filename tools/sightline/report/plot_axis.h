@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,10 @@ Axis logarithmicAxis(double low, double high);
 
 // The value with as few digits as distinguish it from its neighbours: "0.5", "250,000", "1e-07".
 std::string tickLabel(double value);
+
+// The first lines of a plot as SVG, of this width and height: its title as what screen readers say, and as
+// text that starts at title_x. "</svg>" closes the plot.
+std::string beginningOfPlot(std::uint32_t width, std::uint32_t height, const std::string& title,
+                            double title_x);
 
 }  // namespace sightline::tool

@@ -110,13 +110,7 @@ std::string toSvg(const ScatterPlot& plot) {
   std::vector<ScatterPoint> shown = plot.points;
   std::erase_if(shown, [](const ScatterPoint& point) { return !isShown(point); });
   const ScatterCanvas canvas = canvasFor(plot, shown);
-  const std::string title = escapeMarkup(plot.title);
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "role=\"img\" aria-label=\"{2}\" font-family=\"system-ui, -apple-system, Segoe UI, Roboto, Helvetica, "
-      "Arial, sans-serif\" font-size=\"13\" fill=\"currentColor\">\n"
-      "<text x=\"{3:.1f}\" y=\"22\" font-size=\"16\" font-weight=\"600\">{2}</text>\n",
-      plot.width, plot.height, title, kScatterLeft);
+  std::string out = beginningOfPlot(plot.width, plot.height, plot.title, kScatterLeft);
   addScatterAxes(out, plot, canvas);
   addGroups(out, plot);
   addFront(out, canvas, shown);

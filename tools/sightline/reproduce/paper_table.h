@@ -18,7 +18,7 @@ struct Paper {
   std::vector<std::string> short_scenes{};  // the scenes with --short; empty: the same
 
   bool makesItsScenes() const { return scenes.empty(); }
-  // Those that the options name, or the paper's.
+  // The scenes that the options name, or the paper's.
   const std::vector<std::string>& scenesFor(const ReproduceOptions& options) const {
     return !options.scenes.empty()                         ? options.scenes
            : options.fewer_frames && !short_scenes.empty() ? short_scenes
@@ -26,7 +26,7 @@ struct Paper {
   }
 };
 
-// By their names on the command line, in alphabetical order. Each has its function in papers.h.
+// All papers with their names on the command line, in alphabetical order. Each has its function in papers.h.
 const std::vector<std::pair<std::string, Paper>>& papers();
 std::vector<std::string> paperNames();
 // Precondition: name is one of paperNames().

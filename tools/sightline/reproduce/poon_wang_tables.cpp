@@ -38,7 +38,7 @@ constexpr Published kRoutes[] = {
 constexpr Published kCriteria[] = {{"route", "best", "minimum-sets", 25.5},
                                    {"route", "best", "first-hit", 24.5},
                                    {"route", "best", "projected-size", 5.4}};
-// By picture size, in the order of the rows.
+// These are listed by picture size, in the order of the rows.
 constexpr std::array<std::array<double, 2>, 3> kPictureSizes{{{25.6, 14.6}, {20.1, 9.8}, {16.7, 11.6}}};
 struct PublishedCount {
   const char* culling;

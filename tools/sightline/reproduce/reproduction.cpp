@@ -18,18 +18,6 @@ std::string cellText(const Json& row, const Column& column) {
                              : fmt::format("{:.{}f}", value.get<double>(), column.decimals);
 }
 
-// Text as a value of comma-separated values: quoted where it has to be.
-std::string csvText(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + "\"";
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> fewerFrames(const ReproduceOptions& options,
