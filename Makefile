@@ -52,8 +52,8 @@ bench: setup
 
 gallery: setup
 	@$(configure)
-	@$(build) --target sightline_tool
-	@FULL="$(FULL)" scripts/gallery $(BUILD)/bin/sightline
+	@$(build) --target sightline_tool --target contacts
+	@FULL="$(FULL)" scripts/gallery $(BUILD)/bin/sightline $(BUILD)/bench
 
 format:
 	@scripts/setup --checks
