@@ -121,15 +121,17 @@ class ArrayReader {
     return whole_;
   }
 
-  const SharedBytes& shared_;
+  SharedBytes shared_;
   bool shares_ = false, whole_ = true;
   std::size_t at_ = 0;
 };
 
-// Whether numbers say where the rows of `items` items begin, and one more where the last one ends.
+// Whether numbers say where the rows of `items` items begin, and one more where the last one ends. They may
+// be missing where there are no rows.
 inline bool areRowStarts(std::span<const std::uint32_t> first, std::size_t rows, std::size_t items) {
-  return first.size() == rows + 1 && first.front() == 0 && first.back() == items &&
-         std::is_sorted(first.begin(), first.end());
+  return (rows == 0 && items == 0 && first.empty()) ||
+         (first.size() == rows + 1 && first.front() == 0 && first.back() == items &&
+          std::is_sorted(first.begin(), first.end()));
 }
 
 }  // namespace sightline::base

@@ -50,8 +50,14 @@ bool isTree(const Hierarchy& hierarchy) {
   return open.empty() && depth == hierarchy.depth && (size > 0 || hierarchy.objects.empty());
 }
 
+// More levels than any hierarchy has that is of use: what is linear in them stays short.
+constexpr std::uint32_t kMostLevels = 256;
+
 // What is wrong with the numbers of a hierarchy; empty if nothing is.
 std::string flawOf(const Hierarchy& hierarchy, std::uint32_t objects) {
+  if (hierarchy.depth > kMostLevels) {
+    return "it has too many levels";
+  }
   if (!isTree(hierarchy)) {
     return "its nodes are no tree";
   }
@@ -78,7 +84,8 @@ std::string flawOf(const Hierarchy& hierarchy, std::uint32_t objects) {
 
 LargeVector<std::byte> hierarchyBytes(const Hierarchy& hierarchy) {
   const Numbers numbers{static_cast<std::uint32_t>(hierarchy.kind), hierarchy.object_count, hierarchy.depth};
-  base::ArrayWriter writer(sizeof(kHierarchyHead) + sizeof(numbers) + base::ArrayWriter::sizeOf(hierarchy.nodes) +
+  base::ArrayWriter writer(sizeof(kHierarchyHead) + sizeof(numbers) +
+                           base::ArrayWriter::sizeOf(hierarchy.nodes) +
                            base::ArrayWriter::sizeOf(hierarchy.objects));
   writer.value(kHierarchyHead);
   writer.value(numbers);

@@ -4,12 +4,11 @@
 #include <tuple>
 
 #include "src/base/parts.h"
+#include "src/occluders/occluder_limits.h"
 
 namespace sightline::occluders {
 namespace {
 
-// Of a body; vertices, faces and edges are numbered in bytes.
-constexpr std::size_t kMaxFaces = 32, kMaxEdges = 64, kMaxVertices = 32;
 constexpr std::size_t kObjectsOfPart = 1024;
 
 std::uint32_t cornerOf(const FoundPolygon& polygon, std::size_t number) {
@@ -194,8 +193,8 @@ bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double toler
   }
   edges /= 2;
   // Euler: as many vertices as edges and two, less the faces.
-  if (faces.size() < 4 || faces.size() > kMaxFaces || edges > kMaxEdges ||
-      edges + 2 - faces.size() > kMaxVertices) {
+  if (faces.size() < 4 || faces.size() > kMaxBodyFaces || edges > kMaxBodyEdges ||
+      edges + 2 - faces.size() > kMaxBodyVertices) {
     return false;
   }
   for (const FoundPolygon* face : faces) {

@@ -17,12 +17,11 @@
 
 #include "src/base/parallel_rows.h"
 #include "src/base/union_find.h"
+#include "src/occluders/occluder_limits.h"
 
 namespace sightline::occluders {
 namespace {
 
-// Edges of more mesh edges are never watertight: the open ones are told by 64 bits.
-constexpr std::uint32_t kMaxMeshEdges = 64;
 constexpr std::size_t kPolygonsOfPart = 4096, kLowVerticesOfPart = 16384;
 
 double distanceToLine(const Vec3d& point, const Vec3d& p, const Vec3d& q) {

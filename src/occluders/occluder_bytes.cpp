@@ -7,9 +7,12 @@
 
 #include "sightline/occluders/occluder_set.h"
 #include "src/base/array_bytes.h"
+#include "src/occluders/occluder_limits.h"
 
 namespace sightline {
 namespace {
+
+using namespace occluders;
 
 // The last two letters: raise them with every change of the arrays or of findOccluders().
 constexpr base::ArraysHead kOccludersHead{
@@ -70,7 +73,7 @@ bool areOccludersSound(const OccluderSet& set, std::uint32_t objects) {
 
 bool areEdgesSound(const OccluderSet& set) {
   return all(set.edges, [&](const OccluderEdge& edge) {
-    return edge.line < set.lines.size() &&
+    return edge.line < set.lines.size() && edge.mesh_edge_count <= kMaxMeshEdges &&
            fits(edge.first_neighbour, edge.neighbour_count, set.neighbours.size()) &&
            (edge.mesh_edge_count == 0 ||
             fits(edge.first_edge_vertex, edge.mesh_edge_count - 1u, set.edge_vertices.size())) &&
@@ -98,7 +101,8 @@ bool areBodiesSound(const OccluderSet& set) {
          all(set.body_of,
              [&](std::uint32_t body) { return body == OccluderSet::kNoBody || body < set.bodies.size(); }) &&
          all(set.bodies, [&](const OccluderBody& body) {
-           return body.face_count > 0 &&
+           return body.face_count > 0 && body.face_count <= kMaxBodyFaces &&
+                  body.vertex_count <= kMaxBodyVertices && body.edge_count <= kMaxBodyEdges &&
                   fits(body.first_vertex, body.vertex_count, set.body_vertices.size()) &&
                   fits(body.first_edge, body.edge_count, set.body_edges.size()) &&
                   fits(body.first_face, body.face_count, set.body_faces.size()) &&
@@ -124,12 +128,12 @@ bool arePointsFinite(const OccluderSet& set) {
 
 // What is wrong with the numbers of a set; empty if nothing is: no index leaves its array.
 std::string flawOf(const OccluderSet& set, std::uint32_t objects) {
-  return !areOccludersSound(set, objects) ? "its polygons are broken"
-         : !areEdgesSound(set)            ? "its edges are broken"
-         : !areListsSound(set, objects)   ? "its lists of objects are broken"
-         : !areBodiesSound(set)           ? "its bodies are broken"
-         : !arePointsFinite(set)          ? "some of its numbers are not finite"
-                                          : "";
+  return !areOccludersSound(set, objects) || !std::isfinite(set.area) ? "its polygons are broken"
+         : !areEdgesSound(set)                                        ? "its edges are broken"
+         : !areListsSound(set, objects)                               ? "its lists of objects are broken"
+         : !areBodiesSound(set)                                       ? "its bodies are broken"
+         : !arePointsFinite(set)                                      ? "some of its numbers are not finite"
+                                                                      : "";
 }
 
 }  // namespace

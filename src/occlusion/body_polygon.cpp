@@ -5,14 +5,16 @@
 #include <limits>
 #include <optional>
 
+#include "src/occluders/occluder_limits.h"
+
 namespace sightline::occlusion {
 namespace {
 
-constexpr std::uint32_t kMaxVertices = 32;
+using occluders::kMaxBodyVertices;
 
 struct BodyVertices {
-  Vec3d relative[kMaxVertices];  // to the eye
-  Vec3d camera[kMaxVertices];
+  Vec3d relative[kMaxBodyVertices];  // to the eye
+  Vec3d camera[kMaxBodyVertices];
   double reach = 0.0;     // largest l1Norm(), metres
   double farthest = 0.0;  // largest distance from the eye, metres; orthographic: 1
   double nearest = std::numeric_limits<double>::infinity();  // least depth, metres
@@ -77,7 +79,7 @@ std::optional<SeenFaces> facesFrom(const Eye& eye, const OccluderSet& set, const
 // loop.
 bool findSilhouette(const OccluderSet& set, const OccluderBody& body, std::uint64_t seen_faces,
                     const BodyVertices& vertices, std::vector<OutlineCorner>& outline) {
-  std::uint8_t next[kMaxVertices];
+  std::uint8_t next[kMaxBodyVertices];
   std::uint32_t count = 0, used = 0, first = 0;  // used: vertices, a bit each
   for (const BodyEdge& edge : set.edgesOf(body)) {
     const bool left = (seen_faces >> edge.left & 1) != 0, right = (seen_faces >> edge.right & 1) != 0;

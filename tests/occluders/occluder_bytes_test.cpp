@@ -38,6 +38,8 @@ TEST(OccluderBytes, AreReadAsTheyWereWritten) {
   EXPECT_FALSE(occludersFrom({*bytes}, city.objects / 2)) << "of fewer objects";
   const LargeVector<std::byte> none = occluderBytes(findOccluders({}));
   EXPECT_TRUE(occludersFrom({none}, 0)) << "a scene without triangles";
+  const LargeVector<std::byte> empty = occluderBytes({});
+  EXPECT_TRUE(occludersFrom({empty}, 0));
 }
 
 TEST(OccluderBytes, CutOffAnywhereTheyAreRefused) {
@@ -84,6 +86,15 @@ TEST(OccluderBytes, ThatNameWhatTheyDoNotHaveAreRefused) {
   EXPECT_TRUE(refuses([](OccluderSet& set) { set.body_of[0] = 0xfffffffe; }));
   EXPECT_TRUE(refuses([](OccluderSet& set) { set.bodies[0].first_face = 0xffffffff; }));
   EXPECT_TRUE(refuses([](OccluderSet& set) { set.bodies[0].face_count = 0; }));
+  EXPECT_TRUE(refuses([](OccluderSet& set) { set.area = std::nan(""); }));
+  EXPECT_TRUE(refuses([](OccluderSet& set) {
+    set.bodies[0].vertex_count = 33;
+    set.body_vertices.resize(set.body_vertices.size() + 33);
+  })) << "drawing has room for 32";
+  EXPECT_TRUE(refuses([](OccluderSet& set) {
+    set.edges[0].mesh_edge_count = 65;
+    set.edge_vertices.resize(set.edge_vertices.size() + 65);
+  })) << "drawing has 64 bits";
   EXPECT_TRUE(refuses([](OccluderSet& set) { set.body_edges[0].to = 255; }));
   EXPECT_TRUE(refuses([&](OccluderSet& set) { set.body_faces[0].occluder = OccluderId(many); }));
   EXPECT_TRUE(refuses([](OccluderSet& set) { set.body_faces[0].vertex = 255; }));

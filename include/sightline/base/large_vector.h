@@ -19,7 +19,8 @@ namespace sightline {
 void* allocateLarge(std::size_t bytes);
 void freeLarge(void* memory, std::size_t bytes);  // bytes: as allocated
 
-// Bytes that somebody else owns, such as those of a mapped file. Nobody may change them while they are used.
+// Bytes that somebody else owns, such as those of a mapped file. Nobody else may change them while they are
+// used. A vector over them (vectorOver) that is changed is changed there: map files copy-on-write.
 struct SharedBytes {
   std::span<const std::byte> bytes{};
   std::shared_ptr<const void> owner{};  // the bytes are there for as long as this is
@@ -82,14 +83,13 @@ template <typename T>
 using LargeVector = std::vector<T, LargeAllocator<T>>;
 
 // A vector of the items that the bytes hold, without a copy of them: their memory is that of the vector,
-// until it grows. Precondition: the bytes begin where a T may, and are whole ones.
+// until it grows, and changes with it. Precondition: the bytes begin where a T may, and are whole ones.
 template <typename T>
 LargeVector<T> vectorOver(const SharedBytes& shared) {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
   if (shared.bytes.empty()) {
     return {};
   }
-  // Nothing is written there: see SharedBytes.
   void* const begin = const_cast<std::byte*>(shared.bytes.data());
   const auto given = std::make_shared<base::GivenItems>(base::GivenItems{shared.owner, begin});
   LargeVector<T> items(shared.bytes.size() / sizeof(T), LargeAllocator<T>(given));

@@ -71,9 +71,9 @@ Hierarchy buildHierarchy(std::span<const Box> object_bounds, std::span<const std
 // The hierarchy as bytes, to be read again instead of built: on a machine of the same kind, by a program of
 // the same version. They say neither of which objects nor with which settings it was built.
 LargeVector<std::byte> hierarchyBytes(const Hierarchy& hierarchy);
-// Error if they are cut off, of another version, no tree, or do not have all of so many objects. Whether they
-// are those that were written, of these boxes, is for the caller to check, by a checksum: a hierarchy of
-// other boxes hides what is visible.
+// Error if they are cut off, of another version, no tree, of more than 256 levels, or do not have all of so
+// many objects. Whether they are those that were written, of these boxes, is for the caller to check, by a
+// checksum: a hierarchy of other boxes hides what is visible.
 Result<Hierarchy> hierarchyFrom(std::span<const std::byte> bytes, std::uint32_t object_count);
 
 }  // namespace sightline

@@ -66,7 +66,7 @@ Result<MappedFile> MappedFile::open(const std::string& file) {
     return mapped;
   }
   const auto size = static_cast<std::size_t>(status.st_size);
-  void* begin = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor.number(), 0);
+  void* begin = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, descriptor.number(), 0);
   if (begin == MAP_FAILED) {
     return unreadable();
   }

@@ -8,7 +8,7 @@
 
 namespace sightline::pvs {
 
-// A memory-mapped file; its pages are read on demand.
+// A memory-mapped file; its pages are read on demand. Whoever writes to one has a copy of it.
 class MappedFile {
  public:
   MappedFile() = default;

@@ -227,7 +227,14 @@ const Hierarchy& CullingData::hierarchy(HierarchyKind kind) {
           settings.kind = kind;
           return buildHierarchy(bounds_, triangles_, settings);
         },
-        [&](const SharedBytes& bytes) { return hierarchyFrom(bytes.bytes, objectCount()); }, hierarchyBytes);
+        [&](const SharedBytes& bytes) -> Result<Hierarchy> {
+          Result<Hierarchy> found = hierarchyFrom(bytes.bytes, objectCount());
+          if (found && found->kind != kind) {
+            return Error{"its hierarchies are of other kinds"};
+          }
+          return found;
+        },
+        hierarchyBytes);
   });
 }
 

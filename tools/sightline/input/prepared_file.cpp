@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
 
+#include "src/base/array_bytes.h"
 #include "src/pvs/query/mapped_file.h"
 #include "tools/sightline/command_line/output_files.h"
 
@@ -39,12 +41,6 @@ struct Row {
 };
 static_assert(std::has_unique_object_representations_v<Head> &&
               std::has_unique_object_representations_v<Row>);
-
-constexpr std::size_t kAlignment = 16;
-
-std::size_t aligned(std::size_t size) {
-  return (size + kAlignment - 1) / kAlignment * kAlignment;
-}
 
 std::uint64_t checksumOf(const Head& head, std::span<const Row> rows) {
   pvs::Checksum sum;
@@ -108,6 +104,9 @@ std::string PreparedFile::read(const SharedBytes& file) {
     return "it is of another scene";
   }
   for (const Row& row : rows) {
+    if (row.name[sizeof(row.name) - 1] != 0) {
+      return "it is damaged";
+    }
     if (row.begin > bytes.size() || row.size > bytes.size() - row.begin) {
       return "it is cut off";
     }
@@ -156,19 +155,19 @@ void PreparedFile::keep() {
   head.sections = sections_.size();
   std::vector<Row> rows;
   std::vector<std::string_view> pieces;
-  static constexpr char kPadding[kAlignment] = {};
+  static constexpr char kPadding[base::kArrayAlignment] = {};
   std::size_t end = sizeof(head) + sections_.size() * sizeof(Row);
   for (const Section& section : sections_) {
     const std::span<const std::byte> bytes = section.bytes.bytes;
     Row row{};
     section.name.copy(row.name, sizeof(row.name) - 1);
-    row.begin = aligned(end);
+    row.begin = base::paddedSize(end);
     row.size = bytes.size();
     row.checksum = section.checksum ? *section.checksum : pvs::checksumOf(bytes);
     rows.push_back(row);
-    pieces.push_back({kPadding, aligned(end) - end});
+    pieces.push_back({kPadding, base::paddedSize(end) - end});
     pieces.push_back({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    end = aligned(end) + bytes.size();
+    end = base::paddedSize(end) + bytes.size();
   }
   head.checksum = checksumOf(head, rows);
   pieces.insert(pieces.begin(), {{reinterpret_cast<const char*>(&head), sizeof(head)},

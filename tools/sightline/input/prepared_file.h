@@ -3,6 +3,7 @@
 // What preparing a scene makes, in a file, so that the next start need not make it again.
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>

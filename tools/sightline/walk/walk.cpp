@@ -255,6 +255,9 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   if (const Status written = writeAll(options, walked, *record, drawing); !written) {
     return written.error();
   }
+  if (!interrupted) {
+    data.keepPrepared();  // the report shows all potential occluders
+  }
   if (options.common.textOnStdout()) {
     if (input.closing.width > 0.0) {
       fmt::print("{}:\n", name);

@@ -1,0 +1,14 @@
+#pragma once
+
+// How much one occluder can have: what uses occluders has room for so much, and bits.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace sightline::occluders {
+
+inline constexpr std::size_t kMaxBodyVertices = 32, kMaxBodyEdges = 64, kMaxBodyFaces = 32;
+// Of an OccluderEdge; edges of more of them are never watertight.
+inline constexpr std::uint32_t kMaxMeshEdges = 64;
+
+}  // namespace sightline::occluders
