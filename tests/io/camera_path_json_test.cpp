@@ -143,7 +143,7 @@ TEST(CameraPathJson, NamesTheFrameThatIsWrong) {
   EXPECT_EQ(with("eye", nullptr), "walk.path.json: frame 1: \"eye\" must be three finite numbers");
   EXPECT_NE(with("forward", {0, 0, 0}).find("frame 1: \"forward\" must be a direction"), std::string::npos);
   EXPECT_NE(with("up", {0, 0, 0}).find("frame 1: \"up\" must be a direction"), std::string::npos);
-  document["frames"] = {frame};
+  document["frames"] = json::array({frame});
   document["frames"][0].erase("eye");
   EXPECT_EQ(errorOf(document), "walk.path.json: frame 0: \"eye\" is missing");
 }
