@@ -25,9 +25,9 @@ std::uint32_t overlapBitsOf(const OverlapTests& tests, const float* bounds, std:
   const Lanes lanes;
   std::uint32_t bits = 0;
   for (std::uint32_t first = 0; first < count; first += static_cast<std::uint32_t>(hn::Lanes(lanes))) {
-    const float* column = bounds + first;
     auto overlap = hn::Eq(hn::Zero(lanes), hn::Zero(lanes));
-    for (std::uint32_t axis = 0; axis < tests.axes; ++axis, column += 2 * std::size_t{rows}) {
+    for (std::uint32_t axis = 0; axis < tests.axes; ++axis) {
+      const float* column = bounds + 2 * std::size_t{rows} * axis + first;
       const auto lows = hn::LoadU(lanes, column), highs = hn::LoadU(lanes, column + rows);
       const OverlapTests::Axis& along = tests.along[axis];
       auto one = overlapWith(along.tests[0], lows, highs);
