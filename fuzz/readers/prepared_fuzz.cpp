@@ -68,9 +68,12 @@ void readAll(const OccluderSet& set, std::uint32_t objects) {
 
 void readAll(const Hierarchy& hierarchy, std::uint32_t objects) {
   for (std::uint32_t n = 0; n < hierarchy.nodes.size(); ++n) {
-    for (const ObjectId object : hierarchy.objectsBelow(NodeIndex(n))) {
-      require(object.value < objects);
-    }
+    const HierarchyNode& node = hierarchy.nodes[n];
+    require(node.leaf() ? node.link < hierarchy.objects.size()
+                        : hierarchy.end(hierarchy.right(NodeIndex(n))) == node.link);
+  }
+  for (const ObjectId object : hierarchy.objects) {
+    require(object.value < objects);
   }
 }
 
