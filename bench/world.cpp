@@ -18,18 +18,17 @@
 //              a second, and how many times as many instances as are visible it has
 //   one by one a static cull where instances were added one at a time instead of as a list
 //
-// Of worlds whose instances were added one by one:
+// A third table is of worlds whose instances were added one by one:
 //
 //   add        the longest time that one of them took, after World::reserve()
 //   list       a static cull of the same world added as a list
 //   single     a static cull before tidy() is called
 //   tidied     a static cull after so many calls of tidy(), of which one takes so long, and the longest
-//   stream     then a thousand instances removed and a thousand added in a frame, one by one, with tidy();
-//   and
-//              the worst of 1,200 such frames
+//   stream     then a thousand instances removed and a thousand added in a frame, one by one, with tidy(),
+//              and the worst of 1,200 such frames
 //
-// And boxes that all move in every frame, in one call or singly, beside the linear test of as many by a
-// Culler.
+// The last one has boxes that all move in every frame, in one call or singly, beside the linear test of as
+// many by a Culler.
 //
 //   world [INSTANCES...]
 
@@ -139,14 +138,20 @@ double settled(const std::vector<double>& values) {
       {values.begin() + std::min<std::ptrdiff_t>(kUncounted, std::ssize(values) - 1), values.end()});
 }
 
+// The next instances of a city.
+std::vector<Instance> instancesOf(City& city, MeshId mesh, std::size_t count) {
+  std::vector<Instance> instances;
+  for (std::size_t i = 0; i < count; ++i) {
+    instances.push_back({.mesh = mesh, .world_from_mesh = city.next(i)});
+  }
+  return instances;
+}
+
 void measure(std::size_t count) {
   City city(count);
   World world;
   const MeshId box = world.addMesh(unitBox());
-  std::vector<Instance> instances;
-  for (std::size_t i = 0; i < count; ++i) {
-    instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
-  }
+  const std::vector<Instance> instances = instancesOf(city, box, count);
   std::vector<InstanceId> ids;
   const double build_us = processorUs([&] { world.add(instances, ids); });
 
@@ -221,10 +226,7 @@ void measureQuestions(std::size_t count) {
   World world, one_by_one;
   const MeshId box = world.addMesh(unitBox());
   one_by_one.addMesh(unitBox());
-  std::vector<Instance> instances;
-  for (std::size_t i = 0; i < count; ++i) {
-    instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
-  }
+  const std::vector<Instance> instances = instancesOf(city, box, count);
   std::vector<InstanceId> ids;
   world.add(instances, ids);
   const double add_us = processorUs([&] {
@@ -293,10 +295,7 @@ void measureMovers(std::size_t count) {
   City city(100000);
   World world;
   const MeshId mesh = world.addMesh(unitBox()), mover = world.addMesh(boxMesh({{-1, 0, -1}, {1, 2, 1}}));
-  std::vector<Instance> instances;
-  for (std::size_t i = 0; i < 100000; ++i) {
-    instances.push_back({.mesh = mesh, .world_from_mesh = city.next(i)});
-  }
+  std::vector<Instance> instances = instancesOf(city, mesh, 100000);
   std::vector<InstanceId> ids;
   world.add(instances, ids);
   std::vector<Box> bounds;
@@ -361,13 +360,11 @@ void measureChanges(std::size_t count) {
   const MeshId box = world.addMesh(unitBox());
   as_list.addMesh(unitBox());
   world.reserve(count);
-  std::vector<Instance> instances;
+  const std::vector<Instance> instances = instancesOf(city, box, count);
   std::vector<double> adding;
   std::vector<InstanceId> ids;
-  for (std::size_t i = 0; i < count; ++i) {
-    instances.push_back({.mesh = box, .world_from_mesh = city.next(i)});
-    const double us = processorUs([&] { ids.push_back(world.add(instances.back())); });
-    adding.push_back(us);
+  for (const Instance& instance : instances) {
+    adding.push_back(processorUs([&] { ids.push_back(world.add(instance)); }));
   }
   std::vector<InstanceId> listed;
   as_list.add(instances, listed);
@@ -394,7 +391,7 @@ void measureChanges(std::size_t count) {
     return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
   };
 
-  // As streamed cells: of each frame's thousand, all went in together and go together.
+  // Cells are streamed: of each frame's thousand, all came in together and go together.
   constexpr std::size_t kOfFrame = 1000;
   std::vector<double> stream, cull;
   WorldCuller culler;

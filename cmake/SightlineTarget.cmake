@@ -60,6 +60,7 @@ function(sightline_unity target)
     endif()
   endforeach()
   set_source_files_properties(${own_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  # A unity source includes sources on purpose, of which clang-tidy would warn for each.
   set_target_properties(${target} PROPERTIES
     UNITY_BUILD_CODE_BEFORE_INCLUDE "// NOLINTNEXTLINE(bugprone-suspicious-include)")
 endfunction()

@@ -8,10 +8,12 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 
 #include "sightline/base/large_vector.h"
+#include "sightline/base/result.h"
 
 namespace sightline::base {
 
@@ -31,33 +33,41 @@ struct ArraysHead {
 };
 static_assert(sizeof(ArraysHead) == kArrayAlignment);
 
+// What is written is arrays, whose number of items may be any, and values, whose size is a multiple of 16.
+template <typename Item>
+concept IsArray = requires(Item& item) {
+  item.resize(std::size_t{});
+};
+
 class ArrayWriter {
  public:
   // size: of all that will be written.
   explicit ArrayWriter(std::size_t size) : bytes_(size) {}
 
-  template <typename Array>
-  static std::size_t sizeOf(const Array& array) {
-    return kArrayAlignment + paddedSize(array.size() * sizeof(array[0]));
+  template <typename Item>
+  static std::size_t sizeOf(const Item& item) {
+    if constexpr (IsArray<Item>) {
+      return kArrayAlignment + paddedSize(item.size() * sizeof(item[0]));
+    } else {
+      return sizeof(item);
+    }
   }
 
-  // Writes a value whose size is a multiple of 16 bytes.
-  template <typename Value>
-  void value(const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) % kArrayAlignment == 0);
-    std::memcpy(&bytes_[at_], &value, sizeof(value));
-    at_ += sizeof(value);
-  }
-  template <typename Array>
-  void array(const Array& array) {
-    using Item = typename Array::value_type;
-    static_assert(std::is_trivially_copyable_v<Item> && alignof(Item) <= kArrayAlignment);
-    const std::uint64_t count = array.size();
-    std::memcpy(&bytes_[at_], &count, sizeof(count));
-    if (count > 0) {
-      std::memcpy(&bytes_[at_ + kArrayAlignment], array.data(), array.size() * sizeof(Item));
+  template <typename Item>
+  void write(const Item& item) {
+    if constexpr (IsArray<Item>) {
+      using T = typename Item::value_type;
+      static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kArrayAlignment);
+      const std::uint64_t count = item.size();
+      std::memcpy(&bytes_[at_], &count, sizeof(count));
+      if (count > 0) {
+        std::memcpy(&bytes_[at_ + kArrayAlignment], item.data(), item.size() * sizeof(T));
+      }
+    } else {
+      static_assert(std::is_trivially_copyable_v<Item> && sizeof(Item) % kArrayAlignment == 0);
+      std::memcpy(&bytes_[at_], &item, sizeof(item));
     }
-    at_ += sizeOf(array);
+    at_ += sizeOf(item);
   }
 
   LargeVector<std::byte> take() { return std::move(bytes_); }
@@ -67,7 +77,7 @@ class ArrayWriter {
   std::size_t at_ = 0;
 };
 
-// Reads what an ArrayWriter wrote. Arrays of which something is missing are left empty.
+// Reads what an ArrayWriter wrote. Arrays and values of which something is missing are left as they are.
 class ArrayReader {
  public:
   // Large vectors use the bytes as they are if they have an owner, and are aligned; all others get copies.
@@ -76,15 +86,22 @@ class ArrayReader {
               reinterpret_cast<std::uintptr_t>(shared.bytes.data()) % kArrayAlignment == 0;
   }
 
-  template <typename Value>
-  void value(Value& value) {
-    if (has(sizeof(value))) {
-      std::memcpy(&value, &shared_.bytes[at_], sizeof(value));
-      at_ += sizeof(value);
+  template <typename Item>
+  void read(Item& item) {
+    if constexpr (IsArray<Item>) {
+      readArray(item);
+    } else if (has(sizeof(item))) {
+      std::memcpy(&item, &shared_.bytes[at_], sizeof(item));
+      at_ += sizeof(item);
     }
   }
+
+  // Whether nothing was missing, and nothing is left over.
+  bool complete() const { return whole_ && left() == 0; }
+
+ private:
   template <typename Array>
-  void array(Array& array) {
+  void readArray(Array& array) {
     using Item = typename Array::value_type;
     std::uint64_t count = 0;
     if (!has(kArrayAlignment)) {
@@ -110,11 +127,6 @@ class ArrayReader {
       std::memcpy(static_cast<void*>(array.data()), items.data(), items.size());
     }
   }
-
-  // Whether nothing was missing, and nothing is left over.
-  bool complete() const { return whole_ && left() == 0; }
-
- private:
   std::size_t left() const { return shared_.bytes.size() - at_; }
   bool has(std::size_t size) {
     whole_ = whole_ && size <= left();
@@ -125,6 +137,41 @@ class ArrayReader {
   bool shares_ = false, whole_ = true;
   std::size_t at_ = 0;
 };
+
+// A head, and what for_each(visit) calls visit(item) for: values and arrays, always in the same order.
+template <typename ForEach>
+LargeVector<std::byte> arrayBytes(const ArraysHead& head, const ForEach& for_each) {
+  std::size_t size = sizeof(head);
+  for_each([&](const auto& item) { size += ArrayWriter::sizeOf(item); });
+  ArrayWriter writer(size);
+  writer.write(head);
+  for_each([&](const auto& item) { writer.write(item); });
+  return writer.take();
+}
+
+// Reads what arrayBytes() wrote into the same items. name: what they are, in the plural, as errors call them.
+template <typename ForEach>
+Status readArrays(const SharedBytes& bytes, const ArraysHead& head, const std::string& name,
+                  const ForEach& for_each) {
+  if (bytes.bytes.size() < sizeof(head)) {
+    return Error{"the " + name + " are cut off: find them again"};
+  }
+  ArrayReader reader(bytes);
+  ArraysHead found{};
+  reader.read(found);
+  if (found != head) {
+    return Error{"these are no " + name + ", or those of another version or machine: find them again"};
+  }
+  for_each([&](auto& item) { reader.read(item); });
+  return reader.complete()
+             ? Status(Success{})
+             : Error{"the " + name + " are cut off, or something follows them: find them again"};
+}
+
+// The error where what was read is whole, but not what it should be.
+inline Error unsoundArrays(const std::string& name, const std::string& flaw) {
+  return Error{"the " + name + " are not sound, " + flaw + ": find them again"};
+}
 
 // Whether numbers say where the rows of `items` items begin, and one more where the last one ends. They may
 // be missing where there are no rows.

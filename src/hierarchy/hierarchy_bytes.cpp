@@ -12,6 +12,8 @@ namespace {
 // The last two letters: raise them with every change of the arrays or of buildHierarchy().
 constexpr base::ArraysHead kHierarchyHead{{'S', 'L', 'h', 'i', 'e', 'r', '0', '1'}, sizeof(HierarchyNode)};
 
+constexpr const char* kName = "nodes of the hierarchy";
+
 using Numbers = std::array<std::uint32_t, 4>;  // kind, object_count, depth, 0
 
 // Whether nodes are in depth-first order, links of inner nodes end where their subtrees do, those of leaves
@@ -53,68 +55,63 @@ bool isTree(const Hierarchy& hierarchy) {
 // More levels than any hierarchy has that is of use: what is linear in them stays short.
 constexpr std::uint32_t kMostLevels = 256;
 
-// What is wrong with the numbers of a hierarchy; empty if nothing is.
+// What is wrong with the nodes of a hierarchy; empty if nothing is.
 std::string flawOf(const Hierarchy& hierarchy, std::uint32_t objects) {
   if (hierarchy.depth > kMostLevels) {
-    return "it has too many levels";
+    return "they have too many levels";
   }
   if (!isTree(hierarchy)) {
-    return "its nodes are no tree";
+    return "they are no tree";
   }
   const auto ordered = [](const Box& b) {
     return b.min.x <= b.max.x && b.min.y <= b.max.y && b.min.z <= b.max.z;
   };
   if (!std::all_of(hierarchy.nodes.begin(), hierarchy.nodes.end(),
                    [&](const HierarchyNode& node) { return ordered(node.bounds); })) {
-    return "some of its boxes are none";
+    return "some of their boxes are none";
   }
   std::vector<bool> listed(objects);
   std::uint32_t count = 0;
   for (const ObjectId object : hierarchy.objects) {
     if (object.value >= objects) {
-      return "it names objects that there are not";
+      return "they name objects that there are not";
     }
     count += listed[object.value] ? 0 : 1;
     listed[object.value] = true;
   }
-  return count == objects && hierarchy.object_count == objects ? "" : "it does not have all objects";
+  return count == objects && hierarchy.object_count == objects ? "" : "they do not have all objects";
 }
 
 }  // namespace
 
 LargeVector<std::byte> hierarchyBytes(const Hierarchy& hierarchy) {
   const Numbers numbers{static_cast<std::uint32_t>(hierarchy.kind), hierarchy.object_count, hierarchy.depth};
-  base::ArrayWriter writer(sizeof(kHierarchyHead) + sizeof(numbers) +
-                           base::ArrayWriter::sizeOf(hierarchy.nodes) +
-                           base::ArrayWriter::sizeOf(hierarchy.objects));
-  writer.value(kHierarchyHead);
-  writer.value(numbers);
-  writer.array(hierarchy.nodes);
-  writer.array(hierarchy.objects);
-  return writer.take();
+  return base::arrayBytes(kHierarchyHead, [&](auto&& visit) {
+    visit(numbers);
+    visit(hierarchy.nodes);
+    visit(hierarchy.objects);
+  });
 }
 
 Result<Hierarchy> hierarchyFrom(std::span<const std::byte> bytes, std::uint32_t object_count) {
-  const SharedBytes shared{bytes};
-  base::ArrayReader reader(shared);
-  base::ArraysHead head{};
-  Numbers numbers{};
-  reader.value(head);
-  reader.value(numbers);
-  if (head != kHierarchyHead || numbers[0] > static_cast<std::uint32_t>(HierarchyKind::kBvh)) {
-    return Error{"this is no hierarchy, or one of another version or machine: build it again"};
-  }
   Hierarchy hierarchy;
+  Numbers numbers{};
+  const Status read = base::readArrays({bytes}, kHierarchyHead, kName, [&](auto&& visit) {
+    visit(numbers);
+    visit(hierarchy.nodes);
+    visit(hierarchy.objects);
+  });
+  if (!read) {
+    return read.error();
+  }
+  if (numbers[0] > static_cast<std::uint32_t>(HierarchyKind::kBvh)) {
+    return base::unsoundArrays(kName, "there is no such hierarchy");
+  }
   hierarchy.kind = static_cast<HierarchyKind>(numbers[0]);
   hierarchy.object_count = numbers[1];
   hierarchy.depth = numbers[2];
-  reader.array(hierarchy.nodes);
-  reader.array(hierarchy.objects);
-  if (!reader.complete()) {
-    return Error{"the hierarchy is cut off, or something follows it: build it again"};
-  }
   if (const std::string flaw = flawOf(hierarchy, object_count); !flaw.empty()) {
-    return Error{"the hierarchy is not sound, " + flaw + ": build it again"};
+    return base::unsoundArrays(kName, flaw);
   }
   return hierarchy;
 }

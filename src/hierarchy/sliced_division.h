@@ -31,7 +31,7 @@ struct AlongAxis {
 
 class SlicedDivision {
  public:
-  // Of so many items from `first` on, `left` shall come before the others.
+  // Begins to divide `count` items from `first` on, `left` of which come before the others.
   void begin(std::size_t first, std::size_t count, std::size_t left);
   // Returns whether it is done. Takes from `steps` what it took, and at most 512 steps more than there were.
   // A step is about 20 nanoseconds. items: the same in each call.

@@ -8,6 +8,8 @@
 #include <bit>
 #include <cmath>
 
+#include "src/math/longest_axis.h"
+
 namespace sightline::occluders {
 namespace {
 
@@ -37,7 +39,7 @@ struct Facing {
 Facing facingOf(const Lattice& lattice, const Vec3d (&at)[3]) {
   const Vec3d normal = abs(cross(at[1] - at[0], at[2] - at[0]));
   Facing facing;
-  facing.axis = normal.x >= normal.y && normal.x >= normal.z ? 0 : normal.y >= normal.z ? 1 : 2;
+  facing.axis = math::longestAxis(normal);
   facing.sign = orientation(lattice, facing.axis, at[0], at[1], at[2]);
   if (facing.sign == 0) {  // too thin to tell by rounded numbers
     facing.axis = geometry::longestAxis(lattice, {at[0], at[1], at[2]});

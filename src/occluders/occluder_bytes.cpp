@@ -1,4 +1,5 @@
-// Occluders as bytes: a head, the report, then the arrays of OccluderSet (src/base/array_bytes.h).
+// Occluders as bytes: a head, the report and the area, then the arrays of OccluderSet
+// (src/base/array_bytes.h).
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,7 @@ constexpr base::ArraysHead kOccludersHead{
     {'S', 'L', 'o', 'c', 'c', 'l', '0', '1'},
     sizeof(Occluder) | sizeof(OccluderEdge) << 8 | sizeof(OccluderBody) << 16 | sizeof(BodyFace) << 24};
 
+// What of a set are no arrays.
 struct Sums {
   OccluderReport report;
   double area = 0.0;
@@ -140,33 +142,26 @@ std::string flawOf(const OccluderSet& set, std::uint32_t objects) {
 
 LargeVector<std::byte> occluderBytes(const OccluderSet& set) {
   const Sums sums{set.report, set.area};
-  std::size_t size = sizeof(kOccludersHead) + sizeof(sums);
-  forEachOccluderArray(set, [&](const auto& array) { size += base::ArrayWriter::sizeOf(array); });
-  base::ArrayWriter writer(size);
-  writer.value(kOccludersHead);
-  writer.value(sums);
-  forEachOccluderArray(set, [&](const auto& array) { writer.array(array); });
-  return writer.take();
+  return base::arrayBytes(kOccludersHead, [&](auto&& visit) {
+    visit(sums);
+    forEachOccluderArray(set, visit);
+  });
 }
 
 Result<OccluderSet> occludersFrom(const SharedBytes& bytes, std::uint32_t object_count) {
-  base::ArrayReader reader(bytes);
-  base::ArraysHead head{};
-  Sums sums;
-  reader.value(head);
-  reader.value(sums);
-  if (head != kOccludersHead) {
-    return Error{"these are no occluders, or those of another version or machine: find them again"};
-  }
   OccluderSet set;
+  Sums sums;
+  const Status read = base::readArrays(bytes, kOccludersHead, "occluders", [&](auto&& visit) {
+    visit(sums);
+    forEachOccluderArray(set, visit);
+  });
+  if (!read) {
+    return read.error();
+  }
   set.report = sums.report;
   set.area = sums.area;
-  forEachOccluderArray(set, [&](auto& array) { reader.array(array); });
-  if (!reader.complete()) {
-    return Error{"the occluders are cut off, or something follows them: find them again"};
-  }
   if (const std::string flaw = flawOf(set, object_count); !flaw.empty()) {
-    return Error{"the occluders are not sound, " + flaw + ": find them again"};
+    return base::unsoundArrays("occluders", flaw);
   }
   return set;
 }

@@ -8,7 +8,7 @@
 namespace sightline::occluders {
 
 inline constexpr std::size_t kMaxBodyVertices = 32, kMaxBodyEdges = 64, kMaxBodyFaces = 32;
-// Of an OccluderEdge; edges of more of them are never watertight.
+// An OccluderEdge of more mesh edges is never watertight.
 inline constexpr std::uint32_t kMaxMeshEdges = 64;
 
 }  // namespace sightline::occluders

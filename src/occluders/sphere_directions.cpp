@@ -4,12 +4,13 @@
 // azimuths come from repeated rotation, so that every platform gets the same bits.
 
 #include "src/occluders/sphere_directions.h"
-#include "src/math/longest_axis.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include "src/math/longest_axis.h"
 
 namespace sightline::occluders {
 namespace {

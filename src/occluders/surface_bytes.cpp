@@ -200,31 +200,18 @@ std::string flawOf(const SurfaceSet& set, std::size_t objects) {
 }  // namespace
 
 LargeVector<std::byte> surfaceBytes(const SurfaceSet& set) {
-  std::size_t size = sizeof(kSurfacesHead);
-  forEachSurfaceArray(set, [&](const auto& array) { size += base::ArrayWriter::sizeOf(array); });
-  base::ArrayWriter writer(size);
-  writer.value(kSurfacesHead);
-  forEachSurfaceArray(set, [&](const auto& array) { writer.array(array); });
-  return writer.take();
+  return base::arrayBytes(kSurfacesHead, [&](auto&& visit) { forEachSurfaceArray(set, visit); });
 }
 
 Result<SurfaceSet> surfacesFrom(const SharedBytes& bytes, std::uint32_t object_count) {
-  if (bytes.bytes.size() < sizeof(kSurfacesHead)) {
-    return Error{"the surfaces are cut off: find them again"};
-  }
-  base::ArrayReader reader(bytes);
-  base::ArraysHead head;
-  reader.value(head);
-  if (head != kSurfacesHead) {
-    return Error{"these are no surfaces, or those of another version or machine: find them again"};
-  }
   SurfaceSet set;
-  forEachSurfaceArray(set, [&](auto& array) { reader.array(array); });
-  if (!reader.complete()) {
-    return Error{"the surfaces are cut off, or something follows them: find them again"};
+  if (const Status read = base::readArrays(bytes, kSurfacesHead, "surfaces",
+                                           [&](auto&& visit) { forEachSurfaceArray(set, visit); });
+      !read) {
+    return read.error();
   }
   if (const std::string flaw = flawOf(set, object_count); !flaw.empty()) {
-    return Error{"the surfaces are not sound, " + flaw + ": find them again"};
+    return base::unsoundArrays("surfaces", flaw);
   }
   for (const Box& box : set.part_bounds) {
     set.bounds.extend(box);

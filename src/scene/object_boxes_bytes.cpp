@@ -24,30 +24,23 @@ bool areSound(const ObjectBoxes& boxes, std::uint32_t objects) {
 }  // namespace
 
 LargeVector<std::byte> objectBoxesBytes(const ObjectBoxes& boxes) {
-  base::ArrayWriter writer(sizeof(kBoxesHead) + base::ArrayWriter::sizeOf(boxes.first) +
-                           base::ArrayWriter::sizeOf(boxes.boxes));
-  writer.value(kBoxesHead);
-  writer.array(boxes.first);
-  writer.array(boxes.boxes);
-  return writer.take();
+  return base::arrayBytes(kBoxesHead, [&](auto&& visit) {
+    visit(boxes.first);
+    visit(boxes.boxes);
+  });
 }
 
 Result<ObjectBoxes> objectBoxesFrom(std::span<const std::byte> bytes, std::uint32_t object_count) {
-  const SharedBytes shared{bytes};
-  base::ArrayReader reader(shared);
-  base::ArraysHead head{};
-  reader.value(head);
-  if (head != kBoxesHead) {
-    return Error{"these are no objects' boxes, or those of another version or machine: find them again"};
-  }
   ObjectBoxes boxes;
-  reader.array(boxes.first);
-  reader.array(boxes.boxes);
-  if (!reader.complete()) {
-    return Error{"the objects' boxes are cut off, or something follows them: find them again"};
+  const Status read = base::readArrays({bytes}, kBoxesHead, "objects' boxes", [&](auto&& visit) {
+    visit(boxes.first);
+    visit(boxes.boxes);
+  });
+  if (!read) {
+    return read.error();
   }
   if (!areSound(boxes, object_count)) {
-    return Error{"the objects' boxes are not sound: find them again"};
+    return base::unsoundArrays("objects' boxes", "some are not well formed or not of an object");
   }
   return boxes;
 }

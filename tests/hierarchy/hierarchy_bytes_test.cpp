@@ -8,6 +8,7 @@
 
 #include "scenes/procedural.h"
 #include "sightline/hierarchy/hierarchy.h"
+#include "tests/support/cut_off.h"
 
 namespace sightline {
 namespace {
@@ -52,12 +53,9 @@ TEST(HierarchyBytes, AreReadAsTheyWereWritten) {
 TEST(HierarchyBytes, CutOffAnywhereTheyAreRefused) {
   const CityHierarchy city;
   const LargeVector<std::byte> bytes = hierarchyBytes(city.build(HierarchyKind::kBvh));
-  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    EXPECT_FALSE(hierarchyFrom(std::span(bytes).first(size), city.objects)) << size;
-  }
-  LargeVector<std::byte> longer = bytes;
-  longer.resize(bytes.size() + 16);
-  EXPECT_FALSE(hierarchyFrom(longer, city.objects));
+  test::expectCutOffIsRefused(bytes, "find them again", [&](std::span<const std::byte> cut) {
+    return hierarchyFrom(cut, city.objects);
+  });
 }
 
 TEST(HierarchyBytes, OfWhatIsNoTreeTheyAreRefused) {

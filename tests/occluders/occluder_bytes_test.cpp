@@ -8,6 +8,7 @@
 
 #include "scenes/procedural.h"
 #include "sightline/occluders/occluder_set.h"
+#include "tests/support/cut_off.h"
 
 namespace sightline {
 namespace {
@@ -45,11 +46,9 @@ TEST(OccluderBytes, AreReadAsTheyWereWritten) {
 TEST(OccluderBytes, CutOffAnywhereTheyAreRefused) {
   const CityOccluders city;
   const LargeVector<std::byte> bytes = occluderBytes(city.occluders);
-  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    const Result<OccluderSet> read = occludersFrom({std::span(bytes).first(size)}, city.objects);
-    ASSERT_FALSE(read) << size;
-    EXPECT_NE(read.error().message.find("find them again"), std::string::npos);
-  }
+  test::expectCutOffIsRefused(bytes, "find them again", [&](std::span<const std::byte> cut) {
+    return occludersFrom({cut}, city.objects);
+  });
 }
 
 TEST(OccluderBytes, ThatNameWhatTheyDoNotHaveAreRefused) {

@@ -8,6 +8,7 @@
 
 #include "scenes/procedural.h"
 #include "sightline/occluders/surface_set.h"
+#include "tests/support/cut_off.h"
 
 namespace sightline {
 namespace {
@@ -45,14 +46,9 @@ TEST(SurfaceBytes, AreReadAsTheyWereWritten) {
 TEST(SurfaceBytes, CutOffAnywhereTheyAreRefused) {
   const Village village;
   const LargeVector<std::byte> bytes = surfaceBytes(village.surfaces);
-  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    const Result<SurfaceSet> read = surfacesFrom({std::span(bytes).first(size)}, village.objects);
-    ASSERT_FALSE(read) << size;
-    EXPECT_NE(read.error().message.find("find them again"), std::string::npos);
-  }
-  LargeVector<std::byte> longer = bytes;
-  longer.resize(bytes.size() + 16);
-  EXPECT_FALSE(surfacesFrom({longer}, village.objects));
+  test::expectCutOffIsRefused(bytes, "find them again", [&](std::span<const std::byte> cut) {
+    return surfacesFrom({cut}, village.objects);
+  });
 }
 
 // Whatever is read can be walked through: every index stays within its array.

@@ -8,6 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/cut_off.h"
+
 namespace sightline {
 namespace {
 
@@ -317,9 +319,8 @@ TEST(ObjectBoxes, AreReadAsTheyWereWrittenOrRefused) {
   EXPECT_EQ(read->first, boxes.first);
   EXPECT_EQ(read->boxes, boxes.boxes);
   EXPECT_FALSE(objectBoxesFrom(bytes, 21)) << "of another number of objects";
-  for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 7) {
-    EXPECT_FALSE(objectBoxesFrom(std::span(bytes).first(size), 20)) << size;
-  }
+  test::expectCutOffIsRefused(bytes, "find them again",
+                              [](std::span<const std::byte> cut) { return objectBoxesFrom(cut, 20); });
   const auto refuses = [&](auto&& change) {
     ObjectBoxes changed = boxes;
     change(changed);

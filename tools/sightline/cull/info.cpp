@@ -301,8 +301,7 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
     input.walk = std::move(*walk);
     cracks.effect = effectOfClosing(input, widths, threads.parallelFor());
   }
-  Result<PreparedFile> prepared =
-      PreparedFile::open(options.prepared, options.prepared.empty() ? SceneId{} : sceneId(scene.view()), 0.0);
+  Result<PreparedFile> prepared = PreparedFile::open(options.prepared, scene.view(), 0.0);
   if (!prepared) {
     return prepared.error();
   }

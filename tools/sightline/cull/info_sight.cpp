@@ -254,7 +254,7 @@ std::string factsText(const SightFacts& facts) {
 
 Vec3d originOf(const BakeRecord& record) {
   const Json settings = recordedSettings(record);
-  return settings.contains("origin") ? pointOf(settings["origin"]).value_or(Vec3d()) : Vec3d();
+  return settings.contains("origin") ? io::pointOf(settings["origin"]).value_or(Vec3d()) : Vec3d();
 }
 
 std::optional<OccluderFacts> occludersOf(const BakeRecord& record) {

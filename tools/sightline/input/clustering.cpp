@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "src/io/point_json.h"
+
 namespace sightline::tool {
 
 void addClustersOption(CLI::App& command, std::uint32_t& max_triangles) {
@@ -42,10 +44,7 @@ Clustering divideIntoClusters(Scene& scene, std::uint32_t max_triangles, double 
 
 Json clustersJson(const Clustering& clustering, const Scene& scene) {
   Json clusters = Json::array();
-  const auto point = [&](const Vec3f& p) {
-    const Vec3d world = Vec3d(p) + scene.origin;
-    return Json{world.x, world.y, world.z};
-  };
+  const auto point = [&](const Vec3f& p) { return io::pointJson(Vec3d(p) + scene.origin); };
   for (std::size_t c = 0; c < scene.objects.size(); ++c) {
     const Object& cluster = scene.objects[c];
     clusters.push_back({{"object", clustering.clusters.object_of[c].value},

@@ -164,8 +164,7 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!walk) {
     return walk.error();
   }
-  Result<PreparedFile> prepared = PreparedFile::open(
-      method.prepared, method.prepared.empty() ? SceneId{} : sceneId(scene->view()), closing.width);
+  Result<PreparedFile> prepared = PreparedFile::open(method.prepared, scene->view(), closing.width);
   if (!prepared) {
     return prepared.error();
   }

@@ -2,22 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
 
+#include "src/io/point_json.h"
 #include "tools/sightline/input/camera_path_file.h"
 
 namespace sightline::tool {
 
 using Json = nlohmann::ordered_json;
-
-std::optional<Vec3d> pointOf(const Json& json) {
-  if (!json.is_array() || json.size() != 3 ||
-      !std::all_of(json.begin(), json.end(), [](const Json& number) { return number.is_number(); })) {
-    return std::nullopt;
-  }
-  const Vec3d point(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
-  return isFinite(point) ? std::optional(point) : std::nullopt;
-}
 
 Result<std::vector<Vec3d>> parsePointsFile(std::string_view text, const std::string& name) {
   const Json json = Json::parse(text, nullptr, false);
@@ -37,7 +30,7 @@ Result<std::vector<Vec3d>> parsePointsFile(std::string_view text, const std::str
     return Error{fmt::format("{}: has no points; {}", name, form)};
   }
   for (const Json& item : json["points"]) {
-    const std::optional<Vec3d> point = pointOf(item);
+    const std::optional<Vec3d> point = io::pointOf(item);
     if (!point) {
       return Error{fmt::format("{}: point {} is not three finite numbers; {}", name, points.size(), form)};
     }

@@ -2,8 +2,6 @@
 
 // Files of points: the viewpoints that a command is asked about.
 
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +10,6 @@
 #include "sightline/math/vec3.h"
 
 namespace sightline::tool {
-
-// The point, if the JSON is a list of three finite numbers.
-std::optional<Vec3d> pointOf(const nlohmann::ordered_json& json);
 
 // The points of a text: {"points":[[x,y,z],...]}, or the eyes of a camera path. name: of the file, in errors.
 Result<std::vector<Vec3d>> parsePointsFile(std::string_view text, const std::string& name);

@@ -51,30 +51,37 @@ std::uint64_t checksumOf(const Head& head, std::span<const Row> rows) {
 
 }  // namespace
 
-Result<PreparedFile> PreparedFile::open(const std::string& name, const SceneId& scene, double crack_width) {
-  PreparedFile file;
-  file.name_ = name;
-  file.scene_ = scene;
-  file.crack_width_ = crack_width;
-  std::error_code ignored;
-  if (name.empty() || !std::filesystem::exists(name, ignored)) {
-    return file;
+Result<PreparedFile> PreparedFile::open(const std::string& name, const SceneView& scene, double crack_width) {
+  if (name.empty()) {
+    return PreparedFile();
   }
-  Result<pvs::MappedFile> opened = pvs::MappedFile::open(name);
+  PreparedFile file(name, sceneId(scene), crack_width);
+  if (const Status mapped = file.map(); !mapped) {
+    return mapped.error();
+  }
+  return file;
+}
+
+Status PreparedFile::map() {
+  std::error_code ignored;
+  if (!std::filesystem::exists(name_, ignored)) {
+    return Success{};
+  }
+  Result<pvs::MappedFile> opened = pvs::MappedFile::open(name_);
   if (!opened) {
-    return Error{fmt::format("--prepared {}: {}", name, opened.error().message)};
+    return Error{fmt::format("--prepared {}: {}", name_, opened.error().message)};
   }
   const auto mapped = std::make_shared<pvs::MappedFile>(std::move(*opened));
   const std::span<const std::byte> bytes = mapped->bytes();
   if (!bytes.empty() &&
       (bytes.size() < kLettersOfAll || std::memcmp(bytes.data(), kLetters, kLettersOfAll) != 0)) {
-    return Error{fmt::format("--prepared {}: is there and holds nothing prepared; name another file", name)};
+    return Error{fmt::format("--prepared {}: is there and holds nothing prepared; name another file", name_)};
   }
-  if (const std::string reason = file.read({bytes, mapped}); !reason.empty()) {
-    file.sections_.clear();
-    file.refuse(reason);
+  if (const std::string reason = read({bytes, mapped}); !reason.empty()) {
+    sections_.clear();
+    refuse(reason);
   }
-  return file;
+  return Success{};
 }
 
 std::string PreparedFile::read(const SharedBytes& file) {
@@ -177,8 +184,9 @@ void PreparedFile::keep() {
     return;
   }
   // From now on the sections lie in the file, and not in memory besides.
-  if (Result<PreparedFile> written = open(name_, scene_, crack_width_)) {
-    *this = std::move(*written);
+  PreparedFile written(name_, scene_, crack_width_);
+  if (written.map()) {
+    *this = std::move(written);
   }
 }
 

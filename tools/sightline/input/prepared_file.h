@@ -22,7 +22,7 @@ class PreparedFile {
   // The file of this name; empty: none. Where there is no such file, or one of another scene or version, or
   // another crack_width (metres), or a damaged one, nothing will be found, and stderr says why. Error if the
   // file is something else, which must not be written over.
-  static Result<PreparedFile> open(const std::string& name, const SceneId& scene, double crack_width);
+  static Result<PreparedFile> open(const std::string& name, const SceneView& scene, double crack_width);
 
   // What the file has under a name of at most 15 letters, if from(bytes) can read it. If not, what make()
   // returns, which keep() is going to write as to_bytes(made).
@@ -46,12 +46,17 @@ class PreparedFile {
   void keep();
 
  private:
+  PreparedFile(std::string name, const SceneId& scene, double crack_width)
+      : name_(std::move(name)), scene_(scene), crack_width_(crack_width) {}
+
   struct Section {
     std::string name;
     SharedBytes bytes;
     std::optional<std::uint64_t> checksum{};  // that the bytes must have, if that is not known yet
   };
 
+  // Maps the file, if there is one, and reads which sections it has.
+  Status map();
   // Why the sections of the file cannot be used; empty if they can.
   std::string read(const SharedBytes& file);
   std::optional<SharedBytes> find(const std::string& name);
