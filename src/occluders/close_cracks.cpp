@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -22,11 +23,6 @@ namespace {
 
 // Distances are rounded by much less than this part of themselves and of the coordinates.
 constexpr double kRounded = 1e-14;
-
-struct OpenEdge {
-  std::uint32_t low = 0, high = 0;  // vertices
-  friend auto operator<=>(const OpenEdge&, const OpenEdge&) = default;
-};
 
 // A vertex beside an edge or on it. The greater `along` is, the farther it is from the edge's lower end.
 struct Beside {
@@ -58,7 +54,7 @@ class Closing {
       findOpenEdges();
       mergeVertices();
       findOpenEdges();
-      leadEdges([this](const OpenEdge& edge, std::uint32_t v) {
+      leadEdges([this](const MeshEdge& edge, std::uint32_t v) {
         const double part = partOfEdge(edge, v), distance = distanceFrom(edge, v, part);
         return Place{part > 0.0 && part < 1.0 && distance < width_, part, distance};
       });
@@ -69,10 +65,30 @@ class Closing {
 
   ClosedCracks join(std::span<const std::uint8_t> open) {
     takeOpenEdges(open);
-    lattice_ = geometry::Lattice::of(input_.vertices);
-    leadEdges([this](const OpenEdge& edge, std::uint32_t v) { return placeOn(edge, v); });
+    joinOpenEdges();
     assemble();
     return std::move(result_);
+  }
+
+  base::Rows<std::uint32_t> verticesOn(std::span<const MeshEdge> edges) {
+    const auto taken = [this](const MeshEdge& edge) {
+      return geometry::Lattice::allowed(at(edge.low)) && geometry::Lattice::allowed(at(edge.high)) &&
+             at(edge.low) != at(edge.high);
+    };
+    std::copy_if(edges.begin(), edges.end(), std::back_inserter(open_), taken);
+    listVertices();
+    joinOpenEdges();
+    base::Rows<std::uint32_t> on_edges;
+    std::size_t next = 0;
+    for (const MeshEdge& edge : edges) {
+      if (next < open_.size() && open_[next] == edge) {
+        for (const Beside& beside : beside_[next++]) {
+          on_edges.add(beside.vertex);
+        }
+      }
+      on_edges.endRow();
+    }
+    return on_edges;
   }
 
   std::vector<NearMiss> findNearMisses() {
@@ -83,13 +99,13 @@ class Closing {
     findOpenEdges();
     base::Rows<std::uint32_t> next_to;  // by vertex: those at the other ends of its open edges
     next_to.group(input_.vertices.size(), [&](auto&& pair) {
-      for (const OpenEdge& edge : open_) {
+      for (const MeshEdge& edge : open_) {
         pair(edge.low, edge.high);
         pair(edge.high, edge.low);
       }
     });
     std::vector<Box> boxes;
-    for (const OpenEdge& edge : open_) {
+    for (const MeshEdge& edge : open_) {
       boxes.push_back(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_));
     }
     std::vector<std::uint32_t> numbers(boxes.size());
@@ -135,7 +151,7 @@ class Closing {
   // Finds the edges along which more triangles run one way than the other, and their vertices.
   void findOpenEdges() {
     struct Half {
-      OpenEdge edge;
+      MeshEdge edge;
       int value;
       std::uint32_t triangle;
     };
@@ -144,8 +160,7 @@ class Closing {
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const std::uint32_t a = triangles_[i], b = triangles_[i % 3 == 2 ? i - 2 : i + 1];
       if (a != b) {
-        halves.push_back(
-            {{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1, static_cast<std::uint32_t>(i / 3)});
+        halves.push_back({meshEdge(a, b), a < b ? 1 : -1, static_cast<std::uint32_t>(i / 3)});
       }
     }
     std::sort(halves.begin(), halves.end(), [](const Half& a, const Half& b) {
@@ -174,7 +189,7 @@ class Closing {
       const std::uint32_t a = triangles_[i], b = triangles_[i % 3 == 2 ? i - 2 : i + 1];
       if ((open[i / 3] >> (i % 3) & 1) != 0 && a != b && geometry::Lattice::allowed(at(a)) &&
           geometry::Lattice::allowed(at(b))) {
-        open_.push_back({std::min(a, b), std::max(a, b)});
+        open_.push_back(meshEdge(a, b));
       }
     }
     std::sort(open_.begin(), open_.end());
@@ -184,7 +199,7 @@ class Closing {
 
   void listVertices() {
     vertices_.clear();
-    for (const OpenEdge& edge : open_) {
+    for (const MeshEdge& edge : open_) {
       vertices_.insert(vertices_.end(), {edge.low, edge.high});
     }
     std::sort(vertices_.begin(), vertices_.end());
@@ -252,11 +267,11 @@ class Closing {
   }
 
   // Where on the line of the edge the vertex's nearest point is: 0 at its lower end, 1 at its higher one.
-  double partOfEdge(const OpenEdge& edge, std::uint32_t v) const {
+  double partOfEdge(const MeshEdge& edge, std::uint32_t v) const {
     const Vec3d along = at(edge.high) - at(edge.low);
     return dot(at(v) - at(edge.low), along) / dot(along, along);
   }
-  double distanceFrom(const OpenEdge& edge, std::uint32_t v, double part) const {
+  double distanceFrom(const MeshEdge& edge, std::uint32_t v, double part) const {
     return length(at(v) - at(edge.low) - (at(edge.high) - at(edge.low)) * part);
   }
 
@@ -266,8 +281,14 @@ class Closing {
     double along = 0.0, distance = 0.0;
   };
 
+  // Leads open edges through the vertices that lie on them exactly.
+  void joinOpenEdges() {
+    lattice_ = geometry::Lattice::of(input_.vertices);
+    leadEdges([this](const MeshEdge& edge, std::uint32_t v) { return placeOn(edge, v); });
+  }
+
   // Returns the place of a vertex that is exactly on an edge, between its ends.
-  Place placeOn(const OpenEdge& edge, std::uint32_t v) const {
+  Place placeOn(const MeshEdge& edge, std::uint32_t v) const {
     const Vec3d &low = at(edge.low), &high = at(edge.high), &p = at(v);
     for (int axis = 0; axis < 3; ++axis) {
       if (geometry::orientation(lattice_, axis, low, high, p) != 0) {
@@ -296,7 +317,7 @@ class Closing {
     parallel_for_(parts, [&](std::uint32_t begin, std::uint32_t end) {
       std::vector<Beside> found;
       for (std::uint32_t e = begin * kEdgesOfPart; e < std::min(count, end * kEdgesOfPart); ++e) {
-        const OpenEdge& edge = open_[e];
+        const MeshEdge& edge = open_[e];
         const std::uint32_t part = e / kEdgesOfPart;
         const double reach = std::max(maxComponent(abs(at(edge.low))), maxComponent(abs(at(edge.high))));
         double farthest = 0.0;
@@ -343,7 +364,7 @@ class Closing {
   // The vertices through which the way from a to b is led, in this direction.
   void findWay(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& way) const {
     way.clear();
-    const OpenEdge edge{std::min(a, b), std::max(a, b)};
+    const MeshEdge edge = meshEdge(a, b);
     const auto found = std::lower_bound(open_.begin(), open_.end(), edge);
     if (found == open_.end() || *found != edge || beside_.count() == 0) {
       return;
@@ -388,13 +409,13 @@ class Closing {
     for (std::size_t i = 0; i < loop_.size(); ++i) {
       const std::uint32_t a = loop_[i], b = loop_[i + 1 < loop_.size() ? i + 1 : 0];
       if (a != b) {
-        steps_.push_back({{std::min(a, b), std::max(a, b)}, a < b});
+        steps_.push_back({meshEdge(a, b), a < b});
       }
     }
     std::sort(steps_.begin(), steps_.end());
     for (std::size_t i = 0; i < steps_.size();) {
       int value = 0;
-      const OpenEdge edge = steps_[i].first;
+      const MeshEdge edge = steps_[i].first;
       for (; i < steps_.size() && steps_[i].first == edge; ++i) {
         value += steps_[i].second ? 1 : -1;
       }
@@ -448,12 +469,12 @@ class Closing {
   const double width_;
   const ParallelFor& parallel_for_;
   std::vector<std::uint32_t> triangles_;    // as the input's, of the vertices that stay
-  std::vector<OpenEdge> open_;              // ascending
+  std::vector<MeshEdge> open_;              // ascending
   std::vector<std::uint32_t> triangle_at_;  // by open edge: one that has it
   std::vector<std::uint32_t> vertices_;     // of open edges, by place
   base::Rows<Beside> beside_;               // by open edge, along it
   std::vector<std::uint32_t> ways_[3], loop_;
-  std::vector<std::pair<OpenEdge, bool>> steps_;  // along loop_; true: from the lower vertex
+  std::vector<std::pair<MeshEdge, bool>> steps_;  // along loop_; true: from the lower vertex
   geometry::Lattice lattice_;                     // if vertices have to lie on edges exactly
   double merging_ = 0.0, bending_ = 0.0;          // how far each step moves a point at most
   ClosedCracks result_;
@@ -468,6 +489,11 @@ ClosedCracks closeCracks(const ConformInput& input, double width, const Parallel
 ClosedCracks joinEdges(const ConformInput& input, std::span<const std::uint8_t> open,
                        const ParallelFor& parallel_for) {
   return Closing(input, 0.0, parallel_for).join(open);
+}
+
+base::Rows<std::uint32_t> verticesOnEdges(std::span<const Vec3d> vertices, std::span<const MeshEdge> edges,
+                                          const ParallelFor& parallel_for) {
+  return Closing({vertices, {}}, 0.0, parallel_for).verticesOn(edges);
 }
 
 std::vector<NearMiss> findNearMisses(const ConformInput& input, double width,

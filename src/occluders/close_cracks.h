@@ -2,14 +2,25 @@
 
 // Closes narrow cracks before triangles are conformed: boundaries that nearly meet are made to meet.
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
+#include "src/base/rows.h"
 #include "src/occluders/conform.h"
 
 namespace sightline::occluders {
+
+// An edge of a mesh, in either direction.
+struct MeshEdge {
+  std::uint32_t low = 0, high = 0;  // vertices
+  friend auto operator<=>(const MeshEdge&, const MeshEdge&) = default;
+};
+inline MeshEdge meshEdge(std::uint32_t a, std::uint32_t b) {
+  return a < b ? MeshEdge{a, b} : MeshEdge{b, a};
+}
 
 struct ClosedCracks {
   std::vector<std::uint32_t> triangles;  // three vertices of the input each, by source
@@ -39,6 +50,11 @@ ClosedCracks closeCracks(const ConformInput& input, double width,
 // bits below 2^-149 metres, are left alone.
 ClosedCracks joinEdges(const ConformInput& input, std::span<const std::uint8_t> open,
                        const ParallelFor& parallel_for = serialFor);
+
+// For each edge, the vertices of the others that lie on it exactly, between its ends, from its lower vertex
+// on. edges: ascending, none twice. Of the same coordinates as above.
+base::Rows<std::uint32_t> verticesOnEdges(std::span<const Vec3d> vertices, std::span<const MeshEdge> edges,
+                                          const ParallelFor& parallel_for = serialFor);
 
 // A vertex beside an edge, both left after cancelling.
 struct NearMiss {

@@ -10,6 +10,7 @@
 #include "src/base/sort_keys.h"
 #include "src/occluders/assemble_set.h"
 #include "src/occluders/bodies.h"
+#include "src/occluders/divide_outlines.h"
 #include "src/occluders/polygon_merge.h"
 
 namespace sightline {
@@ -194,6 +195,8 @@ OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settin
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     set.objects[o] = ObjectId(o);
   }
+  occluders::DividedOutlines divided;
+  occluders::divideOutlines(scene.positions, parallel_for, all.polygons, divided);
   occluders::assembleSet(scene.positions, all.polygons, parallel_for, set);
   return set;
 }
@@ -271,6 +274,8 @@ OccluderSet makeOccluders(std::span<const OccluderPolygon> polygons) {
     }
     bodies.find(of_object, occluders::roundingTolerance(largest_of_all));
   }
+  occluders::DividedOutlines divided;
+  occluders::divideOutlines(corners.positions, serialFor, ranked, divided);
   occluders::assembleSet(corners.positions, ranked, serialFor, set);
   return set;
 }

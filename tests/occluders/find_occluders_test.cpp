@@ -388,14 +388,149 @@ TEST(OccluderEdges, OfAWallCutIntoConvexPartsNameEachOther) {
   }
 }
 
-TEST(OccluderEdges, WithoutACommonMeshEdgeNameNobody) {
-  // Two walls that touch along half of a side: the mesh has a T-junction there.
-  FlatMesh mesh = rectangle(0, 0, 2, 1);
-  const FlatMesh upper = rectangle(0, 1, 1, 2);
-  Scene scene = sceneOf(mesh);
-  addObject(scene, upper, {}, MaterialId(0u));
+// A wall on the middle of the upper side of another one, which then is as much higher.
+OccluderSet wallsAtATJunction(float higher) {
+  Scene scene = sceneOf(rectangle(0, 0, 4, 1.0f + higher));
+  addObject(scene, rectangle(1, 1, 2, 2), {}, MaterialId(0u));
   weldPositions(scene);
-  EXPECT_TRUE(findOccluders(scene.view(), kKeepAll).neighbours.empty());
+  return findOccluders(scene.view(), kKeepAll);
+}
+
+// That of the edges of an occluder which has the most mesh edges.
+const OccluderEdge& mostDivided(const OccluderSet& set, OccluderId id) {
+  const std::span<const OccluderEdge> edges = set.edgesOf(set[id]);
+  return *std::max_element(edges.begin(), edges.end(), [](const OccluderEdge& a, const OccluderEdge& b) {
+    return a.mesh_edge_count < b.mesh_edge_count;
+  });
+}
+
+TEST(OccluderEdges, NameEachOtherAtATJunction) {
+  const OccluderSet set = wallsAtATJunction(0.0f);
+  ASSERT_EQ(set.occluders.size(), 2u);
+  EXPECT_EQ(whatIsWrongWithLinks(set), "");
+  EXPECT_EQ(set.neighbours.size(), 2u);
+  // The lower wall is the larger one.
+  const OccluderEdge& lower = mostDivided(set, OccluderId(0u));
+  EXPECT_EQ(lower.mesh_edge_count, 3u);
+  ASSERT_EQ(lower.neighbour_count, 1u);
+  EXPECT_EQ(set.neighboursOf(lower)[0].mesh_edge, 1u);
+  EXPECT_EQ(set.neighboursOf(lower)[0].occluder, OccluderId(1u));
+  EXPECT_EQ(set[OccluderId(0u)].vertex_count, 4u);
+}
+
+TEST(OccluderEdges, OneUnitInTheLastPlaceOffATJunctionNameNobody) {
+  EXPECT_TRUE(wallsAtATJunction(0x1p-23f).neighbours.empty());
+  EXPECT_TRUE(wallsAtATJunction(-0x1p-24f).neighbours.empty());
+}
+
+struct WholeRectangle {
+  int x0, y0, x1, y1;
+};
+
+// Cuts a rectangle in two, and these, until they are small or chance says so.
+void cutAtRandom(const WholeRectangle& r, Random& random, std::vector<WholeRectangle>& parts) {
+  const int width = r.x1 - r.x0, height = r.y1 - r.y0;
+  if (std::max(width, height) < 3 || (width * height < 200 && random.below(5) == 0)) {
+    parts.push_back(r);
+  } else if (width > height) {
+    const int x = r.x0 + 1 + static_cast<int>(random.below(static_cast<std::uint32_t>(width - 1)));
+    cutAtRandom({r.x0, r.y0, x, r.y1}, random, parts);
+    cutAtRandom({x, r.y0, r.x1, r.y1}, random, parts);
+  } else {
+    const int y = r.y0 + 1 + static_cast<int>(random.below(static_cast<std::uint32_t>(height - 1)));
+    cutAtRandom({r.x0, r.y0, r.x1, y}, random, parts);
+    cutAtRandom({r.x0, y, r.x1, r.y1}, random, parts);
+  }
+}
+
+// Whole coordinates: what touches does so exactly. The oracle asks each rectangle whether a point is on its
+// border.
+TEST(OccluderEdges, OfAFloorCutIntoRectanglesNameWhatLiesBeyondEachPiece) {
+  std::size_t pieces = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed);
+    std::vector<WholeRectangle> parts;
+    cutAtRandom({0, 0, 32, 32}, random, parts);
+    const Placement places[] = {{}, {{5, -3, 7}, {0, 1, 0}, {0, 0, 1}}, {{}, {0, 0, -1}, {-1, 0, 0}}};
+    const Placement place = places[seed % 3];
+    Scene scene;
+    addMaterial(scene);
+    for (const WholeRectangle& r : parts) {
+      addObject(scene, rectangle(r.x0, r.y0, r.x1, r.y1), place, MaterialId(0u));
+    }
+    weldPositions(scene);
+    const OccluderSet set = findOccluders(scene.view(), kKeepAll);
+    ASSERT_EQ(set.occluders.size(), parts.size()) << "seed " << seed;
+    EXPECT_EQ(whatIsWrongWithLinks(set), "") << "seed " << seed;
+    EXPECT_EQ(set.area, 32.0 * 32.0);
+    const auto onBorder = [](const WholeRectangle& r, const Point2& p) {
+      return depthIn(std::array<Point2, 4>{Point2(r.x0, r.y0), Point2(r.x1, r.y0), Point2(r.x1, r.y1),
+                                           Point2(r.x0, r.y1)},
+                     p) == 0.0;
+    };
+    for (const Occluder& occluder : set.occluders) {
+      const std::span<const Vec3f> corners = set.verticesOf(occluder);
+      ASSERT_EQ(corners.size(), 4u);
+      for (std::size_t e = 0; e < 4; ++e) {
+        const OccluderEdge& edge = set.edgesOf(occluder)[e];
+        ASSERT_NE(edge.mesh_edge_count, 0u);
+        std::vector<Vec3f> points{corners[e]};
+        const std::span<const Vec3f> between =
+            std::span(set.edge_vertices).subspan(edge.first_edge_vertex, edge.mesh_edge_count - 1u);
+        points.insert(points.end(), between.begin(), between.end());
+        points.push_back(corners[(e + 1) % 4]);
+        for (std::uint32_t piece = 0; piece + 1 < points.size(); ++piece) {
+          const Point2 middle = place.inverse((points[piece] + points[piece + 1]) * 0.5f);
+          std::vector<ObjectId> beyond, named;
+          for (std::size_t other = 0; other < parts.size(); ++other) {
+            if (ObjectId(other) != occluder.object && onBorder(parts[other], middle)) {
+              beyond.push_back(ObjectId(other));
+            }
+          }
+          for (const EdgeNeighbour& neighbour : set.neighboursOf(edge)) {
+            if (neighbour.mesh_edge == piece) {
+              named.push_back(set[neighbour.occluder].object);
+            }
+          }
+          EXPECT_EQ(named, beyond) << "seed " << seed << ", object " << occluder.object.value;
+          pieces += beyond.size();
+        }
+      }
+    }
+  }
+  EXPECT_GT(pieces, 5000u);
+}
+
+TEST(OccluderEdges, OfTooManyPiecesStayWhole) {
+  for (const std::uint32_t count : {64u, 65u}) {
+    Scene scene = sceneOf(rectangle(0, 0, 128, 300));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double right = i + 1 < count ? i + 1 : 128;
+      addObject(scene, rectangle(i, 300, right, 302), {}, MaterialId(0u));
+    }
+    weldPositions(scene);
+    const OccluderSet set = findOccluders(scene.view(), kKeepAll);
+    ASSERT_EQ(set.occluders.size(), count + 1);
+    const OccluderEdge& upper = mostDivided(set, OccluderId(0u));
+    EXPECT_EQ(upper.mesh_edge_count, count == 64 ? 64u : 1u);
+    EXPECT_EQ(upper.neighbour_count, count == 64 ? 64u : 0u);
+  }
+}
+
+// A third wall ends on the edge that two others share: it cancels there, and stays one edge.
+TEST(OccluderEdges, ThatCancelAreNotDivided) {
+  Scene scene = sceneOf(rectangle(0, 0, 4, 2));
+  addObject(scene, rectangle(0, 2, 4, 5), {}, MaterialId(0u));
+  addObject(scene, rectangle(1, 0, 2, 1), {{0, 2, 0}, {1, 0, 0}, {0, 0, 1}}, MaterialId(0u));
+  weldPositions(scene);
+  const OccluderSet set = findOccluders(scene.view(), kKeepAll);
+  ASSERT_EQ(set.occluders.size(), 3u);
+  std::size_t neighbours = 0;
+  for (const OccluderEdge& edge : set.edges) {
+    EXPECT_EQ(edge.mesh_edge_count, 1u);
+    neighbours += edge.neighbour_count;
+  }
+  EXPECT_EQ(neighbours, 2u);
 }
 
 TEST(OccluderEdges, OfDemoScenesAreInOrder) {

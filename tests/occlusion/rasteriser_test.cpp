@@ -492,10 +492,12 @@ TEST(Rasteriser, WhatIsSeenThroughGapsThatEndOnAnEdgeIsNotHidden) {
 }
 
 // Three walls meet in a corner, of which two have no edge in common. Their open edges come almost along a row
-// of pixels and end in the corner's pixel, which two shared edges cross.
+// of pixels and end in the corner's pixel, which two shared edges cross. The floor's edge would lie on that
+// of the rear wall if this were not one unit in the last place off.
 TEST(Rasteriser, AnOpenEdgeThatIsNearlyLevelReachesItsEnd) {
   const Vec3f corner(1.7f, -1.9f, -2), below(1.7f, -1.9f, -1), above(1.7f, 1.5f, -2);
-  const std::array<Vec3f, 4> back{Vec3f(-3, -1.9f, -2), corner, above, Vec3f(-3, 1.5f, -2)};
+  const std::array<Vec3f, 4> back{Vec3f(-3, std::nextafter(-1.9f, -2.0f), -2), corner, above,
+                                  Vec3f(-3, 1.5f, -2)};
   const std::array<Vec3f, 4> side{corner, below, Vec3f(1.7f, 1.5f, -1), above};
   const std::array<Vec3f, 4> floor{Vec3f(-2.5f, -1.9f, -2), Vec3f(-2.5f, -1.9f, -1), below, corner};
   const std::array<OccluderPolygon, 3> walls{OccluderPolygon{back}, OccluderPolygon{side},

@@ -1,0 +1,139 @@
+#include "src/occluders/divide_outlines.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "src/base/rows.h"
+#include "src/base/sort_keys.h"
+#include "src/occluders/close_cracks.h"
+#include "src/occluders/occluder_limits.h"
+
+namespace sightline::occluders {
+namespace {
+
+std::uint32_t nextIn(std::span<const std::uint32_t> loop, std::size_t at) {
+  return loop[at + 1 < loop.size() ? at + 1 : 0];
+}
+
+// The mesh edges of outlines that run one way more often than the other, ascending. Those of a body cancel
+// each other.
+std::vector<MeshEdge> openEdges(std::span<const RankedPolygon> polygons, const ParallelFor& parallel_for) {
+  LargeVector<base::SortKey>
+      halves;  // of edges, and whether they run from the lower vertex to the higher one
+  for (const RankedPolygon& ranked : polygons) {
+    const std::span<const std::uint32_t> loop = ranked.polygon->loop;
+    for (std::size_t i = 0; i < loop.size() && ranked.polygon->body == FoundPolygon::kNoBody; ++i) {
+      const MeshEdge edge = meshEdge(loop[i], nextIn(loop, i));
+      halves.push_back({std::uint64_t{edge.low} << 32 | edge.high, loop[i] == edge.low ? 1u : 0u});
+    }
+  }
+  base::KeySorter().sort(halves, parallel_for);
+  std::vector<MeshEdge> open;
+  for (std::size_t i = 0; i < halves.size();) {
+    const std::uint64_t edge = halves[i].first;
+    int value = 0;
+    for (; i < halves.size() && halves[i].first == edge; ++i) {
+      value += halves[i].second == 1 ? 1 : -1;
+    }
+    if (value != 0) {
+      open.push_back({static_cast<std::uint32_t>(edge >> 32), static_cast<std::uint32_t>(edge)});
+    }
+  }
+  return open;
+}
+
+// Edges that others end on, ascending, and where.
+struct DividedEdges {
+  std::vector<MeshEdge> edges;
+  base::Rows<std::uint32_t> vertices;  // by edge, from its lower vertex on
+  std::vector<bool> begins;            // by vertex: it is the lower one of an edge
+
+  // The vertices that divide an edge; none if it is not among them.
+  std::span<const std::uint32_t> on(const MeshEdge& edge) const {
+    if (!begins[edge.low]) {
+      return {};
+    }
+    const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
+    return found != edges.end() && *found == edge ? vertices[static_cast<std::size_t>(found - edges.begin())]
+                                                  : std::span<const std::uint32_t>();
+  }
+};
+
+DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const MeshEdge> open,
+                          const ParallelFor& parallel_for) {
+  std::vector<std::uint32_t> used;  // vertices, ascending
+  for (const MeshEdge& edge : open) {
+    used.insert(used.end(), {edge.low, edge.high});
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const auto numberOf = [&](std::uint32_t vertex) {
+    return static_cast<std::uint32_t>(std::lower_bound(used.begin(), used.end(), vertex) - used.begin());
+  };
+  std::vector<Vec3d> vertices;
+  for (const std::uint32_t vertex : used) {
+    vertices.emplace_back(positions[vertex]);
+  }
+  std::vector<MeshEdge> edges;
+  for (const MeshEdge& edge : open) {
+    edges.push_back({numberOf(edge.low), numberOf(edge.high)});
+  }
+  const base::Rows<std::uint32_t> on_edges = verticesOnEdges(vertices, edges, parallel_for);
+  DividedEdges divided;
+  divided.begins.resize(positions.size());
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    // An edge of more pieces would join nothing at all.
+    if (on_edges[i].empty() || on_edges[i].size() >= kMaxMeshEdges) {
+      continue;
+    }
+    divided.edges.push_back(open[i]);
+    divided.begins[open[i].low] = true;
+    for (const std::uint32_t vertex : on_edges[i]) {
+      divided.vertices.add(used[vertex]);
+    }
+    divided.vertices.endRow();
+  }
+  return divided;
+}
+
+}  // namespace
+
+void divideOutlines(std::span<const Vec3f> positions, const ParallelFor& parallel_for,
+                    std::span<RankedPolygon> polygons, DividedOutlines& divided) {
+  const DividedEdges edges = dividedEdges(positions, openEdges(polygons, parallel_for), parallel_for);
+  if (edges.edges.empty()) {
+    return;
+  }
+  std::vector<std::uint32_t> loop, corners, place;  // place: in the new loop, by place in the old one
+  for (RankedPolygon& ranked : polygons) {
+    const FoundPolygon& polygon = *ranked.polygon;
+    loop.clear();
+    place.clear();
+    for (std::size_t i = 0; i < polygon.loop.size(); ++i) {
+      const MeshEdge edge = meshEdge(polygon.loop[i], nextIn(polygon.loop, i));
+      place.push_back(static_cast<std::uint32_t>(loop.size()));
+      loop.push_back(polygon.loop[i]);
+      const std::span<const std::uint32_t> on_edge = edges.on(edge);
+      if (polygon.loop[i] == edge.low) {
+        loop.insert(loop.end(), on_edge.begin(), on_edge.end());
+      } else {
+        loop.insert(loop.end(), on_edge.rbegin(), on_edge.rend());
+      }
+    }
+    if (loop.size() == polygon.loop.size()) {
+      continue;
+    }
+    corners.clear();
+    for (const std::uint32_t corner : polygon.corners) {
+      corners.push_back(place[corner]);
+    }
+    FoundPolygon& changed = divided.polygons.emplace_back(polygon);
+    changed.loop = divided.ids.copy(loop);
+    changed.corners = divided.ids.copy(corners);
+    ranked.polygon = &changed;
+  }
+}
+
+}  // namespace sightline::occluders
