@@ -12,7 +12,11 @@ namespace {
 
 // Pixels that a group must change for each unit of work, or it rests.
 constexpr double kMinGain = 0.3;
-constexpr std::uint32_t kLongestRest = 15;  // views, before up to half as many are added
+constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many are added
+// What surfaces hide of each other changes as the eye moves past them. So a rest of more than kSteadyRest
+// views ends where the eye has travelled this fraction of the surface's distance for each view of the rest.
+constexpr std::uint32_t kSteadyRest = 7;
+constexpr double kTravelOfView = 1.0 / 400.0;
 
 // Groups are drawn when this work waits, plus half of the work already done in the view. What is behind them
 // is noticed from then on.
@@ -45,7 +49,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
   drawing_ = drawing;
   parallel_for_ = &parallel_for;
   winding_ = view.mirrored ? -1 : 1;
-  start(set, drawing.step);
+  start(set, view.eye, drawing.step);
   map_.resize(target);
   view_.begin(set, view, candidates, drawing.min_pixels, target);
   chains_.begin(set, view, view_.clipDepth(), map_.buffer());
@@ -69,7 +73,7 @@ void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span
 
 // What is kept of a set that was drawn before counts for nothing: all numbers of groups and of views that are
 // written down are smaller than those to come.
-void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
+void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step) {
   stats_ = {};
   work_ = waiting_work_ = 0;
   rested_ = 0;
@@ -94,11 +98,15 @@ void SurfaceRaster::start(const SurfaceSet& set, ViewStep step) {
   }
   view_number_ += step == ViewStep::kSame ? 0 : 1;
   first_view_ = step == ViewStep::kJump ? view_number_ : first_view_;
+  travel_ = step == ViewStep::kJump ? 0.0 : travel_ + length(eye - eye_);
+  eye_ = eye;
 }
 
 // Whether something is left out in this view.
 bool SurfaceRaster::rests(const Rest& rest) const {
-  return rest.since >= first_view_ && view_number_ - rest.since <= rest.length && view_number_ > rest.since;
+  const std::uint32_t age = view_number_ - rest.since;
+  return rest.since >= first_view_ && age > 0 && age <= rest.length &&
+         (age <= kSteadyRest || travel_ <= rest.travel);
 }
 
 // Whether a surface is worth drawing at all.
@@ -109,6 +117,7 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
 // Adds the large patches of a part, each alone, and all of them together.
 void SurfaceRaster::addPart(const PartImage& image) {
   const SurfacePart& part = set_->parts[image.part];
+  part_distance_ = length(center(set_->part_bounds[image.part]) - eye_);
   const std::span<const std::uint32_t> adjoining =
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
   const bool together = part.patch_count + adjoining.size() > 1 && pays(image.rectangle, part.edge_count) &&
@@ -213,6 +222,7 @@ void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Rest& r
   group.depth_count = static_cast<std::uint32_t>(depths_.size()) - group.first_depth;
   group.rectangle = rectangle;
   group.flat = flat;
+  group.distance = part_distance_;
   group.rest = &rest;
   for (std::uint32_t i = 0; i < group.chain_count; ++i) {
     group.edges += boundary_[group.first_chain + i].count;
@@ -242,7 +252,7 @@ void SurfaceRaster::drawGroups() {
   map_.draw(drawn_, chains_.edges(), gains_, *parallel_for_);
   for (std::size_t i = 0; i < groups_.size(); ++i) {
     const std::uint64_t work = workOf(groups_[i].edges, gains_[i].tiles);
-    account(gains_[i], work, *groups_[i].rest);
+    account(groups_[i], gains_[i], work);
     work_ += work;
     stats_.edges += groups_[i].edges;
   }
@@ -294,13 +304,15 @@ void SurfaceRaster::addCuts(const ClusterImage& image) {
 
 // A group that changed too few pixels for what it cost rests, twice as long as the last time. Groups that
 // began to rest in the same view come back in different ones, or drawing them all would make one view slow.
-void SurfaceRaster::account(const WindingGain& gain, std::uint64_t work, Rest& rest) {
+void SurfaceRaster::account(const Group& group, const WindingGain& gain, std::uint64_t work) {
+  Rest& rest = *group.rest;
   stats_.gain += gain.nearer;
   if (gain.nearer < kMinGain * static_cast<double>(work)) {
     const std::uint32_t first = view_number_ == first_view_ ? 1 : 0;
     const std::uint32_t last = rest.since >= first_view_ ? rest.length : first;
     const std::uint32_t length = std::min(2 * last + 1, kLongestRest);
-    rest = {view_number_, length + rested_++ % (length / 2 + 1)};
+    rest = {view_number_, length + rested_++ % (length / 2 + 1),
+            travel_ + kTravelOfView * (length + 1) * group.distance};
   } else {
     rest = {};
   }

@@ -33,7 +33,8 @@ class SurfaceRaster {
   // What is not worth its cost is left out for some views.
   struct Rest {
     std::uint32_t since = 0;   // number of the view in which that was found
-    std::uint32_t length = 0;  // views after that one
+    std::uint32_t length = 0;  // views after that one, at most
+    double travel = 0.0;       // of the eye, as travel_: a long rest ends there
   };
 
   // A group that waits for being drawn.
@@ -43,10 +44,11 @@ class SurfaceRaster {
     std::uint32_t edges = 0;
     PixelRectangle rectangle;
     bool flat = false;
-    Rest* rest = nullptr;  // its own
+    double distance = 0.0;  // from the eye, about, metres
+    Rest* rest = nullptr;   // its own
   };
 
-  void start(const SurfaceSet& set, ViewStep step);
+  void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
   bool rests(const Rest& rest) const;
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
   void addPart(const PartImage& part);
@@ -62,7 +64,7 @@ class SurfaceRaster {
   void addCuts(const ClusterImage& image);
   bool withinBudget();
   void drawGroups();
-  void account(const WindingGain& gain, std::uint64_t work, Rest& rest);
+  void account(const Group& group, const WindingGain& gain, std::uint64_t work);
 
   const SurfaceSet* set_ = nullptr;
   std::array<std::size_t, 4> sizes_{};  // of the set, by which one made anew in the same place is noticed
@@ -92,6 +94,9 @@ class SurfaceRaster {
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;  // number of the first one since a jump
   std::uint32_t rested_ = 0;      // groups that began to rest in this view
+  Vec3d eye_;                     // of the last view
+  double travel_ = 0.0;           // of the eye, from view to view since a jump, metres
+  double part_distance_ = 0.0;    // Group::distance of the part that addPart() was called for
 };
 
 }  // namespace sightline::occlusion

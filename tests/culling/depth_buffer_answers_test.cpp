@@ -151,26 +151,48 @@ TEST(DepthBufferAnswers, ABudgetOfTimeSetsHowMuchIsDrawn) {
   }
 }
 
-TEST(DepthBufferAnswers, SurfacesOfNoUseAreTriedAgainInDifferentViews) {
-  // Strips far narrower than a pixel.
-  const CulledScene scene = atPlaces([](Scene& made, MaterialId material, float x, float y) {
+// Strips far narrower than a pixel.
+CulledScene stripsOfNoUse() {
+  return atPlaces([](Scene& made, MaterialId material, float x, float y) {
     const float z = -20.0f;
     const std::array<Vec3f, 3> strip{
         {{x - 1.3f, y - 1.3f, z}, {x + 1.3f, y + 1.3f, z}, {x + 1.3f, y + 1.301f, z}}};
     addTriangles(made, material, strip);
   });
+}
+
+TEST(DepthBufferAnswers, SurfacesOfNoUseAreTriedAgainInDifferentViews) {
+  const CulledScene scene = stripsOfNoUse();
   Culler culler(scene.parts(), depthPyramid());
   culler.cull(frontView());
   const std::uint64_t all = culler.statistic("surfaces", "edges");
   EXPECT_EQ(all, 3 * kGridPlaces);
   std::uint64_t most = 0, sum = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 400; ++i) {
     culler.cull(frontView());
     most = std::max(most, culler.statistic("surfaces", "edges"));
     sum += culler.statistic("surfaces", "edges");
   }
   EXPECT_LE(most, all / 2) << "never all in one view";
   EXPECT_GT(sum, 4 * all) << "but they are tried";
+}
+
+TEST(DepthBufferAnswers, SurfacesOfNoUseAreTriedAgainSoonerWhereTheEyeMoves) {
+  const CulledScene scene = stripsOfNoUse();
+  const auto edgesDrawn = [&](double step) {
+    Culler culler(scene.parts(), depthPyramid());
+    std::uint64_t sum = 0;
+    for (int i = 0; i < 200; ++i) {
+      View view = frontView();
+      view.eye.x += i % 2 == 0 ? 0.0 : step;
+      culler.cull(view);
+      sum += i >= 50 ? culler.statistic("surfaces", "edges") : 0;
+    }
+    return sum;
+  };
+  const std::uint64_t still = edgesDrawn(0.0);
+  EXPECT_GT(edgesDrawn(1.0), 3 * still);
+  EXPECT_LT(edgesDrawn(0.001), still + still / 4) << "no more than the strips' distance tells";
 }
 
 TEST(DepthBufferAnswers, AFrameWithoutOcclusionCullingHasNoDepthBuffer) {
