@@ -1,6 +1,6 @@
 // The city of plain boxes: blocks of buildings around a courtyard on a grid of streets, scattered small
-// boxes, and the camera paths. Every building and every small box is an object and fills its bounds, so the
-// culler alone is responsible for superfluous objects.
+// boxes, walls around quarters, and the camera paths. Every building, small box and wall is an object and
+// fills its bounds, so the culler alone is responsible for superfluous objects.
 
 #include <algorithm>
 #include <array>
@@ -24,6 +24,9 @@ constexpr double kPitchX = kBlockX + kStreet, kPitchY = kBlockY + kStreet;
 constexpr double kDeepest = 15.0, kShallowest = 11.0;  // buildings, from the street to the courtyard
 constexpr double kEyeHeight = 1.7;
 constexpr std::uint32_t kBuildings = 8;  // per block
+// Walls stand beside the lane in the middle of a street, and are higher than every building.
+constexpr std::uint32_t kQuarter = 4;  // blocks along each side of a walled quarter
+constexpr double kWallHeight = 70.0, kWallHalf = 0.4, kWallAside = 2.0;
 
 enum Palette : std::uint32_t { kGround, kWalls, kMoreWalls, kSmallBoxes };
 
@@ -156,6 +159,36 @@ void addSmallBoxes(MeshBuilder& mesh, const BoxGrid& grid, const BoxCityOptions&
   }
 }
 
+// Where the walls between quarters run: before these columns, or rows, of blocks. The crossing in the middle
+// of the city is in the middle of a quarter.
+std::vector<std::uint32_t> bordersOfQuarters(std::uint32_t count) {
+  std::vector<std::uint32_t> borders;
+  for (std::uint32_t i = (count / 2 + kQuarter / 2) % kQuarter; i <= count; i += kQuarter) {
+    borders.push_back(i);
+  }
+  return borders;
+}
+
+// Adds the walls around quarters, one for each block that they pass.
+void addWalls(MeshBuilder& mesh, const BoxGrid& grid) {
+  mesh.place({});
+  const auto add = [&](const Point2& from, const Point2& to) {
+    mesh.startObject("wall", MaterialId{kMoreWalls});
+    mesh.box({from.x + kWallAside - kWallHalf, from.y + kWallAside - kWallHalf, 0.0},
+             {to.x + kWallAside + kWallHalf, to.y + kWallAside + kWallHalf, kWallHeight});
+  };
+  for (const std::uint32_t column : bordersOfQuarters(grid.columns)) {
+    for (std::uint32_t row = 0; row < grid.rows; ++row) {
+      add(BoxGrid::crossing(column, row), BoxGrid::crossing(column, row + 1));
+    }
+  }
+  for (const std::uint32_t row : bordersOfQuarters(grid.rows)) {
+    for (std::uint32_t column = 0; column < grid.columns; ++column) {
+      add(BoxGrid::crossing(column, row), BoxGrid::crossing(column + 1, row));
+    }
+  }
+}
+
 void addGround(MeshBuilder& mesh, const BoxGrid& grid) {
   constexpr double kMargin = 100.0;
   const double x = grid.columns * kPitchX + kMargin, y = grid.rows * kPitchY + kMargin;
@@ -214,6 +247,9 @@ Scene makeBoxCity(const BoxCityOptions& options) {
     addGround(mesh, grid);
     addBuildings(mesh, grid, options);
     addSmallBoxes(mesh, grid, options);
+    if (options.walled) {
+      addWalls(mesh, grid);
+    }
   }
   weldPositions(scene);
   updateBounds(scene);

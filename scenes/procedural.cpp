@@ -114,11 +114,15 @@ Result<Scene> makeDemoBuilding(std::string_view query) {
 }
 
 Result<Scene> makeDemoBoxes(std::string_view query) {
+  static constexpr std::string_view kQuarters[] = {"open", "walled"};
   BoxCityOptions options;
+  std::uint32_t quarters = 0;
   Key keys[] = {{"buildings", 1, 100000, &options.buildings},
                 {"boxes", 0, 1000000, &options.boxes},
+                {"quarters", 0, 0, &quarters, kQuarters},
                 {"seed", 0, kAnySeed, &options.seed}};
   const Status status = readQuery(query, "boxes", keys);
+  options.walled = quarters == 1;
   return status ? Result<Scene>(makeBoxCity(options)) : status.error();
 }
 

@@ -33,10 +33,11 @@ struct BoxCityOptions {
   std::uint32_t buildings = 10000;
   std::uint32_t boxes = 50000;  // number of small boxes
   std::uint32_t seed = 1;
+  bool walled = false;  // walls of 70 m around every 4 x 4 blocks: what is seen does not grow with the city
 };
 // Streets between blocks of buildings, each a closed box of 8 to 60 m height, and small boxes with sides of
 // 0.3 to 3 m on streets, on pavements and in courtyards, which may overlap each other. Objects: the ground,
-// then the buildings, then the small boxes.
+// then the buildings, then the small boxes, then the walls.
 // Camera paths: "smooth" (400 frames through the streets), "views" (20 places all over the city, looking
 // along streets in all four directions).
 Scene makeBoxCity(const BoxCityOptions& options);

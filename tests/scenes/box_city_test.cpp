@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -144,7 +145,7 @@ TEST(BoxCity, WalksTouchNothing) {
 
 TEST(BoxCity, NoEyeIsInABox) {
   for (const std::uint32_t seed : {1u, 2u, 3u}) {
-    const Scene scene = makeBoxCity({.buildings = 300, .boxes = 9000, .seed = seed});
+    const Scene scene = makeBoxCity({.buildings = 300, .boxes = 9000, .seed = seed, .walled = seed == 3});
     for (const CameraPath& path : scene.paths) {
       for (const CameraFrame& frame : path.frames) {
         Box eye;
@@ -152,6 +153,45 @@ TEST(BoxCity, NoEyeIsInABox) {
         for (const Object& object : scene.objects) {
           ASSERT_FALSE(contains(object.bounds, eye)) << "seed " << seed << ", " << path.name;
         }
+      }
+    }
+  }
+}
+
+// Where a ray from inside, level with the ground, leaves a box: 0 if it does not meet it.
+double leavesAt(const Box& box, const Vec3d& from, const Vec3d& direction) {
+  double enters = 0.0, leaves = 1e30;
+  for (const int axis : {0, 2}) {
+    const double a = (box.min[axis] - from[axis]) / direction[axis],
+                 b = (box.max[axis] - from[axis]) / direction[axis];
+    enters = std::max(enters, std::min(a, b));
+    leaves = std::min(leaves, std::max(a, b));
+  }
+  return enters < leaves ? leaves : 0.0;
+}
+
+TEST(BoxCity, WallsHigherThanAllBuildingsSurroundTheQuarterOfTheWalk) {
+  for (const std::uint32_t buildings : {1000u, 4321u, 20000u}) {
+    const Scene scene = makeBoxCity({.buildings = buildings, .boxes = 10, .walled = true});
+    const std::size_t first_wall = 1 + buildings + 10;
+    ASSERT_GT(scene.objects.size(), first_wall);
+    float highest = 0.0f, lowest_wall = 1e30f;
+    for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+      float& limit = o < first_wall ? highest : lowest_wall;
+      const float top = scene.objects[o].bounds.max.y;
+      limit = o < first_wall ? std::max(limit, top) : std::min(limit, top);
+    }
+    EXPECT_GT(lowest_wall, highest);
+    for (std::size_t f = 0; f < scene.paths[0].frames.size(); f += 57) {
+      const Vec3d eye = scene.paths[0].frames[f].eye;
+      for (int i = 0; i < 720; ++i) {
+        const double angle = (i + 0.5) / 360.0 * 3.14159265358979;
+        double nearest = 1e30;
+        for (std::size_t o = first_wall; o < scene.objects.size(); ++o) {
+          const double at = leavesAt(scene.objects[o].bounds, eye, {std::cos(angle), 0.0, std::sin(angle)});
+          nearest = at > 0.0 ? std::min(nearest, at) : nearest;
+        }
+        EXPECT_LT(nearest, 4 * 82.0 * 1.5) << buildings << " buildings, frame " << f << ", direction " << i;
       }
     }
   }

@@ -55,7 +55,8 @@ TEST(DemoUrl, AnUnknownSceneIsAnErrorThatListsTheScenes) {
 TEST(DemoUrl, AnUnknownKeyIsAnErrorThatListsTheKeys) {
   expectError("demo:city?plants=3", {"plants", "copies", "seed"});
   expectError("demo:building?copies=3", {"copies", "floors", "plants", "seed"});
-  expectError("demo:boxes?floors=3", {"floors", "buildings", "boxes", "seed"});
+  expectError("demo:boxes?floors=3", {"floors", "buildings", "boxes", "quarters", "open or walled", "seed"});
+  expectError("demo:boxes?quarters=3", {"quarters", "open or walled"});
   expectError("demo:city?copies", {"key=number", "copies"});
 }
 
