@@ -14,6 +14,10 @@ double nearestWhole(double v) {
 
 }  // namespace
 
+void ChainEdges::reserve(const SurfaceSet& set) {
+  images_.resize(std::max<std::size_t>(images_.size(), set.chains.size()));
+}
+
 void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip_depth,
                        const EdgeBuffer& buffer) {
   view_ = view;
@@ -21,7 +25,7 @@ void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip
   buffer_ = buffer;
   edges_.clear();
   set_ = &set;
-  images_.resize(std::max<std::size_t>(images_.size(), set.chains.size()));
+  reserve(set);
   if (++number_ == 0) {
     std::fill(images_.begin(), images_.end(), Image{});
     number_ = 1;

@@ -15,6 +15,8 @@ namespace sightline::occlusion {
 // Prepares each chain when it is first asked for in a view. Equal points of the scene have equal images.
 class ChainEdges {
  public:
+  // Makes room for the chains of a set, so that begin() need not.
+  void reserve(const SurfaceSet& set);
   // clip_depth: camera space; what is nearer is left out.
   void begin(const SurfaceSet& set, const PixelView& view, double clip_depth, const EdgeBuffer& buffer);
 

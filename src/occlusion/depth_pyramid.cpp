@@ -72,6 +72,10 @@ void DepthPyramid::draw(const OccluderSet& set, std::span<const OccluderId> chos
   impl_->stats.raster = impl_->raster.stats();
 }
 
+void DepthPyramid::reserve(const SurfaceSet& surfaces) {
+  impl_->raster.reserve(surfaces);
+}
+
 void DepthPyramid::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                         const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   impl_->finished = false;

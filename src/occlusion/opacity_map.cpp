@@ -105,6 +105,10 @@ void OpacityMap::draw(const OccluderSet& set, std::span<const OccluderId> chosen
   impl_->raster.draw(set, chosen, parallel_for);
 }
 
+void OpacityMap::reserve(const SurfaceSet& surfaces) {
+  impl_->raster.reserve(surfaces);
+}
+
 void OpacityMap::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   impl_->ready = false;

@@ -134,6 +134,10 @@ void Rasteriser::draw(const OccluderSet& set, std::span<const OccluderId> chosen
   impl_->draw(set, chosen, parallel_for);
 }
 
+void Rasteriser::reserve(const SurfaceSet& surfaces) {
+  impl_->surfaces.reserve(surfaces);
+}
+
 void Rasteriser::draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
                       const SurfaceDrawing& drawing, const ParallelFor& parallel_for) {
   impl_->surfaces.draw(surfaces, impl_->view, candidates, drawing, impl_->target(), parallel_for);

@@ -43,6 +43,16 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 
 }  // namespace
 
+void SurfaceRaster::reserve(const SurfaceSet& set) {
+  const auto makeRoom = [](auto& list, std::size_t size) { list.resize(std::max(list.size(), size)); };
+  makeRoom(members_, set.clusters.size());
+  makeRoom(last_groups_, set.chains.size());
+  makeRoom(patch_rests_, set.patches.size());
+  makeRoom(part_rests_, set.parts.size());
+  makeRoom(drawn_in_, set.parts.size());
+  chains_.reserve(set);
+}
+
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
                          const SurfaceDrawing& drawing, const DepthTarget& target,
                          const ParallelFor& parallel_for) {
@@ -77,12 +87,7 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
   stats_ = {};
   work_ = waiting_work_ = 0;
   rested_ = 0;
-  const auto makeRoom = [](auto& list, std::size_t size) { list.resize(std::max(list.size(), size)); };
-  makeRoom(members_, set.clusters.size());
-  makeRoom(last_groups_, set.chains.size());
-  makeRoom(patch_rests_, set.patches.size());
-  makeRoom(part_rests_, set.parts.size());
-  makeRoom(drawn_in_, set.parts.size());
+  reserve(set);
   const std::array sizes{set.clusters.size(), set.chains.size(), set.patches.size(), set.parts.size()};
   if (set_ != &set || sizes_ != sizes) {
     set_ = &set;

@@ -19,6 +19,8 @@ namespace sightline::occlusion {
 
 class SurfaceRaster {
  public:
+  // Makes room for what is kept of a set from view to view, so that the first draw() need not.
+  void reserve(const SurfaceSet& set);
   void draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing, const DepthTarget& target, const ParallelFor& parallel_for);
   const SurfaceStats& stats() const { return stats_; }

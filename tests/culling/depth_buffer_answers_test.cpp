@@ -114,6 +114,32 @@ CulledScene discsBeforeWalls() {
   });
 }
 
+// Crumbs before the eye, more than are looked at before anything is hidden; a wall behind them, and as many
+// crumbs behind the wall.
+CulledScene crumbsBeforeAWall(std::size_t crumbs) {
+  Scene scene;
+  const MaterialId material = addMaterial(scene, Opacity::kOpaque, true);
+  for (const float z : {-10.0f, -40.0f}) {
+    for (std::size_t i = 0; i < crumbs; ++i) {
+      const float x = 0.1f * static_cast<float>(i % 64) - 3.2f, y = 0.1f * static_cast<float>(i / 64) - 3.2f;
+      addWall(scene, material, z, x, x + 0.01f, y, y + 0.01f);
+    }
+  }
+  addWall(scene, material, -20.0f, -8.0f, 8.0f, -8.0f, 8.0f);
+  return CulledScene(std::move(scene));
+}
+
+TEST(DepthBufferAnswers, InTheFirstViewWhatIsFarAwayHidesToo) {
+  constexpr std::size_t kCrumbs = 3000;
+  const CulledScene scene = crumbsBeforeAWall(kCrumbs);
+  Culler pyramid(scene.parts(), depthPyramid());
+  pyramid.cull(frontView());
+  EXPECT_EQ(pyramid.visible().size(), kCrumbs + 1);
+  Culler map(scene.parts(), opacityMap({.surfaces = SurfaceUse::kAlone}));
+  map.cull(frontView());
+  EXPECT_EQ(map.visible().size(), kCrumbs + 1);
+}
+
 TEST(DepthBufferAnswers, ACutToAnotherCameraDrawsWhatIsSmallInTheViewsAfterIt) {
   const CulledScene scene = discsBeforeWalls();
   Culler culler(scene.parts(), depthPyramid({.focus = {.magnification = 0.0}}));

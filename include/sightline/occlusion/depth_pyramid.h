@@ -78,6 +78,7 @@ class DepthPyramid {
   void begin(const View& view);
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
+  void reserve(const SurfaceSet& surfaces);  // see Rasteriser
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing = {}, const ParallelFor& parallel_for = serialFor);
   SurfaceStats draw(const MovingSurfaces& surfaces, std::span<const ObjectId> candidates,

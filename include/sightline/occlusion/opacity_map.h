@@ -69,6 +69,7 @@ class OpacityMap {
   void begin(const View& view);
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
+  void reserve(const SurfaceSet& surfaces);  // see Rasteriser
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,
             const SurfaceDrawing& drawing = {}, const ParallelFor& parallel_for = serialFor);
   SurfaceStats draw(const MovingSurfaces& moving, const SurfaceDrawing& drawing = {},

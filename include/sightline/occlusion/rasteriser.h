@@ -120,6 +120,8 @@ class Rasteriser {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
 
+  // Makes room for drawing these surfaces, in proportion to the set. Else the first draw() of them does.
+  void reserve(const SurfaceSet& surfaces);
   // Draws the surfaces of some objects, SurfaceSet::objects for all. With any coverage rule they are drawn
   // conservatively.
   void draw(const SurfaceSet& surfaces, std::span<const ObjectId> candidates,

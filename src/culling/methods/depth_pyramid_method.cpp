@@ -30,6 +30,7 @@ class DepthPyramidMethod final : public CullingMethod {
     traversal_.emplace(*scene.hierarchy, scene.object_bounds);
     surfaces_.prepare(scene);
     pyramid_.emplace(DepthPyramidSettings{settings_.raster});
+    surfaces_.prepareBuffer(*pyramid_);
     own_occluders_ = 0;
     last_kept_.clear();
     news_.clear();
@@ -60,8 +61,8 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    if (surfaces_.draws() && !frame.jumped && changesFast()) {
-      drawNews(frame);
+    if (surfaces_.leftOut() || (surfaces_.draws() && !frame.jumped && changesFast())) {
+      drawFound(frame);
     }
     // With surfaces most time goes into drawing, and testing everything costs little.
     const bool skips = settings_.temporal_coherence && !surfaces_.draws() && !surfaces_.drawsMoving(frame);
@@ -120,13 +121,18 @@ class DepthPyramidMethod final : public CullingMethod {
   // Whether many of the objects that were kept are new.
   bool changesFast() const { return news_.size() * kCalm > last_kept_.size(); }
 
-  // Draws the surfaces of objects that come into view in this frame.
-  void drawNews(const CullingFrame& frame) {
+  // Draws the surfaces of what the buffer does not hide so far and of which none were drawn: of objects that
+  // come into view in this frame or, after a jump, that are far away.
+  void drawFound(const CullingFrame& frame) {
     found_.clear();
     CullStats ignored;
     traversal_->run(*pyramid_, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
-    findNews(found_);
-    surfaces_.drawMore(*pyramid_, news_);
+    if (frame.jumped) {
+      surfaces_.drawBeyond(*pyramid_, found_);
+    } else {
+      findNews(found_);
+      surfaces_.drawMore(*pyramid_, news_);
+    }
     work_ += pyramid_->surfaceStats().work;
     countSurfaces();
     pyramid_->finish(*frame.parallel_for);

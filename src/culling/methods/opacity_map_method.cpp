@@ -39,6 +39,7 @@ class OpacityMapMethod final : public CullingMethod {
     traversal_.emplace(*scene.hierarchy, scene.object_bounds);
     surfaces_.prepare(scene);
     map_.emplace(settings_.map);
+    surfaces_.prepareBuffer(*map_);
     coverage_.emplace(settings_.map.coverage_ratio);
     own_occluders_ = 0;
     suspended_ = false;
@@ -58,13 +59,19 @@ class OpacityMapMethod final : public CullingMethod {
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    const culling::TraversalOptions options = culling::optionsOf(frame, false);
     if (suspended_) {
-      traversal_->run(frame.frustum, options, culling::seeEverything(), stats, visible);
-    } else {
-      const auto ask = [this](const TraversalBox& asked) { return map_->classify(asked.box); };
-      traversal_->run(frame.frustum, options, culling::AskAll{ask}, stats, visible);
+      traversal_->run(frame.frustum, culling::optionsOf(frame, false), culling::seeEverything(), stats,
+                      visible);
+      return;
     }
+    if (surfaces_.leftOut()) {
+      found_.clear();
+      CullStats ignored;
+      ask(frame, ignored, found_);
+      surfaces_.drawBeyond(*map_, found_);
+      map_->finish();
+    }
+    ask(frame, stats, visible);
   }
 
   void finish(CullStats& stats) override {
@@ -110,6 +117,12 @@ class OpacityMapMethod final : public CullingMethod {
 
  private:
   bool adapts() const { return settings_.triangle_us > 0.0; }
+  // Appends the objects that the map does not hide.
+  void ask(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) {
+    const auto classify = [this](const TraversalBox& asked) { return map_->classify(asked.box); };
+    traversal_->run(frame.frustum, culling::optionsOf(frame, false), culling::AskAll{classify}, stats,
+                    visible);
+  }
 
   OpacityMapMethodSettings settings_;
   culling::SurfaceDrawer surfaces_;
@@ -118,6 +131,7 @@ class OpacityMapMethod final : public CullingMethod {
   std::optional<culling::AdaptiveCoverage> coverage_;
   bool suspended_ = false;         // in this frame
   std::size_t own_occluders_ = 0;  // occluders in the map that are of the scene's set
+  std::vector<ObjectId> found_;    // scratch for one traverse()
   std::vector<MethodStatistic> statistics_{{"map", "occluders_hidden", "occluders behind others"},
                                            {"map", "overlap_tests", "overlap tests"},
                                            {"map", "overlap_failed", "of them failed"},

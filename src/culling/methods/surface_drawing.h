@@ -4,20 +4,21 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "sightline/culling/culling_method.h"
-#include "src/culling/hierarchical_traversal.h"
-#include "src/culling/methods/traversal_options.h"
+#include "src/culling/nearest_objects.h"
 #include "src/culling/timed_budget.h"
 #include "src/culling/usual_work.h"
 
 namespace sightline::culling {
 
-// Draws the surfaces of the objects that the last frame kept, or, after a jump, of those in the frustum.
+// Draws the surfaces of the objects that the last frame kept, or, after a jump, of those in the frustum:
+// first of the nearest ones, then of what these do not hide.
 class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
@@ -29,9 +30,17 @@ class SurfaceDrawer {
     usual_work_ = {};
     work_ = 0.0;
     timed_ = TimedBudget(budget_us_);
-    search_.reset();
+    nearest_.reset();
     if (surfaces_ != nullptr) {
-      search_.emplace(*scene.hierarchy, scene.object_bounds);
+      nearest_.emplace(*scene.hierarchy, scene.object_bounds);
+    }
+  }
+
+  // The same for a buffer into which they will be drawn.
+  template <typename Buffer>
+  void prepareBuffer(Buffer& buffer) const {
+    if (draws()) {
+      buffer.reserve(*surfaces_);
     }
   }
 
@@ -43,11 +52,8 @@ class SurfaceDrawer {
   void begin(const CullingFrame& frame) {
     parallel_for_ = frame.parallel_for;
     in_frustum_.clear();
-    if (draws() && frame.jumped) {
-      CullStats ignored;
-      search_->run(frame.frustum, {.temporal_coherence = false, .filter = frame.filter}, seeEverything(),
-                   ignored, in_frustum_);
-    }
+    more_in_frustum_ = draws() && frame.jumped &&
+                       !nearest_->find(frame.frustum, frame.view.eye, frame.filter, kNearest, in_frustum_);
   }
   // follows: the view follows the last one for which this buffer was drawn.
   template <typename Buffer>
@@ -59,10 +65,24 @@ class SurfaceDrawer {
     draw(buffer, frame.jumped ? std::span<const ObjectId>(in_frustum_) : frame.last_visible,
          follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump, drawing);
     work_ = buffer.surfaceStats().work;
-    usual_work_.frame(work_);
+  }
+  // Whether draw() left out objects in the frustum that are far away. Then drawBeyond() is to be called.
+  bool leftOut() const { return more_in_frustum_; }
+  // Draws the surfaces of those of the objects for which draw() did not. not_hidden: what the buffer shows
+  // after draw(), ascending.
+  template <typename Buffer>
+  void drawBeyond(Buffer& buffer, std::span<const ObjectId> not_hidden) {
+    beyond_.clear();
+    std::set_difference(not_hidden.begin(), not_hidden.end(), in_frustum_.begin(), in_frustum_.end(),
+                        std::back_inserter(beyond_));
+    SurfaceDrawing drawing = usual_work_.limited(drawing_, true);
+    drawing.budget -= static_cast<std::uint32_t>(std::min<double>(drawing.budget, work_));
+    draw(buffer, beyond_, ViewStep::kSame, drawing);
+    work_ += buffer.surfaceStats().work;
   }
   // The frame ends: stats has its times.
   void finish(const CullStats& stats) {
+    usual_work_.frame(work_);
     timed_.frame(work_, stats.build_us, stats.totalUs() - stats.build_us);
   }
 
@@ -99,6 +119,9 @@ class SurfaceDrawer {
   }
 
  private:
+  // So many objects are looked at after a jump before anything is hidden.
+  static constexpr std::size_t kNearest = 512;
+
   SurfaceDrawing upTo(double budget) const {
     SurfaceDrawing drawing = drawing_;
     drawing.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, drawing.budget));
@@ -120,8 +143,9 @@ class SurfaceDrawer {
   UsualWork usual_work_;
   const SurfaceSet* surfaces_ = nullptr;
   const ParallelFor* parallel_for_ = nullptr;  // of the frame
-  std::optional<HierarchicalTraversal> search_;
-  std::vector<ObjectId> in_frustum_;
+  std::optional<NearestObjects> nearest_;
+  std::vector<ObjectId> in_frustum_, beyond_;  // whose surfaces are drawn after a jump
+  bool more_in_frustum_ = false;
 };
 
 }  // namespace sightline::culling
