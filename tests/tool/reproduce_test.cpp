@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "tests/support/pictures.h"
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
 
@@ -309,6 +310,24 @@ TEST(Reproduce, PoonWangHasATableForEachExperiment) {
     EXPECT_LE(row["culled_percent"], 100.0) << row;
   }
   EXPECT_EQ(result["findings"].size(), 4u);
+}
+
+TEST(Reproduce, TheAdaptiveOverlapTestFollowsTheMeasuredRendererOnEachRoute) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  const json result = reproducedRoutes();
+  std::set<std::string> routes;
+  for (const json& row : result["experiments"]["routes"]["rows"]) {
+    if (row["culling"] == "OM, adaptive") {
+      routes.insert(row["route"]);
+    }
+  }
+  EXPECT_EQ(routes.size(), 3u);
+  const std::string notes = result["notes"].dump();
+  for (const std::string& route : routes) {
+    EXPECT_NE(notes.find("route " + route + ": the adaptive overlap test followed the renderer"),
+              std::string::npos)
+        << route;
+  }
 }
 
 TEST(Reproduce, PoonWangsFiguresStandBesideOurs) {
