@@ -108,7 +108,7 @@ class Walker {
     const std::uint32_t frame = walk_.frames[i];
     const View view = walk_.view(frame, scene_);
     cullFrame(record_.runs, data_, frame, view);
-    keep(frame, view);
+    chooser_.offer(keptFrame(record_, data_, frame, view));
     return renderer_ != nullptr ? drawAndCompare(i, view) : Status(Success{});
   }
 
@@ -170,21 +170,6 @@ class Walker {
     return culled;
   }
 
-  void keep(std::uint32_t frame, const View& view) {
-    const Culler& all = record_.baseline().run.culler;
-    const Culler& shown = record_.runs[record_.shown].run.culler;
-    KeptFrame kept;
-    kept.frame = frame;
-    kept.view = view;
-    kept.in_frustum.assign(all.visible().begin(), all.visible().end());
-    kept.visible.assign(shown.visible().begin(), shown.visible().end());
-    kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
-    kept.depth_buffer = copyOf(shown.depthBuffer());
-    kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
-    kept.triangles_visible = data_.trianglesOf(kept.visible);
-    chooser_.offer(kept);
-  }
-
   const Scene& scene_;
   const Walk& walk_;
   CullingData& data_;
@@ -211,7 +196,10 @@ Status writePlots(const Report& report, const std::string& folder) {
 Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRecord& record,
                 Renderer* renderer) {
   Result<std::vector<ReportPicture>> pictures =
-      drawPictures(record, input.scene, input.data.occluders(), renderer, options.folder);
+      drawPictures(record, input.scene, input.data.occluders(), renderer,
+                   [&](const Image& image, const std::string& file) {
+                     return writePng(image, options.folder + "/" + file);
+                   });
   if (!pictures) {
     return pictures.error();
   }

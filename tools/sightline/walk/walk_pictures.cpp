@@ -139,14 +139,14 @@ std::string coverageCaption(const WalkRecord& record, const KeptFrame& frame, co
   return text;
 }
 
-// Writes the pictures of a walk's chosen frames one after the other, until one cannot be written.
-class PictureWriter {
+// Draws the pictures of a walk's chosen frames one after the other, until one is not taken.
+class PictureMaker {
  public:
-  PictureWriter(const WalkRecord& record, const Scene& scene, const OccluderSet& occluders,
-                Renderer* renderer, const std::string& folder)
-      : record_(record), scene_(scene), occluders_(occluders), renderer_(renderer), folder_(folder) {}
+  PictureMaker(const WalkRecord& record, const Scene& scene, const OccluderSet& occluders, Renderer* renderer,
+               const TakePicture& take)
+      : record_(record), scene_(scene), occluders_(occluders), renderer_(renderer), take_(take) {}
 
-  Result<std::vector<ReportPicture>> writeAll() {
+  Result<std::vector<ReportPicture>> makeAll() {
     for (const KeptFrame& frame : record_.pictures) {
       if (renderer_ != nullptr) {
         addRendered(frame);
@@ -157,8 +157,8 @@ class PictureWriter {
       if (renderer_ != nullptr) {
         addPlan(frame);
       }
-      if (!written_) {
-        return written_.error();
+      if (!taken_) {
+        return taken_.error();
       }
     }
     return std::move(pictures_);
@@ -189,10 +189,10 @@ class PictureWriter {
         {.caption = objects, .frame = frame.frame, .plan = true});
   }
 
-  void add(const Image& image, std::string_view kind, ReportPicture picture) {
+  void add(Image image, std::string_view kind, ReportPicture picture) {
     picture.file = fmt::format("{}_{:04}.png", kind, picture.frame);
-    if (written_) {
-      written_ = writePng(image, folder_ + "/" + picture.file);
+    if (taken_) {
+      taken_ = take_(std::move(image), picture.file);
     }
     pictures_.push_back(std::move(picture));
   }
@@ -201,8 +201,8 @@ class PictureWriter {
   const Scene& scene_;
   const OccluderSet& occluders_;
   Renderer* renderer_;
-  const std::string& folder_;
-  Status written_ = Success{};
+  const TakePicture& take_;
+  Status taken_ = Success{};
   std::vector<ReportPicture> pictures_;
 };
 
@@ -233,10 +233,26 @@ std::vector<KeptFrame> PictureChooser::chosen() const {
   return frames;
 }
 
+KeptFrame keptFrame(const WalkRecord& record, const CullingData& data, std::uint32_t frame,
+                    const View& view) {
+  const Culler& all = record.baseline().run.culler;
+  const Culler& shown = record.runs[record.shown].run.culler;
+  KeptFrame kept;
+  kept.frame = frame;
+  kept.view = view;
+  kept.in_frustum.assign(all.visible().begin(), all.visible().end());
+  kept.visible.assign(shown.visible().begin(), shown.visible().end());
+  kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
+  kept.depth_buffer = copyOf(shown.depthBuffer());
+  kept.triangles_in_frustum = data.trianglesOf(kept.in_frustum);
+  kept.triangles_visible = data.trianglesOf(kept.visible);
+  return kept;
+}
+
 Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const Scene& scene,
                                                 const OccluderSet& occluders, Renderer* renderer,
-                                                const std::string& folder) {
-  return PictureWriter(record, scene, occluders, renderer, folder).writeAll();
+                                                const TakePicture& take) {
+  return PictureMaker(record, scene, occluders, renderer, take).makeAll();
 }
 
 }  // namespace sightline::tool
