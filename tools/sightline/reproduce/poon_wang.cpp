@@ -18,6 +18,7 @@
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/reproduce/poon_wang.h"
+#include "tools/sightline/walk/walk_pictures.h"
 #include "tools/sightline/walk/walk_report.h"
 #include "tools/sightline/walk/walk_runs.h"
 
@@ -28,12 +29,13 @@ constexpr const char* kRoutes[] = {"best", "average", "worst"};
 constexpr OccluderChoice kCriteria[] = {OccluderChoice::kProjectedSize, OccluderChoice::kMinimumSets,
                                         OccluderChoice::kFirstHit};
 constexpr std::uint32_t kCounts[] = {16, 32, 64, 96, 128, 192, 256, 384, 512};
-constexpr std::uint32_t kOccluders = 64;         // occluders in each frame of the routes
-constexpr std::uint32_t kPicture = 512;          // width and height of pictures, unless the user gives them
-constexpr double kPictures[] = {1.0, 1.5, 2.0};  // sizes of figure 10, relative to that
-constexpr std::uint32_t kMap = 128;              // width and height of the opacity map
-constexpr std::size_t kVisibleWanted = 400;      // visible objects at figure 6's viewpoint
-constexpr std::size_t kRepeats = 15;             // repetitions of that viewpoint's frame
+constexpr std::uint32_t kOccluders = 64;          // occluders in each frame of the routes
+constexpr std::uint32_t kPicture = 512;           // width and height of pictures, unless the user gives them
+constexpr double kPictures[] = {1.0, 1.5, 2.0};   // sizes of figure 10, relative to that
+constexpr std::uint32_t kTopViewOccluders = 192;  // of figure 7, for each criterion
+constexpr std::uint32_t kMap = 128;               // width and height of the opacity map
+constexpr std::size_t kVisibleWanted = 400;       // visible objects at figure 6's viewpoint
+constexpr std::size_t kRepeats = 15;              // repetitions of that viewpoint's frame
 
 Setting frustumSetting() {
   Setting setting;
@@ -163,9 +165,18 @@ class Experiments {
   std::string whyNot() const { return why_not_; }
   // One for each route that was drawn: what its adaptive overlap test went by.
   const std::vector<std::string>& notes() const { return notes_; }
+  // What figure 7 shows; empty if nothing was drawn.
+  const std::string& topViewText() const { return top_view_text_; }
+  bool minimumSetsHideMost() const { return minimum_sets_hide_most_; }
+  // Of the report's pictures; taken once.
+  std::vector<ReportFile> takeFiles() { return std::move(files_); }
 
   void run(poon_wang::Tables& tables) {
     occluderCounts(tables.occluder_counts);
+    if (renderer_) {
+      topViews();
+      birdsEyeView();
+    }
     routes(tables.routes, tables.depth_comparison);
     criteria(tables.criteria);
     pictureSizes(tables.picture_sizes);
@@ -182,6 +193,7 @@ class Experiments {
                     {"potential occluders", grouped(data_.occluders().occluders.size())},
                     {"OpenGL", drawn() ? renderer_->device() : "none: nothing was drawn"}};
     report.plots = plots_;
+    report.pictures = pictures_;
     return report;
   }
 
@@ -317,6 +329,64 @@ class Experiments {
     }
   }
 
+  void addPicture(const std::string& name, std::uint32_t figure, ReportPicture picture, Image image) {
+    picture.file = name + ".png";
+    picture.frame = figure;
+    files_.push_back({picture.file, std::move(image)});
+    pictures_.push_back(std::move(picture));
+  }
+
+  // Figure 7: figure 6's viewpoint from above, with each criterion.
+  void topViews() {
+    KeptFrame frame;
+    frame.frame = viewpoint_.frame;
+    frame.view = walk_.view(viewpoint_.frame, input_.scene);
+    Culler all = data_.makeCuller(frustumSetting());
+    all.cull(frame.view);
+    frame.in_frustum.assign(all.visible().begin(), all.visible().end());
+    std::vector<std::size_t> hidden_by;
+    for (const OccluderChoice criterion : kCriteria) {
+      Culler culler = data_.makeCuller(opacitySetting(criterion, kTopViewOccluders));
+      culler.cull(frame.view);
+      frame.visible.assign(culler.visible().begin(), culler.visible().end());
+      frame.occluders.assign(culler.occludersUsed().begin(), culler.occludersUsed().end());
+      const std::string name = nameOf(kOccluderChoices, criterion);
+      const std::size_t hidden = frame.in_frustum.size() - frame.visible.size();
+      hidden_by.push_back(hidden);
+      top_view_text_ += fmt::format("{}{} of {} objects with {}", top_view_text_.empty() ? "" : ", ", hidden,
+                                    frame.in_frustum.size(), name);
+      addPicture(
+          "figure7_" + name, 7,
+          {.caption =
+               fmt::format("{}: {} objects kept, {} hidden in the frustum, {} occluders", name,
+                           grouped(frame.visible.size()), grouped(hidden), grouped(frame.occluders.size())),
+           .plan = true,
+           .heading = fmt::format("Figure 7: top view of the model, up to {} occluders", kTopViewOccluders)},
+          planPicture(frame, input_.scene, data_.occluders(), *renderer_));
+    }
+    const auto most = std::ranges::max_element(hidden_by);
+    minimum_sets_hide_most_ = kCriteria[most - hidden_by.begin()] == OccluderChoice::kMinimumSets;
+    top_view_text_ += " in " + name_;
+  }
+
+  // Figure 11: all of the scene from above and aside.
+  void birdsEyeView() {
+    const Box bounds = sceneBounds(input_.scene.view());
+    const Vec3d middle = center(bounds), extent = Vec3d(bounds.extent());
+    const double size = std::max(extent.x, extent.z);
+    const Vec3d away{0.0, -0.6 * size, -0.75 * size};  // from the eye to the middle
+    CameraPath path = walk_.path;
+    path.frames = {{middle - away, away, {0.0, 1.0, 0.0}}};
+    path.far = 10.0 * size;
+    View view = path.view(0, {});
+    view.aspect = static_cast<double>(picture_.width) / picture_.height;
+    addPicture("figure11", 11,
+               {.caption = fmt::format("{} triangles in {} objects", grouped(input_.scene.triangleCount()),
+                                       grouped(input_.scene.objects.size())),
+                .heading = "Figure 11: bird's-eye view of the model"},
+               renderer_->draw(view, everything_));
+  }
+
   // The rows of one route: the way of comparing depths for each of `measured` that tests depths as the paper
   // does.
   void addDepthComparisons(const std::string& route, const std::vector<SceneRuns>& measured,
@@ -421,6 +491,10 @@ class Experiments {
   std::optional<Renderer> renderer_;
   std::string why_not_;
   std::vector<std::string> notes_;
+  std::string top_view_text_;
+  bool minimum_sets_hide_most_ = false;
+  std::vector<ReportPicture> pictures_;
+  std::vector<ReportFile> files_;
   std::vector<Plot> plots_;
 };
 
@@ -439,6 +513,8 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
     }
     routes.push_back(std::move(*of_scene));
   }
+  std::string top_views;
+  bool minimum_sets_hide_most = true;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     Experiments experiments(options.scenes[i], inputs[i], std::move(routes[i]), options,
                             threads.parallelFor());
@@ -448,10 +524,26 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
           fmt::format("{}: nothing was drawn: {}", options.scenes[i], experiments.whyNot()));
     }
     result.notes.insert(result.notes.end(), experiments.notes().begin(), experiments.notes().end());
+    if (!experiments.topViewText().empty()) {
+      minimum_sets_hide_most = minimum_sets_hide_most && experiments.minimumSetsHideMost();
+      top_views += (top_views.empty() ? "" : "; ") + experiments.topViewText();
+    }
+    for (ReportFile& file : experiments.takeFiles()) {
+      file.report = i;
+      result.files.push_back(std::move(file));
+    }
     result.reports.push_back(experiments.report());
   }
   poon_wang::addPublished(tables);
   result.findings = poon_wang::findingsOf(tables);
+  if (!top_views.empty()) {
+    result.findings.push_back(
+        {"figure 7: with 192 occluders minimum sets hide most of what is in the frustum, the other criteria "
+         "less",
+         minimum_sets_hide_most,
+         top_views +
+             ". As in figure 6, lists that are made for a grid point miss what is seen from beside it"});
+  }
   result.experiments = {std::move(tables.occluder_counts), std::move(tables.routes),
                         std::move(tables.depth_comparison), std::move(tables.criteria),
                         std::move(tables.picture_sizes)};

@@ -106,7 +106,8 @@ Finding budgets(const std::vector<Measured>& scenes) {
                              result.depths.size(), result.percent, measured.name));
     }
   }
-  return std::move(judged).because("");
+  return std::move(judged).because(
+      ". A larger budget ends division earlier: there are fewer leaves, and of these a part meets it");
 }
 
 Finding sent(const std::vector<Measured>& scenes) {

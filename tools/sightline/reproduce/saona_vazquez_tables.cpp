@@ -415,7 +415,12 @@ Report reportOf(const Measured& measured, const std::vector<Experiment>& experim
       {"OpenGL", measured.drawn() ? measured.navigations.front().record.device : "none: nothing was drawn"}};
   report.plots = {leafPlot(measured), histogramPlot(measured)};
   for (const Navigation& navigation : measured.navigations) {
-    for (Plot& plot : plotsOf(navigation.record, navigation.walk)) {
+    std::vector<Plot> plots = plotsOf(navigation.record, navigation.walk);
+    plots.pop_back();  // neither asks an occlusion structure about nodes
+    for (Plot& plot : plots) {
+      for (std::size_t c = 0; c < plot.series.size(); ++c) {
+        plot.series[c].name = kCullings[c];
+      }
       plot.title += ", " + navigation.walk.path.name;
       report.plots.push_back(std::move(plot));
     }

@@ -59,28 +59,6 @@ double radiusAround(const KeptFrame& frame, const Scene& scene) {
   return std::max(kMinRadius, 1.15 * *nine_tenths);
 }
 
-Image drawPlanOf(const KeptFrame& frame, const Scene& scene, const OccluderSet& occluders,
-                 Renderer& renderer) {
-  std::vector<ObjectState> states(scene.objects.size(), ObjectState::kOutside);
-  for (const ObjectId object : frame.in_frustum) {
-    states[object.value] = ObjectState::kHidden;
-  }
-  for (const ObjectId object : frame.visible) {
-    states[object.value] = ObjectState::kKept;
-  }
-  PlanView plan;
-  plan.camera = frame.view;
-  plan.radius = radiusAround(frame, scene);
-  if (indoors(frame.view.eye, scene)) {
-    plan.cut_height = frame.view.eye.y + kCutAboveEye;
-  }
-  plan.states = states;
-  plan.objects = scene.objects;
-  plan.occluders = &occluders;
-  plan.occluders_used = frame.occluders;
-  return renderer.drawPlan(plan);
-}
-
 // The value of a statistic of the shown run in a frame; empty if the run has no such one.
 std::optional<std::uint64_t> statisticOf(const WalkRecord& record, std::uint32_t frame,
                                          std::string_view group, std::string_view name) {
@@ -185,7 +163,7 @@ class PictureMaker {
                     record_.runs[record_.shown].setting.surfaces() == SurfaceUse::kAlone
                         ? "whole surfaces as occluders"
                         : grouped(frame.occluders.size()) + " occluders");
-    add(drawPlanOf(frame, scene_, occluders_, *renderer_), "plan",
+    add(planPicture(frame, scene_, occluders_, *renderer_), "plan",
         {.caption = objects, .frame = frame.frame, .plan = true});
   }
 
@@ -231,6 +209,28 @@ std::vector<KeptFrame> PictureChooser::chosen() const {
   }
   std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.frame < b.frame; });
   return frames;
+}
+
+Image planPicture(const KeptFrame& frame, const Scene& scene, const OccluderSet& occluders,
+                  Renderer& renderer) {
+  std::vector<ObjectState> states(scene.objects.size(), ObjectState::kOutside);
+  for (const ObjectId object : frame.in_frustum) {
+    states[object.value] = ObjectState::kHidden;
+  }
+  for (const ObjectId object : frame.visible) {
+    states[object.value] = ObjectState::kKept;
+  }
+  PlanView plan;
+  plan.camera = frame.view;
+  plan.radius = radiusAround(frame, scene);
+  if (indoors(frame.view.eye, scene)) {
+    plan.cut_height = frame.view.eye.y + kCutAboveEye;
+  }
+  plan.states = states;
+  plan.objects = scene.objects;
+  plan.occluders = &occluders;
+  plan.occluders_used = frame.occluders;
+  return renderer.drawPlan(plan);
 }
 
 KeptFrame keptFrame(const WalkRecord& record, const CullingData& data, std::uint32_t frame,

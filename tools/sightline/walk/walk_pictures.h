@@ -29,6 +29,10 @@ class PictureChooser {
 // What is to be kept of the frame that the record's runs have culled last, for its pictures.
 KeptFrame keptFrame(const WalkRecord& record, const CullingData& data, std::uint32_t frame, const View& view);
 
+// The scene from above, around the frame's eye: what is kept, hidden and outside, and the occluders in use.
+Image planPicture(const KeptFrame& frame, const Scene& scene, const OccluderSet& occluders,
+                  Renderer& renderer);
+
 // Draws the picture, the coverage map (if the method has a depth buffer) and the plan view of every chosen
 // frame, hands each to `take` with its file's name, and says what they show. Ends at the first error of take.
 // renderer: null draws the coverage map alone.
