@@ -18,7 +18,6 @@
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/reproduce/papers.h"
 #include "tools/sightline/reproduce/poon_wang.h"
-#include "tools/sightline/walk/walk_pictures.h"
 #include "tools/sightline/walk/walk_report.h"
 #include "tools/sightline/walk/walk_runs.h"
 
@@ -165,17 +164,13 @@ class Experiments {
   std::string whyNot() const { return why_not_; }
   // One for each route that was drawn: what its adaptive overlap test went by.
   const std::vector<std::string>& notes() const { return notes_; }
-  // What figure 7 shows; empty if nothing was drawn.
-  const std::string& topViewText() const { return top_view_text_; }
-  bool minimumSetsHideMost() const { return minimum_sets_hide_most_; }
-  // Of the report's pictures; taken once.
-  std::vector<ReportFile> takeFiles() { return std::move(files_); }
+  // Figures 7 and 11; none if nothing was drawn.
+  const poon_wang::Pictures& pictures() const { return pictures_; }
 
   void run(poon_wang::Tables& tables) {
     occluderCounts(tables.occluder_counts);
     if (renderer_) {
-      topViews();
-      birdsEyeView();
+      drawPictures();
     }
     routes(tables.routes, tables.depth_comparison);
     criteria(tables.criteria);
@@ -193,7 +188,7 @@ class Experiments {
                     {"potential occluders", grouped(data_.occluders().occluders.size())},
                     {"OpenGL", drawn() ? renderer_->device() : "none: nothing was drawn"}};
     report.plots = plots_;
-    report.pictures = pictures_;
+    report.pictures = pictures_.pictures;
     return report;
   }
 
@@ -329,62 +324,17 @@ class Experiments {
     }
   }
 
-  void addPicture(const std::string& name, std::uint32_t figure, ReportPicture picture, Image image) {
-    picture.file = name + ".png";
-    picture.frame = figure;
-    files_.push_back({picture.file, std::move(image)});
-    pictures_.push_back(std::move(picture));
-  }
-
-  // Figure 7: figure 6's viewpoint from above, with each criterion.
-  void topViews() {
-    KeptFrame frame;
-    frame.frame = viewpoint_.frame;
-    frame.view = walk_.view(viewpoint_.frame, input_.scene);
-    Culler all = data_.makeCuller(frustumSetting());
-    all.cull(frame.view);
-    frame.in_frustum.assign(all.visible().begin(), all.visible().end());
-    std::vector<std::size_t> hidden_by;
+  // Figures 7 and 11.
+  void drawPictures() {
+    const View view = walk_.view(viewpoint_.frame, input_.scene);
+    std::vector<std::pair<std::string, Setting>> criteria;
     for (const OccluderChoice criterion : kCriteria) {
-      Culler culler = data_.makeCuller(opacitySetting(criterion, kTopViewOccluders));
-      culler.cull(frame.view);
-      frame.visible.assign(culler.visible().begin(), culler.visible().end());
-      frame.occluders.assign(culler.occludersUsed().begin(), culler.occludersUsed().end());
-      const std::string name = nameOf(kOccluderChoices, criterion);
-      const std::size_t hidden = frame.in_frustum.size() - frame.visible.size();
-      hidden_by.push_back(hidden);
-      top_view_text_ += fmt::format("{}{} of {} objects with {}", top_view_text_.empty() ? "" : ", ", hidden,
-                                    frame.in_frustum.size(), name);
-      addPicture(
-          "figure7_" + name, 7,
-          {.caption =
-               fmt::format("{}: {} objects kept, {} hidden in the frustum, {} occluders", name,
-                           grouped(frame.visible.size()), grouped(hidden), grouped(frame.occluders.size())),
-           .plan = true,
-           .heading = fmt::format("Figure 7: top view of the model, up to {} occluders", kTopViewOccluders)},
-          planPicture(frame, input_.scene, data_.occluders(), *renderer_));
+      criteria.emplace_back(nameOf(kOccluderChoices, criterion),
+                            opacitySetting(criterion, kTopViewOccluders));
     }
-    const auto most = std::ranges::max_element(hidden_by);
-    minimum_sets_hide_most_ = kCriteria[most - hidden_by.begin()] == OccluderChoice::kMinimumSets;
-    top_view_text_ += " in " + name_;
-  }
-
-  // Figure 11: all of the scene from above and aside.
-  void birdsEyeView() {
-    const Box bounds = sceneBounds(input_.scene.view());
-    const Vec3d middle = center(bounds), extent = Vec3d(bounds.extent());
-    const double size = std::max(extent.x, extent.z);
-    const Vec3d away{0.0, -0.6 * size, -0.75 * size};  // from the eye to the middle
-    CameraPath path = walk_.path;
-    path.frames = {{middle - away, away, {0.0, 1.0, 0.0}}};
-    path.far = 10.0 * size;
-    View view = path.view(0, {});
-    view.aspect = static_cast<double>(picture_.width) / picture_.height;
-    addPicture("figure11", 11,
-               {.caption = fmt::format("{} triangles in {} objects", grouped(input_.scene.triangleCount()),
-                                       grouped(input_.scene.objects.size())),
-                .heading = "Figure 11: bird's-eye view of the model"},
-               renderer_->draw(view, everything_));
+    Culler frustum = data_.makeCuller(frustumSetting());
+    poon_wang::addTopViews(input_.scene, data_, view, frustum, criteria, *renderer_, pictures_);
+    poon_wang::addBirdsEyeView(input_.scene, walk_.path, *renderer_, pictures_);
   }
 
   // The rows of one route: the way of comparing depths for each of `measured` that tests depths as the paper
@@ -491,10 +441,7 @@ class Experiments {
   std::optional<Renderer> renderer_;
   std::string why_not_;
   std::vector<std::string> notes_;
-  std::string top_view_text_;
-  bool minimum_sets_hide_most_ = false;
-  std::vector<ReportPicture> pictures_;
-  std::vector<ReportFile> files_;
+  poon_wang::Pictures pictures_;
   std::vector<Plot> plots_;
 };
 
@@ -513,8 +460,7 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
     }
     routes.push_back(std::move(*of_scene));
   }
-  std::string top_views;
-  bool minimum_sets_hide_most = true;
+  std::vector<Finding> top_views;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     Experiments experiments(options.scenes[i], inputs[i], std::move(routes[i]), options,
                             threads.parallelFor());
@@ -524,26 +470,19 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
           fmt::format("{}: nothing was drawn: {}", options.scenes[i], experiments.whyNot()));
     }
     result.notes.insert(result.notes.end(), experiments.notes().begin(), experiments.notes().end());
-    if (!experiments.topViewText().empty()) {
-      minimum_sets_hide_most = minimum_sets_hide_most && experiments.minimumSetsHideMost();
-      top_views += (top_views.empty() ? "" : "; ") + experiments.topViewText();
+    const poon_wang::Pictures& pictures = experiments.pictures();
+    for (const ReportFile& file : pictures.files) {
+      result.files.push_back(file);
+      result.files.back().report = i;
     }
-    for (ReportFile& file : experiments.takeFiles()) {
-      file.report = i;
-      result.files.push_back(std::move(file));
+    if (!pictures.pictures.empty()) {
+      top_views.push_back(poon_wang::topViewFinding(options.scenes[i], pictures));
     }
     result.reports.push_back(experiments.report());
   }
   poon_wang::addPublished(tables);
   result.findings = poon_wang::findingsOf(tables);
-  if (!top_views.empty()) {
-    result.findings.push_back(
-        {"figure 7: with 192 occluders minimum sets hide most of what is in the frustum, the other criteria "
-         "less",
-         minimum_sets_hide_most,
-         top_views +
-             ". As in figure 6, lists that are made for a grid point miss what is seen from beside it"});
-  }
+  result.findings.insert(result.findings.end(), top_views.begin(), top_views.end());
   result.experiments = {std::move(tables.occluder_counts), std::move(tables.routes),
                         std::move(tables.depth_comparison), std::move(tables.criteria),
                         std::move(tables.picture_sizes)};

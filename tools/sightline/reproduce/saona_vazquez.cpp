@@ -6,7 +6,7 @@
 #include "tools/sightline/reproduce/saona_vazquez.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
+#include <cstdlib>
 
 #include <algorithm>
 #include <cmath>
