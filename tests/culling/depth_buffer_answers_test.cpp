@@ -236,5 +236,29 @@ TEST(DepthBufferAnswers, AFrameWithoutOcclusionCullingHasNoDepthBuffer) {
   EXPECT_GT(others, 0);
 }
 
+// Frames of 200 in which the opacity map did without occlusion culling, for a renderer whose frames take this
+// time whatever they have in them; negative: nothing is known of it.
+int suspendedFrames(double draw_us) {
+  const CulledScene walls = twoWalls();
+  MeasuredRenderer renderer;
+  Culler culler(walls.parts(), opacityMap({.renderer = &renderer}));
+  int suspended = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    culler.cull(frontView());
+    suspended += culler.statistic("map", "suspended") != 0 ? 1 : 0;
+    renderer.frame(draw_us, frame % 2 == 0 ? 1 : 1'000);
+  }
+  return suspended;
+}
+
+TEST(DepthBufferAnswers, TheOpacityMapRestsWhereTheMeasuredRendererTakesNoTimeForTriangles) {
+  EXPECT_GT(suspendedFrames(0.0), 0);
+  EXPECT_GT(suspendedFrames(500.0), 0) << "a frame's fixed time is not saved";
+}
+
+TEST(DepthBufferAnswers, TheOpacityMapGoesOnWhileNothingIsKnownOfTheRenderer) {
+  EXPECT_EQ(suspendedFrames(-1.0), 0);
+}
+
 }  // namespace
 }  // namespace sightline

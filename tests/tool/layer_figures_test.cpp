@@ -78,6 +78,14 @@ TEST_F(LayerFiguresDrawn, ThePieceInACycleIsSeenInItsOwnColour) {
   EXPECT_GT(red, 4u);
 }
 
+TEST_F(LayerFiguresDrawn, ThePapersGridStandsBesideTheOneWithACycle) {
+  const ReportFile* papers = fileOf(figures(), "figure23_papers_grid.png");
+  ASSERT_NE(papers, nullptr);
+  EXPECT_NE(papers->picture, fileOf(figures(), "figure23_canyon.png")->picture);
+  ASSERT_EQ(figures().findings.size(), 1u);
+  EXPECT_FALSE(figures().findings.front().agrees) << "no frame of our canyon has a cycle with 14 x 14";
+}
+
 TEST(LayerFigures, HiddenLinesAreOneSvgWithAGroupForEachToothpick) {
   const LayerFigures figures = hiddenLineFigure(kSmall);
   ASSERT_EQ(figures.files.size(), 1u);

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "tests/support/pictures.h"
 #include "tests/tool/formats_page.h"
 #include "tests/tool/run_tool.h"
 
@@ -123,6 +124,23 @@ TEST(Reproduce, WritesTablesAndAReportOfEachScene) {
   EXPECT_NE(html.find("reproduce coorg-teller"), std::string::npos) << "the command line";
 }
 
+TEST(Reproduce, CoorgTellersColourPlateShowsFramesBesideTheirPlans) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  const TemporaryFolder folder;
+  const std::string out = folder.file("report");
+  const Outcome outcome = runTool(tiny({"--scene", "demo:city?copies=1", "-o", out}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string page = out + "/1-demo-city-copies-1/";
+  const std::string html = contents(page + "index.html");
+  EXPECT_NE(html.find("Colour plate: frame 0 of the walk through demo:city?copies=1"), std::string::npos);
+  EXPECT_NE(html.find("hidden: culled by occluders"), std::string::npos) << "what the plan's colours mean";
+  for (const std::string picture : {"frame_0000.png", "plan_0000.png"}) {
+    EXPECT_NE(html.find(picture), std::string::npos);
+    EXPECT_EQ(contents(page + picture).substr(1, 3), "PNG");
+  }
+  EXPECT_NE(outcome.out.find("colour plate: "), std::string::npos) << "a sentence on it";
+}
+
 TEST(Reproduce, APathThatStandsStillHasNoSpeeds) {
   const TemporaryFolder folder;
   const std::string path =
@@ -168,9 +186,10 @@ TEST(Reproduce, SaonaVazquezHasATableForEachExperiment) {
       {"polygons_sent", {"navigation", "culling", "mean", "deviation", "percent_of_frustum"}},
       {"frame_rate", {}},  // none without OpenGL
       {"look_up", {"frustum_us", "octree_us", "look_up_us", "first_find_us", "find_ns"}},
-      {"bake",
-       {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file", "parts",
-        "part_ms", "part_deviation_ms", "part_max_ms"}}};
+      {"bake", {"plan_s", "bake_s", "samples", "sample_mib", "peak_mib", "file_mib", "samples_to_file"}},
+      {"pieces",
+       {"parts", "part_ms", "part_deviation_ms", "part_max_ms", "part_mib", "part_deviation_mib",
+        "part_max_mib", "whole_s", "apart_s", "whole_samples", "apart_samples"}}};
   EXPECT_EQ(result["experiments"].size(), tables.size());
   for (const auto& [name, keys] : tables) {
     const json& table = result["experiments"][name];
@@ -230,9 +249,32 @@ TEST(Reproduce, LeavesMeetLargerBudgetsAndAreFewerThen) {
       EXPECT_LE(rows[i]["depth"], rows[i - 1]["depth"]);
     }
   }
+}
+
+TEST(Reproduce, PiecesOfABakeComputeSamplesAgainAndHoldFewerAtATime) {
+  const json result = reproducedShip();
+  const json& pieces = result["experiments"]["pieces"]["rows"][0];
   const json& bake = result["experiments"]["bake"]["rows"][0];
-  EXPECT_GE(bake["part_max_ms"], bake["part_ms"]);
-  EXPECT_GE(bake["parts"], 1);
+  EXPECT_GT(pieces["parts"], 1);
+  EXPECT_GT(pieces["apart_samples"], pieces["whole_samples"]);
+  EXPECT_EQ(pieces["whole_samples"], bake["samples"]);
+  EXPECT_GE(pieces["part_max_mib"], pieces["part_mib"]);
+  EXPECT_GT(pieces["part_mib"], 0.0);
+  EXPECT_LT(pieces["part_max_mib"], bake["sample_mib"]);
+  EXPECT_GE(pieces["part_max_ms"], pieces["part_ms"]);
+}
+
+TEST(Reproduce, EachOfSaonaVazquezsTablesHasASentenceOnWhatAgrees) {
+  std::string claims;
+  const json result = reproducedShip();
+  for (const json& finding : result["findings"]) {
+    claims += finding["claim"].get<std::string>() + "\n";
+    EXPECT_GT(finding["text"].get<std::string>().size(), 20u) << finding["claim"];
+  }
+  for (const std::string table : {"table 2", "table 3", "histograms", "uniform grid", "budget", "table 4",
+                                  "navigation", "samples", "pieces"}) {
+    EXPECT_NE(claims.find(table), std::string::npos) << table;
+  }
 }
 
 TEST(Reproduce, TheOctreeSendsFewerPolygonsOnEveryNavigation) {
@@ -308,7 +350,48 @@ TEST(Reproduce, PoonWangHasATableForEachExperiment) {
     EXPECT_GE(row["culled_percent"], 0.0) << row;
     EXPECT_LE(row["culled_percent"], 100.0) << row;
   }
-  EXPECT_EQ(result["findings"].size(), 4u);
+  std::string claims;
+  for (const json& finding : result["findings"]) {
+    claims += finding["claim"].get<std::string>() + "\n";
+  }
+  for (const char* figure : {"figure 6:", "figure 8:", "peaks", "figure 9:", "figure 10:"}) {
+    EXPECT_NE(claims.find(figure), std::string::npos) << figure;
+  }
+}
+
+TEST(Reproduce, PoonWangsTopViewsAndBirdsEyeViewAreInTheReport) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  const TemporaryFolder folder;
+  const std::string out = folder.file("report");
+  const json result = reproducedRoutes({"-o", out});
+  const std::string page = out + "/1-demo-city-copies-2/";
+  const std::string html = contents(page + "index.html");
+  for (const std::string picture :
+       {"figure7_projected-size.png", "figure7_minimum-sets.png", "figure7_first-hit.png", "figure11.png"}) {
+    EXPECT_NE(html.find(picture), std::string::npos) << picture;
+    EXPECT_EQ(contents(page + picture).substr(1, 3), "PNG") << picture;
+  }
+  EXPECT_NE(html.find("Figure 7: top view of the model"), std::string::npos);
+  EXPECT_NE(html.find("Figure 11: bird"), std::string::npos);
+  EXPECT_NE(result["findings"].dump().find("figure 7:"), std::string::npos) << "a sentence on it";
+}
+
+TEST(Reproduce, TheAdaptiveOverlapTestFollowsTheMeasuredRendererOnEachRoute) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  const json result = reproducedRoutes();
+  std::set<std::string> routes;
+  for (const json& row : result["experiments"]["routes"]["rows"]) {
+    if (row["culling"] == "OM, adaptive") {
+      routes.insert(row["route"]);
+    }
+  }
+  EXPECT_EQ(routes.size(), 3u);
+  const std::string notes = result["notes"].dump();
+  for (const std::string& route : routes) {
+    EXPECT_NE(notes.find("route " + route + ": the adaptive overlap test followed the renderer"),
+              std::string::npos)
+        << route;
+  }
 }
 
 TEST(Reproduce, PoonWangsFiguresStandBesideOurs) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,19 @@ TEST(BittnerFigures, Figure8ShowsABoxThatIsHiddenAndThatPlanesAloneMiss) {
   const Sight sight = lookAt(made.box, made.view, polygons, 20000, random);
   EXPECT_FALSE(sight.seen);
   EXPECT_TRUE(sight.blocked) << "so that the answer of the paper's test is the wrong one";
+}
+
+TEST(BittnerFigures, NoTextIsCutOffByThePicturesLowerBorder) {
+  const std::regex height_of("viewBox=\"0 0 \\d+ (\\d+)\""), text_of("<text x=\"[^\"]*\" y=\"([^\"]*)\"");
+  constexpr double kBelowBaseline = 4.0;  // of letters such as p, in the pictures' units
+  for (const ReportFile& file : bittner::treeFigures().files) {
+    std::smatch height;
+    ASSERT_TRUE(std::regex_search(file.text, height, height_of)) << file.name;
+    for (std::sregex_iterator text(file.text.begin(), file.text.end(), text_of), end; text != end; ++text) {
+      EXPECT_LE(std::stod((*text)[1]) + kBelowBaseline, std::stod(height[1]))
+          << file.name << ": " << text->str();
+    }
+  }
 }
 
 TEST(BittnerFigures, EveryPictureHasItsFile) {

@@ -45,6 +45,23 @@ TEST(Tool, WalkWritesAReportThatStandsAlone) {
   EXPECT_GE(pictures, 8u) << "a picture and a plan of at least four frames";
 }
 
+TEST(Tool, WalkTellsTheOpacityMapWhatDrawingTakes) {
+  SIGHTLINE_SKIP_WITHOUT_PICTURES();
+  const TemporaryFolder folder;
+  const auto walk = [&](const std::vector<std::string>& more) {
+    return runTool(joined({"walk", "demo:city?copies=1", "-o", folder.file("report"), "--frames", "0:400:20",
+                           "--width", "64", "--height", "36", "--measure-renderer"},
+                          more));
+  };
+  ASSERT_EQ(walk({"--method", "opacity-map"}).code, 0) << "nothing visible is culled whatever was measured";
+  const json report = parse(contents(folder.file("report/walk.json")));
+  for (const json& frame : report["runs"][1]["frames"]) {
+    EXPECT_TRUE(frame["map"].contains("suspended")) << "the coverage ratio adapts";
+  }
+  EXPECT_EQ(walk({"--method", "depth-pyramid"}).code, 2);
+  EXPECT_EQ(walk({"--method", "opacity-map", "--no-pictures"}).code, 2);
+}
+
 TEST(Tool, WalkCopesWithASingleFrame) {
   SIGHTLINE_SKIP_WITHOUT_PICTURES();
   const TemporaryFolder folder;

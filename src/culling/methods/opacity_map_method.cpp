@@ -96,8 +96,10 @@ class OpacityMapMethod final : public CullingMethod {
       statistics_[adaptive_statistics_].value = suspended_ ? 1 : 0;
       statistics_[adaptive_statistics_ + 1].value =
           static_cast<std::uint64_t>(std::llround(1000.0 * coverage_->ratio()));
-      coverage_->frame(stats.choose_us + stats.build_us + stats.traverse_us,
-                       static_cast<double>(stats.hidden_triangles) * settings_.triangle_us);
+      if (const std::optional<double> us = triangleUs()) {
+        coverage_->frame(stats.choose_us + stats.build_us + stats.traverse_us,
+                         static_cast<double>(stats.hidden_triangles) * *us);
+      }
     }
   }
 
@@ -116,7 +118,10 @@ class OpacityMapMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  bool adapts() const { return settings_.triangle_us > 0.0; }
+  bool adapts() const { return settings_.renderer != nullptr || settings_.triangle_us > 0.0; }
+  std::optional<double> triangleUs() const {
+    return settings_.renderer != nullptr ? settings_.renderer->triangleUs() : settings_.triangle_us;
+  }
   // Appends the objects that the map does not hide.
   void ask(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) {
     const auto classify = [this](const TraversalBox& asked) { return map_->classify(asked.box); };

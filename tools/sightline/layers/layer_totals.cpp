@@ -53,6 +53,23 @@ double LayerTotals::largest(double Frame::*value) const {
   return max;
 }
 
+double LayerTotals::largestAfterFirst(double Frame::*value) const {
+  if (frames_.size() < 2) {
+    return largest(value);
+  }
+  double max = 0.0;
+  for (std::size_t i = 1; i < frames_.size(); ++i) {
+    max = std::max(max, frames_[i].*value);
+  }
+  return max;
+}
+
+void LayerTotals::keepFaster(const LayerTotals& again) {
+  for (std::size_t i = 0; i < std::min(frames_.size(), again.frames_.size()); ++i) {
+    frames_[i].sort_us = std::min(frames_[i].sort_us, again.frames_[i].sort_us);
+  }
+}
+
 double LayerTotals::meanGroupedSize() const {
   double parts = 0.0, groups = 0.0;
   for (const Frame& frame : frames_) {

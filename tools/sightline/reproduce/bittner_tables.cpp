@@ -463,10 +463,32 @@ std::vector<Experiment> tablesOf(const std::vector<Measured>& scenes) {
   return {table2(scenes), publishedTable2(), parameterTable(scenes), stepTable(scenes), curveTable(scenes)};
 }
 
+namespace {
+
+// Figures 9 and 10: curve A is view-frustum culling, B the paper's method.
+Finding curvesFinding(const std::vector<Measured>& scenes) {
+  Finding finding{
+      "figures 9 and 10: frames take less time, and render fewer polygons, with occlusion culling", true, ""};
+  for (const Measured& measured : scenes) {
+    if (const WalkRun* run = measured.runOf(kPlotted, kPlottedOccluders)) {
+      const WalkRun& baseline = measured.record.baseline();
+      const double polygons = percentBelow(*run, baseline, trianglesOf);
+      finding.agrees = finding.agrees && polygons > 50.0 && run->mean(frameMs) <= baseline.mean(frameMs);
+      finding.text += fmt::format("{}in {:.0f} % of the frames fewer polygons, in {:.0f} % less time in {}",
+                                  finding.text.empty() ? "" : "; ", polygons,
+                                  percentBelow(*run, baseline, frameMs), measured.name);
+    }
+  }
+  finding.text += ". The others show next to nothing that could be hidden, and culling takes its time anyway";
+  return finding;
+}
+
+}  // namespace
+
 std::vector<Finding> findingsOf(const std::vector<Measured>& scenes) {
-  return {speedUpFinding(scenes),   shareFinding(scenes),   sublinearFinding(scenes),
-          overheadFinding(scenes),  stepFinding(scenes),    splittingFinding(scenes),
-          tightnessFinding(scenes), leafTestFinding(scenes)};
+  return {speedUpFinding(scenes),   shareFinding(scenes),    sublinearFinding(scenes),
+          overheadFinding(scenes),  stepFinding(scenes),     splittingFinding(scenes),
+          tightnessFinding(scenes), leafTestFinding(scenes), curvesFinding(scenes)};
 }
 
 }  // namespace sightline::tool::bittner

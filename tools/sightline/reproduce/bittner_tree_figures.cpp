@@ -199,7 +199,7 @@ void addFigure2(Figures& figures) {
       {wall(-3.2f, -5.0f, 0.6f, -4.2f), wall(0.2f, -6.5f, 3.6f, -5.5f), wall(-6.6f, -7.6f, -3.0f, -8.6f)});
   const TreeShape tree = shapeOfTree(lookingNorth(0.32, 3.0), set, allOf(set), true);
   const std::vector<std::string> letters = lettersOf(tree);
-  SvgCanvas canvas(960, 440, "Figure 2: three walls and their occlusion tree");
+  SvgCanvas canvas(960, 456, "Figure 2: three walls and their occlusion tree");
   const Sheet sheet{{310, 420}, 38};
   const TreeSection section = sectionOf(tree, planSection(), rectangle(-7.8, -10.6, 7.8, 0.2));
   drawRegions(canvas, section, sheet);

@@ -54,14 +54,15 @@ void addObject(MovingScene& scene, const std::string& name, const std::array<flo
 // Adds pyramids side by side, on which focus can be seen.
 void addBoard(MovingScene& scene) {
   constexpr int kColumns = 16, kRows = 12;
+  constexpr int kMiddleColumn = kColumns / 2, kMiddleRow = kRows / 2;
   constexpr float kSide = 0.45f, kRise = 0.2f, kDepth = -8.0f;
   std::vector<Vec3f> corners;
   std::vector<std::uint32_t> triangles;
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
       const auto first = static_cast<std::uint32_t>(corners.size());
-      const float x = kSide * static_cast<float>(column - kColumns / 2);
-      const float y = kSide * static_cast<float>(row - kRows / 2);
+      const float x = kSide * static_cast<float>(column - kMiddleColumn);
+      const float y = kSide * static_cast<float>(row - kMiddleRow);
       corners.insert(corners.end(), {{x, y, kDepth},
                                      {x + kSide, y, kDepth},
                                      {x + kSide, y + kSide, kDepth},

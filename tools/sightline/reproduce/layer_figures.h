@@ -23,6 +23,7 @@ LayerFigureOptions layerFigureOptions(const ReproduceOptions& options);
 
 struct LayerFigures {
   std::vector<Experiment> experiments{};
+  std::vector<Finding> findings{};  // about pictures that have no table
   std::vector<ReportPicture> pictures{};
   std::vector<ReportFile> files{};  // of the pictures
 };

@@ -3,7 +3,8 @@
 //
 // Differs from the paper in: scenes, machine and renderer are those of today. Occluders cover only pixels
 // that lie wholly inside them; the paper's sampling at pixel centres, which culls visible objects, stands
-// beside it. The adaptive overlap test follows measured times only in the rows that say so.
+// beside it. The adaptive overlap test follows measured times, of culling and of drawing, only in the rows
+// that say so.
 
 #include <fmt/format.h>
 
@@ -27,12 +28,13 @@ constexpr const char* kRoutes[] = {"best", "average", "worst"};
 constexpr OccluderChoice kCriteria[] = {OccluderChoice::kProjectedSize, OccluderChoice::kMinimumSets,
                                         OccluderChoice::kFirstHit};
 constexpr std::uint32_t kCounts[] = {16, 32, 64, 96, 128, 192, 256, 384, 512};
-constexpr std::uint32_t kOccluders = 64;         // occluders in each frame of the routes
-constexpr std::uint32_t kPicture = 512;          // width and height of pictures, unless the user gives them
-constexpr double kPictures[] = {1.0, 1.5, 2.0};  // sizes of figure 10, relative to that
-constexpr std::uint32_t kMap = 128;              // width and height of the opacity map
-constexpr std::size_t kVisibleWanted = 400;      // visible objects at figure 6's viewpoint
-constexpr std::size_t kRepeats = 15;             // repetitions of that viewpoint's frame
+constexpr std::uint32_t kOccluders = 64;          // occluders in each frame of the routes
+constexpr std::uint32_t kPicture = 512;           // width and height of pictures, unless the user gives them
+constexpr double kPictures[] = {1.0, 1.5, 2.0};   // sizes of figure 10, relative to that
+constexpr std::uint32_t kTopViewOccluders = 192;  // of figure 7, for each criterion
+constexpr std::uint32_t kMap = 128;               // width and height of the opacity map
+constexpr std::size_t kVisibleWanted = 400;       // visible objects at figure 6's viewpoint
+constexpr std::size_t kRepeats = 15;              // repetitions of that viewpoint's frame
 
 Setting frustumSetting() {
   Setting setting;
@@ -111,6 +113,7 @@ struct SceneRuns {
   double cull_ms = 0.0, draw_ms = 0.0;  // means of a frame
   double triangles = 0.0;
   double depth_tests = 0.0, depths_compared = 0.0, sparse_rows = 0.0;  // means of a frame
+  double suspended = 0.0;  // share of the frames without occlusion culling
   std::vector<double> frame_ms{};
 
   double frameMs() const { return cull_ms + draw_ms; }
@@ -125,6 +128,7 @@ SceneRuns measuredOf(const std::string& name, const WalkRun& run) {
   measured.depth_tests = run.meanOf("map", "depth_tests");
   measured.depths_compared = run.meanOf("map", "depths_compared");
   measured.sparse_rows = run.meanOf("map", "sparse_rows");
+  measured.suspended = run.meanOf("map", "suspended");
   for (const FrameRecord& frame : run.frames) {
     measured.frame_ms.push_back(frame.frameUs() * 1e-3);
   }
@@ -158,9 +162,16 @@ class Experiments {
 
   bool drawn() const { return renderer_.has_value(); }
   std::string whyNot() const { return why_not_; }
+  // One for each route that was drawn: what its adaptive overlap test went by.
+  const std::vector<std::string>& notes() const { return notes_; }
+  // Figures 7 and 11; none if nothing was drawn.
+  const poon_wang::Pictures& pictures() const { return pictures_; }
 
   void run(poon_wang::Tables& tables) {
     occluderCounts(tables.occluder_counts);
+    if (renderer_) {
+      drawPictures();
+    }
     routes(tables.routes, tables.depth_comparison);
     criteria(tables.criteria);
     pictureSizes(tables.picture_sizes);
@@ -177,6 +188,7 @@ class Experiments {
                     {"potential occluders", grouped(data_.occluders().occluders.size())},
                     {"OpenGL", drawn() ? renderer_->device() : "none: nothing was drawn"}};
     report.plots = plots_;
+    report.pictures = pictures_.pictures;
     return report;
   }
 
@@ -208,8 +220,10 @@ class Experiments {
   }
 
   // Walks a route with all settings side by side. "Nil", which culls nothing, comes first if it is asked for.
+  // measured_renderer: is told what the drawing of each takes; null: nothing is.
   std::vector<SceneRuns> walkRoute(const Walk& route, const std::vector<std::string>& names,
-                                   const std::vector<Setting>& settings, bool with_nil) {
+                                   const std::vector<Setting>& settings, bool with_nil,
+                                   MeasuredRenderer* measured_renderer = nullptr) {
     std::vector<WalkRun> runs = makeRuns(settings, data_);
     SceneRuns nil{"nil"};
     nil.triangles = static_cast<double>(input_.scene.triangleCount());
@@ -218,7 +232,7 @@ class Experiments {
       const View view = route.view(route.frames[i], input_.scene);
       cullFrame(runs, data_, route.frames[i], view);
       if (renderer_) {
-        drawFrame(runs, view, *renderer_, nullptr);
+        drawFrame(runs, view, *renderer_, nullptr, measured_renderer);
         if (with_nil) {
           nil.frame_ms.push_back(renderer_->time(view, everything_).draw_us * 1e-3);
           nil.draw_ms += nil.frame_ms.back() / static_cast<double>(route.frames.size());
@@ -234,15 +248,6 @@ class Experiments {
       measured.push_back(measuredOf(names[r], runs[r]));
     }
     return measured;
-  }
-
-  // The renderer's time for a triangle in microseconds, measured with view-frustum culling on the route's
-  // first frames.
-  double triangleUs(const Walk& route) {
-    Walk start = route;
-    start.frames.resize(std::min<std::size_t>(route.frames.size(), 5));
-    const SceneRuns frustum = walkRoute(start, {poon_wang::kFrustum}, {frustumSetting()}, false).front();
-    return frustum.triangles > 0.0 ? 1e3 * frustum.draw_ms / frustum.triangles : 0.0;
   }
 
   Json row(const SceneRuns& measured, const SceneRuns& frustum) const {
@@ -319,6 +324,19 @@ class Experiments {
     }
   }
 
+  // Figures 7 and 11.
+  void drawPictures() {
+    const View view = walk_.view(viewpoint_.frame, input_.scene);
+    std::vector<std::pair<std::string, Setting>> criteria;
+    for (const OccluderChoice criterion : kCriteria) {
+      criteria.emplace_back(nameOf(kOccluderChoices, criterion),
+                            opacitySetting(criterion, kTopViewOccluders));
+    }
+    Culler frustum = data_.makeCuller(frustumSetting());
+    poon_wang::addTopViews(input_.scene, data_, view, frustum, criteria, *renderer_, pictures_);
+    poon_wang::addBirdsEyeView(input_.scene, walk_.path, *renderer_, pictures_);
+  }
+
   // The rows of one route: the way of comparing depths for each of `measured` that tests depths as the paper
   // does.
   void addDepthComparisons(const std::string& route, const std::vector<SceneRuns>& measured,
@@ -352,12 +370,19 @@ class Experiments {
       std::vector<std::string> names{poon_wang::kFrustum, poon_wang::kOpacityMap, poon_wang::kPixelwise,
                                      poon_wang::kPeaksAlways, "OM, centres (not conservative)"};
       std::vector<Setting> settings{frustumSetting(), om, pixelwise, peaks, centre};
+      MeasuredRenderer renderer;  // hears of the drawing of all these, which differ in triangles
       if (drawn()) {
-        adaptive.opacity_map.triangle_us = triangleUs(route);
+        adaptive.opacity_map.renderer = &renderer;
         names.push_back("OM, adaptive");
         settings.push_back(adaptive);
       }
-      const std::vector<SceneRuns> measured = walkRoute(route, names, settings, true);
+      const std::vector<SceneRuns> measured = walkRoute(route, names, settings, true, &renderer);
+      if (const std::optional<double> us = renderer.triangleUs()) {
+        notes_.push_back(fmt::format(
+            "{}, route {}: the adaptive overlap test followed the renderer, which took {:.3f} us for a "
+            "triangle in the end, and did without occlusion culling in {:.0f} % of the frames.",
+            name_, route.path.name, *us, 100.0 * measured.back().suspended));
+      }
       for (const SceneRuns& one : measured) {
         experiment.rows.push_back(row(one, measured[1]));
         experiment.rows.back()["route"] = route.path.name;
@@ -415,6 +440,8 @@ class Experiments {
   std::vector<ObjectId> everything_;
   std::optional<Renderer> renderer_;
   std::string why_not_;
+  std::vector<std::string> notes_;
+  poon_wang::Pictures pictures_;
   std::vector<Plot> plots_;
 };
 
@@ -433,6 +460,7 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
     }
     routes.push_back(std::move(*of_scene));
   }
+  std::vector<Finding> top_views;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     Experiments experiments(options.scenes[i], inputs[i], std::move(routes[i]), options,
                             threads.parallelFor());
@@ -441,10 +469,20 @@ Result<Reproduction> reproducePoonWang(const ReproduceOptions& options,
       result.notes.push_back(
           fmt::format("{}: nothing was drawn: {}", options.scenes[i], experiments.whyNot()));
     }
+    result.notes.insert(result.notes.end(), experiments.notes().begin(), experiments.notes().end());
+    const poon_wang::Pictures& pictures = experiments.pictures();
+    for (const ReportFile& file : pictures.files) {
+      result.files.push_back(file);
+      result.files.back().report = i;
+    }
+    if (!pictures.pictures.empty()) {
+      top_views.push_back(poon_wang::topViewFinding(options.scenes[i], pictures));
+    }
     result.reports.push_back(experiments.report());
   }
   poon_wang::addPublished(tables);
   result.findings = poon_wang::findingsOf(tables);
+  result.findings.insert(result.findings.end(), top_views.begin(), top_views.end());
   result.experiments = {std::move(tables.occluder_counts), std::move(tables.routes),
                         std::move(tables.depth_comparison), std::move(tables.criteria),
                         std::move(tables.picture_sizes)};

@@ -6,7 +6,7 @@
 #include "tools/sightline/reproduce/saona_vazquez.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
+#include <cstdlib>
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +70,25 @@ BakeSettings settingsFor(const Scene& scene, const std::vector<Walk>& navigation
   return bakeSettings(bake, scene, {});
 }
 
-Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const ParallelFor& parallel_for) {
+void measurePieces(const Bake& bake, const ParallelFor& parallel_for, Effort& effort) {
+  ProgressBar bar("baking pieces");
+  Stopwatch watch;
+  const TimedBake apart =
+      bakeTimed(bake, BakedAs::kApart, parallel_for, [&](double done) { bar.update(done); });
+  effort.apart_s = 1e-6 * watch.lap();
+  effort.apart_samples = apart.stats.samples;
+  effort.part_ms = spreadOf(apart.part_ms);
+  std::vector<double> mib;
+  for (const double bytes : apart.part_bytes) {
+    mib.push_back(bytes / kMebibyte);
+  }
+  effort.part_mib = spreadOf(mib);
+}
+
+enum class Pieces : std::uint8_t { kNotMeasured, kMeasured };
+
+Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, Pieces pieces,
+                        const ParallelFor& parallel_for) {
   Effort effort;
   Stopwatch watch;
   const OccluderSet occluders = findOccluders(scene.view(), {.area_fraction = 1.0}, parallel_for);
@@ -82,20 +100,23 @@ Result<Baked> bakeScene(const Scene& scene, const BakeSettings& settings, const 
   effort.occluders = bake->occluders().all;
   ProgressBar bar("baking");
   const Progress progress = [&](double done) { bar.update(done); };
-  const TimedBake parts = bakeTimed(*bake, parallel_for, progress);
+  const TimedBake parts = bakeTimed(*bake, BakedAs::kWhole, parallel_for, progress);
+  effort.whole_s = 1e-6 * watch.lap();
   effort.stats = parts.stats;
-  effort.part_ms = spreadOf(parts.part_ms);
   Result<BakedVisibility> baked = bake->assemble(parts.parts);
   if (!baked) {
     return baked.error();
   }
-  effort.bake_s = 1e-6 * watch.lap();
+  effort.bake_s = effort.whole_s + 1e-6 * watch.lap();
   baked->record.settings = settingsJson(*bake, {}, scene.origin, {}).dump();
   Result<SightFile> file = written(*baked);
   if (!file) {
     return file.error();
   }
   effort.peak_bytes = peakBytes();
+  if (pieces == Pieces::kMeasured) {
+    measurePieces(*bake, parallel_for, effort);
+  }
   return Baked{std::move(*file), effort};
 }
 
@@ -120,7 +141,7 @@ Status tryBudgets(BakeSettings settings, const ParallelFor& parallel_for, Measur
     result.triangles = static_cast<std::uint64_t>(
         std::max(1.0, 0.01 * percent * static_cast<double>(measured.scene.triangleCount())));
     settings.triangle_budget = result.triangles;
-    const Result<Baked> baked = bakeScene(measured.scene, settings, parallel_for);
+    const Result<Baked> baked = bakeScene(measured.scene, settings, Pieces::kNotMeasured, parallel_for);
     if (!baked) {
       return baked.error();
     }
@@ -211,7 +232,7 @@ Result<std::vector<Walk>> navigationsOf(const SceneAndWalk& input, const Reprodu
 Result<Measured> bakeAndMeasure(const std::string& name, const Scene& scene, const std::vector<Walk>& walks,
                                 const ReproduceOptions& options, const ParallelFor& parallel_for) {
   const BakeSettings settings = settingsFor(scene, walks, options);
-  Result<Baked> baked = bakeScene(scene, settings, parallel_for);
+  Result<Baked> baked = bakeScene(scene, settings, Pieces::kMeasured, parallel_for);
   if (!baked) {
     return baked.error();
   }

@@ -14,13 +14,18 @@
 
 namespace sightline::tool::saona_vazquez {
 
+inline constexpr double kMebibyte = 1024.0 * 1024.0;
+
 // The cost of baking a scene.
 struct Effort {
   std::uint32_t occluders = 0;
   double plan_s = 0.0, bake_s = 0.0;
   BakeStats stats{};             // max_sample_bytes is the sum over all threads
-  Spread part_ms{};              // of the parts that are baked one by one
   std::uint64_t peak_bytes = 0;  // the process's peak memory so far
+  // The same bake in pieces, each by itself: of each, the time and the memory of samples; and of all.
+  Spread part_ms{}, part_mib{};
+  double whole_s = 0.0, apart_s = 0.0;  // baking alone
+  std::uint64_t apart_samples = 0;
 };
 
 struct Baked {
@@ -65,6 +70,11 @@ struct Measured {
 
   bool drawn() const { return !navigations.front().record.device.empty(); }
 };
+
+// The number of voxels of a uniform grid over the scene's box with voxels of the smallest cell's size.
+double voxelsInBox(const Measured& measured);
+// The share of the leaves that meet the budget.
+double metPercent(const BudgetResult& result);
 
 // The tables of all experiments, with some rows for each scene.
 std::vector<Experiment> tablesOf(const std::vector<Measured>& scenes);

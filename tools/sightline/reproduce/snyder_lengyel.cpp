@@ -27,6 +27,7 @@ void append(std::vector<T>& to, std::vector<T> items) {
 
 void add(LayerFigures figures, Reproduction& result, Report& report) {
   append(result.experiments, std::move(figures.experiments));
+  append(result.findings, std::move(figures.findings));
   append(result.files, std::move(figures.files));
   append(report.pictures, std::move(figures.pictures));
 }
@@ -65,6 +66,7 @@ Result<Reproduction> reproduceSnyderLengyel(const ReproduceOptions& options,
   result.experiments = std::move(sorting.experiments);
   report.plots = std::move(sorting.plots);
   result.experiments.push_back(canyonTable(options));
+  result.experiments.push_back(inflationTable());
   Result<std::vector<Experiment>> saved = savedRendering(savedRenderingOptions(options));
   if (saved) {
     append(result.experiments, std::move(*saved));
@@ -79,6 +81,7 @@ Result<Reproduction> reproduceSnyderLengyel(const ReproduceOptions& options,
   } else {
     result.notes.push_back("Figures 16, 22 and 23 were not drawn: " + pictures.error().message);
   }
+  append(result.findings, snyderLengyelFindings(result.experiments));
   report.notes = result.notes;
   result.reports.push_back(std::move(report));
   return result;

@@ -32,5 +32,10 @@ struct SortingTables {
 SortingTables sortingTables(const ReproduceOptions& options);
 
 Experiment canyonTable(const ReproduceOptions& options);
+// By how many times the terrain's polygons grow with other overlaps of its pieces than the scene's own.
+Experiment inflationTable();
+
+// Statements of the paper about what is in these tables; tables that are not there have none.
+std::vector<Finding> snyderLengyelFindings(const std::vector<Experiment>& tables);
 
 }  // namespace sightline::tool

@@ -42,9 +42,16 @@ class Workers {
   std::vector<std::unique_ptr<Bake::Worker>> resting_;
 };
 
+void addApart(TimedBake& done, const BakeStats& part) {
+  const std::size_t largest = std::max(done.stats.max_sample_bytes, part.max_sample_bytes);
+  add(done.stats, part);
+  done.stats.max_sample_bytes = largest;
+  done.part_bytes.push_back(static_cast<double>(part.max_sample_bytes));
+}
+
 }  // namespace
 
-TimedBake bakeTimed(const Bake& bake, const ParallelFor& parallel_for, const Progress& progress) {
+TimedBake bakeTimed(const Bake& bake, BakedAs as, const ParallelFor& parallel_for, const Progress& progress) {
   TimedBake done;
   Workers workers(bake);
   std::mutex mutex;
@@ -54,12 +61,18 @@ TimedBake bakeTimed(const Bake& bake, const ParallelFor& parallel_for, const Pro
     parallel_for(static_cast<std::uint32_t>(level.size()), [&](std::uint32_t begin, std::uint32_t end) {
       std::unique_ptr<Bake::Worker> worker = workers.take();
       for (const PartTask& task : std::span(level).subspan(begin, end - begin)) {
+        if (as == BakedAs::kApart) {
+          worker = std::make_unique<Bake::Worker>(bake);
+        }
         Stopwatch watch;
         BakedPart part = worker->bake(task);
         const double ms = 1e-3 * watch.lap();
         const std::lock_guard lock(mutex);
         share += bake.summaryOf(part).share;
         done.part_ms.push_back(ms);
+        if (as == BakedAs::kApart) {
+          addApart(done, worker->stats());
+        }
         done.parts.emplace(task.id, std::move(part));
       }
       workers.giveBack(std::move(worker));
@@ -74,7 +87,9 @@ TimedBake bakeTimed(const Bake& bake, const ParallelFor& parallel_for, const Pro
       progress(std::min(share, 1.0));
     }
   }
-  done.stats = workers.stats();
+  if (as == BakedAs::kWhole) {
+    done.stats = workers.stats();
+  }
   return done;
 }
 

@@ -62,15 +62,22 @@ struct WalkOptions {
   std::string folder;
   PictureOptions picture;
   bool no_pictures = false;  // draw nothing, without OpenGL
+  bool measure_renderer = false;
   std::string command_line;
 };
 
-// renderer: null draws and compares nothing.
+// renderer: null draws and compares nothing. measured: is told what drawing takes.
 class Walker {
  public:
   Walker(const Scene& scene, const Walk& walk, CullingData& data, Renderer* renderer,
-         const std::string& folder, std::vector<WalkRun> runs)
-      : scene_(scene), walk_(walk), data_(data), renderer_(renderer), folder_(folder), chooser_(walk.frames) {
+         const std::string& folder, std::vector<WalkRun> runs, MeasuredRenderer& measured)
+      : scene_(scene),
+        walk_(walk),
+        data_(data),
+        renderer_(renderer),
+        folder_(folder),
+        measured_(measured),
+        chooser_(walk.frames) {
     record_.runs = std::move(runs);
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
       everything_.push_back(ObjectId(o));
@@ -101,12 +108,12 @@ class Walker {
     const std::uint32_t frame = walk_.frames[i];
     const View view = walk_.view(frame, scene_);
     cullFrame(record_.runs, data_, frame, view);
-    keep(frame, view);
+    chooser_.offer(keptFrame(record_, data_, frame, view));
     return renderer_ != nullptr ? drawAndCompare(i, view) : Status(Success{});
   }
 
   Status drawAndCompare(std::size_t i, const View& view) {
-    drawFrame(record_.runs, view, *renderer_, &images_);
+    drawFrame(record_.runs, view, *renderer_, &images_, &measured_);
     if (i % kEverythingEvery == 0) {
       if (const Status drawn = compare(renderer_->draw(view, everything_), everything_, 0, view); !drawn) {
         return drawn;
@@ -163,26 +170,12 @@ class Walker {
     return culled;
   }
 
-  void keep(std::uint32_t frame, const View& view) {
-    const Culler& all = record_.baseline().run.culler;
-    const Culler& shown = record_.runs[record_.shown].run.culler;
-    KeptFrame kept;
-    kept.frame = frame;
-    kept.view = view;
-    kept.in_frustum.assign(all.visible().begin(), all.visible().end());
-    kept.visible.assign(shown.visible().begin(), shown.visible().end());
-    kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
-    kept.depth_buffer = copyOf(shown.depthBuffer());
-    kept.triangles_in_frustum = data_.trianglesOf(kept.in_frustum);
-    kept.triangles_visible = data_.trianglesOf(kept.visible);
-    chooser_.offer(kept);
-  }
-
   const Scene& scene_;
   const Walk& walk_;
   CullingData& data_;
   Renderer* renderer_;
   const std::string& folder_;
+  MeasuredRenderer& measured_;
   std::vector<ObjectId> everything_;
   PictureChooser chooser_;
   WalkRecord record_;
@@ -203,7 +196,10 @@ Status writePlots(const Report& report, const std::string& folder) {
 Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRecord& record,
                 Renderer* renderer) {
   Result<std::vector<ReportPicture>> pictures =
-      drawPictures(record, input.scene, input.data.occluders(), renderer, options.folder);
+      drawPictures(record, input.scene, input.data.occluders(), renderer,
+                   [&](const Image& image, const std::string& file) {
+                     return writePng(image, options.folder + "/" + file);
+                   });
   if (!pictures) {
     return pictures.error();
   }
@@ -220,7 +216,7 @@ Status writeAll(const WalkOptions& options, const WalkInput& input, const WalkRe
   return Success{};
 }
 
-Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting>& settings,
+Result<ExitCode> walkScene(const WalkOptions& options, std::vector<Setting> settings,
                            const SceneAndWalk& input) {
   const Scene& scene = input.scene;
   const Walk& walk = input.walk;
@@ -239,7 +235,11 @@ Result<ExitCode> walkScene(const WalkOptions& options, const std::vector<Setting
   const Threads threads(options.common.threads);
   CullingData data(input, threads.parallelFor());
   Renderer* const drawing = renderer ? &*renderer : nullptr;
-  Walker walker(scene, walk, data, drawing, options.folder, makeRuns(settings, data));
+  MeasuredRenderer measured;
+  for (Setting& setting : settings) {
+    setting.opacity_map.renderer = options.measure_renderer ? &measured : nullptr;
+  }
+  Walker walker(scene, walk, data, drawing, options.folder, makeRuns(settings, data), measured);
   const SignalGuard guard;  // if told to end, the walker stops early and its results are still written
   Result<WalkRecord> record = walker.run();
   if (!record) {
@@ -281,10 +281,26 @@ Status checkFilesOf(const WalkOptions& options, const std::vector<std::string>& 
                      .folder = {"--output", options.folder, in_folder}});
 }
 
+Status checkMeasuring(const WalkOptions& options, const std::vector<Setting>& settings) {
+  if (!options.measure_renderer) {
+    return Success{};
+  }
+  if (options.no_pictures) {
+    return Error{"--measure-renderer: --no-pictures draws nothing; give --triangle-us in its place"};
+  }
+  const auto adapts = [](const Setting& setting) { return setting.method->name == "opacity-map"; };
+  return std::ranges::any_of(settings, adapts)
+             ? Status(Success{})
+             : Error{"--measure-renderer: only opacity-map uses it; add --method opacity-map"};
+}
+
 Result<ExitCode> runWalk(const WalkOptions& options) {
   const Result<std::vector<Setting>> checked = settingsOf(options.method);
   if (!checked) {
     return checked.error();
+  }
+  if (const Status ok = checkMeasuring(options, *checked); !ok) {
+    return ok.error();
   }
   if (const Status ok = checkFilesOf(options, filesOfFolder()); !ok) {
     return ok.error();
@@ -324,6 +340,10 @@ void addWalk(CLI::App& app, Command& chosen) {
       "--no-pictures", options->no_pictures,
       "draw and compare nothing, so that no OpenGL is needed; of the pictures, only coverage maps "
       "are written");
+  command->add_flag(
+      "--measure-renderer", options->measure_renderer,
+      "opacity-map: the coverage ratio follows what drawing is measured to take for a triangle, "
+      "in place of --triangle-us, so that runs differ");
   command->footer(
       "View-frustum culling is always walked too, for comparison. Exit code 1 when culling changed any "
       "picture, "

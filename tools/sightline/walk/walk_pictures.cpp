@@ -59,28 +59,6 @@ double radiusAround(const KeptFrame& frame, const Scene& scene) {
   return std::max(kMinRadius, 1.15 * *nine_tenths);
 }
 
-Image drawPlanOf(const KeptFrame& frame, const Scene& scene, const OccluderSet& occluders,
-                 Renderer& renderer) {
-  std::vector<ObjectState> states(scene.objects.size(), ObjectState::kOutside);
-  for (const ObjectId object : frame.in_frustum) {
-    states[object.value] = ObjectState::kHidden;
-  }
-  for (const ObjectId object : frame.visible) {
-    states[object.value] = ObjectState::kKept;
-  }
-  PlanView plan;
-  plan.camera = frame.view;
-  plan.radius = radiusAround(frame, scene);
-  if (indoors(frame.view.eye, scene)) {
-    plan.cut_height = frame.view.eye.y + kCutAboveEye;
-  }
-  plan.states = states;
-  plan.objects = scene.objects;
-  plan.occluders = &occluders;
-  plan.occluders_used = frame.occluders;
-  return renderer.drawPlan(plan);
-}
-
 // The value of a statistic of the shown run in a frame; empty if the run has no such one.
 std::optional<std::uint64_t> statisticOf(const WalkRecord& record, std::uint32_t frame,
                                          std::string_view group, std::string_view name) {
@@ -139,14 +117,14 @@ std::string coverageCaption(const WalkRecord& record, const KeptFrame& frame, co
   return text;
 }
 
-// Writes the pictures of a walk's chosen frames one after the other, until one cannot be written.
-class PictureWriter {
+// Draws the pictures of a walk's chosen frames one after the other, until one is not taken.
+class PictureMaker {
  public:
-  PictureWriter(const WalkRecord& record, const Scene& scene, const OccluderSet& occluders,
-                Renderer* renderer, const std::string& folder)
-      : record_(record), scene_(scene), occluders_(occluders), renderer_(renderer), folder_(folder) {}
+  PictureMaker(const WalkRecord& record, const Scene& scene, const OccluderSet& occluders, Renderer* renderer,
+               const TakePicture& take)
+      : record_(record), scene_(scene), occluders_(occluders), renderer_(renderer), take_(take) {}
 
-  Result<std::vector<ReportPicture>> writeAll() {
+  Result<std::vector<ReportPicture>> makeAll() {
     for (const KeptFrame& frame : record_.pictures) {
       if (renderer_ != nullptr) {
         addRendered(frame);
@@ -157,8 +135,8 @@ class PictureWriter {
       if (renderer_ != nullptr) {
         addPlan(frame);
       }
-      if (!written_) {
-        return written_.error();
+      if (!taken_) {
+        return taken_.error();
       }
     }
     return std::move(pictures_);
@@ -185,14 +163,14 @@ class PictureWriter {
                     record_.runs[record_.shown].setting.surfaces() == SurfaceUse::kAlone
                         ? "whole surfaces as occluders"
                         : grouped(frame.occluders.size()) + " occluders");
-    add(drawPlanOf(frame, scene_, occluders_, *renderer_), "plan",
+    add(planPicture(frame, scene_, occluders_, *renderer_), "plan",
         {.caption = objects, .frame = frame.frame, .plan = true});
   }
 
-  void add(const Image& image, std::string_view kind, ReportPicture picture) {
+  void add(Image image, std::string_view kind, ReportPicture picture) {
     picture.file = fmt::format("{}_{:04}.png", kind, picture.frame);
-    if (written_) {
-      written_ = writePng(image, folder_ + "/" + picture.file);
+    if (taken_) {
+      taken_ = take_(std::move(image), picture.file);
     }
     pictures_.push_back(std::move(picture));
   }
@@ -201,8 +179,8 @@ class PictureWriter {
   const Scene& scene_;
   const OccluderSet& occluders_;
   Renderer* renderer_;
-  const std::string& folder_;
-  Status written_ = Success{};
+  const TakePicture& take_;
+  Status taken_ = Success{};
   std::vector<ReportPicture> pictures_;
 };
 
@@ -233,10 +211,48 @@ std::vector<KeptFrame> PictureChooser::chosen() const {
   return frames;
 }
 
+Image planPicture(const KeptFrame& frame, const Scene& scene, const OccluderSet& occluders,
+                  Renderer& renderer) {
+  std::vector<ObjectState> states(scene.objects.size(), ObjectState::kOutside);
+  for (const ObjectId object : frame.in_frustum) {
+    states[object.value] = ObjectState::kHidden;
+  }
+  for (const ObjectId object : frame.visible) {
+    states[object.value] = ObjectState::kKept;
+  }
+  PlanView plan;
+  plan.camera = frame.view;
+  plan.radius = radiusAround(frame, scene);
+  if (indoors(frame.view.eye, scene)) {
+    plan.cut_height = frame.view.eye.y + kCutAboveEye;
+  }
+  plan.states = states;
+  plan.objects = scene.objects;
+  plan.occluders = &occluders;
+  plan.occluders_used = frame.occluders;
+  return renderer.drawPlan(plan);
+}
+
+KeptFrame keptFrame(const WalkRecord& record, const CullingData& data, std::uint32_t frame,
+                    const View& view) {
+  const Culler& all = record.baseline().run.culler;
+  const Culler& shown = record.runs[record.shown].run.culler;
+  KeptFrame kept;
+  kept.frame = frame;
+  kept.view = view;
+  kept.in_frustum.assign(all.visible().begin(), all.visible().end());
+  kept.visible.assign(shown.visible().begin(), shown.visible().end());
+  kept.occluders.assign(shown.occludersUsed().begin(), shown.occludersUsed().end());
+  kept.depth_buffer = copyOf(shown.depthBuffer());
+  kept.triangles_in_frustum = data.trianglesOf(kept.in_frustum);
+  kept.triangles_visible = data.trianglesOf(kept.visible);
+  return kept;
+}
+
 Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const Scene& scene,
                                                 const OccluderSet& occluders, Renderer* renderer,
-                                                const std::string& folder) {
-  return PictureWriter(record, scene, occluders, renderer, folder).writeAll();
+                                                const TakePicture& take) {
+  return PictureMaker(record, scene, occluders, renderer, take).makeAll();
 }
 
 }  // namespace sightline::tool

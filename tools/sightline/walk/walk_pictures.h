@@ -2,6 +2,9 @@
 
 // Chooses the frames of a walk that the report shows, and draws their pictures.
 
+#include <functional>
+#include <string>
+
 #include "sightline/render/renderer.h"
 #include "tools/sightline/report/report.h"
 #include "tools/sightline/walk/walk_record.h"
@@ -23,10 +26,19 @@ class PictureChooser {
   std::optional<KeptFrame> best_;
 };
 
-// Writes the picture, the coverage map (if the method has a depth buffer) and the plan view of every chosen
-// frame into the folder and says where they are. renderer: null writes the coverage map alone.
+// What is to be kept of the frame that the record's runs have culled last, for its pictures.
+KeptFrame keptFrame(const WalkRecord& record, const CullingData& data, std::uint32_t frame, const View& view);
+
+// The scene from above, around the frame's eye: what is kept, hidden and outside, and the occluders in use.
+Image planPicture(const KeptFrame& frame, const Scene& scene, const OccluderSet& occluders,
+                  Renderer& renderer);
+
+// Draws the picture, the coverage map (if the method has a depth buffer) and the plan view of every chosen
+// frame, hands each to `take` with its file's name, and says what they show. Ends at the first error of take.
+// renderer: null draws the coverage map alone.
+using TakePicture = std::function<Status(Image image, const std::string& file)>;
 Result<std::vector<ReportPicture>> drawPictures(const WalkRecord& record, const Scene& scene,
                                                 const OccluderSet& occluders, Renderer* renderer,
-                                                const std::string& folder);
+                                                const TakePicture& take);
 
 }  // namespace sightline::tool

@@ -30,7 +30,8 @@ void cullFrame(std::vector<WalkRun>& runs, const CullingData& data, std::uint32_
   }
 }
 
-void drawFrame(std::vector<WalkRun>& runs, const View& view, Renderer& renderer, std::vector<Image>* images) {
+void drawFrame(std::vector<WalkRun>& runs, const View& view, Renderer& renderer, std::vector<Image>* images,
+               MeasuredRenderer* measured) {
   const std::size_t first = runs.front().frames.size() - 1;
   if (first == 0) {
     renderer.time(view, runs.front().run.culler.visible());  // warms up
@@ -45,6 +46,9 @@ void drawFrame(std::vector<WalkRun>& runs, const View& view, Renderer& renderer,
       stats = renderer.time(view, visible);
     }
     runs[r].frames.back().draw_us = stats.draw_us;
+    if (measured != nullptr) {
+      measured->frame(stats.draw_us, stats.triangles);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sightline/culling/measured_renderer.h"
 #include "sightline/render/renderer.h"
 #include "tools/sightline/walk/walk_record.h"
 
@@ -16,7 +17,8 @@ void cullFrame(std::vector<WalkRun>& runs, const CullingData& data, std::uint32_
 
 // Draws what each run kept in the frame that was culled last, and notes the time. Each frame begins with
 // another run, so that none has the others' warm caches always. images: gets a picture a run; null: nothing
-// is read back.
-void drawFrame(std::vector<WalkRun>& runs, const View& view, Renderer& renderer, std::vector<Image>* images);
+// is read back. measured: is told what each run's drawing took; null: nothing is.
+void drawFrame(std::vector<WalkRun>& runs, const View& view, Renderer& renderer, std::vector<Image>* images,
+               MeasuredRenderer* measured = nullptr);
 
 }  // namespace sightline::tool
