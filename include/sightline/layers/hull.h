@@ -43,6 +43,11 @@ struct ConvexHull {
   // 0: no such bound exists (a vertex hardly stands out, or the hull is no solid), so all vertices are
   // compared.
   double descent_factor = 0.0;
+  // Of a hull with many vertices: the farthest vertex along a direction of each of 96 ranges, from which
+  // searches go uphill that know no better one, and the sizes of the box by which directions are divided into
+  // ranges. Empty for other hulls.
+  std::vector<std::uint32_t> starts{};
+  Vec3d start_size{};
 };
 
 // Builds the convex hull; vertices are in the order of the points. Solids are made by Qhull.

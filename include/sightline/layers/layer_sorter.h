@@ -107,6 +107,9 @@ struct LayerOrder {
   std::span<const LayerArc> collisions{};
   // The groups of sorted parts begin here, after those of overlays.
   std::uint32_t first_sorted = 0;
+  // The first group after those of sorted parts: of depth-buffered parts, of a backdrop, or the number of
+  // groups.
+  std::uint32_t sorted_end = 0;
   // The group of all depth-buffered parts, by number, which comes after the sorted ones and before backdrops.
   // Its parts need not be adjacent in the true order: where they are nearer, they hide parts of the groups
   // from first_sorted on. kNone: there are none.

@@ -21,7 +21,7 @@ using Mask = hn::Mask<Lanes>;
 // The intervals, in cells, with which an axis is compared: the query and, on an angular axis, the query
 // shifted by a turn in either direction if that can overlap anything.
 struct AxisQuery {
-  std::uint32_t shifts = 0;
+  std::uint32_t shifts;
   std::uint8_t low[3], high[3];
 
   void add(const CellScale& scale, const Interval& interval) {
@@ -30,8 +30,8 @@ struct AxisQuery {
   }
 };
 
-AxisQuery axisQuery(const ScanRows& rows, std::size_t axis, const Interval& query) {
-  AxisQuery result;
+HWY_INLINE void setQuery(const ScanRows& rows, std::size_t axis, const Interval& query, AxisQuery& result) {
+  result.shifts = 0;
   result.add(rows.scales[axis], query);
   if (rows.kinds[axis] == ExtentAxis::Kind::kAngular) {
     for (const float turn : {4.0f, -4.0f}) {
@@ -41,7 +41,6 @@ AxisQuery axisQuery(const ScanRows& rows, std::size_t axis, const Interval& quer
       }
     }
   }
-  return result;
 }
 
 // Compares low <= query.high and high >= query.low for a vector of rows.
@@ -60,10 +59,12 @@ HWY_INLINE Mask overlap(const AxisQuery& query, const std::uint8_t* low, const s
 }
 
 struct Scan {
+  Scan(const ScanRows& all, std::uint32_t* first) : rows(all), found(first) {}
+
   const ScanRows& rows;
-  AxisQuery axes[kMaxExtentAxes];
-  std::vector<std::uint32_t>& found;
+  std::uint32_t* found;      // where the next row that overlaps is written
   std::uint64_t blocks = 0;  // number of blocks of kFanOut rows compared
+  AxisQuery axes[kMaxExtentAxes];
 
   // Returns a bit for each of kFanOut rows of a level: whether its cells overlap along all axes.
   HWY_INLINE std::uint64_t overlapBits(std::size_t level, std::size_t first) const {
@@ -101,7 +102,7 @@ struct Scan {
     for (std::uint64_t bits = there & overlapBits(level, first); bits != 0; bits &= bits - 1) {
       const std::size_t row = first + static_cast<std::size_t>(std::countr_zero(bits));
       if (level == 0) {
-        found.push_back(static_cast<std::uint32_t>(row));
+        *found++ = static_cast<std::uint32_t>(row);
       } else {
         visit(level - 1, row * ScanRows::kFanOut);
       }
@@ -109,13 +110,15 @@ struct Scan {
   }
 };
 
-std::uint64_t scan(const ScanRows& rows, const Extent& query, std::vector<std::uint32_t>& found) {
-  Scan scan{rows, {}, found};
+// Writes the overlapping rows to `found`, which has room for all, and returns the end of what was written.
+std::uint32_t* scan(const ScanRows& rows, const Extent& query, std::uint32_t* found, std::uint64_t& blocks) {
+  Scan scan(rows, found);
   for (std::size_t axis = 0; axis < rows.axes(); ++axis) {
-    scan.axes[axis] = axisQuery(rows, axis, query[axis]);
+    setQuery(rows, axis, query[axis], scan.axes[axis]);
   }
   scan.visit(rows.levels - 1, 0);
-  return scan.blocks;
+  blocks += scan.blocks;
+  return scan.found;
 }
 
 }  // namespace sightline::layers::HWY_NAMESPACE
@@ -169,7 +172,7 @@ void ExtentScan::beginFrame(const ExtentTable& table, std::span<const std::uint3
   layOut();
   fillRows();
   uniteRows();
-  found_.reserve(order.size());
+  found_.resize(order.size());
   rows_.active.assign((order.size() + kFanOut - 1) / kFanOut, ~std::uint64_t{0});
   if (order.size() % kFanOut != 0) {
     rows_.active.back() = (std::uint64_t{1} << (order.size() % kFanOut)) - 1;
@@ -273,12 +276,11 @@ void ExtentScan::query(const Extent& query, std::vector<std::uint32_t>& parts) {
   if (part_.empty()) {
     return;
   }
-  found_.clear();
-  blocks_compared_ += HWY_DYNAMIC_DISPATCH(scan)(rows_, query, found_);
+  const std::uint32_t* const end = HWY_DYNAMIC_DISPATCH(scan)(rows_, query, found_.data(), blocks_compared_);
   const auto before = static_cast<std::ptrdiff_t>(parts.size());
-  for (const std::uint32_t row : found_) {
-    if (overlaps(*table_, query, part_[row])) {
-      parts.push_back(part_[row]);
+  for (const std::uint32_t* row = found_.data(); row != end; ++row) {
+    if (overlaps(*table_, query, part_[*row])) {
+      parts.push_back(part_[*row]);
     }
   }
   std::sort(parts.begin() + before, parts.end());

@@ -21,8 +21,9 @@ struct CellScale {
   float low = 0.0f, scale = 0.0f;
 
   std::uint8_t cell(float value) const {
-    const float at = (value - low) * scale;
-    return at >= 0.0f ? static_cast<std::uint8_t>(at < 255.0f ? at : 255.0f) : 0;
+    // In this order NaN becomes 0, and there are no branches.
+    const float at = (value - low) * scale, above = at > 0.0f ? at : 0.0f;
+    return static_cast<std::uint8_t>(static_cast<std::int32_t>(above < 255.0f ? above : 255.0f));
   }
 };
 
@@ -70,7 +71,7 @@ class ExtentScan final : public CandidateSearch {
   std::vector<std::uint32_t> part_;   // one per row of level 0
   std::vector<std::uint32_t> place_;  // one per part: its row, or kNowhere
   std::vector<std::uint64_t> keys_;   // scratch for cluster(): Morton code and part
-  std::vector<std::uint32_t> found_;  // scratch for one query
+  std::vector<std::uint32_t> found_;  // scratch for one query: room for every row
   std::uint64_t blocks_compared_ = 0;
 };
 

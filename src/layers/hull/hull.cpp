@@ -12,6 +12,7 @@
 #include "src/layers/hull/hull_flat.h"
 #include "src/layers/hull/hull_frame.h"
 #include "src/layers/hull/hull_solid.h"
+#include "src/layers/hull/hull_starts.h"
 
 namespace sightline {
 namespace {
@@ -111,6 +112,7 @@ ConvexHull hullOf(std::span<const Vec3d> given) {
   setBall(*hull);
   restore(*hull, given, numbers, std::ldexp(1.0, exponent));
   packNeighbours(*hull);
+  layers::findStarts(*hull);
   return *std::move(hull);
 }
 

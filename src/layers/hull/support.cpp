@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include "sightline/geometry/tolerance.h"
+#include "src/layers/hull/hull_starts.h"
 #include "src/layers/hull/support-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,7 +42,12 @@ Support farthest(const ConvexHull& hull, const Vec3d& direction, std::uint32_t s
   if (!climbs(hull)) {
     return farthestOfAll(hull, direction);
   }
-  return HWY_DYNAMIC_DISPATCH(climbFrom)(hull, direction, start < hull.vertices.size() ? start : 0);
+  std::uint32_t from = start < hull.vertices.size() ? start : 0;
+  if (!hull.starts.empty()) {
+    const std::uint32_t other = hull.starts[startCell(direction, hull.start_size)];
+    from = dot(direction, hull.vertices[other]) > dot(direction, hull.vertices[from]) ? other : from;
+  }
+  return HWY_DYNAMIC_DISPATCH(climbFrom)(hull, direction, from);
 }
 
 double supportError(const ConvexHull& hull, double length) {

@@ -434,6 +434,7 @@ void LayerSorter::Impl::collect() {
       parts_out.emplace_back(part);
     }
   }
+  const auto sorted_end = static_cast<std::uint32_t>(first_out.size());
   std::uint32_t depth_buffered = LayerOrder::kNone;
   addEach(Place::kDepthBuffered, [&] {
     if (depth_buffered == LayerOrder::kNone) {
@@ -447,7 +448,7 @@ void LayerSorter::Impl::collect() {
   for (const Arc& pair : occlusion.collisions()) {
     collisions_out.push_back({PartId(pair.front), PartId(pair.back)});
   }
-  out = {parts_out, first_out, arcs_out, collisions_out, first_sorted, depth_buffered, stats()};
+  out = {parts_out, first_out, arcs_out, collisions_out, first_sorted, sorted_end, depth_buffered, stats()};
 }
 
 LayerStats LayerSorter::Impl::stats() const {

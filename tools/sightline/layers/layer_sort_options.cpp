@@ -20,10 +20,11 @@ constexpr std::array<Name<MakeCandidateSearch (*)()>, 2> kSearches{{
     {"tree", [] { return extentTree(); }},
 }};
 
-// What --arcs reports.
-constexpr std::array<Name<LayerArcs>, 2> kArcs{{
+// What --arcs reports. What is seen is found among all arcs of hulls.
+constexpr std::array<Name<LayerArcs>, 3> kArcs{{
     {"groups", LayerArcs::kWithinGroups},
     {"all", LayerArcs::kAll},
+    {"seen", LayerArcs::kAll},
 }};
 
 void addWordOption(CLI::App& command, const char* name, std::string& value,
@@ -40,8 +41,11 @@ void addLayerSortOptions(CLI::App& command, LayerSortOptions& options) {
   addWordOption(command, "--search", options.search, textsOf(kSearches), "how candidates are found");
   addWordOption(command, "--extents", options.extents, {"camera", "world"},
                 "two angles and depth of the camera, or x, y, z of the world");
-  addWordOption(command, "--arcs", options.arcs, textsOf(kArcs),
-                "who occludes whom: within groups, or of all pairs");
+  addWordOption(
+      command, "--arcs", options.arcs, textsOf(kArcs),
+      "who occludes whom: within groups, or of all pairs, by hulls, of which no arc is missing; seen: "
+      "from what the picture's pixels show to what lies behind it there, so that groups are small. "
+      "Approximate at a pixel, and for pictures alone");
   addWordOption(command, "--expression", options.expression, textsOf(kCompositingForms),
                 "how cycles without mutual occlusion are composited");
   addWordOption(command, "--conditioning", options.conditioning, textsOf(kSwitch),
@@ -70,6 +74,10 @@ LayerSettings settingsOf(const LayerSortOptions& options, bool all_arcs) {
     settings.conditioning_axis = -1;
   }
   return settings;
+}
+
+bool sortsBySeen(const LayerSortOptions& options) {
+  return options.arcs == "seen";
 }
 
 CompositingForm formOf(const LayerSortOptions& options) {

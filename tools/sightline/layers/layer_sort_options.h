@@ -19,6 +19,8 @@ void addLayerSortOptions(CLI::App& command, LayerSortOptions& options);
 
 // all_arcs: whatever --arcs says.
 LayerSettings settingsOf(const LayerSortOptions& options, bool all_arcs);
+// Whether the order is that of what the pixels of a picture show (layer_seen_arcs.h).
+bool sortsBySeen(const LayerSortOptions& options);
 CompositingForm formOf(const LayerSortOptions& options);
 Json optionsJson(const LayerSortOptions& options);
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "sightline/layers/compositing.h"
 #include "sightline/layers/convex_pieces.h"
@@ -23,6 +24,7 @@
 #include "tools/sightline/layers/layer_line_picture.h"
 #include "tools/sightline/layers/layer_pictures.h"
 #include "tools/sightline/layers/layer_replacement.h"
+#include "tools/sightline/layers/layer_seen_arcs.h"
 #include "tools/sightline/layers/layer_sort_options.h"
 #include "tools/sightline/layers/layer_totals.h"
 
@@ -58,6 +60,7 @@ std::vector<std::pair<const char*, bool>> needOpaqueLayers(const LayersOptions& 
   return {{"--replace", !options.pictures.replace.empty()},
           {"--blurred", !options.lens.blurred.empty()},
           {"--compare", !options.lens.compare.empty()},
+          {"--arcs seen", sortsBySeen(options.sort)},
           {"--svg", !options.drawings.svg.empty()},
           {"--pdf", !options.drawings.pdf.empty()},
           {"--line-picture", !options.drawings.line_picture.empty()}};
@@ -181,10 +184,12 @@ double aspectOf(const PictureOptions& size) {
 // Sorts the frames of a camera path one after the other.
 class WalkSorter {
  public:
-  WalkSorter(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers)
+  // seen: null if the order is that of hulls.
+  WalkSorter(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers, SeenArcs* seen)
       : options_(options),
         input_(input),
         makers_(makers),
+        seen_(seen),
         aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
         sorter_(options.eyes, options.lens, input, settingsOf(options.sort, needAllArcs(options.drawings))) {}
 
@@ -194,8 +199,12 @@ class WalkSorter {
     view.aspect = aspect_;
     sorter_.place(frame, view);
     Stopwatch watch;
-    const LayerOrder& order = sorter_.sort(view);
+    const LayerOrder& of_hulls = sorter_.sort(view);
     const double sort_us = options_.no_times ? 0.0 : watch.lap();
+    if (!makers_.empty() || seen_ != nullptr) {
+      placements(input_.moving, frame, scene_from_stored_);
+    }
+    const LayerOrder& order = seen_ != nullptr ? seen_->sort(view, of_hulls, scene_from_stored_) : of_hulls;
     const FrameLayers& layers = merger_.merge(order);
     const CompositingProgram& program = compiler_.compile(layers, formOf(options_.sort));
     totals_.add(order, static_cast<double>(layers.layers()),
@@ -203,9 +212,6 @@ class WalkSorter {
     Json json;
     if (!options_.common.json.empty()) {
       json = frameJson(frame, order, layers, program, sort_us, options_.sort.search);
-    }
-    if (!makers_.empty()) {
-      placements(input_.moving, frame, scene_from_stored_);
     }
     for (std::size_t i = 0; i < makers_.size(); ++i) {
       const auto progressOf = [&](double done) {
@@ -231,6 +237,7 @@ class WalkSorter {
   const LayersOptions& options_;
   const LayerInput& input_;
   const FrameMakers& makers_;
+  SeenArcs* seen_;
   double aspect_;  // aspect of the pictures
   EyeSorter sorter_;
   LayerMerger merger_;
@@ -240,8 +247,9 @@ class WalkSorter {
   std::vector<std::string> frames_;
 };
 
-Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers) {
-  WalkSorter sorter(options, input, makers);
+Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input, const FrameMakers& makers,
+                          SeenArcs* seen) {
+  WalkSorter sorter(options, input, makers, seen);
   const std::vector<std::uint32_t>& frames = input.walk.frames;
   ProgressBar progress(makers.empty() ? "sorting" : "sorting and drawing");
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -266,6 +274,9 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   }
   if (options.common.textOnStdout()) {
     print(sorter.totals(), input.moving.parts.size());
+    if (seen != nullptr) {
+      fmt::print("  the order is that of the pixels of each picture, approximate at a pixel\n");
+    }
     for (const std::unique_ptr<FrameMaker>& maker : makers) {
       maker->print();
     }
@@ -328,6 +339,23 @@ Status checkPictureOptions(const LayersOptions& options) {
              : Error{"--samples and --tints: go with --image, --by-distance, --blurred or --compare"};
 }
 
+// What the pixels of one picture show says nothing of other eyes, nor of lines thinner than a pixel.
+Status checkSeenArcs(const LayersOptions& options) {
+  const std::pair<const char*, bool> refused[] = {{"--blurred", !options.lens.blurred.empty()},
+                                                  {"--compare", !options.lens.compare.empty()},
+                                                  {"--order-for lens", options.eyes.order_for == "lens"},
+                                                  {"--stereo", options.eyes.stereo != 0.0},
+                                                  {"--svg", !options.drawings.svg.empty()},
+                                                  {"--pdf", !options.drawings.pdf.empty()}};
+  for (const auto& [option, given] : refused) {
+    if (sortsBySeen(options.sort) && given) {
+      return Error{
+          fmt::format("--arcs seen: is an order of one picture's pixels, and {} needs more", option)};
+    }
+  }
+  return Success{};
+}
+
 Status checkPartChoice(const LayersOptions& options) {
   for (const auto& [option, given] : needOpaqueLayers(options)) {
     if (given && partChoiceOf(options) == PartChoice::kSeeThrough) {
@@ -354,8 +382,8 @@ void leaveToDepthBuffer(const LayersOptions& options, MovingScene& moving) {
 }
 
 Result<ExitCode> runLayers(const LayersOptions& options) {
-  for (const Status& ok :
-       {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options), checkPartChoice(options)}) {
+  for (const Status& ok : {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options),
+                           checkPartChoice(options), checkSeenArcs(options)}) {
     if (!ok) {
       return ok.error();
     }
@@ -384,7 +412,18 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
   if (makers && !makers->empty()) {
     keepWhenTold("pictures and drawings that were finished are kept, and no JSON is written");
   }
-  return makers ? sortWalk(options, *input, *makers) : makers.error();
+  if (!makers) {
+    return makers.error();
+  }
+  std::optional<SeenArcs> seen;
+  if (sortsBySeen(options.sort)) {
+    Result<SeenArcs> created = SeenArcs::create(made_from);
+    if (!created) {
+      return created.error();
+    }
+    seen.emplace(std::move(*created));
+  }
+  return sortWalk(options, *input, *makers, seen ? &*seen : nullptr);
 }
 
 void addPartOptions(CLI::App& command, LayersOptions& options) {
