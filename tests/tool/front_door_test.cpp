@@ -8,8 +8,8 @@
 namespace sightline::tool_test {
 namespace {
 
-const std::vector<std::string> kCommands{"info", "walk",  "cull",   "verify", "bench",  "reproduce",
-                                         "bake", "query", "layers", "help",   "version"};
+const std::vector<std::string> kCommands{"info", "walk",  "cull",  "verify", "bench", "reproduce",
+                                         "bake", "check", "query", "layers", "help",  "version"};
 
 TEST(FrontDoor, ListsTheCommandsWithoutBeingAskedFurther) {
   const Outcome alone = runTool({}), help = runTool({"help"}), option = runTool({"--help"});

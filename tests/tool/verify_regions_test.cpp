@@ -6,6 +6,7 @@
 #include "sightline/pvs/bake/write_sight.h"
 #include "sightline/pvs/query/sight_file.h"
 #include "tests/tool/formats_page.h"
+#include "tests/tool/sight_contents.h"
 #include "tools/sightline/input/load.h"
 
 namespace sightline::tool_test {
@@ -14,28 +15,6 @@ namespace {
 using nlohmann::json;
 
 const std::string kRegionScene = "demo:ship?decks=3&rooms=4&machinery=0";
-
-// All that an opened file holds, but for its databases.
-BakedVisibility contentsOf(const SightFile& file) {
-  BakedVisibility baked;
-  baked.scene = file.scene();
-  baked.record = file.record();
-  baked.boxes.nodes.assign(file.boxes().nodes.begin(), file.boxes().nodes.end());
-  baked.boxes.objects.assign(file.boxes().objects.begin(), file.boxes().objects.end());
-  const OctreeView octree = file.octree();
-  baked.octree.min = octree.min, baked.octree.max = octree.max;
-  baked.octree.nodes.assign(octree.nodes.begin(), octree.nodes.end());
-  baked.octree.leaves.assign(octree.leaves.begin(), octree.leaves.end());
-  baked.octree.depths.assign(octree.depths.begin(), octree.depths.end());
-  baked.octree.reasons.assign(octree.reasons.begin(), octree.reasons.end());
-  baked.octree.planes.assign(octree.planes.begin(), octree.planes.end());
-  const Status whole = file.forEachSet([&](std::uint32_t, std::span<const std::uint32_t> nodes) {
-    baked.sets.nodes.insert(baked.sets.nodes.end(), nodes.begin(), nodes.end());
-    baked.sets.first.push_back(baked.sets.nodes.size());
-  });
-  EXPECT_TRUE(whole);
-  return baked;
-}
 
 class VerifyRegions : public ::testing::Test {
  protected:

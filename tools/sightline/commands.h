@@ -27,6 +27,7 @@ void addVerify(CLI::App& app, Command& chosen);
 void addBench(CLI::App& app, Command& chosen);
 void addReproduce(CLI::App& app, Command& chosen);
 void addBake(CLI::App& app, Command& chosen);
+void addCheck(CLI::App& app, Command& chosen);
 void addQuery(CLI::App& app, Command& chosen);
 void addLayers(CLI::App& app, Command& chosen);
 // help, version, completion and manual. They tell what the other commands declare, so they are added last.

@@ -14,6 +14,7 @@ void addAllCommands(CLI::App& app, Command& chosen) {
   addBench(app, chosen);
   addReproduce(app, chosen);
   addBake(app, chosen);
+  addCheck(app, chosen);
   addQuery(app, chosen);
   addLayers(app, chosen);
   addFrontDoor(app, chosen);

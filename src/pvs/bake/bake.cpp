@@ -1,7 +1,7 @@
 #include "sightline/pvs/bake/bake.h"
 
 #include <algorithm>
-#include <bit>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,6 +12,7 @@
 #include "src/pvs/bake/cell_tree.h"
 #include "src/pvs/bake/flatten.h"
 #include "src/pvs/format/checksum.h"
+#include "src/pvs/format/witness_code.h"
 
 namespace sightline {
 
@@ -38,15 +39,6 @@ constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 // bake loses little and most samples of a part are shared within it.
 std::uint32_t partLevel(const BakeSettings& settings) {
   return settings.max_depth - std::min(settings.max_depth, 2u);
-}
-
-OctreeCell cellOf(std::uint64_t id) {
-  const auto level = static_cast<std::uint32_t>((std::bit_width(id) - 1) / 3);
-  OctreeCell cell;
-  for (std::uint32_t i = level; i-- > 0;) {
-    cell = cell.child(static_cast<std::uint32_t>(id >> 3 * i & 7));
-  }
-  return cell;
 }
 
 std::string problemWith(const BakeSettings& s) {
@@ -117,6 +109,9 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
     for (const float number : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}) {
       bytes.add(number);
     }
+  }
+  if (s.witnesses) {
+    bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
   }
   return pvs::checksumOf(bytes.take());
 }
@@ -189,6 +184,13 @@ void add(BakeStats& sum, const BakeStats& stats) {
 struct Bake::Worker::Impl {
   explicit Impl(std::shared_ptr<const Data> d) : data(std::move(d)), baker(data->scene) {}
 
+  // Those of what was baked since the last call.
+  void addWitnesses(base::ByteWriter& bytes) {
+    if (data->scene.settings.witnesses) {
+      write(baker.takeWitnesses(), bytes);
+    }
+  }
+
   std::shared_ptr<const Data> data;
   CellBaker baker;
 };
@@ -211,7 +213,7 @@ void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& lea
 }
 
 // The header of a part. After it come the search distance for the child parts and what this one sees, if the
-// part was divided, else the cells.
+// part was divided, else the cells. Then the witnesses, if they are recorded.
 struct PartHead {
   std::uint64_t magic = kPartMagic, plan = 0, id = 0;
   PartSummary summary;
@@ -249,7 +251,7 @@ Runs runsOf(std::span<const std::byte> seen, std::uint32_t object_count) {
 BakedPart Bake::Worker::bake(const PartTask& part) {
   const BakeScene& scene = impl_->data->scene;
   const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
-  const CellTask task{cellOf(part.id), part.search_distance, runsOf(part.seen, objects)};
+  const CellTask task{cellOfNumber(part.id), part.search_distance, runsOf(part.seen, objects)};
   PartHead head{.plan = impl_->data->hash, .id = part.id, .summary = {}};
   base::ByteWriter bytes;
   BakedCell cell;
@@ -260,6 +262,7 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
       write(head, bytes);
       bytes.add(outcome.search_distance);
       write(outcome.seen, bytes);
+      impl_->addWitnesses(bytes);
       return bytes.take();
     }
     cell = std::move(*outcome.leaf);
@@ -272,6 +275,7 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
   head.summary.share = shareOf(scene, task.cell);
   write(head, bytes);
   write(cell, bytes);
+  impl_->addWitnesses(bytes);
   return bytes.take();
 }
 
@@ -290,7 +294,12 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
   std::vector<PartTask> below;
   if (head.summary.leaves == 0) {
     const auto search_distance = bytes.read<double>();
-    const std::span<const std::byte> seen = bytes.readBytes(bytes.remaining());
+    // Of the runs, the number and then two numbers each.
+    const std::span<const std::byte> rest = bytes.readBytes(bytes.remaining());
+    base::ByteReader runs(rest);
+    const std::size_t length =
+        sizeof(std::uint32_t) * (1 + 2 * std::size_t{runs.readCount<std::uint32_t>(8)});
+    const std::span<const std::byte> seen = rest.first(std::min(rest.size(), length));
     for (std::uint64_t i = 0; i < 8; ++i) {
       below.push_back({8 * head.id + i, search_distance, {seen.begin(), seen.end()}});
     }
@@ -355,11 +364,17 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
 
 namespace {
 
+// True if the bytes end here, or after witnesses where they are recorded.
+bool endsWell(const BakeScene& scene, base::ByteReader& bytes) {
+  std::vector<HidingWitness> witnesses;
+  return (!scene.settings.witnesses || read(bytes, witnesses)) && bytes.atEnd();
+}
+
 // The cell of a part with everything below it, merged. Returns nothing if a part is missing, corrupt or of
 // another plan; `broken` is then its id.
 std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, const BakedParts& parts,
                                     std::uint64_t id, std::uint64_t& broken) {
-  const std::uint32_t level = cellOf(id).level;
+  const std::uint32_t level = cellOfNumber(id).level;
   const auto part = parts.find(id);
   broken = id;
   if (part == parts.end() || !bake.isPart(id, part->second)) {
@@ -369,11 +384,11 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
   if (readHead(bytes).summary.leaves > 0) {
     std::optional<BakedCell> cell =
         readCell(bytes, level, static_cast<std::uint32_t>(scene.boxes.objects.size()));
-    return bytes.atEnd() ? std::move(cell) : std::nullopt;
+    return cell && endsWell(scene, bytes) ? std::move(cell) : std::nullopt;
   }
   bytes.read<double>();
   Runs seen;
-  if (!read(bytes, static_cast<std::uint32_t>(scene.boxes.objects.size()), seen) || !bytes.atEnd() ||
+  if (!read(bytes, static_cast<std::uint32_t>(scene.boxes.objects.size()), seen) || !endsWell(scene, bytes) ||
       level >= partLevel(scene.settings)) {
     return std::nullopt;
   }
@@ -407,6 +422,28 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   baked.octree.max = scene.root.max;
   flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
   return baked;
+}
+
+Witnesses Bake::witnesses(const BakedParts& parts) const {
+  const BakeScene& scene = data_->scene;
+  const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
+  Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
+  for (const auto& [id, part] : parts) {
+    base::ByteReader bytes(part);
+    Runs seen;
+    if (readHead(bytes).summary.leaves > 0) {
+      readCell(bytes, cellOfNumber(id).level, objects);
+    } else {
+      bytes.read<double>();
+      read(bytes, objects, seen);
+    }
+    std::vector<HidingWitness> own;
+    if (scene.settings.witnesses && read(bytes, own)) {
+      found.all.insert(found.all.end(), std::make_move_iterator(own.begin()),
+                       std::make_move_iterator(own.end()));
+    }
+  }
+  return found;
 }
 
 Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet& occluders,

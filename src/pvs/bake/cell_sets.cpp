@@ -135,6 +135,7 @@ void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, 
 }
 
 CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen) {
+  cell_ = cellNumber(cell);
   const CellBox box = scene_.boxOf(cell);
   const double near = 2.0 * scene_.settings.near_distance;
   faces_.clear();
@@ -157,6 +158,7 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, con
 }
 
 void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
+  cell_ = cellNumber(cell);
   chooseOccluders(cell, search_distance, cell.level);
   const CellBox known = searchBox(cell, searched);
   std::erase_if(chosen_, [&](std::uint32_t i) { return intersects(known, scene_.occluders[i].bounds); });
@@ -164,21 +166,21 @@ void CellBaker::lookFarther(const OctreeCell& cell, double searched, double sear
 }
 
 void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
-  removeHiddenFrom(cornersOf(box), sets.whole);
+  removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
   if (sets.plane) {
     const SideCorners sides(box, *sets.plane, scene_.side_margin);
-    removeHiddenFrom(sides.front, sets.front);
-    removeHiddenFrom(sides.back, sets.back);
+    removeHiddenFrom(sides.front, WitnessPart::kFront, sets.front);
+    removeHiddenFrom(sides.back, WitnessPart::kBack, sets.back);
   }
 }
 
 void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
-  removeFusedFrom(box, sets.whole);
+  removeFusedFrom(box, WitnessPart::kWhole, sets.whole);
   if (!sets.plane) {
     return;
   }
   const SideCorners sides(box, *sets.plane, scene_.side_margin);
-  const auto removeFrom = [&](std::span<const Vec3d> corners, Runs& side) {
+  const auto removeFrom = [&](std::span<const Vec3d> corners, WitnessPart part, Runs& side) {
     intersect(side, sets.whole, scratch_);
     side.swap(scratch_);
     // The box around a side of a slanted plane is often the cell, which has been asked about.
@@ -186,14 +188,15 @@ void CellBaker::removeFused(const CellBox& box, CellSets& sets) {
       return;
     }
     if (const CellBox around = boundsOf(corners); around.extent() != box.extent()) {
-      removeFusedFrom(around, side);
+      removeFusedFrom(around, part, side);
     }
   };
-  removeFrom(sides.front, sets.front);
-  removeFrom(sides.back, sets.back);
+  removeFrom(sides.front, WitnessPart::kFront, sets.front);
+  removeFrom(sides.back, WitnessPart::kBack, sets.back);
 }
 
-void CellBaker::removeFusedFrom(const CellBox& region, Runs& seen) {
+void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& seen) {
+  part_ = part;
   if (seen.empty()) {
     return;
   }
@@ -212,6 +215,7 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
   const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
                                          : hidesBox(region, node.bounds, kNoObject, {});
   if (hidden) {
+    recordSurfaces(objects);
     hidden_.add(std::span(&objects, 1));
     return;
   }
@@ -226,20 +230,69 @@ bool CellBaker::hidesObject(const CellBox& region, const Box& bounds, ObjectId o
   if (several.empty() || !areBoxesOf(several, bounds)) {
     return hidesBox(region, bounds, object.value, effort);
   }
-  return hidesBox(region, bounds, object.value, {}) ||
-         std::all_of(several.begin(), several.end(),
-                     [&](const Box& box) { return hidesBox(region, box, object.value, effort); });
+  if (hidesBox(region, bounds, object.value, {})) {
+    return true;
+  }
+  const bool hidden = std::all_of(several.begin(), several.end(), [&](const Box& box) {
+    return hidesBox(region, box, object.value, effort);
+  });
+  decided_by_ = WitnessKind::kBoxes;
+  return hidden;
 }
 
 bool CellBaker::hidesBox(const CellBox& region, const Box& box, std::uint32_t object,
                          const RegionEffort& effort) {
-  return box.wellFormed() && !intersects(region, box) &&
-         surfaces_.hides(region, {.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object}, effort);
+  const bool hidden =
+      box.wellFormed() && !intersects(region, box) &&
+      surfaces_.hides(region, {.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object}, effort);
+  decided_by_ = surfaces_.decidedBy();
+  return hidden;
+}
+
+void CellBaker::recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects) {
+  const ConvexOccluder& convex = scene_.occluders[occluder];
+  HidingWitness witness{.kind = WitnessKind::kConvex, .occluder = convex.id.value, .object = convex.object};
+  record(std::move(witness), objects);
+}
+
+void CellBaker::recordSurfaces(const ObjectRun& objects) {
+  HidingWitness witness{.kind = decided_by_};
+  if (decided_by_ == WitnessKind::kSurfaces) {
+    const FusedOcclusion::Proof& proof = surfaces_.proof();
+    witness.object = ObjectId(proof.object);
+    witness.from = proof.from;
+    witness.to = proof.to;
+  }
+  record(std::move(witness), std::span(&objects, 1));
+}
+
+void CellBaker::record(HidingWitness witness, std::span<const ObjectRun> objects) {
+  if (!scene_.settings.witnesses) {
+    return;
+  }
+  witness.cell = cell_;
+  witness.part = part_;
+  for (const ObjectRun& run : objects) {
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      if (hidden_.contains(i)) {
+        continue;
+      }
+      if (!witness.hidden.empty() && witness.hidden.back().end == i) {
+        witness.hidden.back().end = i + 1;
+      } else {
+        witness.hidden.push_back({i, i + 1});
+      }
+    }
+  }
+  if (!witness.hidden.empty()) {
+    witnesses_.push_back(std::move(witness));
+  }
 }
 
 // Skips an occluder whose object is already hidden. Its shadow lies within that of what hides it, from every
 // viewpoint, so little is lost: nothing where one of these occluders does.
-void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen) {
+void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen) {
+  part_ = part;
   if (corners.empty()) {
     seen.clear();  // there are no viewers
     return;
@@ -254,6 +307,7 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen) {
     if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
         separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
         intersectOverCorners(i, samples)) {
+      recordConvex(i, common_);
       hidden_.add(common_);
     }
   }

@@ -66,6 +66,8 @@ class CellBaker {
   // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
   const BakeStats& stats() const { return samples_.stats(); }
+  // What hid objects since the last call; empty if the settings do not ask for it.
+  std::vector<HidingWitness> takeWitnesses() { return std::exchange(witnesses_, {}); }
 
  private:
   bool fused() const { return scene_.settings.occlusion == BakeOcclusion::kFused; }
@@ -75,10 +77,10 @@ class CellBaker {
   void chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level);
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
-  void removeHiddenFrom(std::span<const Vec3d> corners, Runs& seen);
+  void removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen);
   // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
   void removeFused(const CellBox& box, CellSets& sets);
-  void removeFusedFrom(const CellBox& region, Runs& seen);
+  void removeFusedFrom(const CellBox& region, WitnessPart part, Runs& seen);
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
   // object: FusedTarget::object
@@ -88,6 +90,10 @@ class CellBaker {
   double shareSeenFrom(const Vec3d& point, const Runs& seen);
   bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
+  // Records, if it is asked for, that these objects are hidden, as far as hidden_ does not hold them yet.
+  void recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects);
+  void recordSurfaces(const ObjectRun& objects);
+  void record(HidingWitness witness, std::span<const ObjectRun> objects);
 
   const BakeScene& scene_;
   SampleStore samples_;
@@ -98,6 +104,10 @@ class CellBaker {
   std::vector<DividingFace> faces_;
   ObjectMask hidden_;
   Runs common_, scratch_;
+  std::vector<HidingWitness> witnesses_;
+  std::uint64_t cell_ = 1;  // cellNumber of the current cell
+  WitnessPart part_ = WitnessPart::kWhole;
+  WitnessKind decided_by_ = WitnessKind::kSurfaces;  // how the last object was found hidden by surfaces
 };
 
 }  // namespace sightline::pvs

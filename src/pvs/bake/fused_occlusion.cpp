@@ -140,13 +140,14 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
     std::fill(beyond_.begin(), beyond_.end(), Beyond{});
     question_ = 1;
   }
+  const Vec3d from = pointIn(region_, kStart);
   for (const Vec3d& end : kEnds) {
     const Vec3d to = pointIn(target_, end);
-    findCrossings(pointIn(region_, kStart), to, false);
+    findCrossings(from, to, false);
     if (clear()) {
       return Answer::kClear;
     }
-    if (hiddenBehind(to)) {
+    if (hiddenBehind(from, to)) {
       return Answer::kHidden;
     }
     // Another end of the line helps only if this one is all that is wrong.
@@ -158,8 +159,8 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
   return Answer::kUndecided;
 }
 
-// Whether the line of sight that was crossed last shows that the target is hidden. to: its end.
-bool FusedOcclusion::hiddenBehind(const Vec3d& to) {
+// Whether the line of sight that was crossed last shows that the target is hidden. Sets proof_ if it does.
+bool FusedOcclusion::hiddenBehind(const Vec3d& from, const Vec3d& to) {
   for (Component& component : components_) {
     component.crossings = 0;
     component.in_doubt = false;
@@ -175,10 +176,16 @@ bool FusedOcclusion::hiddenBehind(const Vec3d& to) {
       addToComponent(crossing);
     }
   }
-  return std::any_of(components_.begin(), components_.end(), [&](const Component& component) {
+  const auto hiding = std::find_if(components_.begin(), components_.end(), [&](const Component& component) {
     return component.closed && !component.in_doubt && component.crossings > 0 &&
            component.crossings > mostBehind(component, to);
   });
+  if (hiding == components_.end()) {
+    return false;
+  }
+  // A component is gathered from a panel that the line crosses.
+  proof_ = {from, to, panels_.panels[members_[hiding->first]].object};
+  return true;
 }
 
 // Sets crossings_ to those of a line of sight, or to the first ones up to one that shows that it is not

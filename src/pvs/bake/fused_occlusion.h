@@ -30,6 +30,13 @@ class FusedOcclusion {
 
   // near_distance: what is closer to the region, in metres, hides nothing.
   Answer ask(const CellBox& region, const FusedTarget& target, double near_distance);
+  // The line of sight that showed it, and the object of a sheet that the line crosses. Of the last question
+  // that was answered kHidden.
+  struct Proof {
+    Vec3d from, to;
+    std::uint32_t object = kNoObject;
+  };
+  const Proof& proof() const { return proof_; }
   // True if the line of sight between the points surely meets the front of no sheet.
   bool isClear(const Vec3d& from, const Vec3d& to);
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
@@ -53,7 +60,7 @@ class FusedOcclusion {
     bool in_doubt = false;
   };
 
-  bool hiddenBehind(const Vec3d& to);
+  bool hiddenBehind(const Vec3d& from, const Vec3d& to);
   void findCrossings(const Vec3d& from, const Vec3d& to, bool until_blocked);
   void crossPanel(std::uint32_t panel, const Vec3d& from, const Vec3d& to);
   bool clear() const;
@@ -75,6 +82,7 @@ class FusedOcclusion {
   std::uint32_t left_out_ = kNoObject;  // its sheets hide nothing
   std::uint32_t most_members_ = 0;      // of a component
   Shaft shaft_;
+  Proof proof_;
   std::vector<Crossing> crossings_;
   std::vector<Component> components_;
   std::vector<std::uint32_t> members_;  // panels, by component

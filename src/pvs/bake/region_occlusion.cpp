@@ -67,8 +67,10 @@ bool RegionOcclusion::hides(const CellBox& region, const FusedTarget& target, co
 
 RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget target,
                                                 const RegionEffort& effort) {
+  decided_by_ = WitnessKind::kSurfaces;
   Answer answer = fused_.ask(region, target, near_distance_);
   if (answer == Answer::kUndecided && effort.narrowings > 0) {
+    decided_by_ = WitnessKind::kNarrowed;
     answer = narrowThroughWindows(region, target.box, target.object, effort.narrowings);
   }
   if (answer != Answer::kUndecided || effort.divisions == 0) {
@@ -85,7 +87,9 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   }
   larger.min[axis] = middle;
   larger.max[axis] = end;
-  return decide(region, target, less);
+  answer = decide(region, target, less);
+  decided_by_ = WitnessKind::kDivided;
+  return answer;
 }
 
 RegionOcclusion::Answer RegionOcclusion::narrowThroughWindows(CellBox& region, CellBox& target,

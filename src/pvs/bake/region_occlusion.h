@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "sightline/pvs/format/witness.h"
 #include "src/pvs/bake/fused_occlusion.h"
 
 namespace sightline::pvs {
@@ -24,6 +25,10 @@ class RegionOcclusion {
 
   // True only if no point of the target can be seen from any point of the region.
   bool hides(const CellBox& region, const FusedTarget& target, const RegionEffort& effort);
+  // What decided the last question that hides() answered with true: kSurfaces, kNarrowed or kDivided.
+  WitnessKind decidedBy() const { return decided_by_; }
+  // If it was kSurfaces.
+  const FusedOcclusion::Proof& proof() const { return fused_.proof(); }
   // True if the line of sight between the points surely meets the front of no sheet.
   bool isClear(const Vec3d& from, const Vec3d& to) { return fused_.isClear(from, to); }
 
@@ -55,6 +60,7 @@ class RegionOcclusion {
 
   FusedOcclusion fused_;
   double near_distance_;
+  WitnessKind decided_by_ = WitnessKind::kSurfaces;
 };
 
 }  // namespace sightline::pvs

@@ -60,6 +60,7 @@ Result<Checkpoint> openOutputs(const BakeOptions& options) {
                                                   : std::vector<NamedFile>{},
                                     .outputs = {{"--output", options.output},
                                                 {"--output, for its parts,", options.partsFile()},
+                                                {"--witnesses", options.witnesses},
                                                 {"--json", options.common.json}}});
       !ok) {
     return ok.error();
@@ -120,6 +121,13 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   Result<BakedVisibility> baked = planned.bake.assemble(parts);
   if (!baked) {
     return baked.error();
+  }
+  if (!options.witnesses.empty()) {
+    const std::vector<std::byte> bytes = witnessBytes(planned.bake.witnesses(parts));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (const Status ok = saveFile(options.witnesses, text); !ok) {
+      return ok.error();
+    }
   }
   parts = {};
   baked->record.settings =

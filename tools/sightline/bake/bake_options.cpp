@@ -38,6 +38,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
           "--depth", settings.max_depth,
           "of the octree: a cell is halved so often at most (default: chosen by the scene, at least 6)")
       ->check(CLI::Range(0u, kMaxOctreeDepth));
+  command
+      .add_option("--witnesses", options.witnesses,
+                  "also write what hides each object that is not in a set, for `sightline check`")
+      ->type_name(kFileType);
   addDecimalOption(
       command, "--near-distance", settings.near_distance, kMinNear, kMax,
       "the farthest from the eye that the viewers' near plane clips away, metres: near * sqrt(1 + "
@@ -146,6 +150,7 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const 
     settings.triangle_budget = std::max(scene.triangleCount() / kBudgetShare, kMinBudget);
   }
   settings.viewers = viewers.boxes;
+  settings.witnesses = !options.witnesses.empty();
   settings.sample_bytes = (static_cast<std::size_t>(options.sample_mib) << 20) / options.common.threads;
   return settings;
 }

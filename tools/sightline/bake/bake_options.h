@@ -18,7 +18,7 @@ namespace sightline::tool {
 
 struct BakeOptions {
   CommonOptions common;
-  std::string output;
+  std::string output, witnesses;
   BakeSettings settings{};   // complete except for what depends on the scene or the threads:
   double crack_width = 0.0;  // metres
   std::string occlusion = "convex";

@@ -15,6 +15,7 @@
 #include "sightline/base/result.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/pvs/format/baked_visibility.h"
+#include "sightline/pvs/format/witness.h"
 #include "sightline/scene/object_boxes.h"
 #include "sightline/scene/scene.h"
 
@@ -65,6 +66,7 @@ struct BakeSettings {
   double box_margin = 0.0;
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
+  bool witnesses = false;  // records what hides objects; see Bake::witnesses. The sets stay the same
 };
 
 // A cell of the octree that one thread bakes, or divides into eight such parts. The list of parts emerges
@@ -154,6 +156,10 @@ class Bake {
   // parts: all parts of the plan. The result is the same whoever baked them. Returns an error if a part is
   // missing or its bytes are not of this plan.
   Result<BakedVisibility> assemble(const BakedParts& parts) const;
+  // What hides the objects that are not in the sets, if BakeSettings::witnesses is set: for each claim of a
+  // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts
+  // as for assemble(), which must have succeeded with them.
+  Witnesses witnesses(const BakedParts& parts) const;
 
  private:
   struct Data;

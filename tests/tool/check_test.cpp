@@ -1,0 +1,173 @@
+// Tests `check`: true claims are proved or stand, forged claims are contradicted, forged witnesses refused.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "sightline/pvs/bake/write_sight.h"
+#include "sightline/pvs/format/witness.h"
+#include "tests/tool/formats_page.h"
+#include "tests/tool/sight_contents.h"
+
+namespace sightline::tool_test {
+namespace {
+
+using nlohmann::json;
+
+const std::string kCheckScene = "demo:ship?decks=3&rooms=4&machinery=0";
+
+class Check : public ::testing::Test {
+ protected:
+  void SetUp() override { bake(file_, {"--witnesses", witnesses_}); }
+
+  static void bake(const std::string& file, const std::vector<std::string>& more, const char* depth = "3") {
+    const Outcome outcome = runTool(
+        joined({"bake", kCheckScene, "-o", file, "--depth", depth, "--triangle-budget", "300"}, more));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  Outcome check(const std::vector<std::string>& more = {}) const {
+    return runTool(joined({"check", file_, kCheckScene, "--witnesses", witnesses_}, more));
+  }
+  Witnesses readBack() const {
+    const std::string bytes = contents(witnesses_);
+    const Result<Witnesses> witnesses = readWitnesses(std::as_bytes(std::span(bytes)), witnesses_);
+    EXPECT_TRUE(witnesses) << witnesses.error().message;
+    return *witnesses;
+  }
+  void writeBack(const Witnesses& witnesses) const {
+    const std::vector<std::byte> bytes = witnessBytes(witnesses);
+    std::ofstream(witnesses_, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+  void expectRefusedWithOneLine(const std::string& about) const {
+    const Outcome outcome = check();
+    EXPECT_EQ(outcome.code, 2) << outcome.out;
+    EXPECT_NE(outcome.err.find(about), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+
+  TemporaryFolder folder_;
+  const std::string file_ = folder_.file("ship.sight"), witnesses_ = folder_.file("ship.witnesses");
+};
+
+TEST_F(Check, AccountsForEveryClaimWhateverTheThreads) {
+  const Outcome one = check({"--json", "-"});
+  EXPECT_EQ(one.code, 0) << one.out << one.err;
+  const json report = parse(one.out);
+  expectDocumented(report, {"check"});
+  EXPECT_EQ(report["contradicted"], 0);
+  EXPECT_EQ(report["claims"].get<std::uint64_t>(),
+            report["proved"].get<std::uint64_t>() + report["survived"].get<std::uint64_t>());
+  EXPECT_EQ(report["kinds"]["without"]["claims"], 0) << "a claim has no witness";
+  EXPECT_GT(report["kinds"]["convex"]["proved"], 0);
+  EXPECT_EQ(check({"--json", "-", "--threads", "3"}).out, one.out);
+
+  // The claims are the objects that the sets leave out.
+  const Result<SightFile> sight = SightFile::open(file_);
+  ASSERT_TRUE(sight);
+  const BakedVisibility baked = contentsOf(*sight);
+  std::uint64_t left_out = 0;
+  const auto countLeftOut = [&](std::uint32_t set) {
+    left_out += baked.boxes.objects.size();
+    for (auto i = baked.sets.first[set]; i < baked.sets.first[set + 1]; ++i) {
+      left_out -= baked.boxes.nodes[baked.sets.nodes[i]].object_count;
+    }
+  };
+  for (const OctreeLeaf& leaf : baked.octree.leaves) {
+    countLeftOut(leaf.set);
+    if (leaf.plane != OctreeLeaf::kNoPlane) {
+      countLeftOut(leaf.front_set);
+      countLeftOut(leaf.back_set);
+    }
+  }
+  EXPECT_EQ(report["claims"], left_out);
+}
+
+TEST_F(Check, RecordingWitnessesChangesNothingInTheFile) {
+  const std::string plain = folder_.file("plain.sight");
+  bake(plain, {});
+  EXPECT_TRUE(contents(plain) == contents(file_));
+  const std::string again = folder_.file("again.sight"), same = folder_.file("again.witnesses");
+  bake(again, {"--witnesses", same, "--threads", "3"});
+  EXPECT_TRUE(contents(same) == contents(witnesses_));
+}
+
+TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
+  bake(file_, {"--witnesses", witnesses_, "--occlusion", "fused"}, "2");
+  const Outcome outcome = check({"--json", "-"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const json report = parse(outcome.out);
+  EXPECT_EQ(report["kinds"]["without"]["claims"], 0);
+  EXPECT_GT(report["kinds"]["surfaces"]["proved"], 0);
+}
+
+TEST_F(Check, ContradictsAForgedClaim) {
+  const Result<SightFile> sight = SightFile::open(file_);
+  ASSERT_TRUE(sight);
+  BakedVisibility baked = contentsOf(*sight);
+  for (OctreeLeaf& leaf : baked.octree.leaves) {
+    leaf.set = leaf.front_set = leaf.back_set = 0;
+  }
+  baked.sets = {{0, 0}, {}};
+  ASSERT_TRUE(writeSight(file_, baked));
+  const Outcome outcome = check();
+  EXPECT_EQ(outcome.code, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("contradicted: object "), std::string::npos) << outcome.out;
+}
+
+TEST_F(Check, RefusesAForgedWitness) {
+  Witnesses witnesses = readBack();
+  ASSERT_FALSE(witnesses.all.empty());
+  // Of another object's witness, which hides other things. Some line of sight misses that object.
+  HidingWitness& forged = witnesses.all.front();
+  const auto other =
+      std::find_if(witnesses.all.begin(), witnesses.all.end(), [&](const HidingWitness& witness) {
+        return witness.kind == WitnessKind::kConvex && witness.object != forged.object;
+      });
+  ASSERT_NE(other, witnesses.all.end());
+  forged.object = other->object;
+  writeBack(witnesses);
+  expectRefusedWithOneLine("is false");
+}
+
+TEST_F(Check, RefusesAWitnessThatNamesWhatIsNotThere) {
+  Witnesses witnesses = readBack();
+  ASSERT_FALSE(witnesses.all.empty());
+  witnesses.all.back().object = ObjectId(1000000u);
+  writeBack(witnesses);
+  expectRefusedWithOneLine("names an object that the scene does not have");
+}
+
+TEST_F(Check, ClaimsWithoutWitnessesAreCountedAsSuch) {
+  Witnesses witnesses = readBack();
+  witnesses.all.clear();
+  writeBack(witnesses);
+  const json report = parse(check({"--json", "-"}).out);
+  EXPECT_EQ(report["kinds"]["without"]["claims"], report["claims"]);
+  EXPECT_EQ(report["contradicted"], 0);
+}
+
+TEST_F(Check, RefusesDamagedFilesAndThoseOfOtherScenes) {
+  const std::string whole = contents(witnesses_);
+  for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{60}, whole.size() - 1}) {
+    std::ofstream(witnesses_, std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+    expectRefusedWithOneLine("ship.witnesses");
+  }
+  std::string altered = whole;
+  altered[altered.size() / 2] = static_cast<char>(altered[altered.size() / 2] ^ 1);
+  std::ofstream(witnesses_, std::ios::binary | std::ios::trunc) << altered;
+  expectRefusedWithOneLine("damaged");
+
+  std::ofstream(witnesses_, std::ios::binary | std::ios::trunc) << whole;
+  Witnesses other = readBack();
+  other.scene.hash += 1;
+  writeBack(other);
+  expectRefusedWithOneLine("another bake");
+  expectRefused({"check", file_, "demo:ship?decks=4"}, "baked from another scene");
+  expectRefused({"check", witnesses_, kCheckScene}, "ship.witnesses");
+  expectRefused({"check", file_, kCheckScene, "--json", file_}, "--json");
+}
+
+}  // namespace
+}  // namespace sightline::tool_test
