@@ -17,8 +17,8 @@ std::uint32_t nextIn(std::span<const std::uint32_t> loop, std::size_t at) {
   return loop[at + 1 < loop.size() ? at + 1 : 0];
 }
 
-// The mesh edges of outlines that run one way more often than the other, ascending. Those of a body cancel
-// each other.
+// The mesh edges of outlines that run one way more often than the other, ascending. Bodies, the edges of
+// which cancel each other, are left out.
 std::vector<MeshEdge> openEdges(std::span<const RankedPolygon> polygons, const ParallelFor& parallel_for) {
   LargeVector<base::SortKey>
       halves;  // of edges, and whether they run from the lower vertex to the higher one
@@ -49,15 +49,21 @@ struct DividedEdges {
   std::vector<MeshEdge> edges;
   base::Rows<std::uint32_t> vertices;  // by edge, from its lower vertex on
   std::vector<bool> begins;            // by vertex: it is the lower one of an edge
+  std::vector<bool> left_whole;        // by edge
 
-  // The vertices that divide an edge; none if it is not among them.
-  std::span<const std::uint32_t> on(const MeshEdge& edge) const {
+  // The number of an edge; as many as there are if it is not among them.
+  std::size_t find(const MeshEdge& edge) const {
     if (!begins[edge.low]) {
-      return {};
+      return edges.size();
     }
     const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
-    return found != edges.end() && *found == edge ? vertices[static_cast<std::size_t>(found - edges.begin())]
-                                                  : std::span<const std::uint32_t>();
+    return found != edges.end() && *found == edge ? static_cast<std::size_t>(found - edges.begin())
+                                                  : edges.size();
+  }
+  // The vertices that divide an edge.
+  std::span<const std::uint32_t> on(const MeshEdge& edge) const {
+    const std::size_t number = find(edge);
+    return number < edges.size() && !left_whole[number] ? vertices[number] : std::span<const std::uint32_t>();
   }
 };
 
@@ -84,8 +90,7 @@ DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const Mesh
   DividedEdges divided;
   divided.begins.resize(positions.size());
   for (std::size_t i = 0; i < open.size(); ++i) {
-    // An edge of more pieces would join nothing at all.
-    if (on_edges[i].empty() || on_edges[i].size() >= kMaxMeshEdges) {
+    if (on_edges[i].empty()) {
       continue;
     }
     divided.edges.push_back(open[i]);
@@ -95,17 +100,46 @@ DividedEdges dividedEdges(std::span<const Vec3f> positions, std::span<const Mesh
     }
     divided.vertices.endRow();
   }
+  divided.left_whole.resize(divided.edges.size());
   return divided;
+}
+
+// An edge of a polygon that has too many mesh edges joins nothing at all, so those of such an edge are left
+// whole, for all polygons.
+void leaveLongEdgesWhole(std::span<const RankedPolygon> polygons, DividedEdges& edges) {
+  std::vector<bool> left_whole(edges.edges.size());
+  std::vector<std::size_t> along;  // divided edges of a polygon's edge
+  for (const RankedPolygon& ranked : polygons) {
+    const std::span<const std::uint32_t> loop = ranked.polygon->loop, corners = ranked.polygon->corners;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      std::size_t pieces = 0;
+      along.clear();
+      for (std::size_t i = corners[c]; pieces == 0 || i != nextIn(corners, c);) {
+        const std::size_t number = edges.find(meshEdge(loop[i], nextIn(loop, i)));
+        pieces += 1;
+        if (number < edges.edges.size()) {
+          pieces += edges.vertices[number].size();
+          along.push_back(number);
+        }
+        i = i + 1 < loop.size() ? i + 1 : 0;
+      }
+      for (std::size_t k = 0; k < along.size() && pieces > kMaxMeshEdges; ++k) {
+        left_whole[along[k]] = true;
+      }
+    }
+  }
+  edges.left_whole = std::move(left_whole);
 }
 
 }  // namespace
 
 void divideOutlines(std::span<const Vec3f> positions, const ParallelFor& parallel_for,
                     std::span<RankedPolygon> polygons, DividedOutlines& divided) {
-  const DividedEdges edges = dividedEdges(positions, openEdges(polygons, parallel_for), parallel_for);
+  DividedEdges edges = dividedEdges(positions, openEdges(polygons, parallel_for), parallel_for);
   if (edges.edges.empty()) {
     return;
   }
+  leaveLongEdgesWhole(polygons, edges);
   std::vector<std::uint32_t> loop, corners, place;  // place: in the new loop, by place in the old one
   for (RankedPolygon& ranked : polygons) {
     const FoundPolygon& polygon = *ranked.polygon;

@@ -17,7 +17,7 @@ using namespace occluders;
 
 // The last two letters: raise them with every change of the arrays or of findOccluders().
 constexpr base::ArraysHead kOccludersHead{
-    {'S', 'L', 'o', 'c', 'c', 'l', '0', '1'},
+    {'S', 'L', 'o', 'c', 'c', 'l', '0', '2'},
     sizeof(Occluder) | sizeof(OccluderEdge) << 8 | sizeof(OccluderBody) << 16 | sizeof(BodyFace) << 24};
 
 // What of a set are no arrays.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace sightline::occlusion {
@@ -15,6 +16,7 @@ constexpr double kMinGain = 0.3;
 constexpr std::uint32_t kLongestRest = 63;  // views, before up to half as many are added
 // What surfaces hide of each other changes as the eye moves past them. So a rest of more than kSteadyRest
 // views ends where the eye has travelled this fraction of the surface's distance for each view of the rest.
+// In an orthographic view it changes as the view turns, and no rest is longer.
 constexpr std::uint32_t kSteadyRest = 7;
 constexpr double kTravelOfView = 1.0 / 400.0;
 
@@ -103,7 +105,8 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
   }
   view_number_ += step == ViewStep::kSame ? 0 : 1;
   first_view_ = step == ViewStep::kJump ? view_number_ : first_view_;
-  travel_ = step == ViewStep::kJump ? 0.0 : travel_ + length(eye - eye_);
+  const double travel = travel_ + length(eye - eye_);
+  travel_ = step == ViewStep::kJump || !std::isfinite(travel) ? 0.0 : travel;
   eye_ = eye;
 }
 
@@ -111,7 +114,7 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
 bool SurfaceRaster::rests(const Rest& rest) const {
   const std::uint32_t age = view_number_ - rest.since;
   return rest.since >= first_view_ && age > 0 && age <= rest.length &&
-         (age <= kSteadyRest || travel_ <= rest.travel);
+         (age <= kSteadyRest || (!view_.view().orthographic && travel_ <= rest.travel));
 }
 
 // Whether a surface is worth drawing at all.

@@ -36,7 +36,7 @@ class SurfaceRaster {
   struct Rest {
     std::uint32_t since = 0;   // number of the view in which that was found
     std::uint32_t length = 0;  // views after that one, at most
-    double travel = 0.0;       // of the eye, as travel_: a long rest ends there
+    double travel = 0.0;       // where a long rest ends: what travel_ is then
   };
 
   // A group that waits for being drawn.

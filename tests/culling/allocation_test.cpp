@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 
+#include "scenes/procedural.h"
+#include "sightline/culling/culler.h"
+#include "sightline/culling/depth_pyramid_method.h"
+#include "sightline/culling/opacity_map_method.h"
+#include "sightline/occluders/surface_set.h"
 #include "tests/culling/demo_frames.h"
 #include "tests/culling/fake_sets.h"
 #include "tests/support/count_allocations.h"
@@ -67,6 +73,34 @@ TEST(Allocations, DoNotHappenInAFrameOnceTheStorageHasGrown) {
         EXPECT_EQ(allocationsIn(culler, views, dynamic_boxes), 0u) << name << " " << nameOf(kind);
       }
     }
+  }
+}
+
+// More objects are in view than are looked at after a jump before anything is hidden.
+TEST(Allocations, DoNotHappenWithSurfacesAlsoAfterAJump) {
+  const DemoScene city(makeBoxCity({.buildings = 1500, .boxes = 4500}));
+  const SurfaceSet surfaces = findSurfaces(city.scene.view());
+  const CullingScene scene{.hierarchy = &city.bvh,
+                           .object_bounds = city.bounds,
+                           .object_boxes = &city.object_boxes,
+                           .surfaces = &surfaces};
+  const std::vector<View> views = city.frames(city.scene.paths[1], 0, 20);
+  using MakeMethod = std::unique_ptr<CullingMethod> (*)();
+  const MakeMethod methods[] = {[] { return depthPyramid(); },
+                                [] { return opacityMap({.surfaces = SurfaceUse::kAlone}); }};
+  for (const MakeMethod& method : methods) {
+    Culler culler(scene, method());
+    const auto allocationsInViews = [&] {
+      const std::size_t before = allocations;
+      for (const View& view : views) {
+        culler.cull(view);
+      }
+      return allocations - before;
+    };
+    for (int round = 0; round < 8; ++round) {
+      allocationsInViews();
+    }
+    EXPECT_EQ(allocationsInViews(), 0u);
   }
 }
 

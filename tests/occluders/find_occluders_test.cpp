@@ -517,6 +517,30 @@ TEST(OccluderEdges, OfTooManyPiecesStayWhole) {
   }
 }
 
+// The upper side of the lower wall is two mesh edges long: one has a wall of its width on it, the other one
+// many.
+TEST(OccluderEdges, OfTooManyPiecesKeepWhatTheyShareAsAWhole) {
+  for (const std::uint32_t count : {63u, 64u}) {
+    FlatMesh lower;
+    for (const Point2& p :
+         {Point2{0, 0}, Point2{128, 0}, Point2{128, 300}, Point2{64, 300}, Point2{0, 300}}) {
+      lower.add(p);
+    }
+    lower.triangles = {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}};
+    Scene scene = sceneOf(lower);
+    addObject(scene, rectangle(0, 300, 64, 302), {}, MaterialId(0u));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      addObject(scene, rectangle(64 + i, 300, i + 1 < count ? 65 + i : 128, 302), {}, MaterialId(0u));
+    }
+    weldPositions(scene);
+    const OccluderSet set = findOccluders(scene.view(), kKeepAll);
+    ASSERT_EQ(set.occluders.size(), count + 2);
+    const OccluderEdge& upper = mostDivided(set, OccluderId(0u));
+    EXPECT_EQ(upper.mesh_edge_count, count == 63 ? 64u : 2u);
+    EXPECT_EQ(upper.neighbour_count, count == 63 ? 64u : 1u);
+  }
+}
+
 // A third wall ends on the edge that two others share: it cancels there, and stays one edge.
 TEST(OccluderEdges, ThatCancelAreNotDivided) {
   Scene scene = sceneOf(rectangle(0, 0, 4, 2));

@@ -28,8 +28,9 @@ struct FocusSettings {
 struct DepthPyramidMethodSettings {
   RasterSettings raster{};
   FocusSettings focus{};  // with the conservative coverage only
-  // Surfaces that were of no use of late rest for a few frames, and so do objects that finer depth buffers
-  // did not hide; without surfaces, what was kept is not tested again for six to nine frames.
+  // Surfaces that were of no use of late rest for some frames, fewer where the eye moves past them, and so do
+  // objects that finer depth buffers did not hide; without surfaces, what was kept is not tested again for
+  // six to nine frames.
   bool temporal_coherence = true;
   SurfaceUse surfaces = SurfaceUse::kAlone;
   SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame

@@ -120,7 +120,8 @@ class Rasteriser {
   void draw(const OccluderSet& set, std::span<const OccluderId> chosen,
             const ParallelFor& parallel_for = serialFor);
 
-  // Makes room for drawing these surfaces, in proportion to the set. Else the first draw() of them does.
+  // Makes room for drawing these surfaces, in proportion to the set. Otherwise the first draw() of them takes
+  // the time that this takes.
   void reserve(const SurfaceSet& surfaces);
   // Draws the surfaces of some objects, SurfaceSet::objects for all. With any coverage rule they are drawn
   // conservatively.

@@ -51,8 +51,6 @@ class DepthPyramidMethod final : public CullingMethod {
     own_occluders_ = culling::drawOccluders(*pyramid_, frame.view, frame.occluders, *frame.parallel_for);
     surfaces_.begin(frame);
     surfaces_.draw(*pyramid_, frame, settings_.temporal_coherence);
-    groups_ = edges_ = 0;
-    countSurfaces();
     work_ = surfaces_.work() + surfaces_.drawMoving(*pyramid_, frame);
     pyramid_->finish(*frame.parallel_for);
     if (focus_) {
@@ -84,8 +82,8 @@ class DepthPyramidMethod final : public CullingMethod {
     statistics_[0].value = raster.hidden;
     statistics_[1].value = focus_ ? focus_->windows() : 0;
     statistics_[2].value = focus_ ? focus_->hidden() : 0;
-    statistics_[3].value = groups_;
-    statistics_[4].value = edges_;
+    statistics_[3].value = surfaces_.groups();
+    statistics_[4].value = surfaces_.edges();
   }
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
@@ -134,16 +132,7 @@ class DepthPyramidMethod final : public CullingMethod {
       surfaces_.drawMore(*pyramid_, news_);
     }
     work_ += pyramid_->surfaceStats().work;
-    countSurfaces();
     pyramid_->finish(*frame.parallel_for);
-  }
-
-  // Adds what the last draw() of surfaces drew to the frame's counts.
-  void countSurfaces() {
-    if (surfaces_.draws()) {
-      groups_ += pyramid_->surfaceStats().groups;
-      edges_ += pyramid_->surfaceStats().edges;
-    }
   }
 
   // Where more than one of so many objects that were kept is new, the view changes fast, and the surfaces of
@@ -158,7 +147,6 @@ class DepthPyramidMethod final : public CullingMethod {
   std::optional<DepthPyramid> pyramid_;
   std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
   std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
-  std::uint64_t groups_ = 0, edges_ = 0;     // of the surfaces in the pyramid
   double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
   // Scratch for one classify() call: all boxes, and their answers.
   std::vector<Box> asked_;

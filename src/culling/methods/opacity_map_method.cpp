@@ -88,9 +88,8 @@ class OpacityMapMethod final : public CullingMethod {
     statistics_[5].value = counts.depths_compared;
     statistics_[6].value = counts.sparse_rows;
     if (surface_statistics_ > 0) {
-      const SurfaceStats drawn = suspended_ || !surfaces_.draws() ? SurfaceStats{} : map_->surfaceStats();
-      statistics_[surface_statistics_].value = drawn.groups;
-      statistics_[surface_statistics_ + 1].value = drawn.edges;
+      statistics_[surface_statistics_].value = suspended_ ? 0 : surfaces_.groups();
+      statistics_[surface_statistics_ + 1].value = suspended_ ? 0 : surfaces_.edges();
     }
     if (adapts()) {
       statistics_[adaptive_statistics_].value = suspended_ ? 1 : 0;

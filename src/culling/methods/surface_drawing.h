@@ -51,6 +51,8 @@ class SurfaceDrawer {
   // Call this once a frame, before draw().
   void begin(const CullingFrame& frame) {
     parallel_for_ = frame.parallel_for;
+    work_ = built_work_ = 0.0;
+    groups_ = edges_ = 0;
     in_frustum_.clear();
     more_in_frustum_ = draws() && frame.jumped &&
                        !nearest_->find(frame.frustum, frame.view.eye, frame.filter, kNearest, in_frustum_);
@@ -58,13 +60,10 @@ class SurfaceDrawer {
   // follows: the view follows the last one for which this buffer was drawn.
   template <typename Buffer>
   void draw(Buffer& buffer, const CullingFrame& frame, bool follows) {
-    SurfaceDrawing drawing = usual_work_.limited(drawing_, frame.jumped);
-    if (timed_.limits()) {
-      drawing.budget = static_cast<std::uint32_t>(std::min<double>(drawing.budget, timed_.work()));
-    }
     draw(buffer, frame.jumped ? std::span<const ObjectId>(in_frustum_) : frame.last_visible,
-         follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump, drawing);
-    work_ = buffer.surfaceStats().work;
+         follows && !frame.jumped ? ViewStep::kNext : ViewStep::kJump, whatIsLeft(frame.jumped));
+    built_work_ = count(buffer);
+    work_ += built_work_;
   }
   // Whether draw() left out objects in the frustum that are far away. Then drawBeyond() is to be called.
   bool leftOut() const { return more_in_frustum_; }
@@ -75,16 +74,17 @@ class SurfaceDrawer {
     beyond_.clear();
     std::set_difference(not_hidden.begin(), not_hidden.end(), in_frustum_.begin(), in_frustum_.end(),
                         std::back_inserter(beyond_));
-    SurfaceDrawing drawing = usual_work_.limited(drawing_, true);
-    drawing.budget -= static_cast<std::uint32_t>(std::min<double>(drawing.budget, work_));
-    draw(buffer, beyond_, ViewStep::kSame, drawing);
-    work_ += buffer.surfaceStats().work;
+    draw(buffer, beyond_, ViewStep::kSame, whatIsLeft(true));
+    work_ += count(buffer);
   }
   // The frame ends: stats has its times.
   void finish(const CullStats& stats) {
     usual_work_.frame(work_);
-    timed_.frame(work_, stats.build_us, stats.totalUs() - stats.build_us);
+    timed_.frame(built_work_, stats.build_us, stats.totalUs() - stats.build_us);
   }
+
+  // What counts in the budget of this frame.
+  double work() const { return work_; }
 
   // Draws the surfaces of some of the objects in a view that follows no other, up to so much work. Where a
   // surface must have some number of pixels to be drawn, it must have pixel_factor times as many. Returns the
@@ -110,18 +110,37 @@ class SurfaceDrawer {
   bool drawsMoving(const CullingFrame& frame) const {
     return use_ != SurfaceUse::kNone && !frame.moving_surfaces.empty();
   }
-  // What has been drawn of the scene's surfaces in this view.
-  double work() const { return work_; }
-  // Draws the surfaces of further objects in the same view.
+  // Draws the surfaces of further objects in the same view. What they cost is not counted in the budget.
   template <typename Buffer>
-  void drawMore(Buffer& buffer, std::span<const ObjectId> objects) const {
+  void drawMore(Buffer& buffer, std::span<const ObjectId> objects) {
     draw(buffer, objects, ViewStep::kSame, drawing_);
+    count(buffer);
   }
+  // What the functions above drew of the scene's surfaces in this frame: groups, and edges of boundaries.
+  std::uint64_t groups() const { return groups_; }
+  std::uint64_t edges() const { return edges_; }
 
  private:
   // So many objects are looked at after a jump before anything is hidden.
   static constexpr std::size_t kNearest = 512;
 
+  // How surfaces are drawn with what is left of the frame's budget.
+  SurfaceDrawing whatIsLeft(bool jumped) const {
+    SurfaceDrawing drawing = usual_work_.limited(drawing_, jumped);
+    const double budget = timed_.limits() ? std::min<double>(drawing.budget, timed_.work()) : drawing.budget;
+    drawing.budget = static_cast<std::uint32_t>(std::max(budget - work_, 0.0));
+    return drawing;
+  }
+  // Counts what was drawn last, and returns its work.
+  template <typename Buffer>
+  double count(const Buffer& buffer) {
+    if (!draws()) {
+      return 0.0;
+    }
+    groups_ += buffer.surfaceStats().groups;
+    edges_ += buffer.surfaceStats().edges;
+    return buffer.surfaceStats().work;
+  }
   SurfaceDrawing upTo(double budget) const {
     SurfaceDrawing drawing = drawing_;
     drawing.budget = static_cast<std::uint32_t>(std::clamp<double>(budget, 0.0, drawing.budget));
@@ -139,7 +158,9 @@ class SurfaceDrawer {
   SurfaceDrawing drawing_;
   double budget_us_;
   TimedBudget timed_{0.0};
-  double work_ = 0.0;  // of the last view, SurfaceStats::work
+  // Of the frame, as SurfaceStats::work: in the budget, and of that before the traversal.
+  double work_ = 0.0, built_work_ = 0.0;
+  std::uint64_t groups_ = 0, edges_ = 0;
   UsualWork usual_work_;
   const SurfaceSet* surfaces_ = nullptr;
   const ParallelFor* parallel_for_ = nullptr;  // of the frame
