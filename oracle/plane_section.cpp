@@ -54,7 +54,7 @@ void PlaneSection::cut(const SceneView& scene, const TriangleTree& tree, const E
     return box.min.x <= high.x && box.min.y <= high.y && box.min.z <= high.z && box.max.x >= low.x &&
            box.max.y >= low.y && box.max.z >= low.z;
   };
-  const auto visit = [&](std::uint32_t root, auto&& onLeaf) {
+  const auto visit = [&](std::uint32_t root, auto&& on_leaf) {
     std::vector<std::uint32_t> open;
     if (root != TriangleTree::kNoNode) {
       open.push_back(root);
@@ -66,7 +66,7 @@ void PlaneSection::cut(const SceneView& scene, const TriangleTree& tree, const E
         continue;
       }
       if (node.isLeaf()) {
-        onLeaf(node);
+        on_leaf(node);
       } else {
         open.insert(open.end(), {node.right, node.left});
       }

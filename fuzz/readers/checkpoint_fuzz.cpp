@@ -14,22 +14,26 @@ namespace {
 
 constexpr std::uint64_t kPlan = 0x0123456789abcdef;
 
-Result<BakedParts> resumed(const std::string& file) {
+Result<tool::KeptParts> resumed(const std::string& file) {
   Result<tool::Checkpoint> checkpoint = tool::Checkpoint::open(file, tool::CheckpointUse::kResume);
-  return checkpoint ? checkpoint->begin(kPlan) : Result<BakedParts>(checkpoint.error());
+  return checkpoint ? checkpoint->begin(kPlan) : Result<tool::KeptParts>(checkpoint.error());
 }
 
 void readAsItIs(std::string_view bytes) {
-  const Result<BakedParts> parts = resumed(folder().write("fuzz.parts", bytes));
-  if (!parts) {
-    requireOneLine(parts.error());
+  const std::string file = folder().write("fuzz.parts", bytes);
+  const Result<tool::KeptParts> kept = resumed(file);
+  if (!kept) {
+    requireOneLine(kept.error());
     return;
   }
   std::size_t size = 0;
-  for (const auto& [part, record] : *parts) {
+  for (const auto& [part, record] : kept->parts) {
     size += record.size();
   }
   require(size <= bytes.size());
+  // The file was mended.
+  const Result<tool::KeptParts> again = resumed(file);
+  require(again && again->parts == kept->parts && tool::lossText(file, *again).empty());
 }
 
 // What was appended and not cut off comes back.
@@ -51,9 +55,9 @@ void readWhatWasWritten(std::string_view text) {
   }
   const auto whole = std::filesystem::file_size(file);
   std::filesystem::resize_file(file, whole - std::min<std::uintmax_t>(cut, whole));
-  const Result<BakedParts> parts = resumed(file);
-  require(parts && (cut > 0 || parts->size() == written.size()));
-  for (const auto& [part, record] : *parts) {
+  const Result<tool::KeptParts> kept = resumed(file);
+  require(kept && !kept->damaged && (cut > 0 || kept->parts.size() == written.size()));
+  for (const auto& [part, record] : kept->parts) {
     require(part < written.size() && record == written[part]);
   }
 }

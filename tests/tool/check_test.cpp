@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <memory>
 
 #include "sightline/pvs/bake/write_sight.h"
 #include "sightline/pvs/format/witness.h"
@@ -19,8 +20,20 @@ const std::string kCheckScene = "demo:ship?decks=3&rooms=4&machinery=0";
 
 class Check : public ::testing::Test {
  protected:
-  void SetUp() override { bake(file_, {"--witnesses", witnesses_}); }
+  // Each kind of bake is made once, and every test has a copy.
+  static void SetUpTestSuite() {
+    made_ = std::make_unique<TemporaryFolder>();
+    bake(made_->file("convex"), {"--witnesses", made_->file("convex.witnesses")});
+    bake(made_->file("fused"), {"--witnesses", made_->file("fused.witnesses"), "--occlusion", "fused"}, "2");
+  }
+  static void TearDownTestSuite() { made_.reset(); }
+  void SetUp() override { use("convex"); }
 
+  void use(const std::string& kind) const {
+    const auto over = std::filesystem::copy_options::overwrite_existing;
+    std::filesystem::copy_file(made_->file(kind), file_, over);
+    std::filesystem::copy_file(made_->file(kind + ".witnesses"), witnesses_, over);
+  }
   static void bake(const std::string& file, const std::vector<std::string>& more, const char* depth = "3") {
     const Outcome outcome = runTool(
         joined({"bake", kCheckScene, "-o", file, "--depth", depth, "--triangle-budget", "300"}, more));
@@ -47,6 +60,7 @@ class Check : public ::testing::Test {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
 
+  static inline std::unique_ptr<TemporaryFolder> made_;
   TemporaryFolder folder_;
   const std::string file_ = folder_.file("ship.sight"), witnesses_ = folder_.file("ship.witnesses");
 };
@@ -94,7 +108,7 @@ TEST_F(Check, RecordingWitnessesChangesNothingInTheFile) {
 }
 
 TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
-  bake(file_, {"--witnesses", witnesses_, "--occlusion", "fused"}, "2");
+  use("fused");
   const Outcome outcome = check({"--json", "-"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const json report = parse(outcome.out);
@@ -106,10 +120,10 @@ TEST_F(Check, ContradictsAForgedClaim) {
   const Result<SightFile> sight = SightFile::open(file_);
   ASSERT_TRUE(sight);
   BakedVisibility baked = contentsOf(*sight);
-  for (OctreeLeaf& leaf : baked.octree.leaves) {
-    leaf.set = leaf.front_set = leaf.back_set = 0;
-  }
-  baked.sets = {{0, 0}, {}};
+  // Nothing is seen from the cell in the middle of the ship: a lie.
+  baked.sets.first.push_back(baked.sets.first.back());
+  OctreeLeaf& leaf = baked.octree.leaves[baked.octree.leaves.size() / 2];
+  leaf.set = leaf.front_set = leaf.back_set = static_cast<std::uint32_t>(baked.sets.first.size() - 2);
   ASSERT_TRUE(writeSight(file_, baked));
   const Outcome outcome = check();
   EXPECT_EQ(outcome.code, 1) << outcome.err;
@@ -129,6 +143,23 @@ TEST_F(Check, RefusesAForgedWitness) {
   forged.object = other->object;
   writeBack(witnesses);
   expectRefusedWithOneLine("is false");
+}
+
+TEST_F(Check, RefusesAForgedWitnessOfSurfaces) {
+  use("fused");
+  const Witnesses witnesses = readBack();
+  const auto surfaces = [](const HidingWitness& witness) { return witness.kind == WitnessKind::kSurfaces; };
+  const auto at = std::find_if(witnesses.all.begin(), witnesses.all.end(), surfaces) - witnesses.all.begin();
+  ASSERT_LT(static_cast<std::size_t>(at), witnesses.all.size());
+  const auto forge = [&](const auto& change) {
+    Witnesses forged = witnesses;
+    change(forged.all[static_cast<std::size_t>(at)]);
+    writeBack(forged);
+    expectRefusedWithOneLine("is false");
+  };
+  // The line begins outside of the cell; it is so short that it crosses nothing.
+  forge([](HidingWitness& witness) { witness.from = witness.from + Vec3d{1e6, 0.0, 0.0}; });
+  forge([](HidingWitness& witness) { witness.to = witness.from; });
 }
 
 TEST_F(Check, RefusesAWitnessThatNamesWhatIsNotThere) {

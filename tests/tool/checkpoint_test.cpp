@@ -1,5 +1,5 @@
-// Tests what an unfinished bake leaves: whatever happened to the file, whole parts are found again, and no
-// others.
+// Tests what an unfinished bake leaves: whatever happened to the file, whole parts are found again, no
+// others, and it is said how many others there were.
 
 #include "tools/sightline/bake/checkpoint.h"
 
@@ -10,6 +10,7 @@ namespace {
 
 using tool::Checkpoint;
 using tool::CheckpointUse;
+using tool::KeptParts;
 
 constexpr std::uint64_t kPlan = 0x123456789abcdef0u;
 
@@ -24,16 +25,19 @@ const std::vector<std::pair<std::uint64_t, BakedPart>> kFinished = {
     {1, bytesOf("")},
     {std::uint64_t{1} << 60, bytesOf("the fourth, which is longer")}};
 
-void appendAll(const std::string& file, CheckpointUse use) {
+// Returns the size of the file before each part and at the end.
+std::vector<std::size_t> appendAll(const std::string& file, CheckpointUse use) {
   Result<Checkpoint> checkpoint = Checkpoint::open(file, use);
-  ASSERT_TRUE(checkpoint) << checkpoint.error().message;
-  ASSERT_TRUE(checkpoint->begin(kPlan));
+  EXPECT_TRUE(checkpoint && checkpoint->begin(kPlan));
+  std::vector<std::size_t> sizes{contents(file).size()};
   for (const auto& [part, bytes] : kFinished) {
-    ASSERT_TRUE(checkpoint->append(part, bytes));
+    EXPECT_TRUE(checkpoint->append(part, bytes));
+    sizes.push_back(contents(file).size());
   }
+  return sizes;
 }
 
-Result<BakedParts> resume(const std::string& file, std::uint64_t plan = kPlan) {
+Result<KeptParts> resume(const std::string& file, std::uint64_t plan = kPlan) {
   Result<Checkpoint> checkpoint = Checkpoint::open(file, CheckpointUse::kResume);
   if (!checkpoint) {
     return checkpoint.error();
@@ -41,72 +45,132 @@ Result<BakedParts> resume(const std::string& file, std::uint64_t plan = kPlan) {
   return checkpoint->begin(plan);
 }
 
-// The number n if `parts` holds exactly the first n of kFinished, otherwise -1.
-int firstOnes(const BakedParts& parts) {
-  for (std::size_t n = 0; n <= kFinished.size(); ++n) {
-    BakedParts expected;
-    for (std::size_t i = 0; i < n; ++i) {
-      expected[kFinished[i].first] = kFinished[i].second;
-    }
-    if (parts == expected) {
-      return static_cast<int>(n);
+// All of kFinished but the n-th ones given.
+BakedParts allBut(const std::vector<std::size_t>& lost) {
+  BakedParts parts(kFinished.begin(), kFinished.end());
+  for (const std::size_t n : lost) {
+    parts.erase(kFinished[n].first);
+  }
+  return parts;
+}
+
+// Bakes the lost parts again; then all are there and nothing is said any more.
+void expectMended(const std::string& file, const std::vector<std::size_t>& lost) {
+  {
+    Result<Checkpoint> checkpoint = Checkpoint::open(file, CheckpointUse::kResume);
+    ASSERT_TRUE(checkpoint && checkpoint->begin(kPlan));
+    for (const std::size_t n : lost) {
+      ASSERT_TRUE(checkpoint->append(kFinished[n].first, kFinished[n].second));
     }
   }
-  return -1;
+  const Result<KeptParts> kept = resume(file);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->parts, allBut({}));
+  EXPECT_EQ(lossText(file, *kept), "");
 }
 
 TEST(Checkpoint, GivesBackWhatWasAppended) {
   const TemporaryFolder folder;
   const std::string file = folder.file("F.parts");
   appendAll(file, CheckpointUse::kNew);
-  const Result<BakedParts> parts = resume(file);
-  ASSERT_TRUE(parts) << parts.error().message;
-  EXPECT_EQ(firstOnes(*parts), 3);
+  const Result<KeptParts> kept = resume(file);
+  ASSERT_TRUE(kept) << kept.error().message;
+  EXPECT_EQ(kept->parts, allBut({}));
+  EXPECT_EQ(lossText(file, *kept), "");
 }
 
 TEST(Checkpoint, CutAnywhereItHasTheWholePartsBeforeTheCutAndGoesOn) {
   const TemporaryFolder folder;
   const std::string file = folder.file("F.parts");
-  appendAll(file, CheckpointUse::kNew);
+  const std::vector<std::size_t> sizes = appendAll(file, CheckpointUse::kNew);
   const std::string whole = contents(file);
-  int before = 0;
   for (std::size_t length = 0; length <= whole.size(); ++length) {
+    SCOPED_TRACE(length);
     folder.write("F.parts", whole.substr(0, length));
-    const Result<BakedParts> parts = resume(file);
-    ASSERT_TRUE(parts) << length << ": " << parts.error().message;
-    const int found = firstOnes(*parts);
-    EXPECT_GE(found, before) << length;
-    EXPECT_LE(found, before + 1) << length;
-    before = found;
+    const Result<KeptParts> kept = resume(file);
+    ASSERT_TRUE(kept) << kept.error().message;
+    std::vector<std::size_t> lost;
+    for (std::size_t n = 0; n < kFinished.size(); ++n) {
+      if (sizes[n + 1] > length) {
+        lost.push_back(n);
+      }
+    }
+    EXPECT_EQ(kept->parts, allBut(lost));
+    EXPECT_FALSE(kept->damaged);
+    const std::string loss = lossText(file, *kept);
+    const std::size_t found = kFinished.size() - lost.size();
+    if (length > 0 && length < sizes[0]) {
+      EXPECT_EQ(loss, file + ": is cut off before its first part; all parts are baked");
+    } else if (length == 0 || length == sizes[found]) {
+      EXPECT_EQ(loss, "") << "the end of a part, or of none";
+    } else {
+      EXPECT_EQ(loss, file + ": its end is cut off, as after a kill: 1 of " + std::to_string(found + 1) +
+                          " parts could not be read and is baked again");
+    }
     // What is appended now is not lost behind the torn end.
-    appendAll(file, CheckpointUse::kResume);
-    const Result<BakedParts> again = resume(file);
-    ASSERT_TRUE(again) << length;
-    EXPECT_EQ(firstOnes(*again), 3) << length;
+    expectMended(file, lost);
   }
-  EXPECT_EQ(before, 3);
 }
 
-TEST(Checkpoint, AlteredAnywhereItGivesNoAlteredPart) {
+TEST(Checkpoint, AlteredAnywhereItGivesTheOtherPartsAndSaysThatOneIsLost) {
   const TemporaryFolder folder;
   const std::string file = folder.file("F.parts");
-  appendAll(file, CheckpointUse::kNew);
+  const std::vector<std::size_t> sizes = appendAll(file, CheckpointUse::kNew);
   const std::string whole = contents(file);
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (const int bit : {0, 7}) {
+      SCOPED_TRACE(at);
       std::string altered = whole;
       altered[at] = static_cast<char>(altered[at] ^ (1 << bit));
       folder.write("F.parts", altered);
-      const Result<BakedParts> parts = resume(file);
-      if (parts) {
-        const int found = firstOnes(*parts);
-        EXPECT_GE(found, 0) << "byte " << at;
-        EXPECT_LT(found, 3) << "byte " << at;
-      } else {
-        EXPECT_NE(parts.error().message.find("F.parts"), std::string::npos);
+      const Result<KeptParts> kept = resume(file);
+      if (at < sizes[0]) {
+        ASSERT_FALSE(kept);
+        EXPECT_NE(kept.error().message.find("F.parts"), std::string::npos);
+        EXPECT_TRUE(contents(file) == altered) << "a refused file stays as it is";
+        continue;
       }
+      ASSERT_TRUE(kept) << kept.error().message;
+      std::size_t lost = 0;
+      while (sizes[lost + 1] <= at) {
+        lost += 1;
+      }
+      EXPECT_EQ(kept->parts, allBut({lost}));
+      EXPECT_EQ(lossText(file, *kept),
+                file + ": is damaged: 1 of 3 parts could not be read and is baked again");
+      expectMended(file, {lost});
     }
   }
+}
+
+TEST(Checkpoint, SaysHowManyPartsAreLost) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("F.parts");
+  const std::vector<std::size_t> sizes = appendAll(file, CheckpointUse::kNew);
+  const std::string whole = contents(file);
+  // The heads of two parts, which lie one behind the other.
+  std::string altered = whole;
+  altered[sizes[0] + 20] ^= 1;
+  altered[sizes[1] + 20] ^= 1;
+  folder.write("F.parts", altered);
+  const Result<KeptParts> two = resume(file);
+  ASSERT_TRUE(two);
+  EXPECT_EQ(two->parts, allBut({0, 1}));
+  EXPECT_EQ(lossText(file, *two), file + ": is damaged: 2 of 3 parts could not be read and are baked again");
+  // One altered and one cut off is damage.
+  altered = whole.substr(0, whole.size() - 3);
+  altered[sizes[0] + 20] ^= 1;
+  folder.write("F.parts", altered);
+  const Result<KeptParts> both = resume(file);
+  ASSERT_TRUE(both);
+  EXPECT_EQ(both->parts, allBut({0, 2}));
+  EXPECT_EQ(lossText(file, *both), file + ": is damaged: 2 of 3 parts could not be read and are baked again");
+  // A crash of the machine may leave zeros in place of what was written.
+  folder.write("F.parts", whole + std::string(100, '\0'));
+  const Result<KeptParts> zeros = resume(file);
+  ASSERT_TRUE(zeros);
+  EXPECT_EQ(zeros->parts, allBut({}));
+  EXPECT_EQ(lossText(file, *zeros), file + ": is damaged: 1 of 4 parts could not be read and is baked again");
 }
 
 TEST(Checkpoint, OfAnotherPlanIsAnErrorAndStays) {
@@ -129,9 +193,9 @@ TEST(Checkpoint, IsOverwrittenOnlyWhenAskedFor) {
   EXPECT_EQ(contents(file), whole);
   Result<Checkpoint> anew = Checkpoint::open(file, CheckpointUse::kRestart);
   ASSERT_TRUE(anew);
-  const Result<BakedParts> parts = anew->begin(kPlan + 1);
-  ASSERT_TRUE(parts);
-  EXPECT_EQ(firstOnes(*parts), 0);
+  const Result<KeptParts> kept = anew->begin(kPlan + 1);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->parts, BakedParts());
   EXPECT_LT(contents(file).size(), whole.size());
 }
 
@@ -148,7 +212,7 @@ TEST(Checkpoint, IsOfOneBakeAtATime) {
     ASSERT_TRUE(first->begin(kPlan));
     ASSERT_TRUE(first->append(3, kFinished[0].second));
   }
-  EXPECT_EQ(firstOnes(*resume(file)), 1);
+  EXPECT_EQ(resume(file)->parts, allBut({1, 2}));
 }
 
 TEST(Checkpoint, ThatNothingWasWrittenToIsGone) {
@@ -171,9 +235,9 @@ TEST(Checkpoint, OfACompleteBakeIsGone) {
 TEST(Checkpoint, IsNotMadeOfForeignFilesOrFolders) {
   const TemporaryFolder folder;
   const std::string foreign = "a letter of somebody's, kept for years";
-  const Result<BakedParts> parts = resume(folder.write("letter", foreign));
-  ASSERT_FALSE(parts);
-  EXPECT_NE(parts.error().message.find("letter"), std::string::npos);
+  const Result<KeptParts> kept = resume(folder.write("letter", foreign));
+  ASSERT_FALSE(kept);
+  EXPECT_NE(kept.error().message.find("letter"), std::string::npos);
   EXPECT_EQ(contents(folder.file("letter")), foreign);
   EXPECT_FALSE(Checkpoint::open(folder.file(""), CheckpointUse::kNew));
   EXPECT_FALSE(Checkpoint::open(folder.file("no/such/folder"), CheckpointUse::kNew));

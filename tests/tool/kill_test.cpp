@@ -121,6 +121,36 @@ TEST_F(KilledBake, GoesOnAfterOneOfTwoProcessesIsKilled) {
   }
 }
 
+// The first record is of the root, above all other parts: these must not be baked again.
+TEST_F(KilledBake, SaysWhatOfItsCheckpointIsAlteredAndBakesThatAloneAgain) {
+  for (const int processes : haveMpirun() ? std::vector<int>{0, 2} : std::vector<int>{0}) {
+    const std::string file = folder_.file("altered" + std::to_string(processes));
+    for (int tries = 0; tries < 20 && sizeOf(file + ".parts") == 0; ++tries) {
+      Started bake(toolWords(0, arguments(file, "2")));
+      while (bake.running() && sizeOf(file + ".parts") <= max_ / 4 && sizeOf(file) == 0) {
+        nap();
+      }
+      bake.kill(SIGTERM);
+      bake.wait();
+    }
+    std::string parts = contents(file + ".parts");
+    ASSERT_GT(parts.size(), 100u) << "no bake could be ended in the middle";
+    parts[60] = static_cast<char>(parts[60] ^ 1);
+    folder_.write("altered" + std::to_string(processes) + ".parts", parts);
+    const Outcome outcome =
+        Started(toolWords(processes, joined(arguments(file, "2"), {"--json", "-"}))).wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const std::uint64_t kept = parse(outcome.out)["parts_before"];
+    EXPECT_GT(kept, 0u);
+    EXPECT_NE(outcome.err.find("sightline: warning: " + file + ".parts: is damaged: 1 of " +
+                               std::to_string(kept + 1) + " parts could not be read and is baked again\n"),
+              std::string::npos)
+        << outcome.err << kept;
+    EXPECT_TRUE(contents(file) == reference_);
+    EXPECT_FALSE(std::filesystem::exists(file + ".parts"));
+  }
+}
+
 TEST_F(KilledBake, SaysHowToGoOnWhenToldToEnd) {
   for (const int signal : {SIGTERM, SIGINT}) {
     const std::string file = folder_.file("told" + std::to_string(signal));

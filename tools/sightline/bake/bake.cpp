@@ -187,8 +187,14 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
   if (!planned) {
     own = planned.error();
   } else if (checkpoint) {
-    auto known = checkpoint->begin(planned->bake.hash());
-    known ? void(parts = std::move(*known)) : void(own = known.error());
+    if (Result<KeptParts> kept = checkpoint->begin(planned->bake.hash())) {
+      if (const std::string loss = lossText(options.partsFile(), *kept); !loss.empty()) {
+        fmt::print(stderr, "sightline: {}{}\n", kept->damaged ? "warning: " : "", loss);
+      }
+      parts = std::move(kept->parts);
+    } else {
+      own = kept.error();
+    }
     keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
                              options.partsFile()));
   }
@@ -243,7 +249,8 @@ void addBake(CLI::App& app, Command& chosen) {
   command->footer(
       "Finished parts are kept in F.sight.parts until F.sight is written. What an interrupted bake left "
       "there is only used with --resume and only removed with --restart; without either it is an error. "
-      "--resume may always be given.\n"
+      "--resume may always be given. Of what is there, each part counts only as it was written: one that is "
+      "altered or cut off is told of in a line, and is baked again.\n"
       "The file is the same bit for bit, whatever the threads and processes. --threads and --sample-memory "
       "are of each process.\n"
       "Examples:\n"

@@ -110,8 +110,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                    "minimum-sets: weight of the pixels of occluders");
   command.add_flag("--set-rest", viewpoints.first_hit_after_sets,
                    "minimum-sets: where they end, lists go on by first hit");
-  CLI::Option* resume = command.add_flag("--resume", options.resume,
-                                         "go on with an unfinished bake of the same scene and settings");
+  CLI::Option* resume = command.add_flag(
+      "--resume", options.resume,
+      "go on with an unfinished bake of the same scene and settings; says what of it is damaged");
   command.add_flag("--restart", options.restart, "throw away what an unfinished bake left")->excludes(resume);
   command.add_flag("--force", options.force, "write over F.sight also where it is not a baked file");
 }

@@ -110,7 +110,7 @@ class FirstBaker {
     begin(std::move(known));
     const SignalGuard guard;
     ProgressBar bar("baking", share_);
-    BakeThreads threads(bake_, queue_, threads_, true);
+    BakeThreads threads(bake_, queue_, threads_, !checks_known_);
     const auto start = std::chrono::steady_clock::now();
     while (open_ > 0 || totals_ + 1 < world_.size()) {
       if (const Status ok = look(); !ok) {
@@ -134,33 +134,44 @@ class FirstBaker {
  private:
   // Takes over the parts that are already baked and queues those that are missing.
   void begin(BakedParts known) {
-    std::vector<PartTask> missing, next{bake_.firstPart()};
+    known_ = std::move(known);
     open_ = 1;
+    effort_.processes = static_cast<std::uint32_t>(world_.size());
+    effort_.threads = threads_;
+    queue_.add(0, missingOf({bake_.firstPart()}));
+    checks_known_ = !known_.empty();
+  }
+
+  // Takes over those of the parts and of what is below them that are already baked. Returns the missing ones,
+  // in order.
+  std::vector<PartTask> missingOf(const std::vector<PartTask>& parts) {
+    std::vector<PartTask> missing, next(parts.rbegin(), parts.rend());
     while (!next.empty()) {
       const PartTask task = next.back();
       next.pop_back();
-      const auto part = known.find(task.id);
-      if (part == known.end() || !bake_.isPart(task.id, part->second)) {
+      const auto part = known_.find(task.id);
+      if (part == known_.end() || !bake_.isPart(task.id, part->second)) {
         missing.push_back(task);
         continue;
       }
       const std::vector<PartTask> below = bake_.partsBelow(part->second);
       next.insert(next.end(), below.rbegin(), below.rend());
       count(part->second);
-      parts_.emplace(task.id, std::move(part->second));
+      parts_.insert(known_.extract(part));
+      effort_.parts_before += 1;
     }
-    effort_.processes = static_cast<std::uint32_t>(world_.size());
-    effort_.threads = threads_;
-    effort_.parts_before = static_cast<std::uint32_t>(parts_.size());
-    queue_.add(0, missing);
+    return missing;
   }
 
   // Handles what threads and other processes have done since the last call.
   Status look() {
     for (FinishedPart& finished : queue_.finished(world_.size() > 1 ? kLook : kPatience)) {
+      const std::vector<PartTask> below =
+          checks_known_ ? bake_.partsBelow(finished.bytes) : std::vector<PartTask>{};
       if (const Status ok = keep(std::move(finished)); !ok) {
         return ok;
       }
+      queue_.add(0, missingOf(below));
     }
     if (const std::optional<std::string> failure = queue_.failure()) {
       return Error{*failure};
@@ -205,8 +216,11 @@ class FirstBaker {
     if (message.tag == kDone) {
       const std::uint64_t id = reader.number();
       FinishedPart part{id, BakedPart(reader.rest().begin(), reader.rest().end())};
-      queue_.add(takerOf(message.from), bake_.partsBelow(part.bytes));
-      return keep(std::move(part));
+      const std::vector<PartTask> below = bake_.partsBelow(part.bytes);
+      if (const Status ok = keep(std::move(part)); !ok) {
+        return ok;
+      }
+      queue_.add(takerOf(message.from), missingOf(below));
     }
     if (message.tag == kWant) {
       wanted_[static_cast<std::size_t>(message.from)] = reader.number();
@@ -275,6 +289,8 @@ class FirstBaker {
   std::uint32_t threads_;
   Checkpoint& checkpoint_;
   BakedParts parts_;
+  BakedParts known_;           // baked before, and not yet in parts_: the part above them was lost
+  bool checks_known_ = false;  // whether there are such, so that the threads must not queue them
   BakeEffort& effort_;
   PartQueue queue_;
   std::vector<std::uint64_t> wanted_;  // for each process the number of its threads that have nothing to do

@@ -1,4 +1,6 @@
 // The file: a header, then records, each of a RecordHead and the part's bytes. Little-endian.
+// A head has a checksum of its own, so the next record is found also if the bytes of this one are altered.
+// Where a head is altered, the next record is where the next mark is.
 
 #include "tools/sightline/bake/checkpoint.h"
 
@@ -10,7 +12,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #define XXH_INLINE_ALL
@@ -21,7 +27,7 @@
 namespace sightline::tool {
 namespace {
 
-constexpr char kMagic[8] = {'S', 'L', 'p', 'a', 'r', 't', 's', '2'};
+constexpr char kMagic[8] = {'S', 'L', 'p', 'a', 'r', 't', 's', '3'};
 constexpr std::chrono::seconds kFlushEvery{1};
 
 struct Header {
@@ -30,34 +36,94 @@ struct Header {
 };
 static_assert(sizeof(Header) == 16);
 
+constexpr std::string_view kMark = "SLrecord";
+
 struct RecordHead {
+  char mark[8];
   std::uint64_t part;
   std::uint64_t length;
-  std::uint64_t checksum;  // of part, length and bytes
+  std::uint64_t bytes_checksum;
+  std::uint64_t head_checksum;  // of everything above
 };
-static_assert(sizeof(RecordHead) == 24);
+static_assert(sizeof(RecordHead) == 40);
 
-std::uint64_t checksumOf(std::uint64_t part, const std::byte* bytes, std::uint64_t length) {
-  return XXH3_64bits_withSeed(bytes, length, XXH3_64bits_withSeed(&length, sizeof(length), part));
+std::uint64_t checksumOf(const RecordHead& head) {
+  return XXH3_64bits(&head, offsetof(RecordHead, head_checksum));
 }
 
-// Reads the record at the beginning of `bytes`. Returns its size, or 0 if it is incomplete or broken.
-std::size_t readRecord(std::string_view bytes, BakedParts& parts) {
+RecordHead headOf(std::uint64_t part, const BakedPart& bytes) {
+  RecordHead head{{}, part, bytes.size(), XXH3_64bits(bytes.data(), bytes.size()), 0};
+  std::memcpy(head.mark, kMark.data(), sizeof(head.mark));
+  head.head_checksum = checksumOf(head);
+  return head;
+}
+
+// The head at the beginning of `bytes`, unless it is incomplete or altered.
+std::optional<RecordHead> readHead(std::string_view bytes) {
   RecordHead head;
   if (bytes.size() < sizeof(head)) {
-    return 0;
+    return std::nullopt;
   }
   std::memcpy(&head, bytes.data(), sizeof(head));
-  const auto* begin = reinterpret_cast<const std::byte*>(bytes.data()) + sizeof(head);
-  if (head.length > bytes.size() - sizeof(head) ||
-      checksumOf(head.part, begin, head.length) != head.checksum) {
-    return 0;
+  const bool whole =
+      std::string_view(head.mark, sizeof(head.mark)) == kMark && checksumOf(head) == head.head_checksum;
+  return whole ? std::optional(head) : std::nullopt;
+}
+
+struct Records {
+  KeptParts kept;
+  std::size_t whole = 0;  // bytes of the records before the first that could not be read
+  std::string after;      // the other records that could be read
+};
+
+Records readRecords(std::string_view bytes) {
+  Records records;
+  KeptParts& kept = records.kept;
+  while (!bytes.empty()) {
+    const std::optional<RecordHead> head = readHead(bytes);
+    if (!head) {
+      const bool cut =
+          bytes.size() < sizeof(RecordHead) && bytes.substr(0, kMark.size()) == kMark.substr(0, bytes.size());
+      kept.unreadable += 1;
+      kept.damaged |= !cut;
+      bytes.remove_prefix(std::min(bytes.find(kMark, 1), bytes.size()));
+      continue;
+    }
+    if (head->length > bytes.size() - sizeof(*head)) {
+      kept.unreadable += 1;
+      break;
+    }
+    const std::string_view record = bytes.substr(0, sizeof(*head) + head->length);
+    bytes.remove_prefix(record.size());
+    const std::span part = std::as_bytes(std::span(record.substr(sizeof(*head))));
+    if (XXH3_64bits(part.data(), part.size()) != head->bytes_checksum) {
+      kept.unreadable += 1;
+      kept.damaged = true;
+      continue;
+    }
+    kept.parts.insert_or_assign(head->part, BakedPart(part.begin(), part.end()));
+    if (kept.unreadable == 0) {
+      records.whole += record.size();
+    } else {
+      records.after += record;
+    }
   }
-  parts.insert_or_assign(head.part, BakedPart(begin, begin + head.length));
-  return sizeof(head) + head.length;
+  return records;
 }
 
 }  // namespace
+
+std::string lossText(const std::string& file, const KeptParts& kept) {
+  if (kept.no_header) {
+    return fmt::format("{}: is cut off before its first part; all parts are baked", file);
+  }
+  if (kept.unreadable == 0) {
+    return {};
+  }
+  return fmt::format("{}: {}: {} of {} parts could not be read and {} baked again", file,
+                     kept.damaged ? "is damaged" : "its end is cut off, as after a kill", kept.unreadable,
+                     kept.parts.size() + kept.unreadable, kept.unreadable == 1 ? "is" : "are");
+}
 
 Result<Checkpoint> Checkpoint::open(const std::string& file, CheckpointUse use) {
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -105,8 +171,8 @@ Checkpoint::~Checkpoint() {
   }
 }
 
-Result<BakedParts> Checkpoint::begin(std::uint64_t plan) {
-  BakedParts parts;
+Result<KeptParts> Checkpoint::begin(std::uint64_t plan) {
+  Records records;
   Header header{};
   std::memcpy(header.magic, kMagic, sizeof(kMagic));
   header.plan = plan;
@@ -117,7 +183,6 @@ Result<BakedParts> Checkpoint::begin(std::uint64_t plan) {
     if (!bytes) {
       return bytes.error();
     }
-    // A file that ends within the header was left by a bake that had finished nothing.
     const std::string_view start = std::string_view(*bytes).substr(0, sizeof(header));
     if (start.size() == sizeof(header)) {
       if (start != wanted) {
@@ -125,25 +190,23 @@ Result<BakedParts> Checkpoint::begin(std::uint64_t plan) {
             "{}: is of another scene or other settings; go on with those, or begin anew with --restart",
             file_)};
       }
-      whole = sizeof(header);
-      while (const std::size_t record = readRecord(std::string_view(*bytes).substr(whole), parts)) {
-        whole += record;
-      }
+      records = readRecords(std::string_view(*bytes).substr(sizeof(header)));
+      whole = sizeof(header) + records.whole;
     }
+    records.kept.no_header = !start.empty() && whole == 0;
   }
   if (::ftruncate(descriptor_, static_cast<off_t>(whole)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) {
     return failure("cannot be written");
   }
-  if (whole == 0) {
-    if (const Status ok = writeAll(&header, sizeof(header)); !ok) {
-      return ok.error();
-    }
+  const std::string_view missing = whole == 0 ? wanted : std::string_view(records.after);
+  if (const Status ok = writeAll(missing.data(), missing.size()); !ok) {
+    return ok.error();
   }
-  return parts;
+  return std::move(records.kept);
 }
 
 Status Checkpoint::append(std::uint64_t part, const BakedPart& bytes) {
-  const RecordHead head{part, bytes.size(), checksumOf(part, bytes.data(), bytes.size())};
+  const RecordHead head = headOf(part, bytes);
   if (const Status ok = writeAll(&head, sizeof(head)); !ok) {
     return ok;
   }

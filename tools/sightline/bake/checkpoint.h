@@ -1,7 +1,7 @@
 #pragma once
 
 // Keeps the finished parts of a bake in a file beside its output. Whenever the process ends, each part is
-// there whole or not at all.
+// there whole or not at all. Whatever happens to the file, no altered part comes back.
 
 #include <chrono>
 #include <cstdint>
@@ -18,6 +18,17 @@ enum class CheckpointUse : std::uint8_t {
   kRestart,  // discards the checkpoint
 };
 
+// What an earlier run left.
+struct KeptParts {
+  BakedParts parts{};
+  std::uint64_t unreadable = 0;  // further parts, of which the file has not the bytes that were written
+  bool damaged = false;          // by more than an end that is missing
+  bool no_header = false;        // the file has a beginning, but ends within its header
+};
+
+// A line that says what of the file could not be read; empty if all could.
+std::string lossText(const std::string& file, const KeptParts& kept);
+
 class Checkpoint {
  public:
   // Opens or makes the file, and locks it as long as this object lives: two bakes of one output are an error.
@@ -27,9 +38,9 @@ class Checkpoint {
   Checkpoint& operator=(Checkpoint&&) = delete;
   ~Checkpoint();  // an empty file is removed
 
-  // Reads the parts in the file and drops everything from the first broken record on. Error if the file was
-  // made by another plan. Called once, before append().
-  Result<BakedParts> begin(std::uint64_t plan);
+  // Reads the parts in the file and leaves the file with those alone: what is cut off or altered is dropped
+  // and counted. Error if the file was made by another plan. Called once, before append().
+  Result<KeptParts> begin(std::uint64_t plan);
 
   // Appends a part. It survives the end of the process at once, and a crash of the machine after the next
   // flush, of which this function makes at most one a second.

@@ -188,7 +188,9 @@ class Checker {
       const RegionClaim claim = claimOf(regionOfWitness(witness, divides), jobs[i].use.position,
                                         witness.kind == WitnessKind::kConvex ? witness.object : ObjectId());
       is_proved[i] = proof_.proves(claim) ? 1 : 0;
-      is_false[i] = is_proved[i] == 0 && refuted(witness, claim) ? 1 : 0;
+      const bool first = i == 0 || jobs[i - 1].use.witness != jobs[i].use.witness;
+      is_false[i] =
+          (first && hasFalseLine(witness, claim.region)) || (is_proved[i] == 0 && refuted(witness, claim));
     });
     for (std::size_t i = 0; i < jobs.size(); ++i) {
       if (is_false[i] != 0) {
@@ -204,12 +206,13 @@ class Checker {
     return Success{};
   }
 
-  bool refuted(const HidingWitness& witness, const RegionClaim& claim) const {
-    if (witness.kind == WitnessKind::kConvex) {
-      return proof_.refutesObject(claim);
-    }
+  bool hasFalseLine(const HidingWitness& witness, const EyeRegion& region) const {
     return witness.kind == WitnessKind::kSurfaces &&
-           (!claim.region.contains(witness.from) || proof_.misses(witness.from, witness.to, witness.object));
+           (!region.contains(witness.from) || proof_.misses(witness.from, witness.to, witness.object));
+  }
+
+  bool refuted(const HidingWitness& witness, const RegionClaim& claim) const {
+    return witness.kind == WitnessKind::kConvex && proof_.refutesObject(claim);
   }
 
   std::size_t rowOf(const Claim& claim) const {
