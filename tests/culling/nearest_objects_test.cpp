@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sightline/scene/camera.h"
+#include "tests/culling/fake_sets.h"
 #include "tests/support/random_numbers.h"
 
 namespace sightline::culling {
@@ -61,6 +62,29 @@ TEST_P(NearestObjectsOf, AsManyAsThereAreAreThoseInTheFrustum) {
     }
   }
 }
+TEST_P(NearestObjectsOf, ASetAreThoseOfTheSetInTheFrustum) {
+  Random random(5);
+  const std::vector<Box> boxes = boxesAround(random, 500);
+  const Hierarchy hierarchy = buildHierarchy(boxes, {}, {.kind = GetParam()});
+  fake_sets::FakeSets sets(boxes);
+  SetFilter filter(hierarchy, boxes, &sets, SetFilter::Marks::kAll);
+  std::vector<bool> members(boxes.size());
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    members[i] = boxes[i].min.x < 0.0f;
+  }
+  sets.use(1, members);
+  const View view;
+  filter.find(view);
+  std::vector<ObjectId> expected = inFrustum(frustumOf(view), boxes);
+  const std::size_t all = expected.size();
+  std::erase_if(expected, [&](ObjectId object) { return !filter.hasObject(object); });
+  ASSERT_LT(expected.size(), all);
+  ASSERT_FALSE(expected.empty());
+  std::vector<ObjectId> found;
+  EXPECT_TRUE(NearestObjects(hierarchy, boxes).find(frustumOf(view), view.eye, &filter, 501, found));
+  EXPECT_EQ(found, expected);
+}
+
 INSTANTIATE_TEST_SUITE_P(Hierarchies, NearestObjectsOf,
                          ::testing::Values(HierarchyKind::kBvh, HierarchyKind::kKdTree));
 
