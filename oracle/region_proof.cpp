@@ -18,10 +18,12 @@ namespace {
 // arithmetic can lose in so few operations.
 constexpr double kProduct = 0x1p-46;        // of a dot product of a vector and a difference of points
 constexpr double kSideMargin = 0x1p-42;     // of a region's sides, of the coordinates
+constexpr double kFarthest = 0x1p200;       // coordinates whose products cannot overflow, metres
+constexpr std::size_t kLines = 3;           // whose crossings are counted
 constexpr std::size_t kMostFaces = 256;     // of a body
 constexpr std::size_t kMostMembers = 1024;  // of a surface
 constexpr std::size_t kMostCandidates = 24;
-constexpr std::array<double, 3> kLinePlaces{0.5087, 0.2713, 0.7391};
+constexpr std::array<double, kLines> kLinePlaces{0.5087, 0.2713, 0.7391};
 constexpr std::uint32_t kNoSheet = std::numeric_limits<std::uint32_t>::max();
 
 struct Sign {
@@ -109,7 +111,7 @@ std::vector<Vec3d> hullOf(const EyeRegion& region) {
   };
   for (std::uint32_t i = 0; i < 8; ++i) {
     if (above(i) < 0.0) {
-      continue;
+      continue;  // and not where it is not a number: only then is the point surely without eyes
     }
     points.push_back(box.corner(i));
     for (const std::uint32_t axis : {1u, 2u, 4u}) {
@@ -121,6 +123,28 @@ std::vector<Vec3d> hullOf(const EyeRegion& region) {
     }
   }
   return points;
+}
+
+// Points of a hull at which lines of sight start: means of its corners, with weights that have no pattern, so
+// that lines rarely meet edges.
+std::array<Vec3d, kLines> startsIn(const std::vector<Vec3d>& hull) {
+  std::array<Vec3d, kLines> starts{};
+  for (std::size_t line = 0; line < kLines; ++line) {
+    double sum = 0.0;
+    Vec3d moved{};
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const double weight = kLinePlaces[(line + i) % kLines] + kLinePlaces[(line * i) % kLines];
+      sum += weight;
+      moved = moved + (hull[i] - hull[0]) * weight;
+    }
+    starts[line] = hull[0] + moved * (1.0 / sum);
+  }
+  return starts;
+}
+
+// False for coordinates that are not finite, too.
+bool isNear(const Vec3d& p) {
+  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
 }  // namespace
@@ -279,7 +303,13 @@ class RegionProof::Attempt {
       : impl_(impl), claim_(claim), eyes_(hullOf(claim.region)) {
     const Box& bounds = impl.scene.objects[claim.target.value].bounds;
     target_ = {Vec3d(bounds.min), Vec3d(bounds.max)};
-    around_ = {eyes_.empty() ? Vec3d{} : eyes_[0], eyes_.empty() ? Vec3d{} : eyes_[0]};
+    if (eyes_.empty()) {
+      return;
+    }
+    starts_ = startsIn(eyes_);
+    // Rounding may put a start a little outside of the hull, so what is proved is for a hull that has it.
+    eyes_.insert(eyes_.end(), starts_.begin(), starts_.end());
+    around_ = {eyes_[0], eyes_[0]};
     for (const Vec3d& eye : eyes_) {
       around_ = {min(around_.min, eye), max(around_.max, eye)};
     }
@@ -289,7 +319,8 @@ class RegionProof::Attempt {
     if (eyes_.empty()) {
       return true;  // there is no eye
     }
-    if (!impl_.scene.objects[claim_.target.value].bounds.wellFormed() || !apart(around_, target_, 0.0)) {
+    if (!std::all_of(eyes_.begin(), eyes_.end(), isNear) ||
+        !impl_.scene.objects[claim_.target.value].bounds.wellFormed() || !apart(around_, target_, 0.0)) {
       return false;
     }
     findCandidates();
@@ -321,12 +352,13 @@ class RegionProof::Attempt {
       return true;
     };
     // Only points of the box and of what the claim's region surely holds: the corners of a whole cell.
-    if (!claim_.region.sides.empty()) {
+    if (!claim_.region.sides.empty() || !std::all_of(eyes_.begin(), eyes_.end(), isNear)) {
       return false;
     }
-    for (const Vec3d& eye : eyes_) {
+    const DoubleBox cell{claim_.region.min, claim_.region.max};
+    for (std::uint32_t eye = 0; eye < 8; ++eye) {
       for (std::uint32_t i = 0; i < 8; ++i) {
-        if (clear(eye, target_.corner(i))) {
+        if (clear(cell.corner(eye), target_.corner(i))) {
           return true;
         }
       }
@@ -335,15 +367,18 @@ class RegionProof::Attempt {
   }
 
  private:
-  Vec3d placeIn(const DoubleBox& box, std::size_t i) const {
-    const Vec3d e = box.max - box.min;
-    return {box.min.x + e.x * kLinePlaces[i % 3], box.min.y + e.y * kLinePlaces[(i + 1) % 3],
-            box.min.z + e.z * kLinePlaces[(i + i / 3) % 3]};
+  // Where a line that starts in starts_ ends: in the target's box.
+  Vec3d endOf(std::size_t line) const {
+    const std::size_t i = 2 * line;
+    const Vec3d e = target_.max - target_.min;
+    return {target_.min.x + e.x * kLinePlaces[i % kLines],
+            target_.min.y + e.y * kLinePlaces[(i + 1) % kLines],
+            target_.min.z + e.z * kLinePlaces[(i + i / kLines) % kLines]};
   }
 
   void findCandidates() {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3d from = placeIn(around_, i), to = placeIn(target_, 2 * i);
+    for (std::size_t line = 0; line < kLines; ++line) {
+      const Vec3d from = starts_[line], to = endOf(line);
       impl_.tree.alongRay(from, to - from, [&](const TriangleTree::Node& leaf) {
         const auto found = impl_.number_of.find(leaf.first_index);
         if (found == impl_.number_of.end() || leaf.object == claim_.target ||
@@ -409,15 +444,22 @@ class RegionProof::Attempt {
           const Sign& a = sides[f * ends + eye];
           const Sign& b = sides[f * ends + end];
           const double a_most = a.value + a.doubt, b_most = b.value + b.doubt;
-          if (a_most >= 0.0 && b_most >= 0.0) {
+          const bool a_behind = a_most < 0.0, b_behind = b_most < 0.0;
+          if (!a_behind && !b_behind) {
             return false;
+          }
+          if (a_behind && b_behind) {
+            continue;
           }
           // The greatest that the linear function may be is behind up to, or from, this place.
           const double place = a_most / (a_most - b_most);
-          if (a_most >= 0.0) {
-            low = std::max(low, place + 0x1p-50);
-          } else if (b_most >= 0.0) {
+          if (!std::isfinite(place)) {
+            return false;
+          }
+          if (a_behind) {
             high = std::min(high, place - 0x1p-50);
+          } else {
+            low = std::max(low, place + 0x1p-50);
           }
         }
         if (!(low < high)) {
@@ -525,7 +567,7 @@ class RegionProof::Attempt {
   bool surfaceHides(std::uint32_t triangle) const {
     const Impl::Triangle& t = impl_.triangles[triangle];
     std::uint32_t start = 2 * triangle;
-    if (sideOf(t.at, placeIn(around_, 0)).negative()) {
+    if (sideOf(t.at, starts_[0]).negative()) {
       if (!t.double_sided) {
         return false;
       }
@@ -553,12 +595,12 @@ class RegionProof::Attempt {
         }
       }
     }
-    for (std::size_t line = 0; line < 3; ++line) {
+    for (std::size_t line = 0; line < kLines; ++line) {
       int sum = 0;
       bool sure = true;
       for (const std::uint32_t sheet : members) {
         const std::optional<int> once =
-            crossing(impl_.cornersOf(sheet), placeIn(around_, line), placeIn(target_, 2 * line));
+            crossing(impl_.cornersOf(sheet), starts_[line], endOf(line));
         sure = sure && once.has_value();
         sum += once.value_or(0);
       }
@@ -572,6 +614,7 @@ class RegionProof::Attempt {
   const Impl& impl_;
   const RegionClaim& claim_;
   std::vector<Vec3d> eyes_, hull_;
+  std::array<Vec3d, kLines> starts_{};
   DoubleBox target_, around_;
   std::vector<std::uint32_t> candidates_;
   std::vector<Side> shaft_;
