@@ -12,11 +12,11 @@
 //              for the points that one convex set hides from an eye are convex, and so are the eyes from
 //              which it hides a point. A segment that begins outside of the body enters it through a front.
 //   A surface  is a set of triangles, each seen from one side, whose boundary misses the shaft: the convex
-//   hull
-//              of the region and the box. If no triangle of it that is in the shaft meets the region or the
-//              box, all segments cross it as often as one does, fronts counted 1 and backs -1.
+//              hull of the region and the box. If no triangle of it that is in the shaft meets the region or
+//              the box, all segments cross it as often as one does, fronts counted 1 and backs -1.
 //
-// All numbers carry a bound of their rounding, and what is in doubt proves nothing.
+// All numbers are doubles that carry a bound of their rounding. What is in doubt proves nothing, and neither
+// does a region so far away that products overflow.
 
 #include <cstdint>
 #include <memory>
@@ -27,6 +27,8 @@
 #include "sightline/scene/scene.h"
 
 namespace sightline {
+
+struct ProofMesh;
 
 struct RegionClaim {
   EyeRegion region;
@@ -55,9 +57,8 @@ class RegionProof {
   bool misses(const Vec3d& from, const Vec3d& to, ObjectId object) const;
 
  private:
-  struct Impl;
   class Attempt;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<const ProofMesh> mesh_;
 };
 
 }  // namespace sightline

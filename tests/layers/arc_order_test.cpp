@@ -99,5 +99,30 @@ TEST(ArcSorter, OverlaysAndBackdropsStayWhateverTheArcsSay) {
   EXPECT_EQ(order.sorted_end, 2u);
 }
 
+// The last result's storage must outlast what is written instead: more groups than before move the backdrops.
+TEST(ArcSorter, SortsItsOwnLastResult) {
+  constexpr std::uint32_t kSorted = 60, kCount = 100;
+  FlatOrder flat(kCount);  // the last 40 are backdrops
+  flat.order.sorted_end = kSorted;
+  std::vector<LayerArc> ring;
+  for (std::uint32_t part = 0; part < kSorted; ++part) {
+    ring.push_back(arcOf(part, (part + 1) % kSorted));
+  }
+  ArcSorter sorter;
+  const LayerOrder& grouped = sorter.sort(flat.order, ring);
+  ASSERT_EQ(grouped.groups(), 1 + kCount - kSorted);
+  const LayerOrder& again = sorter.sort(grouped, grouped.arcs);
+  ASSERT_EQ(again.groups(), 1 + kCount - kSorted);
+  std::sort(ring.begin(), ring.end());
+  EXPECT_TRUE(std::equal(again.arcs.begin(), again.arcs.end(), ring.begin(), ring.end()));
+  const LayerOrder& parted = sorter.sort(again, {});
+  ASSERT_EQ(parted.groups(), kCount);
+  EXPECT_EQ(parted.sorted_end, kSorted);
+  for (std::uint32_t i = kSorted; i < kCount; ++i) {
+    ASSERT_EQ(parted.group(i).size(), 1u);
+    EXPECT_EQ(parted.group(i).front(), PartId(i));
+  }
+}
+
 }  // namespace
 }  // namespace sightline

@@ -104,6 +104,34 @@ TEST(RegionProof, KnowsTheSideOfAPlane) {
   EXPECT_TRUE(s.proved()) << "there is no eye";
 }
 
+// Eyes with x + y >= 0, in a box whose other half holds a wall that no line of sight meets: at x = 0.1 the
+// lines have x + y >= -0.19, for the target has x >= 5 and x + y >= -1, but the wall has -0.35 at most.
+TEST(RegionProof, CountsNoLineThatNoEyeHas) {
+  Setting s;
+  constexpr double kHalfRoot = 0.70710678118654752;
+  s.region.sides = {{{kHalfRoot, kHalfRoot, 0}, 0.0}};
+  addTriangles(s.scene, s.two_sided,
+               std::array<Vec3f, 6>{{{0.1f, -0.65f, 0.2f},
+                                     {0.1f, -0.45f, 0.2f},
+                                     {0.1f, -0.45f, 1.9f},
+                                     {0.1f, -0.65f, 0.2f},
+                                     {0.1f, -0.45f, 1.9f},
+                                     {0.1f, -0.65f, 1.9f}}});
+  s.target = addClosedBox(s.scene, s.two_sided, {5, -6, 0.5f}, {6, -5, 1.5f});
+  EXPECT_FALSE(s.proved());
+}
+
+// A small box beside the line of sight, from a region so large that products of its coordinates overflow.
+TEST(RegionProof, ProvesNothingOfARegionWhoseProductsOverflow) {
+  Setting s;
+  addClosedBox(s.scene, s.opaque, {-1, -1, -1}, {1, 1, 1});
+  s.target = addClosedBox(s.scene, s.opaque, {-5, -5, -5}, {-3, -3, 3});
+  for (const double size : {1e3, 1e60, 1e100, 1e150, 1e155, 1e200, 1e305}) {
+    s.region = {{-size, -size, 2 * size}, {size, size, 3 * size}, {}};
+    EXPECT_FALSE(s.proved()) << size;
+  }
+}
+
 TEST(RegionProof, RefutesAnObjectThatALineOfSightMisses) {
   Setting s;
   const ObjectId wall = addWall(s.scene, s.opaque, -1, -9, 9, -9, 9);
@@ -145,8 +173,32 @@ bool clear(const Scene& scene, ObjectId target, const Vec3d& from, const Vec3d& 
   return true;
 }
 
+// A plane through the middle of the region, of a random direction or parallel to a diagonal of it.
+HalfSpace randomSide(SplitMix& random) {
+  const auto sign = [&] { return random.below(2) == 0 ? -1.0 : 1.0; };
+  Vec3d n{random.in(-1, 1), random.in(-1, 1), random.in(-1, 1)};
+  if (random.below(2) == 0) {
+    n = {sign(), sign(), sign()};
+    n[static_cast<int>(random.below(3))] = 0.0;
+  }
+  const Vec3d normal = n * (1.0 / length(n));
+  return {normal, dot(normal, Vec3d{0, 0, 1}) + random.in(-0.2, 0.2)};
+}
+
+// A small wall in the box of the region, which may be on the side of the plane without eyes.
+void addWallAmongEyes(Scene& scene, MaterialId material, SplitMix& random) {
+  const auto in = [&](double low, double high) { return static_cast<float>(random.in(low, high)); };
+  const Vec3f low{in(-0.8, 0.6), in(-0.8, 0.6), in(0.2, 1.6)};
+  const int axis = static_cast<int>(random.below(3)), turn = 1 + static_cast<int>(random.below(2));
+  Vec3f right{}, up{};
+  right[axis] = in(0.05, 0.3);
+  up[(axis + turn) % 3] = in(0.1, 1.6);
+  const Vec3f a = low + right, b = a + up, c = low + up;
+  addTriangles(scene, material, std::array<Vec3f, 6>{{low, a, b, low, b, c}});
+}
+
 TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
-  constexpr std::uint64_t kScenes = 400;
+  constexpr std::uint64_t kScenes = 2000;
   constexpr int kLines = 400;
   int proofs = 0, seen = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
@@ -159,7 +211,9 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
     for (std::uint32_t i = 0; i < things; ++i) {
       const float x = at(-6, 2), y = at(-6, 2), z = at(-4, -1);
       const float right = x + at(0.5, 12), up = y + at(0.5, 12);
-      if (random.below(2) == 0) {
+      if (random.below(3) == 0) {
+        addWallAmongEyes(s.scene, s.two_sided, random);
+      } else if (random.below(2) == 0) {
         addClosedBox(s.scene, s.opaque, {x, y, z - at(0.5, 3)}, {right, up, z});
       } else {
         addWall(s.scene, random.below(2) == 0 ? s.opaque : s.two_sided, z, x, right, y, up,
@@ -168,8 +222,8 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
     }
     const float z = at(-12, -5);
     s.target = addClosedBox(s.scene, s.opaque, {at(-4, 0), at(-4, 0), z - 1}, {at(0.5, 3), at(0.5, 3), z});
-    if (random.below(3) == 0) {
-      s.region.sides = {{{0.6, 0.0, 0.8}, random.in(0.2, 1.5)}};
+    if (random.below(2) == 0) {
+      s.region.sides = {randomSide(random)};
     }
     const EyePlaces eyes(s.region);
     const bool proved = s.proved();
@@ -188,6 +242,29 @@ TEST(RegionProof, NeverProvesWhatALineOfSightSees) {
   }
   EXPECT_GT(proofs, 20);
   EXPECT_GT(seen, 100);
+}
+
+// No wall is wider than 0.3 m, and the target is 1 m wide, so it is seen past them. It is beside the region,
+// along the plane that ends it: there a line of sight is nearest to lines from places without eyes.
+TEST(RegionProof, NeverProvesByWallsThatAreSmallerThanTheTarget) {
+  constexpr std::uint64_t kScenes = 20000;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    SplitMix random{seed};
+    Setting s;
+    s.region.sides = {randomSide(random)};
+    for (int i = 0; i < 3; ++i) {
+      addWallAmongEyes(s.scene, s.two_sided, random);
+    }
+    Vec3d across{};
+    across[static_cast<int>(random.below(3))] = random.below(2) == 0 ? -8.0 : 8.0;
+    const Vec3d aside = cross(s.region.sides[0].normal, across);
+    if (length(aside) < 5.0) {
+      continue;
+    }
+    const Vec3f low(Vec3d{-0.5, -0.5, 0.5} + aside);
+    s.target = addClosedBox(s.scene, s.opaque, low, low + Vec3f{1, 1, 1});
+    ASSERT_FALSE(s.proved()) << "seed " << seed;
+  }
 }
 
 }  // namespace

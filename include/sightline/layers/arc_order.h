@@ -21,7 +21,8 @@ class ArcSorter {
   // group of several parts is a strongly connected component. Parts that no arc orders keep to their places
   // as far as they can. Overlays, depth-buffered parts and backdrops stay where they are, and arcs of them or
   // of parts that the order lacks are ignored. The result has the given arcs, ascending, each once, and the
-  // order's collisions; it is valid until the next call and no longer than `order`.
+  // order's collisions; it is valid until the next call and no longer than `order`. Both may be of the last
+  // result.
   // The order is right where the arcs are: a missing arc may let what is behind cover what is in front.
   const LayerOrder& sort(const LayerOrder& order, std::span<const LayerArc> arcs);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "src/layers/sort/depth_first_sort.h"
@@ -19,6 +20,7 @@ class ArcSource : public OccluderSource {
   // parts: those to be sorted. arcs: ascending.
   void begin(std::size_t numbers, std::span<const std::uint32_t> parts, std::span<const LayerArc> arcs) {
     active_.assign(numbers, 0);
+    in_group_.assign(numbers, 0);
     for (const std::uint32_t part : parts) {
       active_[part] = 1;
     }
@@ -44,15 +46,17 @@ class ArcSource : public OccluderSource {
   void occludersOf(std::span<const std::uint32_t> group, std::vector<std::uint32_t>& occluders) override {
     const auto begin = static_cast<std::ptrdiff_t>(occluders.size());
     for (const std::uint32_t part : group) {
+      in_group_[part] = 1;
       candidatesOf(part, occluders);
     }
+    occluders.erase(std::remove_if(occluders.begin() + begin, occluders.end(),
+                                   [&](std::uint32_t part) { return in_group_[part] != 0; }),
+                    occluders.end());
     std::sort(occluders.begin() + begin, occluders.end());
     occluders.erase(std::unique(occluders.begin() + begin, occluders.end()), occluders.end());
-    occluders.erase(std::remove_if(occluders.begin() + begin, occluders.end(),
-                                   [&](std::uint32_t part) {
-                                     return std::find(group.begin(), group.end(), part) != group.end();
-                                   }),
-                    occluders.end());
+    for (const std::uint32_t part : group) {
+      in_group_[part] = 0;
+    }
   }
   bool occludes(std::uint32_t front, std::uint32_t back) override {
     return std::binary_search(by_back_.begin(), by_back_.end(), BackArc{back, front});
@@ -67,18 +71,24 @@ class ArcSource : public OccluderSource {
   };
   std::vector<BackArc> by_back_;  // ascending
   std::vector<std::uint8_t> active_;
+  std::vector<std::uint8_t> in_group_;  // all 0 between calls
 };
 
 }  // namespace
 
 struct ArcSorter::Impl {
+  // Of a result.
+  struct Storage {
+    std::vector<PartId> parts;
+    std::vector<std::uint32_t> first_of;
+    std::vector<LayerArc> arcs;
+  };
+
   ArcSource source;
   DepthFirstSort algorithm;
   std::vector<std::uint32_t> previous;
   GroupedOrder sorted;
-  std::vector<PartId> parts;
-  std::vector<std::uint32_t> first_of;
-  std::vector<LayerArc> arcs;
+  Storage made, last;  // the last result may be what is sorted now
   LayerOrder out;
 
   void takeGroups(const LayerOrder& order, std::size_t begin, std::size_t end);
@@ -92,16 +102,17 @@ ArcSorter& ArcSorter::operator=(ArcSorter&&) noexcept = default;
 // Appends groups as they are.
 void ArcSorter::Impl::takeGroups(const LayerOrder& order, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
-    first_of.push_back(static_cast<std::uint32_t>(parts.size()));
-    parts.insert(parts.end(), order.group(i).begin(), order.group(i).end());
+    made.first_of.push_back(static_cast<std::uint32_t>(made.parts.size()));
+    made.parts.insert(made.parts.end(), order.group(i).begin(), order.group(i).end());
   }
 }
 
 const LayerOrder& ArcSorter::sort(const LayerOrder& order, std::span<const LayerArc> arcs) {
   Impl& own = *impl_;
-  own.arcs.assign(arcs.begin(), arcs.end());
-  std::sort(own.arcs.begin(), own.arcs.end());
-  own.arcs.erase(std::unique(own.arcs.begin(), own.arcs.end()), own.arcs.end());
+  std::swap(own.made, own.last);
+  own.made.arcs.assign(arcs.begin(), arcs.end());
+  std::sort(own.made.arcs.begin(), own.made.arcs.end());
+  own.made.arcs.erase(std::unique(own.made.arcs.begin(), own.made.arcs.end()), own.made.arcs.end());
 
   const std::size_t end = order.sorted_end;
   own.previous.clear();
@@ -114,25 +125,25 @@ const LayerOrder& ArcSorter::sort(const LayerOrder& order, std::span<const Layer
       own.previous.push_back(part.value);
     }
   }
-  own.source.begin(numbers, own.previous, own.arcs);
+  own.source.begin(numbers, own.previous, own.made.arcs);
   own.algorithm.sort(own.previous, own.source, own.sorted);
 
-  own.parts.clear();
-  own.first_of.clear();
+  own.made.parts.clear();
+  own.made.first_of.clear();
   own.takeGroups(order, 0, order.first_sorted);
   for (std::size_t i = 0; i < own.sorted.groups(); ++i) {
-    own.first_of.push_back(static_cast<std::uint32_t>(own.parts.size()));
+    own.made.first_of.push_back(static_cast<std::uint32_t>(own.made.parts.size()));
     for (const std::uint32_t part : own.sorted.group(i)) {
-      own.parts.emplace_back(part);
+      own.made.parts.emplace_back(part);
     }
   }
-  const auto sorted_end = static_cast<std::uint32_t>(own.first_of.size());
+  const auto sorted_end = static_cast<std::uint32_t>(own.made.first_of.size());
   own.takeGroups(order, end, order.groups());
-  own.first_of.push_back(static_cast<std::uint32_t>(own.parts.size()));
+  own.made.first_of.push_back(static_cast<std::uint32_t>(own.made.parts.size()));
   own.out = order;
-  own.out.parts = own.parts;
-  own.out.first_of = own.first_of;
-  own.out.arcs = own.arcs;
+  own.out.parts = own.made.parts;
+  own.out.first_of = own.made.first_of;
+  own.out.arcs = own.made.arcs;
   own.out.sorted_end = sorted_end;
   if (order.depth_buffered != LayerOrder::kNone) {
     own.out.depth_buffered = sorted_end + (order.depth_buffered - static_cast<std::uint32_t>(end));

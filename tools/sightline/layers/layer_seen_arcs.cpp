@@ -4,6 +4,11 @@
 #include <utility>
 
 namespace sightline::tool {
+namespace {
+
+constexpr std::size_t kFewArcs = 1 << 16;
+
+}  // namespace
 
 Result<SeenArcs> SeenArcs::create(const FrameMakerInput& input) {
   Result<LayerRenderer> renderer = makeRenderer(input);
@@ -17,12 +22,17 @@ const LayerOrder& SeenArcs::sort(const View& view, const LayerOrder& order,
                                  std::span<const Mat4> scene_from_stored) {
   renderer_.setTransforms(scene_from_stored);
   arcs_.clear();
-  known_.assign(scene_.objects.size() * scene_.objects.size(), false);
+  std::size_t most = kFewArcs;
   cover(view, order);
   for (auto first = covers_.begin(); first != covers_.end();) {
     const auto end =
         std::find_if(first, covers_.end(), [&](const Cover& cover) { return cover.pixel != first->pixel; });
     addArcsOfPixel(std::span(first, end), order);
+    if (arcs_.size() > most) {  // most pixels repeat what others say
+      std::sort(arcs_.begin(), arcs_.end());
+      arcs_.erase(std::unique(arcs_.begin(), arcs_.end()), arcs_.end());
+      most = std::max(kFewArcs, 2 * arcs_.size());
+    }
     first = end;
   }
   return sorter_.sort(order, arcs_);
@@ -74,11 +84,7 @@ void SeenArcs::addHullArcs(std::uint32_t a, std::uint32_t b, const LayerOrder& o
 }
 
 void SeenArcs::add(std::uint32_t front, std::uint32_t back) {
-  const std::size_t arc = std::size_t{front} * scene_.objects.size() + back;
-  if (!known_[arc]) {
-    known_[arc] = true;
-    arcs_.push_back({PartId(front), PartId(back)});
-  }
+  arcs_.push_back({PartId(front), PartId(back)});
 }
 
 }  // namespace sightline::tool

@@ -45,9 +45,8 @@ class SeenArcs {
   LayerRenderer renderer_;
   ArcSorter sorter_;
   LayerImage image_;
-  std::vector<Cover> covers_;
-  std::vector<LayerArc> arcs_;
-  std::vector<bool> known_;  // one per pair of parts, front after front: whether arcs_ has the arc
+  std::vector<Cover> covers_;   // as many as pixels times the parts that cover one, on average
+  std::vector<LayerArc> arcs_;  // in any order, some more than once
 };
 
 }  // namespace sightline::tool

@@ -1,0 +1,29 @@
+#pragma once
+
+// Signs that RegionProof relies on: in doubles, each with a bound of its rounding.
+
+#include <optional>
+
+#include "sightline/math/vec3.h"
+
+namespace sightline {
+
+struct Sign {
+  double value = 0.0, doubt = 0.0;
+  bool positive() const { return value > doubt; }
+  bool negative() const { return value < -doubt; }
+};
+
+struct Corners {
+  Vec3d a, b, c;
+};
+
+double sizeOf(const Vec3d& v);
+// dot(n, a - b), where n may have any value.
+Sign along(const Vec3d& n, const Vec3d& a, const Vec3d& b);
+// Six times the volume of the triangle and the point: positive in front of it.
+Sign sideOf(const Corners& t, const Vec3d& p);
+// How a segment meets a triangle: 1 from its front, -1 from its back, 0 not at all; nothing if in doubt.
+std::optional<int> crossing(const Corners& t, const Vec3d& from, const Vec3d& to);
+
+}  // namespace sightline

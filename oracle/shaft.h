@@ -1,0 +1,34 @@
+#pragma once
+
+// The convex hull of a region and a box, which all lines of sight between them are in; for RegionProof.
+
+#include <vector>
+
+#include "oracle/region_hull.h"
+
+namespace sightline {
+
+class Shaft {
+ public:
+  // eyes: points whose hull holds the region.
+  Shaft(const std::vector<Vec3d>& eyes, const DoubleBox& target);
+
+  // True only if the segment, or the triangle, misses the shaft.
+  bool isMissedBy(const Vec3d& p, const Vec3d& q) const;
+  bool isMissedBy(const Corners& t) const;
+
+ private:
+  // All of the shaft is on one side of the plane.
+  struct Side {
+    Vec3d normal;  // outwards
+    Vec3d top;     // a point of the hull at which it is greatest, but for rounding
+  };
+
+  void addSide(const Vec3d& normal);
+  bool beyond(const Vec3d& normal, const Vec3d& p, const Vec3d& q) const;
+
+  std::vector<Vec3d> hull_;
+  std::vector<Side> sides_;
+};
+
+}  // namespace sightline
