@@ -21,7 +21,7 @@ constexpr std::size_t kHeadBytes = 8 + 1 + 1 + 4 + 4 + 48 + 4, kRunBytes = 8;
 bool inRange(const HidingWitness& witness, std::uint8_t kind, std::uint8_t part) {
   const auto bits = static_cast<std::uint32_t>(std::bit_width(witness.cell) - 1);
   if (witness.cell == 0 || bits % 3 != 0 || bits / 3 > kMaxOctreeDepth || kind >= kWitnessKinds ||
-      part >= kWitnessParts || witness.hidden.empty()) {
+      part >= kWitnessParts || witness.hidden.empty() || !isFinite(witness.from) || !isFinite(witness.to)) {
     return false;
   }
   std::uint32_t after = 0;
@@ -145,8 +145,8 @@ Result<Witnesses> readWitnesses(std::span<const std::byte> bytes, const std::str
   reader.read<std::uint64_t>();
   Witnesses witnesses;
   witnesses.scene.hash = reader.read<std::uint64_t>();
-  witnesses.scene.objects = static_cast<decltype(witnesses.scene.objects)>(reader.read<std::uint64_t>());
-  witnesses.scene.triangles = static_cast<decltype(witnesses.scene.triangles)>(reader.read<std::uint64_t>());
+  witnesses.scene.objects = reader.read<std::uint64_t>();
+  witnesses.scene.triangles = reader.read<std::uint64_t>();
   witnesses.root_min = readVec(reader);
   witnesses.root_max = readVec(reader);
   if (!pvs::read(reader, witnesses.all) || !reader.atEnd()) {

@@ -51,19 +51,12 @@ class Sampler {
 
  private:
   Status readHidden(std::uint32_t leaf, CellPart part) {
-    const OctreeLeaf& record = octree_.leaves[leaf];
-    const std::uint32_t set = part == CellPart::kFront  ? record.front_set
-                              : part == CellPart::kBack ? record.back_set
-                                                        : record.set;
-    nodes_.clear();
-    if (const Status ok = baked_.readSet(set, nodes_); !ok) {
+    if (const Status ok = readVisible(baked_, leaf, part, is_visible_at_); !ok) {
       return ok;
     }
     is_visible_.assign(scene_.objects.size(), 0);
-    for (const std::uint32_t node : nodes_) {
-      for (const ObjectId object : baked_.boxes().objectsBelow(node)) {
-        is_visible_[object.value] = 1;
-      }
+    for (std::size_t i = 0; i < is_visible_at_.size(); ++i) {
+      is_visible_[baked_.boxes().objects[i].value] = is_visible_at_[i];
     }
     hidden_.clear(), visible_.clear();
     for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
@@ -113,8 +106,7 @@ class Sampler {
   const Scene& scene_;
   SplitMix random_;
   EyeRegion region_;
-  std::vector<std::uint32_t> nodes_;
-  std::vector<std::uint8_t> is_visible_;
+  std::vector<std::uint8_t> is_visible_, is_visible_at_;  // by object, and by place in the box tree
   std::vector<ObjectId> visible_, hidden_;
   std::set<std::tuple<std::uint32_t, CellPart, ObjectId>> known_;
   HiddenPairs pairs_;
@@ -141,6 +133,25 @@ EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32
                       {-plane.normal, -std::nextafter(plane.front, -kInfinity)}};
   }
   return region;
+}
+
+Status readVisible(const SightFile& baked, std::uint32_t leaf, CellPart part,
+                   std::vector<std::uint8_t>& is_visible) {
+  const BoxTreeView boxes = baked.boxes();
+  const OctreeLeaf& record = baked.octree().leaves[leaf];
+  const std::uint32_t set = part == CellPart::kFront  ? record.front_set
+                            : part == CellPart::kBack ? record.back_set
+                                                      : record.set;
+  is_visible.assign(boxes.objects.size(), 0);
+  std::vector<std::uint32_t> nodes;
+  if (const Status ok = baked.readSet(set, nodes); !ok) {
+    return ok;
+  }
+  for (const std::uint32_t node : nodes) {
+    const BoxNode& n = boxes.nodes[node];
+    std::fill_n(is_visible.begin() + n.first_object, n.object_count, std::uint8_t{1});
+  }
+  return Success{};
 }
 
 Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, const Scene& scene, std::uint32_t count,

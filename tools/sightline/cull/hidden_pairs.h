@@ -1,6 +1,6 @@
 #pragma once
 
-// A sample of what a baked file claims: that an object is hidden from everywhere in a cell.
+// What a baked file claims: that an object is hidden from everywhere in a cell. And a sample of it.
 
 #include <cstdint>
 #include <vector>
@@ -23,6 +23,11 @@ struct HiddenPair {
 
 // The eyes for which the look-up returns the part's set: the closed cell, on one side of its plane.
 EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32_t leaf, CellPart part);
+
+// Says for each place in BoxTree::objects, with 1, that its object is in the part's set; the others are
+// claimed to be hidden. Error if the set is corrupt.
+Status readVisible(const SightFile& baked, std::uint32_t leaf, CellPart part,
+                   std::vector<std::uint8_t>& is_visible);
 
 struct HiddenPairs {
   std::vector<OctreeCell> cells;  // of all leaves

@@ -44,7 +44,7 @@ struct HidingWitness {
   WitnessKind kind = WitnessKind::kConvex;
   std::uint32_t occluder = kNoOccluder;  // kConvex: its number, or that of the body's first face
   ObjectId object{};                     // kConvex, kSurfaces: whose triangles hide
-  Vec3d from{}, to{};                    // kSurfaces: the line of sight, scene space
+  Vec3d from{}, to{};                    // kSurfaces: the line of sight, scene space; finite
   std::vector<Run> hidden{};             // ascending, not empty
 
   friend bool operator==(const HidingWitness&, const HidingWitness&) = default;
