@@ -349,8 +349,9 @@ Status checkSeenArcs(const LayersOptions& options) {
                                                   {"--pdf", !options.drawings.pdf.empty()}};
   for (const auto& [option, given] : refused) {
     if (sortsBySeen(options.sort) && given) {
-      return Error{
-          fmt::format("--arcs seen: is an order of one picture's pixels, and {} needs more", option)};
+      return Error{fmt::format(
+          "--arcs seen: is an order of one picture's pixels, and {} needs more; leave one of the two out",
+          option)};
     }
   }
   return Success{};
