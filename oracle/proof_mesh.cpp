@@ -63,7 +63,7 @@ void ProofMesh::gather() {
   findBodies();
 }
 
-// Of each object, what is connected over edges, and whether its directed edges cancel.
+// Finds what of each object is connected over edges, and whether its directed edges cancel.
 void ProofMesh::findBodies() {
   body_of.assign(triangles.size(), kNoSheet);
   for (std::uint32_t start = 0; start < triangles.size(); ++start) {

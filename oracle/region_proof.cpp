@@ -195,7 +195,8 @@ class RegionProof::Attempt {
     });
   }
 
-  // True if no end of a segment can pass through the triangle's front, nor through it in the box.
+  // True if no line of sight begins or ends at the triangle while its ends move through the region and the
+  // box: how often lines cross it does not change there.
   bool clearOfEnds(const Corners& t) const {
     const DoubleBox box = boxOf(t);
     const bool from_eyes =

@@ -7,8 +7,8 @@
 namespace sightline {
 namespace {
 
-// Of a dot product of a vector and a difference of points, as a fraction of their sizes: far above what IEEE
-// arithmetic can lose in so few operations.
+// A dot product of a vector and a difference of points is off by at most this fraction of their sizes, which
+// is far more than IEEE arithmetic can lose in so few operations.
 constexpr double kProduct = 0x1p-46;
 
 }  // namespace

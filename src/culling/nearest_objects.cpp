@@ -2,16 +2,9 @@
 
 #include <algorithm>
 
+#include "src/math/box_distance.h"
+
 namespace sightline::culling {
-namespace {
-
-double squaredDistance(const Box& box, const Vec3d& point) {
-  const Vec3d beside = max(max(Vec3d(box.min) - point, point - Vec3d(box.max)), Vec3d());
-  return dot(beside, beside);
-}
-
-}  // namespace
-
 bool NearestObjects::find(const Frustum& frustum, const Vec3d& eye, const SetFilter* filter, std::size_t most,
                           std::vector<ObjectId>& out) {
   waiting_.clear();
@@ -51,7 +44,7 @@ void NearestObjects::add(std::uint32_t node, std::uint8_t planes, const Frustum&
       classify(frustum, box, planes) == FrustumSide::kOutside) {
     return;
   }
-  waiting_.push_back({squaredDistance(box, eye), node, planes});
+  waiting_.push_back({math::squaredDistance(box, eye), node, planes});
   std::push_heap(waiting_.begin(), waiting_.end(), comesLater);
 }
 

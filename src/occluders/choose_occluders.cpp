@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/math/box_distance.h"
+
 namespace sightline {
 namespace {
 
@@ -24,7 +26,7 @@ bool insideFrustum(const Frustum& frustum, const Box& box) {
   return classify(frustum, box, cut) != FrustumSide::kOutside;
 }
 
-// Of a body: of the sides of the box around it.
+// For a body, the sides of the box around it count.
 double areaAngle(const Box& box, const View& view, AreaAngleDirection direction) {
   const Vec3d to_center = center(box) - view.eye;
   const double squared = view.orthographic ? 1.0 : dot(to_center, to_center);
@@ -35,11 +37,6 @@ double areaAngle(const Box& box, const View& view, AreaAngleDirection direction)
   const Vec3d v = abs(along_view ? view.forward : to_center / std::sqrt(squared));
   const Vec3d size = Vec3d(box.max) - Vec3d(box.min);
   return (size.y * size.z * v.x + size.x * size.z * v.y + size.x * size.y * v.z) / squared;
-}
-
-double squaredDistance(const Box& box, const Vec3d& point) {
-  const Vec3d nearest = max(Vec3d(box.min), min(Vec3d(box.max), point));
-  return dot(nearest - point, nearest - point);
 }
 
 }  // namespace
@@ -74,7 +71,7 @@ std::span<const OccluderId> OccluderChooser::choose(const View& view, const Occl
   ranked_.clear();
   const double limit = settings.max_distance * settings.max_distance;
   for (const ObjectId object : objects) {
-    if (limit > 0.0 && squaredDistance(object_bounds[object.value], view.eye) > limit) {
+    if (limit > 0.0 && math::squaredDistance(object_bounds[object.value], view.eye) > limit) {
       continue;
     }
     for (const OccluderId id : settings.bodies ? set.unitsOf(object) : set.occludersOf(object)) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "src/layers/hull/support.h"
+#include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
@@ -20,17 +21,12 @@ std::ostream& operator<<(std::ostream& out, Intersection m) {
 
 namespace {
 
+using shapes::hullOf;
 using shapes::Points;
 using shapes::Random;
 using Kind = ConvexSet::Kind;
 
 constexpr std::array<Kind, 3> kKinds{Kind::kHull, Kind::kWithEye, Kind::kSwept};
-
-ConvexHull hullOf(const Points& points) {
-  const auto hull = buildHull(points);
-  EXPECT_TRUE(hull);
-  return hull ? *hull : ConvexHull();
-}
 
 Intersection ask(const ConvexSet& first, const ConvexSet& second) {
   PairWitness witness;

@@ -7,20 +7,16 @@
 #include <cmath>
 
 #include "src/layers/hull/support.h"
+#include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline::layers {
 namespace {
 
+using shapes::hullOf;
 using shapes::Random;
 using test::Exact;
-
-ConvexHull hullOf(const shapes::Points& points) {
-  const auto hull = buildHull(points);
-  EXPECT_TRUE(hull);
-  return hull ? *hull : ConvexHull();
-}
 
 // The height of a point of the set above the local origin, without rounding.
 Exact exactHeight(const Placement& placement, const Vec3d& point, const Vec3d& direction,

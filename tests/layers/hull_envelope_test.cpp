@@ -7,18 +7,14 @@
 #include <vector>
 
 #include "src/layers/pairs/convex_pair.h"
+#include "tests/layers/hull_of.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline::layers {
 namespace {
 
+using shapes::hullOf;
 using shapes::Random;
-
-ConvexHull hullOf(const std::vector<Vec3d>& points) {
-  Result<ConvexHull> hull = buildHull(points);
-  EXPECT_TRUE(hull);
-  return std::move(*hull);
-}
 
 HullEnvelope envelopeOf(const ConvexHull& hull) {
   return {hull, boxOf(hull)};

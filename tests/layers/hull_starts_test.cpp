@@ -5,19 +5,15 @@
 #include <algorithm>
 #include <set>
 
+#include "tests/layers/hull_of.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline {
 namespace {
 
+using shapes::hullOf;
 using shapes::Points;
 using shapes::Random;
-
-ConvexHull withStarts(const Points& points) {
-  const Result<ConvexHull> hull = buildHull(points);
-  EXPECT_TRUE(hull);
-  return hull ? *hull : ConvexHull{};
-}
 
 double greatestHeight(const ConvexHull& hull, const Vec3d& direction) {
   double height = dot(direction, hull.vertices.front());
@@ -34,7 +30,7 @@ TEST(HullStarts, AreNearlyTheFarthestOfAllVertices) {
   for (const Points& points :
        {shapes::toothpick(), shapes::moved(shapes::ellipsoid(24, 12, {9, 1e-3, 0.3}), {1e3, 3, -1e3}),
         shapes::randomBall(random, 500)}) {
-    const ConvexHull hull = withStarts(points);
+    const ConvexHull hull = hullOf(points);
     ASSERT_EQ(hull.starts.size(), layers::kStarts);
     for (int i = 0; i < 2000; ++i) {
       const Vec3d unit = random.direction();
@@ -52,15 +48,15 @@ TEST(HullStarts, AreNearlyTheFarthestOfAllVertices) {
 }
 
 TEST(HullStarts, DifferForLongHullsTurnedByLittle) {
-  const ConvexHull hull = withStarts(shapes::ellipsoid(24, 40, {0.008, 0.077, 0.008}));
+  const ConvexHull hull = hullOf(shapes::ellipsoid(24, 40, {0.008, 0.077, 0.008}));
   const std::set<std::uint32_t> starts(hull.starts.begin(), hull.starts.end());
   EXPECT_GT(starts.size(), layers::kStarts / 2);
 }
 
 TEST(HullStarts, AreOnlyOfHullsOnWhichSearchesGoUphill) {
-  EXPECT_TRUE(withStarts(shapes::cube()).starts.empty());
-  EXPECT_TRUE(withStarts(shapes::flatPolygon(50)).starts.empty());
-  EXPECT_TRUE(withStarts(shapes::segment({1, 2, 3}, {4, 5, 6})).starts.empty());
+  EXPECT_TRUE(hullOf(shapes::cube()).starts.empty());
+  EXPECT_TRUE(hullOf(shapes::flatPolygon(50)).starts.empty());
+  EXPECT_TRUE(hullOf(shapes::segment({1, 2, 3}, {4, 5, 6})).starts.empty());
 }
 
 }  // namespace

@@ -10,22 +10,18 @@
 #include <tuple>
 #include <utility>
 
+#include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline {
 namespace {
 
+using shapes::hullOf;
 using shapes::Points;
 using shapes::Random;
 using test::Exact;
 using Place = std::tuple<double, double, double>;
-
-ConvexHull built(const Points& points) {
-  const Result<ConvexHull> hull = buildHull(points);
-  EXPECT_TRUE(hull) << (hull ? "" : hull.error().message);
-  return hull ? *hull : ConvexHull{};
-}
 
 std::set<Place> places(const Points& points) {
   std::set<Place> set;
@@ -178,7 +174,7 @@ Points dicedCube(int cuts) {
 }
 
 TEST(Hull, ACubeHasSixFacesAndThreeEdgesACorner) {
-  const ConvexHull hull = built(dicedCube(4));
+  const ConvexHull hull = hullOf(dicedCube(4));
   EXPECT_EQ(hull.dimension, 3);
   EXPECT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(hull.triangles.size(), 12u);
@@ -198,7 +194,7 @@ TEST(Hull, PointsInTheSidesOfATurnedCubeAreNoVertices) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const Points points = shapes::turned(dicedCube(6), shapes::randomAxes(random));
-    const ConvexHull hull = built(points);
+    const ConvexHull hull = hullOf(points);
     EXPECT_EQ(hull.vertices.size(), 8u);
     EXPECT_LE(hull.slack, 1e-13);
     EXPECT_GT(hull.descent_factor, 0.0);
@@ -213,7 +209,7 @@ TEST(Hull, VerticesOfWholePointsAreTheExtremeOnes) {
     Random random(seed);
     const int half = random.whole(1, 4);
     const Points points = shapes::randomGrid(random, 1 + random.below(30), half);
-    const ConvexHull hull = built(points);
+    const ConvexHull hull = hullOf(points);
     ++dimensions[hull.dimension];
     ASSERT_EQ(places(hull.vertices), extremePlaces(points));
     expectSound(hull, points);
@@ -231,7 +227,7 @@ TEST(Hull, FindsTheDimensionOfFlatWholePoints) {
     SCOPED_TRACE(seed);
     Random random(seed);
     const Points points = shapes::randomFlatGrid(random, 1 + random.below(12), 4, random.whole(0, 2));
-    const ConvexHull hull = built(points);
+    const ConvexHull hull = hullOf(points);
     ASSERT_LE(hull.dimension, 2);
     ASSERT_EQ(places(hull.vertices), extremePlaces(points));
     expectSound(hull, points);
@@ -242,7 +238,7 @@ TEST(Hull, FindsTheDimensionOfFlatWholePoints) {
 
 TEST(Hull, APolygonsNeighboursGoRoundItsOutline) {
   const std::size_t sides = 9;
-  const ConvexHull hull = built(shapes::flatPolygon(sides));
+  const ConvexHull hull = hullOf(shapes::flatPolygon(sides));
   ASSERT_EQ(hull.vertices.size(), sides);
   for (std::uint32_t v = 0; v < sides; ++v) {
     const std::set<std::uint32_t> expected{static_cast<std::uint32_t>((v + 1) % sides),
@@ -260,7 +256,7 @@ TEST(Hull, FlatUpToRoundingIsFlatWithItsThicknessInTheSlack) {
     const shapes::Axes axes = shapes::randomAxes(random);
     const Vec3d away = random.direction() * 10.0;
     const Points disc = shapes::moved(shapes::turned(shapes::flatPolygon(24), axes), away);
-    const ConvexHull polygon = built(disc);
+    const ConvexHull polygon = hullOf(disc);
     EXPECT_EQ(polygon.dimension, 2);
     EXPECT_EQ(polygon.vertices.size(), 24u);
     EXPECT_LE(polygon.slack, 1e-12);
@@ -269,7 +265,7 @@ TEST(Hull, FlatUpToRoundingIsFlatWithItsThicknessInTheSlack) {
     for (int i = 0; i < 20; ++i) {
       line.push_back(away + axes.x * random.number(-3, 3));
     }
-    const ConvexHull segment = built(line);
+    const ConvexHull segment = hullOf(line);
     EXPECT_EQ(segment.dimension, 1);
     EXPECT_LE(segment.slack, 1e-12);
     expectSound(segment, line);
@@ -285,11 +281,11 @@ TEST(Hull, SizeAndPlaceDoNotMatter) {
                                  shapes::flatPolygon(5),
                                  shapes::segment({1, 2, 3}, {-1, 0, 0.5})};
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    const ConvexHull plain = built(sets[s]);
+    const ConvexHull plain = hullOf(sets[s]);
     for (const double scale : {0x1p-600, 1e-6, 1e6, 1e90}) {
       SCOPED_TRACE(testing::Message() << "set " << s << " scale " << scale);
       const Points points = shapes::scaled(sets[s], scale);
-      const ConvexHull hull = built(points);
+      const ConvexHull hull = hullOf(points);
       EXPECT_EQ(hull.dimension, plain.dimension);
       EXPECT_EQ(hull.vertices.size(), plain.vertices.size());
       EXPECT_EQ(hull.triangles.size(), plain.triangles.size());
@@ -299,7 +295,7 @@ TEST(Hull, SizeAndPlaceDoNotMatter) {
     }
     SCOPED_TRACE(testing::Message() << "set " << s << " far away");
     const Points points = shapes::moved(sets[s], {1e6, -1e6, 1e6});
-    const ConvexHull hull = built(points);
+    const ConvexHull hull = hullOf(points);
     EXPECT_EQ(hull.dimension, plain.dimension);
     EXPECT_EQ(hull.vertices.size(), plain.vertices.size());
     EXPECT_LE(hull.slack, 1e-8);
@@ -317,7 +313,7 @@ TEST(Hull, RandomSolidsAreSound) {
     for (Vec3d& p : points) {
       p = axes.turn({p.x * stretch.x, p.y, p.z * stretch.z});
     }
-    const ConvexHull hull = built(points);
+    const ConvexHull hull = hullOf(points);
     EXPECT_EQ(hull.dimension, 3);
     EXPECT_LE(hull.slack, 1e-12);
     expectSound(hull, points, 9);
@@ -335,7 +331,7 @@ TEST(Hull, NearlyFlatAndNearlyStraightSolidsAreSound) {
     for (Vec3d& p : points) {
       p = axes.turn({p.x * thin.x, p.y, p.z * thin.z});
     }
-    const ConvexHull hull = built(points);
+    const ConvexHull hull = hullOf(points);
     EXPECT_LE(hull.slack, 1e-11);
     expectSound(hull, points);
   }
@@ -349,14 +345,14 @@ TEST(Hull, TheSamePointsManyTimesChangeNothing) {
     often.push_back(once[random.below(30)]);
   }
   often.insert(often.end(), once.begin(), once.end());
-  EXPECT_EQ(places(built(often).vertices), places(built(once).vertices));
-  EXPECT_EQ(built(Points(50, {1, 2, 3})).vertices.size(), 1u);
-  EXPECT_EQ(built(Points(50, {1, 2, 3})).slack, 0.0);
+  EXPECT_EQ(places(hullOf(often).vertices), places(hullOf(once).vertices));
+  EXPECT_EQ(hullOf(Points(50, {1, 2, 3})).vertices.size(), 1u);
+  EXPECT_EQ(hullOf(Points(50, {1, 2, 3})).slack, 0.0);
 }
 
 TEST(Hull, TheToothpickKeepsAllItsPoints) {
   const Points points = shapes::toothpick();
-  const ConvexHull hull = built(points);
+  const ConvexHull hull = hullOf(points);
   EXPECT_EQ(hull.vertices, points);
   EXPECT_EQ(hull.triangles.size(), 640u);
   EXPECT_GT(hull.descent_factor, 0.0);
@@ -384,8 +380,8 @@ TEST(Hull, WritesNothing) {
     for (Vec3d& p : points) {
       p.y *= 0x1p-44;
     }
-    built(points);
-    built(shapes::turned(dicedCube(3), shapes::randomAxes(random)));
+    hullOf(points);
+    hullOf(shapes::turned(dicedCube(3), shapes::randomAxes(random)));
   }
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");

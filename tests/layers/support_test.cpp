@@ -6,21 +6,17 @@
 #include <limits>
 #include <vector>
 
+#include "tests/layers/hull_of.h"
 #include "tests/support/exact_pairs.h"
 #include "tests/support/layer_shapes.h"
 
 namespace sightline {
 namespace {
 
+using shapes::hullOf;
 using shapes::Points;
 using shapes::Random;
 using test::Exact;
-
-ConvexHull built(const Points& points) {
-  const Result<ConvexHull> hull = buildHull(points);
-  EXPECT_TRUE(hull);
-  return hull ? *hull : ConvexHull{};
-}
 
 // Returns random directions, normals of triangles and faces (ties), and directions perpendicular to edges.
 std::vector<Vec3d> directionsFor(const ConvexHull& hull, Random& random, std::size_t count) {
@@ -70,7 +66,7 @@ TEST(Support, NoPointIsHigherThanTheErrorAllowsFromAnyStart) {
   };
   for (std::size_t s = 0; s < sets.size(); ++s) {
     SCOPED_TRACE(s);
-    const ConvexHull hull = built(sets[s]);
+    const ConvexHull hull = hullOf(sets[s]);
     for (const Vec3d& direction : directionsFor(hull, random, 600)) {
       const auto start = random.below(static_cast<std::uint32_t>(hull.vertices.size()) + 2);
       expectNoPointHigher(hull, sets[s], direction, layers::farthest(hull, direction, start));
@@ -84,7 +80,7 @@ TEST(Support, NoPointIsHigherThanTheErrorAllowsFromAnyStart) {
 TEST(Support, EveryStartLeadsToTheSameHeight) {
   Random random(13);
   const Points points = shapes::toothpick();
-  const ConvexHull hull = built(points);
+  const ConvexHull hull = hullOf(points);
   ASSERT_GT(hull.descent_factor, 0.0);
   for (const Vec3d& direction : directionsFor(hull, random, 60)) {
     double most = -std::numeric_limits<double>::infinity();
@@ -102,17 +98,17 @@ TEST(Support, EveryStartLeadsToTheSameHeight) {
 }
 
 TEST(Support, TiesGoToTheLowerVertex) {
-  const ConvexHull cube = built(shapes::cube());
+  const ConvexHull cube = hullOf(shapes::cube());
   EXPECT_EQ(layers::farthest(cube, {0, 0, 1}, 7).vertex, 4u);
   EXPECT_EQ(layers::farthest(cube, {0, 0, 0}, 3).vertex, 0u);
   EXPECT_EQ(layers::farthest(cube, {-1, 0, 0}, 6).vertex, 0u);
 }
 
 TEST(Support, StrangeStartsAndDirectionsDoNoHarm) {
-  const ConvexHull hull = built(shapes::toothpick());
+  const ConvexHull hull = hullOf(shapes::toothpick());
   EXPECT_LT(layers::farthest(hull, {1, 2, 3}, 0xffffffffu).vertex, hull.vertices.size());
   const double huge = std::numeric_limits<double>::max();
-  const ConvexHull large = built(shapes::scaled(shapes::toothpick(), 1e100));
+  const ConvexHull large = hullOf(shapes::scaled(shapes::toothpick(), 1e100));
   const layers::Support found = layers::farthest(large, {huge, -huge, huge}, 17);
   EXPECT_LT(found.vertex, large.vertices.size());
   EXPECT_EQ(layers::supportError(large, huge), std::numeric_limits<double>::infinity());

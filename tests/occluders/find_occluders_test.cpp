@@ -501,13 +501,17 @@ TEST(OccluderEdges, OfAFloorCutIntoRectanglesNameWhatLiesBeyondEachPiece) {
   EXPECT_GT(pieces, 5000u);
 }
 
+// Adds `count` walls side by side, from x = left on, each a metre wide but for the last, which ends at 128.
+void addRowOfWalls(Scene& scene, std::uint32_t left, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    addObject(scene, rectangle(left + i, 300, i + 1 < count ? left + i + 1 : 128, 302), {}, MaterialId(0u));
+  }
+}
+
 TEST(OccluderEdges, OfTooManyPiecesStayWhole) {
   for (const std::uint32_t count : {64u, 65u}) {
     Scene scene = sceneOf(rectangle(0, 0, 128, 300));
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const double right = i + 1 < count ? i + 1 : 128;
-      addObject(scene, rectangle(i, 300, right, 302), {}, MaterialId(0u));
-    }
+    addRowOfWalls(scene, 0, count);
     weldPositions(scene);
     const OccluderSet set = findOccluders(scene.view(), kKeepAll);
     ASSERT_EQ(set.occluders.size(), count + 1);
@@ -529,9 +533,7 @@ TEST(OccluderEdges, OfTooManyPiecesKeepWhatTheyShareAsAWhole) {
     lower.triangles = {{0, 1, 3}, {1, 2, 3}, {0, 3, 4}};
     Scene scene = sceneOf(lower);
     addObject(scene, rectangle(0, 300, 64, 302), {}, MaterialId(0u));
-    for (std::uint32_t i = 0; i < count; ++i) {
-      addObject(scene, rectangle(64 + i, 300, i + 1 < count ? 65 + i : 128, 302), {}, MaterialId(0u));
-    }
+    addRowOfWalls(scene, 64, count);
     weldPositions(scene);
     const OccluderSet set = findOccluders(scene.view(), kKeepAll);
     ASSERT_EQ(set.occluders.size(), count + 2);

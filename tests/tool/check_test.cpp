@@ -133,7 +133,8 @@ TEST_F(Check, ContradictsAForgedClaim) {
 TEST_F(Check, RefusesAForgedWitness) {
   Witnesses witnesses = readBack();
   ASSERT_FALSE(witnesses.all.empty());
-  // Of another object's witness, which hides other things. Some line of sight misses that object.
+  // The forged one names the object of another witness, which hides other things. Some line of sight misses
+  // it.
   HidingWitness& forged = witnesses.all.front();
   const auto other =
       std::find_if(witnesses.all.begin(), witnesses.all.end(), [&](const HidingWitness& witness) {

@@ -43,9 +43,9 @@ struct ConvexHull {
   // 0: no such bound exists (a vertex hardly stands out, or the hull is no solid), so all vertices are
   // compared.
   double descent_factor = 0.0;
-  // Of a hull with many vertices: the farthest vertex along a direction of each of 96 ranges, from which
+  // A hull with many vertices has the farthest vertex along a direction of each of 96 ranges here, from which
   // searches go uphill that know no better one, and the sizes of the box by which directions are divided into
-  // ranges. Empty for other hulls.
+  // ranges. They are empty for other hulls.
   std::vector<std::uint32_t> starts{};
   Vec3d start_size{};
 };

@@ -158,7 +158,8 @@ class SurfaceDrawer {
   SurfaceDrawing drawing_;
   double budget_us_;
   TimedBudget timed_{0.0};
-  // Of the frame, as SurfaceStats::work: in the budget, and of that before the traversal.
+  // These are the frame's, as SurfaceStats::work: what counts in the budget, and what of it was drawn before
+  // the traversal.
   double work_ = 0.0, built_work_ = 0.0;
   std::uint64_t groups_ = 0, edges_ = 0;
   UsualWork usual_work_;

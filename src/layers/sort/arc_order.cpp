@@ -77,7 +77,7 @@ class ArcSource : public OccluderSource {
 }  // namespace
 
 struct ArcSorter::Impl {
-  // Of a result.
+  // This is what a result refers to.
   struct Storage {
     std::vector<PartId> parts;
     std::vector<std::uint32_t> first_of;

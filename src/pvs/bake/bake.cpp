@@ -294,7 +294,7 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
   std::vector<PartTask> below;
   if (head.summary.leaves == 0) {
     const auto search_distance = bytes.read<double>();
-    // Of the runs, the number and then two numbers each.
+    // The number of runs comes first, then two numbers for each.
     const std::span<const std::byte> rest = bytes.readBytes(bytes.remaining());
     base::ByteReader runs(rest);
     const std::size_t length =

@@ -15,7 +15,7 @@ using namespace pvs;
 namespace {
 
 constexpr std::uint64_t kMagic = 0x3153534e54495753u;
-// Of a witness without runs, and of a run.
+// A witness without runs takes so much, and each run.
 constexpr std::size_t kHeadBytes = 8 + 1 + 1 + 4 + 4 + 48 + 4, kRunBytes = 8;
 
 bool inRange(const HidingWitness& witness, std::uint8_t kind, std::uint8_t part) {

@@ -307,12 +307,13 @@ class Checker {
   std::vector<OctreeCell> cells_;  // of all leaves
   CheckReport report_;
 
-  // Of the claims that are decided together; judged_ also has what was judged before and may be asked again.
+  // The claims that are decided together, what they rest on, and what was judged of that, now or before, and
+  // may be asked again.
   std::vector<Claim> claims_;
   std::vector<WitnessUse> uses_;
   std::vector<JudgedUse> judged_;  // ascending
 
-  // Of the part that is added.
+  // Scratch for the part that is added.
   std::vector<std::uint8_t> is_visible_;
   std::vector<std::uint32_t> hidden_;
   std::vector<FoundWitnesses> found_;

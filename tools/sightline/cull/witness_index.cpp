@@ -38,7 +38,7 @@ WitnessIndex::WitnessIndex(const std::vector<HidingWitness>& witnesses) {
   }
 }
 
-// Of the runs that have begun, the one with the farthest end holds a position if any does.
+// If any of the runs that have begun holds a position, the one with the farthest end does.
 void WitnessIndex::findIn(std::uint64_t cell, WitnessPart part, Positions& open,
                           std::vector<WitnessUse>& uses) const {
   const auto range = ranges_.find(keyOf(cell, part));

@@ -28,7 +28,8 @@ class LayerTotals {
   std::size_t frames() const { return frames_.size(); }
   double mean(double Frame::*value) const;
   double largest(double Frame::*value) const;
-  // Of the frames after the first, whose sort starts from nothing; of the first if there is no other.
+  // These are of the frames after the first, whose sort starts from nothing; of the first if there is no
+  // other.
   double largestAfterFirst(double Frame::*value) const;
   // Takes each frame's sort_us from `again`, the same frames sorted once more, where that is less.
   void keepFaster(const LayerTotals& again);
