@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <optional>
 
 #include "src/culling/methods/draw_occluders.h"
@@ -32,8 +31,6 @@ class DepthPyramidMethod final : public CullingMethod {
     pyramid_.emplace(DepthPyramidSettings{settings_.raster});
     surfaces_.prepareBuffer(*pyramid_);
     own_occluders_ = 0;
-    last_kept_.clear();
-    news_.clear();
     focus_.reset();
     if (settings_.focus.windows > 0 && settings_.focus.magnification > 1.0 && drawsBodies()) {
       const DepthBufferView buffer = pyramid_->depthBuffer();
@@ -59,19 +56,19 @@ class DepthPyramidMethod final : public CullingMethod {
   }
 
   void traverse(const CullingFrame& frame, CullStats& stats, std::vector<ObjectId>& visible) override {
-    if (surfaces_.leftOut() || (surfaces_.draws() && !frame.jumped && changesFast())) {
-      drawFound(frame);
-    }
     // With surfaces most time goes into drawing, and testing everything costs little.
     const bool skips = settings_.temporal_coherence && !surfaces_.draws() && !surfaces_.drawsMoving(frame);
-    traversal_->run(*pyramid_, culling::optionsOf(frame, skips), stats, visible, *frame.parallel_for);
-    // Before the finer buffers: what these hide is nothing new in the next frame.
-    if (surfaces_.draws()) {
-      findNews(visible);
-      last_kept_ = visible;
-    }
+    const culling::TraversalOptions options = culling::optionsOf(frame, skips);
+    const auto ask = [&](CullStats& counts, std::vector<ObjectId>& not_hidden) {
+      traversal_->run(*pyramid_, options, counts, not_hidden, *frame.parallel_for);
+    };
+    const auto finish = [&] {
+      work_ += pyramid_->surfaceStats().work;
+      pyramid_->finish(*frame.parallel_for);
+    };
+    surfaces_.traverse(*pyramid_, stats, visible, finish, ask);
     if (focus_ && frame.test_objects) {
-      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, changesFast(), visible);
+      focus_->refine(*pyramid_, frame, surfaces_, work_, stats, surfaces_.changesFast(), visible);
     }
   }
 
@@ -109,39 +106,8 @@ class DepthPyramidMethod final : public CullingMethod {
   std::span<const MethodStatistic> statistics() const override { return statistics_; }
 
  private:
-  // Sets news_ to the objects that the first buffer of the last frame did not keep.
-  void findNews(std::span<const ObjectId> kept) {
-    news_.clear();
-    std::set_difference(kept.begin(), kept.end(), last_kept_.begin(), last_kept_.end(),
-                        std::back_inserter(news_));
-  }
-
-  // Whether many of the objects that were kept are new.
-  bool changesFast() const { return news_.size() * kCalm > last_kept_.size(); }
-
-  // Draws the surfaces of what the buffer does not hide so far and of which none were drawn: of objects that
-  // come into view in this frame or, after a jump, that are far away.
-  void drawFound(const CullingFrame& frame) {
-    found_.clear();
-    CullStats ignored;
-    traversal_->run(*pyramid_, culling::optionsOf(frame, false), ignored, found_, *frame.parallel_for);
-    if (frame.jumped) {
-      surfaces_.drawBeyond(*pyramid_, found_);
-    } else {
-      findNews(found_);
-      surfaces_.drawMore(*pyramid_, news_);
-    }
-    work_ += pyramid_->surfaceStats().work;
-    pyramid_->finish(*frame.parallel_for);
-  }
-
-  // Where more than one of so many objects that were kept is new, the view changes fast, and the surfaces of
-  // what the last frame kept are not enough.
-  static constexpr std::size_t kCalm = 16;
-
   DepthPyramidMethodSettings settings_;
   culling::SurfaceDrawer surfaces_;
-  std::vector<ObjectId> last_kept_, news_, found_;
   CullingScene scene_;
   std::optional<culling::WideTraversal> traversal_;
   std::optional<DepthPyramid> pyramid_;

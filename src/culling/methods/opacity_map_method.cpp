@@ -64,14 +64,9 @@ class OpacityMapMethod final : public CullingMethod {
                       visible);
       return;
     }
-    if (surfaces_.leftOut()) {
-      found_.clear();
-      CullStats ignored;
-      ask(frame, ignored, found_);
-      surfaces_.drawBeyond(*map_, found_);
-      map_->finish();
-    }
-    ask(frame, stats, visible);
+    surfaces_.traverse(
+        *map_, stats, visible, [&] { map_->finish(); },
+        [&](CullStats& counts, std::vector<ObjectId>& not_hidden) { ask(frame, counts, not_hidden); });
   }
 
   void finish(CullStats& stats) override {
@@ -135,7 +130,6 @@ class OpacityMapMethod final : public CullingMethod {
   std::optional<culling::AdaptiveCoverage> coverage_;
   bool suspended_ = false;         // in this frame
   std::size_t own_occluders_ = 0;  // occluders in the map that are of the scene's set
-  std::vector<ObjectId> found_;    // scratch for one traverse()
   std::vector<MethodStatistic> statistics_{{"map", "occluders_hidden", "occluders behind others"},
                                            {"map", "overlap_tests", "overlap tests"},
                                            {"map", "overlap_failed", "of them failed"},

@@ -17,8 +17,9 @@
 
 namespace sightline::culling {
 
-// Draws the surfaces of the objects that the last frame kept, or, after a jump, of those in the frustum:
-// first of the nearest ones, then of what these do not hide.
+// Draws the surfaces of the objects that the last frame kept and, where these do not hide much of what comes
+// into view, of that; after a jump of those in the frustum, first of the nearest ones, then of what these do
+// not hide.
 class SurfaceDrawer {
  public:
   // budget_us: see DepthPyramidMethodSettings.
@@ -30,6 +31,8 @@ class SurfaceDrawer {
     usual_work_ = {};
     work_ = 0.0;
     timed_ = TimedBudget(budget_us_);
+    last_kept_.clear();
+    news_.clear();
     nearest_.reset();
     if (surfaces_ != nullptr) {
       nearest_.emplace(*scene.hierarchy, scene.object_bounds);
@@ -54,6 +57,7 @@ class SurfaceDrawer {
     work_ = built_work_ = 0.0;
     groups_ = edges_ = 0;
     in_frustum_.clear();
+    jumped_ = frame.jumped;
     more_in_frustum_ = draws() && frame.jumped &&
                        !nearest_->find(frame.frustum, frame.view.eye, frame.filter, kNearest, in_frustum_);
   }
@@ -65,18 +69,28 @@ class SurfaceDrawer {
     built_work_ = count(buffer);
     work_ += built_work_;
   }
-  // Whether draw() left out objects in the frustum that are far away. Then drawBeyond() is to be called.
-  bool leftOut() const { return more_in_frustum_; }
-  // Draws the surfaces of those of the objects for which draw() did not. not_hidden: what the buffer shows
-  // after draw(), ascending.
-  template <typename Buffer>
-  void drawBeyond(Buffer& buffer, std::span<const ObjectId> not_hidden) {
-    beyond_.clear();
-    std::set_difference(not_hidden.begin(), not_hidden.end(), in_frustum_.begin(), in_frustum_.end(),
-                        std::back_inserter(beyond_));
-    draw(buffer, beyond_, ViewStep::kSame, whatIsLeft(true));
-    work_ += count(buffer);
+  // Appends the objects that the buffer does not hide after draw(), by ask(stats, visible), which adds to the
+  // one and appends to the other, ascending. Where that calls for more surfaces to be drawn, draws them,
+  // calls finish() and asks once more; the counts are of the last time.
+  template <typename Buffer, typename Finish, typename Ask>
+  void traverse(Buffer& buffer, CullStats& stats, std::vector<ObjectId>& visible, const Finish& finish,
+                const Ask& ask) {
+    CullStats found = stats;
+    ask(found, visible);
+    if (draws()) {
+      if (drawFound(buffer, visible)) {
+        finish();
+        visible.clear();
+        found = stats;
+        ask(found, visible);
+      }
+      findNews(visible, last_kept_);
+      last_kept_ = visible;
+    }
+    stats = found;
   }
+  // Whether many of the objects that the buffer shows are new in this frame.
+  bool changesFast() const { return areMany(news_, last_kept_); }
   // The frame ends: stats has its times.
   void finish(const CullStats& stats) {
     usual_work_.frame(work_);
@@ -110,12 +124,6 @@ class SurfaceDrawer {
   bool drawsMoving(const CullingFrame& frame) const {
     return use_ != SurfaceUse::kNone && !frame.moving_surfaces.empty();
   }
-  // Draws the surfaces of further objects in the same view. What they cost is not counted in the budget.
-  template <typename Buffer>
-  void drawMore(Buffer& buffer, std::span<const ObjectId> objects) {
-    draw(buffer, objects, ViewStep::kSame, drawing_);
-    count(buffer);
-  }
   // What the functions above drew of the scene's surfaces in this frame: groups, and edges of boundaries.
   std::uint64_t groups() const { return groups_; }
   std::uint64_t edges() const { return edges_; }
@@ -123,6 +131,43 @@ class SurfaceDrawer {
  private:
   // So many objects are looked at after a jump before anything is hidden.
   static constexpr std::size_t kNearest = 512;
+  // Where more than one of so many objects is new, the view changes fast, and the surfaces of what the last
+  // frame kept are not enough.
+  static constexpr std::size_t kCalm = 16;
+  static bool areMany(std::span<const ObjectId> news, std::span<const ObjectId> objects) {
+    return news.size() * kCalm > objects.size();
+  }
+
+  // Sets news_ to those of some objects that are not among others; both ascending.
+  void findNews(std::span<const ObjectId> objects, std::span<const ObjectId> others) {
+    news_.clear();
+    std::set_difference(objects.begin(), objects.end(), others.begin(), others.end(),
+                        std::back_inserter(news_));
+  }
+
+  // Draws the surfaces of objects that the buffer shows, and for which draw() did not: after a jump those
+  // that were too far away, else those that the last frame did not keep, if they are many. Returns whether it
+  // drew.
+  template <typename Buffer>
+  bool drawFound(Buffer& buffer, std::span<const ObjectId> not_hidden) {
+    if (jumped_) {
+      if (!more_in_frustum_) {
+        return false;
+      }
+      findNews(not_hidden, in_frustum_);
+      draw(buffer, news_, ViewStep::kSame, whatIsLeft(true));
+      work_ += count(buffer);
+      return true;
+    }
+    findNews(not_hidden, last_kept_);
+    if (!areMany(news_, not_hidden)) {
+      return false;
+    }
+    // What comes into view is not counted in the budget.
+    draw(buffer, news_, ViewStep::kSame, drawing_);
+    count(buffer);
+    return true;
+  }
 
   // How surfaces are drawn with what is left of the frame's budget.
   SurfaceDrawing whatIsLeft(bool jumped) const {
@@ -166,8 +211,10 @@ class SurfaceDrawer {
   const SurfaceSet* surfaces_ = nullptr;
   const ParallelFor* parallel_for_ = nullptr;  // of the frame
   std::optional<NearestObjects> nearest_;
-  std::vector<ObjectId> in_frustum_, beyond_;  // whose surfaces are drawn after a jump
-  bool more_in_frustum_ = false;
+  bool jumped_ = false;               // in this frame
+  std::vector<ObjectId> in_frustum_;  // whose surfaces are drawn first after a jump
+  bool more_in_frustum_ = false;      // than those
+  std::vector<ObjectId> last_kept_, news_;
 };
 
 }  // namespace sightline::culling
