@@ -31,7 +31,8 @@ PlaneRef VolumeBuilder::addPlane(const Plane& plane, double tolerance) {
 
 // Adds an edge of which some parts are shared and some open: a corner for each part, and a cut through each
 // change. The change is moved into the shared part by the inset, so that it stays as far from open outlines
-// as everything else. False: the parts are too short or too many, and nothing was added.
+// as everything else. A shared part with no room for that counts as open, so it takes nothing from the
+// others. False: no part is left that is shared, or there are too many, and nothing was added.
 bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate, const Outline& outline,
                             std::uint64_t open, PlaneRef on_line) {
   constexpr std::uint32_t kMaxCorners = 96;
@@ -39,22 +40,29 @@ bool VolumeBuilder::addRuns(const OccluderSet& set, const EyeOccluder& candidate
   const std::uint32_t n = edge.mesh_edge_count;
   const Vec3d along = normalized(outline.to - outline.from);
   // k counts in the direction of the outline: the mesh edges' own or, seen from the back, the opposite.
-  const auto isOpen = [&](std::uint32_t k) { return (open >> (candidate.flipped ? n - 1 - k : k) & 1) != 0; };
+  const auto bit = [&](std::uint32_t k) { return std::uint64_t{1} << (candidate.flipped ? n - 1 - k : k); };
+  const auto isOpen = [&](std::uint32_t k) { return (open & bit(k)) != 0; };
   const auto pointBefore = [&](std::uint32_t k) {  // before part k, k > 0
     return Vec3d(set.edge_vertices[edge.first_edge_vertex + (candidate.flipped ? n - 1 - k : k - 1)]) -
            eye.position;
   };
+  std::uint32_t first = 0;  // of the run of parts that are alike
   double at = dot(along, outline.from);
-  const double end = dot(along, outline.to);
   for (std::uint32_t k = 1; k <= n; ++k) {
-    const bool change = k == n || isOpen(k) != isOpen(k - 1);
-    if (change) {
-      const double next = k == n ? end : dot(along, pointBefore(k));
-      if (!(next - at > 4.0 * candidate.inset)) {
-        return false;
-      }
-      at = next;
+    if (k < n && isOpen(k) == isOpen(k - 1)) {
+      continue;
     }
+    const double next = dot(along, k == n ? outline.to : pointBefore(k));
+    if (!(next - at > 4.0 * candidate.inset)) {
+      for (; first < k; ++first) {
+        open |= bit(first);
+      }
+    }
+    first = k;
+    at = next;
+  }
+  if (open == allMeshEdges(edge)) {
+    return false;
   }
   if (corners.size() + n > candidate_first_corner_ + kMaxCorners) {
     return false;

@@ -62,6 +62,25 @@ TEST(OcclusionTree, TheSidesOfACornerHideTogether) {
   }
 }
 
+TEST(OcclusionTree, ASharedPartWithoutRoomTakesNothingFromTheRestOfTheEdge) {
+  // Above the lower wall stands one on the left, with which it shares half of its edge, and one on the right,
+  // with which it shares the last ten micrometres: too little for a margin at both ends of them, since the
+  // edge is straight up to a micrometre only.
+  const float end = -1e-5f, bend = -1e-6f;
+  const std::vector<OraclePolygon> two{
+      {{{-4, -4, -5}, {0, -4, -5}, {0, 0, -5}, {end, 0, -5}, {-2, bend, -5}, {-4, 0, -5}}, true},
+      {{{-4, 0, -5}, {-2, bend, -5}, {-2, 4, -5}, {-4, 4, -5}}, true}};
+  std::vector<OraclePolygon> three = two;
+  three.push_back({{{end, 0, -5}, {0, 0, -5}, {4, 0, -5}, {4, 4, -5}, {end, 4, -5}}, true});
+  const Box behind_the_seam{{-7, -1, -12}, {-5.5f, 1, -11}}, behind_the_gap{{-3, -1, -12}, {-2, 1, -11}};
+  for (const auto variant : kVariants) {
+    for (const auto& walls : {two, three}) {
+      EXPECT_EQ(ask(variant, kLookingBack, walls, behind_the_seam), Visibility::kHidden) << walls.size();
+      EXPECT_NE(ask(variant, kLookingBack, walls, behind_the_gap), Visibility::kHidden) << walls.size();
+    }
+  }
+}
+
 TEST(OcclusionTree, DisconnectedWallsAtDifferentDepthsHideTogether) {
   const std::vector<OraclePolygon> walls{wall(-2, 0.5f, -4, 4, -4), wall(0, 5, -8, 8, -6)};
   EXPECT_EQ(ask(OcclusionTreeVariant::kFSE, kLookingBack, walls, {{-1, -1, -12}, {1, 1, -10}}),
