@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "sightline/pvs/bake/write_sight.h"
 #include "sightline/pvs/format/witness.h"
@@ -107,6 +108,29 @@ TEST_F(Check, RecordingWitnessesChangesNothingInTheFile) {
   EXPECT_TRUE(contents(same) == contents(witnesses_));
 }
 
+// A cell that was divided and whose parts became one again has the plane of these, not its own.
+TEST_F(Check, WitnessesOfASideAreOfCellsThatWereNotDivided) {
+  for (const char* kind : {"convex", "fused"}) {
+    use(kind);
+    std::set<std::uint64_t> divided;
+    const Witnesses witnesses = readBack();
+    for (const HidingWitness& witness : witnesses.all) {
+      for (std::uint64_t above = witness.cell / 8; above > 0; above /= 8) {
+        divided.insert(above);
+      }
+    }
+    EXPECT_FALSE(divided.empty());
+    std::size_t of_sides = 0;
+    for (const HidingWitness& witness : witnesses.all) {
+      if (witness.part != WitnessPart::kWhole) {
+        EXPECT_FALSE(divided.contains(witness.cell)) << kind << ", cell " << witness.cell;
+        ++of_sides;
+      }
+    }
+    EXPECT_GT(of_sides, 0u) << kind;
+  }
+}
+
 TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
   use("fused");
   const Outcome outcome = check({"--json", "-"});
@@ -114,6 +138,8 @@ TEST_F(Check, WitnessesOfSurfacesAreKnownByTheirKind) {
   const json report = parse(outcome.out);
   EXPECT_EQ(report["kinds"]["without"]["claims"], 0);
   EXPECT_GT(report["kinds"]["surfaces"]["proved"], 0);
+  EXPECT_GT(report["survived"], 0);
+  EXPECT_EQ(check({"--json", "-", "--threads", "3"}).out, outcome.out) << "rays depend on the threads";
 }
 
 TEST_F(Check, ContradictsAForgedClaim) {
@@ -161,6 +187,15 @@ TEST_F(Check, RefusesAForgedWitnessOfSurfaces) {
   // The line begins outside of the cell; it is so short that it crosses nothing.
   forge([](HidingWitness& witness) { witness.from = witness.from + Vec3d{1e6, 0.0, 0.0}; });
   forge([](HidingWitness& witness) { witness.to = witness.from; });
+}
+
+// A bake asks about the box around a side of a cell's plane, so that a line may begin beyond the plane.
+TEST_F(Check, AcceptsALineThatBeginsInTheCellBeyondTheSideThatItIsOf) {
+  const std::string sight = folder_.file("cell.sight"), own = folder_.file("cell.witnesses");
+  bake(sight, {"--witnesses", own, "--occlusion", "fused", "--region", "90,5.625,1.875,95.625,11.25,7.5"},
+       "0");
+  const Outcome outcome = runTool({"check", sight, kCheckScene, "--witnesses", own});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
 TEST_F(Check, RefusesAWitnessThatNamesWhatIsNotThere) {

@@ -289,6 +289,15 @@ void CellBaker::record(HidingWitness witness, std::span<const ObjectRun> objects
   }
 }
 
+void CellBaker::forgetSides() {
+  const auto other = std::find_if(witnesses_.rbegin(), witnesses_.rend(),
+                                  [this](const HidingWitness& witness) { return witness.cell != cell_; });
+  witnesses_.erase(
+      std::remove_if(other.base(), witnesses_.end(),
+                     [](const HidingWitness& witness) { return witness.part != WitnessPart::kWhole; }),
+      witnesses_.end());
+}
+
 // Skips an occluder whose object is already hidden. Its shadow lies within that of what hides it, from every
 // viewpoint, so little is lost: nothing where one of these occluders does.
 void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen) {

@@ -66,6 +66,9 @@ class CellBaker {
   // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
   const BakeStats& stats() const { return samples_.stats(); }
+  // The last cell is divided. Forgets what hides objects from the sides of its plane: the cells below it have
+  // planes of their own, and if they become one cell again, it has theirs.
+  void forgetSides();
   // What hid objects since the last call; empty if the settings do not ask for it.
   std::vector<HidingWitness> takeWitnesses() { return std::exchange(witnesses_, {}); }
 

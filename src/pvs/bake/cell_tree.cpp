@@ -36,6 +36,7 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
     }
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
+      baker.forgetSides();
       return {.search_distance = distance, .seen = std::move(sets.whole)};
     }
     bool gained = false;

@@ -199,9 +199,11 @@ class Checker {
                   (!one.proved && witness.kind == WitnessKind::kConvex && proof_.refutesObject(claim));
   }
 
+  // The line of a side may begin on the other side of the plane: a bake asks about the box around a side.
   bool hasFalseLine(const HidingWitness& witness, const EyeRegion& region) const {
+    const EyeRegion cell{region.min, region.max, {}};
     return witness.kind == WitnessKind::kSurfaces &&
-           (!region.contains(witness.from) || proof_.misses(witness.from, witness.to, witness.object));
+           (!cell.contains(witness.from) || proof_.misses(witness.from, witness.to, witness.object));
   }
 
   bool isProved(const Claim& claim) const {
