@@ -113,7 +113,7 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
 // Whether something is left out in this view.
 bool SurfaceRaster::rests(const Rest& rest) const {
   const std::uint32_t age = view_number_ - rest.since;
-  return rest.since >= first_view_ && age > 0 && age <= rest.length &&
+  return !drawing_.draw_resting && rest.since >= first_view_ && age > 0 && age <= rest.length &&
          (age <= kSteadyRest || (!view_.view().orthographic && travel_ <= rest.travel));
 }
 

@@ -80,6 +80,7 @@ struct SurfaceDrawing {
   // boundaries, 1 for each tile of 32 x 8 pixels, and 8 for each time that some are drawn together.
   std::uint32_t budget = 60000;
   ViewStep step = ViewStep::kJump;  // from the view in which this set was drawn last
+  bool draw_resting = false;        // what rests is drawn too
 };
 
 // What a draw() of surfaces drew.

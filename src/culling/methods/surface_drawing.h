@@ -134,6 +134,8 @@ class SurfaceDrawer {
   // Where more than one of so many objects is new, the view changes fast, and the surfaces of what the last
   // frame kept are not enough.
   static constexpr std::size_t kCalm = 16;
+  // Where more than one of so many is new, what was of no use in earlier views says nothing of this one.
+  static constexpr std::size_t kStill = 2;
   static bool areMany(std::span<const ObjectId> news, std::span<const ObjectId> objects) {
     return news.size() * kCalm > objects.size();
   }
@@ -164,7 +166,9 @@ class SurfaceDrawer {
       return false;
     }
     // What comes into view is not counted in the budget.
-    draw(buffer, news_, ViewStep::kSame, drawing_);
+    SurfaceDrawing drawing = drawing_;
+    drawing.draw_resting = news_.size() * kStill > not_hidden.size();
+    draw(buffer, news_, ViewStep::kSame, drawing);
     count(buffer);
     return true;
   }
