@@ -106,10 +106,15 @@ class World {
 
   // World space less this are the coordinates of all boxes: of boundsOf() and of those that are classified.
   // A few kilometres from it, single precision and the rounding of double precision make boxes larger and
-  // let less hide; nothing else depends on it. Cull again before anything is classified. Takes some 120
-  // nanoseconds an instance.
-  void setOrigin(const Vec3d& origin);
+  // let less hide; nothing else depends on it.
   Vec3d origin() const;
+  // For worlds in which the camera travels far. In the next calls of tidy(), about one for 300 instances,
+  // everything gets its box from the new origin, beside the one from the old origin, which stays in use. Then
+  // origin() becomes the new one, in a call of tidy(). Cull again before anything is classified. Ends a move
+  // to another origin that goes on. An origin that is not finite has no effect.
+  void moveOrigin(const Vec3d& origin);
+  // The same at once, as behind a loading screen. Takes some 120 nanoseconds an instance.
+  void setOrigin(const Vec3d& origin);
 
   bool has(InstanceId instance) const;
   std::size_t instances() const;  // that are there
@@ -145,10 +150,11 @@ class World {
   void dropSets(SetsId sets);
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew
 
-  // Call this once a frame: keeps the hierarchy good, in at most about so many steps of some 20 nanoseconds.
-  // Answers are right without it, but culling becomes slower. Where a quarter of the instances was added one
-  // by one, it builds another hierarchy in the calls to come, about one for 500 instances, and uses the old
-  // one until that is done.
+  // Call this once a frame, before culling: keeps the hierarchy good, in at most about so many steps of some
+  // 20 nanoseconds, and goes on with moveOrigin(). Answers are right without it, but culling becomes slower.
+  // Where a quarter of the instances was added one by one, or the hierarchy has worn in another way, it
+  // builds another one in the calls to come, about one for 500 instances, and uses the old one until that is
+  // done.
   void tidy(std::uint32_t steps = 10000);
   // Builds the hierarchy anew at once, as if all had been added as one list: after a loading screen, where
   // much was added one by one. Takes half a second for a million instances; no frame needs it.
