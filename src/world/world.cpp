@@ -220,7 +220,7 @@ void WorldData::settle(std::uint32_t looks) {
   }
 }
 
-// Sees to it that both trees are copied with boxes from the next origin.
+// Sees to it that the trees are copied with boxes from the next origin.
 void WorldData::goOnToOrigin() {
   const auto begin = [this](DynamicTree& tree) {
     if (!tree.hasReplacement()) {  // it has not begun, or the tree was built anew meanwhile
@@ -234,7 +234,10 @@ void WorldData::goOnToOrigin() {
     }
   };
   begin(settled);
-  begin(moving);
+  // While a copy is kept up to date, moving costs twice as much, so that of what moves is made last.
+  if (settled.replacementIsComplete()) {
+    begin(moving);
+  }
 }
 
 void WorldData::takeOrigin() {
