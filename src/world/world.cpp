@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -349,6 +350,14 @@ void World::remove(InstanceId instance) {
   gone.version = ++own.version;
   own.free_instances.push_back(id);
   --own.count;
+}
+
+void World::replace(InstanceId instance, const Instance& by) {
+  if (has(instance)) {
+    remove(instance);
+    [[maybe_unused]] const InstanceId again = add(by);
+    assert(again == instance);  // the number that was set free last
+  }
 }
 
 void World::setTransform(InstanceId instance, const Mat4& world_from_mesh) {

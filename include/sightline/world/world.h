@@ -96,6 +96,9 @@ class World {
   // Takes n log n time.
   void add(std::span<const Instance> instances, std::vector<InstanceId>& ids);
   void remove(InstanceId instance);
+  // Puts another instance in the place of one, which gets the same id: another mesh, as of another level of
+  // detail, or another displacement. The same as remove() and add(), and as fast.
+  void replace(InstanceId instance, const Instance& by);
   void setTransform(InstanceId instance, const Mat4& world_from_mesh);
   // Instance i gets matrix i. For many this takes half to three quarters of the time of as many calls of
   // setTransform(), and most of it may be shared among threads. No instance may be named twice.
