@@ -63,6 +63,10 @@ struct WorldJoin {
   std::vector<std::uint64_t> versions{};  // of the instances
   Vec3d origin{};                         // of the surfaces, world space
   SurfaceSet surfaces{};                  // ObjectId is the index into `instances`
+  // Metres: how far, at most, a vertex of the surfaces is from where its matrix takes it. Surfaces are in
+  // single precision, so this is 0 only for positions of few digits, else up to 2^-24 of the distance from
+  // `origin`.
+  double rounding = 0.0;
 };
 
 // Matrices and eyes are in double precision, in world space. Boxes are in single precision, relative to
