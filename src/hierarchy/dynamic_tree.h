@@ -186,7 +186,7 @@ class DynamicTree {
   std::uint32_t heightFor(std::size_t items) const;
 
   std::vector<NodeData> nodes_;
-  // Of node n: those from kChildren * n on. An index of these columns is a "place".
+  // The children of node n are those from kChildren * n on. An index of these columns is a "place".
   std::vector<Box> boxes_;
   std::vector<std::uint32_t> children_;
   std::vector<std::uint32_t> places_;  // by item: its place, or kNone

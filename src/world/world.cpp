@@ -64,7 +64,7 @@ Box placed(const MeshExtent& extent, const Mat4& matrix, double displacement, co
   constexpr double kRounding = 0x1p-21;
   std::array<float, 4> low, high, zero;  // zero: NaN where the others are not finite
   const std::array<double, 4> origin_rows{origin.x, origin.y, origin.z, 0.0};
-  // By rows of the matrix, of which the fourth only makes vectors full.
+  // The loop goes over rows of the matrix. The fourth row only makes vectors full.
   for (std::size_t row = 0; row < 4; ++row) {
     const double x = m[row], y = m[row + 4], z = m[row + 8], w = m[row + 12] - origin_rows[row];
     const double at = x * extent.middle.x + y * extent.middle.y + z * extent.middle.z + w;

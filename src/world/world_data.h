@@ -145,7 +145,8 @@ struct WorldData {
   void settle(std::uint32_t looks);
 };
 
-// A number that is not in use, of a list and of those of its numbers that were in use.
+// Returns the index of an element of a list that is not in use: one of `free`, which it takes out of there,
+// or that of an element that it appends.
 template <typename List>
 std::uint32_t numberIn(List& list, std::vector<std::uint32_t>& free) {
   if (free.empty()) {

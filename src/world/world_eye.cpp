@@ -283,7 +283,7 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
 }
 
 void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
-  // So that a world that grows as was reserved copies nothing here.
+  // A world that grows within what was reserved makes this vector copy nothing either.
   retest_delays_.reserve(data.instances.capacity());
   retest_delays_.resize(std::max(retest_delays_.size(), data.instances.size()));
   listNearFirst(data, view, drawing);

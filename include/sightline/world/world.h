@@ -133,9 +133,11 @@ class World {
 
   // Finds the surfaces of instances anew as one, so that what touches hides jointly: walls of panels, floors
   // of tiles, a level of brushes. Worth it for what does not move. Instances that are in another join leave
-  // it. One that moves, is hidden or is removed later leaves the join; what was connected with it then hides
-  // by its own mesh, too. Takes as long as findSurfaces(), during which the world may be culled but not
-  // changed; use() takes microseconds.
+  // it. Positions count as equal, and as being, where they are in single precision from the middle of the
+  // join (WorldJoin::rounding); where that could show, by 1/256 of a pixel of the depth buffer, members hide
+  // by their own meshes. One that moves, is hidden or is removed later leaves the join; what was connected
+  // with it then hides by its own mesh, too. Takes as long as findSurfaces(), during which the world may be
+  // culled but not changed; use() takes microseconds.
   WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
                         const ParallelFor& parallel_for = serialFor) const;
   // Instances that have changed since prepareJoin() leave the join at once.
@@ -152,7 +154,8 @@ class World {
   // was moved, hidden or removed, or lies elsewhere than the baked box says, is a tombstone: a set that has a
   // tombstone in it counts as everything. All other sets hold: the first surface along a line of sight is
   // always in the set of the cell that the line starts in, so what no line of sight meets hides nothing that
-  // another thing does not hide too. An instance that is in several belongs to the last one.
+  // another thing does not hide too. An instance that is in several belongs to the last one. For an eye that
+  // is in no cell of the baked scene, as in the next part of a streamed world, its sets leave nothing out.
   SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {});
   void dropSets(SetsId sets);
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew

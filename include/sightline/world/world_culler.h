@@ -63,8 +63,8 @@ class WorldCuller {
   // side of this plane, in world space, is drawn. It is not kept, and hides nothing. Holds for all views from
   // the next cull() on; Plane() ends it.
   void setClipPlane(const Plane& plane);
-  // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use;
-  // null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
+  // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use, at
+  // the same address; null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
   void useSets(SetsId id, VisibleSets* sets);
 
   // Answers of the last cull(). Instances that may be seen, ascending.
