@@ -252,27 +252,35 @@ struct HardStory {
     return viewFrom(eye, {std::sin(heading), 0.0, std::cos(heading)});
   }
 
-  // What a culler of these groups, which has culled the world for this view from the base, did wrong.
-  Judged judged(const View& view, const WorldCuller& culler, std::uint32_t groups) const {
+  // All that is drawn in views of these groups.
+  Story drawn(std::uint32_t groups) const {
     Story drawn(shapes);
-    std::string wrong;
     for (const auto& [id, piece] : pieces) {
-      const bool draws = piece.shown && (piece.groups & groups) != 0;
-      const bool kept = keeps(culler, InstanceId(id));
-      if (draws && piece.placed) {
+      if (piece.shown && piece.placed && (piece.groups & groups) != 0) {
         Mat4 m = piece.base_from_mesh;
         for (int axis = 0; axis < 3; ++axis) {
           m(axis, 3) += piece.shift[axis];
         }
         drawn.told[id] = {piece.shape, m, true};
-      } else if (kept != draws) {
+      }
+    }
+    return drawn;
+  }
+
+  // What a culler of these groups, which has culled the world for this view from the base, did wrong.
+  Judged judged(const View& view, const WorldCuller& culler, std::uint32_t groups) const {
+    std::string wrong;
+    for (const auto& [id, piece] : pieces) {
+      const bool draws = piece.shown && (piece.groups & groups) != 0;
+      const bool kept = keeps(culler, InstanceId(id));
+      if (kept != draws && !(draws && piece.placed)) {
         wrong += "instance " + std::to_string(id) + (kept ? " is not drawn; " : " has no place; ");
       }
     }
     for (const InstanceId id : culler.visible()) {
       wrong += pieces.contains(id.value) ? "" : "instance " + std::to_string(id.value) + " is not there; ";
     }
-    Judged judged = judge(drawn, view, culler);
+    Judged judged = judge(drawn(groups), view, culler);
     judged.wrong += wrong;
     return judged;
   }

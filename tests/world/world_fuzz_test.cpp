@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "sightline/world/world_sight.h"
 #include "tests/world/hard_story.h"
 
 namespace sightline {
@@ -47,6 +48,37 @@ TEST(WorldFuzz, WhateverIsSeenIsKeptHoweverTheWorldIsChanged) {
   }
   EXPECT_GT(seen, 500u);
   EXPECT_GT(culled, 500u);
+}
+
+// What no line of sight from a point meets is in no picture from there either.
+TEST(WorldFuzz, LinesOfSightHideNothingThatIsSeen) {
+  std::size_t hidden = 0;
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    HardStory story(seed, seed % 2 == 0 ? Vec3d() : Vec3d(20000, 0, -8000));
+    story.world.setOrigin(story.base);
+    // Nearer things are in the picture and hide nothing for the line of sight.
+    WorldSight sight({.near = 0.25, .groups = 2});
+    for (std::uint32_t frame = 0; frame < 40; ++frame) {
+      const View view = story.next();
+      const Story drawn = story.drawn(2);
+      std::vector<InstanceId> ids;
+      const Scene scene = drawn.scene(ids);
+      const ExactVisibility exact(scene.view());
+      std::vector<ObjectId> said_hidden;
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        const Visibility said = sight.look(story.world, view.eye + story.base, story.world.boundsOf(ids[i]),
+                                           std::span(ids).subspan(i, 1));
+        if (said == Visibility::kHidden) {
+          said_hidden.emplace_back(i);
+        }
+      }
+      hidden += said_hidden.size();
+      for (const Decision& decision : exact.decide(view, said_hidden, 20'000)) {
+        EXPECT_EQ(decision.verdict, Verdict::kHidden) << seed << " " << frame;
+      }
+    }
+  }
+  EXPECT_GT(hidden, 200u);
 }
 
 TEST(WorldFuzz, AnInstanceThatIsReplacedKeepsItsIdAndIsAnother) {
