@@ -197,6 +197,9 @@ void measure(std::size_t count) {
     const View view = city.view(frame);
     moving.push_back(processorUs([&] { culler.cull(world, view); }));
   }
+  for (int frame = 0; frame < kFrames; ++frame) {
+    world.tidy();  // all that has moved settles
+  }
   std::vector<InstanceId> added;
   for (int frame = 0; frame < kFrames; ++frame) {
     std::vector<Instance> more;

@@ -115,7 +115,7 @@ class World {
   // A few kilometres from it, single precision and the rounding of double precision make boxes larger and
   // let less hide; nothing else depends on it.
   Vec3d origin() const;
-  // For worlds in which the camera travels far. In the next calls of tidy(), about one for 300 instances,
+  // For worlds in which the camera travels far. In the next calls of tidy(), about one for 400 instances,
   // everything gets its box from the new origin, beside the one from the old origin, which stays in use. Then
   // origin() becomes the new one, in a call of tidy(). Cull again before anything is classified. Ends a move
   // to another origin that goes on. An origin that is not finite has no effect.
