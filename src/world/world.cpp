@@ -451,7 +451,7 @@ void World::setOrigin(const Vec3d& origin) {
   if (!isFinite(origin)) {
     return;
   }
-  moveOrigin(own.origin);
+  moveOrigin(own.origin);  // ends a move to another one
   if (origin == own.origin) {
     return;
   }
