@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/math/frustum.h"
+
 namespace sightline::world {
 
 using hierarchy::DynamicTree;
@@ -25,7 +27,7 @@ double microsecondsSince(std::chrono::steady_clock::time_point start) {
 }
 
 // By how many pixels of a picture of this size two points of a box, this far apart (metres), appear apart at
-// most. Infinite where the box reaches to the eye.
+// most.
 double pixelsApart(double metres, const Box& box, const View& view, const DepthBufferView& picture) {
   const double high = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   const double scale = 0.5 * std::max(picture.height / high, picture.width / (high * view.aspect));
@@ -199,15 +201,31 @@ void WorldEye::takeCandidates(const WorldData& data, const View& view,
     }
   }
   for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
-    const auto blurred = [&](ObjectId object) {
-      const WorldJoin& own = data.joins[join].join;
-      return own.rounding > 0.0 && pixelsApart(own.rounding, data.boxOf(own.instances[object.value].value),
-                                               view, pyramid_.depthBuffer()) > kMostRounding;
-    };
-    if (std::any_of(of_join_[join].begin(), of_join_[join].end(), blurred)) {
+    if (!of_join_[join].empty() && isBlurred(data, data.joins[join].join, view)) {
       separate(data, join);
     }
   }
+}
+
+// Whether the rounding of the positions of a join might show. All members count, candidates or not, as the
+// surfaces of one may be found together with those of any other.
+bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const View& view) const {
+  if (join.rounding == 0.0) {
+    return false;
+  }
+  const Frustum frustum = frustumOf(view);
+  return std::any_of(join.instances.begin(), join.instances.end(), [&](InstanceId id) {
+    if (!id.valid()) {
+      return false;  // it has left, and its surfaces with it
+    }
+    if (!data.hides(id.value)) {
+      return true;  // it has no box from this origin
+    }
+    const Box& box = data.boxOf(id.value);
+    return pixelsApart(join.rounding, box, view, pyramid_.depthBuffer()) > kMostRounding &&
+           std::none_of(frustum.planes.begin(), frustum.planes.end(),
+                        [&](const Plane& plane) { return sideOf(plane, box) < 0; });
+  });
 }
 
 // Has the members of a join drawn by their own meshes.

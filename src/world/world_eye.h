@@ -62,6 +62,7 @@ class WorldEye {
   bool isDrawn(const InstanceData& instance) const { return (instance.groups & settings_.groups) != 0; }
   bool isJoined(const WorldData& data, const Joined& joined) const;
   void takeCandidates(const WorldData& data, const View& view, std::span<const InstanceId> candidates);
+  bool isBlurred(const WorldData& data, const WorldJoin& join, const View& view) const;
   void separate(const WorldData& data, std::uint32_t join);
   void draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates, ViewStep step);
   void drawJoins(const WorldData& data, SurfaceDrawing& drawing);

@@ -112,6 +112,15 @@ TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
       EXPECT_TRUE(keeps(culler, beside)) << far_away;
     }
     EXPECT_FALSE(keeps(culler, behind)) << far_away;
+    // From an origin at which its members have no boxes, a join hides nothing, and back again what it did.
+    story.world.setOrigin({3.5e38, 0, 0});
+    culler.cull(story.world, view);
+    EXPECT_TRUE(keeps(culler, behind)) << far_away;
+    story.world.setOrigin({});
+    culler.cull(story.world, view);
+    culler.cull(story.world, view);
+    EXPECT_TRUE(keeps(culler, beside)) << far_away;
+    EXPECT_FALSE(keeps(culler, behind)) << far_away;
   }
 }
 
