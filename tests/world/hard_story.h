@@ -39,7 +39,10 @@ struct HardStory {
   Vec3d eye;  // from the base
   double heading = 0.0;
 
-  HardStory(std::uint32_t seed, const Vec3d& far_away) : chance(seed), base(far_away) {
+  bool all_placed;  // no matrix is one of which no box can be told
+
+  HardStory(std::uint32_t seed, const Vec3d& far_away, bool all_have_boxes = false)
+      : chance(seed), base(far_away), all_placed(all_have_boxes) {
     for (const Shape& shape : shapes) {
       meshes.push_back(addShape(world, shape));
     }
@@ -64,7 +67,7 @@ struct HardStory {
   // A placement of all sorts; placed: whether it is one at all.
   Mat4 anyPlacement(bool& placed) {
     Mat4 m = chance.placement(20.0, 6.0);
-    const std::uint32_t kind = chance.below(24);
+    const std::uint32_t kind = all_placed ? 3 + chance.below(21) : chance.below(24);
     const auto row = static_cast<int>(chance.below(3)), column = static_cast<int>(chance.below(3));
     placed = kind > 2;
     if (kind == 0) {
