@@ -2,7 +2,6 @@
 
 // What a World holds, as those who cull it read it.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,8 +40,8 @@ struct MeshData {
 // Objects of a baked scene.
 struct BakedObjects {
   bool there = false;
-  std::vector<InstanceId> instances;  // by ObjectId; not valid for tombstones
-  std::vector<ObjectId> tombstones;
+  std::vector<InstanceId> instances{};  // by ObjectId; not valid for tombstones
+  std::vector<ObjectId> tombstones{};
   Vec3d origin;               // world space
   std::uint32_t groups = 0;   // that all of them have
   std::uint64_t version = 0;  // of the last change

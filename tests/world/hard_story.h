@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/world/world_story.h"
@@ -21,8 +22,8 @@ namespace sightline::world_story {
 struct HardStory {
   struct Piece {
     std::size_t shape = 0;
-    Mat4 base_from_mesh;
-    Vec3d shift;  // by which it is drawn elsewhere than its matrix says, no more than its displacement
+    Mat4 base_from_mesh{};
+    Vec3d shift{};  // by which it is drawn elsewhere than its matrix says, no more than its displacement
     std::uint32_t groups = 1;
     bool shown = true;
     bool placed = true;  // it has a matrix of which a box can be told
