@@ -96,6 +96,8 @@ TEST(WorldFuzz, AnInstanceThatIsReplacedKeepsItsIdAndIsAnother) {
   EXPECT_EQ(story.world.meshOf(wall), story.meshes[1]);
   EXPECT_EQ(story.world.markOf(wall), 7u);
   EXPECT_EQ(story.world.meshOf(other), story.meshes[0]);
+  EXPECT_FALSE(culler.isVisible(InstanceId(500u)));
+  EXPECT_FALSE(culler.isVisible(InstanceId()));
   culler.cull(story.world, view);
   EXPECT_EQ(std::ranges::count(culler.appeared(), wall), 1);
   EXPECT_EQ(std::ranges::count(culler.disappeared(), wall), 1);
