@@ -197,6 +197,9 @@ void measure(std::size_t count) {
     const View view = city.view(frame);
     moving.push_back(processorUs([&] { culler.cull(world, view); }));
   }
+  for (int frame = 0; frame < kFrames; ++frame) {
+    world.tidy();  // all that has moved settles
+  }
   std::vector<InstanceId> added;
   for (int frame = 0; frame < kFrames; ++frame) {
     std::vector<Instance> more;
@@ -242,7 +245,7 @@ void measureQuestions(std::size_t count) {
   std::size_t appeared = 0, foreseen = 0, ahead_count = 0, visible_count = 0;
   ShadowCasters sun;
   WorldSight sight;
-  std::vector<double> still, eyes, shadows, looks, origins, scattered, casters;
+  std::vector<double> still, eyes, shadows, looks, scattered, casters;
   for (int frame = 0; frame < kFrames; ++frame) {
     const View view = city.view(frame);
     std::array<View, 2> pair{view, view};
@@ -277,13 +280,10 @@ void measureQuestions(std::size_t count) {
     target.extend(Vec3f(at));
     target.extend(Vec3f(at + Vec3d(0.5, 1.8, 0.5)));
     looks.push_back(processorUs([&] { sight.look(world, view.eye, target); }));
-    if (frame % 20 == 19) {
-      origins.push_back(processorUs([&] { world.setOrigin({0.0, 0.0, frame % 40 == 19 ? 16.0 : 0.0}); }));
-    }
   }
-  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>13.2f} {:>10.0f} {:>12.2f}", count,
-             settled(still), settled(eyes), settled(shadows), meanOf(casters), settled(looks),
-             medianOf(origins) / 1000.0, settled(scattered), add_us / static_cast<double>(count));
+  fmt::print("{:>9} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.1f} {:>10.0f} {:>12.2f}", count, settled(still),
+             settled(eyes), settled(shadows), meanOf(casters), settled(looks), settled(scattered),
+             add_us / static_cast<double>(count));
   fmt::print(" {:>8.0f} % {:>6.2f}\n",
              100.0 * static_cast<double>(foreseen) / static_cast<double>(std::max<std::size_t>(appeared, 1)),
              static_cast<double>(ahead_count) / static_cast<double>(std::max<std::size_t>(visible_count, 1)));
@@ -418,6 +418,114 @@ void measureChanges(std::size_t count) {
   std::fflush(stdout);
 }
 
+// A new origin, at once and in slices of tidy(), while a twentieth of the instances moves.
+void measureOrigins(std::size_t count) {
+  City city(count);
+  World world;
+  const MeshId box = world.addMesh(unitBox());
+  std::vector<InstanceId> ids, movers;
+  const std::vector<Instance> instances = instancesOf(city, box, count);
+  world.add(instances, ids);
+  std::vector<Mat4> goals;
+  for (std::size_t i = 1; i < count && movers.size() < 10000; i += 20) {
+    movers.push_back(ids[i]);
+    goals.push_back(instances[i].world_from_mesh);
+  }
+  const auto frame = [&](WorldCuller& culler, int number, std::vector<double>& update,
+                         std::vector<double>& cull) {
+    for (Mat4& goal : goals) {
+      goal(0, 3) += number % 2 == 0 ? 0.5 : -0.5;
+    }
+    update.push_back(processorUs([&] {
+      world.setTransforms(movers, goals);
+      world.tidy();
+    }));
+    const View view = city.view(number % kFrames);
+    cull.push_back(processorUs([&] { culler.cull(world, view); }));
+  };
+  std::vector<double> at_once, before, before_cull, slices, cull;
+  WorldCuller culler;
+  for (int number = 0; number < kFrames; ++number) {
+    frame(culler, number, before, before_cull);
+    if (number % 20 == 19) {
+      at_once.push_back(processorUs([&] { world.setOrigin({0.0, 0.0, number % 40 == 19 ? 16.0 : 0.0}); }));
+    }
+  }
+  world.moveOrigin({0.0, 0.0, 32.0});
+  while (world.origin().z != 32.0) {
+    frame(culler, static_cast<int>(slices.size()), slices, cull);
+  }
+  fmt::print("{:>9} {:>8} {:>10.2f} {:>9.0f} {:>9.0f} {:>7} {:>9.0f} {:>10.0f} {:>9.0f}\n", count,
+             movers.size(), medianOf(at_once) / 1000.0, settled(before), settled(before_cull), slices.size(),
+             medianOf(slices), *std::max_element(slices.begin(), slices.end()), medianOf(cull));
+  std::fflush(stdout);
+}
+
+// Boxes that all move, and a crowd of a tenth of them whose members change places by small steps: how much
+// larger the cull of a view of the crowd becomes.
+void measureCrowd(std::size_t count) {
+  City city(count);
+  World world;
+  const MeshId mover = world.addMesh(boxMesh({{-0.5f, 0, -0.5f}, {0.5f, 2, 0.5f}}));
+  constexpr double kHalf = 1000.0;
+  std::vector<Instance> instances;
+  std::vector<std::size_t> crowd;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3d at(city.number(-kHalf, kHalf), 0, city.number(-kHalf, kHalf));
+    instances.push_back({.mesh = mover, .world_from_mesh = placed(at, {1, 1, 1}, 0.0), .moves = true});
+    if (std::max(std::abs(at.x), std::abs(at.z)) < 0.316 * kHalf) {
+      crowd.push_back(i);
+    }
+  }
+  std::vector<InstanceId> ids;
+  world.add(instances, ids);
+  std::vector<InstanceId> movers;
+  std::vector<Mat4> from, goals;
+  for (std::size_t i = 0; i < crowd.size(); ++i) {
+    movers.push_back(ids[crowd[i]]);
+    from.push_back(instances[crowd[i]].world_from_mesh);
+    goals.push_back(instances[crowd[(7 * i + 1) % crowd.size()]].world_from_mesh);
+  }
+  View view = city.view(0);
+  view.eye = {0.0, 30.0, -250.0};
+  setOrientation(view, {0, -0.2, 1}, {0, 1, 0});
+  view.far = 500.0;
+  const auto culled = [&](const World& of) {
+    WorldCuller culler;
+    std::vector<double> times;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      times.push_back(processorUs([&] { culler.cull(of, view); }));
+    }
+    return std::pair(settled(times), culler.stats().boxes_tested);
+  };
+  const auto [fresh_us, fresh_boxes] = culled(world);
+  constexpr int kSteps = 600;
+  std::vector<double> updates;
+  std::uint32_t most = 0;
+  WorldCuller culler;
+  std::vector<Mat4> now = from;
+  for (int step = 1; step <= kSteps; ++step) {
+    const double part = static_cast<double>(step) / kSteps;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      now[i](0, 3) = from[i](0, 3) + part * (goals[i](0, 3) - from[i](0, 3));
+      now[i](2, 3) = from[i](2, 3) + part * (goals[i](2, 3) - from[i](2, 3));
+    }
+    updates.push_back(processorUs([&] {
+      world.setTransforms(movers, now);
+      world.tidy();
+    }));
+    culler.cull(world, view);
+    most = std::max(most, culler.stats().boxes_tested);
+  }
+  const auto [worn_us, worn_boxes] = culled(world);
+  world.rebuild();
+  const auto [rebuilt_us, rebuilt_boxes] = culled(world);
+  fmt::print("{:>9} {:>8} {:>9.0f} {:>9.0f} {:>9.0f} {:>8} {:>8} {:>8} {:>8} {:>9.0f} {:>9.0f}\n", count,
+             crowd.size(), fresh_us, worn_us, rebuilt_us, fresh_boxes, most, worn_boxes, rebuilt_boxes,
+             settled(updates), *std::max_element(updates.begin(), updates.end()));
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -435,9 +543,8 @@ int main(int argc, char** argv) {
   for (const std::size_t count : counts) {
     measure(count);
   }
-  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>13} {:>10} {:>12} {:>10} {:>6}\n", "instances",
-             "static us", "eyes us", "shadow us", "casters", "sight us", "set origin ms", "scatter us",
-             "add one us", "foreseen", "times");
+  fmt::print("\n{:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>12} {:>10} {:>6}\n", "instances", "static us",
+             "eyes us", "shadow us", "casters", "sight us", "scatter us", "add one us", "foreseen", "times");
   for (const std::size_t count : counts) {
     measureQuestions(count);
   }
@@ -452,5 +559,16 @@ int main(int argc, char** argv) {
   for (const std::size_t count : arguments.brief ? std::vector<std::size_t>{1000}
                                                  : std::vector<std::size_t>{1000, 5000, 20000, 80000}) {
     measureMovers(count);
+  }
+  fmt::print("\n{:>9} {:>8} {:>10} {:>9} {:>9} {:>7} {:>9} {:>10} {:>9}\n", "instances", "moving",
+             "at once ms", "update us", "cull us", "calls", "update us", "longest us", "cull us");
+  for (const std::size_t count : counts) {
+    measureOrigins(count);
+  }
+  fmt::print("\n{:>9} {:>8} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}\n", "boxes", "crowd",
+             "fresh us", "worn us", "anew us", "boxes", "most", "worn", "anew", "update us", "longest");
+  for (const std::size_t count :
+       arguments.brief ? std::vector<std::size_t>{1000} : std::vector<std::size_t>{10000, 100000}) {
+    measureCrowd(count);
   }
 }

@@ -104,7 +104,7 @@ void DynamicTree::insertOne(const Item& item) {
 void DynamicTree::rebuild() {
   scratch_.clear();
   if (root_ != kNone) {
-    collect(root_, false);
+    collect(root_);
   }
   build(std::vector<Item>(std::move(scratch_)));
 }
@@ -119,7 +119,7 @@ void DynamicTree::insert(std::span<const Item> items) {
   }
   scratch_.clear();
   if (root_ != kNone) {
-    collect(root_, false);
+    collect(root_);
   }
   scratch_.insert(scratch_.end(), items.begin(), items.end());
   build(std::vector<Item>(std::move(scratch_)));
@@ -215,6 +215,7 @@ void DynamicTree::removeOne(std::uint32_t number) {
   const std::uint32_t place = places_[number];
   places_[number] = kNone;
   --size_;
+  measured_.changed = true;
   removeChild(place);
 }
 
@@ -250,6 +251,7 @@ void DynamicTree::move(const Item& item) {
 // What leaves its node altogether is put where it belongs, unless it is alone there.
 void DynamicTree::moveOne(const Item& item) {
   assert(has(item.number) && item.box.wellFormed());
+  measured_.changed = true;
   const std::uint32_t place = places_[item.number], node = place / kChildren;
   const std::uint32_t parent = nodes_[node].parent;
   if (parent != kNone && !overlaps(boxes_[parent], item.box)) {
@@ -285,6 +287,7 @@ void DynamicTree::move(std::span<const Item> items) {
     }
   }
   if (many && root_ != kNone) {
+    measured_.changed = true;
     refit(root_);
   }
   for (const Item& item : leaving_) {
@@ -360,77 +363,84 @@ std::uint32_t DynamicTree::tidy(std::uint32_t steps) {
     const std::uint32_t node = worn_.back();
     worn_.pop_back();
     nodes_[node].worn = false;
-    if (nodes_[node].count == 0 || nodes_[node].height == 0) {
-      continue;  // it is gone, or is another node by now
-    }
-    const std::uint32_t items = itemsBelow(node, kMaxRebuilt);
-    if (items <= kMaxRebuilt) {
-      rebuild(node);
-      spend(steps, kStepsOfItem * items);
-    } else {
-      countWorn(node);
-      spend(steps, kMaxRebuilt / kStepsOfItem);
+    // Where it has no children or no grandchildren, it is gone, or is another node by now.
+    if (nodes_[node].count > 0 && nodes_[node].height > 0) {
+      spend(steps, divideAnew(node));
     }
   }
+  measureSome(steps);
   proceedReplacement(steps);
   return steps;
 }
 
-// Returns a number above the limit as soon as there are more.
-std::uint32_t DynamicTree::itemsBelow(std::uint32_t number, std::uint32_t limit) const {
-  const Node children = node(number);
-  if (children.leaf) {
-    return static_cast<std::uint32_t>(children.boxes.size());
+// Goes on to measure nodes. After the last one, it is known whether the tree has worn.
+void DynamicTree::measureSome(std::uint32_t& steps) {
+  constexpr std::uint32_t kNodes = 128, kNodesInStep = 8;
+  constexpr double kTooMuch = 1.5;
+  if (steps == 0 || (measured_.next_node == 0 && !measured_.changed)) {
+    return;
   }
-  std::uint32_t items = 0;
-  for (std::size_t i = 0; i < children.children.size() && items <= limit; ++i) {
-    items += itemsBelow(children.children[i], limit - items);
+  if (measured_.next_node == 0) {
+    measured_.changed = false;
+    measured_.area = 0.0;
   }
-  return items;
+  const auto end =
+      static_cast<std::uint32_t>(std::min<std::size_t>(measured_.next_node + kNodes, nodes_.size()));
+  for (; measured_.next_node < end; ++measured_.next_node) {
+    const std::uint32_t parent = nodes_[measured_.next_node].parent;
+    measured_.area += parent != kNone ? surfaceArea(boxes_[parent]) : 0.0;
+  }
+  spend(steps, kNodes / kNodesInStep);
+  if (measured_.next_node == nodes_.size()) {
+    measured_.next_node = 0;
+    const double for_item = size_ > 0 ? measured_.area / static_cast<double>(size_) : 0.0;
+    measured_.worn = measured_.first > 0.0 && for_item > kTooMuch * measured_.first;
+    measured_.first = measured_.first > 0.0 ? measured_.first : for_item;
+  }
 }
 
-// Counts what is below those children of a node that have worn, each child once.
-void DynamicTree::countWorn(std::uint32_t number) {
-  for (const std::uint32_t child : node(number).children) {
-    NodeData& data = nodes_[child];
-    if (!data.counted && surfaceArea(boxes_[data.parent]) > kWorn * data.built_area) {
-      data.counted = true;
-      scattered_ += size_ / nodes_of_height_[data.height];
-    }
-  }
-}
-
-// Appends the items below a node to scratch_ and frees all nodes below it, and the node unless it is kept.
-void DynamicTree::collect(std::uint32_t number, bool keep) {
+// Appends the items below a node to scratch_, and frees the node and all nodes below it.
+void DynamicTree::collect(std::uint32_t number) {
   const Node children = node(number);
   for (std::size_t i = 0; i < children.boxes.size(); ++i) {
     if (children.leaf) {
       scratch_.push_back({children.children[i], children.boxes[i]});
     } else {
-      collect(children.children[i], false);
+      collect(children.children[i]);
     }
   }
-  if (!keep) {
-    freeNode(number);
-  }
+  freeNode(number);
 }
 
-void DynamicTree::rebuild(std::uint32_t node) {
+// Divides the grandchildren of a node among new children. These are at most 256, however much is below them,
+// so a worn part of any size is made good level by level. Returns how many steps that took.
+std::uint32_t DynamicTree::divideAnew(std::uint32_t number) {
   scratch_.clear();
-  collect(node, true);
-  nodes_[node].count = 0;
+  for (const std::uint32_t child : node(number).children) {
+    const Node grandchildren = node(child);
+    for (std::size_t i = 0; i < grandchildren.boxes.size(); ++i) {
+      scratch_.push_back({grandchildren.children[i], grandchildren.boxes[i]});
+    }
+    freeNode(child);
+  }
+  nodes_[number].count = 0;
+  // The node itself goes on to be compared with what it was when the division of its parent made it.
+  const double built_area = nodes_[number].built_area;
   const std::uint64_t taken = steps_taken_;
-  open(node, 0, scratch_.size());
+  const std::uint32_t bottom = nodes_[number].height - 1u;
+  open(number, 0, scratch_.size(), bottom);
   std::uint32_t all = kNone;
-  fill(all);
+  fill(all, bottom);
   steps_taken_ = taken;  // the caller counts all of it
-  const std::uint32_t parent = nodes_[node].parent;
-  if (parent != kNone) {
-    loosen(parent / kChildren);
+  NodeData& divided = nodes_[number];
+  divided.built_area = built_area;
+  if (divided.parent != kNone) {
+    loosen(divided.parent / kChildren);
+    if (divided.count < kFew) {
+      wear(divided.parent / kChildren);
+    }
   }
-  if (nodes_[node].count < kFew && parent != kNone) {
-    wear(parent / kChildren);
-  }
+  return kStepsOfItem * static_cast<std::uint32_t>(scratch_.size());
 }
 
 // Leaves room in each leaf for items to come.
@@ -442,30 +452,31 @@ std::uint32_t DynamicTree::heightFor(std::size_t items) const {
   return height;
 }
 
-// Says that these items of scratch_ are to be divided among the children of an empty node, by medians.
-void DynamicTree::open(std::uint32_t node, std::size_t first, std::size_t count) {
+// Says that this part of scratch_ is to be divided among the children of an empty node, by medians. bottom:
+// the height of those nodes whose children are in scratch_.
+void DynamicTree::open(std::uint32_t node, std::size_t first, std::size_t count, std::uint32_t bottom) {
   shares_.push_back({node, 0, 0, 0});
   const std::uint32_t height = nodes_[node].height;
-  if (height == 0) {
+  if (height == bottom) {
     nodes_[node].count = static_cast<std::uint8_t>(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t place = node * kChildren + i;
       children_[place] = scratch_[first + i].number;
       boxes_[place] = scratch_[first + i].box;
-      setPlace(place, true);
+      setPlace(place, bottom == 0);
     }
     return;
   }
   std::size_t room = kChildren * 3 / 4;
-  for (std::uint32_t h = 1; h < height; ++h) {
+  for (std::uint32_t h = bottom + 1; h < height; ++h) {
     room *= kChildren;
   }
   // Even shares, so that the divisions are in the middle.
   shares_.push_back({node, first, count, std::clamp<std::size_t>((count + room - 1) / room, 1, kChildren)});
 }
 
-// Fills all nodes that are open, as far as the steps go. Returns whether that is done.
-bool DynamicTree::fill(std::uint32_t& steps) {
+// Fills all nodes that are open, as far as the steps go. Returns whether that is done. bottom: as in open().
+bool DynamicTree::fill(std::uint32_t& steps, std::uint32_t bottom) {
   while (!shares_.empty() && steps > 0) {
     const Share share = shares_.back();
     if (share.children > 1) {
@@ -490,13 +501,13 @@ bool DynamicTree::fill(std::uint32_t& steps) {
       if (data.parent != kNone) {
         boxes_[data.parent] = bounds;
       }
-      spend(steps, data.height == 0 ? kStepsOfItem * data.count : 1);
+      spend(steps, data.height == bottom ? kStepsOfItem * data.count : 1);
     } else if (share.count > 0) {
       const std::uint32_t place = share.node * kChildren + data.count++;
       const std::uint32_t child = newNode(data.height - 1u);
       children_[place] = child;
       setPlace(place, false);
-      open(child, share.first, share.count);
+      open(child, share.first, share.count, bottom);
     }
   }
   return shares_.empty();
@@ -516,9 +527,9 @@ void DynamicTree::build(std::span<const Item> items) {
   scratch_.assign(items.begin(), items.end());
   size_ = items.size();
   root_ = newNode(heightFor(items.size()));
-  open(root_, 0, items.size());
+  open(root_, 0, items.size(), 0);
   std::uint32_t all = kNone;
-  while (!fill(all)) {
+  while (!fill(all, 0)) {
     all = kNone;
   }
   scratch_ = {};

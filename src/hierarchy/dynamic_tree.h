@@ -5,11 +5,12 @@
 //
 // Based on: Guttman. R-Trees: A Dynamic Index Structure for Spatial Searching. SIGMOD 1984; Beckmann et al.
 // The R*-Tree. SIGMOD 1990. Differs from the papers in: nodes are split by surface area; boxes of nodes grow
-// at once and shrink later; small subtrees that have worn are built anew at once, and the whole tree, where
-// much of it has, in slices, while the old one stays in use.
+// at once and shrink later; the children of a worn node's children are divided anew, at any height; and where
+// that is not enough, the whole tree is built anew in slices, while the old one stays in use.
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -45,7 +46,7 @@ class DynamicTree {
   // is for the caller to remove or to move before anything else.
   template <typename BoxOf>
   void setBoxes(const BoxOf& box_of) {
-    replacement_.stage = Replacement::Stage::kNone;  // it has the old boxes, and is begun again
+    endReplacement();  // it has the old boxes
     if (root_ != kNone) {
       setBoxes(root_, box_of);
     }
@@ -57,12 +58,32 @@ class DynamicTree {
   void rebuild();
   // Makes room for so many items, with numbers below the same, so that inserting them does not copy the tree.
   void reserve(std::size_t items);
-  // Shrinks boxes of nodes and builds worn subtrees anew, until that took so many steps of about 20
-  // nanoseconds, and at most five thousand more. Returns how many steps are left over.
+  // Shrinks boxes of nodes and divides worn nodes anew, until that took so many steps of about 20
+  // nanoseconds, and at most two thousand more. Returns how many steps are left over.
   //
-  // Where more than a quarter of the tree has worn or was inserted one by one, another tree is built of the
-  // same items, over as many calls as that takes, and then replaces it. Its memory is kept for the next time.
+  // Where more than a quarter of the items was inserted one by one, or the surface area of all nodes for an
+  // item has become half as large again since the tree was built, another tree is built of the same items,
+  // over as many calls as that takes, and then replaces it. Its memory is kept for the next time.
   std::uint32_t tidy(std::uint32_t steps);
+
+  // Begins another tree of the same items in which each has another box: box_of(number), called whenever
+  // tidy() copies an item, and when one that was copied is inserted or moved. Items whose box is not well
+  // formed are left out. The tree itself stays as it is until takeReplacement().
+  using BoxOf = std::function<Box(std::uint32_t number)>;
+  void beginReplacement(BoxOf box_of);
+  // False before beginReplacement(), and after whatever builds the tree anew or gives it other boxes.
+  bool hasReplacement() const {
+    return replacement_.stage != Replacement::Stage::kNone && replacement_.box_of != nullptr;
+  }
+  // Whether enough calls of tidy() were made for all items to be in the other tree.
+  bool replacementIsComplete() const {
+    return hasReplacement() && replacement_.stage == Replacement::Stage::kFollows &&
+           replacement_.next == replacement_.changed.size();
+  }
+  // Makes the other tree, which is complete, this one.
+  void takeReplacement();
+  // Gives up the other tree. It only keeps its memory.
+  void endReplacement();
   // Steps that tidy() took so far, all calls together.
   std::uint64_t stepsTaken() const { return steps_taken_; }
 
@@ -87,19 +108,26 @@ class DynamicTree {
     std::uint8_t height = 0;  // all leaves have 0
     bool loose = false;       // its box in its parent may be too large; listed in loose_
     bool worn = false;        // listed in worn_
-    bool counted = false;     // in scattered_, as worn
     double built_area = 0.0;  // surface area when it was built or split
   };
   static constexpr std::uint32_t kMaxHeight = 10;  // more than 2^32 items of the fewest children need
   static constexpr std::uint32_t kFew = 4;         // children of a node after a split, at least
-  static constexpr std::uint32_t kMaxRebuilt =
-      1024;  // items of a subtree that is built anew at once, at most
 
-  // Items of scratch_ that are to be divided among so many new children of a node; none: all of the node's
+  // Parts of scratch_ that are to be divided among so many new children of a node; none: all of the node's
   // children are there and have been filled.
   struct Share {
     std::uint32_t node = kNone;
     std::size_t first = 0, count = 0, children = 0;
+  };
+
+  // How large nodes are, which says how many of them a search looks at. Measured node by node, again and
+  // again while items move or go.
+  struct Measured {
+    bool changed = false;         // an item has moved or gone since the measurement that goes on began
+    std::uint32_t next_node = 0;  // that is measured; 0: nothing goes on
+    double area = 0.0;            // of nodes before that
+    double first = 0.0;           // for an item, when the tree was measured first; 0: it was not yet
+    bool worn = false;            // it was too much more the last time
   };
 
   // Another tree of the same items that tidy() builds in slices.
@@ -114,6 +142,7 @@ class DynamicTree {
     std::uint32_t next = 0;                // number of an item that is looked at next
     std::vector<std::uint64_t> changed{};  // a bit by number: inserted, moved or removed, and not made up for
     std::unique_ptr<DynamicTree> tree{};
+    BoxOf box_of{};  // of its items; null: they have the boxes that they have in this tree
   };
 
   std::uint32_t newNode(std::uint32_t height);
@@ -132,20 +161,18 @@ class DynamicTree {
   void wear(std::uint32_t node);
   void tighten(std::uint32_t node);
   Box refit(std::uint32_t node);
-  void rebuild(std::uint32_t node);
-  std::uint32_t itemsBelow(std::uint32_t node, std::uint32_t limit) const;
-  void countWorn(std::uint32_t node);
-  void collect(std::uint32_t node, bool keep);
-  void open(std::uint32_t node, std::size_t first, std::size_t count);
-  bool fill(std::uint32_t& steps);
+  std::uint32_t divideAnew(std::uint32_t node);
+  void measureSome(std::uint32_t& steps);
+  void collect(std::uint32_t node);
+  void open(std::uint32_t node, std::size_t first, std::size_t count, std::uint32_t bottom);
+  bool fill(std::uint32_t& steps, std::uint32_t bottom);
   void clear();
   void spend(std::uint32_t& steps, std::uint32_t spent);
   void noteChange(std::uint32_t number);
   std::uint32_t follow(std::uint32_t number);
-  void beginReplacement();
+  Box boxInReplacement(std::uint32_t number) const;
   void proceedReplacement(std::uint32_t& steps);
   void collectForReplacement(std::uint32_t& steps);
-  void finishReplacement();
   template <typename BoxOf>
   Box setBoxes(std::uint32_t node, const BoxOf& box_of) {
     Box bounds;
@@ -159,7 +186,7 @@ class DynamicTree {
   std::uint32_t heightFor(std::size_t items) const;
 
   std::vector<NodeData> nodes_;
-  // Of node n: those from kChildren * n on. An index of these columns is a "place".
+  // The children of node n are those from kChildren * n on. An index of these columns is a "place".
   std::vector<Box> boxes_;
   std::vector<std::uint32_t> children_;
   std::vector<std::uint32_t> places_;  // by item: its place, or kNone
@@ -169,12 +196,11 @@ class DynamicTree {
   std::array<std::vector<std::uint32_t>, kMaxHeight> loose_;  // nodes, by height
   std::vector<std::uint32_t> worn_;
   std::array<std::uint32_t, kMaxHeight> nodes_of_height_{};
-  // Items that were inserted one by one since the tree was built, and about as many as are below nodes that
-  // have worn where these are not built anew at once.
-  std::size_t scattered_ = 0;
+  std::size_t scattered_ = 0;  // items that were inserted one by one since the tree was built
+  Measured measured_;
   std::uint64_t steps_taken_ = 0;
   Replacement replacement_;
-  std::vector<Item> scratch_;  // items that the tree, or a subtree, is built of
+  std::vector<Item> scratch_;  // what nodes are filled with: items, or nodes with their boxes
   std::vector<Share> shares_;  // of these, that are not done
   SlicedDivision division_;    // of the last one, if dividing_
   bool dividing_ = false;

@@ -1,4 +1,5 @@
-// A tree of which much has worn is built anew in slices and then replaced.
+// Another tree of the same items is built in slices and then takes the place of the first: where many items
+// were inserted one by one, where its nodes have become large, or where all items get other boxes.
 
 #include <algorithm>
 #include <bit>
@@ -11,6 +12,7 @@ namespace {
 
 constexpr std::uint32_t kNumbersInStep = 16;  // that are looked at
 constexpr std::uint32_t kStepsOfCopy = 2;     // that an item takes
+constexpr std::uint32_t kStepsOfBox = 8;      // that an item takes which gets another box
 // That an item takes which has come, or has moved or gone, meanwhile.
 constexpr std::uint32_t kStepsOfInsertion = 40, kStepsOfChange = 5;
 constexpr std::size_t kBits = 64;
@@ -32,6 +34,7 @@ void DynamicTree::clear() {
   worn_.clear();
   nodes_of_height_ = {};
   scattered_ = 0;
+  measured_ = {};
   scratch_.clear();
   shares_.clear();
   dividing_ = false;
@@ -52,24 +55,34 @@ void DynamicTree::noteChange(std::uint32_t number) {
   }
 }
 
+Box DynamicTree::boxInReplacement(std::uint32_t number) const {
+  return replacement_.box_of != nullptr ? replacement_.box_of(number) : boxOf(number);
+}
+
 // Makes an item of the replacement what it is here. Returns how many steps that takes.
 std::uint32_t DynamicTree::follow(std::uint32_t number) {
   DynamicTree& tree = *replacement_.tree;
-  if (!has(number)) {
+  const Box box = has(number) ? boxInReplacement(number) : Box{};
+  if (!box.wellFormed()) {
     if (tree.has(number)) {
       tree.remove(number);
     }
     return kStepsOfChange;
   }
   if (tree.has(number)) {
-    tree.move({number, boxOf(number)});
+    tree.move({number, box});
     return kStepsOfChange;
   }
-  tree.insert({number, boxOf(number)});
+  tree.insert({number, box});
   return kStepsOfInsertion;
 }
 
-void DynamicTree::beginReplacement() {
+void DynamicTree::endReplacement() {
+  replacement_.stage = Replacement::Stage::kNone;
+  replacement_.box_of = nullptr;
+}
+
+void DynamicTree::beginReplacement(BoxOf box_of) {
   if (replacement_.tree == nullptr) {
     replacement_.tree = std::make_unique<DynamicTree>();
   }
@@ -79,16 +92,17 @@ void DynamicTree::beginReplacement() {
   tree.scratch_.reserve(size_);
   replacement_.changed.assign((places_.size() + kBits - 1) / kBits, 0);
   replacement_.next = 0;
+  replacement_.box_of = std::move(box_of);
   replacement_.stage = Replacement::Stage::kCollects;
 }
 
 void DynamicTree::proceedReplacement(std::uint32_t& steps) {
   using Stage = Replacement::Stage;
   if (replacement_.stage == Stage::kNone) {
-    if (size_ <= kMaxRebuilt || scattered_ * 4 <= size_ || steps == 0) {
+    if (size_ <= kChildren || (scattered_ * 4 <= size_ && !measured_.worn) || steps == 0) {
       return;
     }
-    beginReplacement();
+    beginReplacement(nullptr);
   }
   DynamicTree& tree = *replacement_.tree;
   if (replacement_.stage == Stage::kCollects) {
@@ -96,7 +110,7 @@ void DynamicTree::proceedReplacement(std::uint32_t& steps) {
   }
   if (replacement_.stage == Stage::kFills) {
     const std::uint64_t before = tree.steps_taken_;
-    const bool done = tree.fill(steps);
+    const bool done = tree.fill(steps, 0);
     steps_taken_ += tree.steps_taken_ - before;
     if (done) {
       replacement_.stage = Stage::kFollows;
@@ -116,8 +130,8 @@ void DynamicTree::proceedReplacement(std::uint32_t& steps) {
       bits &= bits - 1;
       spend(steps, follow(static_cast<std::uint32_t>(replacement_.next * kBits) + bit));
     }
-    if (replacement_.next == changed.size()) {
-      finishReplacement();
+    if (replacement_.next == changed.size() && replacement_.box_of == nullptr) {
+      takeReplacement();
     }
   }
 }
@@ -132,12 +146,12 @@ void DynamicTree::collectForReplacement(std::uint32_t& steps) {
       spend(steps, next % kNumbersInStep == 0 ? 1 : 0);
       continue;
     }
-    if (tree.scratch_.size() < tree.scratch_.capacity()) {
-      tree.scratch_.push_back({next, boxOf(next)});
-    } else {
+    if (tree.scratch_.size() == tree.scratch_.capacity()) {
       noteChange(next);
+    } else if (const Box box = boxInReplacement(next); box.wellFormed()) {
+      tree.scratch_.push_back({next, box});
     }
-    spend(steps, kStepsOfCopy);
+    spend(steps, replacement_.box_of != nullptr ? kStepsOfBox : kStepsOfCopy);
   }
   if (next < places_.size()) {
     return;
@@ -145,12 +159,12 @@ void DynamicTree::collectForReplacement(std::uint32_t& steps) {
   tree.size_ = tree.scratch_.size();
   if (tree.size_ > 0) {
     tree.root_ = tree.newNode(tree.heightFor(tree.size_));
-    tree.open(tree.root_, 0, tree.size_);
+    tree.open(tree.root_, 0, tree.size_, 0);
   }
   replacement_.stage = Replacement::Stage::kFills;
 }
 
-void DynamicTree::finishReplacement() {
+void DynamicTree::takeReplacement() {
   std::unique_ptr<DynamicTree> tree = std::move(replacement_.tree);
   std::swap(*this, *tree);
   // What belongs to no tree in particular stays where it was.
@@ -158,7 +172,7 @@ void DynamicTree::finishReplacement() {
   std::swap(scratch_, tree->scratch_);
   std::swap(steps_taken_, tree->steps_taken_);
   tree->clear();
-  replacement_.stage = Replacement::Stage::kNone;
+  endReplacement();
   replacement_.tree = std::move(tree);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -49,9 +50,11 @@ MeshExtent::MeshExtent(const Box& bounds) : known(bounds.wellFormed()) {
   }
 }
 
-// The box of what has this extent and matrix, grown by what single precision may move its points. It is well
-// formed, or empty if it cannot be told, as where a number of the matrix is not finite.
-Box WorldData::boundsOf(const MeshExtent& extent, const Mat4& matrix, double displacement) const {
+namespace {
+
+// The box, from an origin, of what has this extent and matrix, grown by what single precision may move its
+// points. It is well formed, or empty if it cannot be told, as where a number of the matrix is not finite.
+Box placed(const MeshExtent& extent, const Mat4& matrix, double displacement, const Vec3d& origin) {
   const std::array<double, 16>& m = matrix.m;
   const bool affine = m[3] == 0.0 && m[7] == 0.0 && m[11] == 0.0 && m[15] == 1.0;
   if (!extent.known || !affine || !(displacement >= 0.0)) {
@@ -60,7 +63,8 @@ Box WorldData::boundsOf(const MeshExtent& extent, const Mat4& matrix, double dis
   // Single precision, in which renderers transform vertices, is off by less than this part of all terms.
   constexpr double kRounding = 0x1p-21;
   std::array<float, 4> low, high, zero;  // zero: NaN where the others are not finite
-  // By rows of the matrix, of which the fourth only makes vectors full.
+  const std::array<double, 4> origin_rows{origin.x, origin.y, origin.z, 0.0};
+  // The loop goes over rows of the matrix. The fourth row only makes vectors full.
   for (std::size_t row = 0; row < 4; ++row) {
     const double x = m[row], y = m[row + 4], z = m[row + 8], w = m[row + 12] - origin_rows[row];
     const double at = x * extent.middle.x + y * extent.middle.y + z * extent.middle.z + w;
@@ -78,10 +82,12 @@ Box WorldData::boundsOf(const MeshExtent& extent, const Mat4& matrix, double dis
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
-Box WorldData::boundsOf(std::uint32_t id) const {
+}  // namespace
+
+Box WorldData::boundsOf(std::uint32_t id, const Vec3d& from) const {
   const InstanceData& own = instances[id];
   return own.mesh < meshes.size()
-             ? boundsOf(meshes[own.mesh].extent, world_from_mesh[id], double{own.displacement})
+             ? placed(meshes[own.mesh].extent, world_from_mesh[id], double{own.displacement}, from)
              : Box{};
 }
 
@@ -158,7 +164,7 @@ DynamicTree::Item WorldData::movedInPlace(InstanceId instance, const Mat4& to, s
       same(world_from_mesh[instance.value], to)) {
     return none;
   }
-  const Box box = boundsOf(meshes[own.mesh].extent, to, double{own.displacement});
+  const Box box = placed(meshes[own.mesh].extent, to, double{own.displacement}, origin);
   if (box.empty()) {
     return none;
   }
@@ -211,6 +217,51 @@ void WorldData::settle(std::uint32_t looks) {
       moving.remove(id);
       settled.insert({id, box});
       own.where = Whereabouts::kSettled;
+    }
+  }
+}
+
+// Sees to it that the trees are copied with boxes from the next origin.
+void WorldData::goOnToOrigin() {
+  const auto begin = [this](DynamicTree& tree) {
+    if (!tree.hasReplacement()) {  // it has not begun, or the tree was built anew meanwhile
+      tree.beginReplacement([this](std::uint32_t id) {
+        const Box box = boundsOf(id, next_origin);
+        if (box.empty()) {
+          lost.emplace_back(id);
+        }
+        return box;
+      });
+    }
+  };
+  begin(settled);
+  // While a copy is kept up to date, moving costs twice as much, so that of what moves is made last.
+  if (settled.replacementIsComplete()) {
+    begin(moving);
+  }
+}
+
+void WorldData::takeOrigin() {
+  settled.takeReplacement();
+  moving.takeReplacement();
+  origin = next_origin;
+  origin_moves = false;
+  lost.insert(lost.end(), unbounded.begin(), unbounded.end());
+  unbounded.clear();
+  placeAnew(std::vector(std::move(lost)));
+}
+
+// Places those that are shown and are in none of the trees. The list may name some twice.
+void WorldData::placeAnew(std::span<const InstanceId> list) {
+  for (const InstanceId id : list) {
+    if (!settled.has(id.value) && !moving.has(id.value)) {
+      instances[id.value].where = Whereabouts::kNowhere;
+    }
+  }
+  for (const InstanceId id : list) {
+    const InstanceData& own = instances[id.value];
+    if (own.shown && own.where == Whereabouts::kNowhere) {
+      place(id.value);
     }
   }
 }
@@ -301,6 +352,14 @@ void World::remove(InstanceId instance) {
   --own.count;
 }
 
+void World::replace(InstanceId instance, const Instance& by) {
+  if (has(instance)) {
+    remove(instance);
+    [[maybe_unused]] const InstanceId again = add(by);
+    assert(again == instance);  // the number that was set free last
+  }
+}
+
 void World::setTransform(InstanceId instance, const Mat4& world_from_mesh) {
   WorldData& own = *data_;
   const DynamicTree::Item moved = own.movedInPlace(instance, world_from_mesh, own.version + 1);
@@ -389,30 +448,39 @@ Box World::boundsOf(InstanceId instance) const {
 // The trees stay as they are: that all boxes move by the same vector changes nothing but their rounding.
 void World::setOrigin(const Vec3d& origin) {
   WorldData& own = *data_;
-  if (!isFinite(origin) || origin == own.origin) {
+  if (!isFinite(origin)) {
+    return;
+  }
+  moveOrigin(own.origin);  // ends a move to another one
+  if (origin == own.origin) {
     return;
   }
   own.origin = origin;
-  own.origin_rows = {origin.x, origin.y, origin.z, 0.0};
-  const std::vector<InstanceId> unbounded = std::move(own.unbounded);
-  own.unbounded.clear();
-  std::vector<std::uint32_t> lost;  // overflow has left them without a box
+  std::vector<InstanceId> lost;  // overflow has left them without a box
   const auto box = [&](std::uint32_t id) {
     const Box now = own.boundsOf(id);
     if (now.empty()) {
-      lost.push_back(id);
+      lost.emplace_back(id);
     }
     return now;
   };
   own.settled.setBoxes(box);
   own.moving.setBoxes(box);
-  for (const std::uint32_t id : lost) {
-    own.place(id);
-  }
-  for (const InstanceId id : unbounded) {
-    own.instances[id.value].where = Whereabouts::kNowhere;
+  for (const InstanceId id : lost) {
     own.place(id.value);
   }
+  own.placeAnew(std::vector(std::move(own.unbounded)));
+}
+
+void World::moveOrigin(const Vec3d& origin) {
+  WorldData& own = *data_;
+  if (!isFinite(origin)) {
+    return;
+  }
+  own.settled.endReplacement();
+  own.moving.endReplacement();
+  own.next_origin = origin;
+  own.origin_moves = origin != own.origin;
 }
 Vec3d World::origin() const {
   return data_->origin;
@@ -426,9 +494,15 @@ void World::rebuild() {
 void World::tidy(std::uint32_t steps) {
   WorldData& own = *data_;
   ++own.frame;
+  if (own.origin_moves) {
+    own.goOnToOrigin();
+  }
   const std::uint32_t left = own.moving.tidy(steps);
   own.settle(std::min<std::uint32_t>(left, 256));
   own.settled.tidy(left);
+  if (own.origin_moves && own.moving.replacementIsComplete() && own.settled.replacementIsComplete()) {
+    own.takeOrigin();
+  }
 }
 
 }  // namespace sightline

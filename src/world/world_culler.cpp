@@ -116,6 +116,9 @@ std::span<const InstanceId> WorldCuller::visible() const {
 std::span<const std::uint64_t> WorldCuller::visibleBits() const {
   return impl_->kept.words();
 }
+bool WorldCuller::isVisible(InstanceId instance) const {
+  return impl_->kept.has(instance.value);
+}
 std::span<const InstanceId> WorldCuller::appeared() const {
   return impl_->appeared;
 }

@@ -2,7 +2,6 @@
 
 // What a World holds, as those who cull it read it.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,8 +40,8 @@ struct MeshData {
 // Objects of a baked scene.
 struct BakedObjects {
   bool there = false;
-  std::vector<InstanceId> instances;  // by ObjectId; not valid for tombstones
-  std::vector<ObjectId> tombstones;
+  std::vector<InstanceId> instances{};  // by ObjectId; not valid for tombstones
+  std::vector<ObjectId> tombstones{};
   Vec3d origin;               // world space
   std::uint32_t groups = 0;   // that all of them have
   std::uint64_t version = 0;  // of the last change
@@ -109,7 +108,9 @@ struct WorldData {
   std::vector<BakedObjects> sets;
 
   Vec3d origin;                            // world space; boxes are relative to it
-  std::array<double, 4> origin_rows{};     // the same as the last column of a matrix, less its 1
+  bool origin_moves = false;               // to next_origin
+  Vec3d next_origin;                       // world space
+  std::vector<InstanceId> lost;            // some that have no box from next_origin, or had none
   hierarchy::DynamicTree settled, moving;  // boxes of what is shown
   std::vector<InstanceId> unbounded;       // shown, with no box that is well formed
   std::vector<InstanceId> movers;          // those in `moving`, and some that have left it; each once
@@ -125,8 +126,12 @@ struct WorldData {
   void leaveJoin(std::uint32_t id);
   void leaveSets(std::uint32_t id);
   hierarchy::DynamicTree::Item movedInPlace(InstanceId instance, const Mat4& to, std::uint64_t new_version);
-  Box boundsOf(std::uint32_t id) const;
-  Box boundsOf(const MeshExtent& extent, const Mat4& matrix, double displacement) const;
+  // Boxes from an origin in world space, rounded outwards; empty if there is none.
+  Box boundsOf(std::uint32_t id, const Vec3d& from) const;
+  Box boundsOf(std::uint32_t id) const { return boundsOf(id, origin); }
+  void goOnToOrigin();
+  void takeOrigin();
+  void placeAnew(std::span<const InstanceId> instances);
   // The matrix that takes points of an instance's mesh to where boxes are.
   Mat4 originFromMesh(std::uint32_t id) const { return fromOrigin(world_from_mesh[id]); }
   Mat4 fromOrigin(Mat4 world_from_any) const {
@@ -139,7 +144,8 @@ struct WorldData {
   void settle(std::uint32_t looks);
 };
 
-// A number that is not in use, of a list and of those of its numbers that were in use.
+// Returns the index of an element of a list that is not in use: one of `free`, which it takes out of there,
+// or that of an element that it appends.
 template <typename List>
 std::uint32_t numberIn(List& list, std::vector<std::uint32_t>& free) {
   if (free.empty()) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sightline/math/frustum.h"
+
 namespace sightline::world {
 
 using hierarchy::DynamicTree;
@@ -13,12 +15,31 @@ namespace {
 
 constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
 constexpr std::uint32_t kLongestDelay = 15;
+// Pixels of the depth buffer: a join is not drawn where the rounding of its positions may move its image by
+// more.
+constexpr double kMostRounding = 0x1p-8;
 // Where more than one of so many instances that were kept is new, the view changes fast, and what the last
 // frame kept is not enough to hide what is behind the new ones.
 constexpr std::size_t kCalm = 16;
 
 double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+// By how many pixels of a picture of this size two points of a box, this far apart (metres), appear apart at
+// most.
+double pixelsApart(double metres, const Box& box, const View& view, const DepthBufferView& picture) {
+  const double high = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
+  const double scale = 0.5 * std::max(picture.height / high, picture.width / (high * view.aspect));
+  if (view.orthographic) {
+    return metres * scale;
+  }
+  const Vec3d half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
+  const double nearest = dot(view.forward, center(box) - view.eye) - dot(abs(view.forward), half);
+  // What moves in depth moves by this part of it across the picture.
+  const double slope =
+      high * (std::max(view.aspect, 1.0)) * (1.0 + std::max(std::abs(view.shift_x), std::abs(view.shift_y)));
+  return metres * (1.0 + slope) * scale / std::max(nearest, view.near);
 }
 
 }  // namespace
@@ -155,7 +176,8 @@ bool WorldEye::isJoined(const WorldData& data, const Joined& joined) const {
 }
 
 // Sets of_join_ and alone_. The candidates may have been removed, hidden or moved since they were kept.
-void WorldEye::takeCandidates(const WorldData& data, std::span<const InstanceId> candidates) {
+void WorldEye::takeCandidates(const WorldData& data, const View& view,
+                              std::span<const InstanceId> candidates) {
   of_join_.resize(std::max(of_join_.size(), data.joins.size()));
   for (std::vector<ObjectId>& members : of_join_) {
     members.clear();
@@ -178,11 +200,48 @@ void WorldEye::takeCandidates(const WorldData& data, std::span<const InstanceId>
       alone_.push_back(id.value);
     }
   }
+  for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
+    if (!of_join_[join].empty() && isBlurred(data, data.joins[join].join, view)) {
+      separate(data, join);
+    }
+  }
+}
+
+// Whether the rounding of the positions of a join might show. All members count, candidates or not, as the
+// surfaces of one may be found together with those of any other.
+bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const View& view) const {
+  if (join.rounding == 0.0) {
+    return false;
+  }
+  const Frustum frustum = frustumOf(view);
+  return std::any_of(join.instances.begin(), join.instances.end(), [&](InstanceId id) {
+    if (!id.valid()) {
+      return false;  // it has left, and its surfaces with it
+    }
+    if (!data.hides(id.value)) {
+      return true;  // it has no box from this origin
+    }
+    const Box& box = data.boxOf(id.value);
+    return pixelsApart(join.rounding, box, view, pyramid_.depthBuffer()) > kMostRounding &&
+           std::none_of(frustum.planes.begin(), frustum.planes.end(),
+                        [&](const Plane& plane) { return sideOf(plane, box) < 0; });
+  });
+}
+
+// Has the members of a join drawn by their own meshes.
+void WorldEye::separate(const WorldData& data, std::uint32_t join) {
+  for (const ObjectId object : of_join_[join]) {
+    const InstanceId id = data.joins[join].join.instances[object.value];
+    if (!data.instances[id.value].alone) {  // else it is drawn so already
+      alone_.push_back(id.value);
+    }
+  }
+  of_join_[join].clear();
 }
 
 void WorldEye::draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates,
                     ViewStep step) {
-  takeCandidates(data, candidates);
+  takeCandidates(data, view, candidates);
   SurfaceDrawing drawing = usual_work_.limited(settings_.drawing, step == ViewStep::kJump);
   drawing.step = step;
   const std::uint32_t budget = drawing.budget;
@@ -242,7 +301,7 @@ void WorldEye::listNearFirst(const WorldData& data, const View& view, const Surf
 }
 
 void WorldEye::drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing) {
-  // So that a world that grows as was reserved copies nothing here.
+  // A world that grows within what was reserved makes this vector copy nothing either.
   retest_delays_.reserve(data.instances.capacity());
   retest_delays_.resize(std::max(retest_delays_.size(), data.instances.size()));
   listNearFirst(data, view, drawing);
@@ -284,21 +343,16 @@ Visibility WorldEye::look(const WorldData& data, const View& view_world, const B
   }
   listed_.clear();
   found_.list(listed_);
-  takeCandidates(data, listed_);
+  takeCandidates(data, view, listed_);
   // What an ignored member of a join hides is not known apart from what the others do.
   for (std::uint32_t join = 0; join < of_join_.size(); ++join) {
     const auto of_this = [&](InstanceId id) {
       return id.value < data.instances.size() && data.instances[id.value].join == join;
     };
     if (!of_join_[join].empty() && std::any_of(ignored.begin(), ignored.end(), of_this)) {
-      for (const ObjectId object : of_join_[join]) {
-        alone_.push_back(data.joins[join].join.instances[object.value].value);
-      }
-      of_join_[join].clear();
+      separate(data, join);
     }
   }
-  std::sort(alone_.begin(), alone_.end());
-  alone_.erase(std::unique(alone_.begin(), alone_.end()), alone_.end());
   SurfaceDrawing drawing = settings_.drawing;
   drawing.step = ViewStep::kJump;
   const bool nothing_between = listed_.empty() && data.unbounded.empty();

@@ -61,7 +61,9 @@ class WorldEye {
   View begin(const WorldData& data, const View& view_world);
   bool isDrawn(const InstanceData& instance) const { return (instance.groups & settings_.groups) != 0; }
   bool isJoined(const WorldData& data, const Joined& joined) const;
-  void takeCandidates(const WorldData& data, std::span<const InstanceId> candidates);
+  void takeCandidates(const WorldData& data, const View& view, std::span<const InstanceId> candidates);
+  bool isBlurred(const WorldData& data, const WorldJoin& join, const View& view) const;
+  void separate(const WorldData& data, std::uint32_t join);
   void draw(const WorldData& data, const View& view, std::span<const InstanceId> candidates, ViewStep step);
   void drawJoins(const WorldData& data, SurfaceDrawing& drawing);
   void drawAlone(const WorldData& data, const View& view, SurfaceDrawing& drawing);

@@ -96,7 +96,9 @@ WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const Surfac
     const SurfaceSet& surfaces = own.meshes[own.instances[id.value].mesh].mesh.surfaces;
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
     for (const Vec3f& vertex : surfaces.vertices) {
-      scene.positions.emplace_back(transformPoint(m, Vec3d(vertex)) - join.origin);
+      const Vec3d at = transformPoint(m, Vec3d(vertex)) - join.origin;
+      scene.positions.emplace_back(at);
+      join.rounding = std::max(join.rounding, length(Vec3d(scene.positions.back()) - at));
     }
     const bool mirrored = determinant3(m) < 0.0;
     Object object;

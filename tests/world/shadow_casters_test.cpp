@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "tests/world/hard_story.h"
 #include "tests/world/rays.h"
 
 namespace sightline {
@@ -107,6 +108,30 @@ TEST(ShadowCasters, EveryShadowThatIsSeenHasItsCaster) {
   }
   EXPECT_GT(shadowed, 2000u);
   EXPECT_LT(2 * kept, seen);
+}
+
+// The same of a world that is changed in every way, far from its zero.
+TEST(ShadowCasters, EveryShadowHasItsCasterHoweverTheWorldIsChanged) {
+  std::size_t shadowed = 0, seen = 0, kept = 0;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    HardStory story(seed, seed % 2 == 0 ? Vec3d() : Vec3d(20000, 0, -8000), seed % 4 != 0);
+    story.world.setOrigin(story.base);
+    WorldCuller culler;
+    ShadowCasters casters;
+    const View light = lightFrom({30, 40, 10}, {-3, -4, -1}, seed % 3 != 0);
+    for (int frame = 0; frame < 12; ++frame) {
+      const View view = story.next();
+      culler.cull(story.world, story.inWorld(view));
+      casters.cull(story.world, story.inWorld(light), culler);
+      const Shadows shadows = shadowsMissing(story.drawn(~0u), view, light, casters);
+      EXPECT_EQ(shadows.missing, "") << seed << " " << frame;
+      shadowed += shadows.shadowed;
+      seen += casters.stats().seen_by_light;
+      kept += casters.casters().size();
+    }
+  }
+  EXPECT_GT(shadowed, 2000u);
+  EXPECT_LT(kept, seen);
 }
 
 // A crate far behind the camera, with the sun behind it, too high for its shadow to reach the view; and one

@@ -75,6 +75,55 @@ TEST(WorldMargins, FlattenedMembersOfJoinsHaveNoSides) {
   }
 }
 
+// A panel near the eye is joined with one far away, so that its positions are rounded by some
+// millimetres: outwards, over a crate that is seen beside its edge through a telescope.
+TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
+  const auto panelTo = [](double x0, double x1) {
+    Mat4 m;
+    m(0, 0) = x1 - x0;
+    m(1, 1) = 2.0;
+    m(0, 3) = x0;
+    m(1, 3) = -1.0;
+    m(2, 3) = -10.0;
+    return m;
+  };
+  for (const double far_away : {8.0, 524288.0}) {
+    Story story(allShapes());
+    const std::vector<InstanceId> panels{story.add(1, panelTo(-4.0, 0.009)),
+                                         story.add(1, panelTo(far_away, far_away + 4.0))};
+    Mat4 small;
+    small(0, 0) = small(1, 1) = small(2, 2) = 0.003;
+    small(2, 3) = -11.0;
+    small(0, 3) = 0.0106;
+    const InstanceId beside = story.add(0, small);
+    small(0, 3) = 0.002;
+    const InstanceId behind = story.add(0, small);
+    WorldJoin join = story.world.prepareJoin(panels);
+    ASSERT_EQ(join.instances.size(), 2u);
+    EXPECT_EQ(join.rounding > 1e-3, far_away > 100.0);
+    EXPECT_LE(join.rounding, 0x1p-24 * 2.0 * far_away);
+    story.world.use(std::move(join));
+    View view = viewFrom({0.009, 0, 0}, {0, 0, -1});
+    view.tan_half_fovy = 6e-3;
+    view.near = 9.9;
+    WorldCuller culler({.raster = {.width = 128, .height = 72}});
+    for (int frame = 0; frame < 3; ++frame) {
+      culler.cull(story.world, view);
+      EXPECT_TRUE(keeps(culler, beside)) << far_away;
+    }
+    EXPECT_FALSE(keeps(culler, behind)) << far_away;
+    // From an origin at which its members have no boxes, a join hides nothing, and back again what it did.
+    story.world.setOrigin({3.5e38, 0, 0});
+    culler.cull(story.world, view);
+    EXPECT_TRUE(keeps(culler, behind)) << far_away;
+    story.world.setOrigin({});
+    culler.cull(story.world, view);
+    culler.cull(story.world, view);
+    EXPECT_TRUE(keeps(culler, beside)) << far_away;
+    EXPECT_FALSE(keeps(culler, behind)) << far_away;
+  }
+}
+
 // Instances of a mesh, turned and scaled, around an origin.
 struct Field {
   std::mt19937 engine;

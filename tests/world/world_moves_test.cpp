@@ -214,6 +214,104 @@ TEST(WorldMoves, WhateverIsInTheViewIsKeptWhileTheHierarchyIsBuiltAnew) {
   EXPECT_LT(2 * kept, shown);
 }
 
+// A new origin that takes many calls of tidy(), while instances come, go, move, and are too far away for one
+// of the two origins: then all is as in a world in which it came at once.
+TEST(WorldMoves, AnOriginThatComesInSlicesIsAsOneThatComesAtOnce) {
+  for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    Chance chance(seed);
+    Story sliced(allShapes()), at_once(allShapes());
+    const std::array<Story*, 2> both{&sliced, &at_once};
+    // In the last round, single precision overflows: some have a box from one origin alone.
+    const Vec3d next = seed == 3 ? Vec3d(2e38, 0, -2e38) : Vec3d(4096, -16, 1 << 20);
+    std::vector<InstanceId> ids;
+    const auto placement = [&] {
+      Mat4 m = chance.placement(60.0, 6.0);
+      const double towards = static_cast<double>(chance.below(3)) - 1.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        m(axis, 3) += towards * next[axis];
+      }
+      return m;
+    };
+    const auto add = [&] {
+      const Mat4 m = placement();
+      const bool shown = chance.below(10) != 0;
+      const std::size_t shape = ids.size() % 5;
+      ids.push_back(sliced.add(shape, m, shown));
+      at_once.add(shape, m, shown);
+    };
+    for (int i = 0; i < 3000; ++i) {
+      add();
+    }
+    sliced.world.moveOrigin(next);
+    int calls = 0;
+    for (; sliced.world.origin() != next && calls < 2000; ++calls) {
+      EXPECT_EQ(sliced.world.origin(), Vec3d());
+      for (int change = 0; change < 5; ++change) {
+        const std::size_t which = chance.below(static_cast<std::uint32_t>(ids.size()));
+        const std::uint32_t kind = chance.below(4);
+        const Mat4 m = placement();
+        if (kind == 0) {
+          add();
+        } else if (kind == 1) {
+          sliced.remove(ids[which]);
+          at_once.remove(ids[which]);
+          ids[which] = ids.back();
+          ids.pop_back();
+        } else {
+          for (Story* story : both) {
+            kind == 2 ? story->show(ids[which], calls % 2 == 0) : story->move(ids[which], m);
+          }
+        }
+      }
+      if (calls == 20) {  // a list, for which the hierarchy is built anew
+        std::vector<Instance> list;
+        for (int i = 0; i < 2000; ++i) {
+          list.push_back({.mesh = sliced.meshes[0], .world_from_mesh = placement()});
+        }
+        for (Story* story : both) {
+          std::vector<InstanceId> listed;
+          story->world.add(list, listed);
+          for (std::size_t i = 0; i < listed.size(); ++i) {
+            story->told[listed[i].value] = {0, list[i].world_from_mesh, true};
+          }
+          if (story == &sliced) {
+            ids.insert(ids.end(), listed.begin(), listed.end());
+          }
+        }
+      }
+      sliced.world.tidy(300);
+      at_once.world.tidy(1000);
+    }
+    ASSERT_EQ(sliced.world.origin(), next);
+    EXPECT_GT(calls, 60);
+    at_once.world.setOrigin(next);
+    const auto unplaced =
+        std::ranges::count_if(ids, [&](InstanceId id) { return sliced.world.boundsOf(id).empty(); });
+    EXPECT_EQ(unplaced > 500, seed == 3);
+    for (const Vec3d& eye : {Vec3d(0, 1.5, 0), next}) {
+      for (int turn = 0; turn < 8; ++turn) {
+        const View view = viewFrom(eye, {std::sin(turn), 0.1, std::cos(turn)});
+        WorldCuller one({.occlusion = false}), other({.occlusion = false});
+        one.cull(sliced.world, view);
+        other.cull(at_once.world, view);
+        EXPECT_TRUE(std::ranges::equal(one.visible(), other.visible())) << seed << " " << turn;
+      }
+    }
+    for (const InstanceId id : ids) {
+      ASSERT_EQ(sliced.world.boundsOf(id), at_once.world.boundsOf(id));
+    }
+    // One that is given up has no effect, nor has one that is not finite.
+    sliced.world.moveOrigin({1, 2, 3});
+    sliced.world.tidy();
+    sliced.world.setOrigin(next);
+    sliced.world.moveOrigin({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+    for (int i = 0; i < 200; ++i) {
+      sliced.world.tidy();
+    }
+    EXPECT_EQ(sliced.world.origin(), next);
+  }
+}
+
 TEST(WorldMoves, InstancesWithoutAMatrixStay) {
   Story story(allShapes());
   std::vector<InstanceId> ids;

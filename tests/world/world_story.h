@@ -157,7 +157,7 @@ inline Judged judge(const Story& story, const View& view, const WorldCuller& cul
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const std::uint32_t id = ids[i].value;
     const bool kept = (culler.visibleBits()[id / 64] >> (id % 64) & 1) != 0;
-    if (kept != std::binary_search(culler.visible().begin(), culler.visible().end(), ids[i])) {
+    if (kept != keeps(culler, ids[i]) || kept != culler.isVisible(ids[i])) {
       judged.wrong += "the bit of instance " + std::to_string(id) + " is not what the list says; ";
     }
     if (!kept) {

@@ -210,7 +210,7 @@ TEST(World, WhatIsJoinedHidesTogetherUntilAMemberLeaves) {
   EXPECT_TRUE(shows());
 }
 
-// Also where each triangle is a part of its own, drawn together with those that adjoin it.
+// This holds also where each triangle is a part of its own, drawn together with those that adjoin it.
 TEST(World, AMemberThatIsHiddenOrRemovedHidesNothing) {
   for (const bool hidden : {true, false}) {
     for (const std::uint32_t part_triangles : {1u, 1024u}) {

@@ -63,6 +63,10 @@ struct WorldJoin {
   std::vector<std::uint64_t> versions{};  // of the instances
   Vec3d origin{};                         // of the surfaces, world space
   SurfaceSet surfaces{};                  // ObjectId is the index into `instances`
+  // Metres: how far, at most, a vertex of the surfaces is from where its matrix takes it. Surfaces are in
+  // single precision, so this is 0 only for positions of few digits, else up to 2^-24 of the distance from
+  // `origin`.
+  double rounding = 0.0;
 };
 
 // Matrices and eyes are in double precision, in world space. Boxes are in single precision, relative to
@@ -96,6 +100,9 @@ class World {
   // Takes n log n time.
   void add(std::span<const Instance> instances, std::vector<InstanceId>& ids);
   void remove(InstanceId instance);
+  // Puts another instance in the place of one, which gets the same id: another mesh, as of another level of
+  // detail, or another displacement. The same as remove() and add(), and as fast.
+  void replace(InstanceId instance, const Instance& by);
   void setTransform(InstanceId instance, const Mat4& world_from_mesh);
   // Instance i gets matrix i. For many this takes half to three quarters of the time of as many calls of
   // setTransform(), and most of it may be shared among threads. No instance may be named twice.
@@ -106,10 +113,15 @@ class World {
 
   // World space less this are the coordinates of all boxes: of boundsOf() and of those that are classified.
   // A few kilometres from it, single precision and the rounding of double precision make boxes larger and
-  // let less hide; nothing else depends on it. Cull again before anything is classified. Takes some 120
-  // nanoseconds an instance.
-  void setOrigin(const Vec3d& origin);
+  // let less hide; nothing else depends on it.
   Vec3d origin() const;
+  // For worlds in which the camera travels far. In the next calls of tidy(), about one for 400 instances,
+  // everything gets its box from the new origin, beside the one from the old origin, which stays in use. Then
+  // origin() becomes the new one, in a call of tidy(). Cull again before anything is classified. Ends a move
+  // to another origin that goes on. An origin that is not finite has no effect.
+  void moveOrigin(const Vec3d& origin);
+  // The same at once, as behind a loading screen. Takes some 120 nanoseconds an instance.
+  void setOrigin(const Vec3d& origin);
 
   bool has(InstanceId instance) const;
   std::size_t instances() const;  // that are there
@@ -121,9 +133,11 @@ class World {
 
   // Finds the surfaces of instances anew as one, so that what touches hides jointly: walls of panels, floors
   // of tiles, a level of brushes. Worth it for what does not move. Instances that are in another join leave
-  // it. One that moves, is hidden or is removed later leaves the join; what was connected with it then hides
-  // by its own mesh, too. Takes as long as findSurfaces(), during which the world may be culled but not
-  // changed; use() takes microseconds.
+  // it. Positions count as equal, and as being, where they are in single precision from the middle of the
+  // join (WorldJoin::rounding); where that could show, by 1/256 of a pixel of the depth buffer, members hide
+  // by their own meshes. One that moves, is hidden or is removed later leaves the join; what was connected
+  // with it then hides by its own mesh, too. Takes as long as findSurfaces(), during which the world may be
+  // culled but not changed; use() takes microseconds.
   WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},
                         const ParallelFor& parallel_for = serialFor) const;
   // Instances that have changed since prepareJoin() leave the join at once.
@@ -140,15 +154,17 @@ class World {
   // was moved, hidden or removed, or lies elsewhere than the baked box says, is a tombstone: a set that has a
   // tombstone in it counts as everything. All other sets hold: the first surface along a line of sight is
   // always in the set of the cell that the line starts in, so what no line of sight meets hides nothing that
-  // another thing does not hide too. An instance that is in several belongs to the last one.
+  // another thing does not hide too. An instance that is in several belongs to the last one. For an eye that
+  // is in no cell of the baked scene, as in the next part of a streamed world, its sets leave nothing out.
   SetsId useSets(std::span<const InstanceId> objects, BoxTreeView boxes, const Vec3d& baked_origin = {});
   void dropSets(SetsId sets);
   std::size_t tombstones(SetsId sets) const;  // tells when it is worth to bake anew
 
-  // Call this once a frame: keeps the hierarchy good, in at most about so many steps of some 20 nanoseconds.
-  // Answers are right without it, but culling becomes slower. Where a quarter of the instances was added one
-  // by one, it builds another hierarchy in the calls to come, about one for 500 instances, and uses the old
-  // one until that is done.
+  // Call this once a frame, before culling: keeps the hierarchy good, in at most about so many steps of some
+  // 20 nanoseconds, and goes on with moveOrigin(). Answers are right without it, but culling becomes slower.
+  // Where a quarter of the instances was added one by one, or the hierarchy has worn in another way, it
+  // builds another one in the calls to come, about one for 500 instances, and uses the old one until that is
+  // done.
   void tidy(std::uint32_t steps = 10000);
   // Builds the hierarchy anew at once, as if all had been added as one list: after a loading screen, where
   // much was added one by one. Takes half a second for a million instances; no frame needs it.

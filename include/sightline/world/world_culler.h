@@ -63,8 +63,8 @@ class WorldCuller {
   // side of this plane, in world space, is drawn. It is not kept, and hides nothing. Holds for all views from
   // the next cull() on; Plane() ends it.
   void setClipPlane(const Plane& plane);
-  // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use;
-  // null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
+  // Leaves out what these sets say cannot be seen; see World::useSets(). The sets must outlive their use, at
+  // the same address; null ends it. Each culler has look-ups (SetQuery) of its own, which may share one file.
   void useSets(SetsId id, VisibleSets* sets);
 
   // Answers of the last cull(). Instances that may be seen, ascending.
@@ -72,6 +72,8 @@ class WorldCuller {
   // The same as a set of bits: instance i is bit i % 64 of word i / 64. As many words as World::idBound()
   // needs. Uploaded as it is, it is bit i % 32 of word i / 32 to a shader (of a little-endian machine).
   std::span<const std::uint64_t> visibleBits() const;
+  // Whether it is among these, whatever has been changed since.
+  bool isVisible(InstanceId instance) const;
   // Instances that the cull() before did not keep, or that were not there then, and instances that it kept
   // and that are not kept any more or have been removed; ascending.
   std::span<const InstanceId> appeared() const;
