@@ -15,9 +15,6 @@ namespace {
 
 constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
 constexpr std::uint32_t kLongestDelay = 15;
-// Pixels of the depth buffer: a join is not drawn where the rounding of its positions may move its image by
-// more.
-constexpr double kMostRounding = 0x1p-8;
 // Where more than one of so many instances that were kept is new, the view changes fast, and what the last
 // frame kept is not enough to hide what is behind the new ones.
 constexpr std::size_t kCalm = 16;
@@ -213,6 +210,9 @@ bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const Vie
   if (join.rounding == 0.0) {
     return false;
   }
+  if (!(settings_.join_rounding > 0.0)) {
+    return true;
+  }
   const Frustum frustum = frustumOf(view);
   return std::any_of(join.instances.begin(), join.instances.end(), [&](InstanceId id) {
     if (!id.valid()) {
@@ -222,7 +222,7 @@ bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const Vie
       return true;  // it has no box from this origin
     }
     const Box& box = data.boxOf(id.value);
-    return pixelsApart(join.rounding, box, view, pyramid_.depthBuffer()) > kMostRounding &&
+    return pixelsApart(join.rounding, box, view, pyramid_.depthBuffer()) > settings_.join_rounding &&
            std::none_of(frustum.planes.begin(), frustum.planes.end(),
                         [&](const Plane& plane) { return sideOf(plane, box) < 0; });
   });

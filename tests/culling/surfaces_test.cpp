@@ -585,6 +585,30 @@ Scene pairs(float size, float fold) {
   return scene;
 }
 
+TEST(SurfaceProbes, WhatRestsIsDrawnWhereThatIsAskedFor) {
+  Scene scene;
+  addWall(scene, addMaterial(scene, Opacity::kOpaque, true), -10.0f, -50.0f, 50.0f, -50.0f, 50.0f);
+  const SurfaceSet surfaces = findSurfaces(scene.view());
+  for (const bool draw_resting : {false, true}) {
+    Rasteriser raster({.width = 64, .height = 64});
+    SurfaceDrawing drawing = kEverything;
+    View view = frontView();
+    view.far = 1e5;
+    view.eye.z = 3000.0;  // the wall has one pixel, which is no use
+    raster.begin(view);
+    raster.draw(surfaces, surfaces.objects, drawing);
+    EXPECT_EQ(raster.surfaceStats().groups, 1u);
+    view.eye.z = 0.0;
+    drawing.step = ViewStep::kNext;
+    raster.begin(view);
+    raster.draw(surfaces, {}, drawing);
+    drawing.step = ViewStep::kSame;
+    drawing.draw_resting = draw_resting;
+    raster.draw(surfaces, surfaces.objects, drawing);
+    EXPECT_EQ(raster.depthBuffer().covered(32, 32), draw_resting);
+  }
+}
+
 TEST(SurfaceProbes, ASetMadeAnewInTheSamePlaceIsAnotherSet) {
   const SurfaceSettings settings{.cluster_triangles = 1};
   const Scene small = pairs(1e-3f, 0.0f), large = pairs(1.8f, 1.5f);

@@ -124,6 +124,34 @@ TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
   }
 }
 
+TEST(WorldMargins, AJoinOfRoundedPositionsHidesOnlyIfThatIsAllowed) {
+  const auto panelTo = [](double x0, double x1) {
+    Mat4 m;
+    m(0, 0) = x1 - x0;
+    m(1, 1) = 20.0;
+    m(0, 3) = x0;
+    m(1, 3) = -10.0;
+    m(2, 3) = -10.0;
+    return m;
+  };
+  Story story(allShapes());
+  const std::vector<InstanceId> panels{story.add(1, panelTo(-10.0, 0.1)), story.add(1, panelTo(0.1, 10.0))};
+  Mat4 small;
+  small(2, 3) = -14.0;
+  small(0, 3) = -0.4;
+  const InstanceId behind_the_seam = story.add(0, small);
+  WorldJoin join = story.world.prepareJoin(panels);
+  EXPECT_GT(join.rounding, 0.0);
+  story.world.use(std::move(join));
+  for (const double allowed : {WorldCullerSettings{}.join_rounding, 0.0}) {
+    WorldCuller culler({.join_rounding = allowed});
+    for (int frame = 0; frame < 3; ++frame) {
+      culler.cull(story.world, viewFrom({0, 0, 0}, {0, 0, -1}));
+    }
+    EXPECT_EQ(keeps(culler, behind_the_seam), allowed == 0.0);
+  }
+}
+
 // Instances of a mesh, turned and scaled, around an origin.
 struct Field {
   std::mt19937 engine;

@@ -134,8 +134,8 @@ class World {
   // Finds the surfaces of instances anew as one, so that what touches hides jointly: walls of panels, floors
   // of tiles, a level of brushes. Worth it for what does not move. Instances that are in another join leave
   // it. Positions count as equal, and as being, where they are in single precision from the middle of the
-  // join (WorldJoin::rounding); where that could show, by 1/256 of a pixel of the depth buffer, members hide
-  // by their own meshes. One that moves, is hidden or is removed later leaves the join; what was connected
+  // join (WorldJoin::rounding); where that could show (WorldCullerSettings::join_rounding), members hide by
+  // their own meshes. One that moves, is hidden or is removed later leaves the join; what was connected
   // with it then hides by its own mesh, too. Takes as long as findSurfaces(), during which the world may be
   // culled but not changed; use() takes microseconds.
   WorldJoin prepareJoin(std::span<const InstanceId> instances, const SurfaceSettings& settings = {},

@@ -23,6 +23,10 @@ struct WorldCullerSettings {
   bool occlusion = true;  // false: by the view's volume alone
   // Only instances that have one of these bits are drawn in the view (Instance::groups).
   std::uint32_t groups = 0xffffffffu;
+  // Pixels of the depth buffer: where the rounding of a join's positions (WorldJoin::rounding) may move its
+  // image by more, its members hide by their own meshes. What shows through a gap narrower than this between
+  // members of a join may be culled; 0: a join whose positions were rounded hides nothing.
+  double join_rounding = 0x1p-8;
 };
 
 // What the last cull() did.
