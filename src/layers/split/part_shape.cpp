@@ -12,8 +12,8 @@
 namespace sightline::layers {
 namespace {
 
-constexpr std::size_t kManyPoints = 4096;       // beyond, a cloud has the outermost corners alone
-constexpr std::uint32_t kCloudDirections = 64;  // along which they are the outermost
+constexpr std::size_t kManyPoints = 512;         // beyond, a cloud has the outermost corners alone
+constexpr std::uint32_t kCloudDirections = 128;  // along which they are the outermost
 
 std::vector<Vec3d> cornersOf(const std::vector<ShapePolygon>& polygons) {
   std::vector<Vec3d> points;
