@@ -298,6 +298,9 @@ TEST(CycleSplitter, PiecesMoveWithTheirPart) {
     const LayerOrder& order = sorter.update(farView());
     EXPECT_GT(expectRaysInOrder(sorter.things(), sorter.splitter().pieces(), order, farView(), random, 200),
               5u);
+    for (const PartPiece& piece : sorter.splitter().pieces()) {
+      EXPECT_EQ(sorter.sorter().transformOf(piece.piece).m, turned.m);
+    }
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_FALSE(sorter.splitter().pieces().empty());
