@@ -62,6 +62,19 @@ void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& pose
   }
 }
 
+void scenePoses(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& scene_from_part) {
+  scene_from_part.assign(scene.pose ? scene.parts.size() : 0, Mat4{});
+  if (!scene.pose) {
+    return;
+  }
+  scene.pose(frame, scene_from_part);
+  for (Mat4& pose : scene_from_part) {
+    for (int row = 0; row < 3; ++row) {
+      pose(row, 3) -= scene.scene.origin[row];
+    }
+  }
+}
+
 void placements(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& scene_from_stored) {
   scene_from_stored.assign(scene.scene.objects.size(), Mat4{});
   if (!scene.pose) {

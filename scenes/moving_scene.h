@@ -55,6 +55,10 @@ LayerSorter makeSorter(const MovingScene& scene, const LayerSettings& settings);
 // the number of parts.
 void pose(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& poses, LayerSorter& sorter);
 
+// The rigid scene_from_part of all parts in a frame. Empty for a scene without poses, whose parts are in
+// scene space.
+void scenePoses(const MovingScene& scene, std::uint32_t frame, std::vector<Mat4>& scene_from_part);
+
 // Poses of the objects in a frame, as LayerRenderer::setTransforms takes them: from the positions stored in
 // `scene`, those of frame 0, to scene space. One per object; the identity for objects that have not moved,
 // and in a scene without poses.

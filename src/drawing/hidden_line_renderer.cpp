@@ -5,12 +5,14 @@
 // arcs of the sort tell which objects can hide a line.
 
 #include <algorithm>
+#include <optional>
 
 #include "sightline/drawing/drawing.h"
 #include "src/base/rows.h"
 #include "src/drawing/line_view.h"
 #include "src/drawing/outline.h"
 #include "src/drawing/polylines.h"
+#include "src/drawing/seen_order.h"
 
 namespace sightline {
 
@@ -61,6 +63,8 @@ struct HiddenLineRenderer::Impl {
   // without the pieces in `before`.
   DrawingObject drawLines(ObjectId object, DrawnPieces* before, Drawing& drawing);
   void drawOutline(DrawingObject& object);
+  const LayerOrder& seenFirst(const LayerOrder& order);
+  const std::vector<GridPath>& gridOutlineOf(ObjectId object);
   void tellProgress();  // called after each object
   // The objects of these parts that may show something.
   std::vector<ObjectId> objectsOf(std::span<const PartId> parts) const;
@@ -69,6 +73,7 @@ struct HiddenLineRenderer::Impl {
   FeatureEdges edges;
   HiddenLines hidden;
   Outliner outliner;
+  SeenOrder seen_order;
   std::vector<FeatureLine> lines;
   std::vector<LinePiece> pieces;
   std::vector<ObjectId> occluders;
@@ -79,6 +84,7 @@ struct HiddenLineRenderer::Impl {
   View view;
   const DrawingSettings* settings = nullptr;
   double tolerance = 0.0;
+  std::vector<std::optional<std::vector<GridPath>>> outlines;  // one for each object, of those asked for
   std::vector<bool> shows;                       // one for each object: whether it may show something
   std::uint64_t objects = 0, objects_drawn = 0;  // objects of the order that may show something
 };
@@ -99,6 +105,7 @@ bool HiddenLineRenderer::Impl::begin(const SceneView& scene_in, std::span<const 
   drawing.width = settings_in.page_height * view.aspect;
   hidden.setView(scene, view, settings_in.page_height);
   outliner.setView(view, settings_in.page_height);
+  outlines.assign(scene.objects.size(), {});
   shows.resize(scene.objects.size());
   for (std::size_t i = 0; i < shows.size(); ++i) {
     shows[i] = outliner.mayShow(scene, ObjectId(i));
@@ -136,7 +143,8 @@ void HiddenLineRenderer::Impl::drawOutline(DrawingObject& object) {
   if (!scene.materialOf(scene.objects[object.object.value]).opaque()) {
     return;
   }
-  outliner.outline(scene, object.object, object.outline);
+  outliner.toPage(gridOutlineOf(object.object), object.outline);
+  outlines[object.object.value].reset();  // each object is drawn once
   for (PagePath& ring : object.outline) {
     // Closing the line lets the last edge be simplified too.
     ring.push_back(ring.front());
@@ -144,6 +152,24 @@ void HiddenLineRenderer::Impl::drawOutline(DrawingObject& object) {
     ring.pop_back();
   }
   std::erase_if(object.outline, [](const PagePath& ring) { return ring.size() < 3; });
+}
+
+// The outline of an opaque object that may show; empty for others.
+const std::vector<GridPath>& HiddenLineRenderer::Impl::gridOutlineOf(ObjectId object) {
+  std::optional<std::vector<GridPath>>& known = outlines[object.value];
+  if (!known) {
+    known.emplace();
+    if (mayShow(object) && scene.materialOf(scene.objects[object.value]).opaque()) {
+      outliner.outline(scene, object, *known);
+    }
+  }
+  return *known;
+}
+
+const LayerOrder& HiddenLineRenderer::Impl::seenFirst(const LayerOrder& order) {
+  return seen_order.sort(scene, outliner, order, [this](ObjectId object) -> const std::vector<GridPath>& {
+    return gridOutlineOf(object);
+  });
 }
 
 std::vector<ObjectId> HiddenLineRenderer::Impl::objectsOf(std::span<const PartId> parts) const {
@@ -162,13 +188,14 @@ HiddenLineRenderer::HiddenLineRenderer(HiddenLineRenderer&&) noexcept = default;
 HiddenLineRenderer& HiddenLineRenderer::operator=(HiddenLineRenderer&&) noexcept = default;
 
 Drawing HiddenLineRenderer::paint(const SceneView& scene, std::span<const std::string> names,
-                                  const View& view, const LayerOrder& order,
+                                  const View& view, const LayerOrder& given,
                                   const DrawingSettings& settings) {
   Drawing drawing;
   Impl& own = *impl_;
   if (!own.begin(scene, names, view, settings, drawing)) {
     return drawing;
   }
+  const LayerOrder& order = settings.seen_first ? own.seenFirst(given) : given;
   own.objects = own.objectsOf(order.parts).size();
   const OccludersOf occluders_of(order.arcs, scene.objects.size());
   std::vector<std::size_t> group_of(scene.objects.size(), order.groups());
@@ -177,6 +204,7 @@ Drawing HiddenLineRenderer::paint(const SceneView& scene, std::span<const std::s
     for (const ObjectId member : members) {
       group_of[member.value] = i;
     }
+    drawing.largest_group = std::max(drawing.largest_group, members.size());
     DrawingGroup group;
     for (const ObjectId member : members) {
       own.occluders.clear();

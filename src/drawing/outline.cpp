@@ -125,8 +125,7 @@ void Outliner::addTriangle(const SceneView& scene, std::span<const std::uint32_t
   chain_.add(ring_);
 }
 
-void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<PagePath>& rings) {
-  rings.clear();
+void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<GridPath>& rings) {
   chain_.clear();
   const Object& object = scene.objects[id.value];
   const bool double_sided = scene.materialOf(object).double_sided;
@@ -134,14 +133,78 @@ void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<PagePath
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     addTriangle(scene, indices.subspan(i, 3), double_sided);
   }
-  chain_.takeLoops(loops_);
-  uniteLoops(loops_, kMinWidth);
-  for (const GridPath& loop : loops_) {
+  chain_.takeLoops(rings);
+  uniteLoops(rings, kMinWidth);
+}
+
+void Outliner::toPage(const std::vector<GridPath>& loops, std::vector<PagePath>& rings) const {
+  rings.clear();
+  for (const GridPath& loop : loops) {
     PagePath& ring = rings.emplace_back();
     ring.reserve(loop.size());
     for (const GridPoint& p : loop) {
       ring.push_back({static_cast<double>(p.x) / scale_, static_cast<double>(p.y) / scale_});
     }
+  }
+}
+
+void Outliner::outline(const SceneView& scene, ObjectId id, std::vector<PagePath>& rings) {
+  outline(scene, id, loops_);
+  toPage(loops_, rings);
+}
+
+GridPath Outliner::page() const {
+  const double lines = view_.pageScale() * scale_;
+  const std::int64_t width = std::llround((view_.right() - view_.left()) * lines),
+                     height = std::llround((view_.top() - view_.bottom()) * lines);
+  return {{0, 0}, {width, 0}, {width, height}, {0, height}};
+}
+
+// Andrew's monotone chain, over corners rounded to the grid.
+void Outliner::imageHull(const SceneView& scene, ObjectId id, GridPath& hull) const {
+  constexpr double kFarthest = 0x1p45;  // grid lines, of which products fit into Clipper's numbers
+  hull.clear();
+  std::vector<GridPoint> points;
+  bool is_whole_page = false;
+  for (const std::uint32_t corner : scene.indicesOf(scene.objects[id.value])) {
+    if (!isFinite(scene.positions[corner])) {
+      continue;
+    }
+    const Vec3d p = view_.cameraPoint(scene.positions[corner]);
+    const double depth = view_.view().orthographic ? 1.0 : p.z;
+    const double lines = view_.pageScale() * scale_;
+    const double x = (p.x / depth - view_.left()) * lines, y = (view_.top() - p.y / depth) * lines;
+    if (p.z < view_.view().near || !(std::abs(x) < kFarthest && std::abs(y) < kFarthest)) {
+      is_whole_page = true;
+      break;
+    }
+    points.push_back({std::llround(x), std::llround(y)});
+  }
+  if (is_whole_page) {
+    const double lines = view_.pageScale() * scale_;
+    const std::int64_t left = std::llround((left_ - view_.left()) * lines) - 1,
+                       right = std::llround((right_ - view_.left()) * lines) + 1,
+                       upper = std::llround((view_.top() - top_) * lines) - 1,
+                       lower = std::llround((view_.top() - bottom_) * lines) + 1;
+    hull = {{left, upper}, {right, upper}, {right, lower}, {left, lower}};
+    return;
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() < 3) {
+    hull = points;
+    return;
+  }
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = hull.size();
+    for (const GridPoint& p : points) {
+      while (hull.size() >= first + 2 && turnOf(hull[hull.size() - 2], hull.back(), p) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::reverse(points.begin(), points.end());
   }
 }
 

@@ -32,12 +32,24 @@ class Outliner {
   // drawn. Triangles with a corner that is not finite are left out.
   void outline(const SceneView& scene, ObjectId object, std::vector<PagePath>& rings);
 
+  // The same, as rings on the grid.
+  void outline(const SceneView& scene, ObjectId object, std::vector<GridPath>& rings);
+
+  // Sets `hull` to a convex ring, on the grid, around the image of the object, whatever of it is drawn; it
+  // may reach beyond the page. The whole page with its margin, if some corner lies before the near plane or
+  // far beside the page; empty, if the object has no finite corner.
+  void imageHull(const SceneView& scene, ObjectId object, GridPath& hull) const;
+
   // False if all corners of the object lie beyond one border of the page with its margin, or all before the
   // near or beyond the far plane: the object then shows nothing and hides nothing.
   bool mayShow(const SceneView& scene, ObjectId object) const;
 
+  // The page without its margin, as a ring on the grid.
+  GridPath page() const;
   // Grid lines for each page unit.
   double gridScale() const { return scale_; }
+  // Rings on the grid as rings on the page.
+  void toPage(const std::vector<GridPath>& loops, std::vector<PagePath>& rings) const;
 
  private:
   struct Corner {

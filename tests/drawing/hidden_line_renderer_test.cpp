@@ -61,6 +61,12 @@ struct Set {
     return HiddenLineRenderer(moving.scene.view())
         .paint(moving.scene.view(), moving.scene.object_names, view, sorter.update(view), settings);
   }
+  Drawing paintSeenFirst(const View& view) const {
+    LayerSorter sorter = this->sorter(true);
+    return HiddenLineRenderer(moving.scene.view())
+        .paint(moving.scene.view(), moving.scene.object_names, view, sorter.update(view),
+               {.page_height = kHeight, .seen_first = true});
+  }
   Drawing plot(const View& view, const DrawingSettings& settings = {.page_height = kHeight}) const {
     LayerSorter sorter = this->sorter(true);
     return HiddenLineRenderer(moving.scene.view())
@@ -173,8 +179,7 @@ TEST(HiddenLineRenderer, ObjectsThatOccludeEachOtherAreOneGroupWithLinesCut) {
 }
 
 // A stroke that shows in the painted drawing is in the plot, and the other way round.
-void expectPaintedIsPlotted(const Set& set, const View& view, std::uint64_t seed) {
-  const Drawing painted = set.paint(view), plot = set.plot(view);
+void expectPaintedIsPlotted(const Drawing& painted, const Drawing& plot, std::uint64_t seed) {
   constexpr double kNear = 0.05;
   std::size_t seen = 0, covered = 0;
   const auto samples = [&](const std::vector<PagePath>& strokes, const auto& check) {
@@ -225,8 +230,68 @@ void expectPaintedIsPlotted(const Set& set, const View& view, std::uint64_t seed
 
 TEST(HiddenLineRenderer, PaintingShowsWhatThePlotDraws) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    expectPaintedIsPlotted(randomSet(seed, 18), viewFromFront(seed % 2 == 0), seed);
+    const Set set = randomSet(seed, 18);
+    const View view = viewFromFront(seed % 2 == 0);
+    expectPaintedIsPlotted(set.paint(view), set.plot(view), seed);
   }
+}
+
+// Boxes, prisms and Ls that pass through each other, so that many have no order, with some larger ones before
+// them.
+Set crowdedSet(std::uint64_t seed) {
+  Set set = randomSet(seed, 40);
+  Random random(seed + 1000);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d middle = random.point({-3, -2, 3}, {3, 2, 4});
+    const Vec3f low(middle - Vec3d{1.5, 1.5, 0.2}), high(middle + Vec3d{1.5, 1.5, 0.2});
+    set.add(test::block(low, high), i != 2);
+  }
+  return set;
+}
+
+TEST(HiddenLineRenderer, PaintingWhatIsSeenFirstShowsWhatThePlotDraws) {
+  std::size_t smaller = 0;
+  for (std::uint64_t seed = 21; seed <= 32; ++seed) {
+    const Set set = crowdedSet(seed);
+    View view = viewFromFront(seed % 2 == 0);
+    if (seed % 3 == 0) {
+      view.eye = {1, 1, 1};  // among them: some reach behind the eye and beside the page
+    }
+    const Drawing by_hulls = set.paint(view), seen_first = set.paintSeenFirst(view);
+    expectPaintedIsPlotted(seen_first, set.plot(view), seed);
+    EXPECT_LE(seen_first.largest_group, by_hulls.largest_group) << "seed " << seed;
+    EXPECT_LE(seen_first.pairs, by_hulls.pairs) << "seed " << seed;
+    smaller += seen_first.largest_group < by_hulls.largest_group ? 1 : 0;
+    if (HasFailure()) {
+      return;
+    }
+  }
+  EXPECT_GT(smaller, 4u);
+}
+
+// Two crossing beams behind a wall have no order by their hulls, and need none.
+TEST(HiddenLineRenderer, WhatAWallHidesIsInNoGroup) {
+  Set set;
+  set.add(test::block({-2, -0.2f, -0.2f}, {2, 0.2f, 0.2f}));
+  set.add(test::block({-0.2f, -2, -0.2f}, {0.2f, 2, 0.2f}));
+  EXPECT_EQ(set.paintSeenFirst(viewFromFront()).largest_group, 2u);
+  set.add(test::block({-3, -3, 2}, {3, 3, 2.2f}));
+  EXPECT_EQ(set.paint(viewFromFront()).largest_group, 2u);
+  EXPECT_EQ(set.paintSeenFirst(viewFromFront()).largest_group, 1u);
+  // Glass hides nothing.
+  set.moving.scene.objects.back().material = MaterialId{1u};
+  EXPECT_EQ(set.paintSeenFirst(viewFromFront()).largest_group, 2u);
+}
+
+TEST(HiddenLineRenderer, WithoutGroupsTheOrderByHullsStays) {
+  Set set;
+  for (int i = 0; i < 5; ++i) {
+    const auto x = static_cast<float>(i);
+    set.add(test::block({x - 2, -1, -x}, {x - 1.5f, 1, -x + 0.4f}));
+  }
+  const Drawing by_hulls = set.paint(viewFromFront()), seen_first = set.paintSeenFirst(viewFromFront());
+  EXPECT_EQ(by_hulls.largest_group, 1u);
+  EXPECT_EQ(toSvg(seen_first), toSvg(by_hulls));
 }
 
 // The visible length of an object's lines by HiddenLines alone, with all objects as occluders.

@@ -269,5 +269,31 @@ TEST(LayerSorterChanges, APartThatIsNotFiniteIsNotOutside) {
   EXPECT_EQ(sorter.update(view).parts.size(), 1u);
 }
 
+TEST(LayerSorterChanges, TheSorterTellsWhatItWasTold) {
+  LayerSorter sorter({.contact_tolerance = 0.25});
+  const HullId box = sorter.addHull(buildHull(shapes::cube()).value());
+  const PartId part = sorter.addPart(std::span(&box, 1), {.place = PartSettings::Place::kBackdrop});
+  Mat4 placed;
+  placed(0, 1) = 2.0;
+  placed(2, 3) = -7.0;
+  sorter.setTransform(part, placed);
+  EXPECT_EQ(sorter.settings().contact_tolerance, 0.25);
+  EXPECT_EQ(sorter.hullsOf(part), std::vector<HullId>{box});
+  EXPECT_EQ(sorter.hull(box).vertices.size(), 8u);
+  EXPECT_EQ(sorter.settingsOf(part).place, PartSettings::Place::kBackdrop);
+  EXPECT_EQ(sorter.transformOf(part).m, placed.m);
+  EXPECT_TRUE(sorter.isEnabled(part));
+  sorter.setEnabled(part, false);
+  EXPECT_FALSE(sorter.isEnabled(part));
+  EXPECT_FALSE(sorter.isInContainer(part));
+  const PartId back = sorter.addPart(std::span(&box, 1));
+  sorter.setContainer(part, back);
+  EXPECT_TRUE(sorter.isInContainer(back));
+  sorter.removePart(part);
+  EXPECT_TRUE(sorter.hullsOf(part).empty());
+  EXPECT_FALSE(sorter.isEnabled(part));
+  EXPECT_EQ(sorter.transformOf(part).m, Mat4{}.m);
+}
+
 }  // namespace
 }  // namespace sightline

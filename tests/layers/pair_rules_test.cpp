@@ -49,6 +49,29 @@ TEST(PairRules, OfAPartWithItselfAreLeftOut) {
   EXPECT_EQ(rules.containerOf(2).other, PairRules::kNone);
 }
 
+TEST(PairRules, ACopyHasThoseWithOtherPartsButNoContainer) {
+  PairRules rules;
+  rules.set(1, 2, planeAt(3));
+  rules.set(4, 1, planeAt(5));
+  rules.set(1, 5, planeAt(6));
+  rules.clear(1, 5);
+  rules.setContainer(1, 6);
+  rules.set(2, 4, planeAt(7));
+  rules.copy(1, 9);
+  ASSERT_NE(rules.find(9, 2), PairRules::kNone);
+  const PairRule& first = rules.rule(rules.find(9, 2));
+  EXPECT_EQ(first.first, 9u);
+  EXPECT_EQ(std::get<PairPlane>(first.what).plane.offset, 3.0);
+  ASSERT_NE(rules.find(9, 4), PairRules::kNone);
+  EXPECT_EQ(rules.rule(rules.find(9, 4)).second, 9u);
+  for (const std::uint32_t other : {1u, 5u, 6u}) {
+    EXPECT_EQ(rules.find(9, other), PairRules::kNone) << other;
+  }
+  EXPECT_EQ(rules.rule(rules.find(1, 2)).first, 1u);
+  rules.copy(9, 9);
+  EXPECT_EQ(rules.find(9, 9), PairRules::kNone);
+}
+
 TEST(PairRules, ContainersAreKnownByBothParts) {
   PairRules rules;
   rules.setContainer(4, 1);

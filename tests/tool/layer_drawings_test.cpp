@@ -50,6 +50,21 @@ TEST(LayerDrawings, AFrameIsDrawnAsSvgAndPdfOfThePicturesSize) {
   EXPECT_LT(drawing["object_tests"], drawing["object_tests_without_sort"]);
 }
 
+TEST(LayerDrawings, WhatIsSeenFirstHasSmallerGroups) {
+  const TemporaryFolder folder;
+  const auto drawingOf = [&](const char* arcs) {
+    const Outcome outcome =
+        runTool({"layers", "demo:building?floors=1&plants=5", "--frames", "0", "--width", "320", "--height",
+                 "180", "--arcs", arcs, "--svg", folder.file("a.svg"), "--no-times", "--json", "-"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return parse(outcome.out)["frames"][0]["drawing"];
+  };
+  const json hulls = drawingOf("all"), seen = drawingOf("seen");
+  EXPECT_LT(seen["largest_group"], hulls["largest_group"]);
+  EXPECT_LT(seen["object_tests"], hulls["object_tests"]);
+  EXPECT_EQ(seen["lines"], hulls["lines"]);
+}
+
 TEST(LayerDrawings, APlotHasNoFillsAndTestsMoreThanThePaintersForm) {
   const TemporaryFolder folder;
   const std::string painted = folder.file("a.svg"), plotted = folder.file("b.svg");

@@ -63,9 +63,11 @@ TEST_F(LayerSeenArcs, EveryArcIsOneOfTheHulls) {
 }
 
 TEST_F(LayerSeenArcs, WhatNeedsMoreThanOnePicturesPixelsIsRefused) {
-  for (const std::vector<std::string>& more : {std::vector<std::string>{"--svg", folder_.file("a.svg")},
-                                               {"--stereo", "0.06"},
-                                               {"--order-for", "lens"}}) {
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--svg", folder_.file("a.svg"), "--image", folder_.file("a.png")},
+        {"--svg", folder_.file("a.svg"), "--plot"},
+        {"--stereo", "0.06"},
+        {"--order-for", "lens"}}) {
     const Outcome outcome = refusal(more);
     EXPECT_NE(outcome.code, 0);
     EXPECT_NE(outcome.err.find("--arcs seen"), std::string::npos) << outcome.err;

@@ -40,6 +40,7 @@ struct Drawing {
   // Pairs of a line and an object that the line was tested against, and how many pairs there would be if each
   // line were tested against all objects. Both count objects that may show on the page.
   std::uint64_t pairs = 0, all_pairs = 0;
+  std::size_t largest_group = 0;  // objects of the order's largest group that may show on the page
 };
 
 std::uint64_t countStrokes(const Drawing& drawing);
@@ -51,6 +52,11 @@ struct DrawingSettings {
   // sorter has no arcs of them, so all lines are tested against all overlays, and lines of a backdrop against
   // everything. Depth still decides what is hidden.
   std::vector<ObjectId> overlays{}, backdrops{};
+  // For the painter's form: within groups of the order only the arcs count from what may be seen on the page
+  // to what may lie behind it there, so that groups are smaller. order.arcs must hold all pairs
+  // (LayerArcs::kAll). The drawing shows the same; objects that are wholly hidden are groups of their own,
+  // whose lines stay whole and are painted over.
+  bool seen_first = false;
   // Called after each object with the share of objects that is drawn, ascending to 1.
   std::function<void(double done)> progress = {};
 };

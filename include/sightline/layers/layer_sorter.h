@@ -164,6 +164,18 @@ class LayerSorter {
   // draws the faces that the eye sees from outside, `back` the others.
   void setContainer(PartId front, PartId back);
 
+  // What the sorter was told about a part; empty, or the default, for a number that is no part.
+  std::vector<HullId> hullsOf(PartId part) const;
+  PartSettings settingsOf(PartId part) const;
+  Mat4 transformOf(PartId part) const;
+  bool isEnabled(PartId part) const;  // false for a number that is no part
+  bool isInContainer(PartId part) const;
+  const ConvexHull& hull(HullId hull) const;  // valid until the next addHull() or setHull()
+  const LayerSettings& settings() const;
+  // Gives part `to` every rule that `from` has with another part, except containers. For a part that takes
+  // the place of another, or of a piece of it.
+  void copyRules(PartId from, PartId to);
+
   // Builds what the search keeps between frames anew, at once (the tree of extentTree()); call it after
   // update(). Does nothing with the default search.
   void rebuildSearch();

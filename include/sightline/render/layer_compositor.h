@@ -62,7 +62,8 @@ struct CompositeStats {
   CompositingCounts operations{};
 };
 
-// Composites frames whose part i is object i of the renderer's scene. Holds the images of one group at a
+// Composites frames whose part i is object i of the renderer's scene, or one of its pieces
+// (LayerRenderer::setPieces). Holds the images of one group at a
 // time. For one thread at a time.
 class LayerCompositor {
  public:

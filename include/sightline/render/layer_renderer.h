@@ -9,9 +9,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sightline/base/ids.h"
 #include "sightline/base/result.h"
+#include "sightline/layers/cycle_splitter.h"
 #include "sightline/math/mat4.h"
 #include "sightline/render/layer_image.h"
 #include "sightline/scene/scene.h"
@@ -37,6 +39,13 @@ struct LensPoint {
   double right = 0.0, up = 0.0;  // metres from the eye, along the view's axes
   double focus = 1.0;            // metres along forward, > 0; ignored if right and up are 0
 };
+
+// A piece of an object (CycleSplitter), by a number that no object has.
+struct ObjectPiece {
+  ObjectId piece{}, object{};
+  std::vector<PieceSide> sides{};  // planes in scene space, at most kMaxPieceSides; more are ignored
+};
+inline constexpr std::size_t kMaxPieceSides = 16;
 
 struct LayerDraw {
   // Composites blended surfaces in the order of depth, pixel by pixel, however many lie over each other;
@@ -77,11 +86,18 @@ class LayerRenderer {
   // transform may mirror: fronts stay fronts. An object whose transform is not finite is not drawn.
   void setTransforms(std::span<const Mat4> scene_from_stored);
 
-  // Draws these objects alone over transparency. Ids may come in any order; repeated ones count once, those
-  // that the scene lacks are ignored. A surface's pixels do not depend on what else is drawn, except where
-  // that hides it. So with one sample for each pixel, layers composited in a correct order equal the picture
-  // of all objects: bit for bit if all are opaque, else up to the rounding of floats. Beside the triangles,
-  // the cost grows with the rectangle of pixels that the objects cover.
+  // Sets the pieces that may be drawn from now on; their objects may still be drawn whole. With one sample
+  // for each pixel, each sample of an object is in exactly one of its pieces, if they fill space, and has the
+  // same bits in it as in the object.
+  void setPieces(std::vector<ObjectPiece> pieces);
+  // The object of a piece; any other number is its own.
+  ObjectId objectOf(ObjectId object_or_piece) const;
+
+  // Draws these objects and pieces alone over transparency. Ids may come in any order; repeated ones count
+  // once, those that the scene lacks are ignored. A surface's pixels do not depend on what else is drawn,
+  // except where that hides it. So with one sample for each pixel, layers composited in a correct order equal
+  // the picture of all objects: bit for bit if all are opaque, else up to the rounding of floats. Beside the
+  // triangles, the cost grows with the rectangle of pixels that the objects cover.
   LayerDrawStats draw(const View& view, std::span<const ObjectId> objects, const LayerDraw& how,
                       LayerImage& image);
 

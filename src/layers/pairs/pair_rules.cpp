@@ -60,6 +60,21 @@ void PairRules::clear(std::uint32_t part) {
   }
 }
 
+void PairRules::copy(std::uint32_t from, std::uint32_t to) {
+  // set() appends, and what it appends is of `to` alone.
+  const std::size_t known = from != to && ruled(from) ? rules_.size() : 0;
+  for (std::size_t i = 0; i < known; ++i) {
+    PairRule rule = rules_[i];
+    const bool is_first = rule.first == from, is_second = rule.second == from;
+    if ((!is_first && !is_second) || std::holds_alternative<std::monostate>(rule.what) ||
+        std::holds_alternative<ContainerRule>(rule.what)) {
+      continue;
+    }
+    (is_first ? rule.first : rule.second) = to;
+    set(rule);
+  }
+}
+
 std::uint32_t PairRules::findRuled(std::uint32_t a, std::uint32_t b) const {
   const std::uint32_t number = index_.find(keyOf(a, b));
   return number == kNone || std::holds_alternative<std::monostate>(rules_[number].what) ? kNone : number;

@@ -39,6 +39,8 @@ class PairRules {
   void setContainer(std::uint32_t front, std::uint32_t back);
   void clear(std::uint32_t first, std::uint32_t second);
   void clear(std::uint32_t part);  // all rules of the part
+  // Gives part `to` every rule of `from` with another part, except containers.
+  void copy(std::uint32_t from, std::uint32_t to);
 
   // Returns the number of the rule for two parts in any order, or kNone.
   std::uint32_t find(std::uint32_t a, std::uint32_t b) const {

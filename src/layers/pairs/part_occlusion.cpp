@@ -7,31 +7,13 @@
 #include "src/layers/hull/support.h"
 #include "src/layers/pairs/envelope_pair.h"
 #include "src/layers/pairs/pair_eye.h"
+#include "src/layers/pairs/swept_set.h"
 
 namespace sightline::layers {
 namespace {
 
 // Relative to the coordinates; some hundred times the rounding error of what it is compared with.
 constexpr double kMargin = 1e-12;
-
-// The heights of a ball around a placed hull along a direction of the world.
-struct Heights {
-  double middle = 0.0, half = 0.0;
-  double magnitude = 0.0;  // sum of the absolute values from which the middle was computed
-};
-
-double reachOf(const ConvexSet& set) {
-  const Placement& p = set.placement;
-  return l1Norm(p.origin) +
-         (l1Norm(p.x) + l1Norm(p.y) + l1Norm(p.z)) * (l1Norm(set.hull->centre) + set.hull->radius);
-}
-
-Heights heightsAlong(const ConvexSet& set, const Vec3d& direction) {
-  const double radius = (set.hull->radius + set.hull->slack) * stretchOf(set.placement);
-  const double steep = l1Norm(direction);
-  return {dot(set.placement.point(set.hull->centre), direction), radius * length(direction) * (1.0 + kMargin),
-          reachOf(set) * steep};
-}
 
 }  // namespace
 
@@ -290,7 +272,7 @@ bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint
   const ConvexSet in_front = placed(front, i, erosion);
   ConvexSet swept = placed(back, j, erosion);
   if (view_.orthographic) {
-    if (!sweepPast(in_front, swept)) {
+    if (!sweepPast(view_.forward, in_front, swept)) {
       ++counts_.questions;
       witness.disjoint = true;
       return false;
@@ -301,24 +283,6 @@ bool PartOcclusion::hullOccludes(std::uint32_t front, std::uint32_t i, std::uint
     swept.more_eyes = more_eyes_;
   }
   return testIntersection(in_front, swept, witness, counts_) != Intersection::kDisjoint;
-}
-
-// Makes the sweep just long enough to pass the hull in front. Returns false if that lies wholly farther from
-// the eye than the hull behind. The direction is scaled by a power of two, so that it stays exact.
-bool PartOcclusion::sweepPast(const ConvexSet& front, ConvexSet& back) const {
-  const Vec3d towards_eye = -view_.forward;
-  const Heights f = heightsAlong(front, towards_eye), b = heightsAlong(back, towards_eye);
-  const double way = (f.middle + f.half) - (b.middle - b.half) + kMargin * (f.magnitude + b.magnitude);
-  if (way < 0.0) {
-    return false;
-  }
-  back.kind = ConvexSet::Kind::kSwept;
-  const double steps = way / dot(towards_eye, towards_eye);
-  int exponent = 0;
-  (void)std::frexp(steps, &exponent);
-  // testIntersection() leaves sets that are not finite undecided.
-  back.eye_or_sweep = towards_eye * (std::isfinite(steps) ? std::ldexp(1.0, exponent) : steps);
-  return true;
 }
 
 bool PartOcclusion::isContainer(std::uint32_t front, std::uint32_t back) const {

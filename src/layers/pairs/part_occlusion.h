@@ -75,7 +75,6 @@ class PartOcclusion {
   bool collide(std::uint32_t front, std::uint32_t back);
   bool mayBeKnownToCollide(std::uint32_t part) const { return known_colliders_[part] >= frame_; }
   void addCollision(std::uint32_t a, std::uint32_t b);
-  bool sweepPast(const ConvexSet& front, ConvexSet& back) const;
 
   bool isContainer(std::uint32_t front, std::uint32_t back) const;
   Verdict containment(std::uint32_t front, std::uint32_t back) const;

@@ -38,6 +38,17 @@ inline Placement placementOf(const Mat4& world_from_hull) {
           {m(0, 3), m(1, 3), m(2, 3)}};
 }
 
+inline Mat4 matrixOf(const Placement& p) {
+  Mat4 m;
+  for (int row = 0; row < 3; ++row) {
+    m(row, 0) = p.x[row];
+    m(row, 1) = p.y[row];
+    m(row, 2) = p.z[row];
+    m(row, 3) = p.origin[row];
+  }
+  return m;
+}
+
 inline bool isFinite(const Placement& p) {
   return sightline::isFinite(p.x) && sightline::isFinite(p.y) && sightline::isFinite(p.z) &&
          sightline::isFinite(p.origin);

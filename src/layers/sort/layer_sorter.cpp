@@ -282,6 +282,47 @@ void LayerSorter::setContainer(PartId front, PartId back) {
   }
 }
 
+std::vector<HullId> LayerSorter::hullsOf(PartId part) const {
+  std::vector<HullId> hulls;
+  if (impl_->isPart(part)) {
+    for (const std::uint32_t hull : impl_->store.hullsOf(part.value)) {
+      hulls.emplace_back(hull);
+    }
+  }
+  return hulls;
+}
+
+PartSettings LayerSorter::settingsOf(PartId part) const {
+  return impl_->isPart(part) ? impl_->part_settings[part.value] : PartSettings{};
+}
+
+Mat4 LayerSorter::transformOf(PartId part) const {
+  return impl_->isPart(part) ? matrixOf(impl_->store.placements[part.value]) : Mat4{};
+}
+
+bool LayerSorter::isEnabled(PartId part) const {
+  return impl_->isPart(part) && impl_->isEnabled(part.value);
+}
+
+bool LayerSorter::isInContainer(PartId part) const {
+  return impl_->isPart(part) && impl_->rules.containerOf(part.value).other != PairRules::kNone;
+}
+
+const ConvexHull& LayerSorter::hull(HullId hull) const {
+  assert(hull.value < impl_->store.hulls.size());
+  return impl_->store.hulls[hull.value];
+}
+
+const LayerSettings& LayerSorter::settings() const {
+  return impl_->settings;
+}
+
+void LayerSorter::copyRules(PartId from, PartId to) {
+  if (impl_->areParts(from, to)) {
+    impl_->rules.copy(from.value, to.value);
+  }
+}
+
 void LayerSorter::rebuildSearch() {
   impl_->source.rebuildSearch();
 }

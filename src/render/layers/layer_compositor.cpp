@@ -35,6 +35,10 @@ Error replacementError(LayerId layer, const std::string& what) {
 }  // namespace
 
 struct LayerCompositor::Impl {
+  bool isBlended(ObjectId object_or_piece) const {
+    return is_blended[renderer->objectOf(object_or_piece).value] != 0;
+  }
+
   LayerRenderer* renderer = nullptr;
   std::vector<std::uint8_t> is_blended, covers_once;  // one for each object
 
@@ -99,14 +103,15 @@ bool LayerCompositor::Impl::isOfRenderersSize(const LayerImage& image) const {
 
 bool LayerCompositor::Impl::hasBlended(const FrameLayers& layers, LayerId layer) const {
   const std::span<const PartId> parts = layers.partsOf(layer);
-  return std::any_of(parts.begin(), parts.end(), [&](PartId part) { return is_blended[part.value] != 0; });
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](PartId part) { return isBlended(ObjectId(part.value)); });
 }
 
 // Whether the layer of all of `objects` must be peeled.
 bool LayerCompositor::Impl::needsPeel() const {
   const bool any_blended =
-      std::any_of(objects.begin(), objects.end(), [&](ObjectId o) { return is_blended[o.value] != 0; });
-  return any_blended && (objects.size() > 1 || covers_once[objects.front().value] == 0);
+      std::any_of(objects.begin(), objects.end(), [&](ObjectId o) { return isBlended(o); });
+  return any_blended && (objects.size() > 1 || covers_once[renderer->objectOf(objects.front()).value] == 0);
 }
 
 // Whether the layers of a group that are drawn form a cycle of which some are blended.
@@ -277,7 +282,7 @@ Result<CompositeStats> LayerCompositor::composite(const View& view, const FrameL
                                                   const CompositeSettings& settings, LayerImage& picture) {
   Impl& c = *impl_;
   for (const PartId part : layers.parts) {
-    if (part.value >= c.is_blended.size()) {
+    if (c.renderer->objectOf(ObjectId(part.value)).value >= c.is_blended.size()) {
       return Error{"part " + std::to_string(part.value) + " is no object of the scene, which has " +
                    std::to_string(c.is_blended.size())};
     }

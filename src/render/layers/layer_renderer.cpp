@@ -36,7 +36,7 @@ Result<LayerPrograms> makeLayerPrograms(const char* vertex, std::uint32_t sample
        {&p.blended, kLayerBlendedFragment},
        {&p.peel_depth, kPeelDepthFragment},
        {&p.peel_color, kPeelColorFragment},
-       {&p.depth, kNoColorFragment}}};
+       {&p.depth, kLayerDepthFragment}}};
   for (const auto& [program, fragment] : all) {
     const Result<SceneProgram> made = makeSceneProgram("layer", fragment, nullptr, vertex);
     if (!made) {
@@ -66,13 +66,21 @@ struct LayerRenderer::Impl {
   explicit Impl(GlContext c) : context(std::move(c)) {}
   Status prepare(const SceneView& scene, const LayerRendererOptions& options);
   void choose(std::span<const ObjectId> objects, bool as_given);
+  const ObjectPiece* findPiece(ObjectId id) const;
   PixelRect covered(const View& view, const LensPoint& lens) const;
   void begin(const PixelRect& rect);
-  void use(const SceneProgram LayerPrograms::*program, const View& view, const LensPoint& lens) const;
-  void drawOpaque(const View& view, const LensPoint& lens) const;
-  void blendInOrder(const View& view, const LensPoint& lens) const;
-  std::uint32_t peel(const View& view, const LensPoint& lens);
-  void addBlendedDepths(const View& view, const LensPoint& lens) const;
+  void use(const SceneProgram LayerPrograms::*program, const View& view, const LensPoint& lens,
+           const ObjectPiece* piece) const;
+  template <typename DrawBatch>
+  void forEachBatch(DrawBatch&& draw_batch);
+  void drawOpaque(const View& view, const LensPoint& lens);
+  void blendInOrder(const View& view, const LensPoint& lens);
+  std::uint32_t peel(const View& view, const LensPoint& lens, std::uint64_t blended);
+  void addBlendedDepths(const View& view, const LensPoint& lens);
+  struct Triangles {
+    std::uint64_t all = 0, blended = 0;
+  };
+  Triangles countTriangles();
 
   GlContext context;
   SceneBuffers buffers;
@@ -80,10 +88,12 @@ struct LayerRenderer::Impl {
   LayerPrograms stored, moved;
   SkyProgram sky;
   LayerTarget target;
-  std::optional<DepthPeeler> peeler;  // if the scene has blended surfaces
-  std::vector<Box> bounds;            // of each object, in stored coordinates
-  std::vector<ObjectId> chosen;       // the objects to draw, in the order of drawing
-  std::vector<std::uint8_t> seen;     // one for each object: whether it is among the chosen ones
+  std::optional<DepthPeeler> peeler;              // if the scene has blended surfaces
+  std::vector<Box> bounds;                        // of each object, in stored coordinates
+  std::vector<ObjectPiece> pieces;                // that may be drawn, ascending
+  std::vector<ObjectId> chosen;                   // the objects to draw, in the order of drawing
+  std::vector<const ObjectPiece*> chosen_pieces;  // those to draw after them
+  std::vector<std::uint8_t> seen;                 // one for each object: whether it is among the chosen ones
   float haze = 0.0f;
   LayerRendererOptions options;
 };
@@ -128,9 +138,25 @@ Status LayerRenderer::Impl::prepare(const SceneView& scene, const LayerRendererO
   return Success{};
 }
 
-// Sets `chosen`: the objects that can be drawn, each once, in the order of drawing.
+const ObjectPiece* LayerRenderer::Impl::findPiece(ObjectId id) const {
+  const auto found =
+      std::lower_bound(pieces.begin(), pieces.end(), id,
+                       [](const ObjectPiece& piece, ObjectId number) { return piece.piece < number; });
+  return found != pieces.end() && found->piece == id ? &*found : nullptr;
+}
+
+// Sets `chosen` and `chosen_pieces`: what can be drawn, each once, in the order of drawing.
 void LayerRenderer::Impl::choose(std::span<const ObjectId> objects, bool as_given) {
   chosen.clear();
+  chosen_pieces.clear();
+  for (const ObjectId id : pieces.empty() ? std::span<const ObjectId>() : objects) {
+    const ObjectPiece* const piece = findPiece(id);
+    if (piece != nullptr && places.drawable(piece->object.value)) {
+      chosen_pieces.push_back(piece);
+    }
+  }
+  std::sort(chosen_pieces.begin(), chosen_pieces.end());
+  chosen_pieces.erase(std::unique(chosen_pieces.begin(), chosen_pieces.end()), chosen_pieces.end());
   seen.assign(bounds.size(), 0);
   for (const ObjectId id : objects) {
     if (places.drawable(id.value) && seen[id.value] == 0) {
@@ -141,6 +167,7 @@ void LayerRenderer::Impl::choose(std::span<const ObjectId> objects, bool as_give
   if (!as_given && !std::is_sorted(chosen.begin(), chosen.end())) {
     std::sort(chosen.begin(), chosen.end());
   }
+  std::erase_if(chosen_pieces, [&](const ObjectPiece* piece) { return seen[piece->object.value] != 0; });
 }
 
 // The rectangle that the chosen objects cover.
@@ -148,6 +175,10 @@ PixelRect LayerRenderer::Impl::covered(const View& view, const LensPoint& lens) 
   RectCollector collector(view, lens, options.width, options.height);
   for (std::size_t i = 0; i < chosen.size() && !collector.full(); ++i) {
     collector.add(bounds[chosen[i].value], places.of(chosen[i].value));
+  }
+  for (std::size_t i = 0; i < chosen_pieces.size() && !collector.full(); ++i) {
+    const ObjectId object = chosen_pieces[i]->object;
+    collector.add(bounds[object.value], places.of(object.value));
   }
   return collector.rect();
 }
@@ -157,44 +188,77 @@ void LayerRenderer::Impl::begin(const PixelRect& rect) {
   beginPicture(target.framebuffer(), target.sampleWidth(), target.sampleHeight(), kTransparent);
 }
 
+// piece: what is drawn with the program; null: whole objects.
 void LayerRenderer::Impl::use(const SceneProgram LayerPrograms::*program, const View& view,
-                              const LensPoint& lens) const {
+                              const LensPoint& lens, const ObjectPiece* piece) const {
   const LayerPrograms& programs = places.asStored() ? stored : moved;
   useProgram(programs.*program, view, view.orthographic ? 0.0f : haze, 1.0f, lens);
+  setSides(programs.*program, view, lens, piece ? std::span(piece->sides) : std::span<const PieceSide>());
 }
 
-void LayerRenderer::Impl::drawOpaque(const View& view, const LensPoint& lens) const {
-  use(&LayerPrograms::opaque, view, lens);
-  buffers.drawPass(Pass::kOpaque);
-  buffers.drawPass(Pass::kOpaqueDoubleSided);
-  use(&LayerPrograms::alpha_tested, view, lens);
-  buffers.drawPass(Pass::kAlphaTested);
-  buffers.drawPass(Pass::kAlphaTestedDoubleSided);
+// Selects what was chosen, first all whole objects and then one piece after the other.
+template <typename DrawBatch>
+void LayerRenderer::Impl::forEachBatch(DrawBatch&& draw_batch) {
+  if (!chosen.empty()) {
+    buffers.select(chosen, places.mirrored());
+    draw_batch(nullptr);
+  }
+  for (const ObjectPiece* const piece : chosen_pieces) {
+    buffers.select({&piece->object, 1}, places.mirrored());
+    draw_batch(piece);
+  }
 }
 
-void LayerRenderer::Impl::blendInOrder(const View& view, const LensPoint& lens) const {
-  use(&LayerPrograms::blended, view, lens);
+LayerRenderer::Impl::Triangles LayerRenderer::Impl::countTriangles() {
+  const SceneBuffers::Drawn whole = buffers.select(chosen, places.mirrored());
+  Triangles triangles{whole.triangles, buffers.blendedTriangles()};
+  for (const ObjectPiece* const piece : chosen_pieces) {
+    triangles.all += buffers.select({&piece->object, 1}, places.mirrored()).triangles;
+    triangles.blended += buffers.blendedTriangles();
+  }
+  return triangles;
+}
+
+void LayerRenderer::Impl::drawOpaque(const View& view, const LensPoint& lens) {
+  forEachBatch([&](const ObjectPiece* piece) {
+    use(&LayerPrograms::opaque, view, lens, piece);
+    buffers.drawPass(Pass::kOpaque);
+    buffers.drawPass(Pass::kOpaqueDoubleSided);
+    use(&LayerPrograms::alpha_tested, view, lens, piece);
+    buffers.drawPass(Pass::kAlphaTested);
+    buffers.drawPass(Pass::kAlphaTestedDoubleSided);
+  });
+}
+
+void LayerRenderer::Impl::blendInOrder(const View& view, const LensPoint& lens) {
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  buffers.drawPass(Pass::kBlended);
+  forEachBatch([&](const ObjectPiece* piece) {
+    use(&LayerPrograms::blended, view, lens, piece);
+    buffers.drawPass(Pass::kBlended);
+  });
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
 }
 
-std::uint32_t LayerRenderer::Impl::peel(const View& view, const LensPoint& lens) {
+std::uint32_t LayerRenderer::Impl::peel(const View& view, const LensPoint& lens, std::uint64_t blended) {
   // A triangle has one depth in a sample, so there are no more peels than triangles.
-  return peeler->peel(target, buffers.blendedTriangles(), [&](DepthPeeler::Stage stage) {
-    use(stage == DepthPeeler::Stage::kDepth ? &LayerPrograms::peel_depth : &LayerPrograms::peel_color, view,
-        lens);
-    buffers.drawPass(Pass::kBlended);
+  return peeler->peel(target, blended, [&](DepthPeeler::Stage stage) {
+    forEachBatch([&](const ObjectPiece* piece) {
+      use(stage == DepthPeeler::Stage::kDepth ? &LayerPrograms::peel_depth : &LayerPrograms::peel_color, view,
+          lens, piece);
+      buffers.drawPass(Pass::kBlended);
+    });
   });
 }
 
-void LayerRenderer::Impl::addBlendedDepths(const View& view, const LensPoint& lens) const {
-  use(&LayerPrograms::depth, view, lens);
+void LayerRenderer::Impl::addBlendedDepths(const View& view, const LensPoint& lens) {
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  buffers.drawPass(Pass::kBlended);
+  forEachBatch([&](const ObjectPiece* piece) {
+    use(&LayerPrograms::depth, view, lens, piece);
+    buffers.drawPass(Pass::kBlended);
+  });
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -219,14 +283,26 @@ void LayerRenderer::setTransforms(std::span<const Mat4> scene_from_stored) {
   impl_->places.set(scene_from_stored);
 }
 
+void LayerRenderer::setPieces(std::vector<ObjectPiece> pieces) {
+  impl_->pieces = std::move(pieces);
+  std::sort(impl_->pieces.begin(), impl_->pieces.end(),
+            [](const ObjectPiece& a, const ObjectPiece& b) { return a.piece < b.piece; });
+  const auto isObject = [&](const ObjectPiece& piece) { return piece.piece.value < impl_->bounds.size(); };
+  std::erase_if(impl_->pieces, isObject);
+}
+
+ObjectId LayerRenderer::objectOf(ObjectId object_or_piece) const {
+  const ObjectPiece* const piece = impl_->findPiece(object_or_piece);
+  return piece != nullptr ? piece->object : object_or_piece;
+}
+
 LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> objects, const LayerDraw& how,
                                    LayerImage& image) {
   Impl& r = *impl_;
   const GlContext::Current current(r.context);
   r.choose(objects, how.as_given);
-  const SceneBuffers::Drawn drawn = r.buffers.select(r.chosen, r.places.mirrored());
-  const std::uint64_t blended = r.buffers.blendedTriangles();
-  LayerDrawStats stats{.triangles = drawn.triangles, .passes = 1};
+  const auto [triangles, blended] = r.countTriangles();
+  LayerDrawStats stats{.triangles = triangles, .passes = 1};
   r.begin(r.covered(view, how.lens));
   if (how.hidden) {
     r.target.restoreDepths();
@@ -235,7 +311,7 @@ LayerDrawStats LayerRenderer::draw(const View& view, std::span<const ObjectId> o
   r.places.bind(view.eye);
   r.drawOpaque(view, how.lens);
   if (blended > 0 && how.peel) {
-    const std::uint32_t peels = r.peel(view, how.lens);
+    const std::uint32_t peels = r.peel(view, how.lens, blended);
     stats.passes = std::max(peels, 1u);
     // Each peel sends the triangles twice, and one more time finds that there are no further peels.
     stats.triangles += blended * (peels + std::min<std::uint64_t>(peels + 1, blended) - 1);
@@ -255,13 +331,13 @@ std::uint64_t LayerRenderer::hideBehind(const View& view, std::span<const Object
   Impl& r = *impl_;
   const GlContext::Current current(r.context);
   r.choose(objects, false);
-  const SceneBuffers::Drawn drawn = r.buffers.select(r.chosen, r.places.mirrored());
+  const auto [triangles, blended] = r.countTriangles();
   r.begin({0, 0, r.options.width, r.options.height});
   r.buffers.bind();
   r.places.bind(view.eye);
   r.drawOpaque(view, lens);
   r.target.keepDepths();
-  return drawn.triangles - r.buffers.blendedTriangles();
+  return triangles - blended;
 }
 
 void LayerRenderer::drawSky(const View& view, LayerImage& image) {

@@ -76,7 +76,10 @@ Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, co
                       .eye_low = glGetUniformLocation(*id, "eye_low"),
                       .lens_offset = glGetUniformLocation(*id, "lens_offset"),
                       .haze = glGetUniformLocation(*id, "haze"),
-                      .depth_scale = glGetUniformLocation(*id, "depth_scale")};
+                      .depth_scale = glGetUniformLocation(*id, "depth_scale"),
+                      .cut_count = glGetUniformLocation(*id, "cut_count"),
+                      .cut_fronts = glGetUniformLocation(*id, "cut_fronts"),
+                      .cuts = glGetUniformLocation(*id, "cuts")};
 }
 
 void useProgram(const SceneProgram& program, const View& view, float haze, float depth_scale,
@@ -94,6 +97,27 @@ void useProgram(const SceneProgram& program, const View& view, float haze, float
   glUniform3f(program.lens_offset, from_eye.x, from_eye.y, from_eye.z);
   glUniform1f(program.haze, haze);
   glUniform1f(program.depth_scale, depth_scale);
+}
+
+void setSides(const SceneProgram& program, const View& view, const LensPoint& lens,
+              std::span<const PieceSide> sides) {
+  const Vec3d eye = view.eye + lensOffset(view, lens);
+  std::array<float, 4 * kMaxPieceSides> cuts{};
+  GLint fronts = 0;
+  const std::size_t count = std::min(sides.size(), kMaxPieceSides);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Plane& plane = sides[i].plane;
+    for (int axis = 0; axis < 3; ++axis) {
+      cuts[4 * i + static_cast<std::size_t>(axis)] = static_cast<float>(plane.normal[axis]);
+    }
+    cuts[4 * i + 3] = static_cast<float>(plane.evaluate(eye));
+    fronts |= sides[i].in_front ? 1 << i : 0;
+  }
+  glUniform1i(program.cut_count, static_cast<GLint>(count));
+  glUniform1i(program.cut_fronts, fronts);
+  if (count > 0) {
+    glUniform4fv(program.cuts, static_cast<GLsizei>(count), cuts.data());
+  }
 }
 
 float hazeFor(const Box& bounds) {

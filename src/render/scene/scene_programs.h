@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <array>
+#include <span>
 
 #include "sightline/base/result.h"
 #include "sightline/math/box.h"
@@ -21,6 +22,7 @@ inline constexpr GLint kColorsUnit = 0, kPlacesUnit = 1, kBehindUnit = 2;
 struct SceneProgram {
   GLuint id = 0;
   GLint clip_from_relative = -1, eye_high = -1, eye_low = -1, lens_offset = -1, haze = -1, depth_scale = -1;
+  GLint cut_count = -1, cut_fronts = -1, cuts = -1;  // of layers: see setSides()
 };
 // vertex is kSceneVertex if none is given.
 Result<SceneProgram> makeSceneProgram(const char* name, const char* fragment, const char* geometry = nullptr,
@@ -35,6 +37,11 @@ Mat4 reversedClipFromRelative(const View& view, const LensPoint& lens);
 // at which haze is half. Everything is moved away from the eye by about 1 - depth_scale of its distance.
 void useProgram(const SceneProgram& program, const View& view, float haze, float depth_scale = 1.0f,
                 const LensPoint& lens = {});
+
+// Sets on which sides of planes (scene space, at most kMaxPieceSides) the current program draws; none: on
+// all.
+void setSides(const SceneProgram& program, const View& view, const LensPoint& lens,
+              std::span<const PieceSide> sides);
 
 // The haze for which d is 1.5 times the scene's diagonal, or 60 metres if that is more.
 float hazeFor(const Box& bounds);

@@ -89,22 +89,49 @@ inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTL
                                                     "  result = shade();\n"
                                                     "}\n";
 
+// Of a piece of an object, only what lies on all of its sides is drawn. Fragments are tested after all that
+// needs their neighbours. The test has the same bits for the pieces on both sides, so each fragment is in
+// exactly one piece. Positions are relative to the eye.
+#define SIGHTLINE_CUT                                                    \
+  "uniform int cut_count, cut_fronts;\n"                                 \
+  "uniform vec4 cuts[16];\n"                                             \
+  "bool isCutOff() {\n"                                                  \
+  "  for (int i = 0; i < cut_count; ++i) {\n"                            \
+  "    bool in_front = dot(cuts[i].xyz, relative) + cuts[i].w >= 0.0;\n" \
+  "    if (in_front != (((cut_fronts >> i) & 1) != 0)) return true;\n"   \
+  "  }\n"                                                                \
+  "  return false;\n"                                                    \
+  "}\n"
+
 // Layers are drawn to float pictures in linear light, colour multiplied by opacity.
-inline constexpr const char* kLayerOpaqueFragment =
-    "#version 430 core\n" SIGHTLINE_SHADE "void main() { result = vec4(linearLight(), 1.0); }\n";
+inline constexpr const char* kLayerOpaqueFragment = "#version 430 core\n" SIGHTLINE_SHADE SIGHTLINE_CUT
+                                                    "void main() {\n"
+                                                    "  vec3 light = linearLight();\n"
+                                                    "  if (isCutOff()) discard;\n"
+                                                    "  result = vec4(light, 1.0);\n"
+                                                    "}\n";
 
 // A hole is a whole pixel, however many samples the pixel has.
-inline constexpr const char* kLayerAlphaTestedFragment = "#version 430 core\n" SIGHTLINE_SHADE
-                                                         "uniform int samples;\n"
-                                                         "void main() {\n"
-                                                         "  ivec2 p = ivec2(gl_FragCoord.xy) / samples;\n"
-                                                         "  if (((p.x + p.y) & 1) != 0) discard;\n"
-                                                         "  result = vec4(linearLight(), 1.0);\n"
-                                                         "}\n";
+inline constexpr const char* kLayerAlphaTestedFragment =
+    "#version 430 core\n" SIGHTLINE_SHADE SIGHTLINE_CUT
+    "uniform int samples;\n"
+    "void main() {\n"
+    "  ivec2 p = ivec2(gl_FragCoord.xy) / samples;\n"
+    "  vec3 light = linearLight();\n"
+    "  if (((p.x + p.y) & 1) != 0 || isCutOff()) discard;\n"
+    "  result = vec4(light, 1.0);\n"
+    "}\n";
 
-inline constexpr const char* kLayerBlendedFragment =
-    "#version 430 core\n" SIGHTLINE_SHADE
-    "void main() { result = vec4(linearLight() * color.a, color.a); }\n";
+inline constexpr const char* kLayerBlendedFragment = "#version 430 core\n" SIGHTLINE_SHADE SIGHTLINE_CUT
+                                                     "void main() {\n"
+                                                     "  vec3 light = linearLight();\n"
+                                                     "  if (isCutOff()) discard;\n"
+                                                     "  result = vec4(light * color.a, color.a);\n"
+                                                     "}\n";
+
+// Depths alone.
+inline constexpr const char* kLayerDepthFragment =
+    "#version 430 core\nin vec3 relative;\n" SIGHTLINE_CUT "void main() { if (isCutOff()) discard; }\n";
 
 // Depth peeling discards fragments that are not nearer than the depth in `behind`. Greater depths are nearer.
 #define SIGHTLINE_BEHIND        \
@@ -112,16 +139,19 @@ inline constexpr const char* kLayerBlendedFragment =
   "bool peeled() { return !(gl_FragCoord.z > texelFetch(behind, ivec2(gl_FragCoord.xy), 0).r); }\n"
 
 inline constexpr const char* kPeelDepthFragment =
-    "#version 430 core\n" SIGHTLINE_BEHIND "void main() { if (peeled()) discard; }\n";
+    "#version 430 core\nin vec3 relative;\n" SIGHTLINE_CUT SIGHTLINE_BEHIND
+    "void main() { if (peeled() || isCutOff()) discard; }\n";
 
-inline constexpr const char* kPeelColorFragment = "#version 430 core\n" SIGHTLINE_SHADE SIGHTLINE_BEHIND
-                                                  "void main() {\n"
-                                                  "  vec3 light = linearLight();\n"
-                                                  "  if (peeled()) discard;\n"
-                                                  "  result = vec4(light * color.a, color.a);\n"
-                                                  "}\n";
+inline constexpr const char* kPeelColorFragment =
+    "#version 430 core\n" SIGHTLINE_SHADE SIGHTLINE_CUT SIGHTLINE_BEHIND
+    "void main() {\n"
+    "  vec3 light = linearLight();\n"
+    "  if (peeled() || isCutOff()) discard;\n"
+    "  result = vec4(light * color.a, color.a);\n"
+    "}\n";
 
 #undef SIGHTLINE_BEHIND
+#undef SIGHTLINE_CUT
 #undef SIGHTLINE_SHADE
 
 inline constexpr const char* kNoColorFragment = "#version 430 core\nvoid main() {}\n";

@@ -17,7 +17,7 @@ namespace {
 
 struct Totals {
   std::uint64_t frames = 0, lines = 0, pieces = 0, strokes = 0, tests = 0, pairs = 0, all_pairs = 0;
-  std::uint64_t svg_bytes = 0, pdf_bytes = 0;
+  std::uint64_t svg_bytes = 0, pdf_bytes = 0, largest_group = 0;
   double draw_us = 0.0;
 };
 
@@ -37,6 +37,7 @@ class LayerDrawings : public FrameMaker {
       : options_(options), input_(input) {
     settings_.features = featuresOf(options);
     settings_.page_height = static_cast<double>(input.height);
+    settings_.seen_first = input.seen_first;
     settings_.overlays = partsAt(input.input.moving, PartSettings::Place::kOverlay);
     settings_.backdrops = partsAt(input.input.moving, PartSettings::Place::kBackdrop);
     style_.stroke_width = options.stroke_width;
@@ -66,6 +67,9 @@ class LayerDrawings : public FrameMaker {
     };
     const auto line = [](const char* what, double value) { fmt::print("  {:<38}{:12.1f}\n", what, value); };
     fmt::print("drawings ({}), means of a frame:\n", options_.plot ? "visible pieces" : "painter's form");
+    if (!options_.plot) {
+      line("objects of the largest group", mean(totals_.largest_group));
+    }
     line("lines", mean(totals_.lines));
     line("visible pieces of them", mean(totals_.pieces));
     line("strokes", mean(totals_.strokes));
@@ -106,12 +110,14 @@ class LayerDrawings : public FrameMaker {
     totals_.tests += drawing.stats.tests;
     totals_.pairs += drawing.pairs;
     totals_.all_pairs += drawing.all_pairs;
+    totals_.largest_group += drawing.largest_group;
     totals_.draw_us += draw_us;
     return {{"form", options_.plot ? "plot" : "painter"},
             {"lines", drawing.stats.lines},
             {"pieces", drawing.stats.pieces},
             {"strokes", strokes},
             {"triangle_tests", drawing.stats.tests},
+            {"largest_group", drawing.largest_group},
             {"object_tests", drawing.pairs},
             {"object_tests_without_sort", drawing.all_pairs}};
   }

@@ -35,6 +35,9 @@ class EyeSorter {
   void place(std::uint32_t frame, const View& view);
   // Sorts the frame last placed, from its view; the result is valid until the next call.
   const LayerOrder& sort(const View& view) { return sorter_.update(view, more_eyes_); }
+  // What sort() sorts with, and the eyes of the frame last placed besides the view's.
+  LayerSorter& sorter() { return sorter_; }
+  std::span<const Vec3d> moreEyes() const { return more_eyes_; }
 
  private:
   bool moves() const { return for_lens_ && motion_blur_ > 0.0; }

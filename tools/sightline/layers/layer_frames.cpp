@@ -2,9 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace sightline::tool {
+
+PartId SortedFrame::wholeOf(PartId part_or_piece) const {
+  const auto piece =
+      std::lower_bound(pieces.begin(), pieces.end(), part_or_piece.value,
+                       [](const ObjectPiece& p, std::uint32_t value) { return p.piece.value < value; });
+  return piece != pieces.end() && piece->piece.value == part_or_piece.value ? PartId(piece->object.value)
+                                                                            : part_or_piece;
+}
 
 Result<LayerRenderer> makeRenderer(const FrameMakerInput& input) {
   return LayerRenderer::create(

@@ -23,7 +23,11 @@ struct SortedFrame {
   const LayerOrder& order;
   const FrameLayers& layers;
   std::span<const Mat4> scene_from_stored;    // one transform per part; empty: as stored
+  std::span<const ObjectPiece> pieces;        // of divided parts, ascending; other parts are whole
   std::function<void(double done)> progress;  // called with the share of the maker's work done, 0 to 1
+
+  // The part of the scene that a number in the order stands for: of a piece, the part that it is of.
+  PartId wholeOf(PartId part_or_piece) const;
 };
 
 // The input of a maker, which must outlive it.
@@ -34,6 +38,7 @@ struct FrameMakerInput {
   std::uint32_t samples = 1;    // samples along each side of a pixel: 1, 2 or 4
   bool tints = true;            // see LayerRendererOptions
   CompositingForm form = CompositingForm::kCheapest;
+  bool seen_first = false;      // drawings are ordered by what their outlines show
   bool several_frames = false;  // see frameFile
 };
 

@@ -38,13 +38,14 @@ class LayerPictures : public FrameMaker {
 
   Result<Json> make(const SortedFrame& frame) override {
     renderer_.setTransforms(frame.scene_from_stored);
+    renderer_.setPieces({frame.pieces.begin(), frame.pieces.end()});
     if (const Status ok = setUses(frame); !ok) {
       return ok.error();
     }
     if (!options_.layer_file.empty()) {
       recorder_.beginFrame();
       settings_.keep_group = [&](const CompositedGroup& group) {
-        recorder_.add(group, frame.layers, input_.input.moving.parts);
+        recorder_.add(group, frame, input_.input.moving.parts);
       };
     }
     const Result<CompositeStats> stats = compositor_.composite(frame.view, frame.layers, settings_, picture_);
@@ -110,7 +111,7 @@ class LayerPictures : public FrameMaker {
         continue;
       }
       for (const PartId part : parts) {
-        objects_.push_back(ObjectId(part.value));
+        objects_.push_back(ObjectId(frame.wholeOf(part).value));
       }
       for (LayerReplacementFile& replaced : replaced_) {
         if (std::find(parts.begin(), parts.end(), PartId(replaced.part)) != parts.end()) {
@@ -122,6 +123,7 @@ class LayerPictures : public FrameMaker {
       }
     }
     std::sort(objects_.begin(), objects_.end());
+    objects_.erase(std::unique(objects_.begin(), objects_.end()), objects_.end());
     return Success{};
   }
 
@@ -190,7 +192,8 @@ class LayerPictures : public FrameMaker {
       Json& parts = groups.emplace_back(Json::array());
       for (std::uint32_t i = frame.layers.first_layer[g]; i < frame.layers.first_layer[g + 1]; ++i) {
         if (isDrawn(LayerId(i))) {
-          for (const PartId part : frame.layers.partsOf(LayerId(i))) {
+          for (const PartId number : frame.layers.partsOf(LayerId(i))) {
+            const PartId part = frame.wholeOf(number);
             parts.push_back({{"part", part.value}, {"name", nameOf(part)}, {"see_through", isBlended(part)}});
           }
         }
@@ -246,7 +249,7 @@ class LayerPictures : public FrameMaker {
   LayerCompositor compositor_;
   CompositeSettings settings_;
   std::vector<LayerReplacementFile> replaced_;
-  std::vector<ObjectId> objects_;  // this frame's objects without those left out, ascending
+  std::vector<ObjectId> objects_;  // this frame's objects, whole, without those left out, ascending
   LayerImage picture_, other_, sky_;
   LayerRecorder recorder_;
   std::string line_;

@@ -31,15 +31,15 @@ void LayerRecorder::beginFrame() {
   described_ = program_ = Json::array();
 }
 
-void LayerRecorder::add(const CompositedGroup& group, const FrameLayers& layers,
+void LayerRecorder::add(const CompositedGroup& group, const SortedFrame& frame,
                         const std::vector<MovingPart>& parts) {
   const auto first_image = static_cast<std::uint32_t>(layers_.size());
   const auto per_image = group.images.size() == 1 ? group.end_layer - group.first_layer : 1u;
   for (std::uint32_t i = 0; i < group.images.size(); ++i) {
     Json numbers = Json::array();
     for (std::uint32_t l = 0; l < per_image; ++l) {
-      for (const PartId part : layers.partsOf(LayerId(group.first_layer + i + l))) {
-        numbers.push_back(part.value);
+      for (const PartId part : frame.layers.partsOf(LayerId(group.first_layer + i + l))) {
+        numbers.push_back(frame.wholeOf(part).value);
       }
     }
     LayerImage none;

@@ -17,7 +17,7 @@ class LayerRecorder {
  public:
   void beginFrame();
   // Keeps a group of the frame's layers; groups come front to back.
-  void add(const CompositedGroup& group, const FrameLayers& layers, const std::vector<MovingPart>& parts);
+  void add(const CompositedGroup& group, const SortedFrame& frame, const std::vector<MovingPart>& parts);
   // Keeps the sky, which lies behind everything.
   void addSky(const LayerImage& sky);
   // Writes the picture and everything kept since beginFrame().

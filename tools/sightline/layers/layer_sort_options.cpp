@@ -44,8 +44,8 @@ void addLayerSortOptions(CLI::App& command, LayerSortOptions& options) {
   addWordOption(
       command, "--arcs", options.arcs, textsOf(kArcs),
       "who occludes whom: within groups, or of all pairs, by hulls, of which no arc is missing; seen: "
-      "from what the picture's pixels show to what lies behind it there, so that groups are small. "
-      "Approximate at a pixel, and for pictures alone");
+      "from what is seen to what lies behind it there, so that groups are small: in pictures by their "
+      "pixels, and approximate at a pixel, in drawings by outlines");
   addWordOption(command, "--expression", options.expression, textsOf(kCompositingForms),
                 "how cycles without mutual occlusion are composited");
   addWordOption(command, "--conditioning", options.conditioning, textsOf(kSwitch),

@@ -13,6 +13,7 @@
 #include "sightline/layers/convex_pieces.h"
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/names.h"
+#include "tools/sightline/command_line/parse_text.h"
 #include "tools/sightline/command_line/progress_bar.h"
 #include "tools/sightline/command_line/signals.h"
 #include "tools/sightline/command_line/stopwatch.h"
@@ -26,6 +27,7 @@
 #include "tools/sightline/layers/layer_replacement.h"
 #include "tools/sightline/layers/layer_seen_arcs.h"
 #include "tools/sightline/layers/layer_sort_options.h"
+#include "tools/sightline/layers/layer_splitting.h"
 #include "tools/sightline/layers/layer_totals.h"
 
 namespace sightline::tool {
@@ -36,7 +38,8 @@ struct LayersOptions {
   PathOptions path;
   LayerPlaces places;
   std::uint32_t pieces = 1;
-  std::string parts;  // a name of kPartChoices; empty: chosen by partChoiceOf()
+  std::uint32_t split_cycles = 0;  // pieces of parts in cycles, at most; 0: parts stay whole
+  std::string parts;               // a name of kPartChoices; empty: chosen by partChoiceOf()
   LayerSortOptions sort;
   LayerEyeOptions eyes;
   std::string tints = "on";
@@ -47,6 +50,8 @@ struct LayersOptions {
   LayerLensOptions lens;
   LayerDrawingOptions drawings;
 };
+
+constexpr std::uint32_t kMaxSplitPieces = 100000;
 
 // Which parts --parts sorts.
 enum class PartChoice : std::uint8_t { kAll, kSeeThrough };
@@ -181,6 +186,17 @@ double aspectOf(const PictureOptions& size) {
   return static_cast<double>(size.width) / static_cast<double>(size.height);
 }
 
+// Parts of which a layer is left out or replaced, which needs them whole.
+std::vector<std::uint32_t> namedParts(const LayersOptions& options) {
+  std::vector<std::uint32_t> parts = options.pictures.without;
+  for (const std::string& text : options.pictures.replace) {
+    if (const std::optional<std::uint32_t> part = parseWhole(text.substr(0, text.find('=')))) {
+      parts.push_back(*part);
+    }
+  }
+  return parts;
+}
+
 // Sorts the frames of a camera path one after the other.
 class WalkSorter {
  public:
@@ -191,7 +207,13 @@ class WalkSorter {
         makers_(makers),
         seen_(seen),
         aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
-        sorter_(options.eyes, options.lens, input, settingsOf(options.sort, needAllArcs(options.drawings))) {}
+        sorter_(options.eyes, options.lens, input, settingsOf(options.sort, needAllArcs(options.drawings))) {
+    if (options.split_cycles > 0) {
+      const bool by_triangles = !input.moving.pose && options.pieces == 1;
+      cycles_.emplace(options.eyes, options.lens, input, settingsOf(options.sort, false),
+                      options.split_cycles, namedParts(options), by_triangles);
+    }
+  }
 
   // Sorts a frame and makes its files. progress: called with the share of the frame that is done.
   Status sort(std::uint32_t frame, const std::function<void(double)>& progress) {
@@ -204,21 +226,23 @@ class WalkSorter {
     if (!makers_.empty() || seen_ != nullptr) {
       placements(input_.moving, frame, scene_from_stored_);
     }
-    const LayerOrder& order = seen_ != nullptr ? seen_->sort(view, of_hulls, scene_from_stored_) : of_hulls;
+    Json json;
+    const LayerOrder& order = cycles_            ? divide(frame, view, of_hulls, json)
+                              : seen_ != nullptr ? seen_->sort(view, of_hulls, scene_from_stored_)
+                                                 : of_hulls;
     const FrameLayers& layers = merger_.merge(order);
     const CompositingProgram& program = compiler_.compile(layers, formOf(options_.sort));
     totals_.add(order, static_cast<double>(layers.layers()),
                 static_cast<double>(countSteps(program.steps).operations()), sort_us);
-    Json json;
     if (!options_.common.json.empty()) {
-      json = frameJson(frame, order, layers, program, sort_us, options_.sort.search);
+      json.update(frameJson(frame, order, layers, program, sort_us, options_.sort.search));
     }
     for (std::size_t i = 0; i < makers_.size(); ++i) {
       const auto progressOf = [&](double done) {
         progress((static_cast<double>(i) + done) / static_cast<double>(makers_.size()));
       };
       const Result<Json> made =
-          makers_[i]->make({frame, view, order, layers, scene_from_stored_, progressOf});
+          makers_[i]->make({frame, view, order, layers, scene_from_stored_, pieces_, progressOf});
       if (!made) {
         return made.error();
       }
@@ -232,8 +256,25 @@ class WalkSorter {
 
   const LayerTotals& totals() const { return totals_; }
   const std::vector<std::string>& frames() const { return frames_; }  // as JSON
+  void printCycles() const {
+    if (cycles_) {
+      cycles_->print();
+    }
+  }
 
  private:
+  // Sorts the frame again, with parts in cycles divided.
+  const LayerOrder& divide(std::uint32_t frame, const View& view, const LayerOrder& whole, Json& json) {
+    cycles_->place(frame, view);
+    Stopwatch watch;
+    const LayerOrder& order = cycles_->sort(view);
+    const double split_us = options_.no_times ? 0.0 : watch.lap();
+    json["split"] = cycles_->figures(whole, order, split_us);
+    scenePoses(input_.moving, frame, scene_from_part_);
+    pieces_ = objectPieces(cycles_->pieces(), scene_from_part_);
+    return order;
+  }
+
   const LayersOptions& options_;
   const LayerInput& input_;
   const FrameMakers& makers_;
@@ -242,7 +283,9 @@ class WalkSorter {
   EyeSorter sorter_;
   LayerMerger merger_;
   CompositingCompiler compiler_;
-  std::vector<Mat4> scene_from_stored_;
+  std::optional<CycleWalk> cycles_;
+  std::vector<ObjectPiece> pieces_;
+  std::vector<Mat4> scene_from_stored_, scene_from_part_;
   LayerTotals totals_;
   std::vector<std::string> frames_;
 };
@@ -264,6 +307,7 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   Json chosen = optionsJson(options.sort);
   chosen["parts"] = nameOf(kPartChoices, partChoiceOf(options));
   chosen["pieces"] = options.pieces;
+  chosen["split_cycles"] = options.split_cycles;
   chosen["order_for"] = orderFor(options.eyes, options.lens);
   chosen["stereo"] = options.eyes.stereo;
   const Json head = {
@@ -274,6 +318,7 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   }
   if (options.common.textOnStdout()) {
     print(sorter.totals(), input.moving.parts.size());
+    sorter.printCycles();
     if (seen != nullptr) {
       fmt::print("  the order is that of the pixels of each picture, approximate at a pixel\n");
     }
@@ -339,19 +384,55 @@ Status checkPictureOptions(const LayersOptions& options) {
              : Error{"--samples and --tints: go with --image, --by-distance, --blurred or --compare"};
 }
 
-// What the pixels of one picture show says nothing of other eyes, nor of lines thinner than a pixel.
+bool isDrawn(const LayersOptions& options) {
+  return !options.drawings.svg.empty() || !options.drawings.pdf.empty();
+}
+
+// What the pixels of one picture show says nothing of other eyes. Drawings have an order of their own, by
+// outlines.
 Status checkSeenArcs(const LayersOptions& options) {
+  const bool is_drawn = isDrawn(options);
   const std::pair<const char*, bool> refused[] = {{"--blurred", !options.lens.blurred.empty()},
                                                   {"--compare", !options.lens.compare.empty()},
                                                   {"--order-for lens", options.eyes.order_for == "lens"},
-                                                  {"--stereo", options.eyes.stereo != 0.0},
-                                                  {"--svg", !options.drawings.svg.empty()},
-                                                  {"--pdf", !options.drawings.pdf.empty()}};
+                                                  {"--stereo", options.eyes.stereo != 0.0}};
   for (const auto& [option, given] : refused) {
     if (sortsBySeen(options.sort) && given) {
       return Error{fmt::format(
           "--arcs seen: is an order of one picture's pixels, and {} needs more; leave one of the two out",
           option)};
+    }
+  }
+  const std::pair<const char*, bool> by_pixels[] = {{"--image", !options.pictures.image.empty()},
+                                                    {"--layer-file", !options.pictures.layer_file.empty()},
+                                                    {"--by-distance", !options.pictures.by_distance.empty()},
+                                                    {"--plot", options.drawings.plot}};
+  for (const auto& [option, given] : by_pixels) {
+    if (sortsBySeen(options.sort) && is_drawn && given) {
+      return Error{
+          fmt::format("--arcs seen: is an order by outlines for --svg and --pdf, which {} does not take; "
+                      "leave one of the "
+                      "two out",
+                      option)};
+    }
+  }
+  return Success{};
+}
+
+// Pieces are drawn by pictures alone, and a sample of a pixel is in one piece only.
+Status checkSplitCycles(const LayersOptions& options) {
+  const std::pair<const char*, bool> refused[] = {{"--arcs seen", sortsBySeen(options.sort)},
+                                                  {"--exact off", !valueOf(kSwitch, options.sort.exact)},
+                                                  {"--order-for lens", options.eyes.order_for == "lens"},
+                                                  {"--samples", options.samples != 1},
+                                                  {"--blurred", !options.lens.blurred.empty()},
+                                                  {"--compare", !options.lens.compare.empty()},
+                                                  {"--svg", !options.drawings.svg.empty()},
+                                                  {"--pdf", !options.drawings.pdf.empty()},
+                                                  {"--line-picture", !options.drawings.line_picture.empty()}};
+  for (const auto& [option, given] : refused) {
+    if (options.split_cycles > 0 && given) {
+      return Error{fmt::format("--split-cycles: does not go with {}; leave one of the two out", option)};
     }
   }
   return Success{};
@@ -384,7 +465,7 @@ void leaveToDepthBuffer(const LayersOptions& options, MovingScene& moving) {
 
 Result<ExitCode> runLayers(const LayersOptions& options) {
   for (const Status& ok : {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options),
-                           checkPartChoice(options), checkSeenArcs(options)}) {
+                           checkPartChoice(options), checkSeenArcs(options), checkSplitCycles(options)}) {
     if (!ok) {
       return ok.error();
     }
@@ -408,6 +489,7 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
                                   .samples = options.samples,
                                   .tints = valueOf(kSwitch, options.tints),
                                   .form = formOf(options.sort),
+                                  .seen_first = sortsBySeen(options.sort),
                                   .several_frames = input->walk.frames.size() > 1};
   const Result<FrameMakers> makers = makersOf(options, made_from);
   if (makers && !makers->empty()) {
@@ -417,7 +499,7 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
     return makers.error();
   }
   std::optional<SeenArcs> seen;
-  if (sortsBySeen(options.sort)) {
+  if (sortsBySeen(options.sort) && !isDrawn(options)) {
     Result<SeenArcs> created = SeenArcs::create(made_from);
     if (!created) {
       return created.error();
@@ -438,6 +520,12 @@ void addPartOptions(CLI::App& command, LayersOptions& options) {
                   "hulls that stand for each object at most, of convex pieces of it: objects with holes or "
                   "bends are then grouped with fewer others (1: its hull)")
       ->check(CLI::Range(1u, kMaxConvexPieces))
+      ->capture_default_str();
+  command
+      .add_option("--split-cycles", options.split_cycles,
+                  "divide parts in cycles by planes through them, while they are in a cycle, into this many "
+                  "pieces of all parts at most, so that groups fall apart (0: parts stay whole)")
+      ->check(CLI::Range(0u, kMaxSplitPieces))
       ->capture_default_str();
   command.add_option("--backdrop", options.places.backdrops, "parts behind all others, by number")
       ->check(isNotEmpty())
@@ -494,6 +582,7 @@ void addLayers(CLI::App& app, Command& chosen) {
       "  sightline layers demo:city --frames 0 --svg city.svg --pdf city.pdf\n"
       "  sightline layers demo:city --frames 0 --plot --svg plot.svg\n"
       "  sightline layers demo:glass --stereo 0.065 --pieces 8\n"
+      "  sightline layers demo:toothpicks --split-cycles 64\n"
       "  sightline layers model.glb --path walk.json --arcs all --backdrop 0");
   command->callback([options, &chosen] { chosen = [options] { return runLayers(*options); }; });
 }
