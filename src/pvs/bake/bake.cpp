@@ -192,11 +192,16 @@ Result<Bake::TakenOver> Bake::takeOver(std::vector<std::byte> answers) {
   }
   TakenOver taken{.scene = earlier->scene};
   const SceneMarks marks = marksOf(data_->scene);
-  if (marks.terms != earlier->marks.terms) {
+  if (marks.settings != earlier->marks.settings) {
+    taken.difference = "other settings";
+  } else if (marks.space != earlier->marks.space) {
+    taken.difference = "other bounds of the scene or of where viewers are";
+  }
+  if (!taken.difference.empty()) {
     return taken;
   }
   const auto made = std::make_shared<const Earlier>(std::move(*earlier), data_, marks);
-  taken.comparable = true;
+  
   taken.gone = made->recall.objectsGone();
   taken.come = made->recall.objectsCome();
   taken.same = static_cast<std::uint32_t>(marks.objects.size()) - taken.come;
@@ -517,6 +522,10 @@ std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
     answers.emplace(id, bytesOf(scene, part).answers);
   }
   return earlierBakeBytes(data_->scene_id, marksOf(scene), answers);
+}
+
+bool Bake::beginsAsAnswers(std::span<const std::byte> bytes) {
+  return pvs::beginsAsAnswers(bytes);
 }
 
 Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet& occluders,

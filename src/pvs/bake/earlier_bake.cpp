@@ -66,20 +66,25 @@ std::uint64_t contentOf(const ConvexOccluders& all, const ConvexOccluder& occlud
   return hash.value();
 }
 
-std::uint64_t termsOf(const BakeScene& scene) {
-  const BakeSettings& settings = scene.settings;
+std::uint64_t hashOf(const BakeSettings& settings) {
+  NumberHash hash;
+  for (const std::uint64_t number :
+       {static_cast<std::uint64_t>(settings.occlusion), std::uint64_t{settings.divisions},
+        std::uint64_t{settings.narrowings}}) {
+    hash.add(number);
+  }
+  hash.add(settings.near_distance);
+  hash.add(settings.occluder_size);
+  return hash.value();
+}
+
+std::uint64_t spaceOf(const BakeScene& scene) {
   Vec3d farthest;  // of the panels
   for (const Vec3d& vertex : scene.panels.vertices) {
     farthest = max(farthest, abs(vertex));
   }
   NumberHash hash;
-  for (const std::uint64_t number :
-       {std::uint64_t{kBakeVersion}, static_cast<std::uint64_t>(settings.occlusion),
-        std::uint64_t{settings.divisions}, std::uint64_t{settings.narrowings}}) {
-    hash.add(number);
-  }
-  for (const double number : {settings.near_distance, settings.occluder_size, scene.reach, scene.magnitude,
-                              scene.panels.slack, maxComponent(farthest)}) {
+  for (const double number : {scene.reach, scene.magnitude, scene.panels.slack, maxComponent(farthest)}) {
     hash.add(number);
   }
   hash.add(scene.root.min);
@@ -162,7 +167,8 @@ Box readBox(base::ByteReader& bytes) {
 }
 
 void write(const SceneMarks& marks, base::ByteWriter& bytes) {
-  bytes.add(marks.terms);
+  bytes.add(marks.settings);
+  bytes.add(marks.space);
   bytes.add(static_cast<std::uint32_t>(marks.objects.size()));
   for (const ObjectMark& object : marks.objects) {
     bytes.add(object.content);
@@ -186,7 +192,8 @@ void write(const SceneMarks& marks, base::ByteWriter& bytes) {
 
 SceneMarks readMarks(base::ByteReader& bytes) {
   SceneMarks marks;
-  marks.terms = bytes.read<std::uint64_t>();
+  marks.settings = bytes.read<std::uint64_t>();
+  marks.space = bytes.read<std::uint64_t>();
   marks.objects.resize(bytes.readCount<std::uint32_t>(kObjectBytes));
   for (ObjectMark& object : marks.objects) {
     object.content = bytes.read<std::uint64_t>();
@@ -224,6 +231,11 @@ bool sound(const SceneMarks& marks) {
 
 }  // namespace
 
+bool beginsAsAnswers(std::span<const std::byte> bytes) {
+  base::ByteReader reader(bytes);
+  return reader.read<std::uint64_t>() == kAnswerMagic && reader.ok();
+}
+
 bool before(const PanelMark& a, const PanelMark& b) {
   const auto key = [](const PanelMark& mark) {
     const Box& box = mark.bounds;
@@ -234,7 +246,8 @@ bool before(const PanelMark& a, const PanelMark& b) {
 
 SceneMarks marksOf(const BakeScene& scene) {
   SceneMarks marks;
-  marks.terms = termsOf(scene);
+  marks.settings = hashOf(scene.settings);
+  marks.space = spaceOf(scene);
   const std::vector<ObjectMark> by_id = objectMarks(scene);
   for (const ObjectId object : scene.boxes.objects) {
     marks.objects.push_back(by_id[object.value]);

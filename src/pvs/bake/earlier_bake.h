@@ -34,9 +34,9 @@ bool before(const PanelMark& a, const PanelMark& b);  // their order in SceneMar
 
 // A scene as answers depend on it.
 struct SceneMarks {
-  // A hash of all that every answer depends on: the root, bounds of coordinates, and the settings that say
-  // what may hide something.
-  std::uint64_t terms = 0;
+  // Hashes of all that every answer depends on: the settings that say what may hide something, and the root
+  // and bounds of coordinates.
+  std::uint64_t settings = 0, space = 0;
   std::vector<ObjectMark> objects{};  // by place in the box tree
   std::vector<BoxNode> nodes{};       // of the box tree
   std::vector<PanelMark> panels{};    // in ascending order
@@ -56,5 +56,7 @@ struct EarlierBake {
 std::vector<std::byte> earlierBakeBytes(const SceneId& scene, const SceneMarks& marks,
                                         const std::map<std::uint64_t, std::span<const std::byte>>& parts);
 Result<EarlierBake> readEarlierBake(std::vector<std::byte> bytes);
+// True if the bytes begin as those of such a file do.
+bool beginsAsAnswers(std::span<const std::byte> bytes);
 
 }  // namespace sightline::pvs

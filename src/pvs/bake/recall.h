@@ -20,7 +20,7 @@ class Recall {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // scene must outlive this. Precondition: the terms of both marks are equal.
+  // scene must outlive this. Precondition: the settings and the space of both marks are equal.
   Recall(EarlierBake earlier, const BakeScene& scene, const SceneMarks& marks);
 
   const EarlierBake& earlier() const { return earlier_; }

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
@@ -133,8 +134,9 @@ class Bake {
 
   // What was taken over of an earlier bake.
   struct TakenOver {
-    SceneId scene{};          // of that bake
-    bool comparable = false;  // false: all is asked anew, because other settings or bounds hold for all cells
+    SceneId scene{};  // of that bake
+    // Why all is asked anew: what holds for all cells differs, and how. Empty if it does not.
+    std::string difference{};
     // Objects that are the same in both scenes, only in the earlier one, and only in this one. One that was
     // moved or altered is gone and has come.
     std::uint32_t same = 0, gone = 0, come = 0;
@@ -180,6 +182,8 @@ class Bake {
   // The answers to all that was asked, as bytes of a file, if BakeSettings::answers is set: for takeOver() of
   // a bake of the scene after a change. Parts as for assemble(), which must have succeeded with them.
   std::vector<std::byte> answers(const BakedParts& parts) const;
+  // True if the bytes, eight at least, begin as those of answers() do.
+  static bool beginsAsAnswers(std::span<const std::byte> bytes);
 
  private:
   struct Data;
