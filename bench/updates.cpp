@@ -145,7 +145,8 @@ void compare(const std::string& name, const Options& options) {
 int main(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
   fmt::print(
-      "| scene | objects | moved | full: plan, s | bake, s | update: plan, s | bake, s | questions | asked | % "
+      "| scene | objects | moved | full: plan, s | bake, s | update: plan, s | bake, s | questions | asked | "
+      "% "
       "| bytes of answers | same |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& scene : options.scenes) {
     compare(scene, options);

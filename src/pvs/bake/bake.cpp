@@ -201,7 +201,7 @@ Result<Bake::TakenOver> Bake::takeOver(std::vector<std::byte> answers) {
     return taken;
   }
   const auto made = std::make_shared<const Earlier>(std::move(*earlier), data_, marks);
-  
+
   taken.gone = made->recall.objectsGone();
   taken.come = made->recall.objectsCome();
   taken.same = static_cast<std::uint32_t>(marks.objects.size()) - taken.come;

@@ -21,8 +21,8 @@ constexpr double kNearInEdges = 0.5;
 // How close to the box of an occluder a line of sight may come without missing it, in units of the
 // coordinates: far more than rounding moves it.
 constexpr double kLineMargin = 0x1p-36;
-// More boxes that differ, times objects, take as long as asking all occluders.
-constexpr std::uint64_t kMostCompared = 1u << 18;
+// If more boxes differ, the earlier answers help little.
+constexpr std::size_t kMostDiffering = 256;
 
 std::uint64_t countOf(std::span<const ObjectRun> runs) {
   std::uint64_t count = 0;
@@ -41,15 +41,16 @@ void append(std::uint32_t position, Runs& runs) {
   }
 }
 
-// Whether all lines from the corners to the point pass through the same one of the boxes.
-bool allThroughOne(std::span<const Vec3d> corners, const Vec3d& to, std::span<const Box> boxes,
-                   double margin) {
-  const SegmentTest first(corners[0], to, margin);
-  return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-    return !first.misses(box) && std::all_of(corners.begin() + 1, corners.end(), [&](const Vec3d& corner) {
-      return !SegmentTest(corner, to, margin).misses(box);
-    });
-  });
+// False only if no line from the point to somewhere in `to` meets the box.
+bool mayPass(const Vec3d& from, const Box& to, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::min(from[axis], double{to.min[axis]}),
+                 high = std::max(from[axis], double{to.max[axis]});
+    if (low > double{box.max[axis]} || high < double{box.min[axis]}) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // The corners of the regions in front of a cell's plane and behind it, as far as they are for viewers.
@@ -481,15 +482,15 @@ bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corner
       differing_.push_back(scene_.leafOf(i).bounds);
     }
   }
-  if (differing_.size() * countOf(seen) > kMostCompared) {
+  if (differing_.size() > kMostDiffering) {
     return false;
   }
+  findBehind(corners, differing_);
   common_.clear();
   for (const ObjectRun& run : seen) {
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
       bool hidden = objects_before_[i] == Before::kHidden;
-      if (objects_before_[i] == Before::kNotAsked ||
-          allThroughOne(corners, center(scene_.leafOf(i).bounds), differing_, line_margin_)) {
+      if (objects_before_[i] == Before::kNotAsked || behind_.contains(i)) {
         ++asked_;
         hidden = hiddenByOne(corners, i);
       }
@@ -500,6 +501,29 @@ bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corner
   }
   hidden_.add(common_);
   return true;
+}
+
+void CellBaker::findBehind(std::span<const Vec3d> corners, std::span<const Box> boxes) {
+  const BoxTreeView tree = scene_.boxes.view();
+  behind_.reset(static_cast<std::uint32_t>(tree.objects.size()));
+  for (const Box& given : boxes) {
+    const Box box = widened(given, line_margin_);
+    for (std::uint32_t n = 0; n < tree.nodes.size();) {
+      const BoxNode& node = tree.nodes[n];
+      if (!mayPass(corners.front(), node.bounds, box) || !mayPass(corners.back(), node.bounds, box)) {
+        n = node.end;
+        continue;
+      }
+      const auto passes = [&, to = center(node.bounds)](const Vec3d& corner) {
+        return !SegmentTest(corner, to, line_margin_).misses(box);
+      };
+      if (tree.leaf(n) && std::all_of(corners.begin(), corners.end(), passes)) {
+        const ObjectRun object{node.first_object, node.first_object + 1};
+        behind_.add(std::span(&object, 1));
+      }
+      n += 1;
+    }
+  }
 }
 
 bool CellBaker::hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position) {
@@ -558,13 +582,10 @@ bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
   Answer answer{.kind = AnswerKind::kPoint, .question = questionOf(std::span(&eye, 1), numbers)};
   ++questions_;
   if (const Answer* before = answerBefore(answer)) {
+    findBehind(std::span(&eye, 1), recall_->changedOccluders());
     std::uint64_t behind = 0;
     for (std::uint32_t i = 0; i < scene_.boxes.objects.size(); ++i) {
-      const BoxNode& leaf = scene_.leafOf(i);
-      if (recall_->placeBefore(i) != Recall::kNone &&
-          allThroughOne(std::span(&eye, 1), center(leaf.bounds), recall_->changedOccluders(), line_margin_)) {
-        behind += leaf.triangles;
-      }
+      behind += behind_.contains(i) ? scene_.leafOf(i).triangles : 0;
     }
     answer.least = before->least - std::min(before->least, behind + recall_->trianglesGone());
     answer.most = before->most + behind + recall_->trianglesCome();

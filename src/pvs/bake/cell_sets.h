@@ -99,6 +99,9 @@ class CellBaker {
   // earlier bake found. False, with nothing added, if too much has changed for that.
   void hideByChosen(std::span<const Vec3d> corners);
   bool hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen);
+  // Sets behind_ to the objects of which the centre lies behind, or in, one of the boxes as seen from each
+  // corner: all that occluders in these boxes may hide.
+  void findBehind(std::span<const Vec3d> corners, std::span<const Box> boxes);
   // Whether a chosen occluder hides the object at this place from all corners.
   bool hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position);
   // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
@@ -139,7 +142,7 @@ class CellBaker {
   std::vector<std::uint32_t> chosen_, along_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;
-  ObjectMask hidden_;
+  ObjectMask hidden_, behind_;
   Runs common_, scratch_;
   // What an earlier bake found about an object, or about a node of its box tree.
   enum class Before : std::uint8_t { kNotAsked, kHidden, kSeen };

@@ -68,9 +68,8 @@ std::uint64_t contentOf(const ConvexOccluders& all, const ConvexOccluder& occlud
 
 std::uint64_t hashOf(const BakeSettings& settings) {
   NumberHash hash;
-  for (const std::uint64_t number :
-       {static_cast<std::uint64_t>(settings.occlusion), std::uint64_t{settings.divisions},
-        std::uint64_t{settings.narrowings}}) {
+  for (const std::uint64_t number : {static_cast<std::uint64_t>(settings.occlusion),
+                                     std::uint64_t{settings.divisions}, std::uint64_t{settings.narrowings}}) {
     hash.add(number);
   }
   hash.add(settings.near_distance);

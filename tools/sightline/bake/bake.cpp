@@ -58,7 +58,8 @@ bool mayBeReplacedByAnswers(const std::string& file) {
   std::array<char, 8> start{};
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
-  return (stream.read(start.data(), start.size()) && Bake::beginsAsAnswers(std::as_bytes(std::span(start)))) ||
+  return (stream.read(start.data(), start.size()) &&
+          Bake::beginsAsAnswers(std::as_bytes(std::span(start)))) ||
          (std::filesystem::file_size(file, error) == 0 && !error);
 }
 
@@ -119,9 +120,10 @@ Result<std::vector<std::byte>> loadAnswers(const BakeOptions& options) {
   const std::string file = options.answersBefore();
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    return Error{fmt::format("--update {}: {} is not there, which --answers or --update would have written; "
-                             "bake in full, without --update",
-                             options.update, file)};
+    return Error{
+        fmt::format("--update {}: {} is not there, which --answers or --update would have written; "
+                    "bake in full, without --update",
+                    options.update, file)};
   }
   const Result<std::string> text = readFile(file);
   if (!text) {

@@ -113,9 +113,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
   command.add_flag("--answers", options.answers,
                    "also write F.sight.answers, from which --update goes on after a change of the scene");
   command
-      .add_option("--update", options.update,
-                  "the baked file of the scene before a change, written with --answers or --update: what does "
-                  "not depend on the change is taken over from it; implies --answers")
+      .add_option(
+          "--update", options.update,
+          "the baked file of the scene before a change, written with --answers or --update: what does "
+          "not depend on the change is taken over from it; implies --answers")
       ->type_name(kFileType);
   CLI::Option* resume = command.add_flag(
       "--resume", options.resume,

@@ -19,8 +19,8 @@ namespace sightline::tool {
 struct BakeOptions {
   CommonOptions common;
   std::string output, witnesses;
-  std::string update;    // the baked file of the scene before a change; empty: none
-  bool answers = false;  // whether the answers are kept for a later update
+  std::string update;        // the baked file of the scene before a change; empty: none
+  bool answers = false;      // whether the answers are kept for a later update
   BakeSettings settings{};   // complete except for what depends on the scene or the threads:
   double crack_width = 0.0;  // metres
   std::string occlusion = "convex";
