@@ -107,7 +107,7 @@ TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
   Totals totals;
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
     judgeEdits(roomScene(seed), {.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05}, seed,
-               editsOf(10), totals);
+               editsOf(7), totals);
   }
   expectReuse(totals);
 }
@@ -115,15 +115,72 @@ TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
 TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
   Totals totals;
   for (std::uint32_t seed = 11; seed <= 13; ++seed) {
-    judgeEdits(roomScene(seed),
+    judgeEdits(roomScene(seed, 2),
                {.occlusion = BakeOcclusion::kFused,
                 .triangle_budget = 120,
-                .max_depth = 3,
+                .max_depth = 2,
                 .near_distance = 0.05,
                 .narrowings = seed % 2},
                seed, editsOf(5), totals);
   }
   expectReuse(totals);
+}
+
+TEST(Update, GivesTheBytesOfAFullBakeInDemoScenes) {
+  Totals totals;
+  for (const char* name : {"demo:ship?decks=3&rooms=4&machinery=0", "demo:city?copies=1"}) {
+    const Result<Scene> scene = makeDemoScene(name);
+    ASSERT_TRUE(scene);
+    judgeEdits(EditedScene::of(*scene), {.triangle_budget = 300, .max_depth = 3, .near_distance = 0.05}, 21,
+               editsOf(3), totals);
+  }
+  expectReuse(totals);
+}
+
+TEST(Update, AsksNothingAgainWhereNothingChanged) {
+  for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+    const BakeSettings settings{
+        .occlusion = occlusion, .triangle_budget = 120, .max_depth = 2, .near_distance = 0.05};
+    const Scene scene = roomScene(5, 2).scene();
+    const Made first = bakeWith(scene, settings, {}), again = bakeWith(scene, settings, first.answers);
+    EXPECT_EQ(first.stats.asked, first.stats.questions);
+    EXPECT_EQ(again.stats.questions, first.stats.questions);
+    EXPECT_EQ(again.stats.asked, 0u);
+    EXPECT_TRUE(again.file == first.file);
+    EXPECT_TRUE(again.answers == first.answers);
+  }
+}
+
+// What stands far from everything else and is small is asked about, and little else is.
+TEST(Update, AsksOnlyAboutWhatMovedWhereItHidesNothing) {
+  EditedScene edited = roomScene(6);
+  test::Piece crumb =
+      EditedScene::of(test::sceneOf({test::block({1, 1.5f, 1}, {1.0625f, 1.5625f, 1.0625f})})).pieces[0];
+  edited.pieces.push_back(crumb);
+  const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
+  const Made before = bakeWith(edited.scene(), settings, {});
+  edited.pieces.back().move({0.5f, 0, 0.25f});
+  const Made after = bakeWith(edited.scene(), settings, before.answers);
+  EXPECT_EQ(after.taken.come, 1u);
+  EXPECT_EQ(after.taken.gone, 1u);
+  EXPECT_LT(after.stats.asked * 20, after.stats.questions);
+}
+
+TEST(Update, RefusesBytesThatAreNoAnswers) {
+  const Scene scene = roomScene(7, 2).scene();
+  const BakeSettings settings{.triangle_budget = 120, .max_depth = 2, .answers = true};
+  const std::vector<std::byte> answers = bakeWith(scene, settings, {}).answers;
+  Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
+  ASSERT_TRUE(bake);
+  for (std::size_t length = 0; length < answers.size(); length += 1 + answers.size() / 97) {
+    EXPECT_FALSE(bake->takeOver({answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(length)}));
+  }
+  for (std::size_t at = 0; at < answers.size(); at += 1 + answers.size() / 97) {
+    std::vector<std::byte> altered = answers;
+    altered[at] ^= std::byte{4};
+    EXPECT_FALSE(bake->takeOver(std::move(altered))) << at;
+  }
+  EXPECT_TRUE(bake->takeOver(answers));
 }
 
 }  // namespace
