@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "src/base/byte_stream.h"
 #include "src/pvs/format/checksum.h"
@@ -94,6 +95,20 @@ bool readNodes(base::ByteReader& bytes, std::uint32_t node_count, std::vector<st
   return true;
 }
 
+bool readBoxes(base::ByteReader& bytes, std::uint32_t node_count, std::vector<CoarseBox>& boxes) {
+  const std::uint64_t count = readCount(bytes);
+  if (count > node_count) {
+    return false;
+  }
+  boxes.reserve(static_cast<std::size_t>(count));
+  for (std::uint64_t i = 0; i < count; ++i) {
+    for (std::uint8_t& end : boxes.emplace_back()) {
+      end = bytes.read<std::uint8_t>();
+    }
+  }
+  return bytes.ok();
+}
+
 void add(const Answer& answer, base::ByteWriter& bytes) {
   bytes.add(static_cast<std::uint8_t>(answer.kind));
   bytes.add(answer.question);
@@ -107,6 +122,10 @@ void add(const Answer& answer, base::ByteWriter& bytes) {
     addRuns(answer.asked, bytes);
   } else {
     addNodes(answer.hidden_nodes, bytes);
+    addCount(answer.followed.size(), bytes);
+    for (const CoarseBox& box : answer.followed) {
+      bytes.addAll(std::span<const std::uint8_t>(box));
+    }
   }
 }
 
@@ -122,12 +141,43 @@ bool read(base::ByteReader& bytes, std::uint32_t object_count, std::uint32_t nod
     answer.most = bytes.read<std::uint64_t>();
     return bytes.ok();
   }
-  return readRuns(bytes, object_count, answer.seen) &&
-         (answer.kind == AnswerKind::kConvex ? readRuns(bytes, object_count, answer.asked)
-                                             : readNodes(bytes, node_count, answer.hidden_nodes));
+  if (!readRuns(bytes, object_count, answer.seen)) {
+    return false;
+  }
+  if (answer.kind == AnswerKind::kConvex) {
+    return readRuns(bytes, object_count, answer.asked);
+  }
+  return readNodes(bytes, node_count, answer.hidden_nodes) &&
+         readBoxes(bytes, node_count, answer.followed);
 }
 
 }  // namespace
+
+CoarseBox coarse(const Box& box, const Box& frame) {
+  if (box.empty()) {
+    return {255, 255, 255, 0, 0, 0};
+  }
+  CoarseBox ends{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = frame.min[axis], step = (double{frame.max[axis]} - first) / 255.0;
+    const auto end = [&](double at) { return static_cast<std::uint8_t>(std::clamp(at, 0.0, 255.0)); };
+    const auto i = static_cast<std::size_t>(axis);
+    ends[i] = end(std::floor((double{box.min[axis]} - first) / step));
+    ends[i + 3] = end(std::ceil((double{box.max[axis]} - first) / step));
+  }
+  return ends;
+}
+
+Box boxOf(const CoarseBox& coarse, const Box& frame) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = frame.min[axis], step = (double{frame.max[axis]} - first) / 255.0;
+    const auto i = static_cast<std::size_t>(axis);
+    box.min[axis] = static_cast<float>(first + step * coarse[i]);
+    box.max[axis] = static_cast<float>(first + step * coarse[i + 3]);
+  }
+  return box;
+}
 
 std::uint64_t questionOf(std::span<const Vec3d> points, std::span<const double> numbers) {
   Checksum hash;

@@ -3,6 +3,7 @@
 // What a bake asked about each cell, and the answers: kept beside the baked file, so that a bake of the scene
 // after a change asks again only what depends on the change (recall.h).
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -22,6 +23,13 @@ enum class AnswerKind : std::uint8_t {
 };
 inline constexpr std::uint32_t kAnswerKinds = 3;
 
+// A box that is not smaller than another one, in 255ths of a frame around it: the lower and the upper ends along
+// the axes. Empty if a lower end is above an upper one.
+using CoarseBox = std::array<std::uint8_t, 6>;
+CoarseBox coarse(const Box& box, const Box& frame);
+Box boxOf(const CoarseBox& coarse, const Box& frame);
+inline constexpr CoarseBox kWholeFrame{0, 0, 0, 255, 255, 255};
+
 // Objects are given by their places in the box tree of the bake's own scene, nodes by their numbers there.
 struct Answer {
   AnswerKind kind = AnswerKind::kConvex;
@@ -29,7 +37,11 @@ struct Answer {
   Runs asked{};                               // kConvex: the objects that were asked about
   Runs seen{};                                // kConvex, kFused: those that may be seen
   std::vector<std::uint32_t> hidden_nodes{};  // kFused: what was found hidden as a whole; ascending
-  std::uint64_t least = 0, most = 0;          // kPoint: bounds of the triangles that are seen
+  // kFused: of each node that was asked about, in ascending order, a box around all panels that decided it
+  // besides those that lines of sight met. Asked about were those of hidden_nodes, and those above what is
+  // hidden or seen.
+  std::vector<CoarseBox> followed{};
+  std::uint64_t least = 0, most = 0;  // kPoint: bounds of the triangles that are seen
 };
 
 // The answers about each cell, by cellNumber.

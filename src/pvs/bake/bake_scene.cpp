@@ -88,6 +88,19 @@ double magnitudeOf(const CellBox& root, const BoxTree& boxes) {
   return magnitude;
 }
 
+// A box around the cell and the box, rounded outwards.
+Box frameOf(const CellBox& cell, const BoxTree& tree) {
+  Box frame;
+  for (const Vec3d& corner : {cell.min, cell.max}) {
+    frame.extend(Vec3f(corner));
+  }
+  frame = widened(frame, 0x1p-20 * maxComponent(max(abs(cell.min), abs(cell.max))));
+  if (!tree.nodes.empty()) {
+    frame.extend(tree.nodes[0].bounds);
+  }
+  return frame;
+}
+
 // Limits of a chosen depth: its minimum, and the maximum number of cells beyond that.
 constexpr std::uint32_t kMinChosenDepth = 6;
 constexpr std::uint64_t kMaxChosenCells = 1u << 15;
@@ -155,6 +168,7 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       position_of(scene.objects.size()),
       occluders(set),
       panels(s.occlusion == BakeOcclusion::kFused ? findPanels(scene, parallel_for) : Panels{}),
+      frame(frameOf(root, panels.tree)),
       object_boxes(
           s.occlusion == BakeOcclusion::kFused
               ? findObjectBoxes(scene, {.max_boxes = s.object_boxes, .margin = s.box_margin}, parallel_for)

@@ -38,6 +38,7 @@ struct BakeScene {
   std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
   ConvexOccluders occluders;
   Panels panels;             // none if only convex occluders hide
+  Box frame;                 // around the root and all panels
   ObjectBoxes object_boxes;  // the same
   OccluderCounts counts;
   double side_margin = 0.0;  // sideMargin of the root, metres

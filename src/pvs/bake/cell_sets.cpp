@@ -274,11 +274,13 @@ void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& s
     recallNodes(*before);
   }
   hidden_nodes_.clear();
+  followed_.clear();
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
   removeFusedBelow(0, region);
   hidden_.complement(seen);
   answer.seen = seen;
   answer.hidden_nodes = hidden_nodes_;
+  answer.followed = followed_;
   keep(std::move(answer));
 }
 
@@ -307,6 +309,23 @@ void CellBaker::recallNodes(const Answer& before) {
     }
     nodes_before_[n] = asked ? Before::kSeen : Before::kNotAsked;
   }
+  followed_before_.assign(nodes.size(), kWholeFrame);
+  std::size_t asked = 0;
+  for (std::size_t n = 0; n < nodes.size() && asked < before.followed.size(); ++n) {
+    if (nodes_before_[n] != Before::kNotAsked) {
+      followed_before_[n] = before.followed[asked++];
+    }
+  }
+}
+
+// An answer depends on the panels that the lines of sight of the question meet, and on those that were followed
+// from there: these decided it. What has changed elsewhere in the shaft is joined with none of them. Whether the
+// surfaces in the shaft are closed does not depend on the order in which they are followed.
+bool CellBaker::holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const {
+  const Box& box = scene_.boxes.nodes[node].bounds;
+  const Vec3d start = FusedOcclusion::startOf(region);
+  return (!recall_->panelsDiffer(decided_in) && !recall_->panelsDiffer({start, start}, box)) ||
+         !recall_->panelsDiffer(region, box);
 }
 
 bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
@@ -315,14 +334,27 @@ bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
   ++questions_;
   if (!nodes_before_.empty()) {
     const std::uint32_t same = recall_->nodeBefore(number);
-    if (same != Recall::kNone && nodes_before_[same] != Before::kNotAsked &&
-        !recall_->panelsDiffer(region, node.bounds)) {
-      return nodes_before_[same] == Before::kHidden;
+    if (same != Recall::kNone && nodes_before_[same] != Before::kNotAsked) {
+      const Box& frame = recall_->earlier().marks.frame;
+      const CoarseBox& followed = followed_before_[same];
+      const Box decided_in = boxOf(followed, frame);
+      if (holds(number, region, decided_in)) {
+        followed_.push_back(frame == scene_.frame ? followed : coarse(decided_in, scene_.frame));
+        return nodes_before_[same] == Before::kHidden;
+      }
     }
   }
   ++asked_;
-  return boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
-                            : hidesBox(region, node.bounds, kNoObject, {});
+  surfaces_.takeFollowed();
+  const bool hidden = boxes.leaf(number)
+                          ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
+                          : hidesBox(region, node.bounds, kNoObject, {});
+  // Narrowing and dividing try lines of sight from elsewhere.
+  const BakeSettings& settings = scene_.settings;
+  const bool elsewhere = boxes.leaf(number) && (settings.narrowings > 0 || settings.divisions > 0);
+  const Box followed = surfaces_.takeFollowed();
+  followed_.push_back(elsewhere ? kWholeFrame : coarse(followed, scene_.frame));
+  return hidden;
 }
 
 void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {

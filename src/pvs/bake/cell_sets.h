@@ -110,7 +110,10 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region);
-  // Sets nodes_before_ to what an earlier bake found about the nodes of its box tree.
+  // Whether the earlier bake's answer about the node still holds. same: its node there; decided_in: around the
+  // panels that decided it.
+  bool holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const;
+  // Sets nodes_before_ and followed_before_ to what an earlier bake found about the nodes of its box tree.
   void recallNodes(const Answer& before);
   bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
   // object: FusedTarget::object
@@ -149,7 +152,9 @@ class CellBaker {
   std::vector<Before> objects_before_;  // by place now
   std::vector<Before> nodes_before_;    // by node of the earlier box tree; empty if there is no answer
   std::vector<Box> differing_;
+  std::vector<CoarseBox> followed_before_;  // by node of the earlier box tree
   std::vector<std::uint32_t> hidden_nodes_;
+  std::vector<CoarseBox> followed_;
   Shadow shadow_;
   CellAnswers answers_;
   std::uint64_t questions_ = 0, asked_ = 0;

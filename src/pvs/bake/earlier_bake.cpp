@@ -168,6 +168,7 @@ Box readBox(base::ByteReader& bytes) {
 void write(const SceneMarks& marks, base::ByteWriter& bytes) {
   bytes.add(marks.settings);
   bytes.add(marks.space);
+  write(marks.frame, bytes);
   bytes.add(static_cast<std::uint32_t>(marks.objects.size()));
   for (const ObjectMark& object : marks.objects) {
     bytes.add(object.content);
@@ -193,6 +194,7 @@ SceneMarks readMarks(base::ByteReader& bytes) {
   SceneMarks marks;
   marks.settings = bytes.read<std::uint64_t>();
   marks.space = bytes.read<std::uint64_t>();
+  marks.frame = readBox(bytes);
   marks.objects.resize(bytes.readCount<std::uint32_t>(kObjectBytes));
   for (ObjectMark& object : marks.objects) {
     object.content = bytes.read<std::uint64_t>();
@@ -247,6 +249,7 @@ SceneMarks marksOf(const BakeScene& scene) {
   SceneMarks marks;
   marks.settings = hashOf(scene.settings);
   marks.space = spaceOf(scene);
+  marks.frame = scene.frame;
   const std::vector<ObjectMark> by_id = objectMarks(scene);
   for (const ObjectId object : scene.boxes.objects) {
     marks.objects.push_back(by_id[object.value]);

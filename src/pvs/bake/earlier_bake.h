@@ -37,6 +37,7 @@ struct SceneMarks {
   // Hashes of all that every answer depends on: the settings that say what may hide something, and the root
   // and bounds of coordinates.
   std::uint64_t settings = 0, space = 0;
+  Box frame{};                        // of the boxes in answers
   std::vector<ObjectMark> objects{};  // by place in the box tree
   std::vector<BoxNode> nodes{};       // of the box tree
   std::vector<PanelMark> panels{};    // in ascending order

@@ -95,6 +95,10 @@ bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to) {
   return clear();
 }
 
+Vec3d FusedOcclusion::startOf(const CellBox& region) {
+  return pointIn(region, kStart);
+}
+
 FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTarget& target,
                                            double near_distance) {
   const double widening = kWidening * magnitude_;
@@ -112,7 +116,7 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
     std::fill(beyond_.begin(), beyond_.end(), Beyond{});
     question_ = 1;
   }
-  const Vec3d from = pointIn(region_, kStart);
+  const Vec3d from = startOf(region_);
   for (const Vec3d& end : kEnds) {
     const Vec3d to = pointIn(target_, end);
     findCrossings(from, to, false);
@@ -249,6 +253,7 @@ bool FusedOcclusion::gather(std::uint32_t component) {
     std::pop_heap(ahead_.begin(), ahead_.end(), farther);
     const std::uint32_t panel = ahead_.back();
     ahead_.pop_back();
+    followed_.extend(panels_.bounds[panel]);
     if (looked_at == most_members_ || tooNear(panel)) {
       return false;
     }

@@ -124,6 +124,22 @@ bool Recall::panelsDiffer(const CellBox& region, const Box& box) const {
   return false;
 }
 
+bool Recall::panelsDiffer(const Box& box) const {
+  const CellBox wide = wider({Vec3d(box.min), Vec3d(box.max)}, kComparedWidening * magnitude_);
+  for (std::uint32_t n = 0; n < changed_panels_.nodes.size();) {
+    const BoxNode& node = changed_panels_.nodes[n];
+    if (!intersects(wide, node.bounds)) {
+      n = node.end;
+      continue;
+    }
+    if (node.end == n + 1) {
+      return true;
+    }
+    n += 1;
+  }
+  return false;
+}
+
 std::uint64_t Recall::partOf(std::uint64_t cell) const {
   while (cell != 0 && !earlier_.parts.contains(cell)) {
     cell >>= 3;

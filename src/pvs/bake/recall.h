@@ -40,6 +40,8 @@ class Recall {
   std::uint32_t objectsCome() const { return objects_come_; }
   // False only if no changed panel, of either scene, meets any line of sight from the region to the box.
   bool panelsDiffer(const CellBox& region, const Box& box) const;
+  // False only if no changed panel meets the box.
+  bool panelsDiffer(const Box& box) const;
 
   // The part of the earlier bake that has the answers about a cell; 0 if there is none.
   std::uint64_t partOf(std::uint64_t cell) const;
