@@ -147,8 +147,7 @@ bool read(base::ByteReader& bytes, std::uint32_t object_count, std::uint32_t nod
   if (answer.kind == AnswerKind::kConvex) {
     return readRuns(bytes, object_count, answer.asked);
   }
-  return readNodes(bytes, node_count, answer.hidden_nodes) &&
-         readBoxes(bytes, node_count, answer.followed);
+  return readNodes(bytes, node_count, answer.hidden_nodes) && readBoxes(bytes, node_count, answer.followed);
 }
 
 }  // namespace

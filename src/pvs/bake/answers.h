@@ -23,8 +23,8 @@ enum class AnswerKind : std::uint8_t {
 };
 inline constexpr std::uint32_t kAnswerKinds = 3;
 
-// A box that is not smaller than another one, in 255ths of a frame around it: the lower and the upper ends along
-// the axes. Empty if a lower end is above an upper one.
+// A box that is not smaller than another one, in 255ths of a frame around it: the lower and the upper ends
+// along the axes. Empty if a lower end is above an upper one.
 using CoarseBox = std::array<std::uint8_t, 6>;
 CoarseBox coarse(const Box& box, const Box& frame);
 Box boxOf(const CoarseBox& coarse, const Box& frame);

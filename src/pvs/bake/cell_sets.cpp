@@ -318,9 +318,9 @@ void CellBaker::recallNodes(const Answer& before) {
   }
 }
 
-// An answer depends on the panels that the lines of sight of the question meet, and on those that were followed
-// from there: these decided it. What has changed elsewhere in the shaft is joined with none of them. Whether the
-// surfaces in the shaft are closed does not depend on the order in which they are followed.
+// An answer depends on the panels that the lines of sight of the question meet, and on those that were
+// followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
+// Whether the surfaces in the shaft are closed does not depend on the order in which they are followed.
 bool CellBaker::holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const {
   const Box& box = scene_.boxes.nodes[node].bounds;
   const Vec3d start = FusedOcclusion::startOf(region);
@@ -346,9 +346,8 @@ bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
   }
   ++asked_;
   surfaces_.takeFollowed();
-  const bool hidden = boxes.leaf(number)
-                          ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
-                          : hidesBox(region, node.bounds, kNoObject, {});
+  const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
+                                         : hidesBox(region, node.bounds, kNoObject, {});
   // Narrowing and dividing try lines of sight from elsewhere.
   const BakeSettings& settings = scene_.settings;
   const bool elsewhere = boxes.leaf(number) && (settings.narrowings > 0 || settings.divisions > 0);

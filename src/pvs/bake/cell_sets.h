@@ -110,8 +110,8 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region);
-  // Whether the earlier bake's answer about the node still holds. same: its node there; decided_in: around the
-  // panels that decided it.
+  // Whether the earlier bake's answer about the node still holds. same: its node there; decided_in: around
+  // the panels that decided it.
   bool holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const;
   // Sets nodes_before_ and followed_before_ to what an earlier bake found about the nodes of its box tree.
   void recallNodes(const Answer& before);

@@ -60,8 +60,7 @@ std::string bakeText(const BakeReport& report, const std::string& name, const Si
   if (report.update && report.update->difference.empty()) {
     const double questions = static_cast<double>(std::max(effort.stats.questions, std::uint64_t{1}));
     text += fmt::format(
-        "update        {} objects are the same, {} are gone, {} have come; {} of {} questions asked again, "
-        "{:.2f} %\n",
+        "update        {} objects are the same, {} gone, {} new; {} of {} questions asked again, {:.2f} %\n",
         report.update->same, report.update->gone, report.update->come, effort.stats.asked,
         effort.stats.questions, 100.0 * static_cast<double>(effort.stats.asked) / questions);
   }
