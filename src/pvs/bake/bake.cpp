@@ -10,7 +10,9 @@
 #include "src/base/byte_stream.h"
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_tree.h"
+#include "src/pvs/bake/earlier_bake.h"
 #include "src/pvs/bake/flatten.h"
+#include "src/pvs/bake/recall.h"
 #include "src/pvs/format/checksum.h"
 #include "src/pvs/format/witness_code.h"
 
@@ -30,8 +32,6 @@ struct Bake::Data {
 
 namespace {
 
-// Version of the bake method; increase it whenever the same input would give other cells.
-constexpr std::uint32_t kVersion = 6;
 constexpr std::uint32_t kMaxDivisions = 16, kMaxNarrowings = 8;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
@@ -95,7 +95,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
                      std::uint32_t base_depth) {
   base::ByteWriter bytes;
   for (const std::uint64_t number :
-       {std::uint64_t{kVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
+       {std::uint64_t{kBakeVersion}, scene.hash, scene.objects, scene.triangles, occluderSetHash(occluders),
         static_cast<std::uint64_t>(s.occlusion), s.triangle_budget, std::uint64_t{s.max_depth},
         std::uint64_t{base_depth}, std::uint64_t{s.divisions}, std::uint64_t{s.narrowings},
         std::uint64_t{s.object_boxes}}) {
@@ -112,6 +112,9 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
   }
   if (s.witnesses) {
     bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
+  }
+  if (s.answers) {
+    bytes.add(std::uint8_t{2});
   }
   return pvs::checksumOf(bytes.take());
 }
@@ -170,6 +173,42 @@ const OccluderCounts& Bake::occluders() const {
 std::uint64_t Bake::hash() const {
   return data_->hash;
 }
+
+struct Bake::Earlier {
+  Earlier(EarlierBake earlier, std::shared_ptr<const Data> d, const SceneMarks& marks)
+      : data(std::move(d)), recall(std::move(earlier), data->scene, marks) {}
+
+  std::shared_ptr<const Data> data;
+  Recall recall;
+};
+
+Result<Bake::TakenOver> Bake::takeOver(std::vector<std::byte> answers) {
+  if (data_->scene.settings.witnesses) {
+    return Error{"bake: answers that are taken over have no witnesses; bake in full for those"};
+  }
+  Result<EarlierBake> earlier = readEarlierBake(std::move(answers));
+  if (!earlier) {
+    return earlier.error();
+  }
+  TakenOver taken{.scene = earlier->scene};
+  const SceneMarks marks = marksOf(data_->scene);
+  if (marks.settings != earlier->marks.settings) {
+    taken.difference = "other settings";
+  } else if (marks.space != earlier->marks.space) {
+    taken.difference = "other bounds of the scene or of where viewers are";
+  }
+  if (!taken.difference.empty()) {
+    return taken;
+  }
+  const auto made = std::make_shared<const Earlier>(std::move(*earlier), data_, marks);
+
+  taken.gone = made->recall.objectsGone();
+  taken.come = made->recall.objectsCome();
+  taken.same = static_cast<std::uint32_t>(marks.objects.size()) - taken.come;
+  earlier_ = made;
+  return taken;
+}
+
 PartTask Bake::firstPart() const {
   return {1, firstSearchDistance(data_->scene)};
 }
@@ -179,23 +218,32 @@ void add(BakeStats& sum, const BakeStats& stats) {
   sum.shadows += stats.shadows;
   sum.forgotten += stats.forgotten;
   sum.max_sample_bytes += stats.max_sample_bytes;
+  sum.questions += stats.questions;
+  sum.asked += stats.asked;
 }
 
 struct Bake::Worker::Impl {
-  explicit Impl(std::shared_ptr<const Data> d) : data(std::move(d)), baker(data->scene) {}
+  Impl(std::shared_ptr<const Data> d, std::shared_ptr<const Earlier> e)
+      : data(std::move(d)), earlier(std::move(e)), baker(data->scene, earlier ? &earlier->recall : nullptr) {}
 
-  // Those of what was baked since the last call.
-  void addWitnesses(base::ByteWriter& bytes) {
+  // Adds what was recorded since the last call, with which a part ends.
+  void addRecords(base::ByteWriter& bytes) {
     if (data->scene.settings.witnesses) {
       write(baker.takeWitnesses(), bytes);
+    }
+    if (data->scene.settings.answers) {
+      const std::vector<std::byte> answers = encodeAnswers(baker.takeAnswers());
+      bytes.addBytes(answers);
+      bytes.add(static_cast<std::uint64_t>(answers.size()));
     }
   }
 
   std::shared_ptr<const Data> data;
+  std::shared_ptr<const Earlier> earlier;
   CellBaker baker;
 };
 
-Bake::Worker::Worker(const Bake& bake) : impl_(std::make_unique<Impl>(bake.data_)) {}
+Bake::Worker::Worker(const Bake& bake) : impl_(std::make_unique<Impl>(bake.data_, bake.earlier_)) {}
 Bake::Worker::~Worker() = default;
 Bake::Worker::Worker(Worker&&) noexcept = default;
 
@@ -213,7 +261,8 @@ void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& lea
 }
 
 // The header of a part. After it come the search distance for the child parts and what this one sees, if the
-// part was divided, else the cells. Then the witnesses, if they are recorded.
+// part was divided, else the cells. Then the witnesses, if they are recorded; and the answers, if they are,
+// and their length.
 struct PartHead {
   std::uint64_t magic = kPartMagic, plan = 0, id = 0;
   PartSummary summary;
@@ -262,7 +311,7 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
       write(head, bytes);
       bytes.add(outcome.search_distance);
       write(outcome.seen, bytes);
-      impl_->addWitnesses(bytes);
+      impl_->addRecords(bytes);
       return bytes.take();
     }
     cell = std::move(*outcome.leaf);
@@ -275,11 +324,11 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
   head.summary.share = shareOf(scene, task.cell);
   write(head, bytes);
   write(cell, bytes);
-  impl_->addWitnesses(bytes);
+  impl_->addRecords(bytes);
   return bytes.take();
 }
 
-const BakeStats& Bake::Worker::stats() const {
+BakeStats Bake::Worker::stats() const {
   return impl_->baker.stats();
 }
 
@@ -364,6 +413,26 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
 
 namespace {
 
+// A part without the answers with which it ends if they are recorded, and those.
+struct PartBytes {
+  std::span<const std::byte> content, answers;
+};
+
+PartBytes bytesOf(const BakeScene& scene, std::span<const std::byte> part) {
+  constexpr std::size_t kLength = sizeof(std::uint64_t);
+  if (!scene.settings.answers || part.size() < kLength) {
+    return {part, {}};
+  }
+  const std::span<const std::byte> before = part.first(part.size() - kLength);
+  base::ByteReader end(part.last(kLength));
+  const auto length = end.read<std::uint64_t>();
+  if (length > before.size()) {
+    return {{}, {}};
+  }
+  const std::size_t content = before.size() - static_cast<std::size_t>(length);
+  return {before.first(content), before.subspan(content)};
+}
+
 // True if the bytes end here, or after witnesses where they are recorded.
 bool endsWell(const BakeScene& scene, base::ByteReader& bytes) {
   std::vector<HidingWitness> witnesses;
@@ -380,7 +449,7 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
   if (part == parts.end() || !bake.isPart(id, part->second)) {
     return std::nullopt;
   }
-  base::ByteReader bytes(part->second);
+  base::ByteReader bytes(bytesOf(scene, part->second).content);
   if (readHead(bytes).summary.leaves > 0) {
     std::optional<BakedCell> cell =
         readCell(bytes, level, static_cast<std::uint32_t>(scene.boxes.objects.size()));
@@ -429,7 +498,7 @@ Witnesses Bake::witnesses(const BakedParts& parts) const {
   const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
   Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
   for (const auto& [id, part] : parts) {
-    base::ByteReader bytes(part);
+    base::ByteReader bytes(bytesOf(scene, part).content);
     Runs seen;
     if (readHead(bytes).summary.leaves > 0) {
       readCell(bytes, cellOfNumber(id).level, objects);
@@ -444,6 +513,19 @@ Witnesses Bake::witnesses(const BakedParts& parts) const {
     }
   }
   return found;
+}
+
+std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
+  const BakeScene& scene = data_->scene;
+  std::map<std::uint64_t, std::span<const std::byte>> answers;
+  for (const auto& [id, part] : parts) {
+    answers.emplace(id, bytesOf(scene, part).answers);
+  }
+  return earlierBakeBytes(data_->scene_id, marksOf(scene), answers);
+}
+
+bool Bake::beginsAsAnswers(std::span<const std::byte> bytes) {
+  return pvs::beginsAsAnswers(bytes);
 }
 
 Result<BakedVisibility> bakeVisibility(const SceneView& scene, const OccluderSet& occluders,

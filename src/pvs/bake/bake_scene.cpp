@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "src/pvs/bake/segment.h"
+
 namespace sightline::pvs {
 namespace {
 
@@ -75,6 +77,30 @@ bool isOfUse(const ConvexOccluder& occluder, const CellBox& cell, double occlude
          occluder.volume >= occluder_size * extent.x * extent.y * extent.z;
 }
 
+double magnitudeOf(const CellBox& root, const BoxTree& boxes) {
+  double magnitude = maxComponent(max(abs(root.min), abs(root.max)));
+  for (const BoxNode& node : boxes.nodes) {
+    if (node.bounds.wellFormed()) {
+      magnitude =
+          std::max(magnitude, maxComponent(max(abs(Vec3d(node.bounds.min)), abs(Vec3d(node.bounds.max)))));
+    }
+  }
+  return magnitude;
+}
+
+// A box around the cell and the box, rounded outwards.
+Box frameOf(const CellBox& cell, const BoxTree& tree) {
+  Box frame;
+  for (const Vec3d& corner : {cell.min, cell.max}) {
+    frame.extend(Vec3f(corner));
+  }
+  frame = widened(frame, 0x1p-20 * maxComponent(max(abs(cell.min), abs(cell.max))));
+  if (!tree.nodes.empty()) {
+    frame.extend(tree.nodes[0].bounds);
+  }
+  return frame;
+}
+
 // Limits of a chosen depth: its minimum, and the maximum number of cells beyond that.
 constexpr std::uint32_t kMinChosenDepth = 6;
 constexpr std::uint64_t kMaxChosenCells = 1u << 15;
@@ -134,19 +160,21 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
     : settings(s),
       region(regionAround(s.viewers)),
       root(cubeAround(region)),
+      reach(1.01 * diagonalOf(scene, root)),
       boxes(buildBoxTree(boundsOf(scene), trianglesOf(scene))),
-      shadow_tree(boxes.view()),
+      magnitude(magnitudeOf(root, boxes)),
+      shadow_tree(boxes.view(), reach),
       triangles(boxes.view()),
       position_of(scene.objects.size()),
       occluders(set),
       panels(s.occlusion == BakeOcclusion::kFused ? findPanels(scene, parallel_for) : Panels{}),
+      frame(frameOf(root, panels.tree)),
       object_boxes(
           s.occlusion == BakeOcclusion::kFused
               ? findObjectBoxes(scene, {.max_boxes = s.object_boxes, .margin = s.box_margin}, parallel_for)
               : ObjectBoxes{}),
       side_margin(sideMargin(root)),
       diagonal(diagonalOf(scene, region)),
-      reach(1.01 * diagonalOf(scene, root)),
       viewer_tree_(buildBoxTree(s.viewers, {})) {
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
@@ -270,6 +298,24 @@ void BakeScene::findOccluders(const CellBox& box, std::uint32_t level,
   const auto before = static_cast<std::ptrdiff_t>(found.size());
   forEachIntersecting(at_level.tree, box, [&](std::uint32_t i) { found.push_back(at_level.occluders[i]); });
   std::sort(found.begin() + before, found.end());
+}
+
+void BakeScene::findOccludersAlong(const Vec3d& from, const Vec3d& to, double margin, const CellBox& box,
+                                   std::uint32_t level, std::vector<std::uint32_t>& found) const {
+  const LevelOccluders& at_level = levels_[level];
+  const SegmentTest line(from, to, margin);
+  const BoxTree& tree = at_level.tree;
+  for (std::uint32_t n = 0; n < tree.nodes.size();) {
+    const BoxNode& node = tree.nodes[n];
+    if (!intersects(box, node.bounds) || line.misses(node.bounds)) {
+      n = node.end;
+      continue;
+    }
+    if (node.end == n + 1) {
+      found.push_back(at_level.occluders[tree.objects[node.first_object].value]);
+    }
+    n += 1;
+  }
 }
 
 void BakeScene::findFaces(const CellBox& box, std::vector<DividingFace>& found) const {

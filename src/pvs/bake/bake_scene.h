@@ -16,6 +16,10 @@
 
 namespace sightline::pvs {
 
+// Version of the bake method; increase it whenever the same input would give other cells, or the same
+// question another answer.
+inline constexpr std::uint32_t kBakeVersion = 7;
+
 struct BakeScene {
   // settings: must be valid, with at least one box of viewers.
   BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& settings,
@@ -23,20 +27,22 @@ struct BakeScene {
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
-  BakeSettings settings;  // including the chosen max_depth
-  CellBox region;         // around all boxes of viewers
-  CellBox root;           // a cube
-  BoxTree boxes;          // of the objects; sets are expressed in terms of its nodes
+  BakeSettings settings;   // including the chosen max_depth
+  CellBox region;          // around all boxes of viewers
+  CellBox root;            // a cube
+  double reach = 0.0;      // maximum distance from any viewer to any box, metres
+  BoxTree boxes;           // of the objects; sets are expressed in terms of its nodes
+  double magnitude = 0.0;  // bound of the coordinates of all cells and all objects that may be hidden, metres
   ShadowTree shadow_tree;
   TriangleCounts triangles;
   std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
   ConvexOccluders occluders;
   Panels panels;             // none if only convex occluders hide
+  Box frame;                 // around the root and all panels
   ObjectBoxes object_boxes;  // the same
   OccluderCounts counts;
   double side_margin = 0.0;  // sideMargin of the root, metres
   double diagonal = 0.0;     // diagonal of the region and all objects, metres
-  double reach = 0.0;        // maximum distance from any viewer to any box, metres
 
   // The leaf of an object, by its place in BoxTree::objects.
   const BoxNode& leafOf(std::uint32_t position) const { return boxes.nodes[leaf_of_[position]]; }
@@ -51,6 +57,10 @@ struct BakeScene {
   bool mayDivide(const OctreeCell& cell) const;
   // Appends, in ascending order, the occluders that intersect the box and are useful to cells of this level.
   void findOccluders(const CellBox& box, std::uint32_t level, std::vector<std::uint32_t>& found) const;
+  // Appends those of them that a line may meet, in any order. margin: how close to an occluder's box a line
+  // may come without missing it, metres.
+  void findOccludersAlong(const Vec3d& from, const Vec3d& to, double margin, const CellBox& box,
+                          std::uint32_t level, std::vector<std::uint32_t>& found) const;
   // Appends the faces that intersect the box.
   void findFaces(const CellBox& box, std::vector<DividingFace>& found) const;
   // True if some occluder that intersects the box is too small for cells of this level but useful to smaller

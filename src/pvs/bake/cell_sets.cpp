@@ -7,6 +7,9 @@
 #include "src/pvs/bake/cell_sets.h"
 
 #include <algorithm>
+#include <array>
+
+#include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
 namespace {
@@ -15,16 +18,39 @@ namespace {
 // unless it is as large as the cell.
 constexpr double kNearInEdges = 0.5;
 
-// A bound of the absolute coordinates of all cells and all objects that may be hidden.
-double magnitudeOf(const BakeScene& scene) {
-  double magnitude = maxComponent(max(abs(scene.root.min), abs(scene.root.max)));
-  for (const BoxNode& node : scene.boxes.nodes) {
-    if (node.bounds.wellFormed()) {
-      magnitude =
-          std::max(magnitude, maxComponent(max(abs(Vec3d(node.bounds.min)), abs(Vec3d(node.bounds.max)))));
+// How close to the box of an occluder a line of sight may come without missing it, in units of the
+// coordinates: far more than rounding moves it.
+constexpr double kLineMargin = 0x1p-36;
+// If more boxes differ, the earlier answers help little.
+constexpr std::size_t kMostDiffering = 256;
+
+std::uint64_t countOf(std::span<const ObjectRun> runs) {
+  std::uint64_t count = 0;
+  for (const ObjectRun& run : runs) {
+    count += run.end - run.begin;
+  }
+  return count;
+}
+
+// Adds a position that is after all runs.
+void append(std::uint32_t position, Runs& runs) {
+  if (!runs.empty() && runs.back().end == position) {
+    runs.back().end = position + 1;
+  } else {
+    runs.push_back({position, position + 1});
+  }
+}
+
+// False only if no line from the point to somewhere in `to` meets the box.
+bool mayPass(const Vec3d& from, const Box& to, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::min(from[axis], double{to.min[axis]}),
+                 high = std::max(from[axis], double{to.max[axis]});
+    if (low > double{box.max[axis]} || high < double{box.min[axis]}) {
+      return false;
     }
   }
-  return magnitude;
+  return true;
 }
 
 // The corners of the regions in front of a cell's plane and behind it, as far as they are for viewers.
@@ -99,10 +125,37 @@ void ObjectMask::complement(Runs& out) const {
   }
 }
 
-CellBaker::CellBaker(const BakeScene& scene)
+CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
     : scene_(scene),
+      recall_(recall),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
-      surfaces_(scene.panels, scene.settings.near_distance, magnitudeOf(scene)) {}
+      surfaces_(scene.panels, scene.settings.near_distance, scene.magnitude),
+      line_margin_(kLineMargin * (scene.magnitude + scene.reach)),
+      occludes_(scene.boxes.objects.size()) {
+  if (recall_ != nullptr) {
+    answers_before_.emplace(*recall_);
+  }
+  for (std::uint32_t i = 0; i < scene.occluders.size(); ++i) {
+    occludes_[scene.position_of[scene.occluders[i].object.value]] = true;
+  }
+}
+
+BakeStats CellBaker::stats() const {
+  BakeStats stats = samples_.stats();
+  stats.questions = questions_;
+  stats.asked = asked_;
+  return stats;
+}
+
+const Answer* CellBaker::answerBefore(const Answer& answer) {
+  return answers_before_ ? answers_before_->find(cell_, answer.kind, answer.question) : nullptr;
+}
+
+void CellBaker::keep(Answer answer) {
+  if (scene_.settings.answers) {
+    answers_[cell_].push_back(std::move(answer));
+  }
+}
 
 CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) const {
   const CellBox box = scene_.boxOf(cell);
@@ -120,18 +173,32 @@ bool CellBaker::tooLargeForItsOccluders(const OctreeCell& cell) const {
 }
 
 void CellBaker::chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level) {
+  choice_ = {.cell = scene_.boxOf(cell),
+             .search = searchBox(cell, search_distance),
+             .distance = search_distance,
+             .level = level};
   chosen_.clear();
-  scene_.findOccluders(searchBox(cell, search_distance), level, chosen_);
-  const CellBox box = scene_.boxOf(cell);
-  const Vec3d extent = box.extent();
+}
+
+std::span<const std::uint32_t> CellBaker::chosenOccluders() {
+  if (!chosen_.empty()) {
+    return chosen_;
+  }
+  scene_.findOccluders(choice_.search, choice_.level, chosen_);
+  if (choice_.known) {
+    std::erase_if(chosen_,
+                  [&](std::uint32_t i) { return intersects(*choice_.known, scene_.occluders[i].bounds); });
+  }
+  const Vec3d extent = choice_.cell.extent();
   ranked_.clear();
   for (const std::uint32_t i : chosen_) {
     const ConvexOccluder& occluder = scene_.occluders[i];
-    const Vec3d gap = gapBetween(box, occluder.bounds);
+    const Vec3d gap = gapBetween(choice_.cell, occluder.bounds);
     ranked_.emplace_back(-occluder.area / (dot(gap, gap) + dot(extent, extent)), i);
   }
   std::sort(ranked_.begin(), ranked_.end());
   std::transform(ranked_.begin(), ranked_.end(), chosen_.begin(), [](const auto& r) { return r.second; });
+  return chosen_;
 }
 
 CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen) {
@@ -160,8 +227,8 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, con
 void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
   cell_ = cellNumber(cell);
   chooseOccluders(cell, search_distance, cell.level);
-  const CellBox known = searchBox(cell, searched);
-  std::erase_if(chosen_, [&](std::uint32_t i) { return intersects(known, scene_.occluders[i].bounds); });
+  choice_.known = searchBox(cell, searched);
+  choice_.distance_before = searched;
   removeHidden(scene_.boxOf(cell), sets);
 }
 
@@ -200,9 +267,93 @@ void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& s
   if (seen.empty()) {
     return;
   }
+  const std::array<Vec3d, 2> ends{region.min, region.max};
+  Answer answer{.kind = AnswerKind::kFused, .question = questionOf(ends, {})};
+  nodes_before_.clear();
+  if (const Answer* before = answerBefore(answer)) {
+    recallNodes(*before);
+  }
+  hidden_nodes_.clear();
+  followed_.clear();
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
   removeFusedBelow(0, region);
   hidden_.complement(seen);
+  answer.seen = seen;
+  answer.hidden_nodes = hidden_nodes_;
+  answer.followed = followed_;
+  keep(std::move(answer));
+}
+
+void CellBaker::recallNodes(const Answer& before) {
+  const std::vector<BoxNode>& nodes = recall_->earlier().marks.nodes;
+  nodes_before_.assign(nodes.size(), Before::kNotAsked);
+  for (const std::uint32_t node : before.hidden_nodes) {
+    nodes_before_[node] = Before::kHidden;
+  }
+  // What is seen was asked about, and so was all above that.
+  std::size_t run = before.seen.size();
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    const BoxNode& node = nodes[n];
+    if (nodes_before_[n] == Before::kHidden) {
+      continue;
+    }
+    bool asked = false;
+    if (node.end == n + 1) {
+      while (run > 0 && before.seen[run - 1].begin > node.first_object) {
+        --run;
+      }
+      asked = run > 0 && node.first_object < before.seen[run - 1].end;
+    }
+    for (std::size_t child = n + 1; child < node.end && !asked; child = nodes[child].end) {
+      asked = nodes_before_[child] != Before::kNotAsked;
+    }
+    nodes_before_[n] = asked ? Before::kSeen : Before::kNotAsked;
+  }
+  followed_before_.assign(nodes.size(), kWholeFrame);
+  std::size_t asked = 0;
+  for (std::size_t n = 0; n < nodes.size() && asked < before.followed.size(); ++n) {
+    if (nodes_before_[n] != Before::kNotAsked) {
+      followed_before_[n] = before.followed[asked++];
+    }
+  }
+}
+
+// An answer depends on the panels that the lines of sight of the question meet, and on those that were
+// followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
+// Whether the surfaces in the shaft are closed does not depend on the order in which they are followed.
+bool CellBaker::holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const {
+  const Box& box = scene_.boxes.nodes[node].bounds;
+  const Vec3d start = FusedOcclusion::startOf(region);
+  return (!recall_->panelsDiffer(decided_in) && !recall_->panelsDiffer({start, start}, box)) ||
+         !recall_->panelsDiffer(region, box);
+}
+
+bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
+  const BoxTreeView boxes = scene_.boxes.view();
+  const BoxNode& node = boxes.nodes[number];
+  ++questions_;
+  if (!nodes_before_.empty()) {
+    const std::uint32_t same = recall_->nodeBefore(number);
+    if (same != Recall::kNone && nodes_before_[same] != Before::kNotAsked) {
+      const Box& frame = recall_->earlier().marks.frame;
+      const CoarseBox& followed = followed_before_[same];
+      const Box decided_in = boxOf(followed, frame);
+      if (holds(number, region, decided_in)) {
+        followed_.push_back(frame == scene_.frame ? followed : coarse(decided_in, scene_.frame));
+        return nodes_before_[same] == Before::kHidden;
+      }
+    }
+  }
+  ++asked_;
+  surfaces_.takeFollowed();
+  const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
+                                         : hidesBox(region, node.bounds, kNoObject, {});
+  // Narrowing and dividing try lines of sight from elsewhere.
+  const BakeSettings& settings = scene_.settings;
+  const bool elsewhere = boxes.leaf(number) && (settings.narrowings > 0 || settings.divisions > 0);
+  const Box followed = surfaces_.takeFollowed();
+  followed_.push_back(elsewhere ? kWholeFrame : coarse(followed, scene_.frame));
+  return hidden;
 }
 
 void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
@@ -212,9 +363,8 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
   if (hidden_.containsAll(objects)) {
     return;
   }
-  const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
-                                         : hidesBox(region, node.bounds, kNoObject, {});
-  if (hidden) {
+  if (surfacesHide(number, region)) {
+    hidden_nodes_.push_back(number);
     recordSurfaces(objects);
     hidden_.add(std::span(&objects, 1));
     return;
@@ -298,20 +448,36 @@ void CellBaker::forgetSides() {
       witnesses_.end());
 }
 
-// Skips an occluder whose object is already hidden. Its shadow lies within that of what hides it, from every
-// viewpoint, so little is lost: nothing where one of these occluders does.
 void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen) {
   part_ = part;
   if (corners.empty()) {
     seen.clear();  // there are no viewers
     return;
   }
+  const std::array numbers{choice_.distance, choice_.distance_before, static_cast<double>(choice_.level),
+                           static_cast<double>(part)};
+  Answer answer{.kind = AnswerKind::kConvex, .question = questionOf(corners, numbers), .asked = seen};
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
+  const Answer* before = answerBefore(answer);
+  questions_ += countOf(seen);
+  if (before == nullptr || !hideAsBefore(*before, corners, seen)) {
+    asked_ += countOf(seen);
+    hideByChosen(corners);
+  }
+  hidden_.complement(seen);
+  answer.seen = seen;
+  keep(std::move(answer));
+}
+
+// Skips an occluder whose object is already hidden. What such an occluder hides is hidden by that which hides
+// its object (docs/conservative.md, "Sets from regions"). So an object is hidden if and only if some chosen
+// occluder of an object that was not hidden before hides it, in whatever order they are asked.
+void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
   std::vector<Sample*> samples;
   for (const Vec3d& corner : corners) {
     samples.push_back(&samples_.at(corner));
   }
-  for (const std::uint32_t i : chosen_) {
+  for (const std::uint32_t i : chosenOccluders()) {
     const ConvexOccluder& occluder = scene_.occluders[i];
     if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
         separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
@@ -320,7 +486,91 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
       hidden_.add(common_);
     }
   }
-  hidden_.complement(seen);
+}
+
+// An answer of the earlier bake holds unless the object has changed, was not asked about, or may be hidden by
+// an occluder that counts in one of the bakes only: one of a changed object, or of one that only one of the
+// bakes asked about. What that hides lies behind its object's box, as seen from each corner.
+bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen) {
+  const auto count = static_cast<std::uint32_t>(scene_.boxes.objects.size());
+  objects_before_.assign(count, Before::kNotAsked);
+  const auto set = [this](const Runs& runs, Before state) {
+    for (const ObjectRun& run : runs) {
+      for (std::uint32_t i = run.begin; i < run.end; ++i) {
+        if (const std::uint32_t now = recall_->placeNow(i); now != Recall::kNone) {
+          objects_before_[now] = state;
+        }
+      }
+    }
+  };
+  set(before.asked, Before::kHidden);
+  set(before.seen, Before::kSeen);
+  const std::span<const Box> changed = recall_->changedOccluders();
+  differing_.assign(changed.begin(), changed.end());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool asked_before = objects_before_[i] != Before::kNotAsked;
+    if (asked_before == hidden_.contains(i) && occludes_[i] && recall_->placeBefore(i) != Recall::kNone) {
+      differing_.push_back(scene_.leafOf(i).bounds);
+    }
+  }
+  if (differing_.size() > kMostDiffering) {
+    return false;
+  }
+  findBehind(corners, differing_);
+  common_.clear();
+  for (const ObjectRun& run : seen) {
+    for (std::uint32_t i = run.begin; i < run.end; ++i) {
+      bool hidden = objects_before_[i] == Before::kHidden;
+      if (objects_before_[i] == Before::kNotAsked || behind_.contains(i)) {
+        ++asked_;
+        hidden = hiddenByOne(corners, i);
+      }
+      if (hidden) {
+        append(i, common_);
+      }
+    }
+  }
+  hidden_.add(common_);
+  return true;
+}
+
+void CellBaker::findBehind(std::span<const Vec3d> corners, std::span<const Box> boxes) {
+  const BoxTreeView tree = scene_.boxes.view();
+  behind_.reset(static_cast<std::uint32_t>(tree.objects.size()));
+  for (const Box& given : boxes) {
+    const Box box = widened(given, line_margin_);
+    for (std::uint32_t n = 0; n < tree.nodes.size();) {
+      const BoxNode& node = tree.nodes[n];
+      if (!mayPass(corners.front(), node.bounds, box) || !mayPass(corners.back(), node.bounds, box)) {
+        n = node.end;
+        continue;
+      }
+      const auto passes = [&, to = center(node.bounds)](const Vec3d& corner) {
+        return !SegmentTest(corner, to, line_margin_).misses(box);
+      };
+      if (tree.leaf(n) && std::all_of(corners.begin(), corners.end(), passes)) {
+        const ObjectRun object{node.first_object, node.first_object + 1};
+        behind_.add(std::span(&object, 1));
+      }
+      n += 1;
+    }
+  }
+}
+
+bool CellBaker::hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position) {
+  along_.clear();
+  scene_.findOccludersAlong(corners[0], center(scene_.leafOf(position).bounds), line_margin_, choice_.search,
+                            choice_.level, along_);
+  return std::any_of(along_.begin(), along_.end(), [&](std::uint32_t i) {
+    const ConvexOccluder& occluder = scene_.occluders[i];
+    return !(choice_.known && intersects(*choice_.known, occluder.bounds)) &&
+           !hidden_.contains(scene_.position_of[occluder.object.value]) &&
+           separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
+           std::all_of(corners.begin(), corners.end(), [&](const Vec3d& eye) {
+             return makeShadow(scene_.occluders, occluder, eye, scene_.reach, shadow_) &&
+                    scene_.shadow_tree.hides(shadow_, position);
+           });
+  });
 }
 
 // Fills common_ with the runs that this one occluder hides from all corners. The intersection over the
@@ -345,7 +595,7 @@ std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets) {
 std::uint64_t CellBaker::trianglesSeenFrom(const Vec3d& eye) {
   hidden_.reset(static_cast<std::uint32_t>(scene_.boxes.objects.size()));
   Sample& sample = samples_.at(eye);
-  for (const std::uint32_t i : chosen_) {
+  for (const std::uint32_t i : chosenOccluders()) {
     const ConvexOccluder& occluder = scene_.occluders[i];
     if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
         separated(scene_.occluders, occluder, std::span(&eye, 1), scene_.settings.near_distance)) {
@@ -356,14 +606,38 @@ std::uint64_t CellBaker::trianglesSeenFrom(const Vec3d& eye) {
   return scene_.triangles.of(scratch_);
 }
 
+// Only what lies behind the box of a changed object, as seen from the point, may be seen now and not before,
+// or the other way around. Mostly its triangles do not matter.
+bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
+  const std::array numbers{choice_.distance, static_cast<double>(choice_.level)};
+  Answer answer{.kind = AnswerKind::kPoint, .question = questionOf(std::span(&eye, 1), numbers)};
+  ++questions_;
+  if (const Answer* before = answerBefore(answer)) {
+    findBehind(std::span(&eye, 1), recall_->changedOccluders());
+    std::uint64_t behind = 0;
+    for (std::uint32_t i = 0; i < scene_.boxes.objects.size(); ++i) {
+      behind += behind_.contains(i) ? scene_.leafOf(i).triangles : 0;
+    }
+    answer.least = before->least - std::min(before->least, behind + recall_->trianglesGone());
+    answer.most = before->most + behind + recall_->trianglesCome();
+    const bool fewer = static_cast<double>(answer.most) < triangles;
+    if (fewer || !(static_cast<double>(answer.least) < triangles)) {
+      keep(std::move(answer));
+      return fewer;
+    }
+  }
+  ++asked_;
+  answer.least = answer.most = trianglesSeenFrom(eye);
+  const bool fewer = static_cast<double>(answer.most) < triangles;
+  keep(std::move(answer));
+  return fewer;
+}
+
 double CellBaker::shareSeenFrom(const Vec3d& point, const Runs& seen) {
   constexpr std::uint64_t kObjects = 128;  // that are asked about
   constexpr int kLines = 3;                // to each
-  std::uint64_t count = 0, at = 0;
-  for (const ObjectRun& run : seen) {
-    count += run.end - run.begin;
-  }
-  const std::uint64_t step = count / kObjects + 1;
+  std::uint64_t at = 0;
+  const std::uint64_t step = countOf(seen) / kObjects + 1;
   double all = 0.0, clear = 0.0;
   std::uint32_t random = 1;
   for (const ObjectRun& run : seen) {
@@ -410,8 +684,7 @@ bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, co
       return shareSeenFrom(point, *side) < 1.0 - scene_.settings.similarity;
     }
     const double cell_triangles = static_cast<double>(scene_.triangles.of(*side));
-    return static_cast<double>(trianglesSeenFrom(point)) <
-           (1.0 - scene_.settings.similarity) * cell_triangles;
+    return seesFewer(point, (1.0 - scene_.settings.similarity) * cell_triangles);
   });
 }
 

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "src/pvs/bake/answers.h"
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/recall.h"
 #include "src/pvs/bake/region_occlusion.h"
 #include "src/pvs/bake/samples.h"
 
@@ -46,7 +48,9 @@ class ObjectMask {
 
 class CellBaker {
  public:
-  explicit CellBaker(const BakeScene& scene);
+  // recall: an earlier bake, whose answers are used where they still hold; none if null. The sets are the
+  // same with and without. Both must outlive this.
+  explicit CellBaker(const BakeScene& scene, const Recall* recall = nullptr);
 
   // Sets of the cell. Convex occluders count that intersect the cell grown by search_distance metres on all
   // sides, surfaces wherever they are. seen: from anywhere in the parent, of which the sets are a part; empty
@@ -65,26 +69,52 @@ class CellBaker {
 
   // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
-  const BakeStats& stats() const { return samples_.stats(); }
+  BakeStats stats() const;
   // The last cell is divided. Forgets what hides objects from the sides of its plane: the cells below it have
   // planes of their own, and if they become one cell again, it has theirs.
   void forgetSides();
   // What hid objects since the last call; empty if the settings do not ask for it.
   std::vector<HidingWitness> takeWitnesses() { return std::exchange(witnesses_, {}); }
+  // What was asked since the last call, and the answers; empty if the settings do not ask for it.
+  CellAnswers takeAnswers() { return std::exchange(answers_, {}); }
 
  private:
   bool fused() const { return scene_.settings.occlusion == BakeOcclusion::kFused; }
   CellBox searchBox(const OctreeCell& cell, double search_distance) const;
-  // Fills chosen_ with the occluders in the search box that are useful to cells of this level, those that
-  // look largest from the cell first.
+  // The occluders that count: those in the search box that are useful to cells of a level, without those in
+  // the smaller box that was searched before.
+  struct Choice {
+    CellBox cell, search;
+    std::optional<CellBox> known{};
+    double distance = 0.0, distance_before = 0.0;  // of the search boxes, metres
+    std::uint32_t level = 0;
+  };
   void chooseOccluders(const OctreeCell& cell, double search_distance, std::uint32_t level);
+  // Finds them, those that look largest from the cell first.
+  std::span<const std::uint32_t> chosenOccluders();
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen);
+  // Adds to hidden_ what the chosen occluders hide from all corners: by asking each occluder, or by what an
+  // earlier bake found. False, with nothing added, if too much has changed for that.
+  void hideByChosen(std::span<const Vec3d> corners);
+  bool hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen);
+  // Sets behind_ to the objects of which the centre lies behind, or in, one of the boxes as seen from each
+  // corner: all that occluders in these boxes may hide.
+  void findBehind(std::span<const Vec3d> corners, std::span<const Box> boxes);
+  // Whether a chosen occluder hides the object at this place from all corners.
+  bool hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position);
   // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
   void removeFused(const CellBox& box, CellSets& sets);
   void removeFusedFrom(const CellBox& region, WitnessPart part, Runs& seen);
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
+  // Whether the node's box is hidden, by what an earlier bake found or by asking.
+  bool surfacesHide(std::uint32_t node, const CellBox& region);
+  // Whether the earlier bake's answer about the node still holds. same: its node there; decided_in: around
+  // the panels that decided it.
+  bool holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const;
+  // Sets nodes_before_ and followed_before_ to what an earlier bake found about the nodes of its box tree.
+  void recallNodes(const Answer& before);
   bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
   // object: FusedTarget::object
   bool hidesBox(const CellBox& region, const Box& box, std::uint32_t object, const RegionEffort& effort);
@@ -93,20 +123,41 @@ class CellBaker {
   double shareSeenFrom(const Vec3d& point, const Runs& seen);
   bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
+  // Whether trianglesSeenFrom is less than this, by what an earlier bake found or by asking.
+  bool seesFewer(const Vec3d& eye, double triangles);
+  // What the earlier bake found, or null; and a place for what this one finds.
+  const Answer* answerBefore(const Answer& answer);
+  void keep(Answer answer);
   // Records, if it is asked for, that these objects are hidden, as far as hidden_ does not hold them yet.
   void recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects);
   void recordSurfaces(const ObjectRun& objects);
   void record(HidingWitness witness, std::span<const ObjectRun> objects);
 
   const BakeScene& scene_;
+  const Recall* recall_;
+  std::optional<RecalledAnswers> answers_before_;
   SampleStore samples_;
   RegionOcclusion surfaces_;
+  double line_margin_;          // of lines of sight around boxes of occluders, metres
+  std::vector<bool> occludes_;  // by place in the box tree: some convex occluder is the object's
   // Scratch for the current cell.
-  std::vector<std::uint32_t> chosen_;
+  Choice choice_;
+  std::vector<std::uint32_t> chosen_, along_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;
-  ObjectMask hidden_;
+  ObjectMask hidden_, behind_;
   Runs common_, scratch_;
+  // What an earlier bake found about an object, or about a node of its box tree.
+  enum class Before : std::uint8_t { kNotAsked, kHidden, kSeen };
+  std::vector<Before> objects_before_;  // by place now
+  std::vector<Before> nodes_before_;    // by node of the earlier box tree; empty if there is no answer
+  std::vector<Box> differing_;
+  std::vector<CoarseBox> followed_before_;  // by node of the earlier box tree
+  std::vector<std::uint32_t> hidden_nodes_;
+  std::vector<CoarseBox> followed_;
+  Shadow shadow_;
+  CellAnswers answers_;
+  std::uint64_t questions_ = 0, asked_ = 0;
   std::vector<HidingWitness> witnesses_;
   std::uint64_t cell_ = 1;  // cellNumber of the current cell
   WitnessPart part_ = WitnessPart::kWhole;

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "sightline/geometry/tolerance.h"
+#include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
 namespace {
@@ -76,35 +77,6 @@ bool anySheet(const Panels& panels, std::uint32_t number, Visit&& visit) {
   return false;
 }
 
-// A segment, for tests against many boxes.
-class SegmentTest {
- public:
-  // margin: how close to a box the segment may come without missing it.
-  SegmentTest(const Vec3d& from, const Vec3d& to, double margin)
-      : low_(from + Vec3d{margin, margin, margin}), high_(from - Vec3d{margin, margin, margin}) {
-    // Along an axis on which it stands still, the slope is as good as infinite: all of it is before what lies
-    // beyond its start.
-    for (int axis = 0; axis < 3; ++axis) {
-      const double along = to[axis] - from[axis];
-      inverse_[axis] = std::abs(along) > 1e-290 ? 1.0 / along : 1e290;
-    }
-  }
-
-  bool misses(const Box& box) const {
-    double begin = 0.0, end = 1.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double low = (double{box.min[axis]} - low_[axis]) * inverse_[axis],
-                   high = (double{box.max[axis]} - high_[axis]) * inverse_[axis];
-      begin = std::max(begin, std::min(low, high));
-      end = std::min(end, std::max(low, high));
-    }
-    return begin > end + kAlongSegment;
-  }
-
- private:
-  Vec3d low_, high_, inverse_;
-};
-
 }  // namespace
 
 FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude)
@@ -121,6 +93,10 @@ bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to) {
   left_out_ = kNoObject;
   findCrossings(from, to, true);
   return clear();
+}
+
+Vec3d FusedOcclusion::startOf(const CellBox& region) {
+  return pointIn(region, kStart);
 }
 
 FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTarget& target,
@@ -140,7 +116,7 @@ FusedOcclusion::Answer FusedOcclusion::ask(const CellBox& region, const FusedTar
     std::fill(beyond_.begin(), beyond_.end(), Beyond{});
     question_ = 1;
   }
-  const Vec3d from = pointIn(region_, kStart);
+  const Vec3d from = startOf(region_);
   for (const Vec3d& end : kEnds) {
     const Vec3d to = pointIn(target_, end);
     findCrossings(from, to, false);
@@ -277,6 +253,7 @@ bool FusedOcclusion::gather(std::uint32_t component) {
     std::pop_heap(ahead_.begin(), ahead_.end(), farther);
     const std::uint32_t panel = ahead_.back();
     ahead_.pop_back();
+    followed_.extend(panels_.bounds[panel]);
     if (looked_at == most_members_ || tooNear(panel)) {
       return false;
     }

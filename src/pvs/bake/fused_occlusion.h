@@ -4,6 +4,7 @@
 // from regions", says why it is safe.
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "src/pvs/bake/panels.h"
@@ -40,6 +41,10 @@ class FusedOcclusion {
   // True if the line of sight between the points surely meets the front of no sheet.
   bool isClear(const Vec3d& from, const Vec3d& to);
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
+  // Where all lines of sight from a region begin that ask() tries.
+  static Vec3d startOf(const CellBox& region);
+  // A box around all panels whose surfaces were followed since the last call.
+  Box takeFollowed() { return std::exchange(followed_, {}); }
   // How much farther than the near distance, for sure, something has to be.
   double nearMargin() const { return error_ + 0x1p-40 * magnitude_; }
 
@@ -96,6 +101,7 @@ class FusedOcclusion {
   };
   std::vector<Beyond> beyond_;  // by vertex: the sides of the shaft that it is beyond
   std::uint32_t question_ = 0;
+  Box followed_;
 };
 
 }  // namespace sightline::pvs

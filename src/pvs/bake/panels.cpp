@@ -17,6 +17,14 @@ constexpr std::uint32_t kMostSheets = 32;  // of a panel
 constexpr double kLeastCosine = 0.98;      // of the angle between normals of a panel
 constexpr std::uint32_t kNone = 0xffffffffu;
 
+// The least power of two that is not smaller; 0 for 0. The slack counts in all questions to all panels, so it
+// had better not change with every object that moves.
+double roundedUp(double slack) {
+  int exponent = 0;
+  const double fraction = std::frexp(slack, &exponent);
+  return fraction > 0.5 ? std::ldexp(1.0, exponent) : slack;
+}
+
 // Each sheet has three half-edges: number 3 s + k runs from corner k of sheet s to the next one.
 constexpr std::uint32_t sheetOf(std::uint32_t half_edge) {
   return half_edge / 3;
@@ -83,7 +91,7 @@ class PanelMaker {
         {vertices, given.corners},
         {.divide = many ? occluders::Divide::kFaces : occluders::Divide::kPenetrations}, parallel_for);
     panels_.vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
-    panels_.slack = mesh.slack;
+    panels_.slack = roundedUp(mesh.slack);
     for (std::size_t i = 0; i < mesh.source.size(); ++i) {
       const std::uint32_t object = given.objects[mesh.source[i]];
       const std::uint32_t* corners = mesh.triangles.data() + 3 * i;

@@ -29,6 +29,8 @@ class RegionOcclusion {
   WitnessKind decidedBy() const { return decided_by_; }
   // If it was kSurfaces.
   const FusedOcclusion::Proof& proof() const { return fused_.proof(); }
+  // FusedOcclusion::takeFollowed, of all questions that hides() asked.
+  Box takeFollowed() { return fused_.takeFollowed(); }
   // True if the line of sight between the points surely meets the front of no sheet.
   bool isClear(const Vec3d& from, const Vec3d& to) { return fused_.isClear(from, to); }
 

@@ -133,6 +133,10 @@ constexpr std::size_t kMinChildren = 8;  // inner nodes are dissolved until ther
 // At this depth, a node's children are all its leaves, which bounds the recursion.
 constexpr std::uint32_t kMaxDepth = 64;
 constexpr std::size_t kPadding = 8;  // lanes
+// Inner nodes are wider by this fraction of the reach. The test of a node and that of a leaf below it round
+// by less than half as much together, so neither a node that is taken as hidden nor one that is left out as
+// seen ever contradicts the test of the leaf.
+constexpr double kNodeMargin = 0x1p-46;
 
 // True for nodes that are malformed or have a malformed node below them.
 std::vector<bool> brokenNodes(const BoxTreeView& tree) {
@@ -196,7 +200,7 @@ struct NodeBox {
 };
 
 // Boxes by node. A malformed node, or one with a malformed node below it, counts as an unbounded box.
-std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
+std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree, double reach) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Vec3d infinite(kInfinity, kInfinity, kInfinity);
   const std::vector<bool> broken = brokenNodes(tree);
@@ -216,6 +220,8 @@ std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
       min_half[i] = min(min_half[i], min_half[child]);
     }
     if (!broken[i]) {
+      const double margin = tree.leaf(node) ? 0.0 : kNodeMargin * reach;
+      box.half += Vec3d{margin, margin, margin};
       box.room = box.half - min_half[i] * 2.0;
     }
   }
@@ -224,11 +230,11 @@ std::vector<NodeBox> nodeBoxes(const BoxTreeView& tree) {
 
 }  // namespace
 
-ShadowTree::ShadowTree(const BoxTreeView& tree) {
+ShadowTree::ShadowTree(const BoxTreeView& tree, double reach) {
   if (tree.nodes.empty()) {
     return;
   }
-  const std::vector<NodeBox> boxes = nodeBoxes(tree);
+  const std::vector<NodeBox> boxes = nodeBoxes(tree, reach);
   std::vector<std::uint32_t> from{0}, depth{0};  // by new index: the old index and the depth
   for (std::size_t i = 0; i < from.size(); ++i) {
     const BoxNode& old = tree.nodes[from[i]];
@@ -261,6 +267,30 @@ ShadowTree::ShadowTree(const BoxTreeView& tree) {
   fill(arrays_.rx, &NodeBox::room, 0);
   fill(arrays_.ry, &NodeBox::room, 1);
   fill(arrays_.rz, &NodeBox::room, 2);
+  leaf_of_.resize(tree.objects.size());
+  for (std::uint32_t i = 0; i < from.size(); ++i) {
+    if (tree.leaf(from[i])) {
+      leaf_of_[arrays_.nodes[i].objects.begin] = i;
+    }
+  }
+}
+
+// The operations and their order are those of Traversal::classify(): for a leaf, all that it asks is whether
+// the box is behind every plane.
+bool ShadowTree::hides(const Shadow& shadow, std::uint32_t position) const {
+  const std::uint32_t leaf = leaf_of_[position];
+  const double x = arrays_.cx[leaf] - shadow.eye.x, y = arrays_.cy[leaf] - shadow.eye.y,
+               z = arrays_.cz[leaf] - shadow.eye.z;
+  for (std::uint32_t p = 0; p < shadow.count; ++p) {
+    const double nx = shadow.nx[p], ny = shadow.ny[p], nz = shadow.nz[p];
+    const double middle = nx * x + ny * y + nz * z;
+    const double half =
+        std::abs(nx) * arrays_.hx[leaf] + std::abs(ny) * arrays_.hy[leaf] + std::abs(nz) * arrays_.hz[leaf];
+    if (!(middle - half >= shadow.offset[p])) {
+      return false;
+    }
+  }
+  return shadow.count > 0;
 }
 
 void ShadowTree::hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const {

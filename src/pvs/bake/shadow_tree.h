@@ -15,12 +15,16 @@ namespace sightline::pvs {
 // their parent to fill vector lanes; leaves are those of the tree. Immutable.
 class ShadowTree {
  public:
-  explicit ShadowTree(const BoxTreeView& tree);
+  // reach: see makeShadow. For shadows of up to that reach, what is hidden depends on the leaves' boxes alone
+  // and not on the nodes above them, also where rounding decides.
+  explicit ShadowTree(const BoxTreeView& tree, double reach = 0.0);
 
   // Appends the objects that the shadow hides, as ascending runs that are not empty and do not touch each
   // other. An object is hidden if its leaf's closed box is. Boxes that are empty or not finite are never
   // hidden. Every instruction set gives the same runs.
   void hiddenBy(const Shadow& shadow, std::vector<ObjectRun>& runs) const;
+  // The same for one object, by its place in BoxTree::objects.
+  bool hides(const Shadow& shadow, std::uint32_t position) const;
 
   struct Node {
     std::uint32_t first_child = 0, child_count = 0;  // indices of nodes
@@ -40,6 +44,7 @@ class ShadowTree {
 
  private:
   Arrays arrays_;
+  std::vector<std::uint32_t> leaf_of_;  // by place in BoxTree::objects: its node
 };
 
 }  // namespace sightline::pvs

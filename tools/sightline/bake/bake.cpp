@@ -4,11 +4,14 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "sightline/io/file.h"
 #include "sightline/pvs/bake/write_sight.h"
 #include "tools/sightline/bake/bake_databases.h"
 #include "tools/sightline/bake/bake_options.h"
@@ -35,6 +38,7 @@ struct Planned {
   Bake bake;
   double load_us = 0.0, plan_us = 0.0;
   std::vector<Vec3d> viewpoints{};  // scene space: see DatabaseChoice::places
+  std::optional<Bake::TakenOver> update{};
 };
 
 CheckpointUse useOf(const BakeOptions& options) {
@@ -49,39 +53,115 @@ bool mayBeReplaced(const std::string& file) {
   return beginsAsSightFile(file) || (std::filesystem::file_size(file, error) == 0 && !error);
 }
 
+// The same for a file of answers.
+bool mayBeReplacedByAnswers(const std::string& file) {
+  std::array<char, 8> start{};
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  return (stream.read(start.data(), start.size()) &&
+          Bake::beginsAsAnswers(std::as_bytes(std::span(start)))) ||
+         (std::filesystem::file_size(file, error) == 0 && !error);
+}
+
+// Error if something is there that the bake would write over, and it is not what a bake wrote.
+Status mayWrite(const std::string& file, const char* kind, bool may_be_replaced, bool force) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    return Success{};
+  }
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    return Error{fmt::format("--output {}: is not a file; name another output", file)};
+  }
+  if (!force && !may_be_replaced) {
+    return Error{
+        fmt::format("--output {}: is there and is not {}; name another output, or give --force to write over "
+                    "it",
+                    file, kind)};
+  }
+  return Success{};
+}
+
 // Opens the output files before the work starts. Called by the process that writes them.
 Result<Checkpoint> openOutputs(const BakeOptions& options) {
   if (options.output.empty() || options.output == "-") {
     return Error{"--output: give the name of a file, F.sight"};
   }
+  std::vector<NamedFile> inputs = options.viewers.usesPath()
+                                      ? walkInputs(options.common.scene, options.viewers.path)
+                                      : std::vector<NamedFile>{};
+  inputs.push_back({"--update", options.update});
+  inputs.push_back({"--update, its answers,", options.answersBefore()});
   if (const Status ok = checkFiles({.scenes = {options.common.scene},
-                                    .inputs = options.viewers.usesPath()
-                                                  ? walkInputs(options.common.scene, options.viewers.path)
-                                                  : std::vector<NamedFile>{},
+                                    .inputs = std::move(inputs),
                                     .outputs = {{"--output", options.output},
                                                 {"--output, for its parts,", options.partsFile()},
+                                                {"--output, for its answers,", options.answersFile()},
                                                 {"--witnesses", options.witnesses},
                                                 {"--json", options.common.json}}});
       !ok) {
     return ok.error();
   }
-  std::error_code ignored;
-  if (std::filesystem::exists(options.output, ignored)) {
-    if (!std::filesystem::is_regular_file(options.output, ignored)) {
-      return Error{fmt::format("--output {}: is not a file; name another output", options.output)};
-    }
-    if (!options.force && !mayBeReplaced(options.output)) {
-      return Error{
-          fmt::format("--output {}: is there and is not a baked file; name another output, or give --force "
-                      "to write over it",
-                      options.output)};
-    }
+  Status free = mayWrite(options.output, "a baked file", mayBeReplaced(options.output), options.force);
+  if (const std::string answers = options.answersFile(); free && !answers.empty()) {
+    free = mayWrite(answers, "the answers of a bake", mayBeReplacedByAnswers(answers), options.force);
+  }
+  if (!free) {
+    return free.error();
   }
   return Checkpoint::open(options.partsFile(), useOf(options));
 }
 
+// The answers that the update takes over; none without --update.
+Result<std::vector<std::byte>> loadAnswers(const BakeOptions& options) {
+  std::vector<std::byte> bytes;
+  if (options.update.empty()) {
+    return bytes;
+  }
+  const std::string file = options.answersBefore();
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    return Error{
+        fmt::format("--update {}: {} is not there, which --answers or --update would have written; "
+                    "bake in full, without --update",
+                    options.update, file)};
+  }
+  const Result<std::string> text = readFile(file);
+  if (!text) {
+    return text.error();
+  }
+  const std::span<const std::byte> read = std::as_bytes(std::span(*text));
+  bytes.assign(read.begin(), read.end());
+  return bytes;
+}
+
+// Takes over the answers of the bake that wrote the file.
+Result<Bake::TakenOver> takeOver(const SightFile& before, const BakeOptions& options,
+                                 std::vector<std::byte> answers, Bake& bake) {
+  Result<Bake::TakenOver> taken = bake.takeOver(std::move(answers));
+  if (!taken) {
+    return Error{fmt::format("{}: {}", options.answersBefore(), taken.error().message)};
+  }
+  if (taken->scene != before.scene()) {
+    return Error{fmt::format("{}: is of another bake than {}; bake in full, without --update",
+                             options.answersBefore(), options.update)};
+  }
+  return taken;
+}
+
 Result<Planned> planBake(const BakeOptions& options) {
   Stopwatch watch;
+  std::optional<SightFile> before;
+  if (!options.update.empty()) {
+    Result<SightFile> opened = SightFile::open(options.update);
+    if (!opened) {
+      return opened.error();
+    }
+    before = std::move(*opened);
+  }
+  Result<std::vector<std::byte>> answers = loadAnswers(options);
+  if (!answers) {
+    return answers.error();
+  }
   Result<Scene> scene = loadScene(options.common.scene);
   if (!scene) {
     return scene.error();
@@ -111,8 +191,16 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!bake) {
     return bake.error();
   }
-  return Planned{std::move(*scene), closing.note(), std::move(*viewers),  std::move(*bake),
-                 load_us,           watch.lap(),    std::move(viewpoints)};
+  std::optional<Bake::TakenOver> update;
+  if (before) {
+    Result<Bake::TakenOver> taken = takeOver(*before, options, std::move(*answers), *bake);
+    if (!taken) {
+      return taken.error();
+    }
+    update = std::move(*taken);
+  }
+  return Planned{std::move(*scene), closing.note(), std::move(*viewers),   std::move(*bake),
+                 load_us,           watch.lap(),    std::move(viewpoints), std::move(update)};
 }
 
 // Assembles all parts, writes the file and reports what is in it.
@@ -126,6 +214,13 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
     const std::vector<std::byte> bytes = witnessBytes(planned.bake.witnesses(parts));
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (const Status ok = saveFile(options.witnesses, text); !ok) {
+      return ok.error();
+    }
+  }
+  if (const std::string file = options.answersFile(); !file.empty()) {
+    const std::vector<std::byte> bytes = planned.bake.answers(parts);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (const Status ok = saveFile(file, text); !ok) {
       return ok.error();
     }
   }
@@ -195,6 +290,10 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
     } else {
       own = kept.error();
     }
+    if (planned->update && !planned->update->difference.empty()) {
+      fmt::print(stderr, "sightline: --update {}: was baked with {}; all is baked anew\n", options.update,
+                 planned->update->difference);
+    }
     keepWhenTold(fmt::format("finished parts are kept in {}; the same command with --resume goes on",
                              options.partsFile()));
   }
@@ -209,6 +308,7 @@ Result<ExitCode> bakeTogether(const BakeOptions& options, MpiWorld& world) {
                     .occluders = planned->bake.occluders().all,
                     .budget_chosen = options.settings.triangle_budget == 0,
                     .depth_chosen = options.settings.max_depth == BakeSettings::kChooseDepth};
+  report.update = planned->update;
   report.times.load = planned->load_us;
   report.times.plan = planned->plan_us;
   Stopwatch watch;
@@ -251,11 +351,16 @@ void addBake(CLI::App& app, Command& chosen) {
       "there is only used with --resume and only removed with --restart; without either it is an error. "
       "--resume may always be given. Of what is there, each part counts only as it was written: one that is "
       "altered or cut off is told of in a line, and is baked again.\n"
+      "After a change of the scene, --update OLD.sight takes over what does not depend on the change, from "
+      "OLD.sight.answers; the file has the bytes of a full bake. With other settings, or if the bounds of "
+      "the "
+      "scene changed, all is baked anew, and a line says so.\n"
       "The file is the same bit for bit, whatever the threads and processes. --threads and --sample-memory "
       "are of each process.\n"
       "Examples:\n"
       "  sightline bake city.glb -o city.sight --threads 8\n"
       "  sightline bake city.glb -o city.sight --threads 8 --resume\n"
+      "  sightline bake changed.glb -o new.sight --update city.sight\n"
       "  sightline bake demo:building -o building.sight --triangle-budget 5000 --depth 5 --databases "
       "area-angle,minimum-sets\n"
       "  mpirun -n 4 --bind-to none sightline bake city.glb -o city.sight --threads 2");

@@ -110,6 +110,14 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                    "minimum-sets: weight of the pixels of occluders");
   command.add_flag("--set-rest", viewpoints.first_hit_after_sets,
                    "minimum-sets: where they end, lists go on by first hit");
+  command.add_flag("--answers", options.answers,
+                   "also write F.sight.answers, from which --update goes on after a change of the scene");
+  command
+      .add_option(
+          "--update", options.update,
+          "the baked file of the scene before a change, written with --answers or --update: what does "
+          "not depend on the change is taken over from it; implies --answers")
+      ->type_name(kFileType);
   CLI::Option* resume = command.add_flag(
       "--resume", options.resume,
       "go on with an unfinished bake of the same scene and settings; says what of it is damaged");
@@ -141,6 +149,9 @@ Status checkOptions(const BakeOptions& options) {
   if (const auto names = databaseNames(options); !names) {
     return names.error();
   }
+  if (!options.update.empty() && !options.witnesses.empty()) {
+    return Error{"--update: what is taken over has no witnesses; leave out --update or --witnesses"};
+  }
   return checkViewerOptions(options.viewers);
 }
 
@@ -152,6 +163,7 @@ BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const 
   }
   settings.viewers = viewers.boxes;
   settings.witnesses = !options.witnesses.empty();
+  settings.answers = !options.answersFile().empty();
   settings.sample_bytes = (static_cast<std::size_t>(options.sample_mib) << 20) / options.common.threads;
   return settings;
 }

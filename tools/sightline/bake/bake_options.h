@@ -19,6 +19,8 @@ namespace sightline::tool {
 struct BakeOptions {
   CommonOptions common;
   std::string output, witnesses;
+  std::string update;        // the baked file of the scene before a change; empty: none
+  bool answers = false;      // whether the answers are kept for a later update
   BakeSettings settings{};   // complete except for what depends on the scene or the threads:
   double crack_width = 0.0;  // metres
   std::string occlusion = "convex";
@@ -31,6 +33,9 @@ struct BakeOptions {
   bool force = false;  // overwrites a file even if it is not a baked one
 
   std::string partsFile() const { return output + ".parts"; }
+  // The file of answers that is written, and the one that is read; empty: none.
+  std::string answersFile() const { return answers || !update.empty() ? output + ".answers" : ""; }
+  std::string answersBefore() const { return update.empty() ? "" : update + ".answers"; }
 };
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace sightline::tool {
 namespace {
 
@@ -23,6 +25,8 @@ Json bakeJson(const BakeReport& report, const SightFile& file, const SightFacts&
                {"shadows", effort.stats.shadows},
                {"samples_forgotten", effort.stats.forgotten},
                {"sample_bytes", effort.stats.max_sample_bytes},
+               {"questions", effort.stats.questions},
+               {"questions_asked", effort.stats.asked},
                {"peak_bytes", effort.peak_bytes},
                {"all_peak_bytes", effort.all_peak_bytes},
                {"load_us", report.times.load},
@@ -30,6 +34,12 @@ Json bakeJson(const BakeReport& report, const SightFile& file, const SightFacts&
                {"bake_us", report.times.bake},
                {"databases_us", report.times.databases},
                {"write_us", report.times.write}};
+  if (report.update) {
+    json["update"] = {{"difference", report.update->difference},
+                      {"objects_same", report.update->same},
+                      {"objects_gone", report.update->gone},
+                      {"objects_come", report.update->come}};
+  }
   json.update(sightJson(file, facts));
   return json;
 }
@@ -47,6 +57,13 @@ std::string bakeText(const BakeReport& report, const std::string& name, const Si
   text += fmt::format("occluders     {} convex ones\n", report.occluders);
   text += fmt::format("parts         {}, {} of them from the checkpoint; {} processes of {} threads\n",
                       report.parts, effort.parts_before, effort.processes, effort.threads);
+  if (report.update && report.update->difference.empty()) {
+    const double questions = static_cast<double>(std::max(effort.stats.questions, std::uint64_t{1}));
+    text += fmt::format(
+        "update        {} objects are the same, {} gone, {} new; {} of {} questions asked again, {:.2f} %\n",
+        report.update->same, report.update->gone, report.update->come, effort.stats.asked,
+        effort.stats.questions, 100.0 * static_cast<double>(effort.stats.asked) / questions);
+  }
   text += factsText(facts);
   text += fmt::format("sets          {} different ones\n", file.setCount());
   text += fmt::format(

@@ -2,6 +2,7 @@
 
 // Reports the result of a bake and its cost.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct BakeReport {
   std::uint32_t occluders = 0;
   bool budget_chosen = false;  // the triangle budget was chosen, not given by the user
   bool depth_chosen = false;
+  std::optional<Bake::TakenOver> update{};  // with --update
   BakeTimes times{};
   BakeEffort effort{};
 };

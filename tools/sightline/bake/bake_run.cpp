@@ -231,6 +231,8 @@ class FirstBaker {
       stats.shadows = reader.number();
       stats.forgotten = reader.number();
       stats.max_sample_bytes = reader.number();
+      stats.questions = reader.number();
+      stats.asked = reader.number();
       const std::uint64_t peak = reader.number();
       add(effort_.stats, stats);
       effort_.peak_bytes = std::max(effort_.peak_bytes, peak);
@@ -376,6 +378,7 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
   const BakeStats stats = bakers.join();
   MessageWriter totals;
   totals.number(stats.samples).number(stats.shadows).number(stats.forgotten).number(stats.max_sample_bytes);
+  totals.number(stats.questions).number(stats.asked);
   world.send(0, kTotals, totals.number(peakBytes()).bytes());
 }
 

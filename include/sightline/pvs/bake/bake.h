@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sightline/base/parallel_for.h"
@@ -67,6 +68,7 @@ struct BakeSettings {
   // Maximum bytes of samples per worker, checked between cells; discarded samples are computed again.
   std::size_t sample_bytes = 256u << 20;
   bool witnesses = false;  // records what hides objects; see Bake::witnesses. The sets stay the same
+  bool answers = false;    // records what was asked; see Bake::answers. The sets stay the same
 };
 
 // A cell of the octree that one thread bakes, or divides into eight such parts. The list of parts emerges
@@ -94,6 +96,9 @@ struct BakeStats {
   std::uint64_t shadows = 0;         // pairs of an occluder and a viewpoint
   std::uint64_t forgotten = 0;       // samples discarded because memory ran out
   std::size_t max_sample_bytes = 0;  // peak memory of samples, bytes
+  // Whether something is hidden from a region, or how much a point sees; and how many of these questions were
+  // asked, where the answers to the others were taken over from an earlier bake.
+  std::uint64_t questions = 0, asked = 0;
   friend bool operator==(const BakeStats&, const BakeStats&) = default;
 };
 
@@ -127,6 +132,20 @@ class Bake {
   // Identifies the plan: parts and checkpoints of one plan cannot be used with another.
   std::uint64_t hash() const;
 
+  // What was taken over of an earlier bake.
+  struct TakenOver {
+    SceneId scene{};  // of that bake
+    // Why all is asked anew: what holds for all cells differs, and how. Empty if it does not.
+    std::string difference{};
+    // Objects that are the same in both scenes, only in the earlier one, and only in this one. One that was
+    // moved or altered is gone and has come.
+    std::uint32_t same = 0, gone = 0, come = 0;
+  };
+  // Takes over answers of an earlier bake, of this scene before a change: workers that are made from now on
+  // ask only what depends on the change. The parts are the same as without. answers: of Bake::answers, of any
+  // origin; an error tells what is wrong with them, or that BakeSettings::witnesses is set.
+  Result<TakenOver> takeOver(std::vector<std::byte> answers);
+
   PartTask firstPart() const;
   // The parts that a baked part was divided into: eight or none.
   std::vector<PartTask> partsBelow(std::span<const std::byte> part) const;
@@ -142,7 +161,7 @@ class Bake {
     Worker(Worker&&) noexcept;
     // part: the first one, or one of partsBelow(). The result depends only on the plan and the part.
     BakedPart bake(const PartTask& part);
-    const BakeStats& stats() const;
+    BakeStats stats() const;
 
    private:
     struct Impl;
@@ -160,10 +179,17 @@ class Bake {
   // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts
   // as for assemble(), which must have succeeded with them.
   Witnesses witnesses(const BakedParts& parts) const;
+  // The answers to all that was asked, as bytes of a file, if BakeSettings::answers is set: for takeOver() of
+  // a bake of the scene after a change. Parts as for assemble(), which must have succeeded with them.
+  std::vector<std::byte> answers(const BakedParts& parts) const;
+  // True if the bytes, eight at least, begin as those of answers() do.
+  static bool beginsAsAnswers(std::span<const std::byte> bytes);
 
  private:
   struct Data;
+  struct Earlier;
   std::shared_ptr<const Data> data_;
+  std::shared_ptr<const Earlier> earlier_;  // null: none
 };
 
 // Plans, bakes and assembles in one call, in the threads of parallel_for.

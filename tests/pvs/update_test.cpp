@@ -1,0 +1,187 @@
+// A bake that takes over answers of an earlier one gives the bytes of a full bake.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "scenes/procedural.h"
+#include "src/pvs/bake/encode_sight.h"
+#include "tests/pvs/edited_scene.h"
+
+namespace sightline {
+namespace {
+
+using test::EditedScene;
+using test::RandomEdits;
+using test::roomScene;
+
+// The file of a bake, and what it leaves for the next one.
+struct Made {
+  std::vector<std::byte> file, answers;
+  BakeStats stats{};
+  Bake::TakenOver taken{};
+};
+
+// answers: of an earlier bake, or none.
+Made bakeWith(const Scene& scene, BakeSettings settings, const std::vector<std::byte>& answers) {
+  settings.answers = true;
+  Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
+  Made made;
+  if (!bake) {
+    ADD_FAILURE() << bake.error().message;
+    return made;
+  }
+  if (!answers.empty()) {
+    const Result<Bake::TakenOver> taken = bake->takeOver(answers);
+    EXPECT_TRUE(taken) << (taken ? "" : taken.error().message);
+    made.taken = taken ? *taken : Bake::TakenOver{};
+  }
+  const BakedParts parts = bake->bakeAll(serialFor, {}, &made.stats);
+  const Result<BakedVisibility> baked = bake->assemble(parts);
+  EXPECT_TRUE(baked) << (baked ? "" : baked.error().message);
+  if (baked) {
+    made.file = *pvs::encodeSight(*baked);
+    made.answers = bake->answers(parts);
+  }
+  return made;
+}
+
+// The same without anything that concerns updates.
+std::vector<std::byte> plainFile(const Scene& scene, const BakeSettings& settings) {
+  return *pvs::encodeSight(test::baked(scene, settings));
+}
+
+struct Totals {
+  std::uint64_t edits = 0, comparable = 0, questions = 0, asked = 0;
+};
+
+// Edits the scene so many times, one edit after the other. After each, the bake that takes over from the one
+// before has to give the bytes of a plain bake.
+void judgeEdits(EditedScene scene, const BakeSettings& settings, std::uint32_t seed, int edits,
+                Totals& totals) {
+  RandomEdits random(seed);
+  Made before = bakeWith(scene.scene(), settings, {});
+  EXPECT_EQ(before.file, plainFile(scene.scene(), settings)) << "seed " << seed;
+  std::string what = "seed " + std::to_string(seed);
+  for (int i = 0; i < edits; ++i) {
+    const EditedScene earlier = scene;
+    what += "; " + random.edit(scene);
+    const Scene now = scene.scene();
+    Made made = bakeWith(now, settings, before.answers);
+    ASSERT_TRUE(made.file == plainFile(now, settings)) << what;
+    totals.edits += 1;
+    if (made.taken.difference.empty()) {
+      totals.comparable += 1;
+      totals.questions += made.stats.questions;
+      totals.asked += made.stats.asked;
+    }
+    // Every third edit is undone.
+    if (i % 3 == 2) {
+      scene = earlier;
+      what += "; undone";
+      const Made undone = bakeWith(scene.scene(), settings, made.answers);
+      ASSERT_TRUE(undone.file == before.file) << what;
+    } else {
+      before = std::move(made);
+    }
+  }
+}
+
+// So many edits of each kind of scene; SIGHTLINE_UPDATE_EDITS makes them more.
+int editsOf(int usual) {
+  const char* more = std::getenv("SIGHTLINE_UPDATE_EDITS");
+  return more != nullptr ? std::max(usual, std::atoi(more)) : usual;
+}
+
+void expectReuse(const Totals& totals) {
+  ::testing::Test::RecordProperty("edits", static_cast<int>(totals.edits));
+  EXPECT_GT(totals.comparable, totals.edits / 2) << "the test would prove little";
+  EXPECT_LT(totals.asked, totals.questions / 2) << "of " << totals.questions << " questions";
+  std::printf(
+      "%llu edits, %llu comparable, %llu of %llu questions asked\n",
+      static_cast<unsigned long long>(totals.edits), static_cast<unsigned long long>(totals.comparable),
+      static_cast<unsigned long long>(totals.asked), static_cast<unsigned long long>(totals.questions));
+}
+
+TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
+  Totals totals;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    judgeEdits(roomScene(seed), {.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05}, seed,
+               editsOf(7), totals);
+  }
+  expectReuse(totals);
+}
+
+TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
+  Totals totals;
+  for (std::uint32_t seed = 11; seed <= 13; ++seed) {
+    judgeEdits(roomScene(seed, 2),
+               {.occlusion = BakeOcclusion::kFused,
+                .triangle_budget = 120,
+                .max_depth = 2,
+                .near_distance = 0.05,
+                .narrowings = seed % 2},
+               seed, editsOf(5), totals);
+  }
+  expectReuse(totals);
+}
+
+TEST(Update, GivesTheBytesOfAFullBakeInDemoScenes) {
+  Totals totals;
+  for (const char* name : {"demo:ship?decks=3&rooms=4&machinery=0", "demo:city?copies=1"}) {
+    const Result<Scene> scene = makeDemoScene(name);
+    ASSERT_TRUE(scene);
+    judgeEdits(EditedScene::of(*scene), {.triangle_budget = 300, .max_depth = 3, .near_distance = 0.05}, 21,
+               editsOf(3), totals);
+  }
+  expectReuse(totals);
+}
+
+TEST(Update, AsksNothingAgainWhereNothingChanged) {
+  for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+    const BakeSettings settings{
+        .occlusion = occlusion, .triangle_budget = 120, .max_depth = 2, .near_distance = 0.05};
+    const Scene scene = roomScene(5, 2).scene();
+    const Made first = bakeWith(scene, settings, {}), again = bakeWith(scene, settings, first.answers);
+    EXPECT_EQ(first.stats.asked, first.stats.questions);
+    EXPECT_EQ(again.stats.questions, first.stats.questions);
+    EXPECT_EQ(again.stats.asked, 0u);
+    EXPECT_TRUE(again.file == first.file);
+    EXPECT_TRUE(again.answers == first.answers);
+  }
+}
+
+// What stands far from everything else and is small is asked about, and little else is.
+TEST(Update, AsksOnlyAboutWhatMovedWhereItHidesNothing) {
+  EditedScene edited = roomScene(6);
+  test::Piece crumb =
+      EditedScene::of(test::sceneOf({test::block({1, 1.5f, 1}, {1.0625f, 1.5625f, 1.0625f})})).pieces[0];
+  edited.pieces.push_back(crumb);
+  const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
+  const Made before = bakeWith(edited.scene(), settings, {});
+  edited.pieces.back().move({0.5f, 0, 0.25f});
+  const Made after = bakeWith(edited.scene(), settings, before.answers);
+  EXPECT_EQ(after.taken.come, 1u);
+  EXPECT_EQ(after.taken.gone, 1u);
+  EXPECT_LT(after.stats.asked * 20, after.stats.questions);
+}
+
+TEST(Update, RefusesBytesThatAreNoAnswers) {
+  const Scene scene = roomScene(7, 2).scene();
+  const BakeSettings settings{.triangle_budget = 120, .max_depth = 2, .answers = true};
+  const std::vector<std::byte> answers = bakeWith(scene, settings, {}).answers;
+  Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
+  ASSERT_TRUE(bake);
+  for (std::size_t length = 0; length < answers.size(); length += 1 + answers.size() / 97) {
+    EXPECT_FALSE(bake->takeOver({answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(length)}));
+  }
+  for (std::size_t at = 0; at < answers.size(); at += 1 + answers.size() / 97) {
+    std::vector<std::byte> altered = answers;
+    altered[at] ^= std::byte{4};
+    EXPECT_FALSE(bake->takeOver(std::move(altered))) << at;
+  }
+  EXPECT_TRUE(bake->takeOver(answers));
+}
+
+}  // namespace
+}  // namespace sightline
