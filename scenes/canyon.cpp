@@ -14,6 +14,7 @@
 #include "scenes/canyon_parts.h"
 #include "scenes/moving_parts.h"
 #include "scenes/random.h"
+#include "scenes/split_scene.h"
 #include "sightline/layers/pre_split.h"
 
 namespace sightline {
@@ -108,29 +109,12 @@ SplitMesh splitTerrain(const CanyonOptions& options) {
   return splitMesh(positions, triangles, gridCells(axes), options.inflation);
 }
 
-Scene meshOf(const SplitPiece& piece) {
-  Scene mesh;
-  for (const SplitTriangle& triangle : piece.triangles) {
-    const Vec3f a(triangle.positions[0]), b(triangle.positions[1]), c(triangle.positions[2]);
-    // Slivers may have collapsed to lines in single precision.
-    if (a == b || b == c || c == a) {
-      continue;
-    }
-    for (const Vec3f& corner : {a, b, c}) {
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-      mesh.positions.push_back(corner);
-    }
-  }
-  weldPositions(mesh);
-  return mesh;
-}
-
 void addTerrain(MovingScene& scene, const CanyonOptions& options) {
   const SplitMesh split = splitTerrain(options);
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> part_of;
   for (const SplitPiece& piece : split.pieces) {
-    const Scene mesh = meshOf(piece);
+    const Scene mesh = pieceMesh(piece);
     part_of.push_back(mesh.indices.empty() ? kNone : static_cast<std::uint32_t>(scene.parts.size()));
     if (mesh.indices.empty()) {
       continue;

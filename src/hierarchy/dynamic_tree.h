@@ -72,12 +72,12 @@ class DynamicTree {
   using BoxOf = std::function<Box(std::uint32_t number)>;
   void beginReplacement(BoxOf box_of);
   // False before beginReplacement(), and after whatever builds the tree anew or gives it other boxes.
-  bool hasReplacement() const {
+  bool hasOtherBoxes() const {
     return replacement_.stage != Replacement::Stage::kNone && replacement_.box_of != nullptr;
   }
   // Whether enough calls of tidy() were made for all items to be in the other tree.
   bool replacementIsComplete() const {
-    return hasReplacement() && replacement_.stage == Replacement::Stage::kFollows &&
+    return hasOtherBoxes() && replacement_.stage == Replacement::Stage::kFollows &&
            replacement_.next == replacement_.changed.size();
   }
   // Makes the other tree, which is complete, this one.
@@ -123,11 +123,11 @@ class DynamicTree {
   // How large nodes are, which says how many of them a search looks at. Measured node by node, again and
   // again while items move or go.
   struct Measured {
-    bool changed = false;         // an item has moved or gone since the measurement that goes on began
-    std::uint32_t next_node = 0;  // that is measured; 0: nothing goes on
-    double area = 0.0;            // of nodes before that
-    double first = 0.0;           // for an item, when the tree was measured first; 0: it was not yet
-    bool worn = false;            // it was too much more the last time
+    bool changed = true;          // the tree is new, or items have moved or gone since a measurement began
+    std::uint32_t next_node = 0;  // the node to be measured next; 0: no measurement goes on
+    double area = 0.0;            // the sum over the nodes before it
+    double first = 0.0;           // the area for an item that the first measurement found; 0: there was none
+    bool worn = false;            // whether the last one found too much more than the first
   };
 
   // Another tree of the same items that tidy() builds in slices.

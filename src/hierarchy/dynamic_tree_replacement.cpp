@@ -10,10 +10,10 @@
 namespace sightline::hierarchy {
 namespace {
 
-constexpr std::uint32_t kNumbersInStep = 16;  // that are looked at
-constexpr std::uint32_t kStepsOfCopy = 2;     // that an item takes
-constexpr std::uint32_t kStepsOfBox = 8;      // that an item takes which gets another box
-// That an item takes which has come, or has moved or gone, meanwhile.
+constexpr std::uint32_t kNumbersInStep = 16;  // so many numbers of items are looked at in a step
+// Steps that it takes to copy an item, and to find another box for it.
+constexpr std::uint32_t kStepsOfCopy = 2, kStepsOfBox = 8;
+// Steps for an item that has come meanwhile, and for one that has moved or gone.
 constexpr std::uint32_t kStepsOfInsertion = 40, kStepsOfChange = 5;
 constexpr std::size_t kBits = 64;
 
@@ -88,7 +88,8 @@ void DynamicTree::beginReplacement(BoxOf box_of) {
   }
   DynamicTree& tree = *replacement_.tree;
   tree.clear();
-  tree.reserve(std::max(size_, places_.size()));
+  tree.reserve(size_);
+  tree.places_.reserve(places_.size());
   tree.scratch_.reserve(size_);
   replacement_.changed.assign((places_.size() + kBits - 1) / kBits, 0);
   replacement_.next = 0;

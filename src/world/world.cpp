@@ -224,7 +224,7 @@ void WorldData::settle(std::uint32_t looks) {
 // Sees to it that the trees are copied with boxes from the next origin.
 void WorldData::goOnToOrigin() {
   const auto begin = [this](DynamicTree& tree) {
-    if (!tree.hasReplacement()) {  // it has not begun, or the tree was built anew meanwhile
+    if (!tree.hasOtherBoxes()) {  // it has not begun, or the tree was built anew meanwhile
       tree.beginReplacement([this](std::uint32_t id) {
         const Box box = boundsOf(id, next_origin);
         if (box.empty()) {
@@ -474,11 +474,14 @@ void World::setOrigin(const Vec3d& origin) {
 
 void World::moveOrigin(const Vec3d& origin) {
   WorldData& own = *data_;
-  if (!isFinite(origin)) {
+  if (!isFinite(origin) || origin == (own.origin_moves ? own.next_origin : own.origin)) {
     return;
   }
-  own.settled.endReplacement();
-  own.moving.endReplacement();
+  if (own.origin_moves) {
+    own.settled.endReplacement();
+    own.moving.endReplacement();
+  }
+  own.lost.clear();
   own.next_origin = origin;
   own.origin_moves = origin != own.origin;
 }

@@ -107,10 +107,10 @@ struct WorldData {
   std::vector<std::uint32_t> free_joins;
   std::vector<BakedObjects> sets;
 
-  Vec3d origin;                            // world space; boxes are relative to it
-  bool origin_moves = false;               // to next_origin
-  Vec3d next_origin;                       // world space
-  std::vector<InstanceId> lost;            // some that have no box from next_origin, or had none
+  Vec3d origin;                  // world space; boxes are relative to it
+  bool origin_moves = false;     // to next_origin
+  Vec3d next_origin;             // world space
+  std::vector<InstanceId> lost;  // found without a box from next_origin, some twice; takeOrigin() places them
   hierarchy::DynamicTree settled, moving;  // boxes of what is shown
   std::vector<InstanceId> unbounded;       // shown, with no box that is well formed
   std::vector<InstanceId> movers;          // those in `moving`, and some that have left it; each once

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kMinGain = 0.3;  // pixels that must become nearer for each unit of work
 constexpr std::uint32_t kLongestDelay = 15;
+// A join is not drawn either where rounding moves a member by more than this part of its distance.
+constexpr double kDepthRounding = 0x1p-21;
 // Where more than one of so many instances that were kept is new, the view changes fast, and what the last
 // frame kept is not enough to hide what is behind the new ones.
 constexpr std::size_t kCalm = 16;
@@ -23,16 +25,20 @@ double microsecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
 }
 
-// By how many pixels of a picture of this size two points of a box, this far apart (metres), appear apart at
-// most.
-double pixelsApart(double metres, const Box& box, const View& view, const DepthBufferView& picture) {
+// Metres: how far the nearest point of a box is from the eye's plane; negative behind it.
+double nearestDepth(const Box& box, const View& view) {
+  const Vec3d half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
+  return dot(view.forward, center(box) - view.eye) - dot(abs(view.forward), half);
+}
+
+// By how many pixels of a picture of this size, in x or in y, two points appear apart at most that are this
+// far apart and at least this far from the eye's plane (metres).
+double pixelsApart(double metres, double nearest, const View& view, const DepthBufferView& picture) {
   const double high = view.orthographic ? 0.5 * view.ortho_height : view.tan_half_fovy;
   const double scale = 0.5 * std::max(picture.height / high, picture.width / (high * view.aspect));
   if (view.orthographic) {
     return metres * scale;
   }
-  const Vec3d half = (Vec3d(box.max) - Vec3d(box.min)) * 0.5;
-  const double nearest = dot(view.forward, center(box) - view.eye) - dot(abs(view.forward), half);
   // What moves in depth moves by this part of it across the picture.
   const double slope =
       high * (std::max(view.aspect, 1.0)) * (1.0 + std::max(std::abs(view.shift_x), std::abs(view.shift_y)));
@@ -213,6 +219,19 @@ bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const Vie
   if (!(settings_.join_rounding > 0.0)) {
     return true;
   }
+  const auto shows = [&](const Box& box) {
+    const double nearest = nearestDepth(box, view);
+    return pixelsApart(join.rounding, nearest, view, pyramid_.depthBuffer()) > settings_.join_rounding ||
+           join.rounding > kDepthRounding * std::max(nearest, view.near);
+  };
+  // Most joins end here: none of their members is so near.
+  const Vec3d from_origin = join.origin - data.origin;
+  const Vec3d margin = Vec3d{1.0, 1.0, 1.0} * (join.rounding + 0x1p-20 * length(from_origin));
+  const Box all{Vec3f(Vec3d(join.surfaces.bounds.min) + from_origin - margin),
+                Vec3f(Vec3d(join.surfaces.bounds.max) + from_origin + margin)};
+  if (all.wellFormed() && !shows(all)) {
+    return false;
+  }
   const Frustum frustum = frustumOf(view);
   return std::any_of(join.instances.begin(), join.instances.end(), [&](InstanceId id) {
     if (!id.valid()) {
@@ -222,9 +241,9 @@ bool WorldEye::isBlurred(const WorldData& data, const WorldJoin& join, const Vie
       return true;  // it has no box from this origin
     }
     const Box& box = data.boxOf(id.value);
-    return pixelsApart(join.rounding, box, view, pyramid_.depthBuffer()) > settings_.join_rounding &&
-           std::none_of(frustum.planes.begin(), frustum.planes.end(),
-                        [&](const Plane& plane) { return sideOf(plane, box) < 0; });
+    return shows(box) && std::none_of(frustum.planes.begin(), frustum.planes.end(), [&](const Plane& plane) {
+             return sideOf(plane, box, join.rounding) < 0;
+           });
   });
 }
 

@@ -92,11 +92,14 @@ WorldJoin World::prepareJoin(std::span<const InstanceId> instances, const Surfac
   scene.materials = {{.double_sided = false}, {.double_sided = true}};
   for (const InstanceId id : join.instances) {
     join.versions.push_back(own.instances[id.value].version);
-    const Mat4& m = own.world_from_mesh[id.value];
+    Mat4 m = own.world_from_mesh[id.value];  // from the mesh to the join's own space
+    for (int axis = 0; axis < 3; ++axis) {
+      m(axis, 3) -= join.origin[axis];
+    }
     const SurfaceSet& surfaces = own.meshes[own.instances[id.value].mesh].mesh.surfaces;
     const auto first = static_cast<std::uint32_t>(scene.positions.size());
     for (const Vec3f& vertex : surfaces.vertices) {
-      const Vec3d at = transformPoint(m, Vec3d(vertex)) - join.origin;
+      const Vec3d at = transformPoint(m, Vec3d(vertex));
       scene.positions.emplace_back(at);
       join.rounding = std::max(join.rounding, length(Vec3d(scene.positions.back()) - at));
     }

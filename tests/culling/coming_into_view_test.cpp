@@ -40,12 +40,12 @@ TEST(ComingIntoView, AWallBehindAWallHidesAsSoonAsTheEyeIsPastTheFirstOne) {
     for (int step = 0; step < 5; ++step) {
       view.eye.z = -0.5 * step;
       culler.cull(view);
-      EXPECT_EQ(culler.visible().size(), 1u);
+      ASSERT_EQ(culler.visible().size(), 1u);
       EXPECT_EQ(culler.visible()[0], first);
     }
     view.eye.z = -6.0;  // less than ten times the last step, so no jump
     culler.cull(view);
-    EXPECT_EQ(culler.visible().size(), 1u) << pyramid;
+    ASSERT_EQ(culler.visible().size(), 1u) << pyramid;
     EXPECT_EQ(culler.visible()[0], second) << pyramid;
   }
 }

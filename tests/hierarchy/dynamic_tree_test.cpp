@@ -428,11 +428,11 @@ TEST(DynamicTree, GetsOtherBoxesInSlicesWhileItChanges) {
         change(number);
       }
     }
-    EXPECT_FALSE(tree.hasReplacement());
+    EXPECT_FALSE(tree.hasOtherBoxes());
     tree.beginReplacement(other);
     std::uint32_t calls = 0;
     while (!tree.replacementIsComplete()) {
-      ASSERT_TRUE(tree.hasReplacement());
+      ASSERT_TRUE(tree.hasOtherBoxes());
       for (std::uint32_t changes = random.below(8); changes > 0; --changes) {
         change(random.below(numbers + 50));
       }
@@ -458,11 +458,11 @@ TEST(DynamicTree, GetsOtherBoxesInSlicesWhileItChanges) {
     }
     EXPECT_TRUE(seed == 3 || others.size() < boxes.size());
     tree.takeReplacement();
-    EXPECT_FALSE(tree.hasReplacement());
+    EXPECT_FALSE(tree.hasOtherBoxes());
     EXPECT_EQ(whatIsWrong(tree, others), "") << seed;
     tree.beginReplacement(other);
     tree.setBoxes([&](std::uint32_t number) { return others.at(number); });
-    EXPECT_FALSE(tree.hasReplacement());
+    EXPECT_FALSE(tree.hasOtherBoxes());
   }
 }
 

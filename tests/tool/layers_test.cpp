@@ -1,5 +1,7 @@
 // sightline layers: the order of parts, as JSON and as text.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -182,6 +184,49 @@ TEST(Layers, WithPiecesAPoleThroughARingHasAnOrder) {
   expectRefused({"layers", scene, "--path", path, "--pieces", "0"}, "--pieces");
   expectRefused({"layers", scene, "--path", path, "--pieces", "99999"}, "--pieces");
   expectRefused({"layers", "demo:toothpicks", "--frames", "0", "--pieces", "2"}, "hulls of their own");
+}
+
+// A gate, of two posts and a beam that are one object, and a block that stands in it.
+std::string gateAndBlock() {
+  std::string obj;
+  int corners = 0;
+  const auto box = [&](double x0, double x1, double y0, double y1, double depth) {
+    for (int i = 0; i < 8; ++i) {
+      obj += fmt::format("v {} {} {}\n", (i & 1) != 0 ? x1 : x0, (i & 2) != 0 ? y1 : y0,
+                         (i & 4) != 0 ? depth : -depth);
+    }
+    for (const auto& [a, b, c, d] :
+         {std::array{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}) {
+      obj += fmt::format("f {} {} {} {}\n", corners + a, corners + b, corners + c, corners + d);
+    }
+    corners += 8;
+  };
+  obj += "o gate\n";
+  box(-3, -2, 0, 3, 0.5);
+  box(2, 3, 0, 3, 0.5);
+  box(-3, 3, 3, 4, 0.5);
+  obj += "o block\n";
+  box(-0.3, 0.3, 1, 1.6, 0.3);
+  return obj;
+}
+
+TEST(Layers, ABlockInAGateHasAnOrderOnceTheGateIsCut) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.write("gate.obj", gateAndBlock());
+  const std::string path =
+      folder.write("front.json", R"({"fovy_deg": 60, "width": 64, "height": 36, "near": 0.1, "far": 100,
+                        "frames": [{"eye": [0.1, 1.9, 9], "forward": [0, 0, -1], "up": [0, 1, 0]}]})");
+  const json whole = layered({scene, "--path", path}),
+             cut = layered({scene, "--path", path, "--pre-split", "1", "--pre-split-overlap", "0.1"});
+  ASSERT_EQ(whole["parts"], 2);
+  EXPECT_EQ(whole["frames"][0]["order"].size(), 1u);
+  EXPECT_GT(cut["parts"], 10);
+  EXPECT_EQ(cut["frames"][0]["order"].size(), cut["parts"].get<std::size_t>());
+  EXPECT_EQ(cut["options"]["pre_split"], 1.0);
+  EXPECT_EQ(cut["options"]["pre_split_overlap"], 0.1);
+  expectRefused({"layers", scene, "--path", path, "--pre-split", "0.001"}, "--pre-split 0.001: object 0");
+  expectRefused({"layers", scene, "--path", path, "--pre-split", "-1"}, "--pre-split");
+  expectRefused({"layers", "demo:toothpicks", "--frames", "0", "--pre-split", "2"}, "stay whole");
 }
 
 TEST(Layers, ArcsGoFromTheFrontToTheBack) {

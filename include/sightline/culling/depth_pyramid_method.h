@@ -35,8 +35,8 @@ struct DepthPyramidMethodSettings {
   SurfaceUse surfaces = SurfaceUse::kAlone;
   SurfaceDrawing drawing{};  // of surfaces; `step` is set anew in each frame
   // More than 0: so many surfaces are drawn that a frame takes about so many microseconds, as far as drawing
-  // less can do that; at most those of drawing.budget. Then what is kept, always conservative, depends on
-  // measured times.
+  // less can do that; at most those of drawing.budget, and as many again where many objects come into view.
+  // Then what is kept, always conservative, depends on measured times.
   double budget_us = 0.0;
 };
 

@@ -63,9 +63,9 @@ struct WorldJoin {
   std::vector<std::uint64_t> versions{};  // of the instances
   Vec3d origin{};                         // of the surfaces, world space
   SurfaceSet surfaces{};                  // ObjectId is the index into `instances`
-  // Metres: how far, at most, a vertex of the surfaces is from where its matrix takes it. Surfaces are in
-  // single precision, so this is 0 only for positions of few digits, else up to 2^-24 of the distance from
-  // `origin`.
+  // Metres: how far, at most, a vertex of the surfaces is from where its matrix takes it, as far as double
+  // precision can tell. Surfaces are in single precision, so this is 0 only for positions of few digits, else
+  // up to 2^-24 of the distance from `origin`.
   double rounding = 0.0;
 };
 
@@ -74,8 +74,8 @@ struct WorldJoin {
 // which one is up. Calls with an id that is not there have no effect.
 //
 // Memory: all of it, as that of WorldCuller, ShadowCasters and WorldSight, comes from operator new, also the
-// aligned one; replacing that is the hook. About 250 bytes an instance, and from the first time that tidy()
-// builds the hierarchy anew about 75 more.
+// aligned one; replacing that is the hook. An instance keeps about 250 bytes resident, and from the first
+// time that tidy() builds the hierarchy anew about 75 more.
 //
 // Everything that is not const is for one thread, while no other one reads. Between two changes any number of
 // threads may cull, each with a WorldCuller of its own.
@@ -117,8 +117,9 @@ class World {
   Vec3d origin() const;
   // For worlds in which the camera travels far. In the next calls of tidy(), about one for 400 instances,
   // everything gets its box from the new origin, beside the one from the old origin, which stays in use. Then
-  // origin() becomes the new one, in a call of tidy(). Cull again before anything is classified. Ends a move
-  // to another origin that goes on. An origin that is not finite has no effect.
+  // origin() becomes the new one, in a call of tidy(). Cull again before anything is classified. A move to
+  // another origin that goes on is given up, so this is not for the camera's place in each frame. An origin
+  // that is not finite has no effect.
   void moveOrigin(const Vec3d& origin);
   // The same at once, as behind a loading screen. Takes some 120 nanoseconds an instance.
   void setOrigin(const Vec3d& origin);

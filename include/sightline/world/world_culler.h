@@ -24,8 +24,10 @@ struct WorldCullerSettings {
   // Only instances that have one of these bits are drawn in the view (Instance::groups).
   std::uint32_t groups = 0xffffffffu;
   // Pixels of the depth buffer: where the rounding of a join's positions (WorldJoin::rounding) may move its
-  // image by more, its members hide by their own meshes. What shows through a gap narrower than this between
-  // members of a join may be culled; 0: a join whose positions were rounded hides nothing.
+  // image by more, or a member by more than 2^-21 of its distance, its members hide by their own meshes. What
+  // shows through a gap narrower than this between members of a join, or lies closer to a member than
+  // WorldJoin::rounding, may be culled; 0: a join whose positions were rounded is not drawn, and its members
+  // hide by their own meshes.
   double join_rounding = 0x1p-8;
 };
 

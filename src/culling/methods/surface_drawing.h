@@ -69,9 +69,10 @@ class SurfaceDrawer {
     built_work_ = count(buffer);
     work_ += built_work_;
   }
-  // Appends the objects that the buffer does not hide after draw(), by ask(stats, visible), which adds to the
-  // one and appends to the other, ascending. Where that calls for more surfaces to be drawn, draws them,
-  // calls finish() and asks once more; the counts are of the last time.
+  // Fills `visible`, which is empty, with the objects that the buffer does not hide after draw(), by
+  // ask(stats, visible), which adds to the one and appends to the other, ascending. Where that calls for more
+  // surfaces to be drawn, draws them, calls finish() and asks once more; `stats` counts the last time alone,
+  // and the buffer's own statistics count both.
   template <typename Buffer, typename Finish, typename Ask>
   void traverse(Buffer& buffer, CullStats& stats, std::vector<ObjectId>& visible, const Finish& finish,
                 const Ask& ask) {
@@ -165,8 +166,8 @@ class SurfaceDrawer {
     if (!areMany(news_, not_hidden)) {
       return false;
     }
-    // What comes into view is not counted in the budget.
-    SurfaceDrawing drawing = drawing_;
+    // What comes into view is not counted in the budget, but for one of time.
+    SurfaceDrawing drawing = timed_.limits() ? whatIsLeft(false) : drawing_;
     drawing.draw_resting = news_.size() * kStill > not_hidden.size();
     draw(buffer, news_, ViewStep::kSame, drawing);
     count(buffer);
@@ -215,9 +216,9 @@ class SurfaceDrawer {
   const SurfaceSet* surfaces_ = nullptr;
   const ParallelFor* parallel_for_ = nullptr;  // of the frame
   std::optional<NearestObjects> nearest_;
-  bool jumped_ = false;               // in this frame
-  std::vector<ObjectId> in_frustum_;  // whose surfaces are drawn first after a jump
-  bool more_in_frustum_ = false;      // than those
+  bool jumped_ = false;               // whether the view of this frame has little to do with the last one
+  std::vector<ObjectId> in_frustum_;  // objects whose surfaces are drawn first after a jump
+  bool more_in_frustum_ = false;      // whether there are others in the frustum
   std::vector<ObjectId> last_kept_, news_;
 };
 

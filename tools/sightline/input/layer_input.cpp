@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenes/procedural.h"
+#include "scenes/split_scene.h"
 #include "sightline/layers/convex_pieces.h"
 #include "tools/sightline/command_line/progress_bar.h"
 
@@ -63,16 +64,34 @@ Result<MovingScene> withoutMotion(Scene scene, std::uint32_t max_pieces) {
   return moving;
 }
 
-Result<MovingScene> loadMoving(const std::string& name, std::uint32_t max_pieces) {
+Result<MovingScene> loadMoving(const std::string& name, const LayerDivision& division) {
   if (isMovingDemoUrl(name)) {
-    if (max_pieces > 1) {
+    if (division.max_pieces > 1) {
+      return Error{fmt::format("--pieces {}: the parts of {} move and have hulls of their own",
+                               division.max_pieces, name)};
+    }
+    if (division.split_width > 0.0) {
       return Error{
-          fmt::format("--pieces {}: the parts of {} move and have hulls of their own", max_pieces, name)};
+          fmt::format("--pre-split {}: the parts of {} move and stay whole", division.split_width, name)};
     }
     return makeMovingDemoScene(name);
   }
   Result<Scene> scene = loadScene(name);
-  return scene ? withoutMotion(std::move(*scene), max_pieces) : scene.error();
+  if (!scene) {
+    return scene.error();
+  }
+  if (!(division.split_width > 0.0)) {
+    return withoutMotion(std::move(*scene), division.max_pieces);
+  }
+  Result<SplitScene> split = splitScene(*scene, division.split_width, division.split_overlap);
+  if (!split) {
+    return Error{fmt::format("--pre-split {}: {}", division.split_width, split.error().message)};
+  }
+  Result<MovingScene> moving = withoutMotion(std::move(split->scene), division.max_pieces);
+  if (moving) {
+    moving->planes = std::move(split->planes);
+  }
+  return moving;
 }
 
 Status setPlaces(MovingScene& scene, const std::vector<std::uint32_t>& parts, PartSettings::Place place,
@@ -90,8 +109,8 @@ Status setPlaces(MovingScene& scene, const std::vector<std::uint32_t>& parts, Pa
 }  // namespace
 
 Result<LayerInput> loadLayerInput(const std::string& scene_name, const PathOptions& path,
-                                  const LayerPlaces& places, std::uint32_t max_pieces) {
-  Result<MovingScene> scene = loadMoving(scene_name, max_pieces);
+                                  const LayerPlaces& places, const LayerDivision& division) {
+  Result<MovingScene> scene = loadMoving(scene_name, division);
   if (!scene) {
     return scene.error();
   }

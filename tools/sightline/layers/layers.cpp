@@ -37,7 +37,7 @@ struct LayersOptions {
   SceneOptions common;
   PathOptions path;
   LayerPlaces places;
-  std::uint32_t pieces = 1;
+  LayerDivision division;
   std::uint32_t split_cycles = 0;  // pieces of parts in cycles, at most; 0: parts stay whole
   std::string parts;               // a name of kPartChoices; empty: chosen by partChoiceOf()
   LayerSortOptions sort;
@@ -209,7 +209,7 @@ class WalkSorter {
         aspect_(aspectOf(pictureSize(options.size, input.walk.path))),
         sorter_(options.eyes, options.lens, input, settingsOf(options.sort, needAllArcs(options.drawings))) {
     if (options.split_cycles > 0) {
-      const bool by_triangles = !input.moving.pose && options.pieces == 1;
+      const bool by_triangles = !input.moving.pose && options.division.max_pieces == 1;
       cycles_.emplace(options.eyes, options.lens, input, settingsOf(options.sort, false),
                       options.split_cycles, namedParts(options), by_triangles);
     }
@@ -306,7 +306,9 @@ Result<ExitCode> sortWalk(const LayersOptions& options, const LayerInput& input,
   }
   Json chosen = optionsJson(options.sort);
   chosen["parts"] = nameOf(kPartChoices, partChoiceOf(options));
-  chosen["pieces"] = options.pieces;
+  chosen["pieces"] = options.division.max_pieces;
+  chosen["pre_split"] = options.division.split_width;
+  chosen["pre_split_overlap"] = options.division.split_overlap;
   chosen["split_cycles"] = options.split_cycles;
   chosen["order_for"] = orderFor(options.eyes, options.lens);
   chosen["stereo"] = options.eyes.stereo;
@@ -471,7 +473,7 @@ Result<ExitCode> runLayers(const LayersOptions& options) {
     }
   }
   Result<LayerInput> input =
-      loadLayerInput(options.common.scene, options.path, options.places, options.pieces);
+      loadLayerInput(options.common.scene, options.path, options.places, options.division);
   if (!input) {
     return input.error();
   }
@@ -516,10 +518,21 @@ void addPartOptions(CLI::App& command, LayersOptions& options) {
                   "others (default: see-through for --image and --by-distance alone, else all)")
       ->check(isOneOf(textsOf(kPartChoices)));
   command
-      .add_option("--pieces", options.pieces,
+      .add_option("--pieces", options.division.max_pieces,
                   "hulls that stand for each object at most, of convex pieces of it: objects with holes or "
                   "bends are then grouped with fewer others (1: its hull)")
       ->check(CLI::Range(1u, kMaxConvexPieces))
+      ->capture_default_str();
+  command
+      .add_option("--pre-split", options.division.split_width,
+                  "cut opaque objects that are wider than so many metres by a grid of that width into "
+                  "overlapping parts, before anything is sorted (0: objects stay whole)")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
+  command
+      .add_option("--pre-split-overlap", options.division.split_overlap,
+                  "by how much the parts of --pre-split overlap, as a fraction of its width")
+      ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   command
       .add_option("--split-cycles", options.split_cycles,
