@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 
 namespace sightline {
 namespace {
 
-// The axes along which a box is wider than a cell; cells: their number.
-std::vector<SplitAxis> axesOf(const Box& box, double width, double& cells) {
+// The axes along which a box is wider than a cell.
+std::vector<SplitAxis> axesOf(const Box& box, double width) {
   std::vector<SplitAxis> axes;
-  cells = 1.0;
+  double cells = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.min[axis], high = box.max[axis];
     const double count = std::ceil((high - low) / width);
@@ -25,7 +24,7 @@ std::vector<SplitAxis> axesOf(const Box& box, double width, double& cells) {
           {direction, low, high, static_cast<std::uint32_t>(std::min<double>(count, kMostSplitCells))});
     }
   }
-  return axes;
+  return cells > kMostSplitCells ? axesOf(box, 2.0 * width) : axes;
 }
 
 SplitMesh splitObject(const SceneView& scene, const Object& object, std::span<const SplitAxis> axes,
@@ -92,7 +91,7 @@ Scene pieceMesh(const SplitPiece& piece) {
   return mesh;
 }
 
-Result<SplitScene> splitScene(const Scene& scene, double width, double inflation) {
+SplitScene splitScene(const Scene& scene, double width, double inflation, const Progress& progress) {
   SplitScene result;
   result.scene.materials = scene.materials;
   result.scene.paths = scene.paths;
@@ -100,20 +99,16 @@ Result<SplitScene> splitScene(const Scene& scene, double width, double inflation
   const SceneView view = scene.view();
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    double cells = 1.0;
-    const std::vector<SplitAxis> axes = axesOf(object.bounds, width, cells);
+    const std::vector<SplitAxis> axes = axesOf(object.bounds, width);
     const std::size_t before = result.scene.objects.size();
     if (!axes.empty() && view.materialOf(object).opacity != Opacity::kBlended) {
-      if (!(cells <= kMostSplitCells)) {
-        std::ostringstream message;
-        message << "object " << i << " (" << scene.object_names[i] << ") would be cut into " << cells
-                << " cells; choose a width that leaves " << kMostSplitCells << " at most";
-        return Error{message.str()};
-      }
       addPieces(object, scene.object_names[i], splitObject(view, object, axes, inflation), result);
     }
     if (result.scene.objects.size() == before) {
       addObject(object, scene.object_names[i], scene.positions, view.indicesOf(object), result.scene);
+    }
+    if (progress) {
+      progress(static_cast<double>(i + 1) / static_cast<double>(scene.objects.size()));
     }
   }
   weldPositions(result.scene);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenes/moving_scene.h"
-#include "sightline/base/result.h"
+#include "sightline/base/progress.h"
 #include "sightline/layers/pre_split.h"
 #include "sightline/scene/scene.h"
 
@@ -24,9 +24,9 @@ struct SplitScene {
 // Cuts each object that is wider than a cell along an axis, by a grid over its bounds; the others stay as
 // they are. Blended objects stay whole, since neighbours both draw their overlap. The pieces of an object
 // follow each other, and are named after it.
-// width: of a cell, metres, > 0. inflation: the overlap of neighbours as a fraction of the width, >= 0.
-// Error if an object would have more than `kMostSplitCells` cells.
+// width: of a cell, metres, > 0; doubled for an object as often as it would have more than kMostSplitCells
+// cells. inflation: the overlap of neighbours as a fraction of the width, >= 0.
 inline constexpr std::uint32_t kMostSplitCells = 1024;
-Result<SplitScene> splitScene(const Scene& scene, double width, double inflation);
+SplitScene splitScene(const Scene& scene, double width, double inflation, const Progress& progress = {});
 
 }  // namespace sightline

@@ -224,7 +224,11 @@ TEST(Layers, ABlockInAGateHasAnOrderOnceTheGateIsCut) {
   EXPECT_EQ(cut["frames"][0]["order"].size(), cut["parts"].get<std::size_t>());
   EXPECT_EQ(cut["options"]["pre_split"], 1.0);
   EXPECT_EQ(cut["options"]["pre_split_overlap"], 0.1);
-  expectRefused({"layers", scene, "--path", path, "--pre-split", "0.001"}, "--pre-split 0.001: object 0");
+  expectRefused({"layers", scene, "--path", path, "--pre-split", "nan"}, "--pre-split");
+  expectRefused({"layers", scene, "--path", path, "--pre-split", "1", "--pre-split-overlap", "nan"},
+                "--pre-split-overlap");
+  expectRefused({"layers", scene, "--path", path, "--pre-split", "1", "--svg", folder.file("cut.svg")},
+                "--pre-split: does not go with --svg");
   expectRefused({"layers", scene, "--path", path, "--pre-split", "-1"}, "--pre-split");
   expectRefused({"layers", "demo:toothpicks", "--frames", "0", "--pre-split", "2"}, "stay whole");
 }

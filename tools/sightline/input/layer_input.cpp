@@ -83,13 +83,12 @@ Result<MovingScene> loadMoving(const std::string& name, const LayerDivision& div
   if (!(division.split_width > 0.0)) {
     return withoutMotion(std::move(*scene), division.max_pieces);
   }
-  Result<SplitScene> split = splitScene(*scene, division.split_width, division.split_overlap);
-  if (!split) {
-    return Error{fmt::format("--pre-split {}: {}", division.split_width, split.error().message)};
-  }
-  Result<MovingScene> moving = withoutMotion(std::move(split->scene), division.max_pieces);
+  ProgressBar progress("large objects cut");
+  SplitScene split = splitScene(*scene, division.split_width, division.split_overlap,
+                                [&](double done) { progress.update(done); });
+  Result<MovingScene> moving = withoutMotion(std::move(split.scene), division.max_pieces);
   if (moving) {
-    moving->planes = std::move(split->planes);
+    moving->planes = std::move(split.planes);
   }
   return moving;
 }

@@ -103,6 +103,7 @@ class LayerPictures : public FrameMaker {
     settings_.peel = valueOf(kPeels, options_.peel);
     settings_.form = input_.form;
     objects_.clear();
+    drawn_.clear();
     for (std::uint32_t i = 0; i < frame.layers.layers(); ++i) {
       const LayerId layer(i);
       const std::span<const PartId> parts = frame.layers.partsOf(layer);
@@ -112,6 +113,7 @@ class LayerPictures : public FrameMaker {
       }
       for (const PartId part : parts) {
         objects_.push_back(ObjectId(frame.wholeOf(part).value));
+        drawn_.push_back(ObjectId(part.value));
       }
       for (LayerReplacementFile& replaced : replaced_) {
         if (std::find(parts.begin(), parts.end(), PartId(replaced.part)) != parts.end()) {
@@ -149,7 +151,8 @@ class LayerPictures : public FrameMaker {
     if (!settings_.replaced.empty()) {
       return;
     }
-    renderer_.draw(frame.view, objects_, {.peel = true}, other_);
+    // A part is drawn whole, unless some of its pieces were left out with a layer.
+    renderer_.draw(frame.view, settings_.left_out.empty() ? objects_ : drawn_, {.peel = true}, other_);
     addSky(frame.view, other_);
     const PictureDifference difference = measureDifference(picture_, other_, kDifferenceTolerance);
     json["difference"] = differenceJson(difference);
@@ -194,7 +197,10 @@ class LayerPictures : public FrameMaker {
         if (isDrawn(LayerId(i))) {
           for (const PartId number : frame.layers.partsOf(LayerId(i))) {
             const PartId part = frame.wholeOf(number);
-            parts.push_back({{"part", part.value}, {"name", nameOf(part)}, {"see_through", isBlended(part)}});
+            Json entry = {{"part", part.value}, {"name", nameOf(part)}, {"see_through", isBlended(part)}};
+            if (std::find(parts.begin(), parts.end(), entry) == parts.end()) {  // or another piece of it is
+              parts.push_back(std::move(entry));
+            }
           }
         }
       }
@@ -210,13 +216,16 @@ class LayerPictures : public FrameMaker {
   }
 
   // Returns the parts left out, which include other parts of the same layers.
+  // Parts of which something is left out.
   Json leftOutParts(const SortedFrame& frame) const {
-    Json parts = Json::array();
+    std::vector<std::uint32_t> parts;
     for (const LayerId layer : settings_.left_out) {
       for (const PartId part : frame.layers.partsOf(layer)) {
-        parts.push_back(part.value);
+        parts.push_back(frame.wholeOf(part).value);
       }
     }
+    std::sort(parts.begin(), parts.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
     return parts;
   }
 
@@ -250,6 +259,7 @@ class LayerPictures : public FrameMaker {
   CompositeSettings settings_;
   std::vector<LayerReplacementFile> replaced_;
   std::vector<ObjectId> objects_;  // this frame's objects, whole, without those left out, ascending
+  std::vector<ObjectId> drawn_;    // the same with divided objects piece by piece, in any order
   LayerImage picture_, other_, sky_;
   LayerRecorder recorder_;
   std::string line_;

@@ -440,6 +440,19 @@ Status checkSplitCycles(const LayersOptions& options) {
   return Success{};
 }
 
+// Drawings would show the cuts as lines.
+Status checkPreSplit(const LayersOptions& options) {
+  const std::pair<const char*, bool> refused[] = {{"--svg", !options.drawings.svg.empty()},
+                                                  {"--pdf", !options.drawings.pdf.empty()},
+                                                  {"--line-picture", !options.drawings.line_picture.empty()}};
+  for (const auto& [option, given] : refused) {
+    if (options.division.split_width > 0.0 && given) {
+      return Error{fmt::format("--pre-split: does not go with {}, which would draw the cuts", option)};
+    }
+  }
+  return Success{};
+}
+
 Status checkPartChoice(const LayersOptions& options) {
   for (const auto& [option, given] : needOpaqueLayers(options)) {
     if (given && partChoiceOf(options) == PartChoice::kSeeThrough) {
@@ -466,8 +479,9 @@ void leaveToDepthBuffer(const LayersOptions& options, MovingScene& moving) {
 }
 
 Result<ExitCode> runLayers(const LayersOptions& options) {
-  for (const Status& ok : {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options),
-                           checkPartChoice(options), checkSeenArcs(options), checkSplitCycles(options)}) {
+  for (const Status& ok :
+       {checkFilesOf(options, outputsOf(options)), checkPictureOptions(options), checkPartChoice(options),
+        checkSeenArcs(options), checkSplitCycles(options), checkPreSplit(options)}) {
     if (!ok) {
       return ok.error();
     }
@@ -523,17 +537,11 @@ void addPartOptions(CLI::App& command, LayersOptions& options) {
                   "bends are then grouped with fewer others (1: its hull)")
       ->check(CLI::Range(1u, kMaxConvexPieces))
       ->capture_default_str();
-  command
-      .add_option("--pre-split", options.division.split_width,
-                  "cut opaque objects that are wider than so many metres by a grid of that width into "
-                  "overlapping parts, before anything is sorted (0: objects stay whole)")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
-  command
-      .add_option("--pre-split-overlap", options.division.split_overlap,
-                  "by how much the parts of --pre-split overlap, as a fraction of its width")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
+  addDecimalOption(command, "--pre-split", options.division.split_width, 0.0, 1e9,
+                   "cut opaque objects that are wider than so many metres by a grid of that width into "
+                   "overlapping parts, before anything is sorted (0: objects stay whole)");
+  addDecimalOption(command, "--pre-split-overlap", options.division.split_overlap, 0.0, 1.0,
+                   "by how much the parts of --pre-split overlap, as a fraction of its width");
   command
       .add_option("--split-cycles", options.split_cycles,
                   "divide parts in cycles by planes through them, while they are in a cycle, into this many "
