@@ -126,6 +126,43 @@ TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
   expectReuse(totals);
 }
 
+test::Piece blockPiece(const Vec3f& low, const Vec3f& high, std::uint32_t material) {
+  constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  const auto corner = [&](int i) {
+    return Vec3f{(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z};
+  };
+  test::Piece piece{.corners = {}, .material = MaterialId(material)};
+  for (const auto& face : kFaces) {
+    for (const int i : {face[0], face[1], face[2], face[0], face[2], face[3]}) {
+      piece.corners.push_back(corner(i));
+    }
+  }
+  return piece;
+}
+
+// What narrowing decided depends on all of the shaft, also where that reaches beyond all that hid before.
+TEST(Update, AWallThatComesBeyondAllOthersHidesWhereNarrowingIsAllowed) {
+  EditedScene scene;
+  scene.materials = {{"wall", Opacity::kOpaque, false, {}}, {"glass", Opacity::kBlended, false, {}}};
+  scene.pieces = {blockPiece({-50, -50, -50}, {-49, -49, -49}, 0),
+                  blockPiece({40, 0.99f, 0.99f}, {40.02f, 1.01f, 1.01f}, 1),
+                  blockPiece({60, 0, 0}, {60.5f, 0.5f, 0.5f}, 1),
+                  blockPiece({15, -6, 0.6f}, {15.5f, 8, 1.75f}, 0)};
+  const BakeSettings settings{.occlusion = BakeOcclusion::kFused,
+                              .triangle_budget = 1,
+                              .max_depth = 0,
+                              .near_distance = 0.01,
+                              .viewers = {Box{{0, 0, 0}, {2, 2, 2}}},
+                              .narrowings = 1};
+  const Made before = bakeWith(scene.scene(), settings, {});
+  scene.pieces.push_back(blockPiece({30, -6, 0.6f}, {30.5f, 8, 0.93f}, 0));
+  const Made made = bakeWith(scene.scene(), settings, before.answers);
+  EXPECT_EQ(made.taken.difference, "");
+  EXPECT_EQ(made.taken.come, 1u);
+  EXPECT_TRUE(made.file == plainFile(scene.scene(), settings));
+}
+
 TEST(Update, GivesTheBytesOfAFullBakeInDemoScenes) {
   Totals totals;
   for (const char* name : {"demo:ship?decks=3&rooms=4&machinery=0", "demo:city?copies=1"}) {

@@ -186,6 +186,7 @@ Result<Bake::TakenOver> Bake::takeOver(std::vector<std::byte> answers) {
   if (data_->scene.settings.witnesses) {
     return Error{"bake: answers that are taken over have no witnesses; bake in full for those"};
   }
+  earlier_.reset();
   Result<EarlierBake> earlier = readEarlierBake(std::move(answers));
   if (!earlier) {
     return earlier.error();
@@ -195,7 +196,8 @@ Result<Bake::TakenOver> Bake::takeOver(std::vector<std::byte> answers) {
   if (marks.settings != earlier->marks.settings) {
     taken.difference = "other settings";
   } else if (marks.space != earlier->marks.space) {
-    taken.difference = "other bounds of the scene or of where viewers are";
+    taken.difference =
+        "other bounds of the scene or of where viewers are, or another precision of its surfaces";
   }
   if (!taken.difference.empty()) {
     return taken;
@@ -413,7 +415,7 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
 
 namespace {
 
-// A part without the answers with which it ends if they are recorded, and those.
+// A part ends with its answers, if they are recorded.
 struct PartBytes {
   std::span<const std::byte> content, answers;
 };

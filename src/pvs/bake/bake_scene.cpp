@@ -88,7 +88,7 @@ double magnitudeOf(const CellBox& root, const BoxTree& boxes) {
   return magnitude;
 }
 
-// A box around the cell and the box, rounded outwards.
+// A box around the cell and all nodes of the tree, rounded outwards.
 Box frameOf(const CellBox& cell, const BoxTree& tree) {
   Box frame;
   for (const Vec3d& corner : {cell.min, cell.max}) {

@@ -39,7 +39,7 @@ struct BakeScene {
   ConvexOccluders occluders;
   Panels panels;             // none if only convex occluders hide
   Box frame;                 // around the root and all panels
-  ObjectBoxes object_boxes;  // the same
+  ObjectBoxes object_boxes;  // none if only convex occluders hide
   OccluderCounts counts;
   double side_margin = 0.0;  // sideMargin of the root, metres
   double diagonal = 0.0;     // diagonal of the region and all objects, metres

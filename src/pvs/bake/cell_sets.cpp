@@ -321,8 +321,14 @@ void CellBaker::recallNodes(const Answer& before) {
 // An answer depends on the panels that the lines of sight of the question meet, and on those that were
 // followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
 // Whether the surfaces in the shaft are closed does not depend on the order in which they are followed.
+// Narrowing and dividing try lines of sight from elsewhere, so where they may have decided, all of the shaft
+// counts.
 bool CellBaker::holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const {
   const Box& box = scene_.boxes.nodes[node].bounds;
+  const BakeSettings& settings = scene_.settings;
+  if (scene_.boxes.view().leaf(node) && (settings.narrowings > 0 || settings.divisions > 0)) {
+    return !recall_->panelsDiffer(region, box);
+  }
   const Vec3d start = FusedOcclusion::startOf(region);
   return (!recall_->panelsDiffer(decided_in) && !recall_->panelsDiffer({start, start}, box)) ||
          !recall_->panelsDiffer(region, box);
@@ -348,11 +354,7 @@ bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
   surfaces_.takeFollowed();
   const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
                                          : hidesBox(region, node.bounds, kNoObject, {});
-  // Narrowing and dividing try lines of sight from elsewhere.
-  const BakeSettings& settings = scene_.settings;
-  const bool elsewhere = boxes.leaf(number) && (settings.narrowings > 0 || settings.divisions > 0);
-  const Box followed = surfaces_.takeFollowed();
-  followed_.push_back(elsewhere ? kWholeFrame : coarse(followed, scene_.frame));
+  followed_.push_back(coarse(surfaces_.takeFollowed(), scene_.frame));
   return hidden;
 }
 
@@ -612,7 +614,8 @@ bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
   const std::array numbers{choice_.distance, static_cast<double>(choice_.level)};
   Answer answer{.kind = AnswerKind::kPoint, .question = questionOf(std::span(&eye, 1), numbers)};
   ++questions_;
-  if (const Answer* before = answerBefore(answer)) {
+  const Answer* before = answerBefore(answer);
+  if (before != nullptr && recall_->changedOccluders().size() <= kMostDiffering) {
     findBehind(std::span(&eye, 1), recall_->changedOccluders());
     std::uint64_t behind = 0;
     for (std::uint32_t i = 0; i < scene_.boxes.objects.size(); ++i) {

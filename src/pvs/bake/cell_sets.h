@@ -95,9 +95,9 @@ class CellBaker {
   // Removes from each set what the chosen occluders hide from its region (the cell, or a side of its plane).
   void removeHidden(const CellBox& box, CellSets& sets);
   void removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart part, Runs& seen);
-  // Adds to hidden_ what the chosen occluders hide from all corners: by asking each occluder, or by what an
-  // earlier bake found. False, with nothing added, if too much has changed for that.
+  // Adds to hidden_ what the chosen occluders hide from all corners, by asking each of them.
   void hideByChosen(std::span<const Vec3d> corners);
+  // The same by what an earlier bake found. False, with nothing added, if too much has changed for that.
   bool hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen);
   // Sets behind_ to the objects of which the centre lies behind, or in, one of the boxes as seen from each
   // corner: all that occluders in these boxes may hide.
@@ -110,8 +110,8 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region);
-  // Whether the earlier bake's answer about the node still holds. same: its node there; decided_in: around
-  // the panels that decided it.
+  // Whether the earlier bake's answer about the node still holds. decided_in: a box around the panels that
+  // decided it.
   bool holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const;
   // Sets nodes_before_ and followed_before_ to what an earlier bake found about the nodes of its box tree.
   void recallNodes(const Answer& before);

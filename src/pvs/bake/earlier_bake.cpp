@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kAnswerMagic = 0x72736e417374694cu;
 constexpr std::size_t kChecksumBytes = 8;
-// What one of them takes in the file.
+// Bytes that a box, an object, a node, a panel and a part take in the file.
 constexpr std::size_t kBoxBytes = 24, kObjectBytes = 8 + kBoxBytes + 4 + 1, kNodeBytes = kBoxBytes + 16,
                       kPanelBytes = 8 + kBoxBytes, kPartBytes = 16;
 
@@ -217,7 +217,7 @@ SceneMarks readMarks(base::ByteReader& bytes) {
   return marks;
 }
 
-// Whether the nodes are a tree of so many objects, and the panels in order.
+// Whether the nodes name nodes and objects that there are, and the panels are in order.
 bool sound(const SceneMarks& marks) {
   for (std::size_t i = 0; i < marks.nodes.size(); ++i) {
     const BoxNode& node = marks.nodes[i];

@@ -11,7 +11,7 @@
 namespace sightline::pvs {
 namespace {
 
-// The shaft of a question holds boxes that are wider by a 2^18th of the coordinates (fused_occlusion.cpp).
+// The shaft of a question holds boxes that are wider by 2^-18 of the coordinates (fused_occlusion.cpp).
 // Those that are compared with what has changed are wider than that.
 constexpr double kComparedWidening = 0x1p-15;
 

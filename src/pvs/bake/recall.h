@@ -26,7 +26,7 @@ class Recall {
   const EarlierBake& earlier() const { return earlier_; }
   // The place of an object in the box tree of the earlier bake, by its place now; kNone if it has changed.
   std::uint32_t placeBefore(std::uint32_t position) const { return before_[position]; }
-  // The other way around.
+  // Its place now, by its place in the earlier bake; kNone if it has changed.
   std::uint32_t placeNow(std::uint32_t position_before) const { return now_[position_before]; }
   // A node of the earlier box tree with the same box, or the leaf of the same object; kNone if there is none.
   std::uint32_t nodeBefore(std::uint32_t node) const { return node_before_[node]; }

@@ -142,8 +142,9 @@ class Bake {
     std::uint32_t same = 0, gone = 0, come = 0;
   };
   // Takes over answers of an earlier bake, of this scene before a change: workers that are made from now on
-  // ask only what depends on the change. The parts are the same as without. answers: of Bake::answers, of any
-  // origin; an error tells what is wrong with them, or that BakeSettings::witnesses is set.
+  // ask only what depends on the change. The parts are the same as without. answers: of Bake::answers; an
+  // error tells that they are damaged, or of another version, or that BakeSettings::witnesses is set. They
+  // are trusted as the program is: whoever makes their checksum anew can hide what is visible.
   Result<TakenOver> takeOver(std::vector<std::byte> answers);
 
   PartTask firstPart() const;
