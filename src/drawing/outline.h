@@ -21,7 +21,8 @@ class Outliner {
  public:
   // Outlines reach beyond the page's borders by this share of its height, so that the cut does not show.
   static constexpr double kMargin = 1.0 / 64.0;
-  // Rings whose mean width is below this many grid lines are slivers from rounding and are left out.
+  // Rings whose mean width is below this many grid lines are slivers from rounding and are left out, unless
+  // a piece of more than twice this width hangs on them.
   static constexpr double kMinWidth = 4.0;
 
   // Precondition: isDrawable().

@@ -1,8 +1,9 @@
 #include "src/drawing/outline_union.h"
 
 #include <algorithm>
-#include <cmath>
 #include <polyclipping/clipper.hpp>
+
+#include "src/drawing/sliver.h"
 
 namespace sightline::drawing {
 namespace {
@@ -42,19 +43,6 @@ void take(const ClipperLib::Paths& united, int bits, std::vector<GridPath>& loop
       ring.push_back({p.X * cell, p.Y * cell});
     }
   }
-}
-
-bool isSliver(const GridPath& ring, double min_width) {
-  double area = 0.0, perimeter = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const GridPoint& a = ring[i];
-    const GridPoint& b = ring[i + 1 < ring.size() ? i + 1 : 0];
-    const auto ax = static_cast<double>(a.x - ring[0].x), ay = static_cast<double>(a.y - ring[0].y);
-    const auto bx = static_cast<double>(b.x - ring[0].x), by = static_cast<double>(b.y - ring[0].y);
-    area += 0.5 * (ax * by - ay * bx);
-    perimeter += std::hypot(bx - ax, by - ay);
-  }
-  return 2.0 * std::abs(area) < min_width * perimeter;
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 #include "src/drawing/seen_order.h"
 
 #include <algorithm>
-#include <cmath>
 #include <polyclipping/clipper.hpp>
+
+#include "src/drawing/sliver.h"
 
 namespace sightline::drawing {
 namespace {
@@ -32,19 +33,17 @@ void cutToPage(const GridPath& page, ClipperLib::Paths& left) {
   }
 }
 
-// Whether a ring is as narrow as what outlines leave out.
-bool isNarrow(const ClipperLib::Path& ring) {
-  double perimeter = 0.0;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const ClipperLib::IntPoint &a = ring[i], &b = ring[i + 1 < ring.size() ? i + 1 : 0];
-    perimeter += std::hypot(static_cast<double>(b.X - a.X), static_cast<double>(b.Y - a.Y));
+GridPath gridPath(const ClipperLib::Path& path) {
+  GridPath result;
+  for (const ClipperLib::IntPoint& p : path) {
+    result.push_back({p.X, p.Y});
   }
-  return 2.0 * std::abs(ClipperLib::Area(ring)) < Outliner::kMinWidth * perimeter;
+  return result;
 }
 
 // Takes an outline away from what is left of an image. Nothing changes if Clipper fails.
-// drop_narrow: strips along the outline that are narrower than what outlines leave out do not count.
-void takeAway(const std::vector<GridPath>& outline, bool drop_narrow, ClipperLib::Paths& left) {
+// drop_slivers: rings that are slivers, as outlines leave out, do not count.
+void takeAway(const std::vector<GridPath>& outline, bool drop_slivers, ClipperLib::Paths& left) {
   try {
     ClipperLib::Clipper clipper;
     clipper.AddPaths(left, ClipperLib::ptSubject, true);
@@ -54,8 +53,9 @@ void takeAway(const std::vector<GridPath>& outline, bool drop_narrow, ClipperLib
     ClipperLib::Paths result;
     if (clipper.Execute(ClipperLib::ctDifference, result, ClipperLib::pftNonZero, ClipperLib::pftEvenOdd)) {
       left = std::move(result);
-      if (drop_narrow) {
-        std::erase_if(left, isNarrow);
+      if (drop_slivers) {
+        std::erase_if(
+            left, [](const ClipperLib::Path& ring) { return isSliver(gridPath(ring), Outliner::kMinWidth); });
       }
     }
   } catch (const ClipperLib::clipperException&) {
@@ -114,13 +114,13 @@ std::vector<SeenOrder::GridBox> SeenOrder::seenBoxes(ObjectId object, const Outl
     return {boxes_[object.value]};
   }
   ClipperLib::Paths left{clipperPath(image)};
-  // Of a wire that is narrower than that, the strokes are seen all the same.
-  const bool drop_narrow = !isNarrow(left.front());
+  // The whole image of a thin wire is a sliver, and its strokes are seen all the same.
+  const bool drop_slivers = !isSliver(image, Outliner::kMinWidth);
   cutToPage(outliner.page(), left);
   for (const ObjectId front : certainlyInFront(object, order)) {
     const std::vector<GridPath>& outline = outline_of(front);
     if (!outline.empty()) {
-      takeAway(outline, drop_narrow, left);
+      takeAway(outline, drop_slivers, left);
     }
     if (left.empty()) {
       break;
@@ -128,11 +128,7 @@ std::vector<SeenOrder::GridBox> SeenOrder::seenBoxes(ObjectId object, const Outl
   }
   std::vector<GridBox> boxes;
   for (const ClipperLib::Path& path : left) {
-    GridPath ring;
-    for (const ClipperLib::IntPoint& p : path) {
-      ring.push_back({p.X, p.Y});
-    }
-    boxes.push_back(boxOf(ring));
+    boxes.push_back(boxOf(gridPath(path)));
   }
   return boxes;
 }

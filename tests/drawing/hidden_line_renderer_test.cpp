@@ -283,6 +283,45 @@ TEST(HiddenLineRenderer, WhatAWallHidesIsInNoGroup) {
   EXPECT_EQ(set.paintSeenFirst(viewFromFront()).largest_group, 2u);
 }
 
+Solid rectanglesFacingTheEye(const std::vector<std::pair<Vec3f, Vec3f>>& low_and_high) {
+  Solid solid;
+  for (const auto& [low, high] : low_and_high) {
+    const auto first = static_cast<std::uint32_t>(solid.points.size());
+    for (const Vec3f& p : {low, Vec3f(high.x, low.y, low.z), high, Vec3f(low.x, high.y, low.z)}) {
+      solid.points.push_back(p);
+    }
+    solid.faces.push_back({first, first + 1, first + 2, first + 3});
+  }
+  return solid;
+}
+
+// The far object reaches before the back wall elsewhere, so they have no order by their hulls. The front wall
+// leaves a gap of one grid line along the back wall, and a notch of a few units before the far object.
+TEST(HiddenLineRenderer, ANotchAtTheEndOfAThinGapIsSeen) {
+  Set set;
+  const float gap = 1e-5f;
+  set.add(rectanglesFacingTheEye({{{-6, -3, 0}, {6, 3, 0}}}));
+  set.add(rectanglesFacingTheEye({{{-6, -3, 1}, {5.97f, 3 - gap, 1}}, {{5.97f, -3, 1}, {6, 2.99f, 1}}}));
+  set.add(rectanglesFacingTheEye({{{5, 2, -1}, {7, 3.5f, -1}}, {{-1, -1, 0.5f}, {1, 1, 0.5f}}}));
+  View view = viewFromFront(true);
+  view.ortho_height = 7.2;
+  view.aspect = 2.0;
+  LayerSorter sorter = set.sorter(true);
+  const Drawing drawing = HiddenLineRenderer(set.moving.scene.view())
+                              .paint(set.moving.scene.view(), set.moving.scene.object_names, view,
+                                     sorter.update(view), {.page_height = 720.0, .seen_first = true});
+  const auto groupOf = [&](std::uint32_t object) {
+    const auto group =
+        std::find_if(drawing.groups.begin(), drawing.groups.end(), [&](const DrawingGroup& candidate) {
+          return std::any_of(candidate.objects.begin(), candidate.objects.end(),
+                             [&](const DrawingObject& other) { return other.object == ObjectId(object); });
+        });
+    return group - drawing.groups.begin();
+  };
+  // Groups are painted from back to front.
+  EXPECT_LE(groupOf(2), groupOf(0)) << "the far object is painted over the wall that hides it";
+}
+
 TEST(HiddenLineRenderer, WithoutGroupsTheOrderByHullsStays) {
   Set set;
   for (int i = 0; i < 5; ++i) {

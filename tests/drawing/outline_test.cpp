@@ -246,6 +246,21 @@ TEST(Outline, DropsSliversThatRoundingLeaves) {
   EXPECT_EQ(object.outline(viewFromFront()).size(), 1u);
 }
 
+// The mean width of all is that of a sliver.
+TEST(OutlineUnion, AWidePieceThatHangsOnALongSliverIsKept) {
+  std::vector<GridPath> needle{{{0, 0}, {10'000'000, 0}, {10'000'000, 1}, {0, 1}}};
+  std::vector<GridPath> needle_with_block{
+      {{0, 0}, {10'000'000, 0}, {10'000'000, 1}, {1000, 1}, {1000, 1000}, {0, 1000}}};
+  std::vector<GridPath> hole{{{-10, -10}, {20'000'000, -10}, {20'000'000, 20'000'000}, {-10, 20'000'000}},
+                             {{0, 0}, {0, 1000}, {1000, 1000}, {1000, 1}, {10'000'000, 1}, {10'000'000, 0}}};
+  uniteLoops(needle, 4.0);
+  EXPECT_TRUE(needle.empty());
+  uniteLoops(needle_with_block, 4.0);
+  EXPECT_EQ(needle_with_block.size(), 1u);
+  uniteLoops(hole, 4.0);
+  EXPECT_EQ(hole.size(), 2u);
+}
+
 TEST(Outline, KeepsAThousandthOfAUnitOnPagesOfAnySize) {
   OneObject object;
   object.addSquare({0.3f, 0.1f, 0}, 1);
