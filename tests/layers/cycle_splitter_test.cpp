@@ -360,6 +360,160 @@ TEST(CycleSplitter, PiecesHaveTheRulesOfTheirPart) {
   EXPECT_EQ(arcs, 1u);
 }
 
+// Pieces touch along the planes between them, which must not keep them divided. The chain of three is cut
+// into pieces of pieces.
+TEST(CycleSplitter, PiecesThatTouchAreJoinedWithoutATolerance) {
+  for (const int links : {2, 3}) {
+    SCOPED_TRACE(links);
+    ThingSorter sorter(chain(links), true, {.max_trials = 4000, .keep_frames = 5},
+                       {.contact_tolerance = 0.0});
+    sorter.update(farView());
+    ASSERT_GT(sorter.splitter().pieces().size(), 2u);
+    for (int link = 0; link < links; ++link) {
+      sorter.place(static_cast<std::uint32_t>(link), shiftedBy({100.0 * link, 0, 0}));
+    }
+    for (int frame = 0; frame < 200; ++frame) {
+      sorter.update(farView());
+    }
+    EXPECT_EQ(sorter.splitter().pieces().size(), 0u);
+    EXPECT_EQ(largestGroup(sorter.update(farView())), 1u);
+  }
+}
+
+// The neighbour overlaps the divided rod, and is in front of it by a rule.
+TEST(CycleSplitter, ANeighbourThatARuleOrdersDoesNotKeepAPartDivided) {
+  std::vector<Thing> things = threeRods();
+  things.push_back(things[1]);
+  things.push_back(things[1]);
+  ThingSorter sorter(things, false, {.keep_frames = 5});
+  for (const std::uint32_t part : {0u, 2u, 3u, 4u}) {
+    sorter.splitter().setMayDivide(PartId(part), false);
+  }
+  const PairCallback first{[](void*, const View&) { return PairOrder{true, false}; }, nullptr};
+  for (const std::uint32_t neighbour : {3u, 4u}) {
+    sorter.place(neighbour, shiftedBy({0, 0, -50.0 * neighbour}));
+    sorter.sorter().setRule(PartId(1u), PartId(neighbour), first);
+  }
+  sorter.sorter().setRule(PartId(3u), PartId(4u), first);
+  sorter.update(farView());
+  ASSERT_EQ(sorter.splitter().pieces().size(), 2u);
+  sorter.place(0, shiftedBy({100, 0, 0}));
+  sorter.place(2, shiftedBy({200, 0, 0}));
+  for (const std::uint32_t neighbour : {3u, 4u}) {
+    sorter.place(neighbour, shiftedBy({0.02 * neighbour, 0, 0}));
+  }
+  for (int frame = 0; frame < 100; ++frame) {
+    sorter.update(farView());
+  }
+  EXPECT_EQ(sorter.splitter().pieces().size(), 0u);
+}
+
+void setHullsMovedBy(const Vec3d& by, const std::vector<Thing>& things, LayerSorter& sorter) {
+  for (std::uint32_t part = 0; part < things.size(); ++part) {
+    Points points = pointsOf(things[part]);
+    for (Vec3d& point : points) {
+      point += by;
+    }
+    sorter.setHull(sorter.hullsOf(PartId(part)).front(), shapes::hullOf(points));
+  }
+}
+
+TEST(CycleSplitter, HullsThatChangeAreCutWhereTheyAre) {
+  const std::vector<Thing> things = threeRods();
+  ThingSorter sorter(things, false);
+  sorter.update(farView());
+  ASSERT_EQ(sorter.splitter().pieces().size(), 2u);
+  for (std::uint32_t part = 0; part < 3; ++part) {
+    sorter.splitter().join(PartId(part));
+  }
+  setHullsMovedBy({50, 0, 0}, things, sorter.sorter());
+  View view = farView();
+  view.eye.x += 50.0;
+  for (int frame = 0; frame < 40; ++frame) {
+    sorter.update(view);
+  }
+  EXPECT_EQ(largestGroup(sorter.update(view)), 1u);
+  EXPECT_EQ(sorter.splitter().pieces().size(), 2u);
+  for (const PartPiece& piece : sorter.splitter().pieces()) {
+    EXPECT_GT(sorter.sorter().hull(sorter.sorter().hullsOf(piece.piece).front()).centre.x, 45.0);
+  }
+}
+
+std::set<std::uint32_t> numbersIn(const LayerOrder& order) {
+  std::set<std::uint32_t> numbers;
+  for (const PartId part : order.parts) {
+    numbers.insert(part.value);
+  }
+  return numbers;
+}
+
+// Engines enable what they show in every frame.
+TEST(CycleSplitter, ADividedPartThatIsEnabledStaysOutOfTheOrder) {
+  ThingSorter sorter(threeRods(), false);
+  sorter.update(farView());
+  ASSERT_EQ(sorter.splitter().pieces().size(), 2u);
+  const std::uint32_t divided = sorter.splitter().pieces()[0].part.value;
+  for (std::uint32_t part = 0; part < 3; ++part) {
+    sorter.sorter().setEnabled(PartId(part), true);
+  }
+  EXPECT_EQ(numbersIn(expectRight(sorter, farView(), 2)).count(divided), 0u);
+  sorter.splitter().join(PartId(divided));
+  EXPECT_TRUE(sorter.sorter().isEnabled(PartId(divided)));
+}
+
+TEST(CycleSplitter, ThePiecesOfARemovedPartGoWithIt) {
+  for (const bool is_replaced : {false, true}) {
+    SCOPED_TRACE(is_replaced);
+    ThingSorter sorter(threeRods(), false);
+    sorter.update(farView());
+    ASSERT_EQ(sorter.splitter().pieces().size(), 2u);
+    const PartId divided = sorter.splitter().pieces()[0].part;
+    const std::vector<HullId> hulls = sorter.sorter().hullsOf(divided);
+    sorter.sorter().removePart(divided);
+    std::set<std::uint32_t> expected{0, 1, 2};
+    if (is_replaced) {
+      ASSERT_EQ(sorter.sorter().addPart(hulls), divided);
+      Mat4 aside;
+      aside(0, 3) = 100.0;
+      sorter.sorter().setTransform(divided, aside);
+    } else {
+      expected.erase(divided.value);
+    }
+    EXPECT_EQ(numbersIn(sorter.update(farView())), expected);
+    EXPECT_TRUE(sorter.splitter().pieces().empty());
+    EXPECT_EQ(sorter.splitter().stats().divided, 0u);
+  }
+}
+
+TEST(CycleSplitter, ANewPartMayBeDividedThoughTheOneBeforeMightNot) {
+  ThingSorter sorter(threeRods(), false);
+  for (std::uint32_t part = 0; part < 3; ++part) {
+    sorter.splitter().setMayDivide(PartId(part), false);
+  }
+  EXPECT_EQ(largestGroup(sorter.update(farView())), 3u);
+  const std::vector<HullId> hulls = sorter.sorter().hullsOf(PartId(1u));
+  sorter.sorter().removePart(PartId(1u));
+  ASSERT_EQ(sorter.sorter().addPart(hulls), PartId(1u));
+  for (int frame = 0; frame < 40; ++frame) {
+    sorter.update(farView());
+  }
+  EXPECT_EQ(largestGroup(sorter.update(farView())), 1u);
+}
+
+TEST(CycleSplitter, PartsAreWholeAfterTheSplitterIsGone) {
+  LayerSorter sorter({.contact_tolerance = 1e-9});
+  for (const Thing& thing : threeRods()) {
+    const HullId hull = sorter.addHull(shapes::hullOf(pointsOf(thing)));
+    sorter.addPart(std::span(&hull, 1));
+  }
+  {
+    CycleSplitter splitter(sorter);
+    splitter.update(farView());
+    ASSERT_EQ(splitter.pieces().size(), 2u);
+  }
+  EXPECT_EQ(numbersIn(sorter.update(farView())), (std::set<std::uint32_t>{0, 1, 2}));
+}
+
 TEST(CycleSplitter, NothingIsDividedWithoutArcsOrExactTests) {
   LayerSorter sorter({.arcs = LayerArcs::kNone});
   for (const Thing& thing : threeRods()) {

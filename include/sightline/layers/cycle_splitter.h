@@ -69,8 +69,12 @@ struct CycleSplitStats {
 // other have no order, however they are divided.
 //
 // Only sorted parts are divided, and none of a container. Nothing is divided if the sorter is told to find no
-// arcs, or not to test exactly. While a part is divided, the sorter's calls with its number have no effect
-// that shows, except setTransform(): join() it before. For one thread at a time.
+// arcs, or not to test exactly.
+//
+// While a part is divided, it is disabled, and setEnabled() has no effect: join() it before. Rules that are
+// set for it do not reach its pieces, and they keep their shape if setHull() changes one of its hulls: join()
+// it before these, too. It may be moved by setTransform() and removed by removePart(); its pieces follow at
+// the next update(). When this is destroyed, all parts are whole again. For one thread at a time.
 class CycleSplitter {
  public:
   // sorter must outlive this, in place.

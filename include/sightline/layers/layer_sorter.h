@@ -36,6 +36,9 @@ struct LayerArc {
 // speak of the sorter's private tables.
 class LayerSortAlgorithm;
 class CandidateSearch;
+namespace layers {
+struct PartStore;
+}
 
 // Factories, called once by each LayerSorter made with them. sightline/comparison/layer_sorting.h has some.
 using MakeLayerSort = std::function<std::unique_ptr<LayerSortAlgorithm>()>;
@@ -192,6 +195,15 @@ class LayerSorter {
   const LayerOrder& update(const View& view, std::span<const Vec3d> more_eyes);
 
  private:
+  friend class CycleSplitter;
+
+  const layers::PartStore& store() const;
+  // Which of two parts may occlude the other by their rule, for the eyes of an update() whose spans are still
+  // valid; both may without a rule. Rules that were set since have no effect.
+  PairOrder orderByRule(PartId first, PartId second);
+  // A different number for each part that ever had this number; 0 for a number that is no part.
+  std::uint64_t generationOf(PartId part) const;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

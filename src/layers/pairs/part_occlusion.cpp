@@ -72,6 +72,17 @@ bool PartOcclusion::occludes(std::uint32_t front, std::uint32_t back) {
   return occludes;
 }
 
+PairOrder PartOcclusion::orderByRule(std::uint32_t first, std::uint32_t second) {
+  const std::uint32_t number =
+      view_is_finite_ && rules_ != nullptr ? rules_->find(first, second) : PairRules::kNone;
+  if (number >= rule_orders_.size() || std::holds_alternative<ContainerRule>(rules_->rule(number).what)) {
+    return {};
+  }
+  const PairOrder order = ruleOrder(number);
+  return rules_->rule(number).first == first ? order
+                                             : PairOrder{order.second_may_occlude, order.first_may_occlude};
+}
+
 // Whether the hulls of part `front` occlude those of part `back`. Without a rule, contacts and containers
 // count.
 bool PartOcclusion::hullsOcclude(std::uint32_t front, std::uint32_t back, bool without_rule) {

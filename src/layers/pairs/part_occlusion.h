@@ -42,6 +42,8 @@ class PartOcclusion {
   // Conservative: true if it is not certain. A part that is not finite occludes all others and is occluded by
   // all.
   bool occludes(std::uint32_t front, std::uint32_t back);
+  // Which of two parts may occlude the other by their rule alone; both may without one, or in a container.
+  PairOrder orderByRule(std::uint32_t first, std::uint32_t second);
   // Returns the pairs of parts that were asked about in this frame, have no rule, and intersect, touch, or
   // nearly touch, or overlap by more than the contact tolerance: front < back, each once, ascending. Valid
   // until the next question.

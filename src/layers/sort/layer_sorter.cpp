@@ -96,7 +96,9 @@ struct LayerSorter::Impl {
   std::vector<PartSettings> part_settings;
   // One element per part; sorted: it has been in an update(); to_sort: it is in the order of this one.
   std::vector<std::uint8_t> enabled, moved, sorted, to_sort, removed;
-  std::vector<std::uint32_t> free_parts;  // numbers of removed parts
+  std::vector<std::uint32_t> free_parts;   // numbers of removed parts
+  std::vector<std::uint64_t> generations;  // one per part: how many had been added with it
+  std::uint64_t added = 0;                 // parts so far
   PairRules rules;
   PartExtents extents;
   PartOcclusion occlusion;
@@ -174,6 +176,7 @@ std::uint32_t LayerSorter::Impl::makeRoom(std::size_t hulls) {
   const std::size_t parts = store.parts();
   store.finite.resize(parts);
   part_settings.resize(parts);
+  generations.resize(parts);
   for (std::vector<std::uint8_t>* const flags : {&enabled, &moved, &sorted, &listed, &removed}) {
     flags->resize(parts);
   }
@@ -192,6 +195,7 @@ PartId LayerSorter::addPart(std::span<const HullId> hulls, const PartSettings& s
   own.store.placements[part] = {};
   own.store.finite[part] = own.isFinite(part) ? 1 : 0;
   own.part_settings[part] = settings;
+  own.generations[part] = ++own.added;
   own.enabled[part] = own.moved[part] = 1;
   own.sorted[part] = own.removed[part] = 0;
   return PartId(part);
@@ -315,6 +319,19 @@ const ConvexHull& LayerSorter::hull(HullId hull) const {
 
 const LayerSettings& LayerSorter::settings() const {
   return impl_->settings;
+}
+
+const PartStore& LayerSorter::store() const {
+  return impl_->store;
+}
+
+PairOrder LayerSorter::orderByRule(PartId first, PartId second) {
+  return impl_->areParts(first, second) ? impl_->occlusion.orderByRule(first.value, second.value)
+                                        : PairOrder{};
+}
+
+std::uint64_t LayerSorter::generationOf(PartId part) const {
+  return impl_->isPart(part) ? impl_->generations[part.value] : 0;
 }
 
 void LayerSorter::copyRules(PartId from, PartId to) {

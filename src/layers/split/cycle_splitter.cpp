@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <utility>
 
 #include "src/layers/hull/hull_box.h"
-#include "src/layers/hull/hull_envelope.h"
+#include "src/layers/pairs/part_store.h"
 #include "src/layers/pairs/set_occlusion.h"
 #include "src/layers/split/cycle_division.h"
 #include "src/layers/split/piece_tree.h"
@@ -24,18 +23,8 @@ namespace {
 
 constexpr std::uint32_t kMaxSides = 16;  // planes around a piece, at most
 constexpr std::uint32_t kLooks = 4;  // divisions that are looked at in a frame, whether they are superfluous
-// Halves in one group make it larger, and are kept for this share of the frames.
+// Two halves in one group only make it larger. They are kept for keep_frames divided by this.
 constexpr std::uint32_t kInVainShare = 4;
-
-// What is kept of a hull of the sorter, so that trials are quick.
-struct AroundHull {
-  HullBox box;
-  HullEnvelope envelope;
-  double surface = 0.0;
-
-  explicit AroundHull(const ConvexHull& hull)
-      : box(layers::boxOf(hull)), envelope(hull, box), surface(surfaceOf(box)) {}
-};
 
 // An eye from which an orthographic view looks, far enough to be on its side of any plane.
 Vec3d farEye(const View& view) {
@@ -48,12 +37,15 @@ Vec3d farEye(const View& view) {
 
 struct CycleSplitter::Impl {
   Impl(LayerSorter& of, CycleSplitSettings given) : sorter(&of), settings(std::move(given)), trees(of) {}
+  ~Impl() { joinAll(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   bool mayDivide(PartId part) const;
-  std::vector<ConvexSet> setsOf(PartId part);
+  std::vector<ConvexSet> setsOf(PartId part) const;
   double surfaceOfPart(PartId part) const;
   std::optional<PartShape> shapeOfPart(PartId part) const;
-  CycleMember memberOf(PartId part);
+  CycleMember memberOf(PartId part) const;
   bool divideGroups(const View& view, std::span<const Vec3d> more_eyes, const LayerOrder& order);
   bool divideGroup(std::span<const PartId> parts, const LayerOrder& order, const SetOcclusion& occlusion,
                    std::span<const Vec3d> eyes);
@@ -63,6 +55,8 @@ struct CycleSplitter::Impl {
   bool isWaiting(std::span<const PartId> parts) const;
   void wait(std::span<const PartId> parts);
   void joinSuperfluous();
+  void followParts();
+  void joinAll();
   void lookAtDivisions(const View& view, std::span<const Vec3d> more_eyes, const LayerOrder& order);
   void look(std::uint32_t node, const SetOcclusion& occlusion, const LayerOrder& order);
   PartId wholeOf(PartId part) const {
@@ -73,10 +67,9 @@ struct CycleSplitter::Impl {
   LayerSorter* sorter;
   CycleSplitSettings settings;
   PieceTrees trees;
-  std::deque<std::optional<AroundHull>> around;  // one per hull of the sorter; sets have their addresses
-  std::vector<std::uint8_t> kept_whole;          // by number of the part; not 0: must not be divided
-  std::vector<std::uint64_t> waits_until;        // by number of the part, the frame
-  std::vector<std::uint32_t> local_of;           // scratch: by number, the member; all kNone between calls
+  std::vector<std::uint64_t> kept_whole;   // by number of the part: the generation that must not be divided
+  std::vector<std::uint64_t> waits_until;  // by number of the part, the frame
+  std::vector<std::uint32_t> local_of;     // scratch: by number, the member; all kNone between calls
   std::vector<PartPiece> pieces;
   CycleSplitStats stats;
   std::uint64_t frame = 0;
@@ -91,32 +84,28 @@ CycleSplitter& CycleSplitter::operator=(CycleSplitter&&) noexcept = default;
 
 bool CycleSplitter::Impl::mayDivide(PartId part) const {
   return sorter->settingsOf(part).place == PartSettings::Place::kSorted && !sorter->isInContainer(part) &&
-         (part.value >= kept_whole.size() || kept_whole[part.value] == 0);
+         (part.value >= kept_whole.size() || kept_whole[part.value] != sorter->generationOf(part));
 }
 
-// The part's hulls as the sort takes them.
-std::vector<ConvexSet> CycleSplitter::Impl::setsOf(PartId part) {
+// The part's hulls as the sort takes them; valid until hulls are added or changed.
+std::vector<ConvexSet> CycleSplitter::Impl::setsOf(PartId part) const {
   std::vector<ConvexSet> sets;
-  const Placement placement = placementOf(sorter->transformOf(part));
+  const PartStore& store = sorter->store();
+  const Placement& placement = store.placements[part.value];
   const double erosion = sorter->settings().contact_tolerance;
-  for (const HullId id : sorter->hullsOf(part)) {
-    around.resize(std::max<std::size_t>(around.size(), std::size_t{id.value} + 1));
-    const ConvexHull& hull = sorter->hull(id);
-    if (!around[id.value]) {
-      around[id.value].emplace(hull);
-    }
+  for (const std::uint32_t hull : store.hullsOf(part.value)) {
     ConvexSet& set = sets.emplace_back();
-    set.hull = &hull;
-    set.around = &around[id.value]->envelope;
-    set.placement = erosion > 0.0 ? eroded(placement, around[id.value]->box, 0.5 * erosion) : placement;
+    set.hull = &store.hulls[hull];
+    set.around = &store.envelopes[hull];
+    set.placement = erosion > 0.0 ? eroded(placement, store.boxes[hull], 0.5 * erosion) : placement;
   }
   return sets;
 }
 
 double CycleSplitter::Impl::surfaceOfPart(PartId part) const {
   double surface = 0.0;
-  for (const HullId id : sorter->hullsOf(part)) {
-    surface += around[id.value]->surface;
+  for (const std::uint32_t hull : sorter->store().hullsOf(part.value)) {
+    surface += surfaceOf(sorter->store().boxes[hull]);
   }
   return surface;
 }
@@ -145,7 +134,7 @@ std::optional<PartShape> CycleSplitter::Impl::shapeOfPart(PartId part) const {
   return shape;
 }
 
-CycleMember CycleSplitter::Impl::memberOf(PartId part) {
+CycleMember CycleSplitter::Impl::memberOf(PartId part) const {
   CycleMember member{
       .part = wholeOf(part).value, .sets = setsOf(part), .placement = placementOf(sorter->transformOf(part))};
   member.surface = surfaceOfPart(part);
@@ -262,16 +251,12 @@ bool CycleSplitter::Impl::make(CycleDivision& division, std::span<const PartId> 
     const auto known =
         std::find_if(made.begin(), made.end(), [&](const auto& pair) { return pair.first == cut.node; });
     const std::uint32_t node = known != made.end() ? known->second : trees.rootOf(parts[cut.node]);
+    if (trees[node].parent == PieceTrees::kNone) {
+      trees[node].generation = sorter->generationOf(trees[node].whole);
+    }
     const auto [front, behind] =
         trees.divide(node, cut.plane, std::move(division.shape(cut.front)),
                      std::move(division.shape(cut.behind)), division.weightOf(cut.front));
-    for (const std::uint32_t half : {front, behind}) {
-      for (const HullId hull : trees[half].hulls) {
-        if (hull.value < around.size()) {
-          around[hull.value].reset();
-        }
-      }
-    }
     made.emplace_back(cut.front, front);
     made.emplace_back(cut.behind, behind);
     ++stats.cuts;
@@ -299,11 +284,14 @@ void CycleSplitter::Impl::look(std::uint32_t number, const SetOcclusion& occlusi
         continue;
       }
       const std::vector<ConvexSet> sets = setsOf(part);
+      // Both halves have the rules of the whole, among them the planes between it and its part's other
+      // pieces.
+      const PairOrder rule = sorter->orderByRule(front, part);
       // Groups come from front to back, so the first that is occluded is enough.
-      if (first_behind == PieceTrees::kNone && occlusion.occludes(own, sets)) {
+      if (first_behind == PieceTrees::kNone && rule.first_may_occlude && occlusion.occludes(own, sets)) {
         first_behind = i;
       }
-      if (occlusion.occludes(sets, own)) {
+      if (rule.second_may_occlude && occlusion.occludes(sets, own)) {
         last_in_front = i;
         any_in_front = true;
       }
@@ -347,30 +335,51 @@ void CycleSplitter::Impl::joinSuperfluous() {
   }
 }
 
+// The sorter's parts may have been enabled and removed since the last update.
+void CycleSplitter::Impl::followParts() {
+  std::vector<PartId> gone;
+  for (std::uint32_t number = 0; number < trees.size(); ++number) {
+    const PieceTrees::Node& node = trees[number];
+    if (!node.in_use || node.parent != PieceTrees::kNone) {
+      continue;
+    }
+    if (sorter->generationOf(node.whole) == node.generation) {
+      sorter->setEnabled(node.whole, false);
+    } else {
+      gone.push_back(node.whole);
+    }
+  }
+  for (const PartId part : gone) {
+    const bool enabled = sorter->isEnabled(part);  // of a new part with this number
+    trees.joinAll(part);
+    sorter->setEnabled(part, enabled);
+  }
+}
+
+void CycleSplitter::Impl::joinAll() {
+  followParts();
+  std::vector<PartPiece> divided;
+  trees.collect(divided);
+  for (const PartPiece& piece : divided) {
+    trees.joinAll(piece.part);
+  }
+}
+
 void CycleSplitter::setMayDivide(PartId part, bool may) {
-  std::vector<std::uint8_t>& kept = impl_->kept_whole;
+  std::vector<std::uint64_t>& kept = impl_->kept_whole;
   kept.resize(std::max<std::size_t>(kept.size(), std::size_t{part.value} + 1));
-  kept[part.value] = may ? 0 : 1;
+  kept[part.value] = may ? 0 : impl_->sorter->generationOf(part);
 }
 
 void CycleSplitter::join(PartId part) {
-  PieceTrees& trees = impl_->trees;
-  // Pieces of pieces are joined first, and those of the part last, which takes its tree away.
-  for (bool joined = true; joined;) {
-    joined = false;
-    for (std::uint32_t node = 0; node < trees.size(); ++node) {
-      if (trees.canJoin(node) && trees[node].whole == part) {
-        trees.join(node);
-        joined = true;
-      }
-    }
-  }
+  impl_->trees.joinAll(part);
 }
 
 const LayerOrder& CycleSplitter::update(const View& view, std::span<const Vec3d> more_eyes) {
   Impl& own = *impl_;
   ++own.frame;
   own.stats = {};
+  own.followParts();
   own.joinSuperfluous();
   own.trees.place();
   const LayerOrder* order = &own.sorter->update(view, more_eyes);

@@ -119,8 +119,24 @@ void PieceTrees::join(std::uint32_t number) {
   nodes_[number].front = nodes_[number].behind = kNone;
   nodes_[number].is_superfluous = false;
   if (is_root) {
-    setNode(nodes_[number].part, kNone);
+    // A removed part's number may be that of a piece meanwhile.
+    if (find(nodes_[number].part) == number) {
+      setNode(nodes_[number].part, kNone);
+    }
     release(number);
+  }
+}
+
+void PieceTrees::joinAll(PartId whole) {
+  // Pieces of pieces are joined first, and those of the part last.
+  for (bool joined = true; joined;) {
+    joined = false;
+    for (std::uint32_t node = 0; node < size(); ++node) {
+      if (canJoin(node) && nodes_[node].whole == whole) {
+        join(node);
+        joined = true;
+      }
+    }
   }
 }
 

@@ -17,8 +17,9 @@ class PieceTrees {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   struct Node {
-    PartId part{};   // its number in the sorter; a divided piece has none
-    PartId whole{};  // the part that the tree is of
+    PartId part{};                 // its number in the sorter; a divided piece has none
+    PartId whole{};                // the part that the tree is of
+    std::uint64_t generation = 0;  // of a root: LayerSorter::generationOf() its part
     std::uint32_t parent = kNone, front = kNone, behind = kNone;
     Plane plane;          // of a divided node
     PartShape shape;      // with its hulls, unless this is a root
@@ -51,6 +52,8 @@ class PieceTrees {
   // Joins two pieces that are not divided again.
   void join(std::uint32_t node);
   bool canJoin(std::uint32_t node) const;
+  // Joins all pieces of a part, which takes its tree away and enables it.
+  void joinAll(PartId whole);
 
   // Moves all pieces to where their parts are.
   void place();
