@@ -83,7 +83,7 @@ class CycleSplitter {
   CycleSplitter(CycleSplitter&&) noexcept;
   CycleSplitter& operator=(CycleSplitter&&) noexcept;
 
-  // Whether a part may be divided from now on; all may at first.
+  // Whether a part may be divided from now on, until it is removed; all may at first.
   void setMayDivide(PartId part, bool may);
   // Makes a divided part whole again.
   void join(PartId part);

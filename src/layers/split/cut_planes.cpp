@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "sightline/geometry/tolerance.h"
-
 namespace sightline::layers {
 namespace {
 

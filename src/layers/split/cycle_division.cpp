@@ -106,7 +106,7 @@ std::vector<std::uint32_t> CycleDivision::nodesToDivide(std::span<const std::uin
   };
   std::vector<std::pair<double, std::uint32_t>> ranked;
   for (const std::uint32_t node : cycle) {
-    const bool fits = pieces_ + piecesOf({.node = node}) <= limits_.max_pieces;
+    const bool fits = pieces_ + piecesOf(node) <= limits_.max_pieces;
     if (cuts_left_[node] > 0 && fits) {
       const CycleGraph::Node& own = graph_[node];
       ranked.emplace_back(-count(own.behind) * count(own.in_front) * own.surface, node);
@@ -221,9 +221,13 @@ void CycleDivision::addHalves(std::uint32_t node, const Plane& plane, const Shap
       }
     }
   }
-  // The halves touch, so the one on an eye's side occludes the other.
+  addArcsOfHalves(front, behind, plane, placement);
+}
+
+// The halves touch, so the one on an eye's side of the plane occludes the other.
+void CycleDivision::addArcsOfHalves(std::uint32_t front, std::uint32_t behind, const Plane& plane,
+                                    const Placement& p) {
   bool eye_in_front = false, eye_behind = false;
-  const Placement& p = placement;
   const Vec3d of_x = cross(p.y, p.z), of_y = cross(p.z, p.x), of_z = cross(p.x, p.y);
   const double determinant = dot(p.x, of_x);
   for (const Vec3d& eye : eyes_) {
@@ -242,8 +246,9 @@ void CycleDivision::addHalves(std::uint32_t node, const Plane& plane, const Shap
   }
 }
 
-std::uint32_t CycleDivision::piecesOf(const DivisionCut& cut) const {
-  return cut.node < members_.size() && !members_[cut.node].is_piece ? 2 : 1;
+// The pieces that are added if a node is divided: a whole part is none itself.
+std::uint32_t CycleDivision::piecesOf(std::uint32_t node) const {
+  return node < members_.size() && !members_[node].is_piece ? 2 : 1;
 }
 
 void CycleDivision::apply(Choice choice) {
@@ -257,14 +262,14 @@ void CycleDivision::apply(Choice choice) {
     sets_.push_back(shapes_.back()->placed(placementOf(choice.node), limits_.erosion));
   }
   graph_[choice.node].alive = false;
-  pieces_ += piecesOf(cut);
+  pieces_ += piecesOf(cut.node);
   cuts_.push_back(cut);
 }
 
 void CycleDivision::setDivided(const DivisionCut& cut, bool divided) {
   graph_[cut.node].alive = !divided;
   graph_[cut.front].alive = graph_[cut.behind].alive = divided;
-  pieces_ = divided ? pieces_ + piecesOf(cut) : pieces_ - piecesOf(cut);
+  pieces_ = divided ? pieces_ + piecesOf(cut.node) : pieces_ - piecesOf(cut.node);
 }
 
 // A node that lives again lacks the arcs of those that were made after it was divided.

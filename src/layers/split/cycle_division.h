@@ -80,6 +80,7 @@ class CycleDivision {
   void tryPlanes(std::uint32_t node, std::span<const std::uint32_t> cycle, std::optional<Choice>& best);
   std::vector<ConvexSet> neighboursOf(std::uint32_t node, std::span<const std::uint32_t> cycle) const;
   void addHalves(std::uint32_t node, const Plane& plane, const ShapeHalves& halves);
+  void addArcsOfHalves(std::uint32_t front, std::uint32_t behind, const Plane& plane, const Placement& p);
   void apply(Choice choice);
   void setDivided(const DivisionCut& cut, bool divided);
   void takeBackInVain(double enough);
@@ -88,7 +89,7 @@ class CycleDivision {
   void copyArc(std::uint32_t node, std::uint32_t other);
   bool haveShape(std::uint32_t node);
   const Placement& placementOf(std::uint32_t node) const { return members_[member_of_[node]].placement; }
-  std::uint32_t piecesOf(const DivisionCut& cut) const;
+  std::uint32_t piecesOf(std::uint32_t node) const;
 
   const SetOcclusion& occlusion_;
   std::span<const Vec3d> eyes_;

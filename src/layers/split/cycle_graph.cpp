@@ -99,7 +99,9 @@ void CycleGraph::visit(std::uint32_t start) {
   }
 }
 
-// The node's arcs are done. If it is the first of its component, that lies on the stack from it on.
+// Called when all arcs of the last node of the path have been followed. If no arc leads from it, or from
+// nodes found after it, to one found before it, it is the first that was found of its component, which is
+// then the top of the stack, from this node on.
 void CycleGraph::leave(std::uint32_t node) {
   path_.pop_back();
   if (!path_.empty()) {

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "sightline/geometry/tolerance.h"
-
 namespace sightline::layers {
 namespace {
 

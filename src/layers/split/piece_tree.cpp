@@ -109,7 +109,9 @@ void PieceTrees::join(std::uint32_t number) {
   if (is_root) {
     sorter_->setEnabled(nodes_[number].part, true);
   } else {
-    addToSorter(number, nodes_[front].part);  // the rule for the other half goes with that
+    // The piece gets the rules of a half. The half's rule with the other half, of which the piece gets a copy
+    // too, ends when the other half is removed below.
+    addToSorter(number, nodes_[front].part);
   }
   for (const std::uint32_t half : {front, behind}) {
     removeFromSorter(half);
