@@ -17,7 +17,7 @@ uniform mat4 clip_from_relative;
 uniform vec3 eye_high, eye_low;
 uniform samplerBuffer colors;
 uniform float depth_scale;  // 1 in pictures; less pushes everything away a little
-out vec3 relative;
+precise out vec3 relative;
 flat out vec4 color;
 invariant gl_Position;
 void main() {
@@ -40,7 +40,7 @@ uniform vec3 lens_offset;  // from the eye
 uniform samplerBuffer colors;
 uniform samplerBuffer places;  // five texels an object: three rows, the pivot's high and low part
 uniform float depth_scale;
-out vec3 relative;
+precise out vec3 relative;
 flat out vec4 color;
 invariant gl_Position;
 void main() {
@@ -90,14 +90,16 @@ inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTL
                                                     "}\n";
 
 // Of a piece of an object, only what lies on all of its sides is drawn. Fragments are tested after all that
-// needs their neighbours. The test has the same bits for the pieces on both sides, so each fragment is in
-// exactly one piece. Positions are relative to the eye.
+// needs their neighbours. The pieces on both sides of a plane may be drawn by different programs. `precise`
+// makes all of them compute positions and heights by the same operations, so that each fragment is in exactly
+// one piece. Positions are relative to the eye.
 #define SIGHTLINE_CUT                                                    \
   "uniform int cut_count, cut_fronts;\n"                                 \
   "uniform vec4 cuts[16];\n"                                             \
   "bool isCutOff() {\n"                                                  \
   "  for (int i = 0; i < cut_count; ++i) {\n"                            \
-  "    bool in_front = dot(cuts[i].xyz, relative) + cuts[i].w >= 0.0;\n" \
+  "    precise float height = dot(cuts[i].xyz, relative) + cuts[i].w;\n" \
+  "    bool in_front = height >= 0.0;\n"                                 \
   "    if (in_front != (((cut_fronts >> i) & 1) != 0)) return true;\n"   \
   "  }\n"                                                                \
   "  return false;\n"                                                    \
