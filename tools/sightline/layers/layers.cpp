@@ -413,8 +413,7 @@ Status checkSeenArcs(const LayersOptions& options) {
     if (sortsBySeen(options.sort) && is_drawn && given) {
       return Error{
           fmt::format("--arcs seen: is an order by outlines for --svg and --pdf, which {} does not take; "
-                      "leave one of the "
-                      "two out",
+                      "leave one of the two out",
                       option)};
     }
   }
