@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "src/pvs/bake/box_search.h"
 #include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
@@ -28,18 +29,9 @@ std::vector<std::uint32_t> trianglesOf(const SceneView& scene) {
 // True if test(index of the box) holds for one of the boxes that intersect this one. Stops at the first.
 template <typename Test>
 bool anyIntersecting(const BoxTree& tree, const CellBox& box, Test&& test) {
-  for (std::uint32_t n = 0; n < tree.nodes.size();) {
-    const BoxNode& node = tree.nodes[n];
-    if (!intersects(box, node.bounds)) {
-      n = node.end;
-      continue;
-    }
-    if (node.end == n + 1 && test(tree.objects[node.first_object].value)) {
-      return true;
-    }
-    n += 1;
-  }
-  return false;
+  return anyLeaf(
+      tree.view(), [&](const Box& bounds) { return !intersects(box, bounds); },
+      [&](const BoxNode& leaf) { return test(tree.objects[leaf.first_object].value); });
 }
 
 // Calls visit(index of the box) for all boxes that intersect this one.
@@ -305,17 +297,11 @@ void BakeScene::findOccludersAlong(const Vec3d& from, const Vec3d& to, double ma
   const LevelOccluders& at_level = levels_[level];
   const SegmentTest line(from, to, margin);
   const BoxTree& tree = at_level.tree;
-  for (std::uint32_t n = 0; n < tree.nodes.size();) {
-    const BoxNode& node = tree.nodes[n];
-    if (!intersects(box, node.bounds) || line.misses(node.bounds)) {
-      n = node.end;
-      continue;
-    }
-    if (node.end == n + 1) {
-      found.push_back(at_level.occluders[tree.objects[node.first_object].value]);
-    }
-    n += 1;
-  }
+  forEachLeaf(
+      tree.view(), [&](const Box& bounds) { return !intersects(box, bounds) || line.misses(bounds); },
+      [&](const BoxNode& leaf) {
+        found.push_back(at_level.occluders[tree.objects[leaf.first_object].value]);
+      });
 }
 
 void BakeScene::findFaces(const CellBox& box, std::vector<DividingFace>& found) const {

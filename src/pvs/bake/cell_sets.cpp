@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 
+#include "src/pvs/bake/box_search.h"
 #include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
@@ -541,21 +542,18 @@ void CellBaker::findBehind(std::span<const Vec3d> corners, std::span<const Box> 
   behind_.reset(static_cast<std::uint32_t>(tree.objects.size()));
   for (const Box& given : boxes) {
     const Box box = widened(given, line_margin_);
-    for (std::uint32_t n = 0; n < tree.nodes.size();) {
-      const BoxNode& node = tree.nodes[n];
-      if (!mayPass(corners.front(), node.bounds, box) || !mayPass(corners.back(), node.bounds, box)) {
-        n = node.end;
-        continue;
-      }
-      const auto passes = [&, to = center(node.bounds)](const Vec3d& corner) {
+    const auto misses = [&](const Box& bounds) {
+      return !mayPass(corners.front(), bounds, box) || !mayPass(corners.back(), bounds, box);
+    };
+    forEachLeaf(tree, misses, [&](const BoxNode& leaf) {
+      const auto passes = [&, to = center(leaf.bounds)](const Vec3d& corner) {
         return !SegmentTest(corner, to, line_margin_).misses(box);
       };
-      if (tree.leaf(n) && std::all_of(corners.begin(), corners.end(), passes)) {
-        const ObjectRun object{node.first_object, node.first_object + 1};
+      if (std::all_of(corners.begin(), corners.end(), passes)) {
+        const ObjectRun object{leaf.first_object, leaf.first_object + 1};
         behind_.add(std::span(&object, 1));
       }
-      n += 1;
-    }
+    });
   }
 }
 

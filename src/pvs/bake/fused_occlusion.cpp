@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "sightline/geometry/tolerance.h"
+#include "src/pvs/bake/box_search.h"
 #include "src/pvs/bake/segment.h"
 
 namespace sightline::pvs {
@@ -170,20 +171,12 @@ void FusedOcclusion::findCrossings(const Vec3d& from, const Vec3d& to, bool unti
   crossings_.clear();
   const BoxTree& tree = panels_.tree;
   const SegmentTest segment(from, to, error_);
-  for (std::uint32_t n = 0; n < tree.nodes.size();) {
-    const BoxNode& node = tree.nodes[n];
-    if (segment.misses(node.bounds)) {
-      n = node.end;
-      continue;
-    }
-    if (node.end == n + 1) {
-      crossPanel(tree.objects[node.first_object].value, from, to);
-      if (until_blocked && !crossings_.empty() && crossings_.back().blocks()) {
-        return;
-      }
-    }
-    n += 1;
-  }
+  anyLeaf(
+      tree.view(), [&](const Box& bounds) { return segment.misses(bounds); },
+      [&](const BoxNode& leaf) {
+        crossPanel(tree.objects[leaf.first_object].value, from, to);
+        return until_blocked && !crossings_.empty() && crossings_.back().blocks();
+      });
 }
 
 void FusedOcclusion::crossPanel(std::uint32_t number, const Vec3d& from, const Vec3d& to) {

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "src/pvs/bake/box_search.h"
+
 namespace sightline::pvs {
 namespace {
 
@@ -110,34 +112,16 @@ bool Recall::panelsDiffer(const CellBox& region, const Box& box) const {
   const double by = kComparedWidening * magnitude_;
   const CellBox target{Vec3d(box.min), Vec3d(box.max)};
   const Shaft shaft(wider(region, by), wider(target, by), magnitude_, slack_);
-  for (std::uint32_t n = 0; n < changed_panels_.nodes.size();) {
-    const BoxNode& node = changed_panels_.nodes[n];
-    if (shaft.misses(node.bounds)) {
-      n = node.end;
-      continue;
-    }
-    if (node.end == n + 1) {
-      return true;
-    }
-    n += 1;
-  }
-  return false;
+  return anyLeaf(
+      changed_panels_.view(), [&](const Box& bounds) { return shaft.misses(bounds); },
+      [](const BoxNode&) { return true; });
 }
 
 bool Recall::panelsDiffer(const Box& box) const {
   const CellBox wide = wider({Vec3d(box.min), Vec3d(box.max)}, kComparedWidening * magnitude_);
-  for (std::uint32_t n = 0; n < changed_panels_.nodes.size();) {
-    const BoxNode& node = changed_panels_.nodes[n];
-    if (!intersects(wide, node.bounds)) {
-      n = node.end;
-      continue;
-    }
-    if (node.end == n + 1) {
-      return true;
-    }
-    n += 1;
-  }
-  return false;
+  return anyLeaf(
+      changed_panels_.view(), [&](const Box& bounds) { return !intersects(wide, bounds); },
+      [](const BoxNode&) { return true; });
 }
 
 std::uint64_t Recall::partOf(std::uint64_t cell) const {
