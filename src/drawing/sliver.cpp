@@ -38,8 +38,8 @@ bool hasInside(const GridPath& ring, double distance) {
 
 }  // namespace
 
-// Of a convex ring the mean width is at least the radius of any circle in it, so that alone would do. But a
-// long sliver outweighs a wide piece that hangs on it.
+// The mean width of a convex ring is at least the radius of any circle in it, so that alone would do for
+// those. In other rings a long sliver outweighs a wide piece that hangs on it.
 bool isSliver(const GridPath& ring, double width) {
   return meanWidth(ring) < width && !hasInside(ring, width);
 }

@@ -75,22 +75,24 @@ TEST(WorldMargins, FlattenedMembersOfJoinsHaveNoSides) {
   }
 }
 
+// The matrix of a panel ten metres before the eye, from x0 to x1 and as high as this (metres).
+Mat4 panelTo(double x0, double x1, double height) {
+  Mat4 m;
+  m(0, 0) = x1 - x0;
+  m(1, 1) = height;
+  m(0, 3) = x0;
+  m(1, 3) = -0.5 * height;
+  m(2, 3) = -10.0;
+  return m;
+}
+
 // A panel near the eye is joined with one far away, so that its positions are rounded by some
 // millimetres: outwards, over a crate that is seen beside its edge through a telescope.
 TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
-  const auto panelTo = [](double x0, double x1) {
-    Mat4 m;
-    m(0, 0) = x1 - x0;
-    m(1, 1) = 2.0;
-    m(0, 3) = x0;
-    m(1, 3) = -1.0;
-    m(2, 3) = -10.0;
-    return m;
-  };
   for (const double far_away : {8.0, 524288.0}) {
     Story story(allShapes());
-    const std::vector<InstanceId> panels{story.add(1, panelTo(-4.0, 0.009)),
-                                         story.add(1, panelTo(far_away, far_away + 4.0))};
+    const std::vector<InstanceId> panels{story.add(1, panelTo(-4.0, 0.009, 2.0)),
+                                         story.add(1, panelTo(far_away, far_away + 4.0, 2.0))};
     Mat4 small;
     small(0, 0) = small(1, 1) = small(2, 2) = 0.003;
     small(2, 3) = -11.0;
@@ -125,17 +127,9 @@ TEST(WorldMargins, RoundingOfPositionsInAJoinHidesNothing) {
 }
 
 TEST(WorldMargins, AJoinOfRoundedPositionsHidesOnlyIfThatIsAllowed) {
-  const auto panelTo = [](double x0, double x1) {
-    Mat4 m;
-    m(0, 0) = x1 - x0;
-    m(1, 1) = 20.0;
-    m(0, 3) = x0;
-    m(1, 3) = -10.0;
-    m(2, 3) = -10.0;
-    return m;
-  };
   Story story(allShapes());
-  const std::vector<InstanceId> panels{story.add(1, panelTo(-10.0, 0.1)), story.add(1, panelTo(0.1, 10.0))};
+  const std::vector<InstanceId> panels{story.add(1, panelTo(-10.0, 0.1, 20.0)),
+                                       story.add(1, panelTo(0.1, 10.0, 20.0))};
   Mat4 small;
   small(2, 3) = -14.0;
   small(0, 3) = -0.4;

@@ -89,10 +89,10 @@ inline constexpr const char* kAlphaTestedFragment = "#version 430 core\n" SIGHTL
                                                     "  result = shade();\n"
                                                     "}\n";
 
-// Of a piece of an object, only what lies on all of its sides is drawn. Fragments are tested after all that
-// needs their neighbours. The pieces on both sides of a plane may be drawn by different programs. `precise`
-// makes all of them compute positions and heights by the same operations, so that each fragment is in exactly
-// one piece. Positions are relative to the eye.
+// A piece of an object is drawn without what lies beyond one of its sides. Fragments are tested after all
+// that needs their neighbours. The pieces on both sides of a plane may be drawn by different programs.
+// `precise` makes all of them compute positions and heights by the same operations, so that each fragment is
+// in exactly one piece. Positions are relative to the eye.
 #define SIGHTLINE_CUT                                                    \
   "uniform int cut_count, cut_fronts;\n"                                 \
   "uniform vec4 cuts[16];\n"                                             \
