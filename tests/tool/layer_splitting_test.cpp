@@ -92,12 +92,14 @@ class LayerSplittingPictures : public ::testing::Test {
 
 TEST_F(LayerSplittingPictures, PicturesOfPiecesAreThoseOfWholeParts) {
   for (const char* parts : {"see-through", "all"}) {
-    for (const json& frame : drawn("demo:glass", {"--parts", parts})["frames"]) {
+    const json glass = drawn("demo:glass", {"--parts", parts});
+    for (const json& frame : glass["frames"]) {
       EXPECT_LE(frame["picture"]["difference"]["largest"], 1.0);
       EXPECT_EQ(frame["picture"]["difference"]["share_beyond"], 0.0);
     }
   }
-  for (const json& frame : drawn("demo:toothpicks", {"--parts", "all"})["frames"]) {
+  const json toothpicks = drawn("demo:toothpicks", {"--parts", "all"});
+  for (const json& frame : toothpicks["frames"]) {
     EXPECT_EQ(frame["picture"]["difference"]["largest"], 0.0);
   }
 }
