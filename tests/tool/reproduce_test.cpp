@@ -24,7 +24,7 @@ std::vector<std::string> tiny(std::vector<std::string> more) {
 json reproduced(const std::vector<std::string>& more) {
   std::vector<std::string> arguments = tiny(more);
   arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome outcome = runTool(arguments);
+  const Outcome& outcome = runToolOnce(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   return parse(outcome.out);
@@ -167,7 +167,7 @@ std::vector<std::string> tinyShip(std::vector<std::string> more) {
 json reproducedShip(const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = tinyShip(more);
   arguments.insert(arguments.end(), {"--json", "-"});
-  const Outcome outcome = runTool(arguments);
+  const Outcome& outcome = runToolOnce(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   return parse(outcome.out);
@@ -327,7 +327,7 @@ json reproducedRoutes(const std::vector<std::string>& more = {}) {
                                      "--frames",  "0:60:20",   "--width", "64",      "--height",
                                      "64",        "--json",    "-"};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  const Outcome outcome = runTool(arguments);
+  const Outcome& outcome = runToolOnce(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return parse(outcome.out);
 }
