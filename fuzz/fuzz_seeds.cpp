@@ -40,7 +40,7 @@ bool write(const std::string& file, std::span<const std::byte> bytes, const std:
 
 bool writeFile(const std::string& file, const made::Visibility& settings) {
   const auto bytes = pvs::encodeSight(made::visibility(settings));
-  return bytes && write(file, *bytes);
+  return bytes && write(file, bytes->joined());
 }
 
 bool writeSet(const std::string& file, const std::vector<std::uint32_t>& nodes) {

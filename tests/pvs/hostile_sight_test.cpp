@@ -20,9 +20,9 @@ struct Parts {
   pvs::EncodedChunks encoded = pvs::encodeChunks(baked);
 
   Bytes bytes() const {
-    const Result<Bytes> bytes = sightBytes(pvs::viewOf(baked, encoded));
-    EXPECT_TRUE(bytes);
-    return bytes ? *bytes : Bytes{};
+    const Result<Bytes> structure = structureBytes(pvs::viewOf(baked, encoded));
+    EXPECT_TRUE(structure);
+    return structure ? SightBytes{*structure, encoded.payload}.joined() : Bytes{};
   }
   // Replaces the frame of a chunk and moves the chunks behind it.
   void setFrame(std::size_t chunk, const Bytes& frame) {

@@ -17,9 +17,9 @@ namespace sightline::sight_test {
 using Bytes = std::vector<std::byte>;
 
 inline Bytes bytesOf(const BakedVisibility& baked) {
-  Result<Bytes> bytes = pvs::encodeSight(baked);
+  const Result<pvs::SightBytes> bytes = pvs::encodeSight(baked);
   EXPECT_TRUE(bytes) << bytes.error().message;
-  return bytes ? *bytes : Bytes{};
+  return bytes ? bytes->joined() : Bytes{};
 }
 
 inline Result<SightFile> opened(std::span<const std::byte> bytes) {

@@ -40,7 +40,7 @@ Made bakeWith(const Scene& scene, BakeSettings settings, const std::vector<std::
   const Result<BakedVisibility> baked = bake->assemble(parts);
   EXPECT_TRUE(baked) << (baked ? "" : baked.error().message);
   if (baked) {
-    made.file = *pvs::encodeSight(*baked);
+    made.file = pvs::encodeSight(*baked)->joined();
     made.answers = bake->answers(parts);
   }
   return made;
@@ -48,7 +48,7 @@ Made bakeWith(const Scene& scene, BakeSettings settings, const std::vector<std::
 
 // The same without anything that concerns updates.
 std::vector<std::byte> plainFile(const Scene& scene, const BakeSettings& settings) {
-  return *pvs::encodeSight(test::baked(scene, settings));
+  return pvs::encodeSight(test::baked(scene, settings))->joined();
 }
 
 struct Totals {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "src/pvs/format/set_code.h"
 #include "src/pvs/format/structure.h"
@@ -124,7 +125,13 @@ SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded) {
   return view;
 }
 
-Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked) {
+std::vector<std::byte> SightBytes::joined() const {
+  std::vector<std::byte> all = structure;
+  all.insert(all.end(), payload.begin(), payload.end());
+  return all;
+}
+
+Result<SightBytes> encodeSight(const BakedVisibility& baked) {
   // The order matters: sets are checked by means of the hierarchy.
   Status sound = checkBoxTree(baked.boxes.view());
   if (sound) {
@@ -133,12 +140,16 @@ Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked) {
   if (!sound) {
     return Error{"the data is not sound: " + sound.error().message};
   }
-  const EncodedChunks encoded = encodeChunks(baked);
+  EncodedChunks encoded = encodeChunks(baked);
   const SightView view = viewOf(baked, encoded);
   if (Status fits = checkView(view); !fits) {
     return Error{"the data is not sound: " + fits.error().message};
   }
-  return sightBytes(view);
+  Result<std::vector<std::byte>> structure = structureBytes(view);
+  if (!structure) {
+    return structure.error();
+  }
+  return SightBytes{std::move(*structure), std::move(encoded.payload)};
 }
 
 }  // namespace sightline::pvs

@@ -13,7 +13,7 @@ namespace sightline::pvs {
 
 // The compressed chunks of sets and databases.
 struct EncodedChunks {
-  std::vector<pvs::Chunk> chunks;  // without checksums; sightBytes fills them in
+  std::vector<pvs::Chunk> chunks;  // without checksums; structureBytes fills them in
   std::uint32_t set_chunks = 0;    // number of chunks of sets, which come first
   std::vector<pvs::SetPlace> sets;
   std::vector<pvs::DatabaseEntry> databases;  // names point into the baked data
@@ -23,11 +23,16 @@ struct EncodedChunks {
 // Compresses without any checks.
 EncodedChunks encodeChunks(const BakedVisibility& baked);
 
-// The input of sightBytes; both arguments must outlive it.
+// The input of structureBytes; both arguments must outlive it.
 pvs::SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded);
 
-// The bytes of the whole file. Returns an error if the data is invalid (a reader would reject it) or too
-// large.
-Result<std::vector<std::byte>> encodeSight(const BakedVisibility& baked);
+// The bytes of a file: those of its structure, then those of its payload.
+struct SightBytes {
+  std::vector<std::byte> structure, payload;
+
+  std::vector<std::byte> joined() const;
+};
+// Returns an error if the data is invalid (a reader would reject it) or too large.
+Result<SightBytes> encodeSight(const BakedVisibility& baked);
 
 }  // namespace sightline::pvs

@@ -96,12 +96,13 @@ void flushFolderOf(const std::string& file) {
 }  // namespace
 
 Status writeSight(const std::string& file, const BakedVisibility& baked) {
-  const Result<std::vector<std::byte>> bytes = pvs::encodeSight(baked);
+  const Result<pvs::SightBytes> bytes = pvs::encodeSight(baked);
   if (!bytes) {
     return Error{file + " cannot be written: " + bytes.error().message};
   }
   Unfinished unfinished(file);
-  unfinished.write(*bytes);
+  unfinished.write(bytes->structure);
+  unfinished.write(bytes->payload);
   if (const int error = unfinished.finishAs(file); error != 0) {
     return failed(file, error);
   }

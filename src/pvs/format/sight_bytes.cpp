@@ -2,9 +2,9 @@
 #include <sight_generated.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -53,10 +53,9 @@ Vec3d ours(const sight::Double3& v) {
 }
 
 std::size_t estimatedBytes(const SightView& view) {
-  return 4096 + view.payload.size() + view.settings.size() + view.boxes.nodes.size_bytes() +
-         view.boxes.objects.size_bytes() + view.octree.nodes.size_bytes() + view.octree.leaves.size_bytes() +
-         2 * view.octree.leaves.size() + view.octree.planes.size_bytes() + view.sets.size_bytes() +
-         view.chunks.size_bytes();
+  return 4096 + view.settings.size() + view.boxes.nodes.size_bytes() + view.boxes.objects.size_bytes() +
+         view.octree.nodes.size_bytes() + view.octree.leaves.size_bytes() + 2 * view.octree.leaves.size() +
+         view.octree.planes.size_bytes() + view.sets.size_bytes() + view.chunks.size_bytes();
 }
 
 auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
@@ -69,9 +68,8 @@ auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   return builder.CreateVector(tables);
 }
 
-// FlatBuffers puts what is created first at the end of the file.
-void writeFile(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
-  const auto payload = writeArray<std::uint8_t>(builder, view.payload);
+// FlatBuffers puts what is created first at the end of the structure.
+void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
   const auto chunks = writeArray<sight::Chunk>(builder, view.chunks);
   const auto sets = writeArray<sight::SetPlace>(builder, view.sets);
   const auto objects = writeArray<std::uint32_t>(builder, view.boxes.objects);
@@ -88,53 +86,51 @@ void writeFile(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
   const sight::Seal seal(0, 0);
   const sight::Scene scene(view.scene.hash, view.scene.objects, view.scene.triangles);
   const sight::Extent extent(stored(view.octree.min), stored(view.octree.max));
-  builder.Finish(
-      sight::CreateFile(builder, kVersion, &seal, &scene, record, boxes, objects, &extent, nodes, leaves,
-                        depths, reasons, planes, view.set_chunks, sets, chunks, databases, payload),
-      sight::FileIdentifier());
+  builder.Finish(sight::CreateFile(builder, kVersion, &seal, view.payload.size(), &scene, record, boxes,
+                                   objects, &extent, nodes, leaves, depths, reasons, planes, view.set_chunks,
+                                   sets, chunks, databases),
+                 sight::FileIdentifier());
 }
 
 const std::uint8_t* startOf(std::span<const std::byte> bytes) {
   return reinterpret_cast<const std::uint8_t*>(bytes.data());
 }
 
+// The table with which the bytes begin; null if they do not, or if it reaches beyond them. No table reaches
+// beyond kMaxStructureBytes.
 template <typename Table>
 const Table* verified(std::span<const std::byte> bytes) {
-  flatbuffers::Verifier verifier(startOf(bytes), bytes.size(), 8, 4 * kMaxDatabases);
-  const bool sound = bytes.size() <= kMaxFileBytes && verifier.VerifyBuffer<Table>(sight::FileIdentifier());
-  return sound ? flatbuffers::GetRoot<Table>(bytes.data()) : nullptr;
+  const std::span<const std::byte> first =
+      bytes.first(std::min<std::size_t>(bytes.size(), kMaxStructureBytes));
+  flatbuffers::Verifier verifier(startOf(first), first.size(), 8, 4 * kMaxDatabases);
+  const bool sound = verifier.VerifyBuffer<Table>(sight::FileIdentifier());
+  return sound ? flatbuffers::GetRoot<Table>(first.data()) : nullptr;
 }
 
-// Offset of a part of the file, which must lie in the bytes.
+// How many of these bytes of a whole file are the structure; nothing if they do not begin with one.
+std::optional<std::size_t> structureSize(std::span<const std::byte> bytes) {
+  const auto* head = verified<sight::FileHead>(bytes);
+  const bool sound = head != nullptr && head->payload_bytes() <= bytes.size() &&
+                     bytes.size() - head->payload_bytes() <= kMaxStructureBytes;
+  return sound ? std::optional(bytes.size() - static_cast<std::size_t>(head->payload_bytes())) : std::nullopt;
+}
+
+// Offset of a part of the structure, which must lie in the bytes.
 std::size_t offsetIn(std::span<const std::byte> bytes, const void* part) {
   return static_cast<std::size_t>(static_cast<const std::byte*>(part) - bytes.data());
 }
 
-// Checksum of everything that is read in place: all bytes except its own eight and the payload.
-std::uint64_t sealOf(std::span<const std::byte> bytes, const sight::File& file) {
-  struct Gap {
-    std::size_t begin, end;
-  };
-  const std::size_t own = offsetIn(bytes, file.seal()) + sizeof(std::uint64_t);
-  const std::size_t payload = offsetIn(bytes, file.payload()->Data());
-  std::array<Gap, 2> gaps{{{own, own + sizeof(std::uint64_t)}, {payload, payload + file.payload()->size()}}};
-  if (gaps[1].begin < gaps[0].begin) {
-    std::swap(gaps[0], gaps[1]);
-  }
+// Checksum of everything that is read in place: all bytes of the structure except its own eight.
+std::uint64_t sealOf(std::span<const std::byte> structure, const sight::File& file) {
+  const std::size_t own = offsetIn(structure, file.seal()) + sizeof(std::uint64_t);
   Checksum checksum;
-  std::size_t at = 0;
-  for (const Gap& gap : gaps) {
-    checksum.add(bytes.subspan(at, std::max(gap.begin, at) - at));  // gaps may overlap in forged files
-    at = std::max(gap.end, at);
-  }
-  checksum.add(bytes.subspan(at));
+  checksum.add(structure.first(own));
+  checksum.add(structure.subspan(own + sizeof(std::uint64_t)));
   return checksum.value();
 }
 
 // Fills in the checksums of the chunks that lie in the payload; others keep theirs.
-void sealChunks(std::span<std::byte> bytes, const sight::File& file) {
-  const std::span<std::byte> payload =
-      bytes.subspan(offsetIn(bytes, file.payload()->Data()), file.payload()->size());
+void sealChunks(std::span<std::byte> structure, std::span<const std::byte> payload, const sight::File& file) {
   std::span<const Chunk> chunks;
   if (!readArray(file.chunks(), chunks)) {
     return;
@@ -142,8 +138,25 @@ void sealChunks(std::span<std::byte> bytes, const sight::File& file) {
   for (const Chunk& chunk : chunks) {
     if (chunk.offset <= payload.size() && chunk.bytes <= payload.size() - chunk.offset) {
       const std::uint64_t checksum = checksumOf(payload.subspan(chunk.offset, chunk.bytes));
-      std::memcpy(bytes.data() + offsetIn(bytes, &chunk), &checksum, sizeof checksum);
+      std::memcpy(structure.data() + offsetIn(structure, &chunk), &checksum, sizeof checksum);
     }
+  }
+}
+
+// In forged bytes, the field that is written may be part of something else, so the bytes are verified again
+// after each step.
+void sealStructure(std::span<std::byte> structure, std::span<const std::byte> payload) {
+  if (const auto* file = verified<sight::File>(structure); file != nullptr) {
+    const std::uint64_t size = structure.size() + payload.size();
+    std::memcpy(structure.data() + offsetIn(structure, file->seal()), &size, sizeof size);
+  }
+  if (const auto* file = verified<sight::File>(structure); file != nullptr) {
+    sealChunks(structure, payload, *file);
+  }
+  if (const auto* file = verified<sight::File>(structure); file != nullptr) {
+    const std::uint64_t checksum = sealOf(structure, *file);
+    std::memcpy(structure.data() + offsetIn(structure, file->seal()) + sizeof checksum, &checksum,
+                sizeof checksum);
   }
 }
 
@@ -151,9 +164,6 @@ void sealChunks(std::span<std::byte> bytes, const sight::File& file) {
 Status checkVersion(std::span<const std::byte> bytes) {
   if (bytes.empty()) {
     return Error{"is empty: bake it again"};
-  }
-  if (bytes.size() > kMaxFileBytes) {
-    return Error{"is not a .sight file: it is larger than 2 GiB"};
   }
   constexpr std::size_t kHead = 8;  // root offset and identifier
   if (bytes.size() < kHead || !flatbuffers::BufferHasIdentifier(bytes.data(), sight::FileIdentifier())) {
@@ -184,7 +194,7 @@ bool readArrays(const sight::File& file, SightView& view) {
          readArray(file.nodes(), octree.nodes) && readArray(file.leaves(), octree.leaves) &&
          readArray(file.depths(), octree.depths) && readArray(file.reasons(), octree.reasons) &&
          readArray(file.planes(), octree.planes) && readArray(file.sets(), view.sets) &&
-         readArray(file.chunks(), view.chunks) && readArray(file.payload(), view.payload);
+         readArray(file.chunks(), view.chunks);
 }
 
 // Returns false if a part is not aligned for its elements.
@@ -204,32 +214,24 @@ bool readView(const sight::File& file, SightView& view) {
 
 }  // namespace
 
-Result<std::vector<std::byte>> sightBytes(const SightView& view) {
+Result<std::vector<std::byte>> structureBytes(const SightView& view) {
   const std::size_t estimate = estimatedBytes(view);
-  if (estimate > kMaxFileBytes) {
-    return Error{"would be larger than 2 GiB: bake with a larger triangle budget or a smaller depth"};
+  if (estimate > kMaxStructureBytes) {
+    return Error{
+        "would have more than 2 GiB of cells and of places of sets: bake with a larger triangle budget or a "
+        "smaller depth"};
   }
   flatbuffers::FlatBufferBuilder builder(estimate);
-  writeFile(builder, view);
+  writeStructure(builder, view);
   const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
   std::vector<std::byte> bytes(begin, begin + builder.GetSize());
-  seal(bytes);
+  sealStructure(bytes, view.payload);
   return bytes;
 }
 
 void seal(std::span<std::byte> bytes) {
-  // In forged bytes, the field that is written may be part of something else, so the bytes are verified again
-  // after each step.
-  if (const auto* file = verified<sight::File>(bytes); file != nullptr) {
-    const std::uint64_t size = bytes.size();
-    std::memcpy(bytes.data() + offsetIn(bytes, file->seal()), &size, sizeof size);
-  }
-  if (const auto* file = verified<sight::File>(bytes); file != nullptr) {
-    sealChunks(bytes, *file);
-  }
-  if (const auto* file = verified<sight::File>(bytes); file != nullptr) {
-    const std::uint64_t checksum = sealOf(bytes, *file);
-    std::memcpy(bytes.data() + offsetIn(bytes, file->seal()) + sizeof checksum, &checksum, sizeof checksum);
+  if (const std::optional<std::size_t> size = structureSize(bytes)) {
+    sealStructure(bytes.first(*size), bytes.subspan(*size));
   }
 }
 
@@ -237,14 +239,16 @@ Result<SightView> viewOf(std::span<const std::byte> bytes) {
   if (Status version = checkVersion(bytes); !version) {
     return version.error();
   }
-  const auto* file = verified<sight::File>(bytes);
+  const std::span<const std::byte> structure = bytes.first(structureSize(bytes).value_or(0));
+  const auto* file = verified<sight::File>(structure);
   if (file == nullptr) {
     return Error{"is truncated or altered: bake it again"};
   }
-  if (sealOf(bytes, *file) != file->seal()->checksum()) {
+  if (sealOf(structure, *file) != file->seal()->checksum()) {
     return Error{"is altered, its checksum is another one: bake it again"};
   }
   SightView view;
+  view.payload = bytes.subspan(structure.size());
   const Status sound = readView(*file, view) ? checkView(view) : Error{"its arrays are not aligned"};
   if (!sound) {
     return Error{"is damaged: " + sound.error().message + ": bake it again"};

@@ -16,8 +16,8 @@
 
 namespace sightline::pvs {
 
-inline constexpr std::uint32_t kVersion = 1;
-inline constexpr std::uint64_t kMaxFileBytes = 0x7fffffffu;  // the limit of a FlatBuffer
+inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint64_t kMaxStructureBytes = 0x7fffffffu;  // the limit of a FlatBuffer
 
 // Chunks of sets are about kSetChunkBytes long before compression, so that one is decompressed in a few
 // microseconds. None is longer than kMaxSetChunkBytes, except for a single set that is longer itself.
@@ -72,12 +72,14 @@ struct SightView {
   }
 };
 
-// The bytes of a file, including checksums of chunks and the seal. The view is not checked. Returns an error
-// if the file would be too long.
-Result<std::vector<std::byte>> sightBytes(const SightView& view);
+// The bytes of a file's structure, including checksums of chunks and the seal. The file consists of these
+// bytes and those of view.payload. The view is not checked. Returns an error if the structure would be too
+// long.
+Result<std::vector<std::byte>> structureBytes(const SightView& view);
 
-// Writes the checksums of chunks and the seal into the bytes of a file, overwriting those that are there.
-// Bytes that are not such a FlatBuffer are left unchanged. They must start at a multiple of eight.
+// Writes the checksums of chunks and the seal into the bytes of a whole file, overwriting those that are
+// there. Bytes that do not begin with such a structure are left unchanged. They must start at a multiple of
+// eight.
 void seal(std::span<std::byte> bytes);
 
 // A view of a file in place: bytes must start at a multiple of eight and outlive the view. Checks everything

@@ -41,6 +41,7 @@ bool ChunkDecoder::readSet(const SightView& view, std::uint32_t set, std::vector
   if (chunk != last_chunk_) {
     last_chunk_ = kNone;
     raw_.clear();
+    bytes_read_ += view.chunks[chunk].bytes;
     if (!decompress(view, view.chunks[chunk], raw_)) {
       return false;
     }

@@ -24,6 +24,9 @@ class ChunkDecoder {
   // corrupt. Allocates nothing more once it has seen the longest chunk.
   bool readSet(const pvs::SightView& view, std::uint32_t set, std::vector<std::uint32_t>& nodes);
 
+  // Bytes of chunks, as they are in the payload, that readSet has read so far.
+  std::uint64_t bytesRead() const { return bytes_read_; }
+
   // Appends the contents of a chunk. Returns false and appends nothing if the chunk is corrupt.
   bool decompress(const pvs::SightView& view, const pvs::Chunk& chunk, std::vector<std::byte>& raw);
 
@@ -36,6 +39,7 @@ class ChunkDecoder {
   std::unique_ptr<ZSTD_DCtx_s, Free> context_;
   std::vector<std::byte> raw_;  // contents of the last chunk
   std::uint32_t last_chunk_ = kNone;
+  std::uint64_t bytes_read_ = 0;
 };
 
 }  // namespace sightline::pvs

@@ -66,7 +66,9 @@ Result<MappedFile> MappedFile::open(const std::string& file) {
     return mapped;
   }
   const auto size = static_cast<std::size_t>(status.st_size);
-  void* begin = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, descriptor.number(), 0);
+  // No memory is reserved for copies of pages, because the file may be larger than memory.
+  void* begin =
+      ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_NORESERVE, descriptor.number(), 0);
   if (begin == MAP_FAILED) {
     return unreadable();
   }

@@ -61,9 +61,11 @@ VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) 
   switch (cache.state(set)) {
     case SetCache::State::kCached:
       return remember(set, cache.use(set));
-    case SetCache::State::kMissing:
+    case SetCache::State::kMissing: {
       decoded.clear();
-      if (decoder.readSet(view, set, decoded)) {
+      const bool sound = decoder.readSet(view, set, decoded);
+      stats.chunk_bytes = decoder.bytesRead();
+      if (sound) {
         ++stats.decoded;
         remember(set, cache.insert(set, decoded));
         stats.cached_bytes = cache.bytes();
@@ -71,6 +73,7 @@ VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) 
       }
       cache.markBroken(set);
       break;
+    }
     case SetCache::State::kBroken:
       break;
   }

@@ -19,6 +19,7 @@ struct SetQueryStats {
   std::uint64_t finds = 0;
   std::uint64_t same_cell = 0;    // lookups in the same cell as the one before
   std::uint64_t decoded = 0;      // sets decoded
+  std::uint64_t chunk_bytes = 0;  // bytes of the file's payload that were read for them
   std::uint64_t outside = 0;      // lookups that returned all objects because the eye is in no cell
   std::uint64_t beyond_near = 0;  // lookups that returned all objects because of their near distance
   std::uint64_t broken = 0;       // lookups that returned all objects because a chunk is corrupt
