@@ -16,6 +16,8 @@
 #include "src/comparison/occluders/grid_points.h"
 #include "src/occluders/database_cells.h"
 #include "src/occluders/direction_lists.h"
+#include "src/pvs/bake/answers.h"
+#include "src/pvs/bake/earlier_bake.h"
 #include "src/pvs/bake/encode_sight.h"
 #include "src/pvs/format/set_code.h"
 #include "tests/support/made_visibility.h"
@@ -148,6 +150,30 @@ bool writeCheckpoint(const std::string& file) {
          checkpoint->append(3, Bytes(20, std::byte{7})) && checkpoint->append(5, Bytes(1, std::byte{1}));
 }
 
+// A scene of two objects, and one part with an answer of each kind. Without what answers_fuzz.cpp adds:
+// magic, version and checksum.
+bool writeAnswers(const std::string& file) {
+  using namespace pvs;
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  const SceneMarks marks{.frame = box,
+                         .objects = {{.content = 3, .bounds = box}, {.content = 5, .bounds = box}},
+                         .nodes = {{.bounds = box, .end = 3, .object_count = 2},
+                                   {.bounds = box, .end = 2, .object_count = 1},
+                                   {.bounds = box, .end = 3, .first_object = 1, .object_count = 1}},
+                         .panels = {{.content = 7, .bounds = box}}};
+  CellAnswers answers;
+  answers[9] = {{.kind = AnswerKind::kConvex, .question = 1, .asked = {{0, 2}}, .seen = {{1, 2}}},
+                {.kind = AnswerKind::kFused,
+                 .question = 2,
+                 .seen = {{0, 1}},
+                 .hidden_nodes = {2},
+                 .followed = {{0, 0, 0, 9, 9, 9}}},
+                {.kind = AnswerKind::kPoint, .question = 3, .least = 4, .most = 5}};
+  const Bytes encoded = encodeAnswers(answers);
+  const Bytes bytes = earlierBakeBytes({.hash = 1, .objects = 2}, marks, {{1, encoded}});
+  return write(file, std::span(bytes).subspan(12, bytes.size() - 20));
+}
+
 bool writeExact(const std::string& file) {
   const tool::ExactKey key({.hash = 7, .objects = 50, .triangles = 100}, View{}, {});
   const std::string bytes =
@@ -174,7 +200,8 @@ int main(int argc, char** argv) {
   const std::string folder = std::string(argv[1]) + "/";
   const bool written = writeSightFiles(folder + "sight/") && writeSurfaces(folder + "prepared/triangle") &&
                        writePrepared(folder + "prepared/") && writeDatabases(folder + "database/") &&
-                       writeCheckpoint(folder + "checkpoint/parts") && writeExact(folder + "exact/frame") &&
+                       writeCheckpoint(folder + "checkpoint/parts") &&
+                       writeAnswers(folder + "answers/part") && writeExact(folder + "exact/frame") &&
                        writePicture(folder + "png/picture.png");
   return written ? 0 : 1;
 }

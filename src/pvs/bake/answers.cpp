@@ -1,71 +1,20 @@
-// The bytes: their length before compression, then one zstd frame. In it, the answers one after the other;
-// numbers below 128 take one byte. Little-endian.
+// The bytes are packed (packed_bytes.h): the answers one after the other, by cell. Little-endian.
 
 #include "src/pvs/bake/answers.h"
-
-#include <zstd.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "src/base/byte_stream.h"
+#include "src/pvs/bake/packed_bytes.h"
+#include "src/pvs/bake/run_code.h"
 #include "src/pvs/format/checksum.h"
 
 namespace sightline::pvs {
 namespace {
 
-constexpr int kLevel = 3;                           // of zstd
 constexpr std::uint64_t kMaxRawBytes = 1ull << 30;  // of the answers of one part
-
-void addCount(std::uint64_t value, base::ByteWriter& bytes) {
-  for (; value >= 0x80; value >>= 7) {
-    bytes.add(static_cast<std::uint8_t>((value & 0x7f) | 0x80));
-  }
-  bytes.add(static_cast<std::uint8_t>(value));
-}
-
-// The number; more than any count can be if there is none.
-std::uint64_t readCount(base::ByteReader& bytes) {
-  std::uint64_t value = 0;
-  for (std::uint32_t shift = 0; shift < 63; shift += 7) {
-    const auto byte = bytes.read<std::uint8_t>();
-    value |= std::uint64_t{byte & 0x7fu} << shift;
-    if (byte < 0x80) {
-      return bytes.ok() ? value : ~std::uint64_t{0};
-    }
-  }
-  return ~std::uint64_t{0};
-}
-
-// Each run as its distance from the end of the one before, and its length.
-void addRuns(const Runs& runs, base::ByteWriter& bytes) {
-  addCount(runs.size(), bytes);
-  std::uint32_t end = 0;
-  for (const ObjectRun& run : runs) {
-    addCount(run.begin - end, bytes);
-    addCount(run.end - run.begin, bytes);
-    end = run.end;
-  }
-}
-
-bool readRuns(base::ByteReader& bytes, std::uint32_t object_count, Runs& runs) {
-  const std::uint64_t count = readCount(bytes);
-  if (count > object_count || count > bytes.remaining()) {
-    return false;
-  }
-  std::uint64_t end = 0;
-  runs.resize(static_cast<std::size_t>(count));
-  for (ObjectRun& run : runs) {
-    const std::uint64_t gap = readCount(bytes), length = readCount(bytes);
-    if (gap > object_count || length == 0 || length > object_count || end + gap + length > object_count) {
-      return false;
-    }
-    run = {static_cast<std::uint32_t>(end + gap), static_cast<std::uint32_t>(end + gap + length)};
-    end = run.end;
-  }
-  return true;
-}
 
 // Each node as its distance from the one before.
 void addNodes(std::span<const std::uint32_t> nodes, base::ByteWriter& bytes) {
@@ -97,7 +46,7 @@ bool readNodes(base::ByteReader& bytes, std::uint32_t node_count, std::vector<st
 
 bool readBoxes(base::ByteReader& bytes, std::uint32_t node_count, std::vector<CoarseBox>& boxes) {
   const std::uint64_t count = readCount(bytes);
-  if (count > node_count) {
+  if (count > node_count || count > bytes.remaining() / std::tuple_size_v<CoarseBox>) {
     return false;
   }
   boxes.reserve(static_cast<std::size_t>(count));
@@ -207,34 +156,17 @@ std::vector<std::byte> encodeAnswers(const CellAnswers& answers) {
     }
   }
   const std::vector<std::byte> plain = raw.take();
-  std::vector<std::byte> packed(ZSTD_compressBound(plain.size()));
-  const std::size_t length = plain.size() > kMaxRawBytes ? 0
-                                                         : ZSTD_compress(packed.data(), packed.size(),
-                                                                         plain.data(), plain.size(), kLevel);
-  if (plain.size() > kMaxRawBytes || ZSTD_isError(length) != 0) {
-    return {};
-  }
-  base::ByteWriter bytes;
-  bytes.add(static_cast<std::uint64_t>(plain.size()));
-  bytes.addBytes(std::span(packed).first(length));
-  return bytes.take();
+  return plain.size() > kMaxRawBytes ? std::vector<std::byte>() : pack(plain);
 }
 
 std::optional<CellAnswers> decodeAnswers(std::span<const std::byte> bytes, std::uint32_t object_count,
                                          std::uint32_t node_count) {
-  base::ByteReader packed(bytes);
-  const auto raw_bytes = packed.read<std::uint64_t>();
-  if (!packed.ok() || raw_bytes > kMaxRawBytes) {
-    return std::nullopt;
-  }
-  std::vector<std::byte> plain(static_cast<std::size_t>(raw_bytes));
-  const std::span<const std::byte> frame = packed.readBytes(packed.remaining());
-  const std::size_t length = ZSTD_decompress(plain.data(), plain.size(), frame.data(), frame.size());
-  if (ZSTD_isError(length) != 0 || length != plain.size()) {
+  const std::optional<std::vector<std::byte>> plain = unpack(bytes);
+  if (!plain) {
     return std::nullopt;
   }
   CellAnswers answers;
-  base::ByteReader raw(plain);
+  base::ByteReader raw(*plain);
   while (raw.remaining() > 0) {
     const auto cell = raw.read<std::uint64_t>();
     const std::uint64_t count = readCount(raw);

@@ -50,7 +50,7 @@ using CellAnswers = std::unordered_map<std::uint64_t, std::vector<Answer>>;
 // A number for a question about a region: of its points, of how far occluders are searched, and the like.
 std::uint64_t questionOf(std::span<const Vec3d> points, std::span<const double> numbers);
 
-// The answers about some cells, compressed. Empty if they are too many to be kept.
+// The answers about some cells, packed. Empty if they are too many to be kept.
 std::vector<std::byte> encodeAnswers(const CellAnswers& answers);
 // Nothing if the bytes are not answers about so many objects and nodes.
 std::optional<CellAnswers> decodeAnswers(std::span<const std::byte> bytes, std::uint32_t object_count,

@@ -12,7 +12,9 @@
 #include "src/pvs/bake/cell_tree.h"
 #include "src/pvs/bake/earlier_bake.h"
 #include "src/pvs/bake/flatten.h"
+#include "src/pvs/bake/packed_bytes.h"
 #include "src/pvs/bake/recall.h"
+#include "src/pvs/bake/run_code.h"
 #include "src/pvs/format/checksum.h"
 #include "src/pvs/format/witness_code.h"
 
@@ -35,10 +37,29 @@ namespace {
 constexpr std::uint32_t kMaxDivisions = 16, kMaxNarrowings = 8;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
-// Cells above this level are divided into parts. Below it, a part has at most 73 cells, so an interrupted
-// bake loses little and most samples of a part are shared within it.
-std::uint32_t partLevel(const BakeSettings& settings) {
-  return settings.max_depth - std::min(settings.max_depth, 2u);
+// Limits of a part that is more than one cell: how many cells may be below its own, and about how much work
+// (CellOutcome::work) they may be, a tenth of a second. So an interrupted bake loses little, many processes
+// end at about the same time, and yet most samples of a part are shared within it.
+constexpr std::uint64_t kPartCells = 72, kPartWork = 500'000;
+
+// How many cells may come to be below this one; counted up to `most`.
+std::uint64_t cellsBelow(const BakeScene& scene, const OctreeCell& cell, std::uint64_t most) {
+  if (!scene.mayDivide(cell)) {
+    return 0;
+  }
+  std::uint64_t count = 8;
+  for (std::uint32_t i = 0; i < 8 && count <= most; ++i) {
+    count += cellsBelow(scene, cell.child(i), most - count);
+  }
+  return count;
+}
+
+// Whether a cell that is divided stays one part with all that is below it. Cells see no more than those
+// around them, so each of them is expected to have at most as much work as this one. The answer does not
+// depend on what is known from an earlier bake or kept in memory, so that the parts are the same in each run.
+bool staysOnePart(const BakeScene& scene, const OctreeCell& cell, const CellOutcome& outcome) {
+  const std::uint64_t affordable = std::min(kPartCells, kPartWork / std::max<std::uint64_t>(outcome.work, 1));
+  return cellsBelow(scene, cell, affordable) <= affordable;
 }
 
 std::string problemWith(const BakeSettings& s) {
@@ -224,19 +245,85 @@ void add(BakeStats& sum, const BakeStats& stats) {
   sum.asked += stats.asked;
 }
 
+namespace {
+
+// The header of a part. After it come blocks of bytes, each with its length before it: the cells, if the part
+// has leaves, or what it sees, if it was divided into parts; the witnesses, if they are recorded; and the
+// answers, if they are. The cells, what is seen, and the witnesses are packed.
+struct PartHead {
+  std::uint64_t magic = kPartMagic, plan = 0, id = 0;
+  PartSummary summary;
+  double search_distance = 0.0;  // for the parts that it was divided into
+};
+
+void write(const PartHead& head, base::ByteWriter& bytes) {
+  bytes.add(head.magic);
+  bytes.add(head.plan);
+  bytes.add(head.id);
+  bytes.add(head.summary.leaves);
+  bytes.add(head.summary.mean_triangles);
+  bytes.add(head.summary.share);
+  bytes.add(head.search_distance);
+}
+
+PartHead readHead(base::ByteReader& bytes) {
+  PartHead head;
+  head.magic = bytes.read<std::uint64_t>();
+  head.plan = bytes.read<std::uint64_t>();
+  head.id = bytes.read<std::uint64_t>();
+  head.summary.leaves = bytes.read<std::uint32_t>();
+  head.summary.mean_triangles = bytes.read<double>();
+  head.summary.share = bytes.read<double>();
+  head.search_distance = bytes.read<double>();
+  return head;
+}
+
+void addBlock(std::span<const std::byte> block, base::ByteWriter& bytes) {
+  bytes.add(static_cast<std::uint64_t>(block.size()));
+  bytes.addBytes(block);
+}
+
+std::span<const std::byte> readBlock(base::ByteReader& bytes) {
+  const auto length = bytes.read<std::uint64_t>();
+  return bytes.readBytes(length);
+}
+
+// A part with its blocks as they are in its bytes.
+struct PartContent {
+  PartHead head;
+  std::span<const std::byte> main, witnesses, answers;
+};
+
+// Nothing if the bytes are not made up of a head and these blocks.
+std::optional<PartContent> contentOf(const BakeSettings& settings, std::span<const std::byte> part) {
+  base::ByteReader bytes(part);
+  PartContent content;
+  content.head = readHead(bytes);
+  content.main = readBlock(bytes);
+  if (settings.witnesses) {
+    content.witnesses = readBlock(bytes);
+  }
+  if (settings.answers) {
+    content.answers = readBlock(bytes);
+  }
+  return bytes.atEnd() ? std::optional(content) : std::nullopt;
+}
+
+}  // namespace
+
 struct Bake::Worker::Impl {
   Impl(std::shared_ptr<const Data> d, std::shared_ptr<const Earlier> e)
       : data(std::move(d)), earlier(std::move(e)), baker(data->scene, earlier ? &earlier->recall : nullptr) {}
 
-  // Adds what was recorded since the last call, with which a part ends.
+  // Adds what was recorded since the last call.
   void addRecords(base::ByteWriter& bytes) {
     if (data->scene.settings.witnesses) {
-      write(baker.takeWitnesses(), bytes);
+      base::ByteWriter witnesses;
+      write(baker.takeWitnesses(), witnesses);
+      addBlock(pack(witnesses.take()), bytes);
     }
     if (data->scene.settings.answers) {
-      const std::vector<std::byte> answers = encodeAnswers(baker.takeAnswers());
-      bytes.addBytes(answers);
-      bytes.add(static_cast<std::uint64_t>(answers.size()));
+      addBlock(encodeAnswers(baker.takeAnswers()), bytes);
     }
   }
 
@@ -262,39 +349,12 @@ void summarize(const BakeScene& scene, const BakedCell& cell, std::uint32_t& lea
   }
 }
 
-// The header of a part. After it come the search distance for the child parts and what this one sees, if the
-// part was divided, else the cells. Then the witnesses, if they are recorded; and the answers, if they are,
-// and their length.
-struct PartHead {
-  std::uint64_t magic = kPartMagic, plan = 0, id = 0;
-  PartSummary summary;
-};
-
-void write(const PartHead& head, base::ByteWriter& bytes) {
-  bytes.add(head.magic);
-  bytes.add(head.plan);
-  bytes.add(head.id);
-  bytes.add(head.summary.leaves);
-  bytes.add(head.summary.mean_triangles);
-  bytes.add(head.summary.share);
-}
-
-PartHead readHead(base::ByteReader& bytes) {
-  PartHead head;
-  head.magic = bytes.read<std::uint64_t>();
-  head.plan = bytes.read<std::uint64_t>();
-  head.id = bytes.read<std::uint64_t>();
-  head.summary.leaves = bytes.read<std::uint32_t>();
-  head.summary.mean_triangles = bytes.read<double>();
-  head.summary.share = bytes.read<double>();
-  return head;
-}
-
-// The runs of PartTask::seen. Empty, which stands for all objects, if they are not runs of so many.
+// What PartTask::seen holds. Empty, which stands for all objects, if it is not runs of so many.
 Runs runsOf(std::span<const std::byte> seen, std::uint32_t object_count) {
-  base::ByteReader bytes(seen);
+  const std::optional<std::vector<std::byte>> plain = unpack(seen);
+  base::ByteReader bytes(plain ? *plain : std::span<const std::byte>());
   Runs runs;
-  return read(bytes, object_count, runs) && bytes.atEnd() ? runs : Runs();
+  return readRuns(bytes, object_count, runs) && bytes.atEnd() ? runs : Runs();
 }
 
 }  // namespace
@@ -304,28 +364,23 @@ BakedPart Bake::Worker::bake(const PartTask& part) {
   const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
   const CellTask task{cellOfNumber(part.id), part.search_distance, runsOf(part.seen, objects)};
   PartHead head{.plan = impl_->data->hash, .id = part.id, .summary = {}};
-  base::ByteWriter bytes;
-  BakedCell cell;
-  if (task.cell.level < partLevel(scene.settings)) {
-    CellOutcome outcome = decide(impl_->baker, scene, task);
-    impl_->baker.forgetOldest();
-    if (!outcome.leaf) {
-      write(head, bytes);
-      bytes.add(outcome.search_distance);
-      write(outcome.seen, bytes);
-      impl_->addRecords(bytes);
-      return bytes.take();
-    }
-    cell = std::move(*outcome.leaf);
+  base::ByteWriter main;
+  CellOutcome outcome = decide(impl_->baker, scene, task);
+  if (outcome.leaf || staysOnePart(scene, task.cell, outcome)) {
+    const BakedCell cell = bakeBelow(impl_->baker, scene, task.cell, std::move(outcome));
+    double triangles = 0.0;
+    summarize(scene, cell, head.summary.leaves, triangles);
+    head.summary.mean_triangles = triangles / head.summary.leaves;
+    head.summary.share = shareOf(scene, task.cell);
+    write(cell, main);
   } else {
-    cell = bakeCell(impl_->baker, scene, task);
+    impl_->baker.forgetOldest();
+    head.search_distance = outcome.search_distance;
+    addRuns(outcome.seen, main);
   }
-  double triangles = 0.0;
-  summarize(scene, cell, head.summary.leaves, triangles);
-  head.summary.mean_triangles = triangles / head.summary.leaves;
-  head.summary.share = shareOf(scene, task.cell);
+  base::ByteWriter bytes;
   write(head, bytes);
-  write(cell, bytes);
+  addBlock(pack(main.take()), bytes);
   impl_->addRecords(bytes);
   return bytes.take();
 }
@@ -340,19 +395,13 @@ PartSummary Bake::summaryOf(std::span<const std::byte> part) const {
 }
 
 std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
-  base::ByteReader bytes(part);
-  const PartHead head = readHead(bytes);
+  const std::optional<PartContent> content = contentOf(data_->scene.settings, part);
   std::vector<PartTask> below;
-  if (head.summary.leaves == 0) {
-    const auto search_distance = bytes.read<double>();
-    // The number of runs comes first, then two numbers for each.
-    const std::span<const std::byte> rest = bytes.readBytes(bytes.remaining());
-    base::ByteReader runs(rest);
-    const std::size_t length =
-        sizeof(std::uint32_t) * (1 + 2 * std::size_t{runs.readCount<std::uint32_t>(8)});
-    const std::span<const std::byte> seen = rest.first(std::min(rest.size(), length));
+  if (content && content->head.summary.leaves == 0) {
     for (std::uint64_t i = 0; i < 8; ++i) {
-      below.push_back({8 * head.id + i, search_distance, {seen.begin(), seen.end()}});
+      below.push_back({8 * content->head.id + i,
+                       content->head.search_distance,
+                       {content->main.begin(), content->main.end()}});
     }
   }
   return below;
@@ -415,30 +464,16 @@ BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progre
 
 namespace {
 
-// A part ends with its answers, if they are recorded.
-struct PartBytes {
-  std::span<const std::byte> content, answers;
-};
-
-PartBytes bytesOf(const BakeScene& scene, std::span<const std::byte> part) {
-  constexpr std::size_t kLength = sizeof(std::uint64_t);
-  if (!scene.settings.answers || part.size() < kLength) {
-    return {part, {}};
-  }
-  const std::span<const std::byte> before = part.first(part.size() - kLength);
-  base::ByteReader end(part.last(kLength));
-  const auto length = end.read<std::uint64_t>();
-  if (length > before.size()) {
-    return {{}, {}};
-  }
-  const std::size_t content = before.size() - static_cast<std::size_t>(length);
-  return {before.first(content), before.subspan(content)};
-}
-
-// True if the bytes end here, or after witnesses where they are recorded.
-bool endsWell(const BakeScene& scene, base::ByteReader& bytes) {
+// The witnesses of a part; none if they are not recorded. Nothing if the part's bytes are not witnesses.
+std::optional<std::vector<HidingWitness>> witnessesOf(const BakeSettings& settings,
+                                                      const PartContent& content) {
   std::vector<HidingWitness> witnesses;
-  return (!scene.settings.witnesses || read(bytes, witnesses)) && bytes.atEnd();
+  if (!settings.witnesses) {
+    return witnesses;
+  }
+  const std::optional<std::vector<std::byte>> plain = unpack(content.witnesses);
+  base::ByteReader bytes(plain ? *plain : std::span<const std::byte>());
+  return read(bytes, witnesses) && bytes.atEnd() ? std::optional(std::move(witnesses)) : std::nullopt;
 }
 
 // The cell of a part with everything below it, merged. Returns nothing if a part is missing, corrupt or of
@@ -451,16 +486,19 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
   if (part == parts.end() || !bake.isPart(id, part->second)) {
     return std::nullopt;
   }
-  base::ByteReader bytes(bytesOf(scene, part->second).content);
-  if (readHead(bytes).summary.leaves > 0) {
-    std::optional<BakedCell> cell =
-        readCell(bytes, level, static_cast<std::uint32_t>(scene.boxes.objects.size()));
-    return cell && endsWell(scene, bytes) ? std::move(cell) : std::nullopt;
+  const std::optional<PartContent> content = contentOf(scene.settings, part->second);
+  const std::optional<std::vector<std::byte>> main = content ? unpack(content->main) : std::nullopt;
+  if (!main || !witnessesOf(scene.settings, *content)) {
+    return std::nullopt;
   }
-  bytes.read<double>();
+  base::ByteReader bytes(*main);
+  const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
+  if (content->head.summary.leaves > 0) {
+    std::optional<BakedCell> cell = readCell(bytes, level, objects);
+    return cell && bytes.atEnd() ? std::move(cell) : std::nullopt;
+  }
   Runs seen;
-  if (!read(bytes, static_cast<std::uint32_t>(scene.boxes.objects.size()), seen) || !endsWell(scene, bytes) ||
-      level >= partLevel(scene.settings)) {
+  if (!readRuns(bytes, objects, seen) || !bytes.atEnd() || level >= kMaxOctreeDepth) {
     return std::nullopt;
   }
   BakedCell cell;
@@ -497,21 +535,14 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
 
 Witnesses Bake::witnesses(const BakedParts& parts) const {
   const BakeScene& scene = data_->scene;
-  const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
   Witnesses found{data_->scene_id, scene.root.min, scene.root.max, {}};
   for (const auto& [id, part] : parts) {
-    base::ByteReader bytes(bytesOf(scene, part).content);
-    Runs seen;
-    if (readHead(bytes).summary.leaves > 0) {
-      readCell(bytes, cellOfNumber(id).level, objects);
-    } else {
-      bytes.read<double>();
-      read(bytes, objects, seen);
-    }
-    std::vector<HidingWitness> own;
-    if (scene.settings.witnesses && read(bytes, own)) {
-      found.all.insert(found.all.end(), std::make_move_iterator(own.begin()),
-                       std::make_move_iterator(own.end()));
+    const std::optional<PartContent> content = contentOf(scene.settings, part);
+    std::optional<std::vector<HidingWitness>> own =
+        content ? witnessesOf(scene.settings, *content) : std::nullopt;
+    if (own) {
+      found.all.insert(found.all.end(), std::make_move_iterator(own->begin()),
+                       std::make_move_iterator(own->end()));
     }
   }
   return found;
@@ -521,7 +552,8 @@ std::vector<std::byte> Bake::answers(const BakedParts& parts) const {
   const BakeScene& scene = data_->scene;
   std::map<std::uint64_t, std::span<const std::byte>> answers;
   for (const auto& [id, part] : parts) {
-    answers.emplace(id, bytesOf(scene, part).answers);
+    const std::optional<PartContent> content = contentOf(scene.settings, part);
+    answers.emplace(id, content ? content->answers : std::span<const std::byte>());
   }
   return earlierBakeBytes(data_->scene_id, marksOf(scene), answers);
 }

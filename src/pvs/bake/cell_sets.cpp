@@ -16,6 +16,10 @@ namespace {
 // unless it is as large as the cell.
 constexpr double kNearInEdges = 0.5;
 
+// Units of CellBaker::work. By single convex occluders, an object takes one, from a region or from a point.
+constexpr std::uint64_t kSurfaceWork = 100;  // to ask whether surfaces hide a box
+constexpr std::uint64_t kLineWork = 5;       // to ask whether a line of sight is clear
+
 std::uint64_t countOf(std::span<const ObjectRun> runs) {
   std::uint64_t count = 0;
   for (const ObjectRun& run : runs) {
@@ -190,6 +194,7 @@ bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
   const BoxTreeView boxes = scene_.boxes.view();
   const BoxNode& node = boxes.nodes[number];
   ++questions_;
+  work_ += kSurfaceWork;
   if (const std::optional<CellRecall::NodeAnswer> before = recall_.node(number, region)) {
     followed_.push_back(before->followed);
     return before->hidden;
@@ -306,6 +311,7 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
   const Answer* before = recall_.find(answer);
   questions_ += countOf(seen);
+  work_ += countOf(seen);
   if (before == nullptr || !hideAsBefore(*before, corners, seen)) {
     asked_ += countOf(seen);
     hideByChosen(corners);
@@ -409,6 +415,7 @@ bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
   const std::array numbers{choice_.distance, static_cast<double>(choice_.level)};
   Answer answer{.kind = AnswerKind::kPoint, .question = questionOf(std::span(&eye, 1), numbers)};
   ++questions_;
+  work_ += scene_.boxes.objects.size();
   if (recall_.boundTriangles(eye, answer)) {
     const bool fewer = static_cast<double>(answer.most) < triangles;
     if (fewer || !(static_cast<double>(answer.least) < triangles)) {
@@ -436,6 +443,7 @@ double CellBaker::shareSeenFrom(const Vec3d& point, const Runs& seen) {
       const BoxNode& leaf = scene_.leafOf(position);
       all += leaf.triangles;
       for (int line = 0; line < kLines; ++line) {
+        work_ += kLineWork;
         Vec3d to(leaf.bounds.min);
         for (int axis = 0; axis < 3; ++axis) {
           random = random * 1664525u + 1013904223u;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/pvs/bake/run_code.h"
+
 namespace sightline::pvs {
 namespace {
 
@@ -22,6 +24,7 @@ BakedCell leafOf(const OctreeCell& cell, CellSets&& sets, StopReason reason) {
 CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
   const BakeSettings& settings = scene.settings;
   const bool deepest = !scene.mayDivide(task.cell);
+  const std::uint64_t work_before = baker.work();
   double distance = task.search_distance;
   if (!scene.holdsViewers(scene.boxOf(task.cell))) {
     CellSets everything;
@@ -37,7 +40,7 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
       baker.forgetSides();
-      return {.search_distance = distance, .seen = std::move(sets.whole)};
+      return {.search_distance = distance, .seen = std::move(sets.whole), .work = baker.work() - work_before};
     }
     bool gained = false;
     if (!baker.searchedAll(task.cell, distance)) {
@@ -53,17 +56,17 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   }
 }
 
-BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
-  CellOutcome outcome = decide(baker, scene, task);
+BakedCell bakeBelow(CellBaker& baker, const BakeScene& scene, const OctreeCell& place,
+                    CellOutcome&& outcome) {
   baker.forgetOldest();
   if (outcome.leaf) {
     return std::move(*outcome.leaf);
   }
   BakedCell cell;
-  cell.level = static_cast<std::uint8_t>(task.cell.level);
+  cell.level = static_cast<std::uint8_t>(place.level);
   for (std::uint32_t i = 0; i < 8; ++i) {
-    cell.children.push_back(
-        bakeCell(baker, scene, {task.cell.child(i), outcome.search_distance, outcome.seen}));
+    const CellTask child{place.child(i), outcome.search_distance, outcome.seen};
+    cell.children.push_back(bakeBelow(baker, scene, child.cell, decide(baker, scene, child)));
   }
   mergeChildren(scene, cell);
   return cell;
@@ -118,28 +121,6 @@ void mergeChildren(const BakeScene& scene, BakedCell& cell) {
   }
 }
 
-void write(const Runs& runs, base::ByteWriter& bytes) {
-  bytes.add(static_cast<std::uint32_t>(runs.size()));
-  for (const ObjectRun& run : runs) {
-    bytes.add(run.begin);
-    bytes.add(run.end);
-  }
-}
-
-bool read(base::ByteReader& bytes, std::uint32_t object_count, Runs& runs) {
-  std::uint32_t after = 0;
-  runs.resize(bytes.readCount<std::uint32_t>(2 * sizeof(std::uint32_t)));
-  for (ObjectRun& run : runs) {
-    run.begin = bytes.read<std::uint32_t>();
-    run.end = bytes.read<std::uint32_t>();
-    if (run.begin < after || run.end <= run.begin || run.end > object_count) {
-      return false;
-    }
-    after = run.end + 1;
-  }
-  return bytes.ok();
-}
-
 namespace {
 
 // First byte of an encoded cell.
@@ -157,14 +138,14 @@ void write(const BakedCell& cell, base::ByteWriter& bytes) {
   }
   bytes.add(cell.sets.plane ? kLeafWithPlane : kLeaf);
   bytes.add(static_cast<std::uint8_t>(cell.reason));
-  write(cell.sets.whole, bytes);
+  addRuns(cell.sets.whole, bytes);
   if (const std::optional<CellPlane>& plane = cell.sets.plane) {
     for (const double number :
          {plane->normal.x, plane->normal.y, plane->normal.z, plane->front, plane->back}) {
       bytes.add(number);
     }
-    write(cell.sets.front, bytes);
-    write(cell.sets.back, bytes);
+    addRuns(cell.sets.front, bytes);
+    addRuns(cell.sets.back, bytes);
   }
 }
 
@@ -187,14 +168,14 @@ std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, 
   }
   const auto reason = bytes.read<std::uint8_t>();
   cell.reason = static_cast<StopReason>(reason);
-  bool good = reason < kStopReasons && read(bytes, object_count, cell.sets.whole);
+  bool good = reason < kStopReasons && readRuns(bytes, object_count, cell.sets.whole);
   if (good && kind == kLeafWithPlane) {
     CellPlane plane;
     for (double* number : {&plane.normal.x, &plane.normal.y, &plane.normal.z, &plane.front, &plane.back}) {
       *number = bytes.read<double>();
     }
     cell.sets.plane = plane;
-    good = read(bytes, object_count, cell.sets.front) && read(bytes, object_count, cell.sets.back);
+    good = readRuns(bytes, object_count, cell.sets.front) && readRuns(bytes, object_count, cell.sets.back);
   }
   return good && bytes.ok() ? std::optional(std::move(cell)) : std::nullopt;
 }

@@ -31,20 +31,17 @@ struct CellTask {
 struct CellOutcome {
   std::optional<BakedCell> leaf{};  // nothing if the cell is divided
   double search_distance = 0.0;
-  Runs seen{};  // from anywhere in the cell
+  Runs seen{};             // from anywhere in the cell
+  std::uint64_t work = 0;  // what deciding the cell took; see CellBaker::work
 };
 // Decides the cell by the four cases of the paper, section 3.2.
 CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task);
 
-// The task's cell with everything below it, merged.
-BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& task);
+// The decided cell with everything below it, merged.
+BakedCell bakeBelow(CellBaker& baker, const BakeScene& scene, const OctreeCell& place, CellOutcome&& outcome);
 
 // Turns a cell whose children are leaves with similar sets into a leaf.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
-
-void write(const Runs& runs, base::ByteWriter& bytes);
-// False if the bytes are not runs of object_count objects.
-bool read(base::ByteReader& bytes, std::uint32_t object_count, Runs& runs);
 
 void write(const BakedCell& cell, base::ByteWriter& bytes);
 // Returns nothing if the bytes are not a cell of this level in a tree of object_count objects.
