@@ -16,6 +16,7 @@
 #include <queue>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bench/benchmark_scene.h"
@@ -29,8 +30,8 @@ namespace {
 using namespace sightline;
 using namespace sightline::bench;
 
-// What a process waits, at most, from the end of a part until it has the next one: both sides look for
-// messages every millisecond.
+// What a process with nothing to do waits for a part, at most: both sides look for messages every
+// millisecond.
 constexpr double kHandingOut = 2000.0;  // microseconds
 
 struct Options {
@@ -110,49 +111,73 @@ MeasuredParts measure(const Bake& bake) {
   }
 }
 
-// Microseconds until so many takers have baked all parts. The first process has taker 0; the others ask it
-// for parts.
-double simulate(const MeasuredParts& parts, std::uint32_t takers) {
+// Microseconds until so many takers have baked all parts. Taker 0 is the first process, of one thread. The
+// others are processes of one thread each that ask it for parts, and get one to begin later as soon as more
+// parts are waiting than there are takers (tools/sightline/bake/bake_run.cpp).
+class Simulation {
+ public:
+  Simulation(const MeasuredParts& parts, std::uint32_t takers)
+      : parts_(parts), queue_(takers), ahead_(takers, kNone), busy_(takers, false) {
+    const PartTask first{.id = 1};
+    queue_.add(0, std::span(&first, 1));
+  }
+
+  double run() {
+    for (handOut(); !running_.empty(); handOut()) {
+      const Finish finished = running_.top();
+      running_.pop();
+      now_ = finished.at;
+      std::vector<PartTask> below;
+      for (const std::uint64_t id : parts_.at(finished.part).below) {
+        below.push_back({.id = id});
+      }
+      queue_.add(finished.taker, below);
+      busy_[finished.taker] = false;
+      if (const std::uint64_t next = std::exchange(ahead_[finished.taker], kNone); next != kNone) {
+        start(finished.taker, next, 0.0);
+      }
+    }
+    return now_;
+  }
+
+ private:
+  static constexpr std::uint64_t kNone = 0;
   struct Finish {
     double at;
     std::uint32_t taker;
     std::uint64_t part;
     bool operator>(const Finish& other) const { return at != other.at ? at > other.at : taker > other.taker; }
   };
-  tool::PartQueue queue(takers);
-  std::priority_queue<Finish, std::vector<Finish>, std::greater<>> running;
-  std::vector<std::uint32_t> idle;
-  for (std::uint32_t taker = 0; taker < takers; ++taker) {
-    idle.push_back(taker);
+
+  void start(std::uint32_t taker, std::uint64_t part, double wait) {
+    busy_[taker] = true;
+    running_.push({now_ + wait + parts_.at(part).time, taker, part});
   }
-  const PartTask first{.id = 1};
-  queue.add(0, std::span(&first, 1));
-  double now = 0.0;
-  for (;;) {
-    std::vector<std::uint32_t> still_idle;
-    for (const std::uint32_t taker : idle) {
-      if (const std::vector<PartTask> task = queue.takeNow(taker, 1); !task.empty()) {
-        const double wait = taker == 0 ? 0.0 : kHandingOut;
-        running.push({now + wait + parts.at(task[0].id).time, taker, task[0].id});
-      } else {
-        still_idle.push_back(taker);
+
+  void handOut() {
+    const auto count = static_cast<std::uint32_t>(busy_.size());
+    std::size_t waiting = queue_.waiting();
+    for (std::uint32_t taker = 0; taker < count && waiting > 0; ++taker) {
+      if (!busy_[taker]) {
+        start(taker, queue_.takeNow(taker, 1)[0].id, taker == 0 ? 0.0 : kHandingOut);
+        --waiting;
       }
     }
-    idle = std::move(still_idle);
-    if (running.empty()) {
-      return now;
+    for (std::uint32_t taker = 1; taker < count && waiting > count; ++taker) {
+      if (ahead_[taker] == kNone) {
+        ahead_[taker] = queue_.takeNow(taker, 1)[0].id;
+        --waiting;
+      }
     }
-    const Finish finished = running.top();
-    running.pop();
-    now = finished.at;
-    std::vector<PartTask> below;
-    for (const std::uint64_t id : parts.at(finished.part).below) {
-      below.push_back({.id = id});
-    }
-    queue.add(finished.taker, below);
-    idle.insert(std::lower_bound(idle.begin(), idle.end(), finished.taker), finished.taker);
   }
-}
+
+  const MeasuredParts& parts_;
+  tool::PartQueue queue_;
+  std::vector<std::uint64_t> ahead_;  // by taker: the part that it begins next
+  std::vector<bool> busy_;            // by taker
+  std::priority_queue<Finish, std::vector<Finish>, std::greater<>> running_;
+  double now_ = 0.0;  // microseconds
+};
 
 // The time of the parts from the root down to one of the lowest, where it is longest: with any number of
 // processes a bake takes so long.
@@ -199,7 +224,7 @@ void report(const std::string& name, const Options& options) {
       largest * 1e-6, chain * 1e-6, bytes, largest_bytes);
   fmt::print("| takers | s | least possible, s | busy, % |\n|---|---|---|---|\n");
   for (std::uint32_t takers = 1; takers <= 1024; takers *= 2) {
-    const double end = simulate(parts, takers), least = std::max(sum / takers, chain);
+    const double end = Simulation(parts, takers).run(), least = std::max(sum / takers, chain);
     fmt::print("| {} | {:.2f} | {:.2f} | {:.1f} |\n", takers, end * 1e-6, least * 1e-6,
                100.0 * sum / (end * takers));
   }

@@ -1,6 +1,7 @@
 // A bake that is killed at any moment leaves no broken file, and goes on to the same bytes.
 
 #include <chrono>
+#include <cstring>
 #include <random>
 #include <thread>
 
@@ -40,13 +41,14 @@ class KilledBake : public ::testing::Test {
 
   void SetUp() override {
     const std::string file = folder_.file("reference.sight");
-    Started bake(toolWords(0, arguments(file, "1")));
+    Started bake(toolWords(0, joined(arguments(file, "1"), {"--json", "-"})));
     while (bake.running()) {
       max_ = std::max(max_, sizeOf(file + ".parts"));
       nap();
     }
     const Outcome outcome = bake.wait();
     ASSERT_EQ(outcome.code, 0) << outcome.err;
+    reference_parts_ = parse(outcome.out)["parts"];
     reference_ = contents(file);
     ASSERT_FALSE(reference_.empty());
   }
@@ -77,6 +79,7 @@ class KilledBake : public ::testing::Test {
   TemporaryFolder folder_;
   std::mt19937 random_{kSeed};
   std::string reference_;
+  std::uint64_t reference_parts_ = 0;
   std::uintmax_t max_ = 0;  // bytes of a checkpoint, about
 };
 
@@ -90,6 +93,48 @@ TEST_F(KilledBake, GoesOnToTheSameBytesAfterEachKillOfItsOnlyProcess) {
     expectAbsentOrWhole(file);
     expectResumes(file, 0);
   }
+}
+
+// How many parts a checkpoint holds whole, counted by the lengths in it (see checkpoint.cpp).
+std::uint64_t wholeParts(const std::string& bytes) {
+  constexpr std::size_t kHeader = 16, kHead = 40, kLengthAt = 16;
+  std::uint64_t count = 0;
+  for (std::size_t at = kHeader; at + kHead <= bytes.size();) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, bytes.data() + at + kLengthAt, sizeof length);
+    if (length > bytes.size() - at - kHead) {
+      break;
+    }
+    at += kHead + length;
+    ++count;
+  }
+  return count;
+}
+
+TEST_F(KilledBake, KeepsAllPartsThatWereFinishedAndThereAreManyOfThem) {
+  EXPECT_GT(reference_parts_, 40u) << "a bake of few parts loses much";
+  std::uint64_t finished_in_all = 0, kills_in_the_middle = 0;
+  for (int i = 0; i < kKills; ++i) {
+    const std::string file = folder_.file("finished" + std::to_string(i));
+    Started bake(toolWords(0, arguments(file, "2")));
+    waitForSomeMoment(bake, file);
+    const std::uint64_t finished = wholeParts(contents(file + ".parts"));
+    bake.kill(SIGKILL);
+    bake.wait();
+    if (!std::filesystem::exists(file + ".parts")) {
+      continue;  // it was complete
+    }
+    const Outcome outcome = Started(toolWords(0, joined(arguments(file, "2"), {"--json", "-"}))).wait();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const nlohmann::json report = parse(outcome.out);
+    EXPECT_GE(report["parts_before"].get<std::uint64_t>(), finished) << "seed " << kSeed;
+    EXPECT_EQ(report["parts"].get<std::uint64_t>(), reference_parts_);
+    EXPECT_TRUE(contents(file) == reference_) << "seed " << kSeed;
+    finished_in_all += finished;
+    kills_in_the_middle += 1;
+  }
+  EXPECT_GT(kills_in_the_middle, 0u) << "no bake was killed in the middle";
+  EXPECT_GT(finished_in_all, 0u) << "the test would prove little";
 }
 
 TEST_F(KilledBake, GoesOnAfterManyKillsOneAfterTheOther) {

@@ -29,8 +29,10 @@ TEST(PartQueue, GivesTheLargestPartOfAnotherToWhoHasNone) {
   queue.add(0, std::vector<PartTask>{{9}, {10}});
   queue.add(0, std::vector<PartTask>{{64}, {65}});
   queue.add(1, std::vector<PartTask>{{600}});
+  EXPECT_EQ(queue.waiting(), 5u);
   EXPECT_EQ(queue.take(2)->id, 10u);
   EXPECT_EQ(queue.take(2)->id, 9u);
+  EXPECT_EQ(queue.waiting(), 3u);
   EXPECT_EQ(idsOf(queue.takeNow(2, 9)), (std::vector<std::uint64_t>{65, 64, 600}));
 }
 

@@ -38,9 +38,9 @@ constexpr std::uint32_t kMaxDivisions = 16, kMaxNarrowings = 8;
 constexpr std::uint64_t kPartMagic = 0x5452415054484753u;
 
 // Limits of a part that is more than one cell: how many cells may be below its own, and about how much work
-// (CellOutcome::work) they may be, a tenth of a second. So an interrupted bake loses little, many processes
+// (CellOutcome::work) they may be, some 40 milliseconds. So an interrupted bake loses little, many processes
 // end at about the same time, and yet most samples of a part are shared within it.
-constexpr std::uint64_t kPartCells = 72, kPartWork = 500'000;
+constexpr std::uint64_t kPartCells = 72, kPartWork = 200'000;
 
 // How many cells may come to be below this one; counted up to `most`.
 std::uint64_t cellsBelow(const BakeScene& scene, const OctreeCell& cell, std::uint64_t most) {

@@ -29,7 +29,7 @@ constexpr std::chrono::seconds kSayHowToGoOn{2};
 enum Tag : int {
   kReady,   // the number and error given to agree()
   kGo,      // a number: 1 to go on, 0 to give up
-  kWant,    // a number: how many threads have nothing to do
+  kWant,    // two numbers: how many threads have nothing to do, and how many more parts are wanted ahead
   kParts,   // the parts' ids and search distances; if there are none, no more will come
   kDone,    // a part's id and its bytes
   kTotals,  // stats and peak memory, sent at the end
@@ -103,8 +103,9 @@ class FirstBaker {
         threads_(threads),
         checkpoint_(checkpoint),
         effort_(effort),
-        queue_(threads + static_cast<std::uint32_t>(world.size()) - 1),
-        wanted_(static_cast<std::size_t>(world.size()), 0) {}
+        takers_(threads + static_cast<std::uint32_t>(world.size()) - 1),
+        queue_(takers_),
+        wanted_(static_cast<std::size_t>(world.size())) {}
 
   Result<BakedParts> run(BakedParts known) {
     begin(std::move(known));
@@ -185,26 +186,47 @@ class FirstBaker {
     return Success{};
   }
 
-  // Answers the processes that have asked for parts: with parts, or that no more will come.
+  // Answers the processes that have asked for parts: with parts, or that no more will come. Parts to begin
+  // later are given away only while there are more than everybody could begin now, so that no process keeps
+  // one that another is waiting for.
   void handOut() {
     for (int other = 1; other < world_.size(); ++other) {
-      std::uint64_t& wanted = wanted_[static_cast<std::size_t>(other)];
-      const std::vector<PartTask> tasks =
-          wanted > 0 ? queue_.takeNow(takerOf(other), wanted) : std::vector<PartTask>{};
-      if (wanted == 0 || (tasks.empty() && open_ > 0)) {
-        continue;
+      give(other, wantedBy(other).now);
+    }
+    for (int other = 1; other < world_.size(); ++other) {
+      Wanted& wanted = wantedBy(other);
+      if (wanted.ahead > 0 && queue_.waiting() > takers_) {
+        give(other, wanted.ahead);
       }
-      MessageWriter message;
-      for (const PartTask& task : tasks) {
-        message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
-        message.block(task.seen);
+      if (open_ == 0 && wanted.now + wanted.ahead > 0) {
+        world_.send(other, kParts, {});
+        wanted = {};
       }
-      if (!world_.send(other, kParts, message.bytes())) {
-        queue_.fail("what cells see takes more than 2 GiB; bake in one process");
-      }
-      wanted = 0;
     }
   }
+
+  // Sends up to so many parts, if there are any, and then sets the number to 0: the process asks again.
+  void give(int other, std::uint64_t& wanted) {
+    const std::vector<PartTask> tasks = queue_.takeNow(takerOf(other), wanted);
+    if (tasks.empty()) {
+      return;
+    }
+    MessageWriter message;
+    for (const PartTask& task : tasks) {
+      message.number(task.id).number(std::bit_cast<std::uint64_t>(task.search_distance));
+      message.block(task.seen);
+    }
+    if (!world_.send(other, kParts, message.bytes())) {
+      queue_.fail("what cells see takes more than 2 GiB; bake in one process");
+    }
+    wanted = 0;
+  }
+
+  // Parts to begin at once, and to have ready when one is finished.
+  struct Wanted {
+    std::uint64_t now = 0, ahead = 0;
+  };
+  Wanted& wantedBy(int other) { return wanted_[static_cast<std::size_t>(other)]; }
 
   std::uint32_t takerOf(int other) const { return threads_ + static_cast<std::uint32_t>(other) - 1; }
 
@@ -223,7 +245,9 @@ class FirstBaker {
       queue_.add(takerOf(message.from), missingOf(below));
     }
     if (message.tag == kWant) {
-      wanted_[static_cast<std::size_t>(message.from)] = reader.number();
+      Wanted& wanted = wantedBy(message.from);
+      wanted.now = reader.number();
+      wanted.ahead = reader.number();
     }
     if (message.tag == kTotals) {
       BakeStats stats;
@@ -294,9 +318,10 @@ class FirstBaker {
   BakedParts known_;           // baked before, and not yet in parts_: the part above them was lost
   bool checks_known_ = false;  // whether there are such, so that the threads must not queue them
   BakeEffort& effort_;
+  std::uint32_t takers_;  // the threads of this process, and the other processes
   PartQueue queue_;
-  std::vector<std::uint64_t> wanted_;  // for each process the number of its threads that have nothing to do
-  std::uint64_t open_ = 0;             // parts that are known and not yet baked
+  std::vector<Wanted> wanted_;  // by process
+  std::uint64_t open_ = 0;      // parts that are known and not yet baked
   std::uint64_t leaves_ = 0;
   double triangles_ = 0.0;  // sum over all sets
   double share_ = 0.0;      // the share of the viewers' space that is baked
@@ -340,8 +365,11 @@ Result<BakedParts> bakeAsFirst(const Bake& bake, MpiWorld& world, std::uint32_t 
 void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
   PartQueue queue(threads);
   BakeThreads bakers(bake, queue, threads, false);
-  std::uint32_t out = 0;    // parts that this process has received and not sent back
-  std::uint32_t asked = 0;  // parts that it has asked for and not received
+  // Each thread has a part to begin when it has finished one, since asking takes some milliseconds.
+  const std::uint32_t wanted = 2 * threads;
+  std::uint32_t out = 0;  // parts that this process has received and not sent back
+  std::optional<std::uint32_t>
+      told;  // how many these were when it asked for more; none since the last answer
   bool more = true;
   while (more || out > 0) {
     for (const FinishedPart& finished : queue.finished(kLook)) {
@@ -355,9 +383,11 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
       world.send(0, kFailed, MessageWriter().text(*failure).bytes());
       world.wait();  // until the first process ends all
     }
-    if (more && asked == 0 && out < threads) {
-      asked = threads - out;
-      world.send(0, kWant, MessageWriter().number(asked).bytes());
+    if (more && out < wanted && told != out) {
+      told = out;
+      const std::uint32_t now = threads - std::min(threads, out);
+      MessageWriter want;
+      world.send(0, kWant, want.number(now).number(wanted - out - now).bytes());
     }
     while (const std::optional<MpiWorld::Message> message = world.receive()) {
       MessageReader reader(message->bytes);
@@ -371,7 +401,7 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
       }
       more = given > 0;
       out += given;
-      asked = 0;
+      told.reset();
     }
   }
   queue.close();

@@ -67,6 +67,15 @@ std::vector<PartTask> PartQueue::takeNow(std::uint32_t taker, std::uint64_t max_
   return taken;
 }
 
+std::size_t PartQueue::waiting() const {
+  const std::lock_guard lock(mutex_);
+  std::size_t count = 0;
+  for (const std::deque<PartTask>& own : parts_) {
+    count += own.size();
+  }
+  return count;
+}
+
 void PartQueue::finish(FinishedPart part) {
   const std::lock_guard lock(mutex_);
   finished_.push_back(std::move(part));

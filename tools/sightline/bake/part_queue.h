@@ -38,6 +38,8 @@ class PartQueue {
   std::optional<PartTask> take(std::uint32_t taker);
   // Takes up to max_parts parts without waiting.
   std::vector<PartTask> takeNow(std::uint32_t taker, std::uint64_t max_parts);
+  // How many parts nobody has taken yet.
+  std::size_t waiting() const;
 
   void finish(FinishedPart part);
   void fail(const std::string& reason);  // called in place of finish() if a part cannot be baked
