@@ -410,6 +410,28 @@ TEST(Bake, PartsAreFewCellsSoThatLittleIsLostWhenOneIsNotFinished) {
   }
 }
 
+// A cell takes far longer with surfaces than with convex occluders alone.
+TEST(Bake, PartsOfMoreWorkAreFewerCells) {
+  const Scene scene = makeShip({.decks = 2, .rooms = 2, .machinery = 2});
+  const auto partsWith = [&](BakeOcclusion occlusion, std::uint32_t& most_leaves) {
+    const Result<Bake> bake =
+        Bake::plan(scene.view(), allOccluders(scene),
+                   {.occlusion = occlusion, .max_depth = 3, .near_distance = 0.1, .merge_tolerance = 0.0});
+    EXPECT_TRUE(bake);
+    const BakedParts parts = bake->bakeAll();
+    for (const auto& [id, part] : parts) {
+      most_leaves = std::max(most_leaves, bake->summaryOf(part).leaves);
+    }
+    EXPECT_TRUE(bake->assemble(parts));
+    return parts.size();
+  };
+  std::uint32_t most_convex = 0, most_fused = 0;
+  const std::size_t convex = partsWith(BakeOcclusion::kConvex, most_convex);
+  const std::size_t fused = partsWith(BakeOcclusion::kFused, most_fused);
+  EXPECT_GT(fused, 2 * convex);
+  EXPECT_LT(2 * most_fused, most_convex);
+}
+
 TEST(Bake, IsTheSameWhoeverBakesThePartsAndHoweverMuchIsForgotten) {
   const Scene scene = makeShip({.decks = 3, .rooms = 4, .machinery = 8});
   const OccluderSet occluders = allOccluders(scene);

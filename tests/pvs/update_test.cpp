@@ -18,6 +18,7 @@ using test::roomScene;
 // The file of a bake, and what it leaves for the next one.
 struct Made {
   std::vector<std::byte> file, answers;
+  std::vector<std::uint64_t> parts;  // their ids
   BakeStats stats{};
   Bake::TakenOver taken{};
 };
@@ -37,6 +38,9 @@ Made bakeWith(const Scene& scene, BakeSettings settings, const std::vector<std::
     made.taken = taken ? *taken : Bake::TakenOver{};
   }
   const BakedParts parts = bake->bakeAll(serialFor, {}, &made.stats);
+  for (const auto& [id, part] : parts) {
+    made.parts.push_back(id);
+  }
   const Result<BakedVisibility> baked = bake->assemble(parts);
   EXPECT_TRUE(baked) << (baked ? "" : baked.error().message);
   if (baked) {
@@ -110,6 +114,26 @@ TEST(Update, GivesTheBytesOfAFullBakeWithConvexOccluders) {
                editsOf(7), totals);
   }
   expectReuse(totals);
+}
+
+// Parts are sized by how much is asked, not by how much of it an earlier bake has answered.
+TEST(Update, HasThePartsOfAFullBake) {
+  const BakeSettings settings{.triangle_budget = 120, .max_depth = 4, .near_distance = 0.05};
+  EditedScene scene = roomScene(7);
+  RandomEdits random(7);
+  Made before = bakeWith(scene.scene(), settings, {});
+  std::uint64_t asked = 0, asked_in_full = 0;
+  for (int i = 0; i < 4; ++i) {
+    const std::string what = random.edit(scene);
+    Made update = bakeWith(scene.scene(), settings, before.answers);
+    const Made full = bakeWith(scene.scene(), settings, {});
+    EXPECT_EQ(update.parts, full.parts) << what;
+    EXPECT_GT(full.parts.size(), 1u);
+    asked += update.stats.asked;
+    asked_in_full += full.stats.asked;
+    before = std::move(update);
+  }
+  EXPECT_LT(asked, asked_in_full / 2) << "the updates took over too little for this to say much";
 }
 
 TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {

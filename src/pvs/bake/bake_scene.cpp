@@ -179,9 +179,17 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   }
   chooseDepth();
   countOccluders();
-  for (std::uint32_t level = 0; level <= settings.max_depth; ++level) {
-    levels_.push_back(occludersFor(level));
-  }
+  // The trees of the levels and that of the faces, side by side.
+  const std::uint32_t levels = settings.max_depth + 1;
+  levels_.resize(levels);
+  parallel_for(levels + 1, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      i < levels ? void(levels_[i] = occludersFor(i)) : gatherFaces(set);
+    }
+  });
+}
+
+void BakeScene::gatherFaces(const OccluderSet& set) {
   face_edges_.reserve(set.vertices.size());
   std::vector<Box> bounds;
   for (const Occluder& occluder : set.occluders) {

@@ -88,6 +88,7 @@ struct BakeScene {
   BoxTree reachOfOccluders(std::uint32_t level) const;
   bool ofUse(const ConvexOccluder& occluder, std::uint32_t level) const;
   LevelOccluders occludersFor(std::uint32_t level) const;
+  void gatherFaces(const OccluderSet& set);
   std::vector<LevelOccluders> levels_;
 };
 
