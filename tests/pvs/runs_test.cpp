@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "src/pvs/bake/cell_sets.h"
+#include "src/pvs/bake/object_mask.h"
 
 namespace sightline::pvs {
 namespace {

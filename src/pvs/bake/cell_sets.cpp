@@ -9,21 +9,12 @@
 #include <algorithm>
 #include <array>
 
-#include "src/pvs/bake/box_search.h"
-#include "src/pvs/bake/segment.h"
-
 namespace sightline::pvs {
 namespace {
 
 // An occluder is near a cell within this distance, in edge lengths of the cell. Farther away it looks small,
 // unless it is as large as the cell.
 constexpr double kNearInEdges = 0.5;
-
-// How close to the box of an occluder a line of sight may come without missing it, in units of the
-// coordinates: far more than rounding moves it.
-constexpr double kLineMargin = 0x1p-36;
-// If more boxes differ, the earlier answers help little.
-constexpr std::size_t kMostDiffering = 256;
 
 std::uint64_t countOf(std::span<const ObjectRun> runs) {
   std::uint64_t count = 0;
@@ -42,18 +33,6 @@ void append(std::uint32_t position, Runs& runs) {
   }
 }
 
-// False only if no line from the point to somewhere in `to` meets the box.
-bool mayPass(const Vec3d& from, const Box& to, const Box& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = std::min(from[axis], double{to.min[axis]}),
-                 high = std::max(from[axis], double{to.max[axis]});
-    if (low > double{box.max[axis]} || high < double{box.min[axis]}) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // The corners of the regions in front of a cell's plane and behind it, as far as they are for viewers.
 struct SideCorners {
   std::vector<Vec3d> front, back;
@@ -65,80 +44,15 @@ struct SideCorners {
 
 }  // namespace
 
-void ObjectMask::reset(std::uint32_t count) {
-  count_ = count;
-  words_.assign((count + 63) / 64, 0);
-}
-
-void ObjectMask::resetWithout(std::span<const ObjectRun> runs, std::uint32_t count) {
-  reset(count);
-  std::uint32_t begin = 0;
-  for (const ObjectRun& run : runs) {
-    addRun({begin, run.begin});
-    begin = run.end;
-  }
-  addRun({begin, count});
-}
-
-void ObjectMask::add(std::span<const ObjectRun> runs) {
-  for (const ObjectRun& run : runs) {
-    addRun(run);
-  }
-}
-
-void ObjectMask::addRun(const ObjectRun& run) {
-  if (run.begin == run.end) {
-    return;
-  }
-  const std::uint32_t first = run.begin / 64, last = (run.end - 1) / 64;
-  const std::uint64_t low = ~std::uint64_t{0} << run.begin % 64;
-  const std::uint64_t high = ~std::uint64_t{0} >> (63 - (run.end - 1) % 64);
-  if (first == last) {
-    words_[first] |= low & high;
-    return;
-  }
-  words_[first] |= low;
-  std::fill(words_.begin() + first + 1, words_.begin() + last, ~std::uint64_t{0});
-  words_[last] |= high;
-}
-
-bool ObjectMask::containsAll(const ObjectRun& run) const {
-  std::uint32_t i = run.begin;
-  while (i < run.end && contains(i)) {
-    // Whole words at once.
-    i += i % 64 == 0 && i + 64 <= run.end && words_[i / 64] == ~std::uint64_t{0} ? 64 : 1;
-  }
-  return i >= run.end;
-}
-
-void ObjectMask::complement(Runs& out) const {
-  out.clear();
-  for (std::uint32_t i = 0; i < count_; ++i) {
-    if (i % 64 == 0 && words_[i / 64] == ~std::uint64_t{0}) {
-      i += 63;
-    } else if (!contains(i)) {
-      if (!out.empty() && out.back().end == i) {
-        out.back().end = i + 1;
-      } else {
-        out.push_back({i, i + 1});
-      }
-    }
-  }
-}
-
 CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
     : scene_(scene),
-      recall_(recall),
+      recall_(scene, recall),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
-      surfaces_(scene.panels, scene.settings.near_distance, scene.magnitude),
-      line_margin_(kLineMargin * (scene.magnitude + scene.reach)),
-      occludes_(scene.boxes.objects.size()) {
-  if (recall_ != nullptr) {
-    answers_before_.emplace(*recall_);
-  }
-  for (std::uint32_t i = 0; i < scene.occluders.size(); ++i) {
-    occludes_[scene.position_of[scene.occluders[i].object.value]] = true;
-  }
+      surfaces_(scene.panels, scene.settings.near_distance, scene.magnitude) {}
+
+void CellBaker::startCell(const OctreeCell& cell) {
+  cell_ = cellNumber(cell);
+  recall_.startCell(cell_);
 }
 
 BakeStats CellBaker::stats() const {
@@ -146,16 +60,6 @@ BakeStats CellBaker::stats() const {
   stats.questions = questions_;
   stats.asked = asked_;
   return stats;
-}
-
-const Answer* CellBaker::answerBefore(const Answer& answer) {
-  return answers_before_ ? answers_before_->find(cell_, answer.kind, answer.question) : nullptr;
-}
-
-void CellBaker::keep(Answer answer) {
-  if (scene_.settings.answers) {
-    answers_[cell_].push_back(std::move(answer));
-  }
 }
 
 CellBox CellBaker::searchBox(const OctreeCell& cell, double search_distance) const {
@@ -203,7 +107,7 @@ std::span<const std::uint32_t> CellBaker::chosenOccluders() {
 }
 
 CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen) {
-  cell_ = cellNumber(cell);
+  startCell(cell);
   const CellBox box = scene_.boxOf(cell);
   const double near = 2.0 * scene_.settings.near_distance;
   faces_.clear();
@@ -226,7 +130,7 @@ CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, con
 }
 
 void CellBaker::lookFarther(const OctreeCell& cell, double searched, double search_distance, CellSets& sets) {
-  cell_ = cellNumber(cell);
+  startCell(cell);
   chooseOccluders(cell, search_distance, cell.level);
   choice_.known = searchBox(cell, searched);
   choice_.distance_before = searched;
@@ -270,10 +174,7 @@ void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& s
   }
   const std::array<Vec3d, 2> ends{region.min, region.max};
   Answer answer{.kind = AnswerKind::kFused, .question = questionOf(ends, {})};
-  nodes_before_.clear();
-  if (const Answer* before = answerBefore(answer)) {
-    recallNodes(*before);
-  }
+  recall_.compareNodes(recall_.find(answer));
   hidden_nodes_.clear();
   followed_.clear();
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
@@ -282,74 +183,16 @@ void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& s
   answer.seen = seen;
   answer.hidden_nodes = hidden_nodes_;
   answer.followed = followed_;
-  keep(std::move(answer));
-}
-
-void CellBaker::recallNodes(const Answer& before) {
-  const std::vector<BoxNode>& nodes = recall_->earlier().marks.nodes;
-  nodes_before_.assign(nodes.size(), Before::kNotAsked);
-  for (const std::uint32_t node : before.hidden_nodes) {
-    nodes_before_[node] = Before::kHidden;
-  }
-  // What is seen was asked about, and so was all above that.
-  std::size_t run = before.seen.size();
-  for (std::size_t n = nodes.size(); n-- > 0;) {
-    const BoxNode& node = nodes[n];
-    if (nodes_before_[n] == Before::kHidden) {
-      continue;
-    }
-    bool asked = false;
-    if (node.end == n + 1) {
-      while (run > 0 && before.seen[run - 1].begin > node.first_object) {
-        --run;
-      }
-      asked = run > 0 && node.first_object < before.seen[run - 1].end;
-    }
-    for (std::size_t child = n + 1; child < node.end && !asked; child = nodes[child].end) {
-      asked = nodes_before_[child] != Before::kNotAsked;
-    }
-    nodes_before_[n] = asked ? Before::kSeen : Before::kNotAsked;
-  }
-  followed_before_.assign(nodes.size(), kWholeFrame);
-  std::size_t asked = 0;
-  for (std::size_t n = 0; n < nodes.size() && asked < before.followed.size(); ++n) {
-    if (nodes_before_[n] != Before::kNotAsked) {
-      followed_before_[n] = before.followed[asked++];
-    }
-  }
-}
-
-// An answer depends on the panels that the lines of sight of the question meet, and on those that were
-// followed from there: these decided it. What has changed elsewhere in the shaft is joined with none of them.
-// Whether the surfaces in the shaft are closed does not depend on the order in which they are followed.
-// Narrowing and dividing try lines of sight from elsewhere, so where they may have decided, all of the shaft
-// counts.
-bool CellBaker::holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const {
-  const Box& box = scene_.boxes.nodes[node].bounds;
-  const BakeSettings& settings = scene_.settings;
-  if (scene_.boxes.view().leaf(node) && (settings.narrowings > 0 || settings.divisions > 0)) {
-    return !recall_->panelsDiffer(region, box);
-  }
-  const Vec3d start = FusedOcclusion::startOf(region);
-  return (!recall_->panelsDiffer(decided_in) && !recall_->panelsDiffer({start, start}, box)) ||
-         !recall_->panelsDiffer(region, box);
+  recall_.keep(std::move(answer));
 }
 
 bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
   const BoxTreeView boxes = scene_.boxes.view();
   const BoxNode& node = boxes.nodes[number];
   ++questions_;
-  if (!nodes_before_.empty()) {
-    const std::uint32_t same = recall_->nodeBefore(number);
-    if (same != Recall::kNone && nodes_before_[same] != Before::kNotAsked) {
-      const Box& frame = recall_->earlier().marks.frame;
-      const CoarseBox& followed = followed_before_[same];
-      const Box decided_in = boxOf(followed, frame);
-      if (holds(number, region, decided_in)) {
-        followed_.push_back(frame == scene_.frame ? followed : coarse(decided_in, scene_.frame));
-        return nodes_before_[same] == Before::kHidden;
-      }
-    }
+  if (const std::optional<CellRecall::NodeAnswer> before = recall_.node(number, region)) {
+    followed_.push_back(before->followed);
+    return before->hidden;
   }
   ++asked_;
   surfaces_.takeFollowed();
@@ -461,7 +304,7 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
                            static_cast<double>(part)};
   Answer answer{.kind = AnswerKind::kConvex, .question = questionOf(corners, numbers), .asked = seen};
   hidden_.resetWithout(seen, static_cast<std::uint32_t>(scene_.boxes.objects.size()));
-  const Answer* before = answerBefore(answer);
+  const Answer* before = recall_.find(answer);
   questions_ += countOf(seen);
   if (before == nullptr || !hideAsBefore(*before, corners, seen)) {
     asked_ += countOf(seen);
@@ -469,7 +312,7 @@ void CellBaker::removeHiddenFrom(std::span<const Vec3d> corners, WitnessPart par
   }
   hidden_.complement(seen);
   answer.seen = seen;
-  keep(std::move(answer));
+  recall_.keep(std::move(answer));
 }
 
 // Skips an occluder whose object is already hidden. What such an occluder hides is hidden by that which hides
@@ -491,40 +334,16 @@ void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
   }
 }
 
-// An answer of the earlier bake holds unless the object has changed, was not asked about, or may be hidden by
-// an occluder that counts in one of the bakes only: one of a changed object, or of one that only one of the
-// bakes asked about. What that hides lies behind its object's box, as seen from each corner.
 bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen) {
-  const auto count = static_cast<std::uint32_t>(scene_.boxes.objects.size());
-  objects_before_.assign(count, Before::kNotAsked);
-  const auto set = [this](const Runs& runs, Before state) {
-    for (const ObjectRun& run : runs) {
-      for (std::uint32_t i = run.begin; i < run.end; ++i) {
-        if (const std::uint32_t now = recall_->placeNow(i); now != Recall::kNone) {
-          objects_before_[now] = state;
-        }
-      }
-    }
-  };
-  set(before.asked, Before::kHidden);
-  set(before.seen, Before::kSeen);
-  const std::span<const Box> changed = recall_->changedOccluders();
-  differing_.assign(changed.begin(), changed.end());
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const bool asked_before = objects_before_[i] != Before::kNotAsked;
-    if (asked_before == hidden_.contains(i) && occludes_[i] && recall_->placeBefore(i) != Recall::kNone) {
-      differing_.push_back(scene_.leafOf(i).bounds);
-    }
-  }
-  if (differing_.size() > kMostDiffering) {
+  if (!recall_.compareObjects(before, corners, hidden_)) {
     return false;
   }
-  findBehind(corners, differing_);
   common_.clear();
   for (const ObjectRun& run : seen) {
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
-      bool hidden = objects_before_[i] == Before::kHidden;
-      if (objects_before_[i] == Before::kNotAsked || behind_.contains(i)) {
+      const CellRecall::Known known = recall_.object(i);
+      bool hidden = known == CellRecall::Known::kHidden;
+      if (known == CellRecall::Known::kNothing) {
         ++asked_;
         hidden = hiddenByOne(corners, i);
       }
@@ -537,30 +356,10 @@ bool CellBaker::hideAsBefore(const Answer& before, std::span<const Vec3d> corner
   return true;
 }
 
-void CellBaker::findBehind(std::span<const Vec3d> corners, std::span<const Box> boxes) {
-  const BoxTreeView tree = scene_.boxes.view();
-  behind_.reset(static_cast<std::uint32_t>(tree.objects.size()));
-  for (const Box& given : boxes) {
-    const Box box = widened(given, line_margin_);
-    const auto misses = [&](const Box& bounds) {
-      return !mayPass(corners.front(), bounds, box) || !mayPass(corners.back(), bounds, box);
-    };
-    forEachLeaf(tree, misses, [&](const BoxNode& leaf) {
-      const auto passes = [&, to = center(leaf.bounds)](const Vec3d& corner) {
-        return !SegmentTest(corner, to, line_margin_).misses(box);
-      };
-      if (std::all_of(corners.begin(), corners.end(), passes)) {
-        const ObjectRun object{leaf.first_object, leaf.first_object + 1};
-        behind_.add(std::span(&object, 1));
-      }
-    });
-  }
-}
-
 bool CellBaker::hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position) {
   along_.clear();
-  scene_.findOccludersAlong(corners[0], center(scene_.leafOf(position).bounds), line_margin_, choice_.search,
-                            choice_.level, along_);
+  scene_.findOccludersAlong(corners[0], center(scene_.leafOf(position).bounds), recall_.lineMargin(),
+                            choice_.search, choice_.level, along_);
   return std::any_of(along_.begin(), along_.end(), [&](std::uint32_t i) {
     const ConvexOccluder& occluder = scene_.occluders[i];
     return !(choice_.known && intersects(*choice_.known, occluder.bounds)) &&
@@ -606,31 +405,21 @@ std::uint64_t CellBaker::trianglesSeenFrom(const Vec3d& eye) {
   return scene_.triangles.of(scratch_);
 }
 
-// Only what lies behind the box of a changed object, as seen from the point, may be seen now and not before,
-// or the other way around. Mostly its triangles do not matter.
 bool CellBaker::seesFewer(const Vec3d& eye, double triangles) {
   const std::array numbers{choice_.distance, static_cast<double>(choice_.level)};
   Answer answer{.kind = AnswerKind::kPoint, .question = questionOf(std::span(&eye, 1), numbers)};
   ++questions_;
-  const Answer* before = answerBefore(answer);
-  if (before != nullptr && recall_->changedOccluders().size() <= kMostDiffering) {
-    findBehind(std::span(&eye, 1), recall_->changedOccluders());
-    std::uint64_t behind = 0;
-    for (std::uint32_t i = 0; i < scene_.boxes.objects.size(); ++i) {
-      behind += behind_.contains(i) ? scene_.leafOf(i).triangles : 0;
-    }
-    answer.least = before->least - std::min(before->least, behind + recall_->trianglesGone());
-    answer.most = before->most + behind + recall_->trianglesCome();
+  if (recall_.boundTriangles(eye, answer)) {
     const bool fewer = static_cast<double>(answer.most) < triangles;
     if (fewer || !(static_cast<double>(answer.least) < triangles)) {
-      keep(std::move(answer));
+      recall_.keep(std::move(answer));
       return fewer;
     }
   }
   ++asked_;
   answer.least = answer.most = trianglesSeenFrom(eye);
   const bool fewer = static_cast<double>(answer.most) < triangles;
-  keep(std::move(answer));
+  recall_.keep(std::move(answer));
   return fewer;
 }
 

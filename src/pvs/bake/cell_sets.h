@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "src/pvs/bake/answers.h"
 #include "src/pvs/bake/bake_scene.h"
-#include "src/pvs/bake/recall.h"
+#include "src/pvs/bake/cell_recall.h"
+#include "src/pvs/bake/object_mask.h"
 #include "src/pvs/bake/region_occlusion.h"
 #include "src/pvs/bake/samples.h"
 
@@ -25,26 +25,6 @@ struct CellSets {
 // Triangles compared with the budget: those of the side that sees more. Viewers between the sides do not
 // count, as they are there only briefly.
 std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets);
-
-// One bit per object, to unite many runs fast.
-class ObjectMask {
- public:
-  // Resizes to `count` objects, none of them set.
-  void reset(std::uint32_t count);
-  // Resizes to `count` objects, all set except those of the runs.
-  void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
-  void add(std::span<const ObjectRun> runs);
-  bool contains(std::uint32_t position) const { return (words_[position / 64] >> position % 64 & 1) != 0; }
-  bool containsAll(const ObjectRun& run) const;
-  // out: the objects that are not set.
-  void complement(Runs& out) const;
-
- private:
-  void addRun(const ObjectRun& run);
-
-  std::uint32_t count_ = 0;
-  std::vector<std::uint64_t> words_;
-};
 
 class CellBaker {
  public:
@@ -76,9 +56,11 @@ class CellBaker {
   // What hid objects since the last call; empty if the settings do not ask for it.
   std::vector<HidingWitness> takeWitnesses() { return std::exchange(witnesses_, {}); }
   // What was asked since the last call, and the answers; empty if the settings do not ask for it.
-  CellAnswers takeAnswers() { return std::exchange(answers_, {}); }
+  CellAnswers takeAnswers() { return recall_.takeAnswers(); }
 
  private:
+  // All that follows is about this cell.
+  void startCell(const OctreeCell& cell);
   bool fused() const { return scene_.settings.occlusion == BakeOcclusion::kFused; }
   CellBox searchBox(const OctreeCell& cell, double search_distance) const;
   // The occluders that count: those in the search box that are useful to cells of a level, without those in
@@ -99,9 +81,6 @@ class CellBaker {
   void hideByChosen(std::span<const Vec3d> corners);
   // The same by what an earlier bake found. False, with nothing added, if too much has changed for that.
   bool hideAsBefore(const Answer& before, std::span<const Vec3d> corners, const Runs& seen);
-  // Sets behind_ to the objects of which the centre lies behind, or in, one of the boxes as seen from each
-  // corner: all that occluders in these boxes may hide.
-  void findBehind(std::span<const Vec3d> corners, std::span<const Box> boxes);
   // Whether a chosen occluder hides the object at this place from all corners.
   bool hiddenByOne(std::span<const Vec3d> corners, std::uint32_t position);
   // Removes from each set what surfaces hide from its region, of what lies in the boxes of the tree.
@@ -110,11 +89,6 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region);
-  // Whether the earlier bake's answer about the node still holds. decided_in: a box around the panels that
-  // decided it.
-  bool holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const;
-  // Sets nodes_before_ and followed_before_ to what an earlier bake found about the nodes of its box tree.
-  void recallNodes(const Answer& before);
   bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
   // object: FusedTarget::object
   bool hidesBox(const CellBox& region, const Box& box, std::uint32_t object, const RegionEffort& effort);
@@ -125,38 +99,25 @@ class CellBaker {
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
   // Whether trianglesSeenFrom is less than this, by what an earlier bake found or by asking.
   bool seesFewer(const Vec3d& eye, double triangles);
-  // What the earlier bake found, or null; and a place for what this one finds.
-  const Answer* answerBefore(const Answer& answer);
-  void keep(Answer answer);
   // Records, if it is asked for, that these objects are hidden, as far as hidden_ does not hold them yet.
   void recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects);
   void recordSurfaces(const ObjectRun& objects);
   void record(HidingWitness witness, std::span<const ObjectRun> objects);
 
   const BakeScene& scene_;
-  const Recall* recall_;
-  std::optional<RecalledAnswers> answers_before_;
+  CellRecall recall_;
   SampleStore samples_;
   RegionOcclusion surfaces_;
-  double line_margin_;          // of lines of sight around boxes of occluders, metres
-  std::vector<bool> occludes_;  // by place in the box tree: some convex occluder is the object's
   // Scratch for the current cell.
   Choice choice_;
   std::vector<std::uint32_t> chosen_, along_;
   std::vector<std::pair<double, std::uint32_t>> ranked_;
   std::vector<DividingFace> faces_;
-  ObjectMask hidden_, behind_;
+  ObjectMask hidden_;
   Runs common_, scratch_;
-  // What an earlier bake found about an object, or about a node of its box tree.
-  enum class Before : std::uint8_t { kNotAsked, kHidden, kSeen };
-  std::vector<Before> objects_before_;  // by place now
-  std::vector<Before> nodes_before_;    // by node of the earlier box tree; empty if there is no answer
-  std::vector<Box> differing_;
-  std::vector<CoarseBox> followed_before_;  // by node of the earlier box tree
   std::vector<std::uint32_t> hidden_nodes_;
   std::vector<CoarseBox> followed_;
   Shadow shadow_;
-  CellAnswers answers_;
   std::uint64_t questions_ = 0, asked_ = 0;
   std::vector<HidingWitness> witnesses_;
   std::uint64_t cell_ = 1;  // cellNumber of the current cell
