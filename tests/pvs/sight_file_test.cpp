@@ -59,7 +59,8 @@ TEST(SightFile, GivesBackAllThatWasWritten) {
                                                     .depth = seed % 6,
                                                     .sets = 1 + seed * 20,
                                                     .set_nodes = seed * 5,
-                                                    .plane_every = seed % 4});
+                                                    .plane_every = seed % 4,
+                                                    .partly_every = seed % 3});
     expectSame(bytesOf(baked), baked, "seed " + std::to_string(seed) + " ");
   }
 }
@@ -193,7 +194,7 @@ std::byte* versionIn(Bytes& bytes) {
 }
 
 TEST(SightFile, SaysWhichOtherVersionItHas) {
-  for (const std::uint32_t version : {pvs::kVersion - 1, pvs::kVersion + 1, 4'000'000'000u}) {
+  for (const std::uint32_t version : {pvs::kFirstVersion - 1, pvs::kVersion + 1, 4'000'000'000u}) {
     Bytes bytes = bytesOf(smallBaked());
     std::memcpy(versionIn(bytes), &version, sizeof version);
     const std::string error = errorOf(opened(bytes));
@@ -201,6 +202,17 @@ TEST(SightFile, SaysWhichOtherVersionItHas) {
     EXPECT_NE(error.find(version < pvs::kVersion ? "older" : "newer"), std::string::npos) << error;
     EXPECT_NE(error.find("bake it again"), std::string::npos) << error;
   }
+}
+
+// A program that knows only the first version would take sets for eyes that they do not hold for.
+TEST(SightFile, HasALaterVersionOnlyIfViewersAreInAPartOfACell) {
+  const auto versionOf = [](Bytes bytes) {
+    std::uint32_t version = 0;
+    std::memcpy(&version, versionIn(bytes), sizeof version);
+    return version;
+  };
+  EXPECT_EQ(versionOf(bytesOf(made::visibility({}))), 1u);
+  EXPECT_EQ(versionOf(bytesOf(made::visibility({.partly_every = 2}))), 2u);
 }
 
 TEST(SightFile, SaysWhatIsNoSightFile) {

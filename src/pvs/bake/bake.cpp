@@ -110,6 +110,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
       bytes.add(number);
     }
   }
+  bytes.add(std::uint8_t{s.whole_cells});
   if (s.witnesses) {
     bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
   }
@@ -141,6 +142,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   BakeSettings complete = settings;
   if (complete.viewers.empty()) {
     complete.viewers = {boundsOf(scene)};
+    complete.whole_cells = true;
     if (complete.viewers[0].empty()) {
       return Error{"bake: the scene has no object with a finite box, so there is nothing to see"};
     }

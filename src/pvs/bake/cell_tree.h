@@ -14,6 +14,7 @@ struct BakedCell {
   std::vector<BakedCell> children;  // eight; none in a leaf
   // Leaves only.
   CellSets sets;
+  ViewerBounds viewers;  // for which the sets hold
   StopReason reason = StopReason::kBudgetMet;
   std::uint8_t level = 0;
 
@@ -39,7 +40,8 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 // The task's cell with everything below it, merged.
 BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& task);
 
-// Turns a cell whose children are leaves with similar sets into a leaf.
+// Turns a cell whose children are leaves with similar sets into a leaf. Its viewers are those of the
+// children, and nowhere else: where the box around them holds more, the cell stays divided.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
 void write(const Runs& runs, base::ByteWriter& bytes);

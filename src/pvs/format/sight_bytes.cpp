@@ -24,8 +24,8 @@ constexpr bool kSameLayout =
     alignof(Stored) == alignof(Ours) && std::is_trivially_copyable_v<Ours>&& std::is_standard_layout_v<Ours>;
 static_assert(kSameLayout<sight::BoxNode, BoxNode> && kSameLayout<sight::OctreeLeaf, OctreeLeaf> &&
               kSameLayout<sight::CellPlane, CellPlane> && kSameLayout<sight::Chunk, Chunk> &&
-              kSameLayout<sight::SetPlace, SetPlace> && kSameLayout<sight::Double3, Vec3d> &&
-              kSameLayout<std::uint32_t, ObjectId>);
+              kSameLayout<sight::ViewerBounds, ViewerBounds> && kSameLayout<sight::SetPlace, SetPlace> &&
+              kSameLayout<sight::Double3, Vec3d> && kSameLayout<std::uint32_t, ObjectId>);
 
 template <typename Stored, typename Ours>
 auto writeArray(flatbuffers::FlatBufferBuilder& builder, std::span<const Ours> values) {
@@ -55,8 +55,8 @@ Vec3d ours(const sight::Double3& v) {
 std::size_t estimatedBytes(const SightView& view) {
   return 4096 + view.payload.size() + view.settings.size() + view.boxes.nodes.size_bytes() +
          view.boxes.objects.size_bytes() + view.octree.nodes.size_bytes() + view.octree.leaves.size_bytes() +
-         2 * view.octree.leaves.size() + view.octree.planes.size_bytes() + view.sets.size_bytes() +
-         view.chunks.size_bytes();
+         2 * view.octree.leaves.size() + view.octree.planes.size_bytes() + view.octree.viewers.size_bytes() +
+         view.sets.size_bytes() + view.chunks.size_bytes();
 }
 
 auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
@@ -76,6 +76,11 @@ void writeFile(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
   const auto sets = writeArray<sight::SetPlace>(builder, view.sets);
   const auto objects = writeArray<std::uint32_t>(builder, view.boxes.objects);
   const auto boxes = writeArray<sight::BoxNode>(builder, view.boxes.nodes);
+  const bool has_viewers = !view.octree.viewers.empty();
+  flatbuffers::Offset<flatbuffers::Vector<const sight::ViewerBounds*>> viewers;
+  if (has_viewers) {
+    viewers = writeArray<sight::ViewerBounds>(builder, view.octree.viewers);
+  }
   const auto planes = writeArray<sight::CellPlane>(builder, view.octree.planes);
   const auto reasons = writeArray<std::uint8_t>(builder, view.octree.reasons);
   const auto depths = writeArray<std::uint8_t>(builder, view.octree.depths);
@@ -88,10 +93,10 @@ void writeFile(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
   const sight::Seal seal(0, 0);
   const sight::Scene scene(view.scene.hash, view.scene.objects, view.scene.triangles);
   const sight::Extent extent(stored(view.octree.min), stored(view.octree.max));
-  builder.Finish(
-      sight::CreateFile(builder, kVersion, &seal, &scene, record, boxes, objects, &extent, nodes, leaves,
-                        depths, reasons, planes, view.set_chunks, sets, chunks, databases, payload),
-      sight::FileIdentifier());
+  builder.Finish(sight::CreateFile(builder, has_viewers ? kVersionWithViewers : kFirstVersion, &seal, &scene,
+                                   record, boxes, objects, &extent, nodes, leaves, depths, reasons, planes,
+                                   view.set_chunks, sets, chunks, databases, payload, viewers),
+                 sight::FileIdentifier());
 }
 
 const std::uint8_t* startOf(std::span<const std::byte> bytes) {
@@ -163,10 +168,10 @@ Status checkVersion(std::span<const std::byte> bytes) {
   if (any == nullptr || any->seal() == nullptr) {
     return Error{"is truncated or altered: bake it again"};
   }
-  if (any->version() != kVersion) {
+  if (any->version() < kFirstVersion || any->version() > kVersion) {
     const bool newer = any->version() > kVersion;
     return Error{"has version " + std::to_string(any->version()) + " of the format, which is " +
-                 (newer ? "newer" : "older") + " than " + std::to_string(kVersion) +
+                 (newer ? "newer than " : "older than ") + std::to_string(newer ? kVersion : kFirstVersion) +
                  (newer ? ": update Sightline, or bake it again" : ": bake it again")};
   }
   if (any->seal()->file_bytes() != bytes.size()) {
@@ -183,8 +188,10 @@ bool readArrays(const sight::File& file, SightView& view) {
   return readArray(file.boxes(), view.boxes.nodes) && readArray(file.objects(), view.boxes.objects) &&
          readArray(file.nodes(), octree.nodes) && readArray(file.leaves(), octree.leaves) &&
          readArray(file.depths(), octree.depths) && readArray(file.reasons(), octree.reasons) &&
-         readArray(file.planes(), octree.planes) && readArray(file.sets(), view.sets) &&
-         readArray(file.chunks(), view.chunks) && readArray(file.payload(), view.payload);
+         readArray(file.planes(), octree.planes) &&
+         (file.viewers() == nullptr || readArray(file.viewers(), octree.viewers)) &&
+         readArray(file.sets(), view.sets) && readArray(file.chunks(), view.chunks) &&
+         readArray(file.payload(), view.payload);
 }
 
 // Returns false if a part is not aligned for its elements.

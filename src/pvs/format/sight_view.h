@@ -16,7 +16,9 @@
 
 namespace sightline::pvs {
 
-inline constexpr std::uint32_t kVersion = 1;
+// A file has the first version that can hold it, so that older programs read what they understand. A program
+// of the first version would take a leaf's sets for eyes outside of its ViewerBounds.
+inline constexpr std::uint32_t kFirstVersion = 1, kVersionWithViewers = 2, kVersion = kVersionWithViewers;
 inline constexpr std::uint64_t kMaxFileBytes = 0x7fffffffu;  // the limit of a FlatBuffer
 
 // Chunks of sets are about kSetChunkBytes long before compression, so that one is decompressed in a few

@@ -43,6 +43,9 @@ struct BakeSettings {
   // scene. Cells that meet none of them are not baked and hold all objects. The octree's root is a cube
   // around all of them, the viewing region.
   std::vector<Box> viewers{};
+  // A cell's sets hold for the box around what of the viewers' boxes lies in it (ViewerBounds). With this, or
+  // without boxes of viewers, they hold for all of each cell that meets viewers.
+  bool whole_cells = false;
   // Occluders are searched within this distance of a viewpoint at first, in metres; 0 chooses one. It is
   // doubled where that helps.
   double search_distance = 0.0;
