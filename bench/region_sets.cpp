@@ -1,0 +1,197 @@
+// How close to exact are the sets of cells? A table row for each scene: cells around some eyes of its walk, and
+// of all pairs of such a cell and an object how many the bake keeps, and how many random lines see. A line sees
+// an object if it leads from where viewers are in the cell to the object's box and nothing opaque of another
+// object is in between (Embree). Lines that see are a lower bound of what must be kept.
+//
+//   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
+//               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
+//
+// Cells are at most --cell wide, one for each of --cells eyes, spread evenly over the walk. With --free,
+// viewers are where one gets from the walk (findFreeSpace), at most MAX_HEIGHT above the ground, and sets are
+// those of what of it lies in the cell; with --whole, of all of the cell.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/benchmark_scene.h"
+#include "bench/measuring.h"
+#include "oracle/ray_scene.h"
+#include "oracle/split_mix.h"
+#include "sightline/occluders/closed_scene.h"
+#include "sightline/occluders/find_occluders.h"
+#include "sightline/pvs/bake/viewer_space.h"
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_sets.h"
+
+namespace {
+
+using namespace sightline;
+using namespace sightline::bench;
+
+struct Options {
+  double cell = 2.0, crack_width = 0.0, max_height = std::numeric_limits<double>::infinity();
+  std::uint32_t cells = 43, lines = 2000;
+  bool free = false;
+  BakeSettings settings{.occlusion = BakeOcclusion::kFused};
+  std::vector<std::string> scenes;
+};
+
+Options optionsOf(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto is = [&word](std::string_view name) { return word.rfind(name, 0) == 0; };
+    const double number = std::atof(word.substr(std::min(word.find('=') + 1, word.size())).c_str());
+    const auto whole = static_cast<std::uint32_t>(std::max(number, 0.0));
+    if (is("--cells=")) {
+      options.cells = whole;
+    } else if (is("--cell=")) {
+      options.cell = number;
+    } else if (is("--lines=")) {
+      options.lines = whole;
+    } else if (is("--crack-width=")) {
+      options.crack_width = number;
+    } else if (is("--free")) {
+      options.free = true;
+      options.max_height = is("--free=") ? number : options.max_height;
+    } else if (is("--whole")) {
+      options.settings.whole_cells = true;
+    } else if (is("--near=")) {
+      options.settings.near_distance = number;
+    } else if (is("--narrowings=")) {
+      options.settings.narrowings = whole;
+    } else if (is("--divisions=")) {
+      options.settings.divisions = whole;
+    } else if (is("--boxes=")) {
+      options.settings.object_boxes = whole;
+    } else {
+      options.scenes.push_back(word);
+    }
+  }
+  return options;
+}
+
+// Whether one of some random lines from the region to the box meets nothing opaque before it but this object.
+bool lineSees(const RayScene& rays, const pvs::CellBox& region, const Box& box, ObjectId object,
+              std::uint32_t lines, SplitMix& random) {
+  std::vector<RayHit> hits;
+  for (std::uint32_t line = 0; line < lines; line += RayScene::kBatch) {
+    RayScene::Batch batch;
+    for (FloatRay& ray : batch) {
+      Vec3d from, to;
+      for (int axis = 0; axis < 3; ++axis) {
+        from[axis] = random.in(region.min[axis], region.max[axis]);
+        to[axis] = random.in(box.min[axis], box.max[axis]);
+      }
+      ray = {Vec3f(from), Vec3f(to - from), 1.0f};
+    }
+    hits.clear();
+    rays.trace(batch, RayScene::kBatch, false, hits);
+    std::uint32_t blocked = 0;
+    for (const RayHit& hit : hits) {
+      blocked |= (hit.opaque && hit.object != object ? 1u : 0u) << hit.ray;
+    }
+    if (blocked != (1u << RayScene::kBatch) - 1) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The cell of the deepest level that holds the eye.
+OctreeCell cellAt(const pvs::BakeScene& bake, const Vec3d& eye) {
+  OctreeCell cell{bake.settings.max_depth, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = (eye[axis] - bake.root.min[axis]) / (bake.root.max[axis] - bake.root.min[axis]);
+    const double most = std::ldexp(1.0, static_cast<int>(cell.level));
+    cell.at[static_cast<std::size_t>(axis)] =
+        static_cast<std::uint32_t>(std::clamp(std::floor(share * most), 0.0, most - 1.0));
+  }
+  return cell;
+}
+
+void measure(const std::string& name, const Options& options) {
+  BenchmarkScene loaded = loadScene(name, "region_sets");
+  Scene& scene = loaded.scene;
+  BakeSettings settings = options.settings;
+  if (options.crack_width > 0.0) {
+    ClosedScene closed = closeCracks(scene.view(), options.crack_width);
+    settings.box_margin = closed.margin();
+    scene.indices = std::move(closed.indices);
+    scene.objects = std::move(closed.objects);
+  }
+  std::vector<Vec3d> eyes;
+  for (const CameraFrame& frame : loaded.path.frames) {
+    eyes.push_back(frame.eye - scene.origin);
+  }
+  const Box bounds = sceneBounds(scene.view());
+  settings.viewers = {bounds};
+  if (options.free) {
+    settings.viewers =
+        valueOrExit(findFreeSpace(scene.view(), eyes, {.max_height = options.max_height}), "region_sets").boxes;
+  }
+  Box around;
+  for (const Box& box : settings.viewers) {
+    around.extend(box);
+  }
+  const Vec3f extent = around.max - around.min;
+  const double edge = std::max({extent.x, extent.y, extent.z}) * (1.0 + 0x1p-20);
+  settings.max_depth = static_cast<std::uint32_t>(std::max(0.0, std::ceil(std::log2(edge / options.cell))));
+  const pvs::BakeScene bake(scene.view(), findOccluders(scene.view(), {.area_fraction = 1.0}), settings,
+                            serialFor);
+  const RayScene rays(scene.view());
+  std::set<std::array<std::uint32_t, 3>> known;
+  std::uint64_t pairs = 0, kept = 0, seen = 0, seen_but_hidden = 0;
+  double us = 0.0;
+  SplitMix random{1};
+  pvs::CellBaker baker(bake);
+  for (std::uint32_t i = 0; i < options.cells && !eyes.empty(); ++i) {
+    const OctreeCell cell = cellAt(bake, eyes[i * eyes.size() / options.cells]);
+    if (!known.insert(cell.at).second || !bake.holdsViewers(bake.boxOf(cell))) {
+      continue;
+    }
+    pvs::CellSets sets;
+    us += microseconds([&] { sets = baker.seenFrom(cell, 0.125 * bake.diagonal, {}); });
+    pvs::ObjectMask keeps;
+    keeps.reset(static_cast<std::uint32_t>(bake.boxes.objects.size()));
+    keeps.add(sets.whole);
+    const pvs::CellBox region = bake.regionOf(cell);
+    for (std::uint32_t position = 0; position < bake.boxes.objects.size(); ++position) {
+      const Box& box = bake.leafOf(position).bounds;
+      if (!box.wellFormed()) {
+        continue;
+      }
+      const bool sees = lineSees(rays, region, box, bake.boxes.objects[position], options.lines, random);
+      pairs += 1;
+      kept += keeps.contains(position) ? 1 : 0;
+      seen += sees ? 1 : 0;
+      seen_but_hidden += sees && !keeps.contains(position) ? 1 : 0;
+    }
+  }
+  const auto percent = [&](std::uint64_t count) {
+    return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(pairs, 1));
+  };
+  fmt::print("| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.0f} | {} |\n", name,
+             std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
+             percent(seen), percent(kept), static_cast<double>(kept) / static_cast<double>(seen),
+             us / static_cast<double>(pairs), seen_but_hidden);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = optionsOf(argc, argv);
+  fmt::print("| scene | cell, m | cells | pairs | lines see, % | kept, % | kept / lines | us a pair | seen by a "
+             "line, not kept |\n|---|---|---|---|---|---|---|---|---|\n");
+  for (const std::string& scene : options.scenes) {
+    measure(scene, options);
+  }
+  return 0;
+}
