@@ -1,7 +1,9 @@
-// How close to exact are the sets of cells? A table row for each scene: cells around some eyes of its walk, and
-// of all pairs of such a cell and an object how many the bake keeps, and how many random lines see. A line sees
-// an object if it leads from where viewers are in the cell to the object's box and nothing opaque of another
-// object is in between (Embree). Lines that see are a lower bound of what must be kept.
+// How close to exact are the sets of cells? A table row for each scene: cells around some eyes of its walk,
+// and of all pairs of such a cell and an object how many the bake keeps, and how many random lines of sight
+// see (Embree). All begin where viewers are in the cell. A line to a point of the object's box sees it if
+// nothing opaque of another object is in between: what a test of one box an object has to keep. A line to a
+// point of one of its triangles sees it if it shows the object: what every test has to keep, so that the last
+// column must be 0.
 //
 //   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
 //               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -24,7 +27,7 @@
 #include "oracle/ray_scene.h"
 #include "oracle/split_mix.h"
 #include "sightline/occluders/closed_scene.h"
-#include "sightline/occluders/find_occluders.h"
+#include "sightline/occluders/occluder_set.h"
 #include "sightline/pvs/bake/viewer_space.h"
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_sets.h"
@@ -77,31 +80,72 @@ Options optionsOf(int argc, char** argv) {
   return options;
 }
 
-// Whether one of some random lines from the region to the box meets nothing opaque before it but this object.
-bool lineSees(const RayScene& rays, const pvs::CellBox& region, const Box& box, ObjectId object,
-              std::uint32_t lines, SplitMix& random) {
+Vec3d randomIn(const Vec3d& min, const Vec3d& max, SplitMix& random) {
+  return {random.in(min.x, max.x), random.in(min.y, max.y), random.in(min.z, max.z)};
+}
+
+// A point of one of the object's triangles.
+Vec3d randomOn(const SceneView& scene, const Object& object, SplitMix& random) {
+  const std::span<const std::uint32_t> indices = scene.indicesOf(object);
+  const std::size_t first = 3 * random.below(static_cast<std::uint32_t>(indices.size() / 3));
+  double u = random.unit(), v = random.unit();
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  const Vec3d a(scene.positions[indices[first]]), b(scene.positions[indices[first + 1]]),
+      c(scene.positions[indices[first + 2]]);
+  return a + (b - a) * u + (c - a) * v;
+}
+
+// Traces random lines from the region, 16 at a time, until test(hits of the 16) holds for one of them.
+// to(random): where a line leads, and `beyond` of its length farther.
+template <typename To, typename Test>
+bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t lines, float beyond,
+              SplitMix& random, const To& to, const Test& test) {
   std::vector<RayHit> hits;
   for (std::uint32_t line = 0; line < lines; line += RayScene::kBatch) {
     RayScene::Batch batch;
     for (FloatRay& ray : batch) {
-      Vec3d from, to;
-      for (int axis = 0; axis < 3; ++axis) {
-        from[axis] = random.in(region.min[axis], region.max[axis]);
-        to[axis] = random.in(box.min[axis], box.max[axis]);
-      }
-      ray = {Vec3f(from), Vec3f(to - from), 1.0f};
+      const Vec3d from = randomIn(region.min, region.max, random);
+      ray = {Vec3f(from), Vec3f(to(random) - from), 1.0f + beyond};
     }
     hits.clear();
     rays.trace(batch, RayScene::kBatch, false, hits);
-    std::uint32_t blocked = 0;
-    for (const RayHit& hit : hits) {
-      blocked |= (hit.opaque && hit.object != object ? 1u : 0u) << hit.ray;
-    }
-    if (blocked != (1u << RayScene::kBatch) - 1) {
+    if (test(hits)) {
       return true;
     }
   }
   return false;
+}
+
+// Whether a line reaches the object's box with nothing opaque of another object before it.
+bool lineSeesBox(const RayScene& rays, const pvs::CellBox& region, const Box& box, ObjectId object,
+                 std::uint32_t lines, SplitMix& random) {
+  return someLine(
+      rays, region, lines, 0.0f, random,
+      [&](SplitMix& numbers) { return randomIn(Vec3d(box.min), Vec3d(box.max), numbers); },
+      [&](const std::vector<RayHit>& hits) {
+        std::uint32_t blocked = 0;
+        for (const RayHit& hit : hits) {
+          blocked |= (hit.opaque && hit.object != object ? 1u : 0u) << hit.ray;
+        }
+        return blocked != (1u << RayScene::kBatch) - 1;
+      });
+}
+
+// Whether a line to one of the object's triangles shows the object.
+bool lineSees(const RayScene& rays, const SceneView& scene, const pvs::CellBox& region, ObjectId object,
+              std::uint32_t lines, SplitMix& random) {
+  const Object& target = scene.objects[object.value];
+  return target.triangleCount() > 0 &&
+         someLine(
+             rays, region, lines, 1e-4f, random,
+             [&](SplitMix& numbers) { return randomOn(scene, target, numbers); },
+             [&](const std::vector<RayHit>& hits) {
+               return std::any_of(hits.begin(), hits.end(),
+                                  [&](const RayHit& hit) { return hit.object == object; });
+             });
 }
 
 // The cell of the deepest level that holds the eye.
@@ -134,7 +178,8 @@ void measure(const std::string& name, const Options& options) {
   settings.viewers = {bounds};
   if (options.free) {
     settings.viewers =
-        valueOrExit(findFreeSpace(scene.view(), eyes, {.max_height = options.max_height}), "region_sets").boxes;
+        valueOrExit(findFreeSpace(scene.view(), eyes, {.max_height = options.max_height}), "region_sets")
+            .boxes;
   }
   Box around;
   for (const Box& box : settings.viewers) {
@@ -147,7 +192,7 @@ void measure(const std::string& name, const Options& options) {
                             serialFor);
   const RayScene rays(scene.view());
   std::set<std::array<std::uint32_t, 3>> known;
-  std::uint64_t pairs = 0, kept = 0, seen = 0, seen_but_hidden = 0;
+  std::uint64_t pairs = 0, kept = 0, box_seen = 0, seen = 0, seen_but_hidden = 0;
   double us = 0.0;
   SplitMix random{1};
   pvs::CellBaker baker(bake);
@@ -167,7 +212,9 @@ void measure(const std::string& name, const Options& options) {
       if (!box.wellFormed()) {
         continue;
       }
-      const bool sees = lineSees(rays, region, box, bake.boxes.objects[position], options.lines, random);
+      const ObjectId object = bake.boxes.objects[position];
+      const bool sees = lineSees(rays, scene.view(), region, object, options.lines, random);
+      box_seen += lineSeesBox(rays, region, box, object, options.lines, random) ? 1 : 0;
       pairs += 1;
       kept += keeps.contains(position) ? 1 : 0;
       seen += sees ? 1 : 0;
@@ -177,10 +224,13 @@ void measure(const std::string& name, const Options& options) {
   const auto percent = [&](std::uint64_t count) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(pairs, 1));
   };
-  fmt::print("| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.0f} | {} |\n", name,
+  fmt::print("| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.0f} | {} |\n",
+             name.substr(name.rfind('/') + 1),
              std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
-             percent(seen), percent(kept), static_cast<double>(kept) / static_cast<double>(seen),
-             us / static_cast<double>(pairs), seen_but_hidden);
+             percent(box_seen), percent(seen), percent(kept),
+             static_cast<double>(kept) / static_cast<double>(box_seen),
+             static_cast<double>(kept) / static_cast<double>(seen), us / static_cast<double>(pairs),
+             seen_but_hidden);
   std::fflush(stdout);
 }
 
@@ -188,8 +238,10 @@ void measure(const std::string& name, const Options& options) {
 
 int main(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
-  fmt::print("| scene | cell, m | cells | pairs | lines see, % | kept, % | kept / lines | us a pair | seen by a "
-             "line, not kept |\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| scene | cell, m | cells | pairs | lines to boxes, % | to triangles, % | kept, % | kept / lines to "
+      "boxes | to triangles | us a pair | seen, not kept |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& scene : options.scenes) {
     measure(scene, options);
   }
