@@ -135,7 +135,11 @@ RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, Ce
   // What was narrowed after it holds for it as well.
   longest->region = region;
   longest->target = target;
-  const Answer answer = tighten(*longest) ? dividePassage(*longest, effort) : Answer::kHidden;
+  if (!tighten(*longest)) {
+    return Answer::kHidden;
+  }
+  const Answer answer = dividePassage(*longest, effort);
+  decided_by_ = WitnessKind::kDivided;
   return answer;
 }
 
@@ -146,23 +150,17 @@ RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, c
   if (effort.divisions == 0) {
     return Answer::kUndecided;
   }
-  Part widest = Part::kTarget;
-  int across = 0;
-  double width = -1.0;
-  for (const Part part : {Part::kTarget, Part::kWindow, Part::kRegion}) {
-    const Vec3d extent = (passage.*boxOf(part)).extent();
-    for (int axis = 0; axis < 3; ++axis) {
-      if (extent[axis] > width) {
-        widest = part;
-        across = axis;
-        width = extent[axis];
-      }
+  CellBox Passage::*widest = &Passage::target;
+  for (CellBox Passage::*part : {&Passage::window, &Passage::region}) {
+    if (maxComponent((passage.*part).extent()) > maxComponent((passage.*widest).extent())) {
+      widest = part;
     }
   }
-  const double middle = (passage.*boxOf(widest)).centre()[across];
+  const int across = math::longestAxis((passage.*widest).extent());
+  const double middle = (passage.*widest).centre()[across];
   for (const bool high : {false, true}) {
     Passage half = passage;
-    CellBox& box = half.*boxOf(widest);
+    CellBox& box = half.*widest;
     (high ? box.min : box.max)[across] = middle;
     if (!tighten(half)) {
       continue;
@@ -178,9 +176,8 @@ RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, c
   return Answer::kHidden;
 }
 
-// Points of the region and of the window, by a line through which the target may be met.
 bool RegionOcclusion::hasClearLine(const Passage& passage) {
-  constexpr int kLines = 16;
+  constexpr int kLines = 16;  // that are tried
   std::uint32_t random = 1;
   const auto share = [&] {
     random = random * 1664525u + 1013904223u;
@@ -233,7 +230,9 @@ RegionOcclusion::Answer RegionOcclusion::narrowPassage(Passage& passage, std::ui
 }
 
 RegionOcclusion::Answer RegionOcclusion::cutOff(Passage& passage, Part part, int axis, bool high, bool& cut) {
-  CellBox& box = passage.*boxOf(part);
+  CellBox& box = part == Part::kTarget   ? passage.target
+                 : part == Part::kWindow ? passage.window
+                                         : passage.region;
   for (int halves = 0; halves < kMaxHalves; ++halves) {
     const double middle = box.centre()[axis];
     if (!(middle > box.min[axis] && middle < box.max[axis])) {

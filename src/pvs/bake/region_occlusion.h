@@ -13,7 +13,9 @@ namespace sightline::pvs {
 // What is done where one question does not decide.
 struct RegionEffort {
   std::uint32_t narrowings = 0;  // how often all boxes of a passage are narrowed
-  std::uint32_t divisions = 0;   // how often the region or the target, whichever is larger, is halved
+  // How often the region or the target, whichever is larger, is halved; or, of a passage that was narrowed, the
+  // widest of the region, the window and the target.
+  std::uint32_t divisions = 0;
 };
 
 // Use by one thread at a time.
@@ -45,11 +47,6 @@ class RegionOcclusion {
     std::uint32_t object = kNoObject;  // FusedTarget::object
   };
   enum class Part { kTarget, kWindow, kRegion };
-  static CellBox Passage::*boxOf(Part part) {
-    return part == Part::kTarget   ? &Passage::target
-           : part == Part::kWindow ? &Passage::window
-                                   : &Passage::region;
-  }
 
   Answer decide(CellBox region, FusedTarget target, const RegionEffort& effort);
   // Halves the region or the target.
@@ -61,7 +58,7 @@ class RegionOcclusion {
   // Halves the widest part of a passage that has been narrowed, and narrows both passages that this gives.
   // All lines of each have to be blocked.
   Answer dividePassage(const Passage& passage, const RegionEffort& effort);
-  // True if one of some random lines of the passage is clear.
+  // True if one of some random lines from the passage's region to its target is clear.
   bool hasClearLine(const Passage& passage);
   // Narrows all boxes of a passage, so many times at the most.
   Answer narrowPassage(Passage& passage, std::uint32_t times);

@@ -56,8 +56,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
       ->capture_default_str();
   command
       .add_option("--divisions", settings.divisions,
-                  "where surfaces do not hide an object from a whole cell for sure, the cell or the object's "
-                  "box is halved so often at most, and each half tested")
+                  "where surfaces do not hide an object from a whole cell for sure, the widest of the cell, "
+                  "the object's box and, with --narrowings, the window is halved so often at most, and each "
+                  "half tested")
       ->check(CLI::Range(0u, 16u))
       ->capture_default_str();
   command

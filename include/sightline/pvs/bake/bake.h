@@ -58,8 +58,8 @@ struct BakeSettings {
   double min_gain = 0.02;  // doubling the search box helped if it hid this fraction of the triangles
   // Siblings are merged if their union sees at most this fraction more than each of them.
   double merge_tolerance = 0.05;
-  // Where surfaces do not hide an object from a whole cell for sure, the cell or the object's box, whichever
-  // is larger, is halved up to this many times, 0 to 16, and each half tested.
+  // Where surfaces do not hide an object from a whole cell for sure, the widest of the cell, the object's box
+  // and, with narrowings, the window is halved up to this many times, 0 to 16, and each half tested.
   std::uint32_t divisions = 0;
   // Before that, what of the cell, of a window between and of the object's box such lines of sight may pass
   // is narrowed up to this many times, 0 to 8.
