@@ -3,9 +3,9 @@
 // see (Embree). All begin where viewers are in the cell. A line to a point of the object's box sees it if
 // nothing opaque of another object is in between: what a test of one box an object has to keep. A line to a
 // point of one of its triangles sees it if it shows the object: what every test has to keep, so that
-// "seen, not kept" must be 0. The last column is of the walk's views from these eyes, culled by the frustum and
-// by the set of the cell, or of the eye's side of its plane, alone: what is kept for each object that the pixels
-// of 640 x 360 show.
+// "seen, not kept" must be 0. The last column is of the walk's views from these eyes, culled by the frustum
+// and by the set of the cell, or of the eye's side of its plane, alone: what is kept for each object that the
+// pixels of 640 x 360 show.
 //
 //   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
 //               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
@@ -101,7 +101,7 @@ Vec3d randomOn(const SceneView& scene, const Object& object, SplitMix& random) {
   return a + (b - a) * u + (c - a) * v;
 }
 
-// Traces random lines from the region, 16 at a time, until test(hits of the 16) holds for one of them.
+// Traces random lines from the region, 16 at a time, until test(the 16, their hits) holds for one of them.
 // to(random): where a line leads, and `beyond` of its length farther.
 template <typename To, typename Test>
 bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t lines, float beyond,
@@ -115,7 +115,7 @@ bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t li
     }
     hits.clear();
     rays.trace(batch, RayScene::kBatch, false, hits);
-    if (test(hits)) {
+    if (test(batch, hits)) {
       return true;
     }
   }
@@ -128,7 +128,7 @@ bool lineSeesBox(const RayScene& rays, const pvs::CellBox& region, const Box& bo
   return someLine(
       rays, region, lines, 0.0f, random,
       [&](SplitMix& numbers) { return randomIn(Vec3d(box.min), Vec3d(box.max), numbers); },
-      [&](const std::vector<RayHit>& hits) {
+      [&](const RayScene::Batch&, const std::vector<RayHit>& hits) {
         std::uint32_t blocked = 0;
         for (const RayHit& hit : hits) {
           blocked |= (hit.opaque && hit.object != object ? 1u : 0u) << hit.ray;
@@ -137,17 +137,32 @@ bool lineSeesBox(const RayScene& rays, const pvs::CellBox& region, const Box& bo
       });
 }
 
-// Whether a line to one of the object's triangles shows the object.
+// True if the line from an eye through the point reaches the object first, in exact arithmetic: Embree's
+// single precision may slip through an edge.
+bool isConfirmed(const ExactVisibility& exact, const Vec3d& eye, ObjectId object, const Vec3d& point) {
+  View view;
+  view.eye = eye;
+  setOrientation(view, point - eye, {0.0, 1.0, 0.0});
+  view.near = 1e-3;
+  view.far = 1e6;
+  return exact.confirm(view, {object, point});
+}
+
+// Whether a line to one of the object's triangles shows the object. exact: confirms what Embree says, or
+// null.
 bool lineSees(const RayScene& rays, const SceneView& scene, const pvs::CellBox& region, ObjectId object,
-              std::uint32_t lines, SplitMix& random) {
+              std::uint32_t lines, const ExactVisibility* exact, SplitMix& random) {
   const Object& target = scene.objects[object.value];
   return target.triangleCount() > 0 &&
          someLine(
              rays, region, lines, 1e-4f, random,
              [&](SplitMix& numbers) { return randomOn(scene, target, numbers); },
-             [&](const std::vector<RayHit>& hits) {
-               return std::any_of(hits.begin(), hits.end(),
-                                  [&](const RayHit& hit) { return hit.object == object; });
+             [&](const RayScene::Batch& batch, const std::vector<RayHit>& hits) {
+               return std::any_of(hits.begin(), hits.end(), [&](const RayHit& hit) {
+                 const FloatRay& ray = batch[hit.ray];
+                 return hit.object == object &&
+                        (exact == nullptr || isConfirmed(*exact, Vec3d(ray.origin), object, ray.at(hit.t)));
+               });
              });
 }
 
@@ -241,7 +256,8 @@ void measure(const std::string& name, const Options& options) {
       const bool sees_box = lineSeesBox(rays, region, box, object, options.lines, random);
       // What is neither kept nor seen is hardly in doubt.
       const std::uint32_t lines = sees_box || keeps.contains(position) ? options.lines : options.lines / 10;
-      const bool sees = lineSees(rays, scene.view(), region, object, lines, random);
+      const bool sees = lineSees(rays, scene.view(), region, object, lines,
+                                 keeps.contains(position) ? nullptr : &exact, random);
       box_seen += sees_box ? 1 : 0;
       pairs += 1;
       kept += keeps.contains(position) ? 1 : 0;
@@ -252,13 +268,14 @@ void measure(const std::string& name, const Options& options) {
   const auto percent = [&](std::uint64_t count) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(pairs, 1));
   };
-  fmt::print("| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.0f} | {} | {:.2f} |\n",
-             name.substr(name.rfind('/') + 1),
-             std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
-             percent(box_seen), percent(seen), percent(kept),
-             static_cast<double>(kept) / static_cast<double>(box_seen),
-             static_cast<double>(kept) / static_cast<double>(seen), us / static_cast<double>(pairs),
-             seen_but_hidden, static_cast<double>(in_view) / static_cast<double>(exact_in_view));
+  fmt::print(
+      "| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.0f} | {} | {:.2f} |\n",
+      name.substr(name.rfind('/') + 1),
+      std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
+      percent(box_seen), percent(seen), percent(kept),
+      static_cast<double>(kept) / static_cast<double>(box_seen),
+      static_cast<double>(kept) / static_cast<double>(seen), us / static_cast<double>(pairs), seen_but_hidden,
+      static_cast<double>(in_view) / static_cast<double>(exact_in_view));
   std::fflush(stdout);
 }
 

@@ -9,6 +9,7 @@
 
 #include "src/base/byte_stream.h"
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/byte_budget.h"
 #include "src/pvs/bake/cell_tree.h"
 #include "src/pvs/bake/earlier_bake.h"
 #include "src/pvs/bake/flatten.h"
@@ -493,7 +494,13 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   baked.boxes = scene.boxes;
   baked.octree.min = scene.root.min;
   baked.octree.max = scene.root.max;
-  flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
+  if (scene.settings.byte_budget == 0) {
+    flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
+  } else if (!fitBytes(scene, *top, scene.settings.byte_budget, baked)) {
+    return Error{"bake: the file is longer than the byte budget of " +
+                 std::to_string(scene.settings.byte_budget) +
+                 " even with the fewest cells; give a larger one"};
+  }
   return baked;
 }
 

@@ -170,31 +170,39 @@ std::optional<ViewerBounds> viewersOfAll(std::span<const BakedCell> children, co
 
 }  // namespace
 
+std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCell> children) {
+  const Counts counts = countsOf(scene, children);
+  std::optional<CellSets> all = togetherOf(children, counts);
+  const std::optional<ViewerBounds> viewers = viewersOfAll(children, counts);
+  if (!all || !viewers) {
+    return std::nullopt;
+  }
+  BakedCell cell;
+  cell.sets = std::move(*all);
+  cell.viewers = *viewers;
+  cell.reason = StopReason::kMerged;
+  cell.level = static_cast<std::uint8_t>(children[0].level - 1);
+  return cell;
+}
+
 void mergeChildren(const BakeScene& scene, BakedCell& cell) {
-  if (cell.leaf()) {
+  std::optional<BakedCell> one = cell.leaf() ? std::nullopt : joined(scene, cell.children);
+  if (!one) {
     return;
   }
   const Counts counts = countsOf(scene, cell.children);
-  std::optional<CellSets> all = togetherOf(cell.children, counts);
-  const std::optional<ViewerBounds> viewers = viewersOfAll(cell.children, counts);
-  if (!all || !viewers) {
-    return;
-  }
   std::uint64_t fewest = ~std::uint64_t{0};
   for (std::size_t i = 0; i < cell.children.size(); ++i) {
     if (counts[i]) {
       fewest = std::min(fewest, trianglesOf(scene, cell.children[i].sets));
     }
   }
-  const std::uint64_t together = trianglesOf(scene, *all);
+  const std::uint64_t together = trianglesOf(scene, one->sets);
   const bool alike =
       static_cast<double>(together) <= (1.0 + scene.settings.merge_tolerance) * static_cast<double>(fewest);
   const std::uint64_t budget = scene.settings.triangle_budget;
   if (alike && (together <= budget || fewest > budget)) {
-    cell.children.clear();
-    cell.sets = std::move(*all);
-    cell.viewers = *viewers;
-    cell.reason = StopReason::kMerged;
+    cell = std::move(*one);
   }
 }
 

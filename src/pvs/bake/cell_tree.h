@@ -3,6 +3,7 @@
 // The octree during the bake: dividing cells, merging siblings, and encoding cells as bytes.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "src/base/byte_stream.h"
@@ -40,8 +41,12 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 // The task's cell with everything below it, merged.
 BakedCell bakeCell(CellBaker& baker, const BakeScene& scene, const CellTask& task);
 
-// Turns a cell whose children are leaves with similar sets into a leaf. Its viewers are those of the
-// children, and nowhere else: where the box around them holds more, the cell stays divided.
+// The leaf that eight children become together: with the union of their sets, for the viewers of all of them
+// and for nobody else. Nothing if they are not all leaves, if they have different planes, or if the box
+// around their viewers holds more than these.
+std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCell> children);
+
+// Turns a cell whose children are leaves with similar sets into the leaf that they become together.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
 void write(const Runs& runs, base::ByteWriter& bytes);

@@ -13,8 +13,8 @@ namespace sightline::pvs {
 // What is done where one question does not decide.
 struct RegionEffort {
   std::uint32_t narrowings = 0;  // how often all boxes of a passage are narrowed
-  // How often the region or the target, whichever is larger, is halved; or, of a passage that was narrowed, the
-  // widest of the region, the window and the target.
+  // How often the region or the target, whichever is larger, is halved; or, of a passage that was narrowed,
+  // the widest of the region, the window and the target.
   std::uint32_t divisions = 0;
 };
 

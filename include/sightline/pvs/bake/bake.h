@@ -32,6 +32,9 @@ struct BakeSettings {
   // Fused sets are smaller, and take some hundred times as long to bake.
   BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
+  // Maximum number of bytes of the file, without its settings and occluder databases; 0: any. Of the cells
+  // that were baked, those are joined that gain viewers least. The parts are the same with any.
+  std::uint64_t byte_budget = 0;
   // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
   // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders.
   static constexpr std::uint32_t kChooseDepth = 0xffffffffu;
@@ -177,7 +180,7 @@ class Bake {
                      BakeStats* stats = nullptr) const;
 
   // parts: all parts of the plan. The result is the same whoever baked them. Returns an error if a part is
-  // missing or its bytes are not of this plan.
+  // missing or its bytes are not of this plan, or if no cells are few enough for the byte budget.
   Result<BakedVisibility> assemble(const BakedParts& parts) const;
   // What hides the objects that are not in the sets, if BakeSettings::witnesses is set: for each claim of a
   // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts
