@@ -158,12 +158,12 @@ TEST(Bake, StoresTheDatabasesThatAreAskedForAsTheLibraryBuildsThem) {
 TEST(Bake, FitsABudgetInBytesOrSaysThatItCannot) {
   const TemporaryFolder folder;
   const std::string file = folder.file("ship.sight");
-  const Outcome fitted = runTool(bakeArguments(kShip, file, {"--byte-budget", "120000", "--json", "-"}));
+  const Outcome fitted = runTool(bakeArguments(kShip, file, {"--byte-budget", "140000", "--json", "-"}));
   ASSERT_EQ(fitted.code, 0) << fitted.err;
   const json info = parse(runTool({"info", file, "--json", "-"}).out);
-  EXPECT_EQ(info["settings"]["all"]["byte_budget"], 120000);
+  EXPECT_EQ(info["settings"]["all"]["byte_budget"], 140000);
   const std::string settings = info["settings"]["all"].dump();
-  EXPECT_LE(info["bytes"].get<std::size_t>(), 120000 + settings.size() + 64);
+  EXPECT_LE(info["bytes"].get<std::size_t>(), 140000 + settings.size() + 64);
   EXPECT_GT(info["cells"], 1);
   const Outcome too_small =
       runTool(bakeArguments(kShip, folder.file("none.sight"), {"--byte-budget", "1000"}));

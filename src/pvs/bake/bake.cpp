@@ -496,10 +496,11 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   baked.octree.max = scene.root.max;
   if (scene.settings.byte_budget == 0) {
     flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
-  } else if (!fitBytes(scene, *top, scene.settings.byte_budget, baked)) {
-    return Error{"bake: the file is longer than the byte budget of " +
-                 std::to_string(scene.settings.byte_budget) +
-                 " even with the fewest cells; give a larger one"};
+  } else if (const std::uint64_t bytes = fitBytes(scene, *top, scene.settings.byte_budget, baked);
+             bytes > scene.settings.byte_budget) {
+    return Error{"bake: the file has " + std::to_string(bytes) +
+                 " bytes even with the fewest cells, more than the byte budget of " +
+                 std::to_string(scene.settings.byte_budget) + "; give a larger one"};
   }
   return baked;
 }

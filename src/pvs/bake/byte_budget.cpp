@@ -6,6 +6,7 @@
 #include "src/pvs/bake/byte_budget.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -103,7 +104,9 @@ double cheapest(const Choice& choice, double price, std::uint32_t level, BakedCe
 
 }  // namespace
 
-bool fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes, BakedVisibility& baked) {
+std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes,
+                       BakedVisibility& baked) {
+  std::uint64_t now = 0;  // bytes of the file with the last cells
   const auto fits = [&](const BakedCell& cells) {
     const Vec3d min = baked.octree.min, max = baked.octree.max;
     baked.octree = {};
@@ -112,10 +115,11 @@ bool fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes
     baked.sets = {};
     flatten(cells, baked.boxes.view(), baked.octree, baked.sets);
     const Result<std::vector<std::byte>> file = encodeSight(baked);
-    return file && file->size() <= bytes;
+    now = file ? file->size() : std::numeric_limits<std::uint64_t>::max();
+    return now <= bytes;
   };
   if (fits(root)) {
-    return true;
+    return now;
   }
   const Choice choices = choiceOf(scene, root);
   const auto fitsAt = [&](double price) {
@@ -127,13 +131,14 @@ bool fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes
   constexpr int kSteps = 12;
   double low = -60.0, high = std::log2(static_cast<double>(scene.boxes.nodes[0].triangles) + 1.0);
   if (!fitsAt(std::exp2(high))) {
-    return false;
+    return now;
   }
   for (int step = 0; step < kSteps; ++step) {
     const double middle = 0.5 * (low + high);
     (fitsAt(std::exp2(middle)) ? high : low) = middle;
   }
-  return fitsAt(std::exp2(high));
+  fitsAt(std::exp2(high));
+  return now;
 }
 
 }  // namespace sightline::pvs

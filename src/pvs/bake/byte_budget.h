@@ -13,7 +13,8 @@ namespace sightline::pvs {
 // cells, or of fewer cells, so that the file has at most this many bytes. Cells that are close to each other
 // become one, with the union of their sets, first where that adds the fewest triangles to what a viewer sees
 // for the bytes that it saves; a viewer is as likely to be in one cubic metre of the viewers' space as in
-// another. False if the file is longer even with the fewest cells; it then has these.
-bool fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes, BakedVisibility& baked);
+// another. Returns how many bytes the file has: more than the budget if even the fewest cells take more.
+std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint64_t bytes,
+                       BakedVisibility& baked);
 
 }  // namespace sightline::pvs
