@@ -74,8 +74,9 @@ inline std::uint32_t setAt(const OctreeView& octree, std::uint32_t leaf, const V
   return at >= plane.front ? l.front_set : at <= plane.back ? l.back_set : l.set;
 }
 
-// Places viewers in every step-th cell: anywhere, and at faces, edges and corners. Every object that a ray
-// reaches must be in their sets. near: near distance of the views, metres along their viewing direction.
+// Places viewers in every step-th cell, where it expects some: anywhere, and at faces, edges and corners.
+// Every object that a ray reaches must be in their sets. near: near distance of the views, metres along their
+// viewing direction.
 class BakeJudge {
  public:
   BakeJudge(const Scene& scene, const BakedVisibility& baked) : exact_(scene.view()), baked_(baked) {}
@@ -91,7 +92,7 @@ class BakeJudge {
         return;
       }
       for (std::uint32_t i = 0; i < views; ++i) {
-        judgeView(leaf, placeIn(cell, random), near, random);
+        judgeView(leaf, placeIn(cell, octree.viewersOf(leaf), random), near, random);
       }
     });
   }
@@ -100,10 +101,10 @@ class BakeJudge {
               hidden = 0;  // objects that rays reached; pairs of a view and an object that is not in its set
 
  private:
-  // Puts one coordinate in four on a border of the cell.
-  Vec3d placeIn(const OctreeCell& cell, std::mt19937& random) const {
-    const Vec3d low = cellMin(baked_.octree.min, baked_.octree.max, cell);
-    const Vec3d high = cellMax(baked_.octree.min, baked_.octree.max, cell);
+  // Puts one coordinate in four on a border of the box of viewers.
+  Vec3d placeIn(const OctreeCell& cell, const ViewerBounds& viewers, std::mt19937& random) const {
+    const Vec3d low = viewersMin(baked_.octree.min, baked_.octree.max, cell, viewers);
+    const Vec3d high = viewersMax(baked_.octree.min, baked_.octree.max, cell, viewers);
     Vec3d place;
     for (int axis = 0; axis < 3; ++axis) {
       const double t = std::uniform_real_distribution<double>(0.0, 1.0)(random);

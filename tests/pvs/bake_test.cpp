@@ -24,7 +24,8 @@ bool same(const BakedVisibility& a, const BakedVisibility& b) {
   return a.scene == b.scene && a.record == b.record && a.octree.nodes == b.octree.nodes &&
          a.octree.leaves == b.octree.leaves && a.octree.depths == b.octree.depths &&
          a.octree.reasons == b.octree.reasons && a.octree.planes == b.octree.planes &&
-         a.sets.first == b.sets.first && a.sets.nodes == b.sets.nodes && a.boxes.objects == b.boxes.objects;
+         a.octree.viewers == b.octree.viewers && a.sets.first == b.sets.first &&
+         a.sets.nodes == b.sets.nodes && a.boxes.objects == b.boxes.objects;
 }
 
 std::map<StopReason, int> reasonsOf(const BakedVisibility& baked) {

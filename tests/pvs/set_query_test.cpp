@@ -35,6 +35,9 @@ std::vector<Made> someOctrees() {
     all.emplace_back(made::Visibility{.seed = seed, .leaves = seed * 100, .depth = seed + 1, .sets = 50});
   }
   all.emplace_back(made::Visibility{.leaves = 1, .depth = 0, .plane_every = 1});
+  for (const std::uint32_t every : {1u, 3u}) {
+    all.emplace_back(made::Visibility{.leaves = 200, .depth = 5, .partly_every = every});
+  }
   return all;
 }
 
@@ -62,6 +65,16 @@ CellPlace placeByLookingAtAll(const OctreeView& octree, const Vec3d& eye) {
       const CellPlane& plane = octree.planes[leaf.plane];
       const double d = plane.normal.x * eye.x + plane.normal.y * eye.y + plane.normal.z * eye.z;
       place.set = d >= plane.front ? leaf.front_set : d <= plane.back ? leaf.back_set : leaf.set;
+    }
+    if (!octree.viewers.empty()) {
+      const ViewerBounds& viewers = octree.viewers[place.leaf];
+      const Vec3d min = viewersMin(octree.min, octree.max, place.cell, viewers);
+      const Vec3d max = viewersMax(octree.min, octree.max, place.cell, viewers);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (viewers != ViewerBounds{} && !(eye[axis] >= min[axis] && eye[axis] <= max[axis])) {
+          place.set = VisibleSet::kEverything;
+        }
+      }
     }
   }
   return place;
@@ -152,7 +165,7 @@ TEST(SetQuery, HandsOutTheSetOfThatLeaf) {
     for (const Vec3d& eye : trickyPoints(octree, 8)) {
       const CellPlace expected = placeByLookingAtAll(octree, eye);
       const VisibleSet set = query.find(eye, 0.25);
-      if (expected.leaf == CellPlace::kOutside) {
+      if (expected.leaf == CellPlace::kOutside || expected.set == VisibleSet::kEverything) {
         expectEverything(set);
         continue;
       }
@@ -190,7 +203,7 @@ TEST(SetQuery, AnswersEverythingOutside) {
     EXPECT_EQ(query.stats().finds, outside.size());
     // It also finds its way back.
     const Vec3d inside = (made.baked.octree.min + made.baked.octree.max) * 0.5;
-    EXPECT_NE(query.find(inside, 0.25).id, VisibleSet::kEverything);
+    EXPECT_NE(query.locate(inside).leaf, CellPlace::kOutside);
   }
 }
 
@@ -216,6 +229,24 @@ TEST(SetQuery, TakesTheSideThatThePlaneSays) {
   for (const auto& [y, set] :
        {std::pair{3.0, 2u}, {2.0, 2u}, {1.999, 4u}, {1.501, 4u}, {1.5, 3u}, {-9.0, 3u}}) {
     EXPECT_EQ(query.find({0, y, 0}, 0.25).id, set) << y;
+  }
+}
+
+TEST(SetQuery, AnswersEverythingWhereNoViewerIsExpectedInTheCell) {
+  BakedVisibility baked = made::visibility({.leaves = 1, .depth = 0, .sets = 5, .plane_every = 0});
+  baked.octree.min = {0, 0, 0};
+  baked.octree.max = {256, 256, 256};
+  baked.octree.viewers = {{{10, 0, 200}, {19, 255, 255}}};
+  const Bytes bytes = bytesOf(baked);
+  SetQuery query(*opened(bytes));
+  const std::vector<std::pair<Vec3d, bool>> eyes{
+      {{10, 5, 210}, true},     {{20, 5, 210}, true},      {{15, 0, 200}, true},      {{15, 256, 256}, true},
+      {{9.999, 5, 210}, false}, {{20.001, 5, 210}, false}, {{15, 5, 199.999}, false}, {{15, 5, 230}, true}};
+  std::uint64_t outside = 0;
+  for (const auto& [eye, expected] : eyes) {
+    EXPECT_EQ(query.find(eye, 0.25).id != VisibleSet::kEverything, expected) << eye.x << " " << eye.z;
+    outside += expected ? 0 : 1;
+    EXPECT_EQ(query.stats().outside, outside);
   }
 }
 

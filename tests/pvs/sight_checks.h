@@ -49,7 +49,8 @@ inline bool sameTree(const BoxTreeView& a, const BoxTreeView& b) {
 
 inline bool sameOctree(const OctreeView& a, const OctreeView& b) {
   return a.min == b.min && a.max == b.max && sameBytes(a.nodes, b.nodes) && sameBytes(a.leaves, b.leaves) &&
-         sameBytes(a.depths, b.depths) && sameBytes(a.reasons, b.reasons) && sameBytes(a.planes, b.planes);
+         sameBytes(a.depths, b.depths) && sameBytes(a.reasons, b.reasons) && sameBytes(a.planes, b.planes) &&
+         sameBytes(a.viewers, b.viewers);
 }
 
 }  // namespace sightline::sight_test

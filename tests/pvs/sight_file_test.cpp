@@ -59,7 +59,8 @@ TEST(SightFile, GivesBackAllThatWasWritten) {
                                                     .depth = seed % 6,
                                                     .sets = 1 + seed * 20,
                                                     .set_nodes = seed * 5,
-                                                    .plane_every = seed % 4});
+                                                    .plane_every = seed % 4,
+                                                    .partly_every = seed % 3});
     expectSame(bytesOf(baked), baked, "seed " + std::to_string(seed) + " ");
   }
 }

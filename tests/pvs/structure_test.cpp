@@ -153,6 +153,13 @@ TEST(OctreeCheck, RefusesEveryDamage) {
       {"plane's front is infinite", [&](Octree& o) { o.planes[0].front = infinity; }},
       {"plane's back is infinite", [&](Octree& o) { o.planes[0].back = -infinity; }},
       {"plane's front behind its back", [](Octree& o) { o.planes[0].front = 0.25; }},
+      {"viewers of too few cells", [](Octree& o) { o.viewers.resize(o.leaves.size() - 1); }},
+      {"viewers of too many cells", [](Octree& o) { o.viewers.resize(o.leaves.size() + 1); }},
+      {"viewers that end before they begin",
+       [](Octree& o) {
+         o.viewers.resize(o.leaves.size());
+         o.viewers[3].first[1] = 9, o.viewers[3].last[1] = 8;
+       }},
       {"flat box", [](Octree& o) { o.max.x = o.min.x; }},
       {"box turned round", [](Octree& o) { std::swap(o.min.z, o.max.z); }},
       {"infinite box", [&](Octree& o) { o.max.y = infinity; }},

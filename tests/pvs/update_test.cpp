@@ -150,6 +150,22 @@ TEST(Update, GivesTheBytesOfAFullBakeWithSurfaces) {
   expectReuse(totals);
 }
 
+TEST(Update, GivesTheBytesOfAFullBakeWhereViewersAreInPartsOfCells) {
+  Totals totals;
+  for (std::uint32_t seed = 21; seed <= 22; ++seed) {
+    const bool fused = seed % 2 == 0;
+    judgeEdits(
+        roomScene(seed, 2),
+        {.occlusion = fused ? BakeOcclusion::kFused : BakeOcclusion::kConvex,
+         .triangle_budget = 120,
+         .max_depth = fused ? 2u : 4u,
+         .near_distance = 0.05,
+         .viewers = {{{0.3f, 0.2f, 0.4f}, {3.1f, 1.7f, 2.2f}}, {{2.6f, 0.3f, 1.1f}, {7.2f, 2.1f, 7.7f}}}},
+        seed, editsOf(4), totals);
+  }
+  expectReuse(totals);
+}
+
 test::Piece blockPiece(const Vec3f& low, const Vec3f& high, std::uint32_t material) {
   constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};

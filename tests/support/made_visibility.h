@@ -24,6 +24,8 @@ struct Visibility {
   std::uint32_t set_nodes = 6;  // approximate number of nodes per set
   // One cell in this many has a plane; 0: none.
   std::uint32_t plane_every = 3;
+  // One cell in this many expects viewers in a part of it; 0: none.
+  std::uint32_t partly_every = 0;
   std::vector<std::size_t> database_bytes{300, 0};
 };
 
@@ -149,6 +151,16 @@ inline void numberLeaves(VisibilityOctree& octree, std::uint32_t node, std::uint
   }
 }
 
+inline ViewerBounds viewerBounds(Random& random) {
+  ViewerBounds viewers;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::uint32_t a = random() % 256, b = random() % 256;
+    viewers.first[axis] = static_cast<std::uint8_t>(std::min(a, b));
+    viewers.last[axis] = static_cast<std::uint8_t>(std::max(a, b));
+  }
+  return viewers;
+}
+
 inline VisibilityOctree octree(const Visibility& settings, Random& random) {
   VisibilityOctree octree;
   octree.min = {-101.5, -12.25, -99.0};
@@ -165,6 +177,9 @@ inline VisibilityOctree octree(const Visibility& settings, Random& random) {
       const Vec3d normal = normalized(point(random, {-1, -1, -1}, {1, 1, 0.99}) + Vec3d(0, 0, 0.005));
       const double front = dot(normal, point(random, octree.min, octree.max));
       octree.planes.push_back({normal, front, front - number(random, 0.0, 10.0)});
+    }
+    if (settings.partly_every != 0) {
+      octree.viewers.push_back(i % settings.partly_every == 0 ? viewerBounds(random) : ViewerBounds{});
     }
   }
   return octree;

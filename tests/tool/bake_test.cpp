@@ -155,6 +155,23 @@ TEST(Bake, StoresTheDatabasesThatAreAskedForAsTheLibraryBuildsThem) {
   EXPECT_TRUE(ViewpointDatabase::load(blob->bytes, count));
 }
 
+TEST(Bake, FitsABudgetInBytesOrSaysThatItCannot) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("ship.sight");
+  const Outcome fitted = runTool(bakeArguments(kShip, file, {"--byte-budget", "140000", "--json", "-"}));
+  ASSERT_EQ(fitted.code, 0) << fitted.err;
+  const json info = parse(runTool({"info", file, "--json", "-"}).out);
+  EXPECT_EQ(info["settings"]["all"]["byte_budget"], 140000);
+  const std::string settings = info["settings"]["all"].dump();
+  EXPECT_LE(info["bytes"].get<std::size_t>(), 140000 + settings.size() + 64);
+  EXPECT_GT(info["cells"], 1);
+  const Outcome too_small =
+      runTool(bakeArguments(kShip, folder.file("none.sight"), {"--byte-budget", "1000"}));
+  EXPECT_EQ(too_small.code, 2);
+  EXPECT_EQ(ownLines(too_small.err), 1) << too_small.err;
+  EXPECT_NE(too_small.err.find("byte budget of 1000"), std::string::npos) << too_small.err;
+}
+
 TEST(Bake, ChoosesABudgetAndSaysIt) {
   const TemporaryFolder folder;
   const std::string scene = folder.write("walls.obj", kWalls);

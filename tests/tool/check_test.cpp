@@ -1,5 +1,6 @@
 // Tests `check`: true claims are proved or stand, forged claims are contradicted, forged witnesses refused.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "scenes/procedural.h"
 #include "sightline/pvs/bake/write_sight.h"
 #include "sightline/pvs/format/witness.h"
 #include "tests/tool/formats_page.h"
@@ -97,6 +99,39 @@ TEST_F(Check, AccountsForEveryClaimWhateverTheThreads) {
     }
   }
   EXPECT_EQ(report["claims"], left_out);
+}
+
+// Two boxes of viewers that end anywhere in cells, one of them beside the other: cells around are asked about
+// for the box around both, merged ones for what their parts were asked about.
+TEST_F(Check, ClaimsAreThoseOfWhereViewersAreInACell) {
+  const Result<Scene> scene = makeDemoScene(kCheckScene);
+  ASSERT_TRUE(scene);
+  const Box bounds = sceneBounds(scene->view());
+  const auto region = [&](const Vec3d& from, const Vec3d& to) {
+    const Vec3d min(bounds.min), extent = Vec3d(bounds.max) - min;
+    return fmt::format("{},{},{},{},{},{}", min.x + from.x * extent.x, min.y + from.y * extent.y,
+                       min.z + from.z * extent.z, min.x + to.x * extent.x, min.y + to.y * extent.y,
+                       min.z + to.z * extent.z);
+  };
+  for (const char* occlusion : {"convex", "fused"}) {
+    const bool fused = std::string(occlusion) == "fused";
+    bake(
+        file_,
+        {"--witnesses", witnesses_, "--occlusion", occlusion, "--merge-tolerance", "0.5", "--region",
+         region({0.07, 0.1, 0.1}, {0.43, 0.83, 0.77}), "--region", region({0.4, 0.3, 0.2}, {0.61, 0.9, 0.9})},
+        fused ? "2" : "4");
+    const Outcome one = check({"--json", "-"});
+    EXPECT_EQ(one.code, 0) << one.out << one.err;
+    const json report = parse(one.out);
+    EXPECT_GT(report["claims"], 100) << occlusion;
+    EXPECT_EQ(report["contradicted"], 0) << occlusion;
+    EXPECT_EQ(report["kinds"]["without"]["claims"], 0) << occlusion << ": a claim has no witness";
+    EXPECT_GT(report["proved"], report["survived"]) << occlusion;
+    const json info = parse(runTool({"info", file_, "--json", "-"}).out);
+    EXPECT_GT(info["partial_cells"], fused ? 1 : 10) << occlusion;
+    const Outcome pairs = runTool({"verify", kCheckScene, "--baked", file_, "--proof", "--pairs", "60"});
+    EXPECT_EQ(pairs.code, 0) << pairs.out << pairs.err;
+  }
 }
 
 TEST_F(Check, RecordingWitnessesChangesNothingInTheFile) {

@@ -100,6 +100,26 @@ TEST_F(HandmadeSight, IsAnsweredFromInWorldSpace) {
   EXPECT_EQ(answer["points"][2]["triangles"], 50);
 }
 
+TEST_F(HandmadeSight, SaysWhereNoViewerIsExpectedInACell) {
+  BakedVisibility baked = handmade();
+  baked.octree.viewers.resize(baked.octree.leaves.size());
+  // The lower half of each cell along x.
+  for (ViewerBounds& viewers : baked.octree.viewers) {
+    viewers.last[0] = 127;
+  }
+  const std::string partly = folder_.file("partly.sight");
+  ASSERT_TRUE(writeSight(partly, baked));
+  const auto pointOf = [](const std::string& file, const char* point) {
+    return parse(runTool({"query", file, "--points", point, "--json", "-"}).out)["points"][0];
+  };
+  EXPECT_EQ(pointOf(partly, "101,1,5"), pointOf(file_, "101,1,5"));
+  const json beside = pointOf(partly, "103,1,5");
+  EXPECT_EQ(beside["cell"], pointOf(file_, "103,1,5")["cell"]);
+  EXPECT_EQ(beside["set"], json());
+  EXPECT_EQ(beside["visible"].size(), 4u) << "all objects";
+  EXPECT_EQ(parse(runTool({"info", partly, "--json", "-"}).out)["partial_cells"], 15);
+}
+
 TEST_F(HandmadeSight, IsAnsweredFromAlikeForFilesOfPointsAndCameraPaths) {
   const std::string points = folder_.write("points.json", R"({"points":[[101,1,1],[107,5,5]]})");
   const std::string path = folder_.write(

@@ -23,6 +23,7 @@ inline BakedVisibility contentsOf(const SightFile& file) {
   baked.octree.depths.assign(octree.depths.begin(), octree.depths.end());
   baked.octree.reasons.assign(octree.reasons.begin(), octree.reasons.end());
   baked.octree.planes.assign(octree.planes.begin(), octree.planes.end());
+  baked.octree.viewers.assign(octree.viewers.begin(), octree.viewers.end());
   const Status whole = file.forEachSet([&](std::uint32_t, std::span<const std::uint32_t> nodes) {
     baked.sets.nodes.insert(baked.sets.nodes.end(), nodes.begin(), nodes.end());
     baked.sets.first.push_back(baked.sets.nodes.size());

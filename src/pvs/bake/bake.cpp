@@ -9,6 +9,7 @@
 
 #include "src/base/byte_stream.h"
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/byte_budget.h"
 #include "src/pvs/bake/cell_tree.h"
 #include "src/pvs/bake/earlier_bake.h"
 #include "src/pvs/bake/flatten.h"
@@ -131,6 +132,7 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
       bytes.add(number);
     }
   }
+  bytes.add(std::uint8_t{s.whole_cells});
   if (s.witnesses) {
     bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
   }
@@ -162,6 +164,7 @@ Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, co
   BakeSettings complete = settings;
   if (complete.viewers.empty()) {
     complete.viewers = {boundsOf(scene)};
+    complete.whole_cells = true;
     if (complete.viewers[0].empty()) {
       return Error{"bake: the scene has no object with a finite box, so there is nothing to see"};
     }
@@ -529,7 +532,14 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   baked.boxes = scene.boxes;
   baked.octree.min = scene.root.min;
   baked.octree.max = scene.root.max;
-  flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
+  if (scene.settings.byte_budget == 0) {
+    flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
+  } else if (const std::uint64_t bytes = fitBytes(scene, *top, scene.settings.byte_budget, baked);
+             bytes > scene.settings.byte_budget) {
+    return Error{"bake: the file has " + std::to_string(bytes) +
+                 " bytes even with the fewest cells, more than the byte budget of " +
+                 std::to_string(scene.settings.byte_budget) + "; give a larger one"};
+  }
   return baked;
 }
 

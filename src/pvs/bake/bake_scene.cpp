@@ -103,6 +103,10 @@ constexpr double kMinEdgeInNears = 4.0;
 // the region's extent.
 constexpr double kSpans = 0.9, kTouches = 1e-3, kThin = 0.125;
 
+// Bounds of viewers begin and end at every fourth step of a cell only, so that those of cells that were
+// merged do too, twice over, and neighbours share corners.
+constexpr std::uint32_t kBoundSteps = 4;
+
 bool isBorder(const Box& box, const CellBox& region) {
   const Vec3d all = region.extent(), min(box.min), max(box.max);
   const auto spans = [&](int axis) { return max[axis] - min[axis] >= kSpans * all[axis]; };
@@ -273,6 +277,42 @@ bool BakeScene::mayDivide(const OctreeCell& cell) const {
 
 bool BakeScene::holdsViewers(const CellBox& box) const {
   return anyIntersecting(viewer_tree_, box);
+}
+
+ViewerBounds BakeScene::viewersIn(const OctreeCell& cell) const {
+  if (settings.whole_cells) {
+    return {};
+  }
+  const CellBox all = boxOf(cell);
+  CellBox part{all.max, all.min};
+  forEachIntersecting(viewer_tree_, all, [&](std::uint32_t i) {
+    const Box& box = settings.viewers[i];
+    part = {min(part.min, max(all.min, Vec3d(box.min))), max(part.max, min(all.max, Vec3d(box.max)))};
+  });
+  ViewerBounds viewers;
+  constexpr std::uint32_t kSteps = 1u << kViewerLevels;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const auto line = [&](std::uint32_t step) {
+      return gridLine(root.min[axis], root.max[axis], cell.level + kViewerLevels,
+                      (cell.at[a] << kViewerLevels) + step);
+    };
+    std::uint32_t first = 0, end = kSteps;
+    while (first + kBoundSteps < kSteps && line(first + kBoundSteps) <= part.min[axis]) {
+      first += kBoundSteps;
+    }
+    while (end > first + kBoundSteps && line(end - kBoundSteps) >= part.max[axis]) {
+      end -= kBoundSteps;
+    }
+    viewers.first[a] = static_cast<std::uint8_t>(first);
+    viewers.last[a] = static_cast<std::uint8_t>(end - 1);
+  }
+  return viewers;
+}
+
+CellBox BakeScene::regionOf(const OctreeCell& cell) const {
+  const ViewerBounds viewers = viewersIn(cell);
+  return {viewersMin(root.min, root.max, cell, viewers), viewersMax(root.min, root.max, cell, viewers)};
 }
 
 bool BakeScene::ofUse(const ConvexOccluder& occluder, std::uint32_t level) const {

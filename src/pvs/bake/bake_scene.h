@@ -51,6 +51,11 @@ struct BakeScene {
   }
   // True if viewers can be in the box.
   bool holdsViewers(const CellBox& box) const;
+  // Where in the cell viewers can be; the cell must hold some. All of it with BakeSettings::whole_cells.
+  ViewerBounds viewersIn(const OctreeCell& cell) const;
+  // The box of these: the sets of the cell are those of viewers anywhere in it. It lies within the region of
+  // the cell's parent.
+  CellBox regionOf(const OctreeCell& cell) const;
   // Any cell down to this level may be divided; below it, only cells near occluders.
   std::uint32_t baseDepth() const { return base_depth_; }
   // True if the cell's depth allows dividing it.

@@ -112,7 +112,7 @@ std::span<const std::uint32_t> CellBaker::chosenOccluders() {
 
 CellSets CellBaker::seenFrom(const OctreeCell& cell, double search_distance, const Runs& seen) {
   startCell(cell);
-  const CellBox box = scene_.boxOf(cell);
+  const CellBox box = scene_.regionOf(cell);
   const double near = 2.0 * scene_.settings.near_distance;
   faces_.clear();
   scene_.findFaces({box.min - Vec3d{near, near, near}, box.max + Vec3d{near, near, near}}, faces_);
@@ -138,7 +138,7 @@ void CellBaker::lookFarther(const OctreeCell& cell, double searched, double sear
   chooseOccluders(cell, search_distance, cell.level);
   choice_.known = searchBox(cell, searched);
   choice_.distance_before = searched;
-  removeHidden(scene_.boxOf(cell), sets);
+  removeHidden(scene_.regionOf(cell), sets);
 }
 
 void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
@@ -461,11 +461,13 @@ double CellBaker::shareSeenFrom(const Vec3d& point, const Runs& seen) {
 }
 
 bool CellBaker::dividingHelps(const OctreeCell& cell, double search_distance, const CellSets& sets) {
-  const CellBox box = scene_.boxOf(cell);
+  const CellBox box = scene_.regionOf(cell);
   chooseOccluders(cell, search_distance, scene_.settings.max_depth);
   std::vector<Vec3d> points{box.centre()};
   for (std::uint32_t i = 0; i < 8; ++i) {
-    points.push_back(scene_.boxOf(cell.child(i)).centre());
+    if (scene_.settings.whole_cells || scene_.holdsViewers(scene_.boxOf(cell.child(i)))) {
+      points.push_back(scene_.regionOf(cell.child(i)).centre());
+    }
   }
   const std::vector<Vec3d> corners = cornersOf(box);
   points.insert(points.end(), corners.begin(), corners.end());

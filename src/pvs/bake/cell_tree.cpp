@@ -4,6 +4,8 @@
 #include "src/pvs/bake/cell_tree.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
 #include <utility>
 
 #include "src/pvs/bake/run_code.h"
@@ -11,9 +13,10 @@
 namespace sightline::pvs {
 namespace {
 
-BakedCell leafOf(const OctreeCell& cell, CellSets&& sets, StopReason reason) {
+BakedCell leafOf(const OctreeCell& cell, const ViewerBounds& viewers, CellSets&& sets, StopReason reason) {
   BakedCell leaf;
   leaf.sets = std::move(sets);
+  leaf.viewers = viewers;
   leaf.reason = reason;
   leaf.level = static_cast<std::uint8_t>(cell.level);
   return leaf;
@@ -29,13 +32,14 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   if (!scene.holdsViewers(scene.boxOf(task.cell))) {
     CellSets everything;
     everything.whole = {{0, static_cast<std::uint32_t>(scene.boxes.objects.size())}};
-    return {.leaf = leafOf(task.cell, std::move(everything), StopReason::kOutside)};
+    return {.leaf = leafOf(task.cell, {}, std::move(everything), StopReason::kOutside)};
   }
+  const ViewerBounds viewers = scene.viewersIn(task.cell);
   CellSets sets = baker.seenFrom(task.cell, distance, task.seen);
   for (;;) {
     const std::uint64_t triangles = trianglesOf(scene, sets);
     if (triangles <= settings.triangle_budget) {
-      return {.leaf = leafOf(task.cell, std::move(sets), StopReason::kBudgetMet)};
+      return {.leaf = leafOf(task.cell, viewers, std::move(sets), StopReason::kBudgetMet)};
     }
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
@@ -51,7 +55,7 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
     }
     if (!gained) {
       const StopReason reason = deepest ? StopReason::kMaxDepth : StopReason::kNothingGained;
-      return {.leaf = leafOf(task.cell, std::move(sets), reason)};
+      return {.leaf = leafOf(task.cell, viewers, std::move(sets), reason)};
     }
   }
 }
@@ -80,8 +84,21 @@ void add(const Runs& more, Runs& runs) {
   runs.swap(both);
 }
 
-// The union of the cells' sets, or nothing if they are not all leaves or have different planes.
-std::optional<CellSets> togetherOf(std::span<const BakedCell> cells) {
+// A child without viewers holds all objects, but nobody asks it. It does not count for the cell that the
+// children become, where that says which part of it holds viewers.
+using Counts = std::array<bool, 8>;
+
+Counts countsOf(const BakeScene& scene, std::span<const BakedCell> children) {
+  Counts counts{};
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    counts[i] = scene.settings.whole_cells || children[i].reason != StopReason::kOutside;
+  }
+  return counts;
+}
+
+// The union of the sets of the cells that count, or nothing if the cells are not all leaves or have different
+// planes.
+std::optional<CellSets> togetherOf(std::span<const BakedCell> cells, const Counts& counts) {
   CellSets all;
   for (const BakedCell& cell : cells) {
     if (!cell.leaf() || (cell.sets.plane && all.plane && *cell.sets.plane != *all.plane)) {
@@ -89,7 +106,11 @@ std::optional<CellSets> togetherOf(std::span<const BakedCell> cells) {
     }
     all.plane = cell.sets.plane ? cell.sets.plane : all.plane;
   }
-  for (const BakedCell& cell : cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const BakedCell& cell = cells[i];
+    if (!counts[i]) {
+      continue;
+    }
     add(cell.sets.whole, all.whole);
     if (all.plane) {
       add(cell.sets.plane ? cell.sets.front : cell.sets.whole, all.front);
@@ -99,32 +120,99 @@ std::optional<CellSets> togetherOf(std::span<const BakedCell> cells) {
   return all;
 }
 
+// A box of steps of a cell's children.
+struct StepBox {
+  std::array<std::uint32_t, 3> begin{}, end{};
+
+  std::uint64_t volume() const {
+    return std::uint64_t{end[0] - begin[0]} * (end[1] - begin[1]) * (end[2] - begin[2]);
+  }
+};
+
+// The viewers of a child as seen from the cell, whose children have twice as many steps along an axis.
+StepBox stepsOf(const ViewerBounds& viewers, std::uint32_t child) {
+  StepBox box;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const std::uint32_t from = (child >> axis & 1) << kViewerLevels;
+    box.begin[axis] = from + viewers.first[axis];
+    box.end[axis] = from + viewers.last[axis] + 1;
+  }
+  return box;
+}
+
+// The viewers of all children that count, if their boxes fill a box of whole steps of the cell. No two of
+// them overlap, so they do if their volumes add up to that of the box around them.
+std::optional<ViewerBounds> viewersOfAll(std::span<const BakedCell> children, const Counts& counts) {
+  std::optional<StepBox> around;
+  std::uint64_t volume = 0;
+  for (std::uint32_t i = 0; i < children.size(); ++i) {
+    if (!counts[i]) {
+      continue;
+    }
+    const StepBox box = stepsOf(children[i].viewers, i);
+    volume += box.volume();
+    around = around.value_or(box);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      around->begin[axis] = std::min(around->begin[axis], box.begin[axis]);
+      around->end[axis] = std::max(around->end[axis], box.end[axis]);
+    }
+  }
+  if (!around || around->volume() != volume) {
+    return std::nullopt;
+  }
+  ViewerBounds viewers;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (around->begin[axis] % 2 != 0 || around->end[axis] % 2 != 0) {
+      return std::nullopt;
+    }
+    viewers.first[axis] = static_cast<std::uint8_t>(around->begin[axis] / 2);
+    viewers.last[axis] = static_cast<std::uint8_t>(around->end[axis] / 2 - 1);
+  }
+  return viewers;
+}
+
 }  // namespace
 
+std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCell> children) {
+  const Counts counts = countsOf(scene, children);
+  std::optional<CellSets> all = togetherOf(children, counts);
+  const std::optional<ViewerBounds> viewers = viewersOfAll(children, counts);
+  if (!all || !viewers) {
+    return std::nullopt;
+  }
+  BakedCell cell;
+  cell.sets = std::move(*all);
+  cell.viewers = *viewers;
+  cell.reason = StopReason::kMerged;
+  cell.level = static_cast<std::uint8_t>(children[0].level - 1);
+  return cell;
+}
+
 void mergeChildren(const BakeScene& scene, BakedCell& cell) {
-  std::optional<CellSets> all = cell.leaf() ? std::nullopt : togetherOf(cell.children);
-  if (!all) {
+  std::optional<BakedCell> one = cell.leaf() ? std::nullopt : joined(scene, cell.children);
+  if (!one) {
     return;
   }
+  const Counts counts = countsOf(scene, cell.children);
   std::uint64_t fewest = ~std::uint64_t{0};
-  for (const BakedCell& child : cell.children) {
-    fewest = std::min(fewest, trianglesOf(scene, child.sets));
+  for (std::size_t i = 0; i < cell.children.size(); ++i) {
+    if (counts[i]) {
+      fewest = std::min(fewest, trianglesOf(scene, cell.children[i].sets));
+    }
   }
-  const std::uint64_t together = trianglesOf(scene, *all);
+  const std::uint64_t together = trianglesOf(scene, one->sets);
   const bool alike =
       static_cast<double>(together) <= (1.0 + scene.settings.merge_tolerance) * static_cast<double>(fewest);
   const std::uint64_t budget = scene.settings.triangle_budget;
   if (alike && (together <= budget || fewest > budget)) {
-    cell.children.clear();
-    cell.sets = std::move(*all);
-    cell.reason = StopReason::kMerged;
+    cell = std::move(*one);
   }
 }
 
 namespace {
 
-// First byte of an encoded cell.
-constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2;
+// First byte of an encoded cell; kPartly is added to that of a leaf with viewers in a part of its cell only.
+constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2, kPartly = 4;
 
 }  // namespace
 
@@ -136,8 +224,13 @@ void write(const BakedCell& cell, base::ByteWriter& bytes) {
     }
     return;
   }
-  bytes.add(cell.sets.plane ? kLeafWithPlane : kLeaf);
+  const bool partly = cell.viewers != ViewerBounds{};
+  bytes.add(static_cast<std::uint8_t>((cell.sets.plane ? kLeafWithPlane : kLeaf) + (partly ? kPartly : 0)));
   bytes.add(static_cast<std::uint8_t>(cell.reason));
+  if (partly) {
+    bytes.addAll(std::span<const std::uint8_t>(cell.viewers.first));
+    bytes.addAll(std::span<const std::uint8_t>(cell.viewers.last));
+  }
   addRuns(cell.sets.whole, bytes);
   if (const std::optional<CellPlane>& plane = cell.sets.plane) {
     for (const double number :
@@ -149,10 +242,27 @@ void write(const BakedCell& cell, base::ByteWriter& bytes) {
   }
 }
 
+namespace {
+
+// False if the bytes are not the viewers of a cell.
+bool readViewers(base::ByteReader& bytes, ViewerBounds& viewers) {
+  for (std::uint8_t& step : viewers.first) {
+    step = bytes.read<std::uint8_t>();
+  }
+  for (std::uint8_t& step : viewers.last) {
+    step = bytes.read<std::uint8_t>();
+  }
+  return std::ranges::equal(viewers.first, viewers.last, std::less_equal<>());
+}
+
+}  // namespace
+
 std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, std::uint32_t object_count) {
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(level);
-  const auto kind = bytes.read<std::uint8_t>();
+  const auto first = bytes.read<std::uint8_t>();
+  const bool partly = first > kPartly;
+  const int kind = partly ? first - kPartly : first;
   if (!bytes.ok() || kind > kLeafWithPlane || level > kMaxOctreeDepth) {
     return std::nullopt;
   }
@@ -168,7 +278,8 @@ std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, 
   }
   const auto reason = bytes.read<std::uint8_t>();
   cell.reason = static_cast<StopReason>(reason);
-  bool good = reason < kStopReasons && readRuns(bytes, object_count, cell.sets.whole);
+  bool good = reason < kStopReasons && (!partly || readViewers(bytes, cell.viewers)) &&
+              readRuns(bytes, object_count, cell.sets.whole);
   if (good && kind == kLeafWithPlane) {
     CellPlane plane;
     for (double* number : {&plane.normal.x, &plane.normal.y, &plane.normal.z, &plane.front, &plane.back}) {

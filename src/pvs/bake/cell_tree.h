@@ -3,6 +3,7 @@
 // The octree during the bake: dividing cells, merging siblings, and encoding cells as bytes.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "src/base/byte_stream.h"
@@ -14,6 +15,7 @@ struct BakedCell {
   std::vector<BakedCell> children;  // eight; none in a leaf
   // Leaves only.
   CellSets sets;
+  ViewerBounds viewers;  // for which the sets hold
   StopReason reason = StopReason::kBudgetMet;
   std::uint8_t level = 0;
 
@@ -40,7 +42,12 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
 // The decided cell with everything below it, merged.
 BakedCell bakeBelow(CellBaker& baker, const BakeScene& scene, const OctreeCell& place, CellOutcome&& outcome);
 
-// Turns a cell whose children are leaves with similar sets into a leaf.
+// The leaf that eight children become together: with the union of their sets, for the viewers of all of them
+// and for nobody else. Nothing if they are not all leaves, if they have different planes, or if the box
+// around their viewers holds more than these.
+std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCell> children);
+
+// Turns a cell whose children are leaves with similar sets into the leaf that they become together.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
 void write(const BakedCell& cell, base::ByteWriter& bytes);

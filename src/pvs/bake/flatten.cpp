@@ -40,6 +40,7 @@ class Flattener {
       leaf.back_set = setOf(cell.sets.back);
     }
     octree_.leaves.push_back(leaf);
+    octree_.viewers.push_back(cell.viewers);
     octree_.depths.push_back(cell.level);
     octree_.reasons.push_back(static_cast<std::uint8_t>(cell.reason));
   }
@@ -83,6 +84,9 @@ class Flattener {
 void flatten(const BakedCell& root, const BoxTreeView& boxes, VisibilityOctree& octree, NodeSets& sets) {
   octree.nodes.assign(1, 0);
   Flattener(boxes, octree, sets).add(root, 0);
+  if (std::ranges::all_of(octree.viewers, [](const ViewerBounds& v) { return v == ViewerBounds{}; })) {
+    octree.viewers.clear();
+  }
 }
 
 }  // namespace sightline::pvs

@@ -90,8 +90,8 @@ FusedOcclusion::FusedOcclusion(const Panels& panels, double magnitude)
   sheet_margin_ = 0x1p-24 * magnitude_ + panels.slack;
 }
 
-bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to) {
-  left_out_ = kNoObject;
+bool FusedOcclusion::isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object) {
+  left_out_ = object;
   findCrossings(from, to, true);
   return clear();
 }

@@ -38,8 +38,9 @@ class FusedOcclusion {
     std::uint32_t object = kNoObject;
   };
   const Proof& proof() const { return proof_; }
-  // True if the line of sight between the points surely meets the front of no sheet.
-  bool isClear(const Vec3d& from, const Vec3d& to);
+  // True if the line of sight between the points surely meets the front of no sheet. object: whose sheets do
+  // not count, or kNoObject.
+  bool isClear(const Vec3d& from, const Vec3d& to, std::uint32_t object = kNoObject);
   double magnitude() const { return magnitude_; }  // of all coordinates, metres
   // Where all lines of sight from a region begin that ask() tries.
   static Vec3d startOf(const CellBox& region);

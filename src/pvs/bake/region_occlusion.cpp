@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "src/math/longest_axis.h"
 
@@ -69,19 +70,24 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
                                                 const RegionEffort& effort) {
   decided_by_ = WitnessKind::kSurfaces;
   Answer answer = fused_.ask(region, target, near_distance_);
-  if (answer == Answer::kUndecided && effort.narrowings > 0) {
-    decided_by_ = WitnessKind::kNarrowed;
-    answer = narrowThroughWindows(region, target.box, target.object, effort.narrowings);
-  }
-  if (answer != Answer::kUndecided || effort.divisions == 0) {
+  if (answer != Answer::kUndecided) {
     return answer;
   }
+  if (effort.narrowings > 0) {
+    decided_by_ = WitnessKind::kNarrowed;
+    return decideThroughWindows(region, target.box, target.object, effort);
+  }
+  return effort.divisions > 0 ? decideHalves(region, target, effort) : answer;
+}
+
+RegionOcclusion::Answer RegionOcclusion::decideHalves(CellBox region, FusedTarget target,
+                                                      const RegionEffort& effort) {
   const RegionEffort less{effort.narrowings, effort.divisions - 1};
   CellBox& larger = maxComponent(region.extent()) >= maxComponent(target.box.extent()) ? region : target.box;
   const int axis = math::longestAxis(larger.extent());
   const double middle = larger.centre()[axis], end = larger.max[axis];
   larger.max[axis] = middle;
-  answer = decide(region, target, less);
+  Answer answer = decide(region, target, less);
   if (answer != Answer::kHidden) {
     return answer;
   }
@@ -92,8 +98,11 @@ RegionOcclusion::Answer RegionOcclusion::decide(CellBox region, FusedTarget targ
   return answer;
 }
 
-RegionOcclusion::Answer RegionOcclusion::narrowThroughWindows(CellBox& region, CellBox& target,
-                                                              std::uint32_t object, std::uint32_t times) {
+RegionOcclusion::Answer RegionOcclusion::decideThroughWindows(CellBox region, CellBox target,
+                                                              std::uint32_t object,
+                                                              const RegionEffort& effort) {
+  std::optional<Passage> longest;
+  double length = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const bool before = region.max[axis] < target.min[axis];
     if (!before && !(target.max[axis] < region.min[axis])) {
@@ -109,14 +118,85 @@ RegionOcclusion::Answer RegionOcclusion::narrowThroughWindows(CellBox& region, C
     const double far = fused_.magnitude();
     Passage passage{region, {{-far, -far, -far}, {far, far, far}}, target, axis, object};
     passage.window.min[axis] = passage.window.max[axis] = middle;
-    const Answer answer = narrowPassage(passage, times);
+    const Answer answer = narrowPassage(passage, effort.narrowings);
     if (answer != Answer::kUndecided) {
       return answer;
     }
     region = passage.region;
     target = passage.target;
+    if (gap.high - gap.low > length) {
+      length = gap.high - gap.low;
+      longest = passage;
+    }
   }
-  return Answer::kUndecided;
+  if (!longest || effort.divisions == 0) {
+    return Answer::kUndecided;
+  }
+  // What was narrowed after it holds for it as well.
+  longest->region = region;
+  longest->target = target;
+  if (!tighten(*longest)) {
+    return Answer::kHidden;
+  }
+  const Answer answer = dividePassage(*longest, effort);
+  decided_by_ = WitnessKind::kDivided;
+  return answer;
+}
+
+RegionOcclusion::Answer RegionOcclusion::dividePassage(const Passage& passage, const RegionEffort& effort) {
+  if (hasClearLine(passage)) {
+    return Answer::kClear;
+  }
+  if (effort.divisions == 0) {
+    return Answer::kUndecided;
+  }
+  CellBox Passage::*widest = &Passage::target;
+  for (CellBox Passage::*part : {&Passage::window, &Passage::region}) {
+    if (maxComponent((passage.*part).extent()) > maxComponent((passage.*widest).extent())) {
+      widest = part;
+    }
+  }
+  const int across = math::longestAxis((passage.*widest).extent());
+  const double middle = (passage.*widest).centre()[across];
+  for (const bool high : {false, true}) {
+    Passage half = passage;
+    CellBox& box = half.*widest;
+    (high ? box.min : box.max)[across] = middle;
+    if (!tighten(half)) {
+      continue;
+    }
+    Answer answer = narrowPassage(half, effort.narrowings);
+    if (answer == Answer::kUndecided) {
+      answer = dividePassage(half, {effort.narrowings, effort.divisions - 1});
+    }
+    if (answer != Answer::kHidden) {
+      return answer;
+    }
+  }
+  return Answer::kHidden;
+}
+
+bool RegionOcclusion::hasClearLine(const Passage& passage) {
+  constexpr int kLines = 16;  // that are tried
+  std::uint32_t random = 1;
+  const auto share = [&] {
+    random = random * 1664525u + 1013904223u;
+    return static_cast<double>(random >> 8) * 0x1p-24;
+  };
+  const auto pointIn = [&](const CellBox& box) {
+    Vec3d point = box.min;
+    for (int axis = 0; axis < 3; ++axis) {
+      point[axis] += (box.max[axis] - box.min[axis]) * share();
+    }
+    return point;
+  };
+  for (int line = 0; line < kLines; ++line) {
+    const Vec3d from = pointIn(passage.region), to = pointIn(passage.target);
+    if (fused_.isClear(from, to, passage.object)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 RegionOcclusion::Answer RegionOcclusion::narrowPassage(Passage& passage, std::uint32_t times) {

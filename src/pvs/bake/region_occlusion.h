@@ -13,7 +13,9 @@ namespace sightline::pvs {
 // What is done where one question does not decide.
 struct RegionEffort {
   std::uint32_t narrowings = 0;  // how often all boxes of a passage are narrowed
-  std::uint32_t divisions = 0;   // how often the region or the target, whichever is larger, is halved
+  // How often the region or the target, whichever is larger, is halved; or, of a passage that was narrowed,
+  // the widest of the region, the window and the target.
+  std::uint32_t divisions = 0;
 };
 
 // Use by one thread at a time.
@@ -47,9 +49,17 @@ class RegionOcclusion {
   enum class Part { kTarget, kWindow, kRegion };
 
   Answer decide(CellBox region, FusedTarget target, const RegionEffort& effort);
+  // Halves the region or the target.
+  Answer decideHalves(CellBox region, FusedTarget target, const RegionEffort& effort);
   // Narrows the region and the target to the ends of the lines through a window halfway between them, for
-  // each axis along which they are far enough apart.
-  Answer narrowThroughWindows(CellBox& region, CellBox& target, std::uint32_t object, std::uint32_t times);
+  // each axis along which they are far enough apart. Then divides the longest of these passages.
+  Answer decideThroughWindows(CellBox region, CellBox target, std::uint32_t object,
+                              const RegionEffort& effort);
+  // Halves the widest part of a passage that has been narrowed, and narrows both passages that this gives.
+  // All lines of each have to be blocked.
+  Answer dividePassage(const Passage& passage, const RegionEffort& effort);
+  // True if one of some random lines from the passage's region to its target is clear.
+  bool hasClearLine(const Passage& passage);
   // Narrows all boxes of a passage, so many times at the most.
   Answer narrowPassage(Passage& passage, std::uint32_t times);
   // Cuts off one end of a part, half of it at a time. cut: set to true if it does.

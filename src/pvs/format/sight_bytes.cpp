@@ -24,8 +24,8 @@ constexpr bool kSameLayout =
     alignof(Stored) == alignof(Ours) && std::is_trivially_copyable_v<Ours>&& std::is_standard_layout_v<Ours>;
 static_assert(kSameLayout<sight::BoxNode, BoxNode> && kSameLayout<sight::OctreeLeaf, OctreeLeaf> &&
               kSameLayout<sight::CellPlane, CellPlane> && kSameLayout<sight::Chunk, Chunk> &&
-              kSameLayout<sight::SetPlace, SetPlace> && kSameLayout<sight::Double3, Vec3d> &&
-              kSameLayout<std::uint32_t, ObjectId>);
+              kSameLayout<sight::ViewerBounds, ViewerBounds> && kSameLayout<sight::SetPlace, SetPlace> &&
+              kSameLayout<sight::Double3, Vec3d> && kSameLayout<std::uint32_t, ObjectId>);
 
 template <typename Stored, typename Ours>
 auto writeArray(flatbuffers::FlatBufferBuilder& builder, std::span<const Ours> values) {
@@ -55,7 +55,8 @@ Vec3d ours(const sight::Double3& v) {
 std::size_t estimatedBytes(const SightView& view) {
   return 4096 + view.settings.size() + view.boxes.nodes.size_bytes() + view.boxes.objects.size_bytes() +
          view.octree.nodes.size_bytes() + view.octree.leaves.size_bytes() + 2 * view.octree.leaves.size() +
-         view.octree.planes.size_bytes() + view.sets.size_bytes() + view.chunks.size_bytes();
+         view.octree.planes.size_bytes() + view.octree.viewers.size_bytes() + view.sets.size_bytes() +
+         view.chunks.size_bytes();
 }
 
 auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
@@ -74,6 +75,10 @@ void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   const auto sets = writeArray<sight::SetPlace>(builder, view.sets);
   const auto objects = writeArray<std::uint32_t>(builder, view.boxes.objects);
   const auto boxes = writeArray<sight::BoxNode>(builder, view.boxes.nodes);
+  flatbuffers::Offset<flatbuffers::Vector<const sight::ViewerBounds*>> viewers;
+  if (!view.octree.viewers.empty()) {
+    viewers = writeArray<sight::ViewerBounds>(builder, view.octree.viewers);
+  }
   const auto planes = writeArray<sight::CellPlane>(builder, view.octree.planes);
   const auto reasons = writeArray<std::uint8_t>(builder, view.octree.reasons);
   const auto depths = writeArray<std::uint8_t>(builder, view.octree.depths);
@@ -88,7 +93,7 @@ void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   const sight::Extent extent(stored(view.octree.min), stored(view.octree.max));
   builder.Finish(sight::CreateFile(builder, kVersion, &seal, view.payload.size(), &scene, record, boxes,
                                    objects, &extent, nodes, leaves, depths, reasons, planes, view.set_chunks,
-                                   sets, chunks, databases),
+                                   sets, chunks, databases, viewers),
                  sight::FileIdentifier());
 }
 
@@ -193,8 +198,9 @@ bool readArrays(const sight::File& file, SightView& view) {
   return readArray(file.boxes(), view.boxes.nodes) && readArray(file.objects(), view.boxes.objects) &&
          readArray(file.nodes(), octree.nodes) && readArray(file.leaves(), octree.leaves) &&
          readArray(file.depths(), octree.depths) && readArray(file.reasons(), octree.reasons) &&
-         readArray(file.planes(), octree.planes) && readArray(file.sets(), view.sets) &&
-         readArray(file.chunks(), view.chunks);
+         readArray(file.planes(), octree.planes) &&
+         (file.viewers() == nullptr || readArray(file.viewers(), octree.viewers)) &&
+         readArray(file.sets(), view.sets) && readArray(file.chunks(), view.chunks);
 }
 
 // Returns false if a part is not aligned for its elements.

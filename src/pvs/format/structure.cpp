@@ -79,6 +79,20 @@ Status checkLeaf(const OctreeView& octree, const OctreeLeaf& leaf, std::uint64_t
   return Success{};
 }
 
+Status checkViewers(const OctreeView& octree) {
+  if (!octree.viewers.empty() && octree.viewers.size() != octree.leaves.size()) {
+    return Error{"the octree does not say of each cell where its viewers are"};
+  }
+  for (const ViewerBounds& viewers : octree.viewers) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (viewers.first[axis] > viewers.last[axis]) {
+        return Error{"a cell of the octree has its viewers in no part of it"};
+      }
+    }
+  }
+  return Success{};
+}
+
 // Checks that each leaf and each node except the root has exactly one parent, and that the depths are right.
 Status checkLinks(const OctreeView& octree) {
   constexpr std::uint8_t kNone = 0xff;
@@ -171,6 +185,9 @@ Status checkOctree(const OctreeView& octree, std::uint64_t set_count) {
     if (reason >= kStopReasons) {
       return Error{"a cell of the octree ends for an unknown reason"};
     }
+  }
+  if (Status viewers = checkViewers(octree); !viewers) {
+    return viewers;
   }
   return checkLinks(octree);
 }

@@ -15,7 +15,8 @@ namespace sightline::pvs {
 Status checkBoxTree(const BoxTreeView& tree);
 
 // Checks that there is at least one node; that each leaf, and each node except the root, has exactly one
-// parent; that depths, sets and planes are in range; and that the box of the root and all planes are finite.
+// parent; that depths, sets, planes and bounds of viewers are in range; and that the box of the root and all
+// planes are finite.
 Status checkOctree(const OctreeView& octree, std::uint64_t set_count);
 
 }  // namespace sightline::pvs

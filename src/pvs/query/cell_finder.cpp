@@ -52,7 +52,20 @@ std::uint32_t CellFinder::search(const Vec3d& eye) {
     stepDown(link, eye);
     link = octree_.nodes[path_[level_].node];
   }
-  return leaf_ = link & ~kOctreeLeaf;
+  leaf_ = link & ~kOctreeLeaf;
+  if (!octree_.viewers.empty()) {
+    findViewers();
+  }
+  return leaf_;
+}
+
+void CellFinder::findViewers() {
+  const ViewerBounds& viewers = octree_.viewers[leaf_];
+  partly_ = viewers != ViewerBounds{};
+  if (partly_) {
+    viewers_min_ = viewersMin(octree_.min, octree_.max, cell(), viewers);
+    viewers_max_ = viewersMax(octree_.min, octree_.max, cell(), viewers);
+  }
 }
 
 }  // namespace sightline::pvs

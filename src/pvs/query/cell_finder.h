@@ -23,6 +23,11 @@ class CellFinder {
   std::uint32_t find(const Vec3d& eye) {
     return leaf_ != kOutside && path_[level_].holds(eye) ? leaf_ : search(eye);
   }
+  // True if viewers are expected at this place of the cell found last.
+  bool expects(const Vec3d& eye) const {
+    return !partly_ || ((eye.x >= viewers_min_.x) & (eye.x <= viewers_max_.x) & (eye.y >= viewers_min_.y) &
+                        (eye.y <= viewers_max_.y) & (eye.z >= viewers_min_.z) & (eye.z <= viewers_max_.z));
+  }
   // The cell of the leaf found last.
   OctreeCell cell() const { return {level_, path_[level_].at}; }
 
@@ -42,11 +47,15 @@ class CellFinder {
 
   std::uint32_t search(const Vec3d& eye);
   void stepDown(OctreeLink first_child, const Vec3d& eye);
+  void findViewers();
 
   OctreeView octree_;
   std::array<Step, kMaxOctreeDepth + 1> path_;  // from the root to the last leaf
   std::uint32_t level_ = 0;
   std::uint32_t leaf_ = kOutside;
+  // Where in the last leaf's cell viewers are expected.
+  bool partly_ = false;  // not in all of it
+  Vec3d viewers_min_, viewers_max_;
 };
 
 }  // namespace sightline::pvs

@@ -100,13 +100,12 @@ VisibleSet SetQuery::find(const Vec3d& eye, double near_distance) {
     return everything();
   }
   const std::uint32_t leaf = query.finder.find(eye);
-  if (leaf == CellFinder::kOutside) {
+  query.stats.same_cell += leaf == query.last_leaf && leaf != CellFinder::kOutside ? 1 : 0;
+  query.last_leaf = leaf;
+  if (leaf == CellFinder::kOutside || !query.finder.expects(eye)) {
     ++query.stats.outside;
-    query.last_leaf = leaf;
     return everything();
   }
-  query.stats.same_cell += leaf == query.last_leaf ? 1 : 0;
-  query.last_leaf = leaf;
   const std::uint32_t set = setOf(query.octree, query.octree.leaves[leaf], eye);
   return set == query.last.id ? query.last : query.fetch(query.file.data_->view, set);
 }
@@ -117,7 +116,9 @@ CellPlace SetQuery::locate(const Vec3d& eye) {
     return {};
   }
   const OctreeView& octree = impl_->octree;
-  return {leaf, setOf(octree, octree.leaves[leaf], eye), impl_->finder.cell()};
+  const bool expected = impl_->finder.expects(eye);
+  return {leaf, expected ? setOf(octree, octree.leaves[leaf], eye) : VisibleSet::kEverything,
+          impl_->finder.cell()};
 }
 
 const SetQueryStats& SetQuery::stats() const {

@@ -200,7 +200,7 @@ std::vector<SightFile::Section> SightFile::sections() const {
       inPlace("hierarchy", view.boxes.nodes.size_bytes() + view.boxes.objects.size_bytes()),
       inPlace("octree", view.octree.nodes.size_bytes() + view.octree.leaves.size_bytes() +
                             view.octree.depths.size_bytes() + view.octree.reasons.size_bytes() +
-                            view.octree.planes.size_bytes()),
+                            view.octree.planes.size_bytes() + view.octree.viewers.size_bytes()),
       inPlace("index of sets", view.sets.size_bytes() + view.chunks.size_bytes()),
       sectionOf("sets", view.chunks.first(view.set_chunks))};
   for (const DatabaseEntry& entry : view.databases) {

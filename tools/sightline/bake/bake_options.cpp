@@ -34,6 +34,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                       kBudgetShare, kMinBudget))
       ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max() / 2));
   command
+      .add_option("--byte-budget", settings.byte_budget,
+                  "the file has at most so many bytes, without its settings and occluder databases: of the "
+                  "cells that were baked, those are joined that gain viewers least (default: any number)")
+      ->check(CLI::Range(std::uint64_t{1}, std::numeric_limits<std::uint64_t>::max() / 2));
+  command
       .add_option(
           "--depth", settings.max_depth,
           "of the octree: a cell is halved so often at most (default: chosen by the scene, at least 6)")
@@ -56,8 +61,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
       ->capture_default_str();
   command
       .add_option("--divisions", settings.divisions,
-                  "where surfaces do not hide an object from a whole cell for sure, the cell or the object's "
-                  "box is halved so often at most, and each half tested")
+                  "where surfaces do not hide an object from a whole cell for sure, the widest of the cell, "
+                  "the object's box and, with --narrowings, the window is halved so often at most, and each "
+                  "half tested")
       ->check(CLI::Range(0u, 16u))
       ->capture_default_str();
   command
@@ -193,6 +199,9 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                  {"of_use", occluders.of_use},
                  {"largest_area", occluders.largest_area}}},
                {"origin", io::pointJson(origin)}};
+  if (settings.byte_budget > 0) {
+    json["byte_budget"] = settings.byte_budget;
+  }
   addCracks(json, cracks);
   return json;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <span>
+#include <unordered_map>
 
 #include "oracle/region_proof.h"
 #include "oracle/region_search.h"
@@ -64,6 +65,7 @@ class Checker {
     forEachLeaf(octree_, [&](std::uint32_t leaf, const OctreeCell& cell) {
       cells_[leaf] = cell;
       order.push_back(leaf);
+      addViewers(leaf);
     });
     ProgressBar progress("checking claims");
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -102,6 +104,31 @@ class Checker {
     return Error{fmt::format("{}: witness {} is false: it {}; bake again", witness_file_, witness, why)};
   }
 
+  // Adds the leaf's viewers to those of the cells around it.
+  void addViewers(std::uint32_t leaf) {
+    if (octree_.viewers.empty() || octree_.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kOutside)) {
+      return;
+    }
+    const EyeRegion own = regionOf(octree_, cells_[leaf], leaf, CellPart::kWhole);
+    for (std::uint64_t cell = cellNumber(cells_[leaf]) / 8; cell > 0; cell /= 8) {
+      EyeRegion& around = viewers_.try_emplace(cell, own).first->second;
+      around.min = min(around.min, own.min);
+      around.max = max(around.max, own.max);
+    }
+  }
+
+  // The eyes in a cell that a claim about a part of the leaf is about: the leaf's own cell, one below it, or,
+  // for what leaves share, one around it.
+  EyeRegion eyesIn(std::uint64_t cell, std::uint32_t leaf, CellPart part) const {
+    const auto around = viewers_.find(cell);
+    if (around == viewers_.end()) {
+      return regionOf(octree_, cellOfNumber(cell), leaf, part);
+    }
+    EyeRegion region = around->second;
+    addSide(octree_, leaf, part, region);
+    return region;
+  }
+
   Status addLeaf(std::uint32_t leaf) {
     if (octree_.leaves[leaf].plane == OctreeLeaf::kNoPlane) {
       return addPart(leaf, CellPart::kWhole);
@@ -124,9 +151,12 @@ class Checker {
         hidden_.push_back(position);
       }
     }
+    // Eyes in a face of a cell alone are also in its neighbour, which has witnesses for them.
     const auto isEmpty = [&](std::uint64_t cell) {
-      return part != CellPart::kWhole &&
-             RegionProof::isEmpty(regionOf(octree_, cellOfNumber(cell), leaf, part));
+      const EyeRegion region = eyesIn(cell, leaf, part);
+      const Vec3d extent = region.max - region.min;
+      return std::min({extent.x, extent.y, extent.z}) <= 0.0 ||
+             (part != CellPart::kWhole && RegionProof::isEmpty(region));
     };
     const std::uint64_t cell = cellNumber(cells_[leaf]);
     const bool no_eyes = isEmpty(cell);
@@ -150,10 +180,10 @@ class Checker {
   // The region of a witness of a leaf's cell, or of one around or below it. A side is that of the leaf's
   // plane; without a plane, no claim rests on a witness of a side.
   EyeRegion regionOfWitness(const HidingWitness& witness, std::uint32_t leaf) const {
-    return regionOf(octree_, cellOfNumber(witness.cell), leaf,
-                    witness.part == WitnessPart::kFront  ? CellPart::kFront
-                    : witness.part == WitnessPart::kBack ? CellPart::kBack
-                                                         : CellPart::kWhole);
+    return eyesIn(witness.cell, leaf,
+                  witness.part == WitnessPart::kFront  ? CellPart::kFront
+                  : witness.part == WitnessPart::kBack ? CellPart::kBack
+                                                       : CellPart::kWhole);
   }
 
   // Judges what the claims rest on, each once.
@@ -195,13 +225,15 @@ class Checker {
     const RegionClaim claim = regionClaim(regionOfWitness(witness, one.leaf), one.use.position,
                                           witness.kind == WitnessKind::kConvex ? witness.object : ObjectId());
     one.proved = proof_.proves(claim);
-    one.refuted = (with_line && hasFalseLine(witness, claim.region)) ||
+    one.refuted = (with_line && hasFalseLine(witness)) ||
                   (!one.proved && witness.kind == WitnessKind::kConvex && proof_.refutesObject(claim));
   }
 
-  // The line of a side may begin on the other side of the plane: a bake asks about the box around a side.
-  bool hasFalseLine(const HidingWitness& witness, const EyeRegion& region) const {
-    const EyeRegion cell{region.min, region.max, {}};
+  // The line of a side may begin on the other side of the plane: a bake asks about the box around a side. And
+  // in a cell around leaves, where none of them expects viewers: there the bake's box may be a little wider.
+  bool hasFalseLine(const HidingWitness& witness) const {
+    const OctreeCell of = cellOfNumber(witness.cell);
+    const EyeRegion cell{cellMin(octree_.min, octree_.max, of), cellMax(octree_.min, octree_.max, of), {}};
     return witness.kind == WitnessKind::kSurfaces &&
            (!cell.contains(witness.from) || proof_.misses(witness.from, witness.to, witness.object));
   }
@@ -307,6 +339,9 @@ class Checker {
   const RegionSearch search_;
   const Threads threads_;
   std::vector<OctreeCell> cells_;  // of all leaves
+  // The box around the viewers of all leaves in a cell, by its number; none if the file says of no cell where
+  // viewers are.
+  std::unordered_map<std::uint64_t, EyeRegion> viewers_;
   CheckReport report_;
 
   // The claims that are decided together, what they rest on, and what was judged of that, now or before, and

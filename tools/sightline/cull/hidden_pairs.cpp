@@ -116,8 +116,20 @@ class Sampler {
 
 EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32_t leaf, CellPart part) {
   EyeRegion region{cellMin(octree.min, octree.max, cell), cellMax(octree.min, octree.max, cell), {}};
+  OctreeCell own = cell;
+  while (own.level > octree.depths[leaf]) {
+    own = {own.level - 1, {own.at[0] / 2, own.at[1] / 2, own.at[2] / 2}};
+  }
+  const ViewerBounds viewers = octree.viewersOf(leaf);
+  region.min = max(region.min, viewersMin(octree.min, octree.max, own, viewers));
+  region.max = min(region.max, viewersMax(octree.min, octree.max, own, viewers));
+  addSide(octree, leaf, part, region);
+  return region;
+}
+
+void addSide(const OctreeView& octree, std::uint32_t leaf, CellPart part, EyeRegion& region) {
   if (part == CellPart::kWhole) {
-    return region;
+    return;
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const CellPlane& plane = octree.planes[octree.leaves[leaf].plane];
@@ -132,7 +144,6 @@ EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32
       region.sides = {{plane.normal, std::nextafter(plane.back, kInfinity)},
                       {-plane.normal, -std::nextafter(plane.front, -kInfinity)}};
   }
-  return region;
 }
 
 Status readVisible(const SightFile& baked, std::uint32_t leaf, CellPart part,

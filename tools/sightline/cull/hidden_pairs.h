@@ -21,8 +21,13 @@ struct HiddenPair {
   ObjectId object;
 };
 
-// The eyes for which the look-up returns the part's set: the closed cell, on one side of its plane.
+// The eyes for which the look-up returns the part's set: where viewers are expected in the leaf's cell,
+// borders included, on one side of its plane. cell: the leaf's, or one below it, for the eyes that are in it
+// as well.
 EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32_t leaf, CellPart part);
+
+// Leaves of the region the eyes on the part's side of the leaf's plane.
+void addSide(const OctreeView& octree, std::uint32_t leaf, CellPart part, EyeRegion& region);
 
 // Says for each place in BoxTree::objects, with 1, that its object is in the part's set; the others are
 // claimed to be hidden. Error if the set is corrupt.

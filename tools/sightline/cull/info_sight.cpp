@@ -163,6 +163,19 @@ Spread spreadOf(const std::vector<double>& values) {
   return spread;
 }
 
+namespace {
+
+// The fraction of a cell where viewers are expected.
+double volumeOf(const ViewerBounds& viewers) {
+  double volume = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    volume *= std::ldexp(viewers.last[axis] - viewers.first[axis] + 1, -static_cast<int>(kViewerLevels));
+  }
+  return volume;
+}
+
+}  // namespace
+
 Result<SightFacts> factsOf(const SightFile& file) {
   const Result<std::vector<SetSize>> sets = sizesOfSets(file);
   if (!sets) {
@@ -196,11 +209,12 @@ Result<SightFacts> factsOf(const SightFile& file) {
       all.add((*sets)[set]);
       triangles += (*sets)[set].triangles / static_cast<double>(sides.size());
     }
-    const double part = std::ldexp(1.0, -3 * static_cast<int>(cell.level));
+    const double part = std::ldexp(volumeOf(octree.viewersOf(index)), -3 * static_cast<int>(cell.level));
     facts.mean_triangles_by_volume += triangles * part;
     facts.reason_volumes[std::min<std::size_t>(octree.reasons[index], kStopReasons - 1)] += part;
     volume += part;
     facts.cells_with_plane += divided ? 1 : 0;
+    facts.partial_cells += octree.viewersOf(index) != ViewerBounds{} ? 1 : 0;
   });
   facts.mean_triangles_by_volume /= volume > 0.0 ? volume : 1.0;
   for (double& part : facts.reason_volumes) {
@@ -231,6 +245,7 @@ Json factsJson(const SightFacts& facts) {
           {"grid_cells", facts.grid_cells},
           {"stop_reasons", reasons},
           {"cells_with_plane", facts.cells_with_plane},
+          {"partial_cells", facts.partial_cells},
           {"sets", sizesJson(facts.sizes)},
           {"mean_triangles_by_volume", facts.mean_triangles_by_volume},
           {"levels", levels}};
@@ -247,6 +262,11 @@ std::string factsText(const SightFacts& facts) {
   }
   text +=
       fmt::format("              {:10} divided by a plane: a set on either side\n", facts.cells_with_plane);
+  if (facts.partial_cells > 0) {
+    text +=
+        fmt::format("              {:10} with viewers in a part: a set there, and all objects elsewhere\n",
+                    facts.partial_cells);
+  }
   text += fmt::format("from anywhere {:10.0f} triangles, mean over the viewers' space\n",
                       facts.mean_triangles_by_volume);
   return text + levelsText(facts);

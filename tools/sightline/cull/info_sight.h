@@ -40,7 +40,8 @@ struct SightFacts {
   std::array<std::uint64_t, kStopReasons> reasons{};
   std::array<double, kStopReasons> reason_volumes{};  // shares of the viewers' space, 0 to 1
   std::uint64_t cells_with_plane = 0;
-  std::uint64_t grid_cells = 0;  // cells of a uniform grid of the smallest cell's size
+  std::uint64_t partial_cells = 0;  // that expect viewers in a part of them
+  std::uint64_t grid_cells = 0;     // cells of a uniform grid of the smallest cell's size
 };
 
 // Reads all sets. Error if one is broken.

@@ -38,6 +38,8 @@ struct PointAnswer {
   std::vector<std::uint32_t> visible;  // ascending
 
   bool outside() const { return place.leaf == CellPlace::kOutside; }
+  // False where everything may be seen because no viewers were expected there.
+  bool hasSet() const { return !outside() && place.set != VisibleSet::kEverything; }
 };
 
 Result<std::vector<Vec3d>> pointsOfFile(const std::string& name) {
@@ -99,7 +101,7 @@ std::string answerJson(const PointAnswer& answer) {
                {"cell", inside ? Json(answer.place.leaf) : Json()},
                {"level", inside ? Json(answer.place.cell.level) : Json()},
                {"side", answer.side != nullptr ? Json(answer.side) : Json()},
-               {"set", inside ? Json(answer.place.set) : Json()},
+               {"set", answer.hasSet() ? Json(answer.place.set) : Json()},
                {"triangles", answer.triangles},
                {"visible", answer.visible}});
 }

@@ -116,8 +116,9 @@ CellPath cellPath(const SightFile& baked, const Scene& scene) {
   };
   for (std::uint32_t leaf = 0; leaf < cells.size(); ++leaf) {
     Random random(leaf);
-    const CellBox cell{cellMin(octree.min, octree.max, cells[leaf]),
-                       cellMax(octree.min, octree.max, cells[leaf])};
+    const ViewerBounds viewers = octree.viewersOf(leaf);
+    const CellBox cell{viewersMin(octree.min, octree.max, cells[leaf], viewers),
+                       viewersMax(octree.min, octree.max, cells[leaf], viewers)};
     add(viewpoint(leaf, cell, random), random);
     if (octree.leaves[leaf].plane == OctreeLeaf::kNoPlane) {
       continue;

@@ -32,6 +32,9 @@ struct BakeSettings {
   // Fused sets are smaller, and take some hundred times as long to bake.
   BakeOcclusion occlusion = BakeOcclusion::kConvex;
   std::uint64_t triangle_budget = 0;  // a cell whose set has at most this many triangles is not divided
+  // Maximum number of bytes of the file, without its settings and occluder databases; 0: any. Of the cells
+  // that were baked, those are joined that gain viewers least. The parts are the same with any.
+  std::uint64_t byte_budget = 0;
   // Maximum number of times a cell of the octree is halved, which determines memory: at most kMaxOctreeDepth,
   // or kChooseDepth to choose a depth that suits the sizes of the region and of the occluders.
   static constexpr std::uint32_t kChooseDepth = 0xffffffffu;
@@ -43,6 +46,9 @@ struct BakeSettings {
   // scene. Cells that meet none of them are not baked and hold all objects. The octree's root is a cube
   // around all of them, the viewing region.
   std::vector<Box> viewers{};
+  // A cell's sets hold for the box around what of the viewers' boxes lies in it (ViewerBounds). With this, or
+  // without boxes of viewers, they hold for all of each cell that meets viewers.
+  bool whole_cells = false;
   // Occluders are searched within this distance of a viewpoint at first, in metres; 0 chooses one. It is
   // doubled where that helps.
   double search_distance = 0.0;
@@ -55,8 +61,8 @@ struct BakeSettings {
   double min_gain = 0.02;  // doubling the search box helped if it hid this fraction of the triangles
   // Siblings are merged if their union sees at most this fraction more than each of them.
   double merge_tolerance = 0.05;
-  // Where surfaces do not hide an object from a whole cell for sure, the cell or the object's box, whichever
-  // is larger, is halved up to this many times, 0 to 16, and each half tested.
+  // Where surfaces do not hide an object from a whole cell for sure, the widest of the cell, the object's box
+  // and, with narrowings, the window is halved up to this many times, 0 to 16, and each half tested.
   std::uint32_t divisions = 0;
   // Before that, what of the cell, of a window between and of the object's box such lines of sight may pass
   // is narrowed up to this many times, 0 to 8.
@@ -174,7 +180,7 @@ class Bake {
                      BakeStats* stats = nullptr) const;
 
   // parts: all parts of the plan. The result is the same whoever baked them. Returns an error if a part is
-  // missing or its bytes are not of this plan.
+  // missing or its bytes are not of this plan, or if no cells are few enough for the byte budget.
   Result<BakedVisibility> assemble(const BakedParts& parts) const;
   // What hides the objects that are not in the sets, if BakeSettings::witnesses is set: for each claim of a
   // leaf, a witness of its cell, of a cell around it, or of each of the cells that it was merged from. Parts

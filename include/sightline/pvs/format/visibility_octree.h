@@ -64,6 +64,17 @@ struct OctreeLeaf {
 };
 static_assert(sizeof(OctreeLeaf) == 16);
 
+// The part of a leaf's cell where viewers are expected: a box of steps, of which a cell has 256 along each
+// axis. Both ends belong to it. The leaf's sets hold there; an eye elsewhere in the cell gets all objects.
+struct ViewerBounds {
+  std::array<std::uint8_t, 3> first{};              // the first step along each axis
+  std::array<std::uint8_t, 3> last{255, 255, 255};  // the last one, no less than the first
+
+  friend bool operator==(const ViewerBounds&, const ViewerBounds&) = default;
+};
+inline constexpr std::uint32_t kViewerLevels = 8;  // a step is a cell's edge, halved so often
+static_assert(sizeof(ViewerBounds) == 6);
+
 // An inner node has the index of the first of its eight children, which are consecutive. Child i is in the
 // upper half in x, y, z if bit 0, 1, 2 of i is set. A leaf has kOctreeLeaf plus the index of the leaf.
 using OctreeLink = std::uint32_t;
@@ -76,6 +87,11 @@ struct OctreeView {
   std::span<const std::uint8_t> depths{};   // level of each leaf
   std::span<const std::uint8_t> reasons{};  // StopReason of each leaf
   std::span<const CellPlane> planes{};
+  std::span<const ViewerBounds> viewers{};  // of each leaf; none: viewers are expected in all of each cell
+
+  ViewerBounds viewersOf(std::uint32_t leaf) const {
+    return viewers.empty() ? ViewerBounds{} : viewers[leaf];
+  }
 };
 
 struct VisibilityOctree {
@@ -84,8 +100,9 @@ struct VisibilityOctree {
   std::vector<OctreeLeaf> leaves{};
   std::vector<std::uint8_t> depths{}, reasons{};
   std::vector<CellPlane> planes{};
+  std::vector<ViewerBounds> viewers{};
 
-  OctreeView view() const { return {min, max, nodes, leaves, depths, reasons, planes}; }
+  OctreeView view() const { return {min, max, nodes, leaves, depths, reasons, planes, viewers}; }
 };
 
 // One cell of a level's grid, which has 2^level cells along each axis.
@@ -111,6 +128,23 @@ inline Vec3d cellMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
 inline Vec3d cellMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c) {
   return {gridLine(min.x, max.x, c.level, c.at[0] + 1), gridLine(min.y, max.y, c.level, c.at[1] + 1),
           gridLine(min.z, max.z, c.level, c.at[2] + 1)};
+}
+
+// The box in a cell, of the octree with this box, where viewers are expected.
+inline Vec3d viewersMin(const Vec3d& min, const Vec3d& max, const OctreeCell& c, const ViewerBounds& v) {
+  const auto line = [&](int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    return gridLine(min[axis], max[axis], c.level + kViewerLevels, (c.at[a] << kViewerLevels) + v.first[a]);
+  };
+  return {line(0), line(1), line(2)};
+}
+inline Vec3d viewersMax(const Vec3d& min, const Vec3d& max, const OctreeCell& c, const ViewerBounds& v) {
+  const auto line = [&](int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    return gridLine(min[axis], max[axis], c.level + kViewerLevels,
+                    (c.at[a] << kViewerLevels) + v.last[a] + 1u);
+  };
+  return {line(0), line(1), line(2)};
 }
 
 // Calls visit(leaf index, cell) for all leaves, depth first, children in order.

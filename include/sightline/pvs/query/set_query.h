@@ -20,7 +20,9 @@ struct SetQueryStats {
   std::uint64_t same_cell = 0;    // lookups in the same cell as the one before
   std::uint64_t decoded = 0;      // sets decoded
   std::uint64_t chunk_bytes = 0;  // bytes of the file's payload that were read for them
-  std::uint64_t outside = 0;      // lookups that returned all objects because the eye is in no cell
+  // Lookups that returned all objects because the eye is in no cell, or where no viewer of its cell was
+  // expected.
+  std::uint64_t outside = 0;
   std::uint64_t beyond_near = 0;  // lookups that returned all objects because of their near distance
   std::uint64_t broken = 0;       // lookups that returned all objects because a chunk is corrupt
   std::size_t cached_bytes = 0;   // memory of the decoded sets
@@ -31,7 +33,9 @@ struct CellPlace {
   static constexpr std::uint32_t kOutside = 0xffffffffu;
 
   std::uint32_t leaf = kOutside;  // index into OctreeView::leaves
-  std::uint32_t set = 0;          // set of the viewpoint's side; undefined outside
+  // The set of the viewpoint's side, or VisibleSet::kEverything where no viewer was expected in the cell
+  // (OctreeView::viewers); undefined outside.
+  std::uint32_t set = 0;
   OctreeCell cell{};
 };
 

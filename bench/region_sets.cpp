@@ -1,0 +1,294 @@
+// How close to exact are the sets of cells? A table row for each scene: cells around some eyes of its walk,
+// and of all pairs of such a cell and an object how many the bake keeps, and how many random lines of sight
+// see (Embree). All begin where viewers are in the cell. A line to a point of the object's box sees it if
+// nothing opaque of another object is in between: what a test of one box an object has to keep. A line to a
+// point of one of its triangles sees it if it shows the object: what every test has to keep, so that
+// "seen, not kept" must be 0. The last column is of the walk's views from these eyes, culled by the frustum
+// and by the set of the cell, or of the eye's side of its plane, alone: what is kept for each object that the
+// pixels of 640 x 360 show.
+//
+//   region_sets [--cell=METRES] [--cells=COUNT] [--lines=COUNT] [--crack-width=METRES] [--free[=MAX_HEIGHT]]
+//               [--whole] [--near=METRES] [--narrowings=N] [--divisions=N] [--boxes=N] SCENE...
+//
+// Cells are at most --cell wide, one for each of --cells eyes, spread evenly over the walk. With --free,
+// viewers are where one gets from the walk (findFreeSpace), at most MAX_HEIGHT above the ground, and sets are
+// those of what of it lies in the cell; with --whole, of all of the cell.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bench/benchmark_scene.h"
+#include "bench/measuring.h"
+#include "oracle/exact_visibility.h"
+#include "oracle/ray_scene.h"
+#include "oracle/split_mix.h"
+#include "sightline/occluders/closed_scene.h"
+#include "sightline/occluders/occluder_set.h"
+#include "sightline/pvs/bake/viewer_space.h"
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_sets.h"
+
+namespace {
+
+using namespace sightline;
+using namespace sightline::bench;
+
+struct Options {
+  double cell = 2.0, crack_width = 0.0, max_height = std::numeric_limits<double>::infinity();
+  std::uint32_t cells = 43, lines = 2000;
+  bool free = false;
+  BakeSettings settings{.occlusion = BakeOcclusion::kFused};
+  std::vector<std::string> scenes;
+};
+
+Options optionsOf(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto is = [&word](std::string_view name) { return word.rfind(name, 0) == 0; };
+    const double number = std::atof(word.substr(std::min(word.find('=') + 1, word.size())).c_str());
+    const auto whole = static_cast<std::uint32_t>(std::max(number, 0.0));
+    if (is("--cells=")) {
+      options.cells = whole;
+    } else if (is("--cell=")) {
+      options.cell = number;
+    } else if (is("--lines=")) {
+      options.lines = whole;
+    } else if (is("--crack-width=")) {
+      options.crack_width = number;
+    } else if (is("--free")) {
+      options.free = true;
+      options.max_height = is("--free=") ? number : options.max_height;
+    } else if (is("--whole")) {
+      options.settings.whole_cells = true;
+    } else if (is("--near=")) {
+      options.settings.near_distance = number;
+    } else if (is("--narrowings=")) {
+      options.settings.narrowings = whole;
+    } else if (is("--divisions=")) {
+      options.settings.divisions = whole;
+    } else if (is("--boxes=")) {
+      options.settings.object_boxes = whole;
+    } else {
+      options.scenes.push_back(word);
+    }
+  }
+  return options;
+}
+
+Vec3d randomIn(const Vec3d& min, const Vec3d& max, SplitMix& random) {
+  return {random.in(min.x, max.x), random.in(min.y, max.y), random.in(min.z, max.z)};
+}
+
+// A point of one of the object's triangles.
+Vec3d randomOn(const SceneView& scene, const Object& object, SplitMix& random) {
+  const std::span<const std::uint32_t> indices = scene.indicesOf(object);
+  const std::size_t first = 3 * random.below(static_cast<std::uint32_t>(indices.size() / 3));
+  double u = random.unit(), v = random.unit();
+  if (u + v > 1.0) {
+    u = 1.0 - u;
+    v = 1.0 - v;
+  }
+  const Vec3d a(scene.positions[indices[first]]), b(scene.positions[indices[first + 1]]),
+      c(scene.positions[indices[first + 2]]);
+  return a + (b - a) * u + (c - a) * v;
+}
+
+// Traces random lines from the region, 16 at a time, until test(the 16, their hits) holds for one of them.
+// to(random): where a line leads, and `beyond` of its length farther.
+template <typename To, typename Test>
+bool someLine(const RayScene& rays, const pvs::CellBox& region, std::uint32_t lines, float beyond,
+              SplitMix& random, const To& to, const Test& test) {
+  std::vector<RayHit> hits;
+  for (std::uint32_t line = 0; line < lines; line += RayScene::kBatch) {
+    RayScene::Batch batch;
+    for (FloatRay& ray : batch) {
+      const Vec3d from = randomIn(region.min, region.max, random);
+      ray = {Vec3f(from), Vec3f(to(random) - from), 1.0f + beyond};
+    }
+    hits.clear();
+    rays.trace(batch, RayScene::kBatch, false, hits);
+    if (test(batch, hits)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Whether a line reaches the object's box with nothing opaque of another object before it.
+bool lineSeesBox(const RayScene& rays, const pvs::CellBox& region, const Box& box, ObjectId object,
+                 std::uint32_t lines, SplitMix& random) {
+  return someLine(
+      rays, region, lines, 0.0f, random,
+      [&](SplitMix& numbers) { return randomIn(Vec3d(box.min), Vec3d(box.max), numbers); },
+      [&](const RayScene::Batch&, const std::vector<RayHit>& hits) {
+        std::uint32_t blocked = 0;
+        for (const RayHit& hit : hits) {
+          blocked |= (hit.opaque && hit.object != object ? 1u : 0u) << hit.ray;
+        }
+        return blocked != (1u << RayScene::kBatch) - 1;
+      });
+}
+
+// True if the line from an eye through the point reaches the object first, in exact arithmetic: Embree's
+// single precision may slip through an edge.
+bool isConfirmed(const ExactVisibility& exact, const Vec3d& eye, ObjectId object, const Vec3d& point) {
+  View view;
+  view.eye = eye;
+  setOrientation(view, point - eye, {0.0, 1.0, 0.0});
+  view.near = 1e-3;
+  view.far = 1e6;
+  return exact.confirm(view, {object, point});
+}
+
+// Whether a line to one of the object's triangles shows the object. exact: confirms what Embree says, or
+// null.
+bool lineSees(const RayScene& rays, const SceneView& scene, const pvs::CellBox& region, ObjectId object,
+              std::uint32_t lines, const ExactVisibility* exact, SplitMix& random) {
+  const Object& target = scene.objects[object.value];
+  return target.triangleCount() > 0 &&
+         someLine(
+             rays, region, lines, 1e-4f, random,
+             [&](SplitMix& numbers) { return randomOn(scene, target, numbers); },
+             [&](const RayScene::Batch& batch, const std::vector<RayHit>& hits) {
+               return std::any_of(hits.begin(), hits.end(), [&](const RayHit& hit) {
+                 const FloatRay& ray = batch[hit.ray];
+                 return hit.object == object &&
+                        (exact == nullptr || isConfirmed(*exact, Vec3d(ray.origin), object, ray.at(hit.t)));
+               });
+             });
+}
+
+// The cell of the deepest level that holds the eye.
+OctreeCell cellAt(const pvs::BakeScene& bake, const Vec3d& eye) {
+  OctreeCell cell{bake.settings.max_depth, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = (eye[axis] - bake.root.min[axis]) / (bake.root.max[axis] - bake.root.min[axis]);
+    const double most = std::ldexp(1.0, static_cast<int>(cell.level));
+    cell.at[static_cast<std::size_t>(axis)] =
+        static_cast<std::uint32_t>(std::clamp(std::floor(share * most), 0.0, most - 1.0));
+  }
+  return cell;
+}
+
+// The objects in the frustum that the set of the view's eye keeps.
+std::uint64_t keptInView(const pvs::BakeScene& bake, const pvs::CellSets& sets, const View& view) {
+  const CellSide side = sets.plane ? sideOf(*sets.plane, view.eye) : CellSide::kBetween;
+  const pvs::Runs& set = side == CellSide::kFront  ? sets.front
+                         : side == CellSide::kBack ? sets.back
+                                                   : sets.whole;
+  const Frustum frustum = frustumOf(view);
+  std::uint64_t kept = 0;
+  for (const pvs::ObjectRun& run : set) {
+    for (std::uint32_t position = run.begin; position < run.end; ++position) {
+      std::uint8_t planes = kAllFrustumPlanes;
+      kept += classify(frustum, bake.leafOf(position).bounds, planes) != FrustumSide::kOutside ? 1 : 0;
+    }
+  }
+  return kept;
+}
+
+void measure(const std::string& name, const Options& options) {
+  BenchmarkScene loaded = loadScene(name, "region_sets");
+  Scene& scene = loaded.scene;
+  BakeSettings settings = options.settings;
+  if (options.crack_width > 0.0) {
+    ClosedScene closed = closeCracks(scene.view(), options.crack_width);
+    settings.box_margin = closed.margin();
+    scene.indices = std::move(closed.indices);
+    scene.objects = std::move(closed.objects);
+  }
+  std::vector<Vec3d> eyes;
+  for (const CameraFrame& frame : loaded.path.frames) {
+    eyes.push_back(frame.eye - scene.origin);
+  }
+  const Box bounds = sceneBounds(scene.view());
+  settings.viewers = {bounds};
+  if (options.free) {
+    settings.viewers =
+        valueOrExit(findFreeSpace(scene.view(), eyes, {.max_height = options.max_height}), "region_sets")
+            .boxes;
+  }
+  Box around;
+  for (const Box& box : settings.viewers) {
+    around.extend(box);
+  }
+  const Vec3f extent = around.max - around.min;
+  const double edge = std::max({extent.x, extent.y, extent.z}) * (1.0 + 0x1p-20);
+  settings.max_depth = static_cast<std::uint32_t>(std::max(0.0, std::ceil(std::log2(edge / options.cell))));
+  const pvs::BakeScene bake(scene.view(), findOccluders(scene.view(), {.area_fraction = 1.0}), settings,
+                            serialFor);
+  const RayScene rays(scene.view());
+  const ExactVisibility exact(scene.view());
+  std::set<std::array<std::uint32_t, 3>> known;
+  std::uint64_t pairs = 0, kept = 0, box_seen = 0, seen = 0, seen_but_hidden = 0, in_view = 0,
+                exact_in_view = 0;
+  double us = 0.0;
+  SplitMix random{1};
+  pvs::CellBaker baker(bake);
+  for (std::uint32_t i = 0; i < options.cells && !eyes.empty(); ++i) {
+    const OctreeCell cell = cellAt(bake, eyes[i * eyes.size() / options.cells]);
+    if (!known.insert(cell.at).second || !bake.holdsViewers(bake.boxOf(cell))) {
+      continue;
+    }
+    pvs::CellSets sets;
+    us += microseconds([&] { sets = baker.seenFrom(cell, 0.125 * bake.diagonal, {}); });
+    pvs::ObjectMask keeps;
+    keeps.reset(static_cast<std::uint32_t>(bake.boxes.objects.size()));
+    keeps.add(sets.whole);
+    const View view = loaded.path.view(i * eyes.size() / options.cells, scene.origin);
+    in_view += keptInView(bake, sets, view);
+    exact_in_view += exact.visibleThroughPixels(view, 640, 360).size();
+    const pvs::CellBox region = bake.regionOf(cell);
+    for (std::uint32_t position = 0; position < bake.boxes.objects.size(); ++position) {
+      const Box& box = bake.leafOf(position).bounds;
+      if (!box.wellFormed()) {
+        continue;
+      }
+      const ObjectId object = bake.boxes.objects[position];
+      const bool sees_box = lineSeesBox(rays, region, box, object, options.lines, random);
+      // What is neither kept nor seen is hardly in doubt.
+      const std::uint32_t lines = sees_box || keeps.contains(position) ? options.lines : options.lines / 10;
+      const bool sees = lineSees(rays, scene.view(), region, object, lines,
+                                 keeps.contains(position) ? nullptr : &exact, random);
+      box_seen += sees_box ? 1 : 0;
+      pairs += 1;
+      kept += keeps.contains(position) ? 1 : 0;
+      seen += sees ? 1 : 0;
+      seen_but_hidden += sees && !keeps.contains(position) ? 1 : 0;
+    }
+  }
+  const auto percent = [&](std::uint64_t count) {
+    return 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(pairs, 1));
+  };
+  fmt::print(
+      "| {} | {:.3g} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.0f} | {} | {:.2f} |\n",
+      name.substr(name.rfind('/') + 1),
+      std::ldexp(bake.root.extent().x, -static_cast<int>(settings.max_depth)), known.size(), pairs,
+      percent(box_seen), percent(seen), percent(kept),
+      static_cast<double>(kept) / static_cast<double>(box_seen),
+      static_cast<double>(kept) / static_cast<double>(seen), us / static_cast<double>(pairs), seen_but_hidden,
+      static_cast<double>(in_view) / static_cast<double>(exact_in_view));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = optionsOf(argc, argv);
+  fmt::print(
+      "| scene | cell, m | cells | pairs | lines to boxes, % | to triangles, % | kept, % | kept / lines to "
+      "boxes | to triangles | us a pair | seen, not kept | in view / exact |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const std::string& scene : options.scenes) {
+    measure(scene, options);
+  }
+  return 0;
+}

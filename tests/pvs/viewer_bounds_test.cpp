@@ -1,0 +1,300 @@
+// Sets hold for where viewers are expected in a cell, and nowhere else.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sightline/pvs/query/set_query.h"
+#include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/cell_tree.h"
+#include "src/pvs/bake/encode_sight.h"
+#include "tests/pvs/bake_scenes.h"
+
+namespace sightline {
+namespace {
+
+using test::baked;
+using test::BakeJudge;
+using test::block;
+using test::membersOf;
+using test::sceneOf;
+using test::Solid;
+
+// Walls, doors and crates on a floor of 16 m.
+Scene roomsScene(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto place = [&](float most) { return static_cast<float>(random() % 64) / 64.0f * most; };
+  std::vector<Solid> solids{block({0, -0.5f, 0}, {16, 0, 16})};
+  for (int i = 0; i < 10; ++i) {
+    const Vec3f at(place(12), 0, place(12));
+    const float length = 2 + place(6);
+    solids.push_back(block(at, at + (random() % 2 == 0 ? Vec3f(length, 3, 0.25f) : Vec3f(0.25f, 3, length))));
+  }
+  for (int i = 0; i < 40; ++i) {
+    const Vec3f at(place(15), 0, place(15));
+    solids.push_back(block(at, at + Vec3f(0.5f, 1, 0.5f)));
+  }
+  return sceneOf(solids);
+}
+
+std::vector<Box> randomViewers(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto place = [&](float most) { return static_cast<float>(random() % 1024) / 1024.0f * most; };
+  std::vector<Box> viewers;
+  for (int i = 0; i < 6; ++i) {
+    const Vec3f at(place(14), 0.25f + place(1), place(14));
+    viewers.push_back({at, at + Vec3f(place(5), place(2), place(5))});
+  }
+  return viewers;
+}
+
+BakeSettings settingsFor(std::uint32_t seed, bool fused) {
+  return {.occlusion = fused ? BakeOcclusion::kFused : BakeOcclusion::kConvex,
+          .triangle_budget = 100,
+          .max_depth = fused ? 3u : 4u,
+          .near_distance = 0.05,
+          .viewers = randomViewers(seed),
+          .narrowings = fused ? 1u : 0u};
+}
+
+struct Range {
+  Vec3d min, max;
+
+  bool holds(const Vec3d& p) const {
+    return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
+  }
+  bool empty() const { return !(min.x <= max.x && min.y <= max.y && min.z <= max.z); }
+};
+
+Range cellRange(const VisibilityOctree& octree, const OctreeCell& cell) {
+  return {cellMin(octree.min, octree.max, cell), cellMax(octree.min, octree.max, cell)};
+}
+
+Range viewerRange(const VisibilityOctree& octree, const OctreeCell& cell, std::uint32_t leaf) {
+  const ViewerBounds viewers = octree.view().viewersOf(leaf);
+  return {viewersMin(octree.min, octree.max, cell, viewers),
+          viewersMax(octree.min, octree.max, cell, viewers)};
+}
+
+Range common(const Range& range, const Box& box) {
+  return {max(range.min, Vec3d(box.min)), min(range.max, Vec3d(box.max))};
+}
+
+// The box around what of the viewers' boxes lies in the cell, wider by a 60th of it.
+Range askedAbout(const VisibilityOctree& octree, const OctreeCell& cell, const std::vector<Box>& viewers) {
+  const Range all = cellRange(octree, cell);
+  Range around{all.max, all.min};
+  bool any = false;
+  for (const Box& box : viewers) {
+    if (const Range part = common(all, box); !part.empty()) {
+      around = {min(around.min, part.min), max(around.max, part.max)};
+      any = true;
+    }
+  }
+  const Vec3d wider = (all.max - all.min) / 60.0;
+  return any ? Range{around.min - wider, around.max + wider} : Range{{1, 1, 1}, {0, 0, 0}};
+}
+
+OctreeCell childAt(const VisibilityOctree& octree, const OctreeCell& cell, const Vec3d& point) {
+  const Vec3d middle = cellMin(octree.min, octree.max, cell.child(7));
+  return cell.child((point.x >= middle.x ? 1u : 0u) | (point.y >= middle.y ? 2u : 0u) |
+                    (point.z >= middle.z ? 4u : 0u));
+}
+
+TEST(ViewerBounds, HoldAllViewersAndNothingThatWasNotAskedAbout) {
+  std::size_t partial = 0, merged = 0, outside_of_them = 0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    const Scene scene = roomsScene(seed);
+    BakeSettings settings = settingsFor(seed, false);
+    settings.merge_tolerance = seed % 2 == 0 ? 0.05 : 0.5;
+    const BakedVisibility result = baked(scene, settings);
+    const VisibilityOctree& octree = result.octree;
+    std::mt19937 random(seed);
+    forEachLeaf(octree.view(), [&](std::uint32_t leaf, const OctreeCell& cell) {
+      const Range own = viewerRange(octree, cell, leaf), all = cellRange(octree, cell);
+      if (octree.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kOutside)) {
+        return;
+      }
+      for (const Box& box : settings.viewers) {
+        const Range part = common(all, box);
+        // What a viewer's box only touches belongs to the cell beside it.
+        const Vec3d extent = part.max - part.min;
+        if (std::min({extent.x, extent.y, extent.z}) > 0.0) {
+          EXPECT_TRUE(own.holds(part.min) && own.holds(part.max)) << "leaf " << leaf << " seed " << seed;
+        }
+      }
+      partial += octree.viewers[leaf] != ViewerBounds{} ? 1 : 0;
+      const bool is_merged = octree.reasons[leaf] == static_cast<std::uint8_t>(StopReason::kMerged);
+      merged += is_merged ? 1 : 0;
+      for (int i = 0; i < 50; ++i) {
+        Vec3d point = own.min;
+        for (int axis = 0; axis < 3; ++axis) {
+          point[axis] +=
+              (own.max[axis] - own.min[axis]) * std::uniform_real_distribution<double>(0.0, 1.0)(random);
+        }
+        bool asked = false;
+        for (OctreeCell at = cell; !asked && at.level <= settings.max_depth;
+             at = childAt(octree, at, point)) {
+          asked =
+              (!is_merged || at.level > cell.level) && askedAbout(octree, at, settings.viewers).holds(point);
+        }
+        EXPECT_TRUE(asked) << "leaf " << leaf << " seed " << seed;
+        outside_of_them += own.holds(point) ? 0 : 1;
+      }
+    });
+  }
+  EXPECT_EQ(outside_of_them, 0u);
+  EXPECT_GT(partial, 100u) << "the test would prove little";
+  EXPECT_GT(merged, 5u) << "the test would prove little";
+}
+
+TEST(ViewerBounds, LeaveOutNothingThatIsSeenFromAnywhereInThem) {
+  std::size_t hidden = 0, seen = 0;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    for (const bool fused : {false, true}) {
+      const Scene scene = roomsScene(seed);
+      const BakedVisibility result = baked(scene, settingsFor(seed, fused));
+      EXPECT_FALSE(result.octree.viewers.empty());
+      BakeJudge judge(scene, result);
+      judge.judge(2, fused ? 1 : 3, 0.05, seed);
+      hidden += judge.hidden;
+      seen += judge.seen;
+    }
+  }
+  EXPECT_GT(seen, 500u);
+  EXPECT_GT(hidden, seen) << "the test would prove little";
+}
+
+TEST(ViewerBounds, MakeSetsSmaller) {
+  const Scene scene = roomsScene(2);
+  for (const bool fused : {false, true}) {
+    BakeSettings settings = settingsFor(2, fused);
+    settings.max_depth = 3;
+    settings.triangle_budget = 0;
+    settings.merge_tolerance = 0.0;
+    const BakedVisibility parts = baked(scene, settings);
+    settings.whole_cells = true;
+    const BakedVisibility whole = baked(scene, settings);
+    EXPECT_TRUE(whole.octree.viewers.empty());
+    const std::vector<std::byte> part_bytes = pvs::encodeSight(parts)->joined(),
+                                 whole_bytes = pvs::encodeSight(whole)->joined();
+    SetQuery query(*SightFile::fromBytes(part_bytes, "parts")),
+        other(*SightFile::fromBytes(whole_bytes, "whole"));
+    const auto count = [](SetQuery& sets, const Vec3d& eye) {
+      std::uint32_t objects = 0;
+      for (const std::uint32_t node : sets.find(eye, 0.05).nodes) {
+        objects += sets.boxes().nodes[node].object_count;
+      }
+      return objects;
+    };
+    std::uint64_t kept = 0, kept_by_whole = 0;
+    std::mt19937 random(5);
+    for (const Box& box : settings.viewers) {
+      for (int i = 0; i < 50; ++i) {
+        Vec3d eye(box.min);
+        for (int axis = 0; axis < 3; ++axis) {
+          eye[axis] += std::uniform_real_distribution<double>(0.0, box.max[axis] - box.min[axis])(random);
+        }
+        kept += count(query, eye);
+        kept_by_whole += count(other, eye);
+      }
+    }
+    EXPECT_LT(kept, kept_by_whole) << fused;
+  }
+}
+
+TEST(ViewerBounds, AreAllOfEachCellWhereNoBoxesAreGiven) {
+  const Scene scene = roomsScene(3);
+  const BakedVisibility result = baked(scene, {.max_depth = 4});
+  EXPECT_TRUE(result.octree.viewers.empty());
+  // A box of viewers that is the root gives the same cells.
+  const BakedVisibility whole = baked(scene, {.max_depth = 3, .viewers = {{{0, 0, 0}, {16, 16, 16}}}});
+  EXPECT_TRUE(whole.octree.viewers.empty());
+}
+
+// Cells with hand-made sets: what they become when they are merged.
+class MergedViewers : public ::testing::Test {
+ protected:
+  const Scene scene_ = sceneOf({block({0, 0, 0}, {1, 1, 1}), block({3, 3, 3}, {4, 4, 4})});
+  const OccluderSet set_ = test::allOccluders(scene_);
+  const pvs::BakeScene bake_{
+      scene_.view(), set_, {.max_depth = 2, .viewers = {{{0, 0, 0}, {4, 4, 4}}}}, serialFor};
+  pvs::BakedCell cell_;
+
+  MergedViewers() {
+    for (int i = 0; i < 8; ++i) {
+      pvs::BakedCell child;
+      child.level = 1;
+      child.sets.whole = {{0, 1}};
+      cell_.children.push_back(child);
+    }
+  }
+  void setAll(const ViewerBounds& viewers) {
+    for (pvs::BakedCell& child : cell_.children) {
+      child.viewers = viewers;
+    }
+  }
+  void leaveOut(std::size_t child) {
+    cell_.children[child].reason = StopReason::kOutside;
+    cell_.children[child].sets.whole = {{0, 2}};
+  }
+};
+
+TEST_F(MergedViewers, AreThoseOfAllChildren) {
+  pvs::mergeChildren(bake_, cell_);
+  ASSERT_TRUE(cell_.leaf());
+  EXPECT_EQ(cell_.viewers, ViewerBounds{});
+}
+
+TEST_F(MergedViewers, DoNotJoinBoxesWithAGapBetween) {
+  setAll({{0, 0, 0}, {255, 127, 255}});
+  pvs::mergeChildren(bake_, cell_);
+  EXPECT_FALSE(cell_.leaf());
+}
+
+TEST_F(MergedViewers, AreABoxInTheLowerHalfWhereTheUpperHoldsNone) {
+  for (const std::size_t upper : {2u, 3u, 6u, 7u}) {
+    leaveOut(upper);
+  }
+  for (pvs::BakedCell& child : cell_.children) {
+    child.viewers = {{0, 64, 0}, {255, 127, 255}};
+  }
+  pvs::mergeChildren(bake_, cell_);
+  ASSERT_TRUE(cell_.leaf());
+  EXPECT_EQ(cell_.viewers, (ViewerBounds{{0, 32, 0}, {255, 63, 255}}));
+  EXPECT_EQ(cell_.sets.whole.back().end, 1u) << "what holds no viewers adds nothing";
+}
+
+TEST_F(MergedViewers, DoNotReachIntoACellThatHoldsNone) {
+  leaveOut(5);
+  pvs::mergeChildren(bake_, cell_);
+  EXPECT_FALSE(cell_.leaf());
+}
+
+TEST_F(MergedViewers, AreOfWholeStepsOfTheLargerCell) {
+  for (std::size_t upper = 4; upper < 8; ++upper) {
+    leaveOut(upper);
+  }
+  setAll({{0, 0, 0}, {255, 255, 126}});
+  pvs::mergeChildren(bake_, cell_);
+  EXPECT_FALSE(cell_.leaf());
+}
+
+TEST_F(MergedViewers, AreReadAsWritten) {
+  setAll({{1, 2, 3}, {4, 5, 6}});
+  base::ByteWriter writer;
+  pvs::write(cell_, writer);
+  const std::vector<std::byte> bytes = writer.take();
+  base::ByteReader reader(bytes);
+  const std::optional<pvs::BakedCell> read = pvs::readCell(reader, 0, 2);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->children[7].viewers, cell_.children[7].viewers);
+  // The first child: two bytes for what the cell and it are, one for its reason, then where its viewers are.
+  std::vector<std::byte> damaged = bytes;
+  damaged[3] = std::byte{5};
+  base::ByteReader of_damaged(damaged);
+  EXPECT_FALSE(pvs::readCell(of_damaged, 0, 2)) << "viewers that end before they begin";
+}
+
+}  // namespace
+}  // namespace sightline
