@@ -93,6 +93,8 @@ OpaqueParts::OpaqueParts(const SceneView& scene) : scene_(scene), first_of_objec
     first_of_object_.push_back(first_of_object_.back() + count);
   }
   parts_ = base::Parts(first_of_object_.back(), kOpaqueOfPart);
+  all_finite_ = std::all_of(scene.positions.begin(), scene.positions.end(),
+                            [](const Vec3f& position) { return isFinite(position); });
 }
 
 WeldedVertices weldVertices(const SceneView& scene, const OpaqueParts& triangles,
