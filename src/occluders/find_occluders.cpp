@@ -109,12 +109,17 @@ std::vector<std::uint32_t> partsOf(std::span<const Object> objects) {
 // Polygons of all objects, by object.
 struct AllPolygons {
   LargeVector<RankedPolygon> polygons;  // without ids
-  std::vector<std::uint32_t> body_of;   // by polygon: bodies of all objects, one after the other; kNoBody
+  LargeVector<std::uint32_t> body_of;   // by polygon: bodies of all objects, one after the other; kNoBody
   std::uint32_t body_count = 0;
 };
 
 AllPolygons listAll(std::span<PartResult> parts) {
   AllPolygons all;
+  const std::size_t count =
+      std::accumulate(parts.begin(), parts.end(), std::size_t{0},
+                      [](std::size_t sum, const PartResult& part) { return sum + part.polygons.size(); });
+  all.polygons.reserve(count);
+  all.body_of.reserve(count);
   std::uint32_t object = 0;
   for (PartResult& part : parts) {
     std::uint32_t first = 0;
