@@ -1,7 +1,6 @@
 #include "sightline/base/large_vector.h"
 
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <map>
 #include <mutex>
@@ -19,48 +18,43 @@ namespace {
 constexpr std::size_t kPage = std::size_t{2} << 20;
 constexpr std::size_t kLarge = 4 * kPage;  // below this, the last page would waste too much
 
-#ifdef __linux__
-
 std::size_t wholePages(std::size_t bytes) {
   return (bytes + kPage - 1) / kPage * kPage;
 }
 
-// bytes: whole pages.
-std::byte* fromSystem(std::size_t bytes) {
-  void* const mapped =
-      mmap(nullptr, bytes + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (mapped == MAP_FAILED) {
-    throw std::bad_alloc();
-  }
-  // What lies before the first boundary between pages and behind the last one goes back.
-  auto* const begin = static_cast<std::byte*>(mapped);
-  const std::size_t before = (kPage - reinterpret_cast<std::uintptr_t>(begin) % kPage) % kPage;
-  if (before > 0) {
-    munmap(begin, before);
-  }
-  munmap(begin + before + bytes, kPage - before);
-  madvise(begin + before, bytes, MADV_HUGEPAGE);  // a wish; what it returns changes nothing
-  return begin + before;
+std::byte* newBlock(std::size_t bytes) {
+  void* const block = ::operator new(bytes, std::align_val_t(kPage));
+#ifdef __linux__
+  madvise(block, bytes, MADV_HUGEPAGE);  // a wish; what it returns changes nothing
+#endif
+  return static_cast<std::byte*>(block);
 }
 
-// Free memory in whole pages, kept while somebody wants it to be.
-class KeptMemory {
+// Gives the pages of a free part of a block back to the system, which are zeros when they are used again.
+void forgetPages([[maybe_unused]] std::byte* begin, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+  madvise(begin, bytes, MADV_DONTNEED);
+#endif
+}
+
+// All large memory. Blocks come from operator new and are divided for what is needed next. A block of which
+// nothing is in use goes back, but not while somebody wants it to be kept. All sizes are of whole pages.
+class LargeMemory {
  public:
-  void begin() {
+  void keepMore() {
     const std::lock_guard lock(mutex_);
-    ++users_;
+    ++keeping_;
   }
-  void end() {
+  void keepLess() {
     const std::lock_guard lock(mutex_);
-    if (--users_ == 0) {
-      for (const auto& [begin, size] : free_) {
-        munmap(begin, size);
+    if (--keeping_ == 0) {
+      for (auto range = free_.begin(); range != free_.end();) {
+        range = letGo(range);
       }
-      free_.clear();
     }
   }
-  // The beginning of the smallest free range that is large enough; null if there is none.
-  std::byte* take(std::size_t bytes) {
+  // The smallest free range that is large enough serves, or else a new block.
+  std::byte* allocate(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     auto best = free_.end();
     for (auto range = free_.begin(); range != free_.end(); ++range) {
@@ -69,7 +63,9 @@ class KeptMemory {
       }
     }
     if (best == free_.end()) {
-      return nullptr;
+      std::byte* const block = newBlock(bytes);
+      blocks_.emplace(block, bytes);
+      return block;
     }
     const auto [begin, size] = *best;
     free_.erase(best);
@@ -78,86 +74,82 @@ class KeptMemory {
     }
     return begin;
   }
-  void give(std::byte* begin, std::size_t bytes) {
+  void free(std::byte* begin, std::size_t bytes) {
     const std::lock_guard lock(mutex_);
-    if (users_ == 0) {
-      munmap(begin, bytes);
-      return;
+    auto range = free_.emplace(begin, bytes).first;
+    if (const auto next = std::next(range); next != free_.end()) {
+      joinIfTheyTouch(range, next);
     }
-    const auto next = free_.lower_bound(begin);
-    if (next != free_.end() && begin + bytes == next->first) {
-      bytes += next->second;
-      free_.erase(next);
+    if (range != free_.begin()) {
+      const auto before = std::prev(range);
+      range = joinIfTheyTouch(before, range) ? before : range;
     }
-    const auto after = free_.lower_bound(begin);
-    if (after != free_.begin()) {
-      const auto before = std::prev(after);
-      if (before->first + before->second == begin) {
-        before->second += bytes;
-        return;
-      }
+    if (keeping_ == 0) {
+      letGo(range);
     }
-    free_.emplace(begin, bytes);
   }
 
  private:
+  using Ranges = std::map<std::byte*, std::size_t>;  // begin and size
+
+  // Makes the first of two ranges of one block hold the second one as well, if it begins where that ends.
+  bool joinIfTheyTouch(Ranges::iterator first, Ranges::iterator second) {
+    if (first->first + first->second != second->first || blocks_.count(second->first) > 0) {
+      return false;
+    }
+    first->second += second->second;
+    free_.erase(second);
+    return true;
+  }
+  // Gives back a block that is all free, or else the pages of the range. Returns the range after it.
+  Ranges::iterator letGo(Ranges::iterator range) {
+    const auto block = blocks_.find(range->first);
+    if (block == blocks_.end() || block->second != range->second) {
+      forgetPages(range->first, range->second);
+      return std::next(range);
+    }
+    ::operator delete(block->first, std::align_val_t(kPage));
+    blocks_.erase(block);
+    return free_.erase(range);
+  }
+
   std::mutex mutex_;
-  std::size_t users_ = 0;
-  std::map<std::byte*, std::size_t> free_;  // ranges, no two of which touch: begin and size
+  std::size_t keeping_ = 0;  // how many want free memory to be kept
+  Ranges blocks_;
+  Ranges free_;  // parts of blocks, no two of which touch in the same block
 };
 
-// It is never destroyed, because vectors that are may be destroyed later.
-KeptMemory& keptMemory() {
-  static KeptMemory& memory = *new KeptMemory;
+// It is never destroyed, because vectors may be destroyed after all else.
+LargeMemory& largeMemory() {
+  static LargeMemory& memory = *new LargeMemory;
   return memory;
 }
 
-#endif
-
 }  // namespace
-
-#ifdef __linux__
 
 void* allocateLarge(std::size_t bytes) {
   if (bytes < kLarge) {
     return ::operator new(bytes);
   }
-  if (bytes > static_cast<std::size_t>(PTRDIFF_MAX) - 2 * kPage) {
-    throw std::bad_alloc();
+  if (bytes > wholePages(bytes)) {
+    return ::operator new(bytes);  // which fails: there is no number for so many whole pages
   }
-  const std::size_t size = wholePages(bytes);
-  std::byte* const kept = keptMemory().take(size);
-  return kept != nullptr ? kept : fromSystem(size);
+  return largeMemory().allocate(wholePages(bytes));
 }
 
 void freeLarge(void* memory, std::size_t bytes) {
   if (bytes < kLarge) {
     ::operator delete(memory);
   } else {
-    keptMemory().give(static_cast<std::byte*>(memory), wholePages(bytes));
+    largeMemory().free(static_cast<std::byte*>(memory), wholePages(bytes));
   }
 }
 
 base::MemoryReuse::MemoryReuse() {
-  keptMemory().begin();
+  largeMemory().keepMore();
 }
 base::MemoryReuse::~MemoryReuse() {
-  keptMemory().end();
+  largeMemory().keepLess();
 }
-
-#else
-
-void* allocateLarge(std::size_t bytes) {
-  return ::operator new(bytes);
-}
-
-void freeLarge(void* memory, std::size_t) {
-  ::operator delete(memory);
-}
-
-base::MemoryReuse::MemoryReuse() = default;
-base::MemoryReuse::~MemoryReuse() = default;
-
-#endif
 
 }  // namespace sightline

@@ -317,6 +317,8 @@ void findChains(SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, co
       of_part[part] = {store.keep(made.chains), store.keep(made.uses), store.keep(made.vertices)};
     }
   });
+  by_cluster = {};
+  boundary = {};
   putTogether(of_part, parallel_for, set);
   listByCluster(parallel_for, set);
 }

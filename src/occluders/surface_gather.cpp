@@ -269,8 +269,8 @@ std::vector<std::uint32_t> chunksOf(std::span<const std::uint32_t> first_of_part
 
 Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const SurfaceSettings& settings,
                          const ParallelFor& parallel_for, SurfaceSet& set) {
-  const LargeVector<Vec3d> normals = unitNormals(mesh, parallel_for);
-  const PartTriangles parts = gatherParts(scene, mesh, normals, clamped(settings.part_triangles));
+  LargeVector<Vec3d> normals = unitNormals(mesh, parallel_for);
+  PartTriangles parts = gatherParts(scene, mesh, normals, clamped(settings.part_triangles));
   const std::vector<std::uint32_t> first_part = chunksOf(parts.first);
   Gathered gathered;
   gathered.part_of = base::unsetVector<std::uint32_t>(mesh.triangleCount());
@@ -300,6 +300,10 @@ Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const 
                    store.keep(chunk.cluster_bounds)};
     }
   });
+
+  // Their memory is of use to what follows.
+  normals = {};
+  parts.place_of = {};
 
   std::vector<std::uint32_t> first_patch(1, 0), first_cluster(1, 0);
   for (const KeptChunk& chunk : chunks) {
