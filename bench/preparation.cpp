@@ -18,6 +18,7 @@
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
 #include "sightline/scene/object_boxes.h"
+#include "src/hierarchy/wide_hierarchy.h"
 
 namespace {
 
@@ -65,17 +66,20 @@ void measure(const std::string& name) {
   const Time surfaces = timeOf([&](const ParallelFor& threads) { findSurfaces(scene, {}, threads); });
   const Time boxes = timeOf([&](const ParallelFor& threads) { findObjectBoxes(scene, {}, threads); });
   const auto hierarchyOf = [&](HierarchyKind kind) {
-    return timeOf([&](const ParallelFor&) {
-      HierarchySettings settings;
-      settings.kind = kind;
-      buildHierarchy(loaded.bounds, loaded.cost, settings);
-    });
+    HierarchySettings settings;
+    settings.kind = kind;
+    return buildHierarchy(loaded.bounds, loaded.cost, settings);
   };
-  const Time bvh = hierarchyOf(HierarchyKind::kBvh), kd = hierarchyOf(HierarchyKind::kKdTree);
-  fmt::print("{:<34} {:>8} {:>9} | {} | {} | {} | {:7.2f} | {:7.2f} | {:7.2f}\n",
+  const auto timeOfKind = [&](HierarchyKind kind) {
+    return timeOf([&](const ParallelFor&) { hierarchyOf(kind); });
+  };
+  const Time bvh = timeOfKind(HierarchyKind::kBvh), kd = timeOfKind(HierarchyKind::kKdTree);
+  const Hierarchy binary = hierarchyOf(HierarchyKind::kBvh);
+  const Time wide = timeOf([&](const ParallelFor&) { hierarchy::collapse(binary, loaded.bounds); });
+  fmt::print("{:<34} {:>8} {:>9} | {} | {} | {} | {:7.2f} | {:7.2f} | {:7.2f} | {:7.2f}\n",
              name.substr(name.rfind('/') + 1), scene.objects.size(), scene.indices.size() / 3,
-             textOf(occluders), textOf(surfaces), textOf(boxes), bvh.all_s, kd.all_s,
-             occluders.all_s + surfaces.all_s + boxes.all_s + bvh.all_s + kd.all_s);
+             textOf(occluders), textOf(surfaces), textOf(boxes), bvh.all_s, wide.all_s, kd.all_s,
+             occluders.all_s + surfaces.all_s + boxes.all_s + bvh.all_s + wide.all_s + kd.all_s);
   std::fflush(stdout);
 }
 
@@ -91,9 +95,9 @@ int main(int argc, char** argv) {
       scenes.push_back(fmt::format("demo:terrain?triangles={}", count));
     }
   }
-  fmt::print("{:<34} {:>8} {:>9} | {:>13} | {:>13} | {:>13} | {:>7} | {:>7} | {:>7}\n",
+  fmt::print("{:<34} {:>8} {:>9} | {:>13} | {:>13} | {:>13} | {:>7} | {:>7} | {:>7} | {:>7}\n",
              "seconds, and share alone", "objects", "triangles", "occluders", "surfaces", "object boxes",
-             "bvh", "kd-tree", "all");
+             "bvh", "wide", "kd-tree", "all");
   for (const std::string& scene : scenes) {
     measure(scene);
   }

@@ -147,7 +147,7 @@ Result<Scene> makeDemoGlass(std::string_view query) {
 
 Result<Scene> makeDemoTerrain(std::string_view query) {
   TerrainOptions options;
-  Key keys[] = {{"triangles", 10000, 1000000, &options.triangles}, {"seed", 0, kAnySeed, &options.seed}};
+  Key keys[] = {{"triangles", 10000, 10000000, &options.triangles}, {"seed", 0, kAnySeed, &options.seed}};
   const Status status = readQuery(query, "terrain", keys);
   return status ? Result<Scene>(makeTerrain(options)) : status.error();
 }

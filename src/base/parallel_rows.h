@@ -59,8 +59,8 @@ void groupIntoRows(const ParallelFor& parallel_for, std::size_t rows, std::size_
     });
   });
 
-  first.resize(rows + 1);
-  items.resize(pairs.size());
+  first = unsetVector<std::uint32_t>(rows + 1);
+  items = unsetVector<Item>(pairs.size());
   forEach(parallel_for, buckets, [&](std::uint32_t bucket) {
     const std::size_t row = std::size_t{bucket} << shift;
     const std::size_t end_row = std::min(rows, (std::size_t{bucket} + 1) << shift);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -35,5 +37,12 @@ class ScratchArray {
   std::size_t size_;
   T* data_;
 };
+
+// A vector whose items have no value before the first assignment either: to be filled whole, at once.
+template <typename T>
+LargeVector<T> unsetVector(std::size_t size) {
+  const auto memory = std::make_shared<ScratchArray<T>>(size);
+  return vectorOver<T>({std::as_bytes(std::span(memory->begin(), size)), memory});
+}
 
 }  // namespace sightline::base

@@ -1,5 +1,7 @@
 #include "src/occluders/assemble_set.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -26,42 +28,58 @@ bool hasNoSharpCorner(std::span<const Vec3f> corners) {
   return true;
 }
 
+void writeOccluder(const RankedPolygon& ranked, std::uint32_t first_vertex, std::span<const Vec3f> corners,
+                   Occluder& occluder) {
+  const FoundPolygon& polygon = *ranked.polygon;
+  occluder.first_vertex = first_vertex;
+  occluder.vertex_count = static_cast<std::uint16_t>(corners.size());
+  occluder.double_sided = polygon.double_sided;
+  occluder.watertight_edges = hasNoSharpCorner(corners);
+  occluder.object = ranked.object;
+  occluder.area = static_cast<float>(polygon.area);
+  occluder.slack = static_cast<float>(polygon.slack * 1.001);
+  occluder.plane = polygon.plane;
+  occluder.centroid = Vec3f(polygon.centroid);
+}
+
 // Writes the occluders with their corners. Returns the first vertices by place.
 LargeVector<std::uint32_t> writeOccluders(std::span<const Vec3f> positions,
                                           std::span<const RankedPolygon> polygons,
                                           const ParallelFor& parallel_for, OccluderSet& set) {
-  LargeVector<std::uint32_t> first_vertex(polygons.size());  // by id
-  LargeVector<double> areas(polygons.size());                // by id
+  // Neighbouring polygons are written far apart, so the memory of a later one is asked for while one is made.
+  constexpr std::uint32_t kAhead = 8;
+  struct Size {
+    double area;
+    std::uint32_t vertices;  // then the first one
+  };
+  LargeVector<Size> sizes = base::unsetVector<Size>(polygons.size());  // by id
   base::forEach(parallel_for, polygons.size(), [&](std::uint32_t i) {
-    const auto [polygon, object, id] = polygons[i];
-    first_vertex[id.value] = static_cast<std::uint32_t>(polygon->corners.size());
-    areas[id.value] = polygon->area;
+    const FoundPolygon& polygon = *polygons[i].polygon;
+    sizes[polygons[i].id.value] = {polygon.area, static_cast<std::uint32_t>(polygon.corners.size())};
   });
-  std::uint32_t size = 0;
-  for (std::size_t id = 0; id < polygons.size(); ++id) {
-    size += std::exchange(first_vertex[id], size);
-    set.area += areas[id];
+  std::uint32_t vertices = 0;
+  for (Size& size : sizes) {
+    vertices += std::exchange(size.vertices, vertices);
+    set.area += size.area;
   }
+  LargeVector<std::uint32_t> by_place = base::unsetVector<std::uint32_t>(polygons.size());
+  base::forEach(parallel_for, polygons.size(),
+                [&](std::uint32_t i) { by_place[i] = sizes[polygons[i].id.value].vertices; });
   set.occluders.resize(polygons.size());
-  set.vertices.resize(size);
-  LargeVector<std::uint32_t> by_place(polygons.size());
-  base::forEach(parallel_for, polygons.size(), [&](std::uint32_t i) {
-    const auto [polygon, object, id] = polygons[i];
-    by_place[i] = first_vertex[id.value];
-    const std::span<Vec3f> corners = std::span(set.vertices).subspan(by_place[i], polygon->corners.size());
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      corners[k] = positions[polygon->loop[polygon->corners[k]]];
+  set.vertices = base::unsetVector<Vec3f>(vertices);
+  parallel_for(static_cast<std::uint32_t>(polygons.size()), [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (i + kAhead < end) {
+        hwy::Prefetch(&set.occluders[polygons[i + kAhead].id.value]);
+        hwy::Prefetch(set.vertices.data() + by_place[i + kAhead]);
+      }
+      const FoundPolygon& polygon = *polygons[i].polygon;
+      const std::span<Vec3f> corners = std::span(set.vertices).subspan(by_place[i], polygon.corners.size());
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        corners[k] = positions[polygon.loop[polygon.corners[k]]];
+      }
+      writeOccluder(polygons[i], by_place[i], corners, set.occluders[polygons[i].id.value]);
     }
-    Occluder& occluder = set.occluders[id.value];
-    occluder.first_vertex = by_place[i];
-    occluder.vertex_count = static_cast<std::uint16_t>(corners.size());
-    occluder.double_sided = polygon->double_sided;
-    occluder.watertight_edges = hasNoSharpCorner(corners);
-    occluder.object = object;
-    occluder.area = static_cast<float>(polygon->area);
-    occluder.slack = static_cast<float>(polygon->slack * 1.001);
-    occluder.plane = polygon->plane;
-    occluder.centroid = Vec3f(polygon->centroid);
   });
   return by_place;
 }

@@ -45,7 +45,8 @@ class BodyMaker {
 
   // faces: polygons of the set, ascending by id.
   void add(std::span<const RankedPolygon* const> faces) {
-    OccluderBody body;
+    // Items are made in the lists, where the bytes between their members are zeros, as they will be in files.
+    OccluderBody& body = lists_.bodies.emplace_back();
     body.first_vertex = static_cast<std::uint32_t>(lists_.vertices.size());
     body.first_edge = static_cast<std::uint32_t>(lists_.edges.size());
     body.first_face = static_cast<std::uint32_t>(lists_.faces.size());
@@ -59,12 +60,14 @@ class BodyMaker {
       for (const std::uint32_t corner : polygon.corners) {
         numberOf(polygon.loop[corner], body.bounds);
       }
-      lists_.faces.push_back({polygon.plane, face->id, numberOf(cornerOf(polygon, 0), body.bounds)});
+      BodyFace& body_face = lists_.faces.emplace_back();
+      body_face.plane = polygon.plane;
+      body_face.occluder = face->id;
+      body_face.vertex = numberOf(cornerOf(polygon, 0), body.bounds);
     }
     addThickness(body);
     addEdges(body);
     body.vertex_count = static_cast<std::uint8_t>(vertices_.size());
-    lists_.bodies.push_back(body);
   }
 
  private:
@@ -139,14 +142,14 @@ void append(const BodyLists& part, OccluderSet& set) {
   const auto first_vertex = static_cast<std::uint32_t>(set.body_vertices.size());
   const auto first_edge = static_cast<std::uint32_t>(set.body_edges.size());
   const auto first_face = static_cast<std::uint32_t>(set.body_faces.size());
-  for (OccluderBody body : part.bodies) {
+  for (const OccluderBody& of_part : part.bodies) {
+    OccluderBody& body = set.bodies.emplace_back(of_part);
     for (std::uint32_t face = body.first_face; face < body.first_face + body.face_count; ++face) {
-      set.body_of[part.faces[face].occluder.value] = static_cast<std::uint32_t>(set.bodies.size());
+      set.body_of[part.faces[face].occluder.value] = static_cast<std::uint32_t>(set.bodies.size() - 1);
     }
     body.first_vertex += first_vertex;
     body.first_edge += first_edge;
     body.first_face += first_face;
-    set.bodies.push_back(body);
   }
   set.body_vertices.insert(set.body_vertices.end(), part.vertices.begin(), part.vertices.end());
   set.body_edges.insert(set.body_edges.end(), part.edges.begin(), part.edges.end());
@@ -186,7 +189,7 @@ void ChainMates::find(std::span<const FoundPolygon* const> polygons) {
 }
 
 // Whether the faces bound a convex solid that has some thickness below each of them.
-bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double tolerance) const {
+bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double tolerance) {
   std::size_t edges = 0;
   for (const FoundPolygon* face : faces) {
     edges += face->corners.size();
@@ -197,16 +200,25 @@ bool BodyFinder::isBody(std::span<const FoundPolygon* const> faces, double toler
       edges + 2 - faces.size() > kMaxBodyVertices) {
     return false;
   }
+  vertices_.clear();
+  corners_.clear();
+  for (const FoundPolygon* face : faces) {
+    for (std::size_t corner = 0; corner < face->corners.size(); ++corner) {
+      const std::uint32_t vertex = cornerOf(*face, corner);
+      if (std::find(vertices_.begin(), vertices_.end(), vertex) == vertices_.end()) {
+        vertices_.push_back(vertex);
+        corners_.emplace_back(positions_[vertex]);
+      }
+    }
+  }
   for (const FoundPolygon* face : faces) {
     double lowest = 0.0;
-    for (const FoundPolygon* other : faces) {
-      for (std::size_t corner = 0; corner < other->corners.size(); ++corner) {
-        const double height = face->plane.evaluate(Vec3d(positions_[cornerOf(*other, corner)]));
-        if (height > tolerance) {
-          return false;
-        }
-        lowest = std::min(lowest, height);
+    for (const Vec3d& corner : corners_) {
+      const double height = face->plane.evaluate(corner);
+      if (height > tolerance) {
+        return false;
       }
+      lowest = std::min(lowest, height);
     }
     if (!(lowest < -4.0 * tolerance)) {
       return false;  // flat: a sheet may have a notch

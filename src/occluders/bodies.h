@@ -49,7 +49,7 @@ class BodyFinder {
   void find(std::span<FoundPolygon* const> polygons, double tolerance);
 
  private:
-  bool isBody(std::span<const FoundPolygon* const> faces, double tolerance) const;
+  bool isBody(std::span<const FoundPolygon* const> faces, double tolerance);
 
   std::span<const Vec3f> positions_;
   ChainMates mates_;
@@ -57,6 +57,8 @@ class BodyFinder {
   std::vector<std::uint8_t> closed_;  // by component
   base::Rows<std::uint32_t> by_component_;
   std::vector<const FoundPolygon*> read_, faces_;
+  std::vector<std::uint32_t> vertices_;  // of the body that isBody() looks at
+  std::vector<Vec3d> corners_;           // these vertices
 };
 
 // Fills the bodies of a set whose occluders are these polygons. Bodies of which a polygon is missing are left

@@ -41,6 +41,35 @@ Box grown(const Vec3d& low, const Vec3d& high, double by) {
   return box;
 }
 
+// What is close to a line. Source: the separating axes of a segment and a box (Gottschalk, Lin, Manocha.
+// OBBTree: a hierarchical structure for rapid interference detection. SIGGRAPH 1996), of which those that are
+// normal to the line and to an edge of the box.
+class Line {
+ public:
+  Line(const Vec3d& at, const Vec3d& to, double width) : at_(at), along_(to - at), width_(width) {}
+
+  // False only if all of the box is farther from the line than the width.
+  bool mayMeet(const Box& box) const {
+    // Rounding is by much less than this part of what is added up.
+    constexpr double kMargin = 1e-12;
+    const Vec3d low(box.min), high(box.max);
+    const Vec3d from = at_ - (low + high) * 0.5, half = (high - low) * 0.5 + Vec3d(width_, width_, width_);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int i = (axis + 1) % 3, k = (axis + 2) % 3;
+      const double p = from[i] * along_[k], q = from[k] * along_[i];
+      const double reach = half[i] * std::abs(along_[k]) + half[k] * std::abs(along_[i]);
+      if (std::abs(p - q) > reach + kMargin * (std::abs(p) + std::abs(q) + reach)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  Vec3d at_, along_;
+  double width_;
+};
+
 class Closing {
  public:
   Closing(const ConformInput& input, double width, const ParallelFor& parallel_for)
@@ -322,18 +351,20 @@ class Closing {
         const double reach = std::max(maxComponent(abs(at(edge.low))), maxComponent(abs(at(edge.high))));
         double farthest = 0.0;
         found.clear();
-        boxes.forMeeting(grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_),
-                         [&](std::uint32_t place) {
-                           const std::uint32_t v = vertices_[place];
-                           if (v == edge.low || v == edge.high || found.size() > kMostBends) {
-                             return;
-                           }
-                           if (const Place at_edge = place_of(edge, v); at_edge.leads) {
-                             found.push_back({at_edge.along, v});
-                             farthest =
-                                 std::max(farthest, width_ > 0.0 ? at_edge.distance + kRounded * reach : 0.0);
-                           }
-                         });
+        const Line line(at(edge.low), at(edge.high), width_);
+        boxes.forMeeting(
+            grown(min(at(edge.low), at(edge.high)), max(at(edge.low), at(edge.high)), width_),
+            [&line](const Box& box) { return line.mayMeet(box); },
+            [&](std::uint32_t place) {
+              const std::uint32_t v = vertices_[place];
+              if (v == edge.low || v == edge.high || found.size() > kMostBends) {
+                return;
+              }
+              if (const Place at_edge = place_of(edge, v); at_edge.leads) {
+                found.push_back({at_edge.along, v});
+                farthest = std::max(farthest, width_ > 0.0 ? at_edge.distance + kRounded * reach : 0.0);
+              }
+            });
         if (found.size() <= kMostBends) {
           bending[part] = std::max(bending[part], farthest);
           for (const Beside& beside : found) {

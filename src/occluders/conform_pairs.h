@@ -26,7 +26,13 @@ class BoxPairs {
   void forPairs(std::uint32_t part, Use&& use) const;
   // Calls use(a) for each box that touches the given one, with its number.
   template <typename Use>
-  void forMeeting(const Box& box, Use&& use) const;
+  void forMeeting(const Box& box, Use&& use) const {
+    forMeeting(
+        box, [](const Box&) { return true; }, use);
+  }
+  // The same, but not for boxes that may_meet(box) is false for, or is false for a larger box around them.
+  template <typename MayMeet, typename Use>
+  void forMeeting(const Box& box, MayMeet&& may_meet, Use&& use) const;
 
  private:
   static constexpr std::uint32_t kWidth = 4, kLeavesOfPart = 256;
@@ -91,8 +97,8 @@ void BoxPairs::forPairs(std::uint32_t part, Use&& use) const {
   }
 }
 
-template <typename Use>
-void BoxPairs::forMeeting(const Box& box, Use&& use) const {
+template <typename MayMeet, typename Use>
+void BoxPairs::forMeeting(const Box& box, MayMeet&& may_meet, Use&& use) const {
   struct Entry {
     std::uint32_t level, node;  // level 0: leaves
   };
@@ -108,7 +114,7 @@ void BoxPairs::forMeeting(const Box& box, Use&& use) const {
     const auto end =
         static_cast<std::uint32_t>(std::min<std::size_t>(below.size(), (at.node + 1) * std::size_t{kWidth}));
     for (std::uint32_t i = at.node * kWidth; i < end; ++i) {
-      if (meet(box, below[i])) {
+      if (meet(box, below[i]) && may_meet(below[i])) {
         if (at.level == 0) {
           use(numbers_[i]);
         } else {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/base/rows.h"
+#include "src/base/scratch_array.h"
 #include "src/base/sort_keys.h"
 #include "src/occluders/close_cracks.h"
 #include "src/occluders/occluder_limits.h"
@@ -20,13 +21,21 @@ std::uint32_t nextIn(std::span<const std::uint32_t> loop, std::size_t at) {
 // The mesh edges of outlines that run one way more often than the other, ascending. Bodies, the edges of
 // which cancel each other, are left out.
 std::vector<MeshEdge> openEdges(std::span<const RankedPolygon> polygons, const ParallelFor& parallel_for) {
-  LargeVector<base::SortKey>
-      halves;  // of edges, and whether they run from the lower vertex to the higher one
+  const auto isOpen = [](const RankedPolygon& ranked) {
+    return ranked.polygon->body == FoundPolygon::kNoBody;
+  };
+  std::size_t count = 0;
+  for (const RankedPolygon& ranked : polygons) {
+    count += isOpen(ranked) ? ranked.polygon->loop.size() : 0;
+  }
+  // Halves of edges, and whether they run from the lower vertex to the higher one.
+  LargeVector<base::SortKey> halves = base::unsetVector<base::SortKey>(count);
+  std::size_t next = 0;
   for (const RankedPolygon& ranked : polygons) {
     const std::span<const std::uint32_t> loop = ranked.polygon->loop;
-    for (std::size_t i = 0; i < loop.size() && ranked.polygon->body == FoundPolygon::kNoBody; ++i) {
+    for (std::size_t i = 0; i < loop.size() && isOpen(ranked); ++i) {
       const MeshEdge edge = meshEdge(loop[i], nextIn(loop, i));
-      halves.push_back({std::uint64_t{edge.low} << 32 | edge.high, loop[i] == edge.low ? 1u : 0u});
+      halves[next++] = {std::uint64_t{edge.low} << 32 | edge.high, loop[i] == edge.low ? 1u : 0u};
     }
   }
   base::KeySorter().sort(halves, parallel_for);

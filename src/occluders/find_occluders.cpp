@@ -1,3 +1,5 @@
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,6 +8,7 @@
 
 #include "sightline/base/large_vector.h"
 #include "sightline/occluders/occluder_set.h"
+#include "src/base/memory_reuse.h"
 #include "src/base/parts.h"
 #include "src/base/sort_keys.h"
 #include "src/occluders/assemble_set.h"
@@ -106,12 +109,17 @@ std::vector<std::uint32_t> partsOf(std::span<const Object> objects) {
 // Polygons of all objects, by object.
 struct AllPolygons {
   LargeVector<RankedPolygon> polygons;  // without ids
-  std::vector<std::uint32_t> body_of;   // by polygon: bodies of all objects, one after the other; kNoBody
+  LargeVector<std::uint32_t> body_of;   // by polygon: bodies of all objects, one after the other; kNoBody
   std::uint32_t body_count = 0;
 };
 
 AllPolygons listAll(std::span<PartResult> parts) {
   AllPolygons all;
+  const std::size_t count =
+      std::accumulate(parts.begin(), parts.end(), std::size_t{0},
+                      [](std::size_t sum, const PartResult& part) { return sum + part.polygons.size(); });
+  all.polygons.reserve(count);
+  all.body_of.reserve(count);
   std::uint32_t object = 0;
   for (PartResult& part : parts) {
     std::uint32_t first = 0;
@@ -146,7 +154,14 @@ void rank(const SceneView& scene, const OccluderSettings& settings, const Parall
   double area_before = 0.0;
   std::uint32_t next = 0;
   std::vector<bool> body_is_kept(all.body_count);
-  for (const base::SortKey& key : by_area) {
+  for (std::size_t rank = 0; rank < by_area.size(); ++rank) {
+    // What is next by area lies anywhere in memory, so it is asked for early.
+    constexpr std::size_t kAhead = 16;
+    if (rank + kAhead < by_area.size()) {
+      hwy::Prefetch(&all.polygons[by_area[rank + kAhead].second]);
+      hwy::Prefetch(&all.body_of[by_area[rank + kAhead].second]);
+    }
+    const base::SortKey& key = by_area[rank];
     const double area = base::valueOf(key.first);
     RankedPolygon& polygon = all.polygons[key.second];
     const std::uint32_t body = all.body_of[key.second];
@@ -176,6 +191,7 @@ std::uint32_t clampedVertices(std::uint32_t max_vertices) {
 
 OccluderSet findOccluders(const SceneView& scene, const OccluderSettings& settings,
                           const ParallelFor& parallel_for) {
+  const base::MemoryReuse reuse;
   const std::uint32_t max_vertices = clampedVertices(settings.max_vertices);
   const std::vector<std::uint32_t> first_of_part = partsOf(scene.objects);
   std::vector<PartResult> parts(first_of_part.size() - 1);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
+#include "src/base/memory_reuse.h"
 #include "src/base/parallel_rows.h"
 #include "src/occluders/surface_chains.h"
 #include "src/occluders/surface_gather.h"
@@ -149,15 +150,18 @@ void listByObject(const occluders::SurfaceMesh& mesh, std::span<const std::uint3
 
 SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
                         const ParallelFor& parallel_for) {
+  const base::MemoryReuse reuse;
   SurfaceSet set;
   occluders::SurfaceMesh mesh = occluders::weld(scene, parallel_for);
   if (settings.join_edges) {
     occluders::divideEdges(mesh, parallel_for);
   }
-  const occluders::Gathered gathered = occluders::gatherTriangles(scene, mesh, settings, parallel_for, set);
+  occluders::Gathered gathered = occluders::gatherTriangles(scene, mesh, settings, parallel_for, set);
   mesh.forgetGiven();
   listByObject(mesh, gathered.part_of, scene.objects.size(), parallel_for, set);
+  gathered.part_of = {};
   occluders::findChains(mesh, gathered.cluster_of, parallel_for, set);
+  gathered.cluster_of = {};
   set.vertices = std::move(mesh.vertices);
   LargeVector<std::uint32_t> part_of(set.clusters.size()), patch_of(set.clusters.size());
   base::forEach(parallel_for, set.parts.size(), [&](std::uint32_t part) {

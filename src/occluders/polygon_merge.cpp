@@ -172,16 +172,18 @@ bool PolygonMerger::join(std::uint32_t p, std::uint32_t q, std::size_t i, Growin
   const GrowingPolygon& a = polygons_[p];
   const GrowingPolygon& b = polygons_[q];
   const std::size_t n = a.loop.size(), m = b.loop.size();
+  // A place on a loop, which may be past its end by less than all of it.
+  const auto wrapped = [](std::size_t at, std::size_t size) { return at < size ? at : at - size; };
   std::size_t first = i;  // the chain of common edges in a: [first, last]
   std::size_t count = 1;
-  while (count < n && beyond(p, (first + n - 1) % n) == q) {
-    first = (first + n - 1) % n;
+  while (count < n && beyond(p, wrapped(first + n - 1, n)) == q) {
+    first = wrapped(first + n - 1, n);
     ++count;
   }
-  while (count < n && beyond(p, (first + count) % n) == q) {
+  while (count < n && beyond(p, wrapped(first + count, n)) == q) {
     ++count;
   }
-  const std::uint32_t chain_start = a.loop[first], chain_end = a.loop[(first + count) % n];
+  const std::uint32_t chain_start = a.loop[first], chain_end = a.loop[wrapped(first + count, n)];
   const auto positionIn = [](const GrowingPolygon& polygon, std::uint32_t vertex) {
     const auto found = std::find(polygon.loop.begin(), polygon.loop.end(), vertex);
     return static_cast<std::size_t>(found - polygon.loop.begin());
@@ -189,8 +191,9 @@ bool PolygonMerger::join(std::uint32_t p, std::uint32_t q, std::size_t i, Growin
   const std::size_t start_b = positionIn(b, chain_start), end_b = positionIn(b, chain_end);
   // Most candidates turn the wrong way where the two boundaries meet: known before anything is built.
   if (start_b == m || end_b == m ||
-      turnsRight(a.loop[(first + n - 1) % n], chain_start, b.loop[(start_b + 1) % m]) ||
-      turnsRight(b.loop[(end_b + m - 1) % m], chain_end, a.loop[(first + count + 1) % n])) {
+      turnsRight(a.loop[wrapped(first + n - 1, n)], chain_start, b.loop[wrapped(start_b + 1, m)]) ||
+      turnsRight(b.loop[wrapped(end_b + m - 1, m)], chain_end,
+                 a.loop[wrapped(wrapped(first + count, n) + 1, n)])) {
     return false;
   }
   const std::uint32_t shorter = n < m ? p : q, longer = n < m ? q : p;
@@ -203,11 +206,11 @@ bool PolygonMerger::join(std::uint32_t p, std::uint32_t q, std::size_t i, Growin
   }
   result.loop.clear();
   for (std::size_t k = 0; k < n - count; ++k) {
-    result.loop.push_back(a.loop[(first + count + k) % n]);
+    result.loop.push_back(a.loop[wrapped(wrapped(first + count, n) + k, n)]);
   }
   // a's part ends just before chain_start; b's part runs from chain_start to the chain's end.
   for (std::size_t k = 0; k < m - count; ++k) {
-    result.loop.push_back(b.loop[(start_b + k) % m]);
+    result.loop.push_back(b.loop[wrapped(start_b + k, m)]);
   }
   result.slack = std::max(a.slack, b.slack);
   result.triangle_count = a.triangle_count + b.triangle_count;

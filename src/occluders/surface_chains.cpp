@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/base/parallel_rows.h"
+#include "src/base/part_store.h"
 #include "src/geometry/exact_point.h"
 #include "src/geometry/whole.h"
 
@@ -22,16 +23,26 @@ struct BoundaryEdge {
   std::uint32_t first_use, use_count;
 };
 
-// Boundary edges with their uses, ascending by cluster; those of a part of the mesh, or all.
+// Boundary edges with their uses, ascending by cluster.
 struct BoundaryEdges {
   LargeVector<BoundaryEdge> edges;
   LargeVector<ChainUse> uses;
 };
 
+// Those of a part of the mesh. Their uses count from the first one here.
+struct FoundEdges {
+  std::vector<BoundaryEdge> edges;
+  std::vector<ChainUse> uses;
+};
+struct KeptEdges {
+  std::span<BoundaryEdge> edges;
+  std::span<const ChainUse> uses;
+};
+
 // Sums up, edge by edge, how the triangles of each cluster run.
 class EdgeCollector {
  public:
-  EdgeCollector(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, BoundaryEdges& found)
+  EdgeCollector(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, FoundEdges& found)
       : mesh_(mesh), cluster_of_(cluster_of), found_(found) {}
 
   void add(std::span<const Side> sides) {
@@ -67,35 +78,40 @@ class EdgeCollector {
  private:
   const SurfaceMesh& mesh_;
   std::span<const std::uint32_t> cluster_of_;
-  BoundaryEdges& found_;
+  FoundEdges& found_;
   std::vector<ChainUse> sums_;
 };
 
 BoundaryEdges collectEdges(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
                            const ParallelFor& parallel_for) {
   const base::Parts parts(mesh.sides.count(), kEdgesOfPart);
-  std::vector<BoundaryEdges> of_part(parts.count());
-  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
-    EdgeCollector collector(mesh, cluster_of, of_part[part]);
-    for (std::size_t edge = begin; edge < end; ++edge) {
-      collector.add(mesh.sides[edge]);
+  base::PartStore store;
+  std::vector<KeptEdges> of_part(parts.count());
+  parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
+    FoundEdges found;
+    EdgeCollector collector(mesh, cluster_of, found);
+    for (std::uint32_t part = first; part < last; ++part) {
+      found.edges.clear();
+      found.uses.clear();
+      for (std::size_t edge = parts.begin(part); edge < parts.end(part); ++edge) {
+        collector.add(mesh.sides[edge]);
+      }
+      of_part[part] = {store.keep(found.edges), store.keep(found.uses)};
     }
   });
   std::vector<std::uint32_t> first_edge(1, 0), first_use(1, 0);
-  for (const BoundaryEdges& part : of_part) {
+  for (const KeptEdges& part : of_part) {
     first_edge.push_back(first_edge.back() + static_cast<std::uint32_t>(part.edges.size()));
     first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.size()));
   }
-  BoundaryEdges all;
-  all.edges.resize(first_edge.back());
-  all.uses.resize(first_use.back());
+  BoundaryEdges all{base::unsetVector<BoundaryEdge>(first_edge.back()),
+                    base::unsetVector<ChainUse>(first_use.back())};
   base::forEach(parallel_for, of_part.size(), [&](std::uint32_t part) {
     for (BoundaryEdge& edge : of_part[part].edges) {
       edge.first_use += first_use[part];
     }
     std::copy(of_part[part].edges.begin(), of_part[part].edges.end(), all.edges.begin() + first_edge[part]);
     std::copy(of_part[part].uses.begin(), of_part[part].uses.end(), all.uses.begin() + first_use[part]);
-    of_part[part] = {};
   });
   return all;
 }
@@ -105,6 +121,17 @@ struct Chains {
   std::vector<SurfaceChain> chains;
   std::vector<ChainUse> uses;
   std::vector<Vec3f> vertices;
+
+  void clear() {
+    chains.clear();
+    uses.clear();
+    vertices.clear();
+  }
+};
+struct KeptChains {
+  std::span<SurfaceChain> chains;
+  std::span<const ChainUse> uses;
+  std::span<const Vec3f> vertices;
 };
 
 // Whether p lies exactly on the edge from a to b, between its ends.
@@ -222,19 +249,19 @@ class ChainMaker {
 };
 
 // Puts the chains of all parts one after the other.
-void putTogether(std::span<Chains> parts, const ParallelFor& parallel_for, SurfaceSet& set) {
+void putTogether(std::span<const KeptChains> parts, const ParallelFor& parallel_for, SurfaceSet& set) {
   std::vector<std::size_t> first_chain(1, 0);
   std::vector<std::uint32_t> first_use(1, 0), first_vertex(1, 0);
-  for (const Chains& part : parts) {
+  for (const KeptChains& part : parts) {
     first_chain.push_back(first_chain.back() + part.chains.size());
     first_use.push_back(first_use.back() + static_cast<std::uint32_t>(part.uses.size()));
     first_vertex.push_back(first_vertex.back() + static_cast<std::uint32_t>(part.vertices.size()));
   }
-  set.chains.resize(first_chain.back());
-  set.uses.resize(first_use.back());
-  set.chain_vertices.resize(first_vertex.back());
+  set.chains = base::unsetVector<SurfaceChain>(first_chain.back());
+  set.uses = base::unsetVector<ChainUse>(first_use.back());
+  set.chain_vertices = base::unsetVector<Vec3f>(first_vertex.back());
   base::forEach(parallel_for, parts.size(), [&](std::uint32_t number) {
-    Chains& part = parts[number];
+    const KeptChains& part = parts[number];
     for (SurfaceChain& chain : part.chains) {
       chain.first_use += first_use[number];
       chain.first_vertex += first_vertex[number];
@@ -243,7 +270,6 @@ void putTogether(std::span<Chains> parts, const ParallelFor& parallel_for, Surfa
               set.chains.begin() + static_cast<std::ptrdiff_t>(first_chain[number]));
     std::copy(part.uses.begin(), part.uses.end(), set.uses.begin() + first_use[number]);
     std::copy(part.vertices.begin(), part.vertices.end(), set.chain_vertices.begin() + first_vertex[number]);
-    part = {};
   });
 }
 
@@ -265,9 +291,10 @@ void listByCluster(const ParallelFor& parallel_for, SurfaceSet& set) {
 
 }  // namespace
 
-void findChains(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
-                const ParallelFor& parallel_for, SurfaceSet& set) {
+void findChains(SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, const ParallelFor& parallel_for,
+                SurfaceSet& set) {
   BoundaryEdges boundary = collectEdges(mesh, cluster_of, parallel_for);
+  mesh.forgetTriangles();
   base::Rows<BoundaryEdge> by_cluster;  // by their first cluster
   base::groupIntoRows(parallel_for, set.clusters.size(), boundary.edges.size(), by_cluster.first(),
                       by_cluster.all(), [&](std::size_t begin, std::size_t end, auto&& pair) {
@@ -277,13 +304,21 @@ void findChains(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_
                       });
   boundary.edges = {};
   const base::Parts parts(set.clusters.size(), kClustersOfPart);
-  std::vector<Chains> of_part(parts.count());
-  parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
-    ChainMaker maker(boundary.uses, mesh.vertices, of_part[part]);
-    for (std::size_t cluster = begin; cluster < end; ++cluster) {
-      maker.add(by_cluster[cluster]);
+  base::PartStore store;
+  std::vector<KeptChains> of_part(parts.count());
+  parallel_for(static_cast<std::uint32_t>(parts.count()), [&](std::uint32_t first, std::uint32_t last) {
+    Chains made;
+    ChainMaker maker(boundary.uses, mesh.vertices, made);
+    for (std::uint32_t part = first; part < last; ++part) {
+      made.clear();
+      for (std::size_t cluster = parts.begin(part); cluster < parts.end(part); ++cluster) {
+        maker.add(by_cluster[cluster]);
+      }
+      of_part[part] = {store.keep(made.chains), store.keep(made.uses), store.keep(made.vertices)};
     }
   });
+  by_cluster = {};
+  boundary = {};
   putTogether(of_part, parallel_for, set);
   listByCluster(parallel_for, set);
 }

@@ -11,8 +11,9 @@
 
 namespace sightline::occluders {
 
-// Fills the chains of a set with vertices and clusters. cluster_of: by triangle of the mesh.
-void findChains(const SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of,
-                const ParallelFor& parallel_for, SurfaceSet& set);
+// Fills the chains of a set with vertices and clusters. cluster_of: by triangle of the mesh. Leaves nothing
+// of the mesh but its vertices.
+void findChains(SurfaceMesh& mesh, std::span<const std::uint32_t> cluster_of, const ParallelFor& parallel_for,
+                SurfaceSet& set);
 
 }  // namespace sightline::occluders

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "src/base/part_store.h"
 #include "src/base/parts.h"
 
 namespace sightline::occluders {
@@ -106,6 +107,20 @@ struct Chunk {
   std::vector<SurfacePatch> patches;
   std::vector<SurfaceCluster> clusters;
   std::vector<Box> patch_bounds, cluster_bounds;
+
+  void clear() {
+    patches.clear();
+    clusters.clear();
+    patch_bounds.clear();
+    cluster_bounds.clear();
+  }
+};
+
+// The same in a PartStore.
+struct KeptChunk {
+  std::span<SurfacePatch> patches;
+  std::span<const SurfaceCluster> clusters;
+  std::span<const Box> patch_bounds, cluster_bounds;
 };
 
 // Divides one part after the other into patches and clusters. Its triangles have numbers of their own, in the
@@ -137,23 +152,37 @@ class PartDivider {
       gather(seed, patch_triangles_, kUngathered, patch_number, patch_of_, in_patch_);
       SurfacePatch& patch = chunk.patches.emplace_back();
       patch.first_cluster = static_cast<std::uint32_t>(chunk.clusters.size());
+      double cosine = 1.0;
       for (const std::uint32_t first : in_patch_) {
         if (cluster_of_[first] != kUngathered) {
           continue;
         }
         const auto number = static_cast<std::uint32_t>(chunk.clusters.size());
-        gather(first, cluster_triangles_, patch_number, number, cluster_of_, in_cluster_);
+        if (in_patch_.size() <= cluster_triangles_) {
+          // Gathered from the same triangle on, the cluster has the triangles of the patch in the same order.
+          in_cluster_ = in_patch_;
+          std::for_each(in_patch_.begin(), in_patch_.end(),
+                        [&](std::uint32_t i) { cluster_of_[i] = number; });
+        } else {
+          gather(first, cluster_triangles_, patch_number, number, cluster_of_, in_cluster_);
+        }
         SurfaceCluster& cluster = chunk.clusters.emplace_back();
         cluster.first_triangle = written;
         cluster.triangle_count = static_cast<std::uint32_t>(in_cluster_.size());
-        measure(in_cluster_, cluster, chunk.cluster_bounds.emplace_back());
+        cosine = measure(in_cluster_, cluster, chunk.cluster_bounds.emplace_back());
         cluster.double_sided = double_sided;
         for (const std::uint32_t i : in_cluster_) {
           std::copy_n(mesh_.triangles[triangleOf(i)].begin(), 3, &triangles[3 * std::size_t{written++}]);
           cluster_of[triangleOf(i)] = number;
         }
       }
-      const double cosine = measure(in_patch_, patch, chunk.patch_bounds.emplace_back());
+      if (in_patch_.size() <= cluster_triangles_) {
+        patch.support = chunk.clusters.back().support;
+        patch.thickness = chunk.clusters.back().thickness;
+        chunk.patch_bounds.push_back(chunk.cluster_bounds.back());
+      } else {
+        cosine = measure(in_patch_, patch, chunk.patch_bounds.emplace_back());
+      }
       patch.cone_cosine = static_cast<float>(cosine - kRounding);
       patch.double_sided = double_sided;
       patch.cluster_count = static_cast<std::uint32_t>(chunk.clusters.size()) - patch.first_cluster;
@@ -240,43 +269,53 @@ std::vector<std::uint32_t> chunksOf(std::span<const std::uint32_t> first_of_part
 
 Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const SurfaceSettings& settings,
                          const ParallelFor& parallel_for, SurfaceSet& set) {
-  const LargeVector<Vec3d> normals = unitNormals(mesh, parallel_for);
-  const PartTriangles parts = gatherParts(scene, mesh, normals, clamped(settings.part_triangles));
+  LargeVector<Vec3d> normals = unitNormals(mesh, parallel_for);
+  PartTriangles parts = gatherParts(scene, mesh, normals, clamped(settings.part_triangles));
   const std::vector<std::uint32_t> first_part = chunksOf(parts.first);
   Gathered gathered;
-  gathered.part_of.resize(mesh.triangleCount());
-  gathered.cluster_of.resize(mesh.triangleCount());
-  set.triangles.resize(3 * mesh.triangleCount());
+  gathered.part_of = base::unsetVector<std::uint32_t>(mesh.triangleCount());
+  gathered.cluster_of = base::unsetVector<std::uint32_t>(mesh.triangleCount());
+  set.triangles = base::unsetVector<std::uint32_t>(3 * mesh.triangleCount());
   set.parts.resize(parts.first.size() - 1);
   set.part_bounds.resize(set.parts.size());
-  std::vector<Chunk> chunks(first_part.size() - 1);
-  base::forEach(parallel_for, chunks.size(), [&](std::uint32_t c) {
-    Chunk& chunk = chunks[c];
+  base::PartStore store;
+  std::vector<KeptChunk> chunks(first_part.size() - 1);
+  parallel_for(static_cast<std::uint32_t>(chunks.size()), [&](std::uint32_t begin, std::uint32_t end) {
+    Chunk chunk;
     PartDivider divider(mesh, normals, parts, settings);
-    for (std::uint32_t p = first_part[c]; p < first_part[c + 1]; ++p) {
-      const std::uint32_t first = parts.triangles[parts.first[p]];
-      SurfacePart& part = set.parts[p];
-      part.first_patch = static_cast<std::uint32_t>(chunk.patches.size());
-      divider.divide(p, scene.materialOf(scene.objects[mesh.objects[first]]).double_sided, chunk,
-                     set.triangles, gathered.cluster_of);
-      part.patch_count = static_cast<std::uint32_t>(chunk.patches.size()) - part.first_patch;
-      for (const Box& bounds : std::span(chunk.patch_bounds).subspan(part.first_patch)) {
-        set.part_bounds[p].extend(bounds);
+    for (std::uint32_t c = begin; c < end; ++c) {
+      chunk.clear();
+      for (std::uint32_t p = first_part[c]; p < first_part[c + 1]; ++p) {
+        const std::uint32_t first = parts.triangles[parts.first[p]];
+        SurfacePart& part = set.parts[p];
+        part.first_patch = static_cast<std::uint32_t>(chunk.patches.size());
+        divider.divide(p, scene.materialOf(scene.objects[mesh.objects[first]]).double_sided, chunk,
+                       set.triangles, gathered.cluster_of);
+        part.patch_count = static_cast<std::uint32_t>(chunk.patches.size()) - part.first_patch;
+        for (const Box& bounds : std::span(chunk.patch_bounds).subspan(part.first_patch)) {
+          set.part_bounds[p].extend(bounds);
+        }
       }
+      chunks[c] = {store.keep(chunk.patches), store.keep(chunk.clusters), store.keep(chunk.patch_bounds),
+                   store.keep(chunk.cluster_bounds)};
     }
   });
 
+  // Their memory is of use to what follows.
+  normals = {};
+  parts.place_of = {};
+
   std::vector<std::uint32_t> first_patch(1, 0), first_cluster(1, 0);
-  for (const Chunk& chunk : chunks) {
+  for (const KeptChunk& chunk : chunks) {
     first_patch.push_back(first_patch.back() + static_cast<std::uint32_t>(chunk.patches.size()));
     first_cluster.push_back(first_cluster.back() + static_cast<std::uint32_t>(chunk.clusters.size()));
   }
-  set.patches.resize(first_patch.back());
-  set.patch_bounds.resize(first_patch.back());
-  set.clusters.resize(first_cluster.back());
-  set.cluster_bounds.resize(first_cluster.back());
+  set.patches = base::unsetVector<SurfacePatch>(first_patch.back());
+  set.patch_bounds = base::unsetVector<Box>(first_patch.back());
+  set.clusters = base::unsetVector<SurfaceCluster>(first_cluster.back());
+  set.cluster_bounds = base::unsetVector<Box>(first_cluster.back());
   base::forEach(parallel_for, chunks.size(), [&](std::uint32_t c) {
-    Chunk& chunk = chunks[c];
+    const KeptChunk& chunk = chunks[c];
     for (SurfacePatch& patch : chunk.patches) {
       patch.first_cluster += first_cluster[c];
     }
@@ -293,7 +332,6 @@ Gathered gatherTriangles(const SceneView& scene, const SurfaceMesh& mesh, const 
         gathered.cluster_of[parts.triangles[i]] += first_cluster[c];
       }
     }
-    chunk = {};
   });
   for (const Box& bounds : set.part_bounds) {
     set.bounds.extend(bounds);

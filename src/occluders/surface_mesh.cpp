@@ -70,10 +70,10 @@ void connect(SurfaceMesh& mesh, const ParallelFor& parallel_for) {
   // Sides stay where they are: rows of edges divide those of vertices.
   LargeVector<Side>& sides = mesh.sides.all();
   LargeVector<std::uint32_t>& first = mesh.sides.first();
-  sides.resize(by_low.items().size());
-  first.resize(std::size_t{first_edge.back()} + 1);
+  sides = base::unsetVector<Side>(by_low.items().size());
+  first = base::unsetVector<std::uint32_t>(std::size_t{first_edge.back()} + 1);
   first.back() = static_cast<std::uint32_t>(sides.size());
-  mesh.beyond.resize(sides.size());
+  mesh.beyond = base::unsetVector<std::uint32_t>(sides.size());
   parts.run(parallel_for, [&](std::size_t part, std::size_t begin, std::size_t end) {
     std::uint32_t edge = first_edge[part];
     for (std::size_t low = begin; low < end; ++low) {
@@ -189,8 +189,8 @@ SurfaceMesh weld(const SceneView& scene, const ParallelFor& parallel_for) {
   });
   std::partial_sum(first.begin(), first.end(), first.begin());
   SurfaceMesh mesh;
-  mesh.triangles.resize(first.back());
-  mesh.objects.resize(first.back());
+  mesh.triangles = base::unsetVector<std::array<std::uint32_t, 3>>(first.back());
+  mesh.objects = base::unsetVector<std::uint32_t>(first.back());
   parts.run(parallel_for, [&](std::uint32_t part) {
     std::uint32_t t = first[part];
     forEachTriangle(part, [&](const std::array<std::uint32_t, 3>& vertices, std::uint32_t object) {

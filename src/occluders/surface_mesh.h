@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include "sightline/base/large_vector.h"
 #include "sightline/base/parallel_for.h"
@@ -57,6 +58,12 @@ struct SurfaceMesh {
   void forgetGiven() {
     LargeVector<std::uint32_t>().swap(source);
     LargeVector<std::array<std::uint32_t, 3>>().swap(given);
+  }
+  // Frees all but the vertices.
+  void forgetTriangles() {
+    LargeVector<Vec3f> kept = std::move(vertices);
+    *this = {};
+    vertices = std::move(kept);
   }
   // Whether two triangles at an edge share it only because edges were divided: a corner of one of the given
   // triangles lay on an edge of the other.

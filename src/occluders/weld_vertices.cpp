@@ -93,6 +93,8 @@ OpaqueParts::OpaqueParts(const SceneView& scene) : scene_(scene), first_of_objec
     first_of_object_.push_back(first_of_object_.back() + count);
   }
   parts_ = base::Parts(first_of_object_.back(), kOpaqueOfPart);
+  all_finite_ = std::all_of(scene.positions.begin(), scene.positions.end(),
+                            [](const Vec3f& position) { return isFinite(position); });
 }
 
 WeldedVertices weldVertices(const SceneView& scene, const OpaqueParts& triangles,
@@ -100,7 +102,7 @@ WeldedVertices weldVertices(const SceneView& scene, const OpaqueParts& triangles
   const std::size_t count = scene.positions.size();
   const LargeVector<std::uint32_t> first_use = firstUses(scene, triangles, parallel_for);
   // By position: the one of those equal to it that is used first.
-  LargeVector<std::uint32_t> kept(count);
+  LargeVector<std::uint32_t> kept = base::unsetVector<std::uint32_t>(count);
   base::forEach(parallel_for, count, [&](std::uint32_t i) { kept[i] = i; });
   {
     base::Rows<Hashed> by_hash;
@@ -140,8 +142,8 @@ WeldedVertices weldVertices(const SceneView& scene, const OpaqueParts& triangles
     first_number.push_back(first_number.back() + static_cast<std::uint32_t>(part.size()));
   }
   WeldedVertices welded;
-  welded.vertices.resize(first_number.back());
-  welded.position_of.resize(first_number.back());
+  welded.vertices = base::unsetVector<Vec3f>(first_number.back());
+  welded.position_of = base::unsetVector<std::uint32_t>(first_number.back());
   welded.vertex_of.resize(count);
   triangles.run(parallel_for, [&](std::uint32_t part) {
     std::uint32_t number = first_number[part];

@@ -39,7 +39,7 @@ class OpaqueParts {
       const std::size_t end = std::min<std::size_t>(parts_.end(part), first_of_object_[object + 1]);
       for (; number < end; ++number) {
         const std::span<const std::uint32_t> corners = indices.subspan(3 * (number - first), 3);
-        if (isFiniteTriangle(scene_, corners)) {
+        if (all_finite_ || isFiniteTriangle(scene_, corners)) {
           use(static_cast<std::uint32_t>(number), corners, object);
         }
       }
@@ -50,6 +50,7 @@ class OpaqueParts {
   SceneView scene_;
   LargeVector<std::uint32_t> first_of_object_;  // its first triangle; and one more
   base::Parts parts_{0, 1};
+  bool all_finite_ = false;  // all positions of the scene are
 };
 
 struct WeldedVertices {

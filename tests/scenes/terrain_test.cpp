@@ -78,7 +78,7 @@ TEST(Terrain, IsADemoScene) {
   ASSERT_TRUE(scene);
   EXPECT_EQ(hashOf(*scene), hashOf(makeTerrain({.triangles = 10000, .seed = 9})));
   EXPECT_FALSE(makeDemoScene("demo:terrain?triangles=9999"));
-  EXPECT_FALSE(makeDemoScene("demo:terrain?triangles=1000001"));
+  EXPECT_FALSE(makeDemoScene("demo:terrain?triangles=10000001"));
 }
 
 }  // namespace
