@@ -7,13 +7,14 @@
 
 #include "scenes/procedural.h"
 #include "sightline/pvs/query/set_query.h"
-#include "src/pvs/bake/encode_sight.h"
 #include "tests/pvs/bake_scenes.h"
+#include "tests/pvs/sight_checks.h"
 
 namespace sightline {
 namespace {
 
-using Bytes = std::vector<std::byte>;
+using sight_test::Bytes;
+using sight_test::bytesOf;
 
 Scene smallShip() {
   return makeShip({.decks = 3, .rooms = 4, .machinery = 0});
@@ -74,11 +75,11 @@ TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
   for (const bool partly : {false, true}) {
     BakeSettings settings = settingsFor(partly);
     const BakedVisibility whole = test::baked(scene, settings);
-    const Bytes whole_bytes = *pvs::encodeSight(whole);
+    const Bytes whole_bytes = bytesOf(whole);
     // The file with one cell.
     BakeSettings of_one = settings;
     of_one.max_depth = 0;
-    const auto fewest = static_cast<double>(pvs::encodeSight(test::baked(scene, of_one))->size());
+    const auto fewest = static_cast<double>(bytesOf(test::baked(scene, of_one)).size());
     double mean_before = meanTriangles(whole);
     std::size_t leaves_before = whole.octree.leaves.size();
     for (const double share : {0.7, 0.4, 0.15}) {
@@ -86,7 +87,7 @@ TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
           static_cast<std::uint64_t>(fewest + share * (static_cast<double>(whole_bytes.size()) - fewest));
       settings.byte_budget = budget;
       const BakedVisibility fitted = test::baked(scene, settings);
-      const Bytes bytes = *pvs::encodeSight(fitted);
+      const Bytes bytes = bytesOf(fitted);
       EXPECT_LE(bytes.size(), budget) << share;
       EXPECT_LT(fitted.octree.leaves.size(), leaves_before) << share;
       // Less room never serves viewers better.
@@ -119,11 +120,11 @@ TEST(ByteBudget, IsKeptAndLeavesOutNothingThatTheWholeFileHolds) {
 TEST(ByteBudget, ChangesNothingThatFits) {
   const Scene scene = smallShip();
   BakeSettings settings = settingsFor(false);
-  const Bytes whole = *pvs::encodeSight(test::baked(scene, settings));
+  const Bytes whole = bytesOf(test::baked(scene, settings));
   settings.byte_budget = whole.size();
-  EXPECT_TRUE(*pvs::encodeSight(test::baked(scene, settings)) == whole);
+  EXPECT_TRUE(bytesOf(test::baked(scene, settings)) == whole);
   settings.byte_budget = whole.size() - 1;
-  EXPECT_LT(pvs::encodeSight(test::baked(scene, settings))->size(), whole.size());
+  EXPECT_LT(bytesOf(test::baked(scene, settings)).size(), whole.size());
 }
 
 TEST(ByteBudget, ThatNoCellsAreFewEnoughForIsAnError) {

@@ -114,7 +114,7 @@ std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint6
     baked.octree.max = max;
     baked.sets = {};
     flatten(cells, baked.boxes.view(), baked.octree, baked.sets);
-    const Result<std::vector<std::byte>> file = encodeSight(baked);
+    const Result<SightBytes> file = encodeSight(baked);
     now = file ? file->size() : std::numeric_limits<std::uint64_t>::max();
     return now <= bytes;
   };

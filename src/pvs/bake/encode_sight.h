@@ -30,6 +30,7 @@ pvs::SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded
 struct SightBytes {
   std::vector<std::byte> structure, payload;
 
+  std::uint64_t size() const { return structure.size() + payload.size(); }
   std::vector<std::byte> joined() const;
 };
 // Returns an error if the data is invalid (a reader would reject it) or too large.
