@@ -110,6 +110,12 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
       bytes.add(number);
     }
   }
+  for (const std::vector<ObjectId>& group : doorGroupsOf(s.doors).groups) {
+    bytes.add(std::uint64_t{group.size()});
+    for (const ObjectId door : group) {
+      bytes.add(door.value);
+    }
+  }
   if (s.witnesses) {
     bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
   }
@@ -136,6 +142,9 @@ double shareOf(const BakeScene& scene, const OctreeCell& cell) {
 Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, const BakeSettings& settings,
                         const ParallelFor& parallel_for) {
   if (const std::string problem = problemWith(settings); !problem.empty()) {
+    return Error{"bake: " + problem};
+  }
+  if (const std::string problem = problemWithDoors(scene, settings.doors); !problem.empty()) {
     return Error{"bake: " + problem};
   }
   BakeSettings complete = settings;
@@ -453,8 +462,7 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
   }
   base::ByteReader bytes(bytesOf(scene, part->second).content);
   if (readHead(bytes).summary.leaves > 0) {
-    std::optional<BakedCell> cell =
-        readCell(bytes, level, static_cast<std::uint32_t>(scene.boxes.objects.size()));
+    std::optional<BakedCell> cell = readCell(bytes, level, scene);
     return cell && endsWell(scene, bytes) ? std::move(cell) : std::nullopt;
   }
   bytes.read<double>();
@@ -491,7 +499,7 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   baked.boxes = scene.boxes;
   baked.octree.min = scene.root.min;
   baked.octree.max = scene.root.max;
-  flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
+  flatten(*top, scene, baked);
   return baked;
 }
 
@@ -503,7 +511,7 @@ Witnesses Bake::witnesses(const BakedParts& parts) const {
     base::ByteReader bytes(bytesOf(scene, part).content);
     Runs seen;
     if (readHead(bytes).summary.leaves > 0) {
-      readCell(bytes, cellOfNumber(id).level, objects);
+      readCell(bytes, cellOfNumber(id).level, scene);
     } else {
       bytes.read<double>();
       read(bytes, objects, seen);

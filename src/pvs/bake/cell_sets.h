@@ -10,41 +10,14 @@
 
 #include "src/pvs/bake/answers.h"
 #include "src/pvs/bake/bake_scene.h"
+#include "src/pvs/bake/closed_doors.h"
+#include "src/pvs/bake/node_occlusion.h"
+#include "src/pvs/bake/object_mask.h"
 #include "src/pvs/bake/recall.h"
-#include "src/pvs/bake/region_occlusion.h"
 #include "src/pvs/bake/samples.h"
+#include "src/pvs/bake/seen_sets.h"
 
 namespace sightline::pvs {
-
-struct CellSets {
-  Runs whole;  // seen from anywhere in the cell
-  std::optional<CellPlane> plane;
-  Runs front, back;  // with a plane only: seen from its front, from its back
-};
-
-// Triangles compared with the budget: those of the side that sees more. Viewers between the sides do not
-// count, as they are there only briefly.
-std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets);
-
-// One bit per object, to unite many runs fast.
-class ObjectMask {
- public:
-  // Resizes to `count` objects, none of them set.
-  void reset(std::uint32_t count);
-  // Resizes to `count` objects, all set except those of the runs.
-  void resetWithout(std::span<const ObjectRun> runs, std::uint32_t count);
-  void add(std::span<const ObjectRun> runs);
-  bool contains(std::uint32_t position) const { return (words_[position / 64] >> position % 64 & 1) != 0; }
-  bool containsAll(const ObjectRun& run) const;
-  // out: the objects that are not set.
-  void complement(Runs& out) const;
-
- private:
-  void addRun(const ObjectRun& run);
-
-  std::uint32_t count_ = 0;
-  std::vector<std::uint64_t> words_;
-};
 
 class CellBaker {
  public:
@@ -66,6 +39,10 @@ class CellBaker {
   bool tooLargeForItsOccluders(const OctreeCell& cell) const;
   // True if a larger search box would contain no further occluders.
   bool searchedAll(const OctreeCell& cell, double search_distance) const;
+
+  // Adds what closed doors hide of the finished sets of a cell: by surfaces, and by single convex occluders
+  // that intersect the cell grown by search_distance metres.
+  void closeDoors(const OctreeCell& cell, double search_distance, CellSets& sets);
 
   // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
@@ -115,13 +92,9 @@ class CellBaker {
   bool holds(std::uint32_t node, const CellBox& region, const Box& decided_in) const;
   // Sets nodes_before_ and followed_before_ to what an earlier bake found about the nodes of its box tree.
   void recallNodes(const Answer& before);
-  bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
-  // object: FusedTarget::object
-  bool hidesBox(const CellBox& region, const Box& box, std::uint32_t object, const RegionEffort& effort);
   // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
   // them.
   double shareSeenFrom(const Vec3d& point, const Runs& seen);
-  bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
   // Whether trianglesSeenFrom is less than this, by what an earlier bake found or by asking.
   bool seesFewer(const Vec3d& eye, double triangles);
@@ -137,7 +110,8 @@ class CellBaker {
   const Recall* recall_;
   std::optional<RecalledAnswers> answers_before_;
   SampleStore samples_;
-  RegionOcclusion surfaces_;
+  NodeOcclusion surfaces_;
+  ClosedDoors closed_doors_;
   double line_margin_;          // of lines of sight around boxes of occluders, metres
   std::vector<bool> occludes_;  // by place in the box tree: some convex occluder is the object's
   // Scratch for the current cell.
@@ -161,7 +135,6 @@ class CellBaker {
   std::vector<HidingWitness> witnesses_;
   std::uint64_t cell_ = 1;  // cellNumber of the current cell
   WitnessPart part_ = WitnessPart::kWhole;
-  WitnessKind decided_by_ = WitnessKind::kSurfaces;  // how the last object was found hidden by surfaces
 };
 
 }  // namespace sightline::pvs
