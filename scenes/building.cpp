@@ -73,7 +73,8 @@ Scene makeBuilding(const BuildingOptions& options) {
   using namespace scenes;
   Scene scene;
   scene.materials = buildingMaterials();
-  const BuildingPlan plan = planBuilding(options.floors, options.seed);
+  BuildingPlan plan = planBuilding(options.floors, options.seed);
+  plan.shut_doors = options.shut_doors;
   {
     MeshBuilder mesh(scene);
     addStructure(mesh, plan, Random(options.seed, 2));

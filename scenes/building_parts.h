@@ -67,6 +67,7 @@ struct BuildingPlan {
   std::uint32_t floors = 1;
   std::array<double, kBays + 1> xs{};  // centre lines of the walls between bays
   std::array<double, kRows + 1> ys{};  // ... and between rows
+  bool shut_doors = false;             // BuildingOptions::shut_doors
 
   Rectangle cell(std::uint32_t bay, std::uint32_t row) const {
     return {{xs[bay], ys[row]}, {xs[bay + 1], ys[row + 1]}};

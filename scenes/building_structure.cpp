@@ -67,7 +67,8 @@ void cutWindows(Wall& wall) {
   }
 }
 
-// Adds jambs, head, and a leaf that is open into the room by open_turns.
+// Adds jambs, head, and a leaf that is open into the room by open_turns. A door of a plan of shut doors is
+// shut, and its leaf reaches into jambs, head and floor, so that it leaves no gap.
 void addDoor(const Context& at, Point2 middle, bool room_is_north, double open_turns,
              const std::string& name) {
   constexpr double kJamb = 0.04, kDepth = kHalfWall + 0.02, kHalf = kDoorWidth * 0.5;
@@ -78,11 +79,14 @@ void addDoor(const Context& at, Point2 middle, bool room_is_north, double open_t
   at.mesh.box({kHalf - kJamb, -kDepth, 0}, {kHalf, kDepth, kDoorHeight - kJamb});
   at.mesh.box({-kHalf, -kDepth, kDoorHeight - kJamb}, {kHalf, kDepth, kDoorHeight});
   const double side = room_is_north ? 1.0 : -1.0;
-  const Placement leaf = door.moved({-kHalf + kJamb, side * kHalfWall, 0}).turned(side * open_turns);
+  const bool shut = at.plan.shut_doors;
+  const double reach = shut ? 0.01 : 0.0, bottom = shut ? -reach : 0.01;
+  const Placement leaf =
+      door.moved({-kHalf + kJamb, side * kHalfWall, 0}).turned(shut ? 0.0 : side * open_turns);
   at.mesh.place(leaf);
   at.mesh.startObject(name + " leaf", id(BuildingMaterial::kLeaf));
   const double width = kDoorWidth - 2 * kJamb;
-  at.mesh.box({0, -0.02, 0.01}, {width, 0.02, kDoorHeight - kJamb});
+  at.mesh.box({-reach, -0.02, bottom}, {width + reach, 0.02, kDoorHeight - kJamb + reach});
   at.mesh.box({width - 0.12, -0.06, 1.0}, {width - 0.04, 0.06, 1.04});
 }
 

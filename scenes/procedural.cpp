@@ -105,11 +105,15 @@ Result<Scene> makeDemoCity(std::string_view query) {
 }
 
 Result<Scene> makeDemoBuilding(std::string_view query) {
+  static constexpr std::string_view kDoors[] = {"ajar", "shut"};
   BuildingOptions options;
+  std::uint32_t doors = 0;
   Key keys[] = {{"floors", 1, 20, &options.floors},
                 {"plants", 0, 10000, &options.plants},
+                {"doors", 0, 0, &doors, kDoors},
                 {"seed", 0, kAnySeed, &options.seed}};
   const Status status = readQuery(query, "building", keys);
+  options.shut_doors = doors == 1;
   return status ? Result<Scene>(makeBuilding(options)) : status.error();
 }
 

@@ -24,6 +24,8 @@ struct BuildingOptions {
   std::uint32_t floors = 4;
   std::uint32_t plants = 0;  // detail objects of about 644 triangles spread over the rooms
   std::uint32_t seed = 1;
+  // All doors are shut, without a gap; otherwise some are, some are ajar, and below each is a gap.
+  bool shut_doors = false;
 };
 // Corridors, rooms, doors, windows, stairs, furniture.
 // Camera path: "smooth" (400 frames through corridors, rooms, stairs).

@@ -112,6 +112,51 @@ TEST(HostileSight, IsRefusedWhenItsPartsDoNotFit) {
   }
 }
 
+TEST(HostileSight, IsRefusedWhenItsDoorsDoNotFit) {
+  Parts sound = soundParts();
+  BakedDoors& doors = sound.baked.doors;
+  doors.doors = {ObjectId(3u), ObjectId(5u), ObjectId(3u), ObjectId(5u)};
+  doors.group_ends = {1, 2, 4};
+  doors.hidden = {{0, 7}, {2, 8}};
+  doors.hidden_ends.assign(sound.baked.sets.count(), 2);
+  const Bytes sound_bytes = sound.bytes();
+  ASSERT_TRUE(opened(sound_bytes)) << errorOf(opened(sound_bytes));
+  const std::vector<std::pair<const char*, std::function<void(BakedDoors&)>>> damages{
+      {"a group without doors",
+       [](BakedDoors& d) {
+         d.group_ends = {1, 1, 4};
+       }},
+      {"a first group without doors",
+       [](BakedDoors& d) {
+         d.group_ends = {0, 1, 4};
+       }},
+      {"groups that overlap",
+       [](BakedDoors& d) {
+         d.group_ends = {2, 1, 4};
+       }},
+      {"a group beyond the doors", [](BakedDoors& d) { d.group_ends.back() = 5; }},
+      {"doors of no group", [](BakedDoors& d) { d.group_ends.back() = 3; }},
+      {"doors that are not in order", [](BakedDoors& d) { std::swap(d.doors[2], d.doors[3]); }},
+      {"a door that is no object", [](BakedDoors& d) { d.doors[3] = ObjectId(400u); }},
+      {"what a group hides twice", [](BakedDoors& d) { d.hidden[1].group = 0; }},
+      {"what no group hides", [](BakedDoors& d) { d.hidden[1].group = 3; }},
+      {"a hidden set that is not there", [](BakedDoors& d) { d.hidden[0].hidden = 90; }},
+      {"too few sets", [](BakedDoors& d) { d.hidden_ends.pop_back(); }},
+      {"sets that overlap", [](BakedDoors& d) { d.hidden_ends[4] = 1; }},
+      {"a set beyond what is hidden", [](BakedDoors& d) { d.hidden_ends.back() = 3; }},
+      {"no doors, but what they hide", [](BakedDoors& d) { d.doors.clear(), d.group_ends.clear(); }},
+      {"doors without what they hide", [](BakedDoors& d) { d.hidden.clear(), d.hidden_ends.clear(); }}};
+  for (const auto& [what, apply] : damages) {
+    Parts parts = sound;
+    apply(parts.baked.doors);
+    const Bytes bytes = parts.bytes();
+    const Result<SightFile> file = opened(bytes);
+    EXPECT_FALSE(file) << what;
+    EXPECT_TRUE(oneLine(errorOf(file))) << what;
+    EXPECT_NE(errorOf(file).find("bake it again"), std::string::npos) << errorOf(file);
+  }
+}
+
 TEST(HostileSight, GivesAnErrorForTheSetsOfABrokenChunk) {
   const std::vector<std::pair<const char*, std::function<Bytes(std::uint32_t)>>> frames{
       {"not a frame", [](std::uint32_t) { return Bytes(20, std::byte{1}); }},

@@ -37,6 +37,11 @@ TEST(DemoUrl, GivesTheSceneOfItsOptions) {
   ASSERT_TRUE(building);
   EXPECT_EQ(scene_checks::hashOf(*building),
             scene_checks::hashOf(makeBuilding({.floors = 1, .plants = 3, .seed = 9})));
+  const Result<Scene> shut = makeDemoScene("demo:building?floors=1&doors=shut");
+  ASSERT_TRUE(shut);
+  EXPECT_EQ(scene_checks::hashOf(*shut),
+            scene_checks::hashOf(makeBuilding({.floors = 1, .shut_doors = true})));
+  EXPECT_NE(scene_checks::hashOf(*shut), scene_checks::hashOf(makeBuilding({.floors = 1})));
   const Result<Scene> boxes = makeDemoScene("demo:boxes?boxes=30&buildings=20&seed=3");
   ASSERT_TRUE(boxes);
   EXPECT_EQ(scene_checks::hashOf(*boxes),

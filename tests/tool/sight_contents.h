@@ -29,6 +29,11 @@ inline BakedVisibility contentsOf(const SightFile& file) {
     baked.sets.first.push_back(baked.sets.nodes.size());
   });
   EXPECT_TRUE(whole);
+  const DoorsView doors = file.doors();
+  baked.doors = {{doors.doors.begin(), doors.doors.end()},
+                 {doors.group_ends.begin(), doors.group_ends.end()},
+                 {doors.hidden.begin(), doors.hidden.end()},
+                 {doors.hidden_ends.begin(), doors.hidden_ends.end()}};
   return baked;
 }
 

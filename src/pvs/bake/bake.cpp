@@ -133,6 +133,12 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
     }
   }
   bytes.add(std::uint8_t{s.whole_cells});
+  for (const std::vector<ObjectId>& group : doorGroupsOf(s.doors).groups) {
+    bytes.add(std::uint64_t{group.size()});
+    for (const ObjectId door : group) {
+      bytes.add(door.value);
+    }
+  }
   if (s.witnesses) {
     bytes.add(std::uint8_t{1});  // parts without witnesses are those of another plan
   }
@@ -159,6 +165,9 @@ double shareOf(const BakeScene& scene, const OctreeCell& cell) {
 Result<Bake> Bake::plan(const SceneView& scene, const OccluderSet& occluders, const BakeSettings& settings,
                         const ParallelFor& parallel_for) {
   if (const std::string problem = problemWith(settings); !problem.empty()) {
+    return Error{"bake: " + problem};
+  }
+  if (const std::string problem = problemWithDoors(scene, settings.doors); !problem.empty()) {
     return Error{"bake: " + problem};
   }
   BakeSettings complete = settings;
@@ -497,7 +506,7 @@ std::optional<BakedCell> cellOfPart(const Bake& bake, const BakeScene& scene, co
   base::ByteReader bytes(*main);
   const auto objects = static_cast<std::uint32_t>(scene.boxes.objects.size());
   if (content->head.summary.leaves > 0) {
-    std::optional<BakedCell> cell = readCell(bytes, level, objects);
+    std::optional<BakedCell> cell = readCell(bytes, level, scene);
     return cell && bytes.atEnd() ? std::move(cell) : std::nullopt;
   }
   Runs seen;
@@ -533,7 +542,7 @@ Result<BakedVisibility> Bake::assemble(const BakedParts& parts) const {
   baked.octree.min = scene.root.min;
   baked.octree.max = scene.root.max;
   if (scene.settings.byte_budget == 0) {
-    flatten(*top, baked.boxes.view(), baked.octree, baked.sets);
+    flatten(*top, scene, baked);
   } else if (const std::uint64_t bytes = fitBytes(scene, *top, scene.settings.byte_budget, baked);
              bytes > scene.settings.byte_budget) {
     return Error{"bake: the file has " + std::to_string(bytes) +

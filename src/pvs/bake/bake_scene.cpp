@@ -149,11 +149,19 @@ std::uint64_t countCells(const CellBox& root, const OctreeCell& cell, std::uint3
   return count;
 }
 
+// The surfaces while these doors are closed and all others are open.
+Panels panelsOf(const SceneView& scene, const DoorGroups& doors, std::span<const ObjectId> closed,
+                const ParallelFor& parallel_for) {
+  const std::vector<Object> objects = withClosed(scene, doors, closed);
+  return findPanels({scene.positions, scene.indices, objects, scene.materials}, parallel_for);
+}
+
 }  // namespace
 
 BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeSettings& s,
                      const ParallelFor& parallel_for)
     : settings(s),
+      doors(doorGroupsOf(s.doors)),
       region(regionAround(s.viewers)),
       root(cubeAround(region)),
       reach(1.01 * diagonalOf(scene, root)),
@@ -163,7 +171,7 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
       triangles(boxes.view()),
       position_of(scene.objects.size()),
       occluders(set),
-      panels(s.occlusion == BakeOcclusion::kFused ? findPanels(scene, parallel_for) : Panels{}),
+      panels(s.occlusion == BakeOcclusion::kFused ? panelsOf(scene, doors, {}, parallel_for) : Panels{}),
       frame(frameOf(root, panels.tree)),
       object_boxes(
           s.occlusion == BakeOcclusion::kFused
@@ -175,10 +183,27 @@ BakeScene::BakeScene(const SceneView& scene, const OccluderSet& set, const BakeS
   for (std::uint32_t i = 0; i < boxes.objects.size(); ++i) {
     position_of[boxes.objects[i].value] = i;
   }
+  for (const ObjectId door : doors.all) {
+    const ObjectRun run{position_of[door.value], position_of[door.value] + 1};
+    Runs more;
+    unite(door_runs, std::span(&run, 1), more);
+    door_runs.swap(more);
+  }
   leaf_of_.resize(boxes.objects.size());
   for (std::uint32_t n = 0; n < boxes.nodes.size(); ++n) {
     if (boxes.view().leaf(n)) {
       leaf_of_[boxes.nodes[n].first_object] = n;
+    }
+  }
+  if (settings.occlusion == BakeOcclusion::kFused) {
+    for (const std::vector<ObjectId>& group : doors.groups) {
+      closed_panels.push_back(panelsOf(scene, doors, group, parallel_for));
+    }
+  }
+  door_occluders_.resize(doors.all.size());
+  for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+    if (doors.isDoor(occluders[i].object)) {
+      door_occluders_[indexOf(occluders[i].object)].push_back(i);
     }
   }
   chooseDepth();
@@ -197,6 +222,9 @@ void BakeScene::gatherFaces(const OccluderSet& set) {
   face_edges_.reserve(set.vertices.size());
   std::vector<Box> bounds;
   for (const Occluder& occluder : set.occluders) {
+    if (doors.isDoor(occluder.object)) {
+      continue;
+    }
     const std::span<const Vec3f> vertices = set.verticesOf(occluder);
     const std::size_t first = face_edges_.size();
     Box box;
@@ -260,8 +288,11 @@ BoxTree BakeScene::reachOfOccluders(std::uint32_t level) const {
 }
 
 void BakeScene::countOccluders() {
-  counts.all = occluders.size();
   for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+    if (doors.isDoor(occluders[i].object)) {
+      continue;
+    }
+    counts.all += 1;
     if (!isBorder(occluders[i].bounds, region)) {
       counts.inner += 1;
       counts.of_use += ofUse(occluders[i], settings.max_depth) ? 1 : 0;
@@ -316,7 +347,16 @@ CellBox BakeScene::regionOf(const OctreeCell& cell) const {
 }
 
 bool BakeScene::ofUse(const ConvexOccluder& occluder, std::uint32_t level) const {
-  return isOfUse(occluder, boxOf({level, {}}), settings.occluder_size);
+  return isOfUse(occluder, boxOf({level, {}}), settings.occluder_size) && !doors.isDoor(occluder.object);
+}
+
+std::size_t BakeScene::indexOf(ObjectId door) const {
+  return static_cast<std::size_t>(std::lower_bound(doors.all.begin(), doors.all.end(), door) -
+                                  doors.all.begin());
+}
+
+std::span<const std::uint32_t> BakeScene::occludersOfDoor(ObjectId door) const {
+  return door_occluders_[indexOf(door)];
 }
 
 BakeScene::LevelOccluders BakeScene::occludersFor(std::uint32_t level) const {

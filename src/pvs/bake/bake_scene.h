@@ -10,6 +10,7 @@
 #include "sightline/pvs/bake/bake.h"
 #include "src/pvs/bake/cell_region.h"
 #include "src/pvs/bake/convex_occluder.h"
+#include "src/pvs/bake/door_groups.h"
 #include "src/pvs/bake/panels.h"
 #include "src/pvs/bake/runs.h"
 #include "src/pvs/bake/shadow_tree.h"
@@ -27,7 +28,9 @@ struct BakeScene {
   BakeScene(const BakeScene&) = delete;
   BakeScene& operator=(const BakeScene&) = delete;
 
-  BakeSettings settings;   // including the chosen max_depth
+  BakeSettings settings;  // including the chosen max_depth
+  DoorGroups doors;
+  Runs door_runs;          // all doors
   CellBox region;          // around all boxes of viewers
   CellBox root;            // a cube
   double reach = 0.0;      // maximum distance from any viewer to any box, metres
@@ -36,14 +39,19 @@ struct BakeScene {
   ShadowTree shadow_tree;
   TriangleCounts triangles;
   std::vector<std::uint32_t> position_of;  // index into BoxTree::objects, by object
-  ConvexOccluders occluders;
-  Panels panels;             // none if only convex occluders hide
+  ConvexOccluders occluders;               // those of doors too, which all functions below leave out
+  Panels panels;                           // while all doors are open; none if only convex occluders hide
+  // By group of doors: the panels while its doors are closed and all others are open. None if only convex
+  // occluders hide.
+  std::vector<Panels> closed_panels;
   Box frame;                 // around the root and all panels
   ObjectBoxes object_boxes;  // none if only convex occluders hide
   OccluderCounts counts;
   double side_margin = 0.0;  // sideMargin of the root, metres
   double diagonal = 0.0;     // diagonal of the region and all objects, metres
 
+  // The convex occluders of a door, ascending.
+  std::span<const std::uint32_t> occludersOfDoor(ObjectId door) const;
   // The leaf of an object, by its place in BoxTree::objects.
   const BoxNode& leafOf(std::uint32_t position) const { return boxes.nodes[leaf_of_[position]]; }
   CellBox boxOf(const OctreeCell& cell) const {
@@ -75,6 +83,7 @@ struct BakeScene {
   bool holdsAllOccluders(const CellBox& box) const;
 
  private:
+  std::vector<std::vector<std::uint32_t>> door_occluders_;  // by index into doors.all
   BoxTree viewer_tree_;
   std::vector<std::uint32_t> leaf_of_;  // into BoxTree::nodes
   // Below base_depth_, down to settings.max_depth, only cells that intersect one of these boxes are divided.
@@ -88,6 +97,7 @@ struct BakeScene {
     std::vector<std::uint32_t> occluders;  // ascending
     BoxTree tree;                          // its objects are indices into `occluders`
   };
+  std::size_t indexOf(ObjectId door) const;  // into doors.all
   void chooseDepth();
   void countOccluders();
   BoxTree reachOfOccluders(std::uint32_t level) const;

@@ -113,7 +113,8 @@ std::uint64_t fitBytes(const BakeScene& scene, const BakedCell& root, std::uint6
     baked.octree.min = min;
     baked.octree.max = max;
     baked.sets = {};
-    flatten(cells, baked.boxes.view(), baked.octree, baked.sets);
+    baked.doors = {};
+    flatten(cells, scene, baked);
     const Result<SightBytes> file = encodeSight(baked);
     now = file ? file->size() : std::numeric_limits<std::uint64_t>::max();
     return now <= bytes;

@@ -37,7 +37,8 @@ CellRecall::CellRecall(const BakeScene& scene, const Recall* recall)
     answers_before_.emplace(*recall_);
   }
   for (std::uint32_t i = 0; i < scene.occluders.size(); ++i) {
-    occludes_[scene.position_of[scene.occluders[i].object.value]] = true;
+    const ObjectId object = scene.occluders[i].object;
+    occludes_[scene.position_of[object.value]] = !scene.doors.isDoor(object);
   }
 }
 

@@ -37,22 +37,14 @@ void append(std::uint32_t position, Runs& runs) {
   }
 }
 
-// The corners of the regions in front of a cell's plane and behind it, as far as they are for viewers.
-struct SideCorners {
-  std::vector<Vec3d> front, back;
-
-  SideCorners(const CellBox& box, const CellPlane& plane, double side_margin)
-      : front(cornersBefore(box, plane.normal, plane.front - 2.0 * side_margin)),
-        back(cornersBefore(box, -plane.normal, -plane.back - 2.0 * side_margin)) {}
-};
-
 }  // namespace
 
 CellBaker::CellBaker(const BakeScene& scene, const Recall* recall)
     : scene_(scene),
       recall_(scene, recall),
       samples_(scene.occluders, scene.shadow_tree, scene.reach, scene.settings.sample_bytes),
-      surfaces_(scene.panels, scene.settings.near_distance, scene.magnitude) {}
+      surfaces_(scene, scene.panels),
+      closed_doors_(scene, samples_) {}
 
 void CellBaker::startCell(const OctreeCell& cell) {
   cell_ = cellNumber(cell);
@@ -141,6 +133,10 @@ void CellBaker::lookFarther(const OctreeCell& cell, double searched, double sear
   removeHidden(scene_.regionOf(cell), sets);
 }
 
+void CellBaker::closeDoors(const OctreeCell& cell, double search_distance, CellSets& sets) {
+  closed_doors_.hide(scene_.regionOf(cell), searchBox(cell, search_distance), sets);
+}
+
 void CellBaker::removeHidden(const CellBox& box, CellSets& sets) {
   removeHiddenFrom(cornersOf(box), WitnessPart::kWhole, sets.whole);
   if (sets.plane) {
@@ -191,8 +187,6 @@ void CellBaker::removeFusedFrom(const CellBox& region, WitnessPart part, Runs& s
 }
 
 bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
-  const BoxTreeView boxes = scene_.boxes.view();
-  const BoxNode& node = boxes.nodes[number];
   ++questions_;
   work_ += kSurfaceWork;
   if (const std::optional<CellRecall::NodeAnswer> before = recall_.node(number, region)) {
@@ -200,10 +194,9 @@ bool CellBaker::surfacesHide(std::uint32_t number, const CellBox& region) {
     return before->hidden;
   }
   ++asked_;
-  surfaces_.takeFollowed();
-  const bool hidden = boxes.leaf(number) ? hidesObject(region, node.bounds, boxes.objects[node.first_object])
-                                         : hidesBox(region, node.bounds, kNoObject, {});
-  followed_.push_back(coarse(surfaces_.takeFollowed(), scene_.frame));
+  surfaces_.questions().takeFollowed();
+  const bool hidden = surfaces_.hides(number, region);
+  followed_.push_back(coarse(surfaces_.questions().takeFollowed(), scene_.frame));
   return hidden;
 }
 
@@ -225,31 +218,6 @@ void CellBaker::removeFusedBelow(std::uint32_t number, const CellBox& region) {
   }
 }
 
-bool CellBaker::hidesObject(const CellBox& region, const Box& bounds, ObjectId object) {
-  const RegionEffort effort{scene_.settings.narrowings, scene_.settings.divisions};
-  const std::span<const Box> several = scene_.object_boxes.of(object);
-  if (several.empty() || !areBoxesOf(several, bounds)) {
-    return hidesBox(region, bounds, object.value, effort);
-  }
-  if (hidesBox(region, bounds, object.value, {})) {
-    return true;
-  }
-  const bool hidden = std::all_of(several.begin(), several.end(), [&](const Box& box) {
-    return hidesBox(region, box, object.value, effort);
-  });
-  decided_by_ = WitnessKind::kBoxes;
-  return hidden;
-}
-
-bool CellBaker::hidesBox(const CellBox& region, const Box& box, std::uint32_t object,
-                         const RegionEffort& effort) {
-  const bool hidden =
-      box.wellFormed() && !intersects(region, box) &&
-      surfaces_.hides(region, {.box = {Vec3d(box.min), Vec3d(box.max)}, .object = object}, effort);
-  decided_by_ = surfaces_.decidedBy();
-  return hidden;
-}
-
 void CellBaker::recordConvex(std::uint32_t occluder, std::span<const ObjectRun> objects) {
   const ConvexOccluder& convex = scene_.occluders[occluder];
   HidingWitness witness{.kind = WitnessKind::kConvex, .occluder = convex.id.value, .object = convex.object};
@@ -257,9 +225,9 @@ void CellBaker::recordConvex(std::uint32_t occluder, std::span<const ObjectRun> 
 }
 
 void CellBaker::recordSurfaces(const ObjectRun& objects) {
-  HidingWitness witness{.kind = decided_by_};
-  if (decided_by_ == WitnessKind::kSurfaces) {
-    const FusedOcclusion::Proof& proof = surfaces_.proof();
+  HidingWitness witness{.kind = surfaces_.decidedBy()};
+  if (witness.kind == WitnessKind::kSurfaces) {
+    const FusedOcclusion::Proof& proof = surfaces_.questions().proof();
     witness.object = ObjectId(proof.object);
     witness.from = proof.from;
     witness.to = proof.to;
@@ -333,7 +301,7 @@ void CellBaker::hideByChosen(std::span<const Vec3d> corners) {
     const ConvexOccluder& occluder = scene_.occluders[i];
     if (!hidden_.contains(scene_.position_of[occluder.object.value]) &&
         separated(scene_.occluders, occluder, corners, scene_.settings.near_distance) &&
-        intersectOverCorners(i, samples)) {
+        samples_.hiddenFromAll(i, samples, common_)) {
       recordConvex(i, common_);
       hidden_.add(common_);
     }
@@ -376,20 +344,6 @@ bool CellBaker::hiddenByOne(std::span<const Vec3d> corners, std::uint32_t positi
                     scene_.shadow_tree.hides(shadow_, position);
            });
   });
-}
-
-// Fills common_ with the runs that this one occluder hides from all corners. The intersection over the
-// corners must be taken per occluder, and only then the union over all occluders: two occluders that hide an
-// object from some corners each may leave it visible from a point in between. Returns false if common_ is
-// empty.
-bool CellBaker::intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners) {
-  const std::span<const ObjectRun> first = samples_.hidden(*corners[0], occluder);
-  common_.assign(first.begin(), first.end());
-  for (std::size_t i = 1; i < corners.size() && !common_.empty(); ++i) {
-    intersect(common_, samples_.hidden(*corners[i], occluder), scratch_);
-    common_.swap(scratch_);
-  }
-  return !common_.empty();
 }
 
 std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets) {
@@ -449,7 +403,7 @@ double CellBaker::shareSeenFrom(const Vec3d& point, const Runs& seen) {
           random = random * 1664525u + 1013904223u;
           to[axis] += double{leaf.bounds.max[axis] - leaf.bounds.min[axis]} * (random >> 8) * 0x1p-24;
         }
-        if (surfaces_.isClear(point, to)) {
+        if (surfaces_.questions().isClear(point, to)) {
           clear += leaf.triangles;
           break;
         }

@@ -10,21 +10,13 @@
 
 #include "src/pvs/bake/bake_scene.h"
 #include "src/pvs/bake/cell_recall.h"
+#include "src/pvs/bake/closed_doors.h"
+#include "src/pvs/bake/node_occlusion.h"
 #include "src/pvs/bake/object_mask.h"
-#include "src/pvs/bake/region_occlusion.h"
 #include "src/pvs/bake/samples.h"
+#include "src/pvs/bake/seen_sets.h"
 
 namespace sightline::pvs {
-
-struct CellSets {
-  Runs whole;  // seen from anywhere in the cell
-  std::optional<CellPlane> plane;
-  Runs front, back;  // with a plane only: seen from its front, from its back
-};
-
-// Triangles compared with the budget: those of the side that sees more. Viewers between the sides do not
-// count, as they are there only briefly.
-std::uint64_t trianglesOf(const BakeScene& scene, const CellSets& sets);
 
 class CellBaker {
  public:
@@ -46,6 +38,10 @@ class CellBaker {
   bool tooLargeForItsOccluders(const OctreeCell& cell) const;
   // True if a larger search box would contain no further occluders.
   bool searchedAll(const OctreeCell& cell, double search_distance) const;
+
+  // Adds what closed doors hide of the finished sets of a cell: by surfaces, and by single convex occluders
+  // that intersect the cell grown by search_distance metres.
+  void closeDoors(const OctreeCell& cell, double search_distance, CellSets& sets);
 
   // Discards samples until they fit their limit; called between cells.
   void forgetOldest() { samples_.forgetOldest(); }
@@ -92,13 +88,9 @@ class CellBaker {
   void removeFusedBelow(std::uint32_t node, const CellBox& region);
   // Whether the node's box is hidden, by what an earlier bake found or by asking.
   bool surfacesHide(std::uint32_t node, const CellBox& region);
-  bool hidesObject(const CellBox& region, const Box& bounds, ObjectId object);
-  // object: FusedTarget::object
-  bool hidesBox(const CellBox& region, const Box& box, std::uint32_t object, const RegionEffort& effort);
   // An estimate of the part of these objects' triangles that a point sees, from lines of sight to some of
   // them.
   double shareSeenFrom(const Vec3d& point, const Runs& seen);
-  bool intersectOverCorners(std::uint32_t occluder, std::span<Sample* const> corners);
   std::uint64_t trianglesSeenFrom(const Vec3d& eye);
   // Whether trianglesSeenFrom is less than this, by what an earlier bake found or by asking.
   bool seesFewer(const Vec3d& eye, double triangles);
@@ -110,7 +102,8 @@ class CellBaker {
   const BakeScene& scene_;
   CellRecall recall_;
   SampleStore samples_;
-  RegionOcclusion surfaces_;
+  NodeOcclusion surfaces_;
+  ClosedDoors closed_doors_;
   // Scratch for the current cell.
   Choice choice_;
   std::vector<std::uint32_t> chosen_, along_;
@@ -125,7 +118,6 @@ class CellBaker {
   std::vector<HidingWitness> witnesses_;
   std::uint64_t cell_ = 1;  // cellNumber of the current cell
   WitnessPart part_ = WitnessPart::kWhole;
-  WitnessKind decided_by_ = WitnessKind::kSurfaces;  // how the last object was found hidden by surfaces
 };
 
 }  // namespace sightline::pvs

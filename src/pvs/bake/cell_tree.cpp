@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <set>
 #include <utility>
 
 #include "src/pvs/bake/run_code.h"
@@ -22,9 +23,8 @@ BakedCell leafOf(const OctreeCell& cell, const ViewerBounds& viewers, CellSets&&
   return leaf;
 }
 
-}  // namespace
-
-CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
+// What decide() does while all doors are open.
+CellOutcome decideOpen(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
   const BakeSettings& settings = scene.settings;
   const bool deepest = !scene.mayDivide(task.cell);
   const std::uint64_t work_before = baker.work();
@@ -39,7 +39,8 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
   for (;;) {
     const std::uint64_t triangles = trianglesOf(scene, sets);
     if (triangles <= settings.triangle_budget) {
-      return {.leaf = leafOf(task.cell, viewers, std::move(sets), StopReason::kBudgetMet)};
+      return {.leaf = leafOf(task.cell, viewers, std::move(sets), StopReason::kBudgetMet),
+              .search_distance = distance};
     }
     if (!deepest &&
         (baker.tooLargeForItsOccluders(task.cell) || baker.dividingHelps(task.cell, distance, sets))) {
@@ -55,9 +56,19 @@ CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& tas
     }
     if (!gained) {
       const StopReason reason = deepest ? StopReason::kMaxDepth : StopReason::kNothingGained;
-      return {.leaf = leafOf(task.cell, viewers, std::move(sets), reason)};
+      return {.leaf = leafOf(task.cell, viewers, std::move(sets), reason), .search_distance = distance};
     }
   }
+}
+
+}  // namespace
+
+CellOutcome decide(CellBaker& baker, const BakeScene& scene, const CellTask& task) {
+  CellOutcome outcome = decideOpen(baker, scene, task);
+  if (outcome.leaf && outcome.leaf->reason != StopReason::kOutside) {
+    baker.closeDoors(task.cell, outcome.search_distance, outcome.leaf->sets);
+  }
+  return outcome;
 }
 
 BakedCell bakeBelow(CellBaker& baker, const BakeScene& scene, const OctreeCell& place,
@@ -96,6 +107,39 @@ Counts countsOf(const BakeScene& scene, std::span<const BakedCell> children) {
   return counts;
 }
 
+// The set of one cell or of a side of it.
+struct SeenOf {
+  const Runs& seen;
+  const DoorRuns& doors;
+};
+
+// What doors hide from all of these cells of what is seen from any of them, `seen`.
+DoorRuns hiddenFromAll(std::span<const SeenOf> cells, const Runs& seen) {
+  std::set<std::uint32_t> groups;
+  for (const SeenOf& cell : cells) {
+    for (const HiddenByDoors& doors : cell.doors) {
+      groups.insert(doors.group);
+    }
+  }
+  DoorRuns all;
+  Runs left, of_cell;
+  for (const std::uint32_t group : groups) {
+    left.clear();
+    for (const SeenOf& cell : cells) {
+      const auto found =
+          std::ranges::find_if(cell.doors, [group](const auto& doors) { return doors.group == group; });
+      subtract(cell.seen, found == cell.doors.end() ? Runs() : found->hidden, of_cell);
+      add(of_cell, left);
+    }
+    HiddenByDoors doors{.group = group};
+    subtract(seen, left, doors.hidden);
+    if (!doors.hidden.empty()) {
+      all.push_back(std::move(doors));
+    }
+  }
+  return all;
+}
+
 // The union of the sets of the cells that count, or nothing if the cells are not all leaves or have different
 // planes.
 std::optional<CellSets> togetherOf(std::span<const BakedCell> cells, const Counts& counts) {
@@ -106,16 +150,27 @@ std::optional<CellSets> togetherOf(std::span<const BakedCell> cells, const Count
     }
     all.plane = cell.sets.plane ? cell.sets.plane : all.plane;
   }
+  std::vector<SeenOf> whole, front, back;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const BakedCell& cell = cells[i];
     if (!counts[i]) {
       continue;
     }
-    add(cell.sets.whole, all.whole);
-    if (all.plane) {
-      add(cell.sets.plane ? cell.sets.front : cell.sets.whole, all.front);
-      add(cell.sets.plane ? cell.sets.back : cell.sets.whole, all.back);
+    const CellSets& sets = cells[i].sets;
+    const SeenOf anywhere{sets.whole, sets.whole_doors};
+    whole.push_back(anywhere);
+    front.push_back(sets.plane ? SeenOf{sets.front, sets.front_doors} : anywhere);
+    back.push_back(sets.plane ? SeenOf{sets.back, sets.back_doors} : anywhere);
+  }
+  const auto uniteAll = [](std::span<const SeenOf> parts, Runs& seen, DoorRuns& doors) {
+    for (const SeenOf& part : parts) {
+      add(part.seen, seen);
     }
+    doors = hiddenFromAll(parts, seen);
+  };
+  uniteAll(whole, all.whole, all.whole_doors);
+  if (all.plane) {
+    uniteAll(front, all.front, all.front_doors);
+    uniteAll(back, all.back, all.back_doors);
   }
   return all;
 }
@@ -211,8 +266,31 @@ void mergeChildren(const BakeScene& scene, BakedCell& cell) {
 
 namespace {
 
-// First byte of an encoded cell; kPartly is added to that of a leaf with viewers in a part of its cell only.
-constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2, kPartly = 4;
+// First byte of an encoded cell. kPartly is added to that of a leaf with viewers in a part of its cell only,
+// and kDoors to that of a leaf of which doors hide something.
+constexpr std::uint8_t kInner = 0, kLeaf = 1, kLeafWithPlane = 2, kPartly = 4, kDoors = 8;
+
+void addDoors(const DoorRuns& doors, base::ByteWriter& bytes) {
+  bytes.add(static_cast<std::uint32_t>(doors.size()));
+  for (const HiddenByDoors& hidden : doors) {
+    bytes.add(hidden.group);
+    addRuns(hidden.hidden, bytes);
+  }
+}
+
+// False if the bytes are not what doors of the scene hide, by ascending group.
+bool readDoors(base::ByteReader& bytes, const BakeScene& scene, DoorRuns& doors) {
+  const auto object_count = static_cast<std::uint32_t>(scene.boxes.objects.size());
+  doors.resize(bytes.readCount<std::uint32_t>(2 * sizeof(std::uint32_t)));
+  for (std::size_t i = 0; i < doors.size(); ++i) {
+    doors[i].group = bytes.read<std::uint32_t>();
+    if ((i > 0 && doors[i].group <= doors[i - 1].group) || doors[i].group >= scene.doors.groups.size() ||
+        !readRuns(bytes, object_count, doors[i].hidden)) {
+      return false;
+    }
+  }
+  return bytes.ok();
+}
 
 }  // namespace
 
@@ -224,8 +302,11 @@ void write(const BakedCell& cell, base::ByteWriter& bytes) {
     }
     return;
   }
+  const CellSets& sets = cell.sets;
   const bool partly = cell.viewers != ViewerBounds{};
-  bytes.add(static_cast<std::uint8_t>((cell.sets.plane ? kLeafWithPlane : kLeaf) + (partly ? kPartly : 0)));
+  const bool doors = !sets.whole_doors.empty() || !sets.front_doors.empty() || !sets.back_doors.empty();
+  bytes.add(static_cast<std::uint8_t>((sets.plane ? kLeafWithPlane : kLeaf) + (partly ? kPartly : 0) +
+                                      (doors ? kDoors : 0)));
   bytes.add(static_cast<std::uint8_t>(cell.reason));
   if (partly) {
     bytes.addAll(std::span<const std::uint8_t>(cell.viewers.first));
@@ -239,6 +320,11 @@ void write(const BakedCell& cell, base::ByteWriter& bytes) {
     }
     addRuns(cell.sets.front, bytes);
     addRuns(cell.sets.back, bytes);
+  }
+  if (doors) {
+    write(sets.whole_doors, bytes);
+    write(sets.front_doors, bytes);
+    write(sets.back_doors, bytes);
   }
 }
 
@@ -257,18 +343,19 @@ bool readViewers(base::ByteReader& bytes, ViewerBounds& viewers) {
 
 }  // namespace
 
-std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, std::uint32_t object_count) {
+std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, const BakeScene& scene) {
+  const auto object_count = static_cast<std::uint32_t>(scene.boxes.objects.size());
   BakedCell cell;
   cell.level = static_cast<std::uint8_t>(level);
   const auto first = bytes.read<std::uint8_t>();
-  const bool partly = first > kPartly;
-  const int kind = partly ? first - kPartly : first;
+  const bool partly = (first & kPartly) != 0, doors = (first & kDoors) != 0;
+  const int kind = first & ~(kPartly | kDoors);
   if (!bytes.ok() || kind > kLeafWithPlane || level > kMaxOctreeDepth) {
     return std::nullopt;
   }
   if (kind == kInner) {
     for (std::uint32_t i = 0; i < 8; ++i) {
-      std::optional<BakedCell> child = readCell(bytes, level + 1, object_count);
+      std::optional<BakedCell> child = readCell(bytes, level + 1, scene);
       if (!child) {
         return std::nullopt;
       }
@@ -287,6 +374,12 @@ std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, 
     }
     cell.sets.plane = plane;
     good = readRuns(bytes, object_count, cell.sets.front) && readRuns(bytes, object_count, cell.sets.back);
+  }
+  if (good && doors) {
+    CellSets& sets = cell.sets;
+    for (DoorRuns* part : {&sets.whole_doors, &sets.front_doors, &sets.back_doors}) {
+      good = good && read(bytes, scene, *part);
+    }
   }
   return good && bytes.ok() ? std::optional(std::move(cell)) : std::nullopt;
 }

@@ -51,7 +51,7 @@ std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCel
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 
 void write(const BakedCell& cell, base::ByteWriter& bytes);
-// Returns nothing if the bytes are not a cell of this level in a tree of object_count objects.
-std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, std::uint32_t object_count);
+// Returns nothing if the bytes are not a cell of this level of the scene.
+std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, const BakeScene& scene);
 
 }  // namespace sightline::pvs

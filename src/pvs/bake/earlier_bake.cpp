@@ -97,6 +97,9 @@ std::vector<ObjectMark> objectMarks(const BakeScene& scene) {
   std::vector<std::uint64_t> occluders(marks.size(), 0);
   for (std::uint32_t i = 0; i < scene.occluders.size(); ++i) {
     const std::uint32_t object = scene.occluders[i].object.value;
+    if (scene.doors.isDoor(ObjectId(object))) {
+      continue;  // no answer depends on it
+    }
     // A sum, because their order depends on the other objects.
     occluders[object] += base::mixBits(contentOf(scene.occluders, scene.occluders[i]));
     marks[object].occludes = true;

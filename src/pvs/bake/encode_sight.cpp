@@ -119,6 +119,7 @@ SightView viewOf(const BakedVisibility& baked, const EncodedChunks& encoded) {
   view.octree = baked.octree.view();
   view.set_chunks = encoded.set_chunks;
   view.sets = encoded.sets;
+  view.doors = baked.doors.view();
   view.chunks = encoded.chunks;
   view.databases = encoded.databases;
   view.payload = encoded.payload;

@@ -12,8 +12,13 @@ namespace {
 
 class Flattener {
  public:
-  Flattener(const BoxTreeView& boxes, VisibilityOctree& octree, NodeSets& sets)
-      : boxes_(boxes), octree_(octree), sets_(sets) {}
+  Flattener(const BakeScene& scene, BakedVisibility& baked)
+      : scene_(scene), octree_(baked.octree), sets_(baked.sets), doors_(baked.doors) {
+    for (const std::vector<ObjectId>& group : scene.doors.groups) {
+      doors_.doors.insert(doors_.doors.end(), group.begin(), group.end());
+      doors_.group_ends.push_back(static_cast<std::uint32_t>(doors_.doors.size()));
+    }
+  }
 
   // Writes the cell to octree.nodes[node], which must exist.
   void add(const BakedCell& cell, std::uint32_t node) {
@@ -33,11 +38,11 @@ class Flattener {
  private:
   void addLeaf(const BakedCell& cell) {
     OctreeLeaf leaf;
-    leaf.set = setOf(cell.sets.whole);
+    leaf.set = setOf(cell.sets.whole, cell.sets.whole_doors);
     if (cell.sets.plane) {
       leaf.plane = planeOf(*cell.sets.plane);
-      leaf.front_set = setOf(cell.sets.front);
-      leaf.back_set = setOf(cell.sets.back);
+      leaf.front_set = setOf(cell.sets.front, cell.sets.front_doors);
+      leaf.back_set = setOf(cell.sets.back, cell.sets.back_doors);
     }
     octree_.leaves.push_back(leaf);
     octree_.viewers.push_back(cell.viewers);
@@ -45,13 +50,45 @@ class Flattener {
     octree_.reasons.push_back(static_cast<std::uint8_t>(cell.reason));
   }
 
-  std::uint32_t setOf(const Runs& runs) {
+  // The set of what is seen while all doors are open, with what doors hide of it.
+  std::uint32_t setOf(const Runs& seen, const DoorRuns& doors) {
+    hidden_.clear();
+    for (const HiddenByDoors& all : doors) {
+      // What a group within this one hides is stored with that.
+      const std::vector<ObjectId>& members = scene_.doors.groups[all.group];
+      Runs own = without(all.hidden, scene_.door_runs);
+      for (const HiddenByDoors& part : doors) {
+        const std::vector<ObjectId>& of_part = scene_.doors.groups[part.group];
+        if (part.group != all.group &&
+            std::includes(members.begin(), members.end(), of_part.begin(), of_part.end())) {
+          own = without(own, part.hidden);
+        }
+      }
+      if (!own.empty()) {
+        hidden_.push_back({all.group, numberOf(own, {})});
+      }
+    }
+    Runs with_doors;
+    if (!seen.empty()) {  // otherwise there are no viewers
+      unite(seen, scene_.door_runs, with_doors);
+    }
+    return numberOf(with_doors, hidden_);
+  }
+
+  static Runs without(const Runs& runs, const Runs& left_out) {
+    Runs left;
+    subtract(runs, left_out, left);
+    return left;
+  }
+
+  std::uint32_t numberOf(const Runs& runs, std::span<const DoorSet> hidden) {
     nodes_.clear();
-    appendNodes(boxes_, runs, nodes_);
+    appendNodes(scene_.boxes.view(), runs, nodes_);
     const std::uint64_t hash = pvs::checksumOf(std::as_bytes(std::span(nodes_)));
     const auto [first, last] = sets_by_hash_.equal_range(hash);
     for (auto known = first; known != last; ++known) {
-      if (std::ranges::equal(sets_[known->second], nodes_)) {
+      if (std::ranges::equal(sets_[known->second], nodes_) &&
+          std::ranges::equal(doors_.view().hiddenOf(known->second), hidden)) {
         return known->second;
       }
     }
@@ -59,6 +96,10 @@ class Flattener {
     sets_.nodes.insert(sets_.nodes.end(), nodes_.begin(), nodes_.end());
     sets_.first.push_back(sets_.nodes.size());
     sets_by_hash_.emplace(hash, set);
+    if (!doors_.doors.empty()) {
+      doors_.hidden.insert(doors_.hidden.end(), hidden.begin(), hidden.end());
+      doors_.hidden_ends.push_back(static_cast<std::uint32_t>(doors_.hidden.size()));
+    }
     return set;
   }
 
@@ -71,21 +112,23 @@ class Flattener {
     return place->second;
   }
 
-  BoxTreeView boxes_;
+  const BakeScene& scene_;
   VisibilityOctree& octree_;
   NodeSets& sets_;
+  BakedDoors& doors_;
   std::unordered_multimap<std::uint64_t, std::uint32_t> sets_by_hash_;
   std::map<std::array<double, 5>, std::uint32_t> planes_;
   std::vector<std::uint32_t> nodes_;
+  std::vector<DoorSet> hidden_;
 };
 
 }  // namespace
 
-void flatten(const BakedCell& root, const BoxTreeView& boxes, VisibilityOctree& octree, NodeSets& sets) {
-  octree.nodes.assign(1, 0);
-  Flattener(boxes, octree, sets).add(root, 0);
-  if (std::ranges::all_of(octree.viewers, [](const ViewerBounds& v) { return v == ViewerBounds{}; })) {
-    octree.viewers.clear();
+void flatten(const BakedCell& root, const BakeScene& scene, BakedVisibility& baked) {
+  baked.octree.nodes.assign(1, 0);
+  Flattener(scene, baked).add(root, 0);
+  if (std::ranges::all_of(baked.octree.viewers, [](const ViewerBounds& v) { return v == ViewerBounds{}; })) {
+    baked.octree.viewers.clear();
   }
 }
 

@@ -32,6 +32,26 @@ void unite(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out
   }
 }
 
+void subtract(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out) {
+  out.clear();
+  std::size_t j = 0;
+  for (const ObjectRun& run : a) {
+    std::uint32_t begin = run.begin;
+    while (j < b.size() && b[j].end <= begin) {
+      ++j;
+    }
+    for (std::size_t k = j; k < b.size() && b[k].begin < run.end; ++k) {
+      if (begin < b[k].begin) {
+        out.push_back({begin, b[k].begin});
+      }
+      begin = b[k].end;
+    }
+    if (begin < run.end) {
+      out.push_back({begin, run.end});
+    }
+  }
+}
+
 void appendNodes(const BoxTreeView& tree, std::span<const ObjectRun> runs,
                  std::vector<std::uint32_t>& nodes) {
   std::size_t run = 0;

@@ -23,6 +23,8 @@ using Runs = std::vector<ObjectRun>;
 void intersect(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
 // out: the union. It must not alias a or b.
 void unite(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
+// out: what of a is not in b. It must not alias a or b.
+void subtract(std::span<const ObjectRun> a, std::span<const ObjectRun> b, Runs& out);
 
 // Appends, in ascending order, the nodes whose objects are all in the set while their parent's are not.
 void appendNodes(const BoxTreeView& tree, std::span<const ObjectRun> runs, std::vector<std::uint32_t>& nodes);

@@ -81,6 +81,18 @@ std::span<const ObjectRun> SampleStore::hidden(Sample& sample, std::uint32_t occ
   return *sample.find(occluder);
 }
 
+// The intersection over the corners must be taken per occluder, and only then the union over all occluders:
+// two occluders that hide an object from some corners each may leave it visible from a point in between.
+bool SampleStore::hiddenFromAll(std::uint32_t occluder, std::span<Sample* const> corners, Runs& common) {
+  const std::span<const ObjectRun> first = hidden(*corners[0], occluder);
+  common.assign(first.begin(), first.end());
+  for (std::size_t i = 1; i < corners.size() && !common.empty(); ++i) {
+    intersect(common, hidden(*corners[i], occluder), both_);
+    common.swap(both_);
+  }
+  return !common.empty();
+}
+
 void SampleStore::forgetOldest() {
   while (bytes_ > max_bytes_ && !samples_.empty()) {
     const Sample& oldest = samples_.back();

@@ -54,6 +54,9 @@ class SampleStore {
   Sample& at(const Vec3d& eye);
   // The runs that the occluder hides from there. Valid until the next call for this sample.
   std::span<const ObjectRun> hidden(Sample& sample, std::uint32_t occluder);
+  // Fills `common` with the runs that this one occluder hides from all corners. Returns false if there are
+  // none.
+  bool hiddenFromAll(std::uint32_t occluder, std::span<Sample* const> corners, Runs& common);
 
   // Discards the least recently used samples until they fit the limit.
   void forgetOldest();
@@ -76,7 +79,7 @@ class SampleStore {
   std::list<Sample> samples_;  // most recently used first
   std::unordered_map<Key, std::list<Sample>::iterator, KeyHash> places_;
   Shadow shadow_;
-  Runs scratch_;
+  Runs scratch_, both_;
   BakeStats stats_;
 };
 

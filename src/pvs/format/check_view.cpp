@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "src/pvs/format/set_code.h"
@@ -78,6 +80,54 @@ Status checkDatabases(const SightView& view) {
   return next_chunk == view.chunks.size() ? Status(Success{}) : Status(Error{"a chunk belongs to nothing"});
 }
 
+// True if the rows that end there are one after the other and are all of so many items.
+bool soundEnds(std::span<const std::uint32_t> ends, std::size_t items) {
+  return std::is_sorted(ends.begin(), ends.end()) && (ends.empty() ? 0 : ends.back()) == items;
+}
+
+// True if the items of each row are ascending, each once, by before(a, b).
+template <typename Item, typename Before>
+bool ascendingRows(std::span<const Item> items, std::span<const std::uint32_t> ends, Before&& before) {
+  std::size_t begin = 0;
+  for (const std::uint32_t end : ends) {
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      if (!before(items[i - 1], items[i])) {
+        return false;
+      }
+    }
+    begin = end;
+  }
+  return true;
+}
+
+Status checkDoors(const SightView& view) {
+  const DoorsView& doors = view.doors;
+  const std::size_t sets = doors.doors.empty() ? 0 : view.sets.size();
+  // A group without doors would count as closed always.
+  if (std::adjacent_find(doors.group_ends.begin(), doors.group_ends.end()) != doors.group_ends.end() ||
+      (!doors.group_ends.empty() && doors.group_ends.front() == 0)) {
+    return Error{"a group of doors has no door"};
+  }
+  if (!soundEnds(doors.group_ends, doors.doors.size()) ||
+      !soundEnds(doors.hidden_ends, doors.hidden.size()) || doors.hidden_ends.size() != sets) {
+    return Error{"its doors, or what they hide, are not one after the other"};
+  }
+  const auto byGroup = [](const DoorSet& a, const DoorSet& b) { return a.group < b.group; };
+  if (!ascendingRows(doors.doors, doors.group_ends, std::less<>()) ||
+      !ascendingRows(doors.hidden, doors.hidden_ends, byGroup)) {
+    return Error{"its doors, or what they hide, are not in order"};
+  }
+  const auto isObject = [&](ObjectId door) { return door.value < view.boxes.objects.size(); };
+  const auto isThere = [&](const DoorSet& hidden) {
+    return hidden.group < doors.groupCount() && hidden.hidden < view.sets.size();
+  };
+  if (!std::all_of(doors.doors.begin(), doors.doors.end(), isObject) ||
+      !std::all_of(doors.hidden.begin(), doors.hidden.end(), isThere)) {
+    return Error{"a door, or what it hides, is not there"};
+  }
+  return Success{};
+}
+
 }  // namespace
 
 Status checkView(const SightView& view) {
@@ -97,6 +147,9 @@ Status checkView(const SightView& view) {
     return status;
   }
   if (Status status = checkSets(view); !status) {
+    return status;
+  }
+  if (Status status = checkDoors(view); !status) {
     return status;
   }
   return checkDatabases(view);

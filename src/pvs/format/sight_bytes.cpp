@@ -25,7 +25,8 @@ constexpr bool kSameLayout =
 static_assert(kSameLayout<sight::BoxNode, BoxNode> && kSameLayout<sight::OctreeLeaf, OctreeLeaf> &&
               kSameLayout<sight::CellPlane, CellPlane> && kSameLayout<sight::Chunk, Chunk> &&
               kSameLayout<sight::ViewerBounds, ViewerBounds> && kSameLayout<sight::SetPlace, SetPlace> &&
-              kSameLayout<sight::Double3, Vec3d> && kSameLayout<std::uint32_t, ObjectId>);
+              kSameLayout<sight::Double3, Vec3d> && kSameLayout<std::uint32_t, ObjectId> &&
+              kSameLayout<sight::DoorSet, DoorSet>);
 
 template <typename Stored, typename Ours>
 auto writeArray(flatbuffers::FlatBufferBuilder& builder, std::span<const Ours> values) {
@@ -36,9 +37,21 @@ auto writeArray(flatbuffers::FlatBufferBuilder& builder, std::span<const Ours> v
   }
 }
 
-// Returns false if the vector is not aligned for its elements. An empty one may be anywhere.
+// The same for an array that is left out of the file if it is empty.
+template <typename Stored, typename Ours>
+auto writeOptionalArray(flatbuffers::FlatBufferBuilder& builder, std::span<const Ours> values) {
+  using Vector = decltype(writeArray<Stored>(builder, values));
+  return values.empty() ? Vector() : writeArray<Stored>(builder, values);
+}
+
+// Returns false if the vector is not aligned for its elements. One that is empty or left out may be
+// anywhere.
 template <typename Ours, typename Vector>
 bool readArray(const Vector* stored, std::span<const Ours>& values) {
+  if (stored == nullptr) {
+    values = {};
+    return true;
+  }
   const auto* data = reinterpret_cast<const Ours*>(stored->Data());
   values = stored->size() == 0 ? std::span<const Ours>() : std::span<const Ours>(data, stored->size());
   return values.empty() || reinterpret_cast<std::uintptr_t>(data) % alignof(Ours) == 0;
@@ -56,7 +69,8 @@ std::size_t estimatedBytes(const SightView& view) {
   return 4096 + view.settings.size() + view.boxes.nodes.size_bytes() + view.boxes.objects.size_bytes() +
          view.octree.nodes.size_bytes() + view.octree.leaves.size_bytes() + 2 * view.octree.leaves.size() +
          view.octree.planes.size_bytes() + view.octree.viewers.size_bytes() + view.sets.size_bytes() +
-         view.chunks.size_bytes();
+         view.chunks.size_bytes() + view.doors.doors.size_bytes() + view.doors.group_ends.size_bytes() +
+         view.doors.hidden.size_bytes() + view.doors.hidden_ends.size_bytes();
 }
 
 auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
@@ -71,6 +85,10 @@ auto writeDatabases(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
 
 // FlatBuffers puts what is created first at the end of the structure.
 void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& view) {
+  const auto hidden_ends = writeOptionalArray<std::uint32_t>(builder, view.doors.hidden_ends);
+  const auto hidden = writeOptionalArray<sight::DoorSet>(builder, view.doors.hidden);
+  const auto group_ends = writeOptionalArray<std::uint32_t>(builder, view.doors.group_ends);
+  const auto doors = writeOptionalArray<std::uint32_t>(builder, view.doors.doors);
   const auto chunks = writeArray<sight::Chunk>(builder, view.chunks);
   const auto sets = writeArray<sight::SetPlace>(builder, view.sets);
   const auto objects = writeArray<std::uint32_t>(builder, view.boxes.objects);
@@ -93,7 +111,7 @@ void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   const sight::Extent extent(stored(view.octree.min), stored(view.octree.max));
   builder.Finish(sight::CreateFile(builder, kVersion, &seal, view.payload.size(), &scene, record, boxes,
                                    objects, &extent, nodes, leaves, depths, reasons, planes, view.set_chunks,
-                                   sets, chunks, databases, viewers),
+                                   sets, chunks, databases, viewers, doors, group_ends, hidden, hidden_ends),
                  sight::FileIdentifier());
 }
 
@@ -200,7 +218,12 @@ bool readArrays(const sight::File& file, SightView& view) {
          readArray(file.depths(), octree.depths) && readArray(file.reasons(), octree.reasons) &&
          readArray(file.planes(), octree.planes) &&
          (file.viewers() == nullptr || readArray(file.viewers(), octree.viewers)) &&
-         readArray(file.sets(), view.sets) && readArray(file.chunks(), view.chunks);
+         readArray(file.sets(), view.sets) && readArray(file.chunks(), view.chunks) &&
+
+         readArray(file.doors(), view.doors.doors) &&
+         readArray(file.door_group_ends(), view.doors.group_ends) &&
+         readArray(file.door_hidden(), view.doors.hidden) &&
+         readArray(file.door_hidden_ends(), view.doors.hidden_ends);
 }
 
 // Returns false if a part is not aligned for its elements.

@@ -11,6 +11,7 @@
 
 #include "sightline/base/result.h"
 #include "sightline/hierarchy/box_tree.h"
+#include "sightline/pvs/format/doors.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "sightline/pvs/format/visibility_octree.h"
 
@@ -57,6 +58,7 @@ struct SightView {
   OctreeView octree;
   std::uint32_t set_chunks = 0;  // number of chunks of sets, which come first
   std::span<const SetPlace> sets;
+  DoorsView doors;
   std::span<const Chunk> chunks;  // chunks of sets, then those of databases in their order
   std::vector<DatabaseEntry> databases;
   std::span<const std::byte> payload;

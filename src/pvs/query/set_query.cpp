@@ -1,6 +1,8 @@
 #include "sightline/pvs/query/set_query.h"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,8 @@ using pvs::ChunkDecoder;
 using pvs::SetCache;
 
 constexpr std::array<std::uint32_t, 1> kRoot{0};
+// Sets of a file have smaller numbers.
+constexpr std::uint32_t kFirstLeftId = 0x80000000u;
 
 VisibleSet everything() {
   return {VisibleSet::kEverything, kRoot};
@@ -31,6 +35,28 @@ std::uint32_t setOf(const OctreeView& octree, const OctreeLeaf& leaf, const Vec3
   return side == CellSide::kFront ? leaf.front_set : side == CellSide::kBack ? leaf.back_set : leaf.set;
 }
 
+// Appends the nodes that hold all objects of a set but those below the hidden nodes. set: ascending, none
+// below another. hidden: ascending. ends: BoxNode::end of each node.
+void appendLeft(std::span<const std::uint32_t> set, std::span<const std::uint32_t> hidden,
+                std::span<const std::uint32_t> ends, std::vector<std::uint32_t>& left) {
+  std::size_t h = 0;
+  for (const std::uint32_t top : set) {
+    for (std::uint32_t node = top; node < ends[top];) {
+      while (h < hidden.size() && ends[hidden[h]] <= node) {
+        ++h;
+      }
+      if (h < hidden.size() && hidden[h] <= node) {
+        node = ends[node];  // it is hidden, or below what is
+      } else if (h < hidden.size() && hidden[h] < ends[node]) {
+        ++node;  // something below it is hidden
+      } else {
+        left.push_back(node);
+        node = ends[node];
+      }
+    }
+  }
+}
+
 }  // namespace
 
 struct SetQuery::Impl {
@@ -39,11 +65,17 @@ struct SetQuery::Impl {
         octree(file.octree()),
         near_distance(file.record().near_distance),
         finder(octree),
-        cache(file.setCount(), settings.cache_bytes) {}
+        cache(file.setCount(), settings.cache_bytes),
+        is_closed(file.doors().groupCount(), 0) {
+    closed.reserve(file.doors().doors.size());
+  }
 
+  // The nodes of a set, decoded or looked up; nothing if its chunk is corrupt. Valid until the next call.
+  std::optional<std::span<const std::uint32_t>> nodesOf(const pvs::SightView& view, std::uint32_t set);
   // Decodes or looks up a set other than the last one.
   VisibleSet fetch(const pvs::SightView& view, std::uint32_t set);
-  VisibleSet remember(std::uint32_t set, std::span<const std::uint32_t> nodes) { return last = {set, nodes}; }
+  // The set without what closed doors hide of it.
+  VisibleSet withoutHidden(const pvs::SightView& view, std::uint32_t set);
 
   SightFile file;
   OctreeView octree;
@@ -54,22 +86,31 @@ struct SetQuery::Impl {
   SetCache cache;
   ChunkDecoder decoder;
   std::vector<std::uint32_t> decoded;  // scratch
+  // Doors.
+  std::vector<ObjectId> closed;         // ascending
+  std::vector<std::uint8_t> is_closed;  // by group
+  bool any_closed = false;
+  std::optional<std::uint32_t> left_of;  // the set that `left` was made from, for the doors of now
+  VisibleSet left;                       // of left_nodes, or of the cache
+  std::vector<std::uint32_t> left_nodes, hidden_nodes;
+  std::uint32_t next_id = kFirstLeftId;  // of a set that is no set of the file
   SetQueryStats stats;
 };
 
-VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) {
+std::optional<std::span<const std::uint32_t>> SetQuery::Impl::nodesOf(const pvs::SightView& view,
+                                                                      std::uint32_t set) {
   switch (cache.state(set)) {
     case SetCache::State::kCached:
-      return remember(set, cache.use(set));
+      return cache.use(set);
     case SetCache::State::kMissing: {
       decoded.clear();
       const bool sound = decoder.readSet(view, set, decoded);
       stats.chunk_bytes = decoder.bytesRead();
       if (sound) {
         ++stats.decoded;
-        remember(set, cache.insert(set, decoded));
+        const std::span<const std::uint32_t> nodes = cache.insert(set, decoded);
         stats.cached_bytes = cache.bytes();
-        return last;
+        return nodes;
       }
       cache.markBroken(set);
       break;
@@ -77,8 +118,45 @@ VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) 
     case SetCache::State::kBroken:
       break;
   }
+  return std::nullopt;
+}
+
+VisibleSet SetQuery::Impl::fetch(const pvs::SightView& view, std::uint32_t set) {
+  if (const auto nodes = nodesOf(view, set)) {
+    return last = {set, *nodes};
+  }
   ++stats.broken;
   return everything();
+}
+
+VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32_t set) {
+  if (left_of == set) {
+    return left;
+  }
+  left_of.reset();
+  hidden_nodes.clear();
+  for (const DoorSet& door : view.doors.hiddenOf(set)) {
+    if (is_closed[door.group] == 0) {
+      continue;
+    }
+    // What cannot be decoded counts as seen.
+    if (const auto nodes = nodesOf(view, door.hidden)) {
+      hidden_nodes.insert(hidden_nodes.end(), nodes->begin(), nodes->end());
+    }
+  }
+  // The set comes last, so that it stays in the cache as the last one.
+  const VisibleSet open = fetch(view, set);
+  if (open.id == VisibleSet::kEverything) {
+    return open;
+  }
+  left_of = set;
+  if (hidden_nodes.empty() || next_id == VisibleSet::kEverything) {
+    return left = open;  // or there are no more numbers for sets
+  }
+  std::sort(hidden_nodes.begin(), hidden_nodes.end());
+  left_nodes.clear();
+  appendLeft(open.nodes, hidden_nodes, view.ends, left_nodes);
+  return left = {next_id++, left_nodes};
 }
 
 SetQuery::SetQuery(SightFile file, const SetQuerySettings& settings)
@@ -107,7 +185,25 @@ VisibleSet SetQuery::find(const Vec3d& eye, double near_distance) {
     return everything();
   }
   const std::uint32_t set = setOf(query.octree, query.octree.leaves[leaf], eye);
+  if (query.any_closed) {
+    return query.withoutHidden(query.file.data_->view, set);
+  }
   return set == query.last.id ? query.last : query.fetch(query.file.data_->view, set);
+}
+
+void SetQuery::setClosedDoors(std::span<const ObjectId> doors) {
+  Impl& query = *impl_;
+  query.closed.assign(doors.begin(), doors.end());
+  std::sort(query.closed.begin(), query.closed.end());
+  const DoorsView all = query.file.doors();
+  query.any_closed = false;
+  for (std::uint32_t group = 0; group < all.groupCount(); ++group) {
+    const std::uint8_t now = isClosed(all, group, query.closed) ? 1 : 0;
+    if (std::exchange(query.is_closed[group], now) != now) {
+      query.left_of.reset();
+    }
+    query.any_closed |= now != 0;
+  }
 }
 
 CellPlace SetQuery::locate(const Vec3d& eye) {

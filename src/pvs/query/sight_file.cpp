@@ -123,6 +123,10 @@ std::uint32_t SightFile::setCount() const {
   return static_cast<std::uint32_t>(data_->view.sets.size());
 }
 
+DoorsView SightFile::doors() const {
+  return data_->view.doors;
+}
+
 Status SightFile::matches(const SceneId& other) const {
   const SceneId& own = scene();
   if (own == other) {
@@ -203,6 +207,10 @@ std::vector<SightFile::Section> SightFile::sections() const {
                             view.octree.planes.size_bytes() + view.octree.viewers.size_bytes()),
       inPlace("index of sets", view.sets.size_bytes() + view.chunks.size_bytes()),
       sectionOf("sets", view.chunks.first(view.set_chunks))};
+  if (const DoorsView& doors = view.doors; doors.groupCount() > 0) {
+    sections.push_back(inPlace("doors", doors.doors.size_bytes() + doors.group_ends.size_bytes() +
+                                            doors.hidden.size_bytes() + doors.hidden_ends.size_bytes()));
+  }
   for (const DatabaseEntry& entry : view.databases) {
     sections.push_back(
         sectionOf(std::string(entry.name), view.chunks.subspan(entry.first_chunk, entry.chunk_count)));

@@ -25,6 +25,7 @@
 #include "tools/sightline/command_line/threads.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/info_sight.h"
+#include "tools/sightline/input/doors.h"
 #include "tools/sightline/input/load.h"
 
 namespace sightline::tool {
@@ -166,11 +167,24 @@ Result<Planned> planBake(const BakeOptions& options) {
   if (!scene) {
     return scene.error();
   }
+  Result<std::vector<std::vector<ObjectId>>> doors = doorsOf(options.doors, *scene);
+  if (!doors) {
+    return doors.error();
+  }
   const Threads threads(options.common.threads);
   const CrackClosing closing = closeCracksOf(*scene, options.crack_width, threads.parallelFor());
   const double load_us = watch.lap();
+  std::optional<Scene> walked;  // without doors, if there are any: viewers walk through open ones
+  if (!doors->empty()) {
+    walked = *scene;
+    for (const std::vector<ObjectId>& group : *doors) {
+      for (const ObjectId door : group) {
+        walked->objects[door.value].index_count = 0;
+      }
+    }
+  }
   Result<ViewerSpace> viewers =
-      findViewers(options.viewers, options.common.scene, *scene, threads.parallelFor());
+      findViewers(options.viewers, options.common.scene, walked ? *walked : *scene, threads.parallelFor());
   if (!viewers) {
     return viewers.error();
   }
@@ -185,6 +199,7 @@ Result<Planned> planBake(const BakeOptions& options) {
     }
   }
   BakeSettings settings = bakeSettings(options, *scene, *viewers);
+  settings.doors = std::move(*doors);
   settings.box_margin = closing.margin;
   const OccluderSet occluders = findOccluders(scene->view(), {.area_fraction = 1.0}, threads.parallelFor());
   Result<Bake> bake = Bake::plan(scene->view(), occluders, settings, threads.parallelFor());
@@ -229,9 +244,16 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
       dump(settingsJson(planned.bake, planned.viewers, planned.scene.origin, planned.cracks));
   Stopwatch watch;
   const Threads threads(options.common.threads);
-  baked->databases =
-      buildDatabases(planned.scene, {*databaseNames(options), options.viewpoints, planned.viewpoints},
-                     threads.parallelFor());
+  std::optional<Scene> open;  // with all doors open, if there are any
+  if (!baked->doors.doors.empty()) {
+    open = planned.scene;
+    for (const ObjectId door : baked->doors.doors) {
+      open->objects[door.value].mark = OccluderMark::kNever;
+    }
+  }
+  baked->databases = buildDatabases(open ? *open : planned.scene,
+                                    {*databaseNames(options), options.viewpoints, planned.viewpoints},
+                                    threads.parallelFor());
   report.times.databases = watch.lap();
   const SignalGuard guard;  // from here on finishing is faster than stopping
   if (const Status ok = writeSight(options.output, *baked); !ok) {

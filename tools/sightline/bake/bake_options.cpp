@@ -78,6 +78,12 @@ void addBakeOptions(CLI::App& command, BakeOptions& options) {
                   "with surfaces, an object is hidden if each of so many boxes around its triangles is")
       ->check(CLI::Range(1u, kMaxObjectBoxes))
       ->capture_default_str();
+  command
+      .add_option(
+          "--doors", options.doors,
+          "objects that hide only while they are closed, by number or by name, where * stands for any text "
+          "(several: a,b,c); of a+b, such as two that lead into one room, is stored what they hide together")
+      ->check(isNotEmpty());
   addViewerOptions(command, options.viewers);
   addDecimalOption(command, "--search-distance", settings.search_distance, 0.0, kMax,
                    "occluders are looked for within so many metres at first; 0: chosen");
@@ -201,6 +207,17 @@ Json settingsJson(const Bake& bake, const ViewerSpace& viewers, const Vec3d& ori
                {"origin", io::pointJson(origin)}};
   if (settings.byte_budget > 0) {
     json["byte_budget"] = settings.byte_budget;
+  }
+  if (!settings.doors.empty()) {
+    Json doors = Json::array();
+    for (const std::vector<ObjectId>& group : settings.doors) {
+      Json numbers = Json::array();
+      for (const ObjectId door : group) {
+        numbers.push_back(door.value);
+      }
+      doors.push_back(numbers);
+    }
+    json["doors"] = doors;
   }
   addCracks(json, cracks);
   return json;

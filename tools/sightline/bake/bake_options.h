@@ -24,6 +24,7 @@ struct BakeOptions {
   BakeSettings settings{};   // complete except for what depends on the scene or the threads:
   double crack_width = 0.0;  // metres
   std::string occlusion = "convex";
+  std::string doors;  // see doorsOf; empty: none
   ViewerOptions viewers;
   std::uint32_t sample_mib = 1024;
   std::string databases;       // names, separated by commas
@@ -45,7 +46,7 @@ Result<std::vector<std::string>> databaseNames(const BakeOptions& options);
 // Errors that do not depend on the scene.
 Status checkOptions(const BakeOptions& options);
 
-// The settings for a scene. Precondition: checkOptions() succeeded.
+// The settings for a scene, without its doors. Precondition: checkOptions() succeeded.
 BakeSettings bakeSettings(const BakeOptions& options, const Scene& scene, const ViewerSpace& viewers);
 
 // The text of BakeRecord::settings: everything that the parts depend on, the scene's origin (so that queries

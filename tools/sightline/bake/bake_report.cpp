@@ -66,6 +66,7 @@ std::string bakeText(const BakeReport& report, const std::string& name, const Si
   }
   text += factsText(facts);
   text += fmt::format("sets          {} different ones\n", file.setCount());
+  text += doorsText(file);
   text += fmt::format(
       "time          load {:.2f} s, plan {:.2f} s, bake {:.2f} s, databases {:.2f} s, write {:.2f} s\n",
       times.load * 1e-6, times.plan * 1e-6, times.bake * 1e-6, times.databases * 1e-6, times.write * 1e-6);

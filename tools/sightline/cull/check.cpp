@@ -16,6 +16,7 @@
 #include "tools/sightline/command_line/output_files.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/claim_checker.h"
+#include "tools/sightline/input/doors.h"
 #include "tools/sightline/input/load.h"
 
 namespace sightline::tool {
@@ -27,7 +28,7 @@ constexpr std::array<std::string_view, kCheckRows> kRowNames{"convex",  "surface
 
 struct CheckOptions {
   CommonOptions common;
-  std::string file, witnesses;
+  std::string file, witnesses, closed;
   double crack_width = 0.0;
   std::uint32_t rays = 16, seed = 1;
 };
@@ -127,13 +128,17 @@ Result<ExitCode> runCheck(const CheckOptions& options) {
   if (!baked) {
     return baked.error();
   }
+  const Result<std::vector<ObjectId>> closed = closeDoors(options.closed, options.file, *baked, *scene);
+  if (!closed) {
+    return closed.error();
+  }
   const Result<Witnesses> witnesses = loadWitnesses(options.witnesses, **baked);
   if (!witnesses) {
     return witnesses.error();
   }
-  const Result<CheckReport> report =
-      checkClaims(**baked, *scene, witnesses->all, options.witnesses,
-                  {.rays = options.rays, .seed = options.seed, .threads = options.common.threads});
+  const Result<CheckReport> report = checkClaims(
+      **baked, *scene, witnesses->all, options.witnesses,
+      {.rays = options.rays, .seed = options.seed, .threads = options.common.threads, .closed = *closed});
   if (!report) {
     return report.error();
   }
@@ -162,6 +167,7 @@ void addCheck(CLI::App& app, Command& chosen) {
       ->add_option("--witnesses", options->witnesses,
                    "what `sightline bake --witnesses` wrote with it (default: proofs are found without)")
       ->type_name(kFileType);
+  addClosedOption(*command, options->closed);
   addCrackWidthOption(*command, options->crack_width);
   command
       ->add_option("--rays", options->rays,
@@ -174,8 +180,9 @@ void addCheck(CLI::App& app, Command& chosen) {
   command->footer(
       "Every pair of a cell and an object that is not in its set is a claim. It is proved by the scene's "
       "triangles alone: one closed convex body or one surface hides the object's box. Proofs share no code "
-      "with the bake. What is not proved is tried by lines of sight, which prove nothing. Exit code 1: a "
-      "claim is contradicted; 2: a witness is false, or a file is damaged or of another scene.\n"
+      "with the bake. What is not proved is tried by lines of sight, which prove nothing. Of doors, what is "
+      "checked holds while exactly those of --closed are closed; what they hide has no witnesses. Exit code "
+      "1: a claim is contradicted; 2: a witness is false, or a file is damaged or of another scene.\n"
       "Examples:\n"
       "  sightline bake city.glb -o city.sight --witnesses city.witnesses\n"
       "  sightline check city.sight city.glb --witnesses city.witnesses --threads 8");

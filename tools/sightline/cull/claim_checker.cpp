@@ -142,7 +142,7 @@ class Checker {
   }
 
   Status addPart(std::uint32_t leaf, CellPart part) {
-    if (const Status ok = readVisible(baked_, leaf, part, is_visible_); !ok) {
+    if (const Status ok = readVisible(baked_, leaf, part, settings_.closed, is_visible_); !ok) {
       return ok;
     }
     hidden_.clear();

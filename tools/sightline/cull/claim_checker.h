@@ -41,6 +41,8 @@ struct ClaimCheckSettings {
   std::uint32_t rays = 16;  // for each claim that is not proved, at most
   std::uint32_t seed = 1;   // of the rays
   std::uint32_t threads = 1;
+  // Doors of the file that are closed, ascending; the scene's other doors are marked as never occluders.
+  std::vector<ObjectId> closed{};
 };
 
 // Goes through the file leaf by leaf, so that memory does not grow with the number of claims. The rays of a

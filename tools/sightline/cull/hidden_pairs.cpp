@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "oracle/split_mix.h"
+#include "tools/sightline/input/doors.h"
 
 namespace sightline::tool {
 namespace {
@@ -21,8 +22,8 @@ double distanceBetween(const Vec3d& min_a, const Vec3d& max_a, const Vec3d& min_
 
 class Sampler {
  public:
-  Sampler(const SightFile& baked, const Scene& scene, std::uint64_t seed)
-      : baked_(baked), octree_(baked.octree()), scene_(scene), random_{seed} {
+  Sampler(const SightFile& baked, std::span<const ObjectId> closed, const Scene& scene, std::uint64_t seed)
+      : baked_(baked), closed_(closed), octree_(baked.octree()), scene_(scene), random_{seed} {
     pairs_.cells.resize(octree_.leaves.size());
     forEachLeaf(octree_, [&](std::uint32_t leaf, const OctreeCell& cell) { pairs_.cells[leaf] = cell; });
   }
@@ -51,7 +52,7 @@ class Sampler {
 
  private:
   Status readHidden(std::uint32_t leaf, CellPart part) {
-    if (const Status ok = readVisible(baked_, leaf, part, is_visible_at_); !ok) {
+    if (const Status ok = readVisible(baked_, leaf, part, closed_, is_visible_at_); !ok) {
       return ok;
     }
     is_visible_.assign(scene_.objects.size(), 0);
@@ -102,6 +103,7 @@ class Sampler {
   }
 
   const SightFile& baked_;
+  std::span<const ObjectId> closed_;
   const OctreeView octree_;
   const Scene& scene_;
   SplitMix random_;
@@ -147,27 +149,17 @@ void addSide(const OctreeView& octree, std::uint32_t leaf, CellPart part, EyeReg
 }
 
 Status readVisible(const SightFile& baked, std::uint32_t leaf, CellPart part,
-                   std::vector<std::uint8_t>& is_visible) {
-  const BoxTreeView boxes = baked.boxes();
+                   std::span<const ObjectId> closed, std::vector<std::uint8_t>& is_visible) {
   const OctreeLeaf& record = baked.octree().leaves[leaf];
   const std::uint32_t set = part == CellPart::kFront  ? record.front_set
                             : part == CellPart::kBack ? record.back_set
                                                       : record.set;
-  is_visible.assign(boxes.objects.size(), 0);
-  std::vector<std::uint32_t> nodes;
-  if (const Status ok = baked.readSet(set, nodes); !ok) {
-    return ok;
-  }
-  for (const std::uint32_t node : nodes) {
-    const BoxNode& n = boxes.nodes[node];
-    std::fill_n(is_visible.begin() + n.first_object, n.object_count, std::uint8_t{1});
-  }
-  return Success{};
+  return readSeen(baked, set, closed, is_visible);
 }
 
-Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, const Scene& scene, std::uint32_t count,
-                                      std::uint64_t seed) {
-  return Sampler(baked, scene, seed).draw(count);
+Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, std::span<const ObjectId> closed,
+                                      const Scene& scene, std::uint32_t count, std::uint64_t seed) {
+  return Sampler(baked, closed, scene, seed).draw(count);
 }
 
 }  // namespace sightline::tool

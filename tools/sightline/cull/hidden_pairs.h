@@ -3,6 +3,7 @@
 // What a baked file claims: that an object is hidden from everywhere in a cell. And a sample of it.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "oracle/eye_region.h"
@@ -30,9 +31,9 @@ EyeRegion regionOf(const OctreeView& octree, const OctreeCell& cell, std::uint32
 void addSide(const OctreeView& octree, std::uint32_t leaf, CellPart part, EyeRegion& region);
 
 // Says for each place in BoxTree::objects, with 1, that its object is in the part's set; the others are
-// claimed to be hidden. Error if the set is corrupt.
+// claimed to be hidden while these doors are closed, ascending. Error if a set is corrupt.
 Status readVisible(const SightFile& baked, std::uint32_t leaf, CellPart part,
-                   std::vector<std::uint8_t>& is_visible);
+                   std::span<const ObjectId> closed, std::vector<std::uint8_t>& is_visible);
 
 struct HiddenPairs {
   std::vector<OctreeCell> cells;  // of all leaves
@@ -41,9 +42,9 @@ struct HiddenPairs {
 
 // Draws at most `count` pairs, each once. Parts of cells are drawn at random. Of each, four hidden objects
 // are drawn: any, one that looks large from the cell, one that is close to it, and one that is close to a
-// visible object. There are fewer pairs if the file hides less. The same seed gives the same pairs. Error if
-// a set is corrupt.
-Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, const Scene& scene, std::uint32_t count,
-                                      std::uint64_t seed);
+// visible object. There are fewer pairs if the file hides less. The same seed gives the same pairs. closed:
+// see readVisible. Error if a set is corrupt.
+Result<HiddenPairs> sampleHiddenPairs(const SightFile& baked, std::span<const ObjectId> closed,
+                                      const Scene& scene, std::uint32_t count, std::uint64_t seed);
 
 }  // namespace sightline::tool

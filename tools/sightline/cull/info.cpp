@@ -13,6 +13,7 @@
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/info_cracks.h"
 #include "tools/sightline/cull/info_sight.h"
+#include "tools/sightline/input/doors.h"
 #include "tools/sightline/input/load.h"
 
 namespace sightline::tool {
@@ -22,6 +23,7 @@ struct InfoOptions {
   CommonOptions common;
   PathOptions path;
   std::vector<double> crack_widths;
+  std::string closed;  // doors of a baked file
   std::string prepared;
 };
 
@@ -279,8 +281,12 @@ Result<ExitCode> runInfo(const InfoOptions& options) {
     if (!options.prepared.empty()) {
       return Error{"--prepared: nothing is prepared for a baked file; leave it out"};
     }
-    const Status ok = informOnSight(options.common.scene, options.common.json);
+    const Status ok = informOnSight(options.common.scene, options.closed, options.common.json);
     return ok ? Result<ExitCode>(kOk) : ok.error();
+  }
+  if (!options.closed.empty()) {
+    return Error{
+        "--closed: it names doors of a baked file; leave it out, or give F.sight in place of the scene"};
   }
   if (widths.empty() && !(options.path.path.empty() && options.path.frames.empty())) {
     return Error{"--path, --frames: a walk shows what closing cracks hides; give --crack-width as well"};
@@ -331,6 +337,7 @@ void addInfo(CLI::App& app, Command& chosen) {
   addPathOptions(*command, options->path);
   addCrackWidthsOption(*command, options->crack_widths);
   addPreparedOption(*command, options->prepared);
+  addClosedOption(*command, options->closed);
   command->footer(
       "Examples:\n"
       "  sightline info city.glb\n"

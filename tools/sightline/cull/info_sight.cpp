@@ -12,11 +12,13 @@
 #include "tools/sightline/command_line/json_output.h"
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/input/crack_note.h"
+#include "tools/sightline/input/doors.h"
 #include "tools/sightline/input/points_file.h"
 
 namespace sightline::tool {
 namespace {
 
+constexpr std::uint32_t kMaxGroups = 20;          // of doors, in text; JSON has all
 constexpr std::string_view kIdentifier = "SGHT";  // at byte 4 of the file
 constexpr std::array<const char*, kStopReasons> kReasonKeys{"budget_met", "nothing_gained", "max_depth",
                                                             "merged", "outside"};
@@ -28,7 +30,8 @@ struct SetSize {
   double objects = 0.0, triangles = 0.0;
 };
 
-Result<std::vector<SetSize>> sizesOfSets(const SightFile& file) {
+// While these doors are closed.
+Result<std::vector<SetSize>> sizesOfSets(const SightFile& file, std::span<const ObjectId> closed) {
   const BoxTreeView boxes = file.boxes();
   std::vector<SetSize> sizes(file.setCount());
   const Status whole = file.forEachSet([&](std::uint32_t set, std::span<const std::uint32_t> nodes) {
@@ -39,6 +42,22 @@ Result<std::vector<SetSize>> sizesOfSets(const SightFile& file) {
   });
   if (!whole) {
     return whole.error();
+  }
+  std::vector<std::uint8_t> is_seen;
+  for (std::uint32_t set = 0; set < sizes.size() && !closed.empty(); ++set) {
+    if (file.doors().hiddenOf(set).empty()) {
+      continue;
+    }
+    if (const Status ok = readSeen(file, set, closed, is_seen); !ok) {
+      return ok.error();
+    }
+    sizes[set] = {};
+    for (std::uint32_t n = 0; n < boxes.nodes.size(); ++n) {
+      if (boxes.leaf(n) && is_seen[boxes.nodes[n].first_object] != 0) {
+        sizes[set].objects += 1.0;
+        sizes[set].triangles += boxes.nodes[n].triangles;
+      }
+    }
   }
   return sizes;
 }
@@ -103,6 +122,29 @@ Json recordedSettings(const BakeRecord& record) {
   return settings.is_object() ? settings : Json::object();
 }
 
+// For each group of doors, of how many sets it hides something.
+std::vector<std::uint64_t> setsOfGroups(const DoorsView& doors) {
+  std::vector<std::uint64_t> sets(doors.groupCount(), 0);
+  for (const DoorSet& hidden : doors.hidden) {
+    sets[hidden.group] += 1;
+  }
+  return sets;
+}
+
+Json doorsJson(const SightFile& file) {
+  const DoorsView doors = file.doors();
+  const std::vector<std::uint64_t> sets = setsOfGroups(doors);
+  Json groups = Json::array();
+  for (std::uint32_t group = 0; group < doors.groupCount(); ++group) {
+    std::vector<std::uint32_t> objects;
+    for (const ObjectId door : doors.doorsOf(group)) {
+      objects.push_back(door.value);
+    }
+    groups.push_back({{"objects", objects}, {"of_sets", sets[group]}});
+  }
+  return groups;
+}
+
 Json recordJson(const SightFile& file) {
   const BakeRecord& record = file.record();
   return {{"triangle_budget", record.triangle_budget},
@@ -129,6 +171,7 @@ void print(const std::string& name, const SightFile& file, const SightFacts& fac
   }
   fmt::print("sets          {} different ones, of a tree of {} boxes\n", file.setCount(),
              file.boxes().nodes.size());
+  fmt::print("{}", doorsText(file));
   for (const SightFile::Section& section : file.sections()) {
     fmt::print("section       {:<24}{:12} bytes, {:12} before compression\n", section.name, section.bytes,
                section.raw_bytes);
@@ -176,8 +219,8 @@ double volumeOf(const ViewerBounds& viewers) {
 
 }  // namespace
 
-Result<SightFacts> factsOf(const SightFile& file) {
-  const Result<std::vector<SetSize>> sets = sizesOfSets(file);
+Result<SightFacts> factsOf(const SightFile& file, std::span<const ObjectId> closed) {
+  const Result<std::vector<SetSize>> sets = sizesOfSets(file, closed);
   if (!sets) {
     return sets.error();
   }
@@ -301,6 +344,25 @@ std::string cracksText(const SightFile& file) {
   return cracks.width > 0.0 ? fmt::format("cracks        closed by{}\n", crackText(cracks)) : "";
 }
 
+std::string doorsText(const SightFile& file) {
+  const DoorsView doors = file.doors();
+  const std::vector<std::uint64_t> sets = setsOfGroups(doors);
+  std::string text;
+  for (std::uint32_t group = 0; group < doors.groupCount() && group < kMaxGroups; ++group) {
+    std::string objects;
+    for (const ObjectId door : doors.doorsOf(group)) {
+      objects += (objects.empty() ? "" : " ") + std::to_string(door.value);
+    }
+    text += fmt::format("doors         {} hide{} something of {} sets\n", objects,
+                        doors.doorsOf(group).size() > 1 ? " together" : "s", sets[group]);
+  }
+  if (doors.groupCount() > kMaxGroups) {
+    text += fmt::format("              and {} more groups of doors; --json lists all\n",
+                        doors.groupCount() - kMaxGroups);
+  }
+  return text;
+}
+
 Json bakedSceneJson(const SightFile& file) {
   Json json = {{"objects", file.scene().objects}, {"triangles", file.scene().triangles}};
   addCracks(json, cracksOf(file.record()));
@@ -327,6 +389,9 @@ Json sightJson(const SightFile& file, const SightFacts& facts) {
   json.update(factsJson(facts));
   const std::string warning = bakeWarning(file, facts);
   json["warning"] = warning.empty() ? Json() : Json(warning);
+  if (const Json doors = doorsJson(file); !doors.empty()) {
+    json["doors"] = doors;
+  }
   json["sections"] = sections;
   json["databases"] = file.databaseNames();
   return json;
@@ -343,7 +408,7 @@ bool isSightFile(const std::string& name) {
   return name.ends_with(".sight") || beginsAsSightFile(name);
 }
 
-Status informOnSight(const std::string& name, const std::string& json_target) {
+Status informOnSight(const std::string& name, const std::string& closed, const std::string& json_target) {
   const Result<SightFile> file = SightFile::open(name);
   if (!file) {
     return file.error();
@@ -351,7 +416,11 @@ Status informOnSight(const std::string& name, const std::string& json_target) {
   if (const Status whole = file->verifyAll(); !whole) {
     return whole;
   }
-  const Result<SightFacts> facts = factsOf(*file);
+  const Result<std::vector<ObjectId>> doors = closedDoors(closed, *file, name);
+  if (!doors) {
+    return doors.error();
+  }
+  const Result<SightFacts> facts = factsOf(*file, *doors);
   if (!facts) {
     return facts.error();
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,14 +45,17 @@ struct SightFacts {
   std::uint64_t grid_cells = 0;     // cells of a uniform grid of the smallest cell's size
 };
 
-// Reads all sets. Error if one is broken.
-Result<SightFacts> factsOf(const SightFile& file);
+// Reads all sets. Error if one is broken. The sizes of sets are those while these doors are closed,
+// ascending.
+Result<SightFacts> factsOf(const SightFile& file, std::span<const ObjectId> closed = {});
 
 Json factsJson(const SightFacts& facts);
 Json sightJson(const SightFile& file, const SightFacts& facts);
 std::string factsText(const SightFacts& facts);  // the lines that `info` prints
 // A line that names the width of the cracks that were closed; empty if none were.
 std::string cracksText(const SightFile& file);
+// Lines that name the doors of the file; empty if it has none.
+std::string doorsText(const SightFile& file);
 // {"objects":n,"triangles":t}, and what addCracks() adds
 Json bakedSceneJson(const SightFile& file);
 
@@ -70,7 +74,7 @@ std::optional<OccluderFacts> occludersOf(const BakeRecord& record);
 bool beginsAsSightFile(const std::string& name);  // by its first bytes
 bool isSightFile(const std::string& name);        // by its name or its first bytes
 
-// Runs `info F.sight`.
-Status informOnSight(const std::string& name, const std::string& json_target);
+// Runs `info F.sight`. closed: the text of --closed.
+Status informOnSight(const std::string& name, const std::string& closed, const std::string& json_target);
 
 }  // namespace sightline::tool

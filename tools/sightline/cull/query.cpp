@@ -17,6 +17,7 @@
 #include "tools/sightline/command_line/text_table.h"
 #include "tools/sightline/commands.h"
 #include "tools/sightline/cull/info_sight.h"
+#include "tools/sightline/input/doors.h"
 #include "tools/sightline/input/points_file.h"
 
 namespace sightline::tool {
@@ -25,7 +26,7 @@ namespace {
 constexpr std::size_t kMaxRows = 50;  // rows on the terminal; JSON has all
 
 struct QueryOptions {
-  std::string file, json;
+  std::string file, json, closed;
   std::vector<std::string> points;  // files and points written as text
 };
 
@@ -174,7 +175,12 @@ Result<ExitCode> runQuery(const QueryOptions& options) {
     return file.error();
   }
   const Vec3d origin = originOf(file->record());
+  const Result<std::vector<ObjectId>> closed = closedDoors(options.closed, *file, options.file);
+  if (!closed) {
+    return closed.error();
+  }
   SetQuery query(*file);
+  query.setClosedDoors(*closed);
   std::vector<PointAnswer> answers;
   for (const Vec3d& point : *points) {
     answers.push_back(answerOf(point, origin, *file, query));
@@ -209,13 +215,15 @@ void addQuery(CLI::App& app, Command& chosen) {
       ->required()
       ->type_name(kFileType)
       ->allow_extra_args(false);
+  addClosedOption(*command, options->closed);
   command->add_option("--json", options->json, "write the result as JSON to this file; - is standard output")
       ->type_name(kFileType);
   command->footer(
       "A point outside the baked cells is in none: from there, all objects may be seen.\n"
       "Examples:\n"
       "  sightline query city.sight --points walk.json\n"
-      "  sightline query city.sight --points 12.5,1.7,-3 --points 13,1.7,-3 --json visible.json");
+      "  sightline query city.sight --points 12.5,1.7,-3 --points 13,1.7,-3 --json visible.json\n"
+      "  sightline query house.sight --points 12.5,1.7,-3 --closed 14,17");
   command->callback([options, &chosen] { chosen = [options] { return runQuery(*options); }; });
 }
 

@@ -21,8 +21,8 @@ namespace {
 constexpr std::size_t kMaxListedPairs = 20;  // on the terminal; JSON has all
 constexpr std::uint32_t kPairsAtOnce = 64;   // between two steps of the progress bar
 constexpr std::array<std::string_view, 2> kSearchOptions{"--pairs", "--seed"};
-constexpr std::array<std::string_view, 6> kCommonOptions{"SCENE",   "--json",  "--threads",
-                                                         "--baked", "--proof", "--crack-width"};
+constexpr std::array<std::string_view, 7> kCommonOptions{"SCENE",   "--json",        "--threads", "--baked",
+                                                         "--proof", "--crack-width", "--closed"};
 
 std::string nameOf(FoundBy by) {
   return by == FoundBy::kLine ? "line" : by == FoundBy::kPlane ? "plane" : "eye";
@@ -194,7 +194,11 @@ Result<ExitCode> verifyRegions(const CommonOptions& common, const MethodOptions&
   if (!file) {
     return file.error();
   }
-  Result<HiddenPairs> sample = sampleHiddenPairs(**file, *scene, options.pairs, options.seed);
+  const Result<std::vector<ObjectId>> closed = closeDoors(method.closed, method.baked, *file, *scene);
+  if (!closed) {
+    return closed.error();
+  }
+  Result<HiddenPairs> sample = sampleHiddenPairs(**file, *closed, *scene, options.pairs, options.seed);
   if (!sample) {
     return sample.error();
   }

@@ -16,6 +16,7 @@
 #include "tools/sightline/command_line/stopwatch.h"
 #include "tools/sightline/input/camera_path_file.h"
 #include "tools/sightline/input/cell_path.h"
+#include "tools/sightline/input/doors.h"
 
 namespace sightline::tool {
 namespace {
@@ -116,6 +117,21 @@ Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene&
   return std::optional<SightFile>(std::move(*baked));
 }
 
+Result<std::vector<ObjectId>> closeDoors(const std::string& closed, const std::string& name,
+                                         const std::optional<SightFile>& baked, Scene& scene) {
+  if (!baked) {
+    return closed.empty()
+               ? Result<std::vector<ObjectId>>(std::vector<ObjectId>())
+               : Error{fmt::format("--closed {}: it names doors of a baked file; give the file with --baked",
+                                   closed)};
+  }
+  Result<std::vector<ObjectId>> doors = closedDoors(closed, *baked, name);
+  if (doors) {
+    openOtherDoors(*baked, *doors, scene);
+  }
+  return doors;
+}
+
 Result<Walk> loadWalk(const PathOptions& options, const std::string& scene_name, const Scene& scene,
                       const std::optional<SightFile>& baked) {
   const bool cells = baked && options.path == kCellsPath;
@@ -160,6 +176,10 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!file) {
     return file.error();
   }
+  Result<std::vector<ObjectId>> closed = closeDoors(method.closed, method.baked, *file, *scene);
+  if (!closed) {
+    return closed.error();
+  }
   Result<Walk> walk = loadWalk(path, scene_name, *scene, *file);
   if (!walk) {
     return walk.error();
@@ -168,7 +188,7 @@ Result<SceneAndWalk> loadSceneAndWalk(const std::string& scene_name, const PathO
   if (!prepared) {
     return prepared.error();
   }
-  return SceneAndWalk{std::move(*scene),  std::move(*walk),      std::move(*file),
+  return SceneAndWalk{std::move(*scene),  std::move(*walk),      std::move(*file),    std::move(*closed),
                       std::move(closing), std::move(clustering), std::move(*prepared)};
 }
 
@@ -380,6 +400,7 @@ Culler CullingData::makeCuller(const Setting& setting) {
   }
   if (baked_ && setting.usesVisibleSets()) {
     queries_.push_back(std::make_unique<SetQuery>(*baked_));
+    queries_.back()->setClosedDoors(closed_);
     scene.sets = queries_.back().get();
   }
   keepPrepared();

@@ -43,6 +43,11 @@ CrackClosing closeCracksOf(Scene& scene, double width, const ParallelFor& parall
 // Opens a .sight file. Error if it was baked from another scene. None if `file` is empty.
 Result<std::optional<SightFile>> loadBaked(const std::string& file, const Scene& scene);
 
+// The doors of the baked file that --closed names, ascending. In the scene, the others hide nothing from here
+// on. Error if something is named that is no door of the file, or if there is no file. name: of the file.
+Result<std::vector<ObjectId>> closeDoors(const std::string& closed, const std::string& name,
+                                         const std::optional<SightFile>& baked, Scene& scene);
+
 struct Walk {
   CameraPath path;
   std::vector<std::uint32_t> frames{};  // the chosen frames, ascending
@@ -69,6 +74,8 @@ struct SceneAndWalk {
   Scene scene;
   Walk walk;
   std::optional<SightFile> baked{};
+  std::vector<ObjectId>
+      closed{};  // doors of the baked file, ascending; in the scene, the others hide nothing
   CrackClosing closing{};
   Clustering clustering{};
   PreparedFile prepared{};
@@ -99,6 +106,7 @@ class CullingData {
   // The same for what a user asked for.
   CullingData(const SceneAndWalk& input, const ParallelFor& parallel_for)
       : CullingData(input.scene, parallel_for, input.walk, input.baked) {
+    closed_ = input.closed;
     box_margin_ = input.closing.margin;
     prepared_ = input.prepared;
     countTriangles(input.given());
@@ -169,6 +177,7 @@ class CullingData {
   std::unique_ptr<TimedDatabase> from_eye_, from_objects_;
   std::array<std::unique_ptr<TimedViewpoints>, 3> from_viewpoints_;  // by OccluderCriterion
   std::optional<SightFile> baked_;
+  std::vector<ObjectId> closed_;                    // SceneAndWalk::closed
   std::vector<std::unique_ptr<SetQuery>> queries_;  // one for each culler that uses visible sets
 };
 

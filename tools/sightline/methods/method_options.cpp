@@ -13,6 +13,7 @@
 
 #include "tools/sightline/command_line/options.h"
 #include "tools/sightline/command_line/parse_text.h"
+#include "tools/sightline/input/doors.h"
 #include "tools/sightline/methods/method_choice.h"
 #include "tools/sightline/methods/method_names.h"
 
@@ -582,6 +583,7 @@ void addMethodOptions(CLI::App& command, MethodOptions& options, bool lists) {
                   "a .sight file of the scene: its visible sets, and its occluder databases in place of "
                   "those that would be built")
       ->type_name(kFileType);
+  addClosedOption(command, options.closed);
   addPreparedOption(command, options.prepared);
   addCrackWidthOption(command, options.crack_width);
   if (CLI::Option* path = command.get_option_no_throw("--path")) {

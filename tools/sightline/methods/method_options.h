@@ -87,6 +87,7 @@ struct MethodOptions {
   std::vector<std::string> defaults;  // texts that the user has not given
   std::vector<bool> given;            // whether the user has, be it the default
   std::string baked;                  // a .sight file; empty: none
+  std::string closed;                 // closed doors of the baked file (closedDoors); empty: none
   std::string prepared;               // a PreparedFile; empty: none
   double crack_width = 0.0;           // metres
   std::uint32_t clusters = 0;         // triangles of a cluster (addClustersOption); 0: objects stay whole

@@ -49,6 +49,12 @@ struct BakeSettings {
   // A cell's sets hold for the box around what of the viewers' boxes lies in it (ViewerBounds). With this, or
   // without boxes of viewers, they hold for all of each cell that meets viewers.
   bool whole_cells = false;
+  // Doors: objects that hide only while they are closed. The sets hold while all of them are open, and always
+  // contain the doors themselves, for an open one may be anywhere. Beside them is stored what each door hides
+  // while it is closed; what the doors of each of these groups hide together, such as two side by side that
+  // lead into one room; and what all of them hide together. A group of one is a door by itself. Surfaces of
+  // doors take memory for each group (BakeOcclusion::kFused).
+  std::vector<std::vector<ObjectId>> doors{};
   // Occluders are searched within this distance of a viewpoint at first, in metres; 0 chooses one. It is
   // doubled where that helps.
   double search_distance = 0.0;
@@ -126,7 +132,8 @@ class Bake {
  public:
   // scene and occluders need not outlive the plan. occluders: all that are to be considered; area_fraction =
   // 1 omits none. Returns an error if settings are out of range, if there is neither a box of viewers nor an
-  // object with a finite box, or if an occluder belongs to no object of the scene.
+  // object with a finite box, if an occluder belongs to no object of the scene, or if a door is no object of
+  // the scene or hides nothing when it is closed, because of its material or its mark.
   static Result<Bake> plan(const SceneView& scene, const OccluderSet& occluders,
                            const BakeSettings& settings = {}, const ParallelFor& parallel_for = serialFor);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sightline/hierarchy/box_tree.h"
+#include "sightline/pvs/format/doors.h"
 #include "sightline/pvs/format/scene_id.h"
 #include "sightline/pvs/format/visibility_octree.h"
 
@@ -48,7 +49,8 @@ struct BakedVisibility {
   BakeRecord record{};
   BoxTree boxes{};
   VisibilityOctree octree{};
-  NodeSets sets{};  // the sets that the octree's leaves refer to
+  NodeSets sets{};  // the sets that the octree's leaves, and doors, refer to
+  BakedDoors doors{};
   std::vector<DatabaseBlob> databases{};
 };
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "sightline/occlusion/visible_sets.h"
 #include "sightline/pvs/query/sight_file.h"
@@ -51,6 +52,11 @@ class SetQuery final : public VisibleSets {
   // Starts from the last leaf. A viewpoint on the border of cells is in the upper one. The cache evicts the
   // least recently used sets first.
   VisibleSet find(const Vec3d& eye, double near_distance) override;
+
+  // Says which of the file's doors are closed, from the next find() on; at first all are open. Each counts as
+  // open that is not named, and must be named only while it stands exactly where it was baked; one that is
+  // ajar is open. Objects that are no doors are ignored. Does not allocate after warm-up.
+  void setClosedDoors(std::span<const ObjectId> doors);
 
   // Finds the eye's leaf without its set. Outside means not in the box of the root, borders included, or not
   // finite. (If min + (max - min) rounds to another value than max, the smaller of the two is the upper

@@ -33,7 +33,9 @@ class SightFile {
   const BakeRecord& record() const;
   BoxTreeView boxes() const;
   OctreeView octree() const;
-  std::uint32_t setCount() const;
+  std::uint32_t setCount() const;  // including the sets that doors hide
+  // The objects that hide only while they are closed, and what they hide. Empty if there are none.
+  DoorsView doors() const;
 
   // Success if the file was baked from this scene. boxes() then contains each object of the scene exactly
   // once.

@@ -1,0 +1,475 @@
+// What doors hide while they are closed, against rays in the scene with exactly those doors closed.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "sightline/pvs/query/set_query.h"
+#include "src/pvs/bake/cell_tree.h"
+#include "tests/pvs/door_scenes.h"
+#include "tests/pvs/edited_scene.h"
+#include "tests/pvs/sight_checks.h"
+
+namespace sightline {
+namespace {
+
+using test::alone;
+using test::BakeJudge;
+using test::combinationsOf;
+using test::DoorScene;
+using test::leftWith;
+using test::membersWith;
+using test::RoomBuilder;
+using test::withDoors;
+
+constexpr double kNear = 0.05;
+
+BakeSettings settingsFor(BakeOcclusion occlusion, std::vector<std::vector<ObjectId>> doors) {
+  return {.occlusion = occlusion,
+          .max_depth = 3,
+          .near_distance = kNear,
+          .doors = std::move(doors),
+          .merge_tolerance = 0.2};
+}
+
+// Judges each set of closed doors by rays. Returns how many objects were hidden in all views, by set.
+std::vector<std::size_t> judgeAll(const DoorScene& rooms, const BakedVisibility& baked, std::uint32_t step,
+                                  std::uint32_t seed) {
+  std::vector<std::size_t> hidden;
+  for (const std::vector<ObjectId>& closed : combinationsOf(rooms.doors)) {
+    SCOPED_TRACE(std::to_string(closed.size()) + " doors are closed");
+    const Scene scene = withDoors(rooms, closed);
+    const BakedVisibility left = leftWith(baked, closed);
+    BakeJudge judge(scene, left);
+    judge.judge(2, step, kNear, seed);
+    hidden.push_back(judge.hidden);
+  }
+  return hidden;
+}
+
+// The set for viewers at a place while these doors are closed, as flags by object.
+std::vector<bool> seenAt(const BakedVisibility& baked, const Vec3d& eye,
+                         const std::vector<ObjectId>& closed) {
+  const sight_test::Bytes bytes = sight_test::bytesOf(baked);
+  const Result<SightFile> file = sight_test::opened(bytes);
+  SetQuery query(*file);
+  query.setClosedDoors(closed);
+  std::vector<bool> seen(baked.boxes.objects.size(), false);
+  for (const std::uint32_t node : query.find(eye, kNear).nodes) {
+    for (const ObjectId object : file->boxes().objectsBelow(node)) {
+      seen[object.value] = true;
+    }
+  }
+  return seen;
+}
+
+bool seesAt(const BakedVisibility& baked, const Vec3d& eye, ObjectId object,
+            const std::vector<ObjectId>& closed) {
+  return seenAt(baked, eye, closed)[object.value];
+}
+
+constexpr Vec3d kInFirstRoom{1.3, 1.6, 2.4};
+
+TEST(Doors, OfTwoRoomsHideTheOtherRoomWhileTheyAreClosed) {
+  RoomBuilder builder(2);
+  builder.addWall(0, {2.5f});
+  const ObjectId crate = builder.addCrate(1, 3, 2.5f);
+  const DoorScene rooms = builder.build();
+  const BakedVisibility baked =
+      test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, alone(rooms.doors)));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, crate, {}));
+  EXPECT_FALSE(seesAt(baked, kInFirstRoom, crate, rooms.doors));
+  const std::vector<std::size_t> hidden = judgeAll(rooms, baked, 3, 1);
+  EXPECT_GT(hidden[1], hidden[0]);
+}
+
+TEST(Doors, InSeriesEachHideWhatIsBehindThem) {
+  RoomBuilder builder(3);
+  builder.addWall(0, {2.5f});
+  builder.addWall(1, {2.5f});
+  const ObjectId middle = builder.addCrate(1, 3, 2.5f), last = builder.addCrate(2, 3, 2.5f);
+  const DoorScene rooms = builder.build();
+  const std::vector<ObjectId> first{rooms.doors[0]}, second{rooms.doors[1]};
+  const BakedVisibility baked =
+      test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, alone(rooms.doors)));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, middle, {}));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, last, {}));
+  EXPECT_FALSE(seesAt(baked, kInFirstRoom, middle, first));
+  EXPECT_FALSE(seesAt(baked, kInFirstRoom, last, first));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, middle, second));
+  EXPECT_FALSE(seesAt(baked, kInFirstRoom, last, second));
+  judgeAll(rooms, baked, 5, 2);
+}
+
+TEST(Doors, SideBySideHideARoomOnlyTogether) {
+  RoomBuilder builder(2);
+  builder.addWall(0, {1.5f, 3.0f});
+  const ObjectId crate = builder.addCrate(1, 3, 2.75f);
+  const DoorScene rooms = builder.build();
+  const BakedVisibility baked =
+      test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, alone(rooms.doors)));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, crate, {rooms.doors[0]}));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, crate, {rooms.doors[1]}));
+  EXPECT_FALSE(seesAt(baked, kInFirstRoom, crate, rooms.doors));
+  judgeAll(rooms, baked, 3, 3);
+}
+
+// Without the group, only all doors of the scene hide the room together.
+TEST(Doors, OfAGroupHideTogetherWhateverOtherDoorsDo) {
+  RoomBuilder builder(3);
+  builder.addWall(0, {1.5f, 3.0f});
+  builder.addWall(1, {2.5f});
+  const ObjectId crate = builder.addCrate(1, 3, 2.75f);
+  const DoorScene rooms = builder.build();
+  const std::vector<ObjectId> pair{rooms.doors[0], rooms.doors[1]};
+  const BakedVisibility apart =
+      test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, alone(rooms.doors)));
+  EXPECT_TRUE(seesAt(apart, kInFirstRoom, crate, pair));
+  EXPECT_FALSE(seesAt(apart, kInFirstRoom, crate, rooms.doors));
+  const BakedVisibility grouped =
+      test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, {pair, {rooms.doors[2]}}));
+  EXPECT_FALSE(seesAt(grouped, kInFirstRoom, crate, pair));
+  EXPECT_FALSE(seesAt(grouped, kInFirstRoom, crate, rooms.doors));
+  EXPECT_TRUE(seesAt(grouped, kInFirstRoom, crate, {rooms.doors[0], rooms.doors[2]}));
+  judgeAll(rooms, grouped, 7, 4);
+}
+
+// Single convex occluders hide little through a doorway, so here a shutter is the whole wall.
+TEST(Doors, OfConvexBodiesHideByThemselves) {
+  RoomBuilder builder(2);
+  builder.addShutter(0);
+  const ObjectId crate = builder.addCrate(1, 3, 2.5f);
+  const DoorScene rooms = builder.build();
+  const BakedVisibility baked =
+      test::baked(rooms.scene, settingsFor(BakeOcclusion::kConvex, alone(rooms.doors)));
+  EXPECT_TRUE(seesAt(baked, kInFirstRoom, crate, {}));
+  EXPECT_FALSE(seesAt(baked, kInFirstRoom, crate, rooms.doors));
+  judgeAll(rooms, baked, 1, 5);
+}
+
+TEST(Doors, AreInEverySetWhereverTheyMayBe) {
+  RoomBuilder builder(3);
+  builder.addWall(0, {1.0f});
+  builder.addWall(1, {4.0f});
+  const DoorScene rooms = builder.build();
+  for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+    const BakedVisibility baked = test::baked(rooms.scene, settingsFor(occlusion, alone(rooms.doors)));
+    const auto expectDoors = [&](std::uint32_t set) {
+      for (const std::vector<ObjectId>& closed : combinationsOf(rooms.doors)) {
+        for (const ObjectId door : rooms.doors) {
+          EXPECT_TRUE(membersWith(baked, set, closed)[door.value]);
+        }
+      }
+    };
+    for (const OctreeLeaf& leaf : baked.octree.leaves) {
+      expectDoors(leaf.set);
+      // Where the plane leaves no viewers on a side, its set is empty.
+      for (const std::uint32_t side : {leaf.front_set, leaf.back_set}) {
+        if (leaf.plane != OctreeLeaf::kNoPlane && !baked.sets[side].empty()) {
+          expectDoors(side);
+        }
+      }
+    }
+  }
+}
+
+TEST(Doors, HideNothingThatRaysSeeInRandomRooms) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const DoorScene rooms = test::randomRooms(seed);
+    for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+      const BakedVisibility baked = test::baked(rooms.scene, settingsFor(occlusion, alone(rooms.doors)));
+      const std::vector<std::size_t> hidden = judgeAll(rooms, baked, 9, seed);
+      if (occlusion == BakeOcclusion::kFused) {
+        EXPECT_GT(hidden.back(), hidden.front()) << "the test would prove little";
+      }
+    }
+  }
+}
+
+// The doors are exactly as if the scene's author had said that they never occlude, but that they are in every
+// set.
+TEST(Doors, ThatAreOpenAreNoOccluders) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const DoorScene rooms = test::randomRooms(seed);
+    for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+      const BakedVisibility with = test::baked(rooms.scene, settingsFor(occlusion, alone(rooms.doors)));
+      const BakedVisibility without = test::baked(withDoors(rooms, {}), settingsFor(occlusion, {}));
+      ASSERT_EQ(with.octree.nodes, without.octree.nodes) << seed;
+      ASSERT_EQ(with.octree.planes, without.octree.planes) << seed;
+      for (std::size_t leaf = 0; leaf < with.octree.leaves.size(); ++leaf) {
+        const auto check = [&](std::uint32_t set, std::uint32_t plain) {
+          std::vector<bool> expected = test::membersOf(without, plain);
+          // An empty set is that of no viewers.
+          const bool viewers = std::count(expected.begin(), expected.end(), true) > 0;
+          for (const ObjectId door : rooms.doors) {
+            expected[door.value] = viewers;
+          }
+          EXPECT_EQ(test::membersOf(with, set), expected) << seed;
+        };
+        const OctreeLeaf &a = with.octree.leaves[leaf], &b = without.octree.leaves[leaf];
+        check(a.set, b.set);
+        if (a.plane != OctreeLeaf::kNoPlane) {
+          check(a.front_set, b.front_set);
+          check(a.back_set, b.back_set);
+        }
+      }
+      EXPECT_TRUE(without.doors.doors.empty());
+      EXPECT_TRUE(without.doors.hidden_ends.empty());
+    }
+  }
+}
+
+// Which cells see what is decided while all doors are open, so the marks of doors alone may not tell bakes
+// apart.
+TEST(Doors, AreOfThePlan) {
+  const DoorScene rooms = test::randomRooms(1);
+  const OccluderSet occluders = test::allOccluders(rooms.scene);
+  std::set<std::uint64_t> plans;
+  for (const std::vector<std::vector<ObjectId>>& doors :
+       {std::vector<std::vector<ObjectId>>{}, alone({rooms.doors[0]}), alone({rooms.doors[1]}),
+        alone(rooms.doors)}) {
+    plans.insert(
+        Bake::plan(rooms.scene.view(), occluders, settingsFor(BakeOcclusion::kConvex, doors))->hash());
+  }
+  EXPECT_EQ(plans.size(), 4u);
+}
+
+TEST(Doors, AreTheSameWhoeverBakesTheParts) {
+  const DoorScene rooms = test::randomRooms(2);
+  const BakeSettings settings = settingsFor(BakeOcclusion::kFused, alone(rooms.doors));
+  const Result<Bake> bake = Bake::plan(rooms.scene.view(), test::allOccluders(rooms.scene), settings);
+  ASSERT_TRUE(bake);
+  BakedParts parts;
+  for (std::vector<PartTask> open{bake->firstPart()}; !open.empty();) {
+    const PartTask task = open.back();
+    open.pop_back();
+    const BakedPart part = Bake::Worker(*bake).bake(task);
+    const std::vector<PartTask> below = bake->partsBelow(part);
+    open.insert(open.end(), below.begin(), below.end());
+    parts.emplace(task.id, part);
+  }
+  EXPECT_EQ(parts, bake->bakeAll());
+  EXPECT_EQ(sight_test::bytesOf(*bake->assemble(parts)),
+            sight_test::bytesOf(*bake->assemble(bake->bakeAll())));
+}
+
+TEST(Doors, AreRefusedThatAreNotThereOrHideNothing) {
+  DoorScene rooms = test::randomRooms(1);
+  const auto problem = [&](std::vector<std::vector<ObjectId>> doors) {
+    const Result<Bake> bake = Bake::plan(rooms.scene.view(), test::allOccluders(rooms.scene),
+                                         settingsFor(BakeOcclusion::kConvex, std::move(doors)));
+    return bake ? std::string() : bake.error().message;
+  };
+  EXPECT_EQ(problem(alone(rooms.doors)), "");
+  EXPECT_NE(problem({{ObjectId(100000u)}}).find("door 100000"), std::string::npos);
+  EXPECT_NE(problem({{ObjectId()}}), "");
+  EXPECT_NE(problem({{}}), "");
+  rooms.scene.objects[rooms.doors[0].value].mark = OccluderMark::kNever;
+  EXPECT_NE(problem({{rooms.doors[0]}}).find("never"), std::string::npos);
+}
+
+struct Updated {
+  sight_test::Bytes file, answers;
+};
+
+// answers: of an earlier bake that are taken over, or none.
+Updated bakeWith(const Scene& scene, BakeSettings settings, const sight_test::Bytes& answers) {
+  settings.answers = true;
+  Result<Bake> bake = Bake::plan(scene.view(), test::allOccluders(scene), settings);
+  Updated updated;
+  if (!bake || (!answers.empty() && !bake->takeOver(answers))) {
+    ADD_FAILURE();
+    return updated;
+  }
+  const BakedParts parts = bake->bakeAll();
+  updated.file = sight_test::bytesOf(*bake->assemble(parts));
+  updated.answers = bake->answers(parts);
+  return updated;
+}
+
+// What is a door may change from bake to bake, although the scene stays the same: its occluders come or go.
+TEST(Doors, AreAskedAnewByAnUpdateWhateverWasADoorBefore) {
+  const DoorScene rooms = test::randomRooms(3);
+  ASSERT_GT(rooms.doors.size(), 1u);
+  for (const BakeOcclusion occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+    test::EditedScene edited = test::EditedScene::of(rooms.scene);
+    sight_test::Bytes answers;
+    for (const std::vector<std::vector<ObjectId>>& doors :
+         {alone(rooms.doors), std::vector<std::vector<ObjectId>>{}, alone({rooms.doors[0]}),
+          alone({rooms.doors[1]}), alone(rooms.doors)}) {
+      const BakeSettings settings = settingsFor(occlusion, doors);
+      const Scene scene = edited.scene();
+      const Updated updated = bakeWith(scene, settings, answers);
+      EXPECT_EQ(updated.file, bakeWith(scene, settings, {}).file);
+      answers = updated.answers;
+      edited.pieces.back().move({0, 0.25f, 0});  // a crate
+    }
+  }
+}
+
+// Random sets of objects for cells, some of which have a plane.
+class RandomCells {
+ public:
+  RandomCells(std::uint32_t objects, std::uint32_t seed) : objects_(objects), random_(seed) {}
+
+  pvs::BakedCell leaf() {
+    pvs::BakedCell cell;
+    addSet(cell.sets.whole, cell.sets.whole_doors);
+    if (random_() % 2 == 0) {
+      cell.sets.plane = CellPlane{.normal = {1, 0, 0}, .front = 1.0, .back = 0.0};
+      addSet(cell.sets.front, cell.sets.front_doors);
+      addSet(cell.sets.back, cell.sets.back_doors);
+    }
+    return cell;
+  }
+
+ private:
+  // Some of the objects that are in `of`.
+  pvs::Runs some(const pvs::Runs& of) {
+    pvs::Runs all;
+    for (const pvs::ObjectRun& run : of) {
+      for (std::uint32_t i = run.begin; i < run.end; ++i) {
+        const pvs::ObjectRun one{i, i + 1};
+        pvs::Runs more;
+        pvs::unite(all, std::span(&one, random_() % 4 != 0 ? 1 : 0), more);
+        all.swap(more);
+      }
+    }
+    return all;
+  }
+  void addSet(pvs::Runs& seen, pvs::DoorRuns& doors) {
+    seen = some({{0, objects_}});
+    for (std::uint32_t group = 0; group < 2; ++group) {
+      if (pvs::Runs hidden = some(seen); !hidden.empty() && random_() % 4 != 0) {
+        doors.push_back({group, std::move(hidden)});
+      }
+    }
+  }
+
+  std::uint32_t objects_;
+  std::mt19937 random_;
+};
+
+bool holds(const pvs::Runs& runs, std::uint32_t object) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [object](const pvs::ObjectRun& run) { return run.begin <= object && object < run.end; });
+}
+
+bool isHidden(const pvs::DoorRuns& doors, std::uint32_t group, std::uint32_t object) {
+  return std::any_of(doors.begin(), doors.end(), [&](const pvs::HiddenByDoors& hidden) {
+    return hidden.group == group && holds(hidden.hidden, object);
+  });
+}
+
+// From some child it may be seen although doors hide it from another one.
+TEST(Doors, OfAMergedCellHideWhatTheyHideFromEachOfItsChildrenThatSeesIt) {
+  const DoorScene rooms = test::randomRooms(1);
+  BakeSettings settings = settingsFor(BakeOcclusion::kConvex, alone(rooms.doors));
+  settings.triangle_budget = 1u << 30;
+  settings.merge_tolerance = 1e6;
+  settings.viewers = {sceneBounds(rooms.scene.view())};
+  const pvs::BakeScene scene(rooms.scene.view(), test::allOccluders(rooms.scene), settings, serialFor);
+  const auto objects = static_cast<std::uint32_t>(rooms.scene.objects.size());
+  std::size_t hidden = 0, kept = 0;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    RandomCells random(objects, seed);
+    pvs::BakedCell cell;
+    for (int i = 0; i < 8; ++i) {
+      cell.children.push_back(random.leaf());
+    }
+    const std::vector<pvs::BakedCell> children = cell.children;
+    pvs::mergeChildren(scene, cell);
+    ASSERT_TRUE(cell.leaf());
+    const auto check = [&](const pvs::Runs& seen, const pvs::DoorRuns& doors, const auto& setOf) {
+      for (std::uint32_t object = 0; object < objects; ++object) {
+        for (std::uint32_t group = 0; group < 2; ++group) {
+          const bool left = std::any_of(children.begin(), children.end(), [&](const pvs::BakedCell& child) {
+            const auto [of_child, hidden_of_child] = setOf(child.sets);
+            return holds(*of_child, object) && !isHidden(*hidden_of_child, group, object);
+          });
+          ASSERT_EQ(holds(seen, object) && !isHidden(doors, group, object), left) << seed;
+          hidden += isHidden(doors, group, object) ? 1 : 0;
+          kept += left ? 1 : 0;
+        }
+      }
+    };
+    using Set = std::pair<const pvs::Runs*, const pvs::DoorRuns*>;
+    check(cell.sets.whole, cell.sets.whole_doors,
+          [](const pvs::CellSets& sets) { return Set(&sets.whole, &sets.whole_doors); });
+    if (cell.sets.plane) {
+      check(cell.sets.front, cell.sets.front_doors, [](const pvs::CellSets& sets) {
+        return sets.plane ? Set(&sets.front, &sets.front_doors) : Set(&sets.whole, &sets.whole_doors);
+      });
+      check(cell.sets.back, cell.sets.back_doors, [](const pvs::CellSets& sets) {
+        return sets.plane ? Set(&sets.back, &sets.back_doors) : Set(&sets.whole, &sets.whole_doors);
+      });
+    }
+  }
+  EXPECT_GT(hidden, 0u);
+  EXPECT_GT(kept, hidden);
+}
+
+// A door may be named more than once, in any order.
+TEST(Doors, AreSetsOfDoors) {
+  const DoorScene rooms = test::randomRooms(1);
+  ASSERT_GT(rooms.doors.size(), 1u);
+  const ObjectId a = rooms.doors[0], b = rooms.doors[1];
+  const auto groups = [&](std::vector<std::vector<ObjectId>> doors) {
+    const BakedVisibility baked =
+        test::baked(rooms.scene, settingsFor(BakeOcclusion::kConvex, std::move(doors)));
+    return std::pair(baked.doors.doors, baked.doors.group_ends);
+  };
+  EXPECT_EQ(groups({{b, a, a}, {a, b}}), groups({{a}, {b}}));
+  EXPECT_EQ(groups({{a}, {b}}).second.size(), 3u);
+  EXPECT_EQ(groups({{a}}).second.size(), 1u);
+}
+
+TEST(SetQuery, HandsOutWhatClosedDoorsLeave) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const DoorScene rooms = test::randomRooms(seed);
+    const BakedVisibility baked =
+        test::baked(rooms.scene, settingsFor(BakeOcclusion::kFused, alone(rooms.doors)));
+    const sight_test::Bytes bytes = sight_test::bytesOf(baked);
+    const Result<SightFile> file = sight_test::opened(bytes);
+    ASSERT_TRUE(file) << sight_test::errorOf(file);
+    ASSERT_TRUE(file->verifyAll());
+    const std::vector<std::vector<ObjectId>> all = combinationsOf(rooms.doors);
+    std::mt19937 random(seed);
+    // A small cache drops sets while they are put together.
+    SetQuery query(*file, {.cache_bytes = seed == 1 ? std::size_t{0} : std::size_t{1} << 20});
+    std::map<std::uint32_t, std::vector<bool>> by_id;
+    for (int i = 0; i < 4000; ++i) {
+      std::vector<ObjectId> closed = all[random() % all.size()];
+      const auto at = [&](int axis) {
+        const double t = std::uniform_real_distribution<double>(0.0, 1.0)(random);
+        return baked.octree.min[axis] + t * (baked.octree.max[axis] - baked.octree.min[axis]);
+      };
+      const Vec3d eye{at(0), at(1), at(2)};
+      const std::vector<bool> expected =
+          membersWith(baked, test::setAt(baked.octree.view(), query.locate(eye).leaf, eye), closed);
+      std::shuffle(closed.begin(), closed.end(), random);
+      closed.push_back(ObjectId(0u));  // no door
+      query.setClosedDoors(closed);
+      for (int again = 0; again < 2; ++again) {
+        const VisibleSet found = query.find(eye, kNear);
+        std::vector<bool> members(expected.size(), false);
+        std::uint32_t after = 0;
+        for (const std::uint32_t node : found.nodes) {
+          EXPECT_GE(node, after);
+          after = file->boxes().nodes[node].end;
+          for (const ObjectId object : file->boxes().objectsBelow(node)) {
+            members[object.value] = true;
+          }
+        }
+        ASSERT_EQ(members, expected) << "seed " << seed << ", look-up " << i;
+        const auto [place, is_new] = by_id.try_emplace(found.id, members);
+        ASSERT_EQ(place->second, members) << "equal numbers, other sets";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sightline
