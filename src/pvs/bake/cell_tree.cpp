@@ -312,19 +312,19 @@ void write(const BakedCell& cell, base::ByteWriter& bytes) {
     bytes.addAll(std::span<const std::uint8_t>(cell.viewers.first));
     bytes.addAll(std::span<const std::uint8_t>(cell.viewers.last));
   }
-  addRuns(cell.sets.whole, bytes);
-  if (const std::optional<CellPlane>& plane = cell.sets.plane) {
+  addRuns(sets.whole, bytes);
+  if (const std::optional<CellPlane>& plane = sets.plane) {
     for (const double number :
          {plane->normal.x, plane->normal.y, plane->normal.z, plane->front, plane->back}) {
       bytes.add(number);
     }
-    addRuns(cell.sets.front, bytes);
-    addRuns(cell.sets.back, bytes);
+    addRuns(sets.front, bytes);
+    addRuns(sets.back, bytes);
   }
   if (doors) {
-    write(sets.whole_doors, bytes);
-    write(sets.front_doors, bytes);
-    write(sets.back_doors, bytes);
+    addDoors(sets.whole_doors, bytes);
+    addDoors(sets.front_doors, bytes);
+    addDoors(sets.back_doors, bytes);
   }
 }
 
@@ -350,7 +350,8 @@ std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, 
   const auto first = bytes.read<std::uint8_t>();
   const bool partly = (first & kPartly) != 0, doors = (first & kDoors) != 0;
   const int kind = first & ~(kPartly | kDoors);
-  if (!bytes.ok() || kind > kLeafWithPlane || level > kMaxOctreeDepth) {
+  if (!bytes.ok() || kind > kLeafWithPlane || (kind == kInner && first != kInner) ||
+      level > kMaxOctreeDepth) {
     return std::nullopt;
   }
   if (kind == kInner) {
@@ -378,7 +379,7 @@ std::optional<BakedCell> readCell(base::ByteReader& bytes, std::uint32_t level, 
   if (good && doors) {
     CellSets& sets = cell.sets;
     for (DoorRuns* part : {&sets.whole_doors, &sets.front_doors, &sets.back_doors}) {
-      good = good && read(bytes, scene, *part);
+      good = good && readDoors(bytes, scene, *part);
     }
   }
   return good && bytes.ok() ? std::optional(std::move(cell)) : std::nullopt;
