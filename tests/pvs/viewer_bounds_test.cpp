@@ -16,7 +16,6 @@ namespace {
 using test::baked;
 using test::BakeJudge;
 using test::block;
-using test::membersOf;
 using test::sceneOf;
 using test::Solid;
 

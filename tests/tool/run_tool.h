@@ -78,11 +78,13 @@ inline Outcome runTool(const std::vector<std::string>& arguments) {
   return runProgram(SIGHTLINE_TOOL, arguments);
 }
 
-// The same, but only once in a process for the same arguments: for tests of one suite that look at the same report.
+// The same, but only once in a process for the same arguments: for tests of one suite that look at the same
+// report.
 inline const Outcome& runToolOnce(const std::vector<std::string>& arguments) {
   static std::map<std::vector<std::string>, Outcome> outcomes;
   const auto found = outcomes.find(arguments);
-  return found != outcomes.end() ? found->second : outcomes.emplace(arguments, runTool(arguments)).first->second;
+  return found != outcomes.end() ? found->second
+                                 : outcomes.emplace(arguments, runTool(arguments)).first->second;
 }
 
 // Expects bad usage or input: exit code 2, one line on stderr that mentions `about`, nothing on stdout.
