@@ -285,14 +285,14 @@ TEST_F(MergedViewers, AreReadAsWritten) {
   pvs::write(cell_, writer);
   const std::vector<std::byte> bytes = writer.take();
   base::ByteReader reader(bytes);
-  const std::optional<pvs::BakedCell> read = pvs::readCell(reader, 0, 2);
+  const std::optional<pvs::BakedCell> read = pvs::readCell(reader, 0, bake_);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->children[7].viewers, cell_.children[7].viewers);
   // The first child: two bytes for what the cell and it are, one for its reason, then where its viewers are.
   std::vector<std::byte> damaged = bytes;
   damaged[3] = std::byte{5};
   base::ByteReader of_damaged(damaged);
-  EXPECT_FALSE(pvs::readCell(of_damaged, 0, 2)) << "viewers that end before they begin";
+  EXPECT_FALSE(pvs::readCell(of_damaged, 0, bake_)) << "viewers that end before they begin";
 }
 
 }  // namespace
