@@ -281,7 +281,9 @@ void addDoors(const DoorRuns& doors, base::ByteWriter& bytes) {
 // False if the bytes are not what doors of the scene hide, by ascending group.
 bool readDoors(base::ByteReader& bytes, const BakeScene& scene, DoorRuns& doors) {
   const auto object_count = static_cast<std::uint32_t>(scene.boxes.objects.size());
-  doors.resize(bytes.readCount<std::uint32_t>(2 * sizeof(std::uint32_t)));
+  constexpr std::size_t kLeastBytes =
+      sizeof(std::uint32_t) + 3;  // a group, the number of its runs, and one run
+  doors.resize(bytes.readCount<std::uint32_t>(kLeastBytes));
   for (std::size_t i = 0; i < doors.size(); ++i) {
     doors[i].group = bytes.read<std::uint32_t>();
     if ((i > 0 && doors[i].group <= doors[i - 1].group) || doors[i].group >= scene.doors.groups.size() ||
