@@ -45,7 +45,6 @@ class BodyMaker {
 
   // faces: polygons of the set, ascending by id.
   void add(std::span<const RankedPolygon* const> faces) {
-    // Items are made in the lists, where the bytes between their members are zeros, as they will be in files.
     OccluderBody& body = lists_.bodies.emplace_back();
     body.first_vertex = static_cast<std::uint32_t>(lists_.vertices.size());
     body.first_edge = static_cast<std::uint32_t>(lists_.edges.size());

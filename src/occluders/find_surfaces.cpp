@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "sightline/occluders/surface_set.h"
-#include "src/base/memory_reuse.h"
 #include "src/base/parallel_rows.h"
 #include "src/occluders/surface_chains.h"
 #include "src/occluders/surface_gather.h"
@@ -150,7 +149,6 @@ void listByObject(const occluders::SurfaceMesh& mesh, std::span<const std::uint3
 
 SurfaceSet findSurfaces(const SceneView& scene, const SurfaceSettings& settings,
                         const ParallelFor& parallel_for) {
-  const base::MemoryReuse reuse;
   SurfaceSet set;
   occluders::SurfaceMesh mesh = occluders::weld(scene, parallel_for);
   if (settings.join_edges) {

@@ -110,12 +110,18 @@ bool isSmall(std::int32_t value) {
 // finite, and their uses name clusters that are there. They lie in the boxes of the clusters that end at
 // them, by which drawing tells how large their images may be.
 std::string flawOfChains(const SurfaceSet& set) {
+  // No two share vertices or uses, so that looking takes no longer than the set is large.
+  if (!followEachOther(
+          set.chains, [](const SurfaceChain& c) { return c.first_vertex; },
+          [](const SurfaceChain& c) { return c.vertex_count; }, set.chain_vertices.size(),
+          [](const SurfaceChain& c) { return c.vertex_count >= 2; }) ||
+      !followEachOther(
+          set.chains, [](const SurfaceChain& c) { return c.first_use; },
+          [](const SurfaceChain& c) { return c.use_count; }, set.uses.size(),
+          [](const SurfaceChain&) { return true; })) {
+    return "its chains are broken";
+  }
   for (const SurfaceChain& chain : set.chains) {
-    if (chain.vertex_count < 2 || chain.use_count < 1 ||
-        !isRange(chain.first_vertex, chain.vertex_count, set.chain_vertices.size()) ||
-        !isRange(chain.first_use, chain.use_count, set.uses.size())) {
-      return "its chains are broken";
-    }
     Box vertices;
     for (const Vec3f& vertex : set.verticesOf(chain)) {
       vertices.extend(vertex);

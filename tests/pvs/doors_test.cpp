@@ -426,6 +426,132 @@ TEST(Doors, AreSetsOfDoors) {
   EXPECT_EQ(groups({{a}}).second.size(), 1u);
 }
 
+TEST(Doors, OfACellAreReadAsWritten) {
+  const DoorScene rooms = test::randomRooms(1);
+  const pvs::BakeScene scene(rooms.scene.view(), test::allOccluders(rooms.scene),
+                             settingsFor(BakeOcclusion::kConvex, alone(rooms.doors)), serialFor);
+  pvs::BakedCell cell;
+  cell.viewers = {{1, 2, 3}, {4, 5, 6}};
+  cell.sets.whole = cell.sets.front = cell.sets.back = {{0, 4}};
+  cell.sets.plane = CellPlane{{1, 0, 0}, 1, 0};
+  cell.sets.back_doors = {{0, {{1, 2}}}, {1, {{0, 1}, {3, 4}}}};
+  const auto bytesOf = [](const pvs::BakedCell& written) {
+    base::ByteWriter writer;
+    pvs::write(written, writer);
+    return writer.take();
+  };
+  const std::vector<std::byte> bytes = bytesOf(cell);
+  base::ByteReader reader(bytes);
+  const std::optional<pvs::BakedCell> read = pvs::readCell(reader, 0, scene);
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(reader.atEnd());
+  EXPECT_EQ(bytesOf(*read), bytes);
+  ASSERT_EQ(read->sets.back_doors.size(), 2u);
+  EXPECT_EQ(read->viewers, cell.viewers);
+  cell.sets.back_doors[1].hidden.clear();
+  const std::vector<std::byte> hiding_nothing = bytesOf(cell);
+  base::ByteReader other(hiding_nothing);
+  EXPECT_FALSE(pvs::readCell(other, 0, scene));
+}
+
+// Where viewers are in parts of cells, some of which a budget in bytes or merging made one of.
+TEST(Doors, HideNothingThatIsSeenFromPartsOfCells) {
+  std::size_t hidden = 0, partial = 0;
+  for (const auto occlusion : {BakeOcclusion::kConvex, BakeOcclusion::kFused}) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      const DoorScene rooms = test::randomRooms(seed);
+      std::mt19937 random(seed);
+      const auto place = [&](float most) { return static_cast<float>(random() % 1024) / 1024.0f * most; };
+      BakeSettings settings = settingsFor(occlusion, alone(rooms.doors));
+      for (int i = 0; i < 5; ++i) {
+        const Vec3f at(place(17), place(2), place(5));
+        settings.viewers.push_back({at, at + Vec3f(place(4), place(1), place(3))});
+      }
+      settings.triangle_budget = 60;
+      settings.max_depth = occlusion == BakeOcclusion::kFused ? 2 : 4;
+      settings.merge_tolerance = seed % 2 == 0 ? 0.6 : 0.05;
+      const std::uint64_t bytes = sight_test::bytesOf(test::baked(rooms.scene, settings)).size();
+      for (const double part : {1.0, 0.8}) {
+        settings.byte_budget = part < 1.0 ? static_cast<std::uint64_t>(part * static_cast<double>(bytes)) : 0;
+        const Result<BakedVisibility> made =
+            bakeVisibility(rooms.scene.view(), test::allOccluders(rooms.scene), settings);
+        if (!made) {
+          continue;  // the fewest cells take more bytes
+        }
+        partial += made->octree.viewers.size();
+        for (const std::vector<ObjectId>& closed : combinationsOf(rooms.doors)) {
+          const Scene scene = withDoors(rooms, closed);
+          const BakedVisibility left = leftWith(*made, closed);
+          BakeJudge judge(scene, left);
+          judge.judge(2, 1, 0.05, seed);
+          hidden += judge.hidden;
+        }
+      }
+    }
+  }
+  EXPECT_GT(hidden, 1000u);
+  EXPECT_GT(partial, 100u);
+}
+
+// Sets of closed doors may take the place of the last set in the cache, and the viewer's own may be damaged.
+TEST(SetQuery, HandsOutNoSetThatLeftItsCacheForThoseOfDoors) {
+  made::Visibility settings;
+  settings.objects = 3000;
+  settings.leaves = 600;
+  settings.sets = 400;
+  settings.set_nodes = 300;
+  settings.plane_every = 0;
+  BakedVisibility baked = made::visibility(settings);
+  const ObjectId door(0u);
+  baked.doors.doors = {door};
+  baked.doors.group_ends = {1};
+  const std::uint32_t sets = baked.sets.count();
+  std::vector<std::vector<bool>> members;
+  for (std::uint32_t set = 0; set < sets; ++set) {
+    members.push_back(test::membersOf(baked, set));
+    baked.doors.hidden.push_back({0, (set + sets / 2) % sets});
+    baked.doors.hidden_ends.push_back(set + 1);
+  }
+  sight_test::Bytes bytes = sight_test::bytesOf(baked);
+  for (const std::size_t from_end : {700u, 20'000u, 29'000u, 38'000u}) {
+    bytes[bytes.size() - from_end] ^= std::byte{0x55};
+  }
+  const Result<SightFile> file = sight_test::opened(bytes);
+  ASSERT_TRUE(file) << sight_test::errorOf(file);
+  SetQuery query(*file, {.cache_bytes = 0});
+  std::mt19937 random(1);
+  const auto eye = [&] {
+    Vec3d at = baked.octree.min;
+    for (int axis = 0; axis < 3; ++axis) {
+      at[axis] += (baked.octree.max[axis] - baked.octree.min[axis]) * (random() % 1000) / 999.0;
+    }
+    return at;
+  };
+  std::size_t looked_at = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3d here = eye();
+    query.setClosedDoors({});
+    query.find(here, 0.0);
+    query.setClosedDoors({&door, 1});
+    query.find(eye(), 0.0);
+    query.setClosedDoors({});
+    const VisibleSet found = query.find(here, 0.0);
+    if (found.id == VisibleSet::kEverything) {
+      continue;
+    }
+    std::vector<bool> have(members[found.id].size());
+    for (const std::uint32_t node : found.nodes) {
+      for (const ObjectId object : query.boxes().objectsBelow(node)) {
+        have[object.value] = true;
+      }
+    }
+    ASSERT_EQ(have, members[found.id]) << i;
+    ++looked_at;
+  }
+  EXPECT_GT(looked_at, 100u);
+  EXPECT_GT(query.stats().broken, 0u) << "no set was damaged";
+}
+
 TEST(SetQuery, HandsOutWhatClosedDoorsLeave) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     const DoorScene rooms = test::randomRooms(seed);

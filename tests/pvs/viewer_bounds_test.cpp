@@ -212,6 +212,84 @@ TEST(ViewerBounds, AreAllOfEachCellWhereNoBoxesAreGiven) {
 }
 
 // Cells with hand-made sets: what they become when they are merged.
+// Boxes that begin and end anywhere, or exactly at the borders of cells: what is hidden from a parent is
+// taken to be hidden from its children.
+TEST(ViewerBounds, OfAChildLieWithinItsParents) {
+  const Scene scene = sceneOf({block({0, 0, 0}, {1, 1, 1}), block({3, 3, 3}, {4, 4, 4})});
+  const OccluderSet set = test::allOccluders(scene);
+  const double edge = 16.0 * (1.0 + 0x1p-20);  // of the root around viewers from 0 to 16
+  std::size_t children = 0;
+  for (std::uint32_t seed = 1; seed <= 100; ++seed) {
+    std::mt19937 random(seed);
+    const auto place = [&] {
+      const std::uint32_t levels = random() % 5, at = random() % ((1u << levels) + 1);
+      const double border = std::min(edge * at / (1u << levels), 16.0);
+      return random() % 2 == 0 ? static_cast<float>(border) : static_cast<float>(random() % 1600) / 100.0f;
+    };
+    std::vector<Box> viewers{{{0, 0, 0}, {0.01f, 0.01f, 0.01f}}, {{15.9f, 15.9f, 15.9f}, {16, 16, 16}}};
+    for (int i = 0; i < 3; ++i) {
+      Box box;
+      box.extend(Vec3f(place(), place(), place()));
+      box.extend(Vec3f(place(), place(), place()));
+      viewers.push_back(box);
+    }
+    const pvs::BakeScene bake(scene.view(), set, {.max_depth = 3, .viewers = viewers}, serialFor);
+    std::vector<OctreeCell> below{{}};
+    while (!below.empty()) {
+      const OctreeCell cell = below.back();
+      below.pop_back();
+      const pvs::CellBox region = bake.regionOf(cell);
+      for (std::uint32_t i = 0; i < 8 && cell.level < 4; ++i) {
+        const OctreeCell child = cell.child(i);
+        if (!bake.holdsViewers(bake.boxOf(child))) {
+          continue;
+        }
+        const pvs::CellBox inner = bake.regionOf(child);
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_GE(inner.min[axis], region.min[axis]) << seed;
+          ASSERT_LE(inner.max[axis], region.max[axis]) << seed;
+        }
+        ++children;
+        below.push_back(child);
+      }
+    }
+  }
+  EXPECT_GT(children, 10'000u);
+}
+
+// The viewers begin at the border between two cells. From the last step of the cell that they only touch, one
+// looks past the wall.
+TEST(ViewerBounds, OfACellThatViewersOnlyTouchClaimNothingThatWasNotAsked) {
+  std::vector<Solid> solids{block({4.065f, 5, 3}, {12, 14, 3.1f}),
+                            block({4.6f, 9.4f, 10}, {4.7f, 9.5f, 10.1f})};
+  for (int i = 0; i < 4; ++i) {
+    const auto x = static_cast<float>(i) + 1.0f;
+    solids.push_back(block({x, 8.5f, 4}, {x + 0.8f, 9.5f, 4.6f}));
+    solids.push_back(block({x, 12.5f, 1}, {x + 2, 15, 1.1f}));
+  }
+  const Scene scene = sceneOf(solids);
+  const float border = 4.0f + 0x1p-18f;
+  const BakeSettings settings{.triangle_budget = 0,
+                              .max_depth = 3,
+                              .near_distance = 0.05,
+                              .viewers = {{{0, 0, 0}, {0.01f, 0.01f, 0.01f}},
+                                          {{15.99f, 15.99f, 15.99f}, {16, 16, 16}},
+                                          {{border, 9, 1}, {5, 10, 2}}},
+                              .merge_tolerance = 0.0};
+  const BakedVisibility made = baked(scene, settings);
+  BakeJudge judge(scene, made);
+  judge.judge(2000, 1, 0.05, 1);
+  const std::vector<std::byte> bytes = pvs::encodeSight(made)->joined();
+  SetQuery query(*SightFile::fromBytes(bytes, "touched"));
+  bool seen = false;
+  for (const std::uint32_t node : query.find({3.97, 9.45, 1.99}, 0.05).nodes) {
+    for (const ObjectId object : query.boxes().objectsBelow(node)) {
+      seen = seen || object == ObjectId(1u);
+    }
+  }
+  EXPECT_TRUE(seen) << "a line of sight passes beside the wall";
+}
+
 class MergedViewers : public ::testing::Test {
  protected:
   const Scene scene_ = sceneOf({block({0, 0, 0}, {1, 1, 1}), block({3, 3, 3}, {4, 4, 4})});

@@ -131,6 +131,16 @@ TEST_F(Check, ClaimsAreThoseOfWhereViewersAreInACell) {
     EXPECT_GT(info["partial_cells"], fused ? 1 : 10) << occlusion;
     const Outcome pairs = runTool({"verify", kCheckScene, "--baked", file_, "--proof", "--pairs", "60"});
     EXPECT_EQ(pairs.code, 0) << pairs.out << pairs.err;
+    // Fewer and larger cells rest on the same witnesses.
+    const auto bytes = std::filesystem::file_size(file_);
+    bake(file_,
+         {"--witnesses", witnesses_, "--occlusion", occlusion, "--merge-tolerance", "0.5", "--region",
+          region({0.07, 0.1, 0.1}, {0.43, 0.83, 0.77}), "--region", region({0.4, 0.3, 0.2}, {0.61, 0.9, 0.9}),
+          "--byte-budget", std::to_string(bytes - bytes / 10)},
+         fused ? "2" : "4");
+    const Outcome fitted = check({"--json", "-"});
+    EXPECT_EQ(fitted.code, 0) << fitted.out << fitted.err;
+    EXPECT_EQ(parse(fitted.out)["contradicted"], 0) << occlusion;
   }
 }
 

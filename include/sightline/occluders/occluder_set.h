@@ -56,7 +56,8 @@ struct EdgeNeighbour {
 struct OccluderBody {
   std::uint32_t first_vertex = 0, first_edge = 0, first_face = 0;  // into OccluderSet::body_...
   std::uint8_t vertex_count = 0, edge_count = 0, face_count = 0;
-  float slack = 0.0f;  // metres, as of an occluder; of all faces
+  std::uint8_t unused = 0;  // files hold the struct as it lies in memory
+  float slack = 0.0f;       // metres, as of an occluder; of all faces
   Box bounds{};
 };
 // From vertex `from` to vertex `to`, with face `left` on its left as seen from outside, `right` on its right;
@@ -67,7 +68,8 @@ struct BodyEdge {
 struct BodyFace {
   Plane plane{};  // the occluder's
   OccluderId occluder{};
-  std::uint8_t vertex = 0;  // on the plane, number within the body
+  std::uint8_t vertex = 0;               // on the plane, number within the body
+  std::array<std::uint8_t, 3> unused{};  // as OccluderBody::unused
 };
 
 // How many triangles became part of an occluder, and why the others did not.

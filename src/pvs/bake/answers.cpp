@@ -162,7 +162,7 @@ std::vector<std::byte> encodeAnswers(const CellAnswers& answers) {
 std::optional<CellAnswers> decodeAnswers(std::span<const std::byte> bytes, std::uint32_t object_count,
                                          std::uint32_t node_count) {
   const std::optional<std::vector<std::byte>> plain = unpack(bytes);
-  if (!plain) {
+  if (!plain || plain->size() > kMaxRawBytes) {
     return std::nullopt;
   }
   CellAnswers answers;

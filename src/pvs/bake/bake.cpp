@@ -56,12 +56,19 @@ std::uint64_t cellsBelow(const BakeScene& scene, const OctreeCell& cell, std::ui
 }
 
 // Whether a cell that is divided stays one part with all that is below it. Cells see no more than those
-// around them, so each of them is expected to have at most as much work as this one. The answer does not
-// depend on what is known from an earlier bake or kept in memory, so that the parts are the same in each run.
+// around them, so each of them is expected to have at most as much work as this one, and surfaces of doors to
+// take as much again for each group. The answer does not depend on what is known from an earlier bake or kept
+// in memory, so that the parts are the same in each run.
 bool staysOnePart(const BakeScene& scene, const OctreeCell& cell, const CellOutcome& outcome) {
-  const std::uint64_t affordable = std::min(kPartCells, kPartWork / std::max<std::uint64_t>(outcome.work, 1));
+  const std::uint64_t groups =
+      scene.settings.occlusion == BakeOcclusion::kFused ? scene.doors.groups.size() : 0;
+  const std::uint64_t work = std::max<std::uint64_t>(outcome.work, 1) * (1 + groups);
+  const std::uint64_t affordable = std::min(kPartCells, kPartWork / work);
   return cellsBelow(scene, cell, affordable) <= affordable;
 }
+
+// Each group of doors has surfaces of its own in memory.
+constexpr std::size_t kMostFusedGroups = 256;
 
 std::string problemWith(const BakeSettings& s) {
   const auto usable = [](double value, double min, double max) { return value >= min && value <= max; };
@@ -70,6 +77,11 @@ std::string problemWith(const BakeSettings& s) {
   }
   if (!usable(s.near_distance, 0.0, 1e12) || !usable(s.search_distance, 0.0, 1e12)) {
     return "near_distance and search_distance are metres from 0 to 1e12";
+  }
+  if (s.occlusion == BakeOcclusion::kFused && doorGroupsOf(s.doors).groups.size() > kMostFusedGroups) {
+    return "there are more than " + std::to_string(kMostFusedGroups) +
+           " groups of doors (each door is one, and so are all together); name fewer, or use convex "
+           "occlusion";
   }
   if (!usable(s.occluder_size, 0.0, 1e6)) {
     return "occluder_size is a factor from 0 to 1,000,000";
@@ -127,13 +139,16 @@ std::uint64_t hashOf(const SceneId& scene, const OccluderSet& occluders, const B
                               s.merge_tolerance, s.box_margin}) {
     bytes.add(number);
   }
+  bytes.add(std::uint64_t{s.viewers.size()});
   for (const Box& box : s.viewers) {
     for (const float number : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z}) {
       bytes.add(number);
     }
   }
   bytes.add(std::uint8_t{s.whole_cells});
-  for (const std::vector<ObjectId>& group : doorGroupsOf(s.doors).groups) {
+  const std::vector<std::vector<ObjectId>> groups = doorGroupsOf(s.doors).groups;
+  bytes.add(std::uint64_t{groups.size()});
+  for (const std::vector<ObjectId>& group : groups) {
     bytes.add(std::uint64_t{group.size()});
     for (const ObjectId door : group) {
       bytes.add(door.value);
@@ -422,7 +437,9 @@ std::vector<PartTask> Bake::partsBelow(std::span<const std::byte> part) const {
 bool Bake::isPart(std::uint64_t id, std::span<const std::byte> part) const {
   base::ByteReader bytes(part);
   const PartHead head = readHead(bytes);
-  return bytes.ok() && head.magic == kPartMagic && head.plan == data_->hash && head.id == id;
+  // Of a cell that cannot be divided, no part says that it was.
+  return bytes.ok() && head.magic == kPartMagic && head.plan == data_->hash && head.id == id &&
+         (head.summary.leaves > 0 || data_->scene.mayDivide(cellOfNumber(id)));
 }
 
 BakedParts Bake::bakeAll(const ParallelFor& parallel_for, const Progress& progress, BakeStats* stats) const {

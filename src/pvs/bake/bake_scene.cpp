@@ -328,11 +328,13 @@ ViewerBounds BakeScene::viewersIn(const OctreeCell& cell) const {
       return gridLine(root.min[axis], root.max[axis], cell.level + kViewerLevels,
                       (cell.at[a] << kViewerLevels) + step);
     };
+    // A step that viewers only touch counts as well: so does a child that they only touch, and it must lie
+    // within its parent's box.
     std::uint32_t first = 0, end = kSteps;
-    while (first + kBoundSteps < kSteps && line(first + kBoundSteps) <= part.min[axis]) {
+    while (first + kBoundSteps < kSteps && line(first + kBoundSteps) < part.min[axis]) {
       first += kBoundSteps;
     }
-    while (end > first + kBoundSteps && line(end - kBoundSteps) >= part.max[axis]) {
+    while (end > first + kBoundSteps && line(end - kBoundSteps) > part.max[axis]) {
       end -= kBoundSteps;
     }
     viewers.first[a] = static_cast<std::uint8_t>(first);

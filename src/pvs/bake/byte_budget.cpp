@@ -22,19 +22,20 @@ double viewerVolume(const BakedCell& leaf) {
   if (leaf.reason == StopReason::kOutside) {
     return 0.0;
   }
-  double volume = std::ldexp(1.0, -3 * static_cast<int>(leaf.level));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    volume *=
-        std::ldexp(leaf.viewers.last[axis] - leaf.viewers.first[axis] + 1, -static_cast<int>(kViewerLevels));
-  }
-  return volume;
+  return std::ldexp(volumeOf(leaf.viewers), -3 * static_cast<int>(leaf.level));
 }
 
 // About how many bytes of the file are the leaf's. Equal sets are stored once, which is not known here.
 double bytesOf(const BakedCell& leaf) {
   constexpr double kLeaf = 28.0, kRun = 2.0;  // a leaf in the octree; a run of a compressed set
-  return kLeaf +
-         kRun * static_cast<double>(leaf.sets.whole.size() + leaf.sets.front.size() + leaf.sets.back.size());
+  const CellSets& sets = leaf.sets;
+  std::size_t runs = sets.whole.size() + sets.front.size() + sets.back.size();
+  for (const DoorRuns* doors : {&sets.whole_doors, &sets.front_doors, &sets.back_doors}) {
+    for (const HiddenByDoors& hidden : *doors) {
+      runs += hidden.hidden.size();
+    }
+  }
+  return kLeaf + kRun * static_cast<double>(runs);
 }
 
 // A cell, and what it is as a leaf: itself, or what all below it become together.
@@ -52,17 +53,11 @@ BakedCell togetherOf(const BakeScene& scene, std::vector<BakedCell> leaves) {
   std::optional<BakedCell> one = joined(scene, leaves);
   if (!one) {
     for (BakedCell& leaf : leaves) {
-      leaf.sets = {.whole = std::move(leaf.sets.whole)};
+      leaf.sets = {.whole = std::move(leaf.sets.whole), .whole_doors = std::move(leaf.sets.whole_doors)};
     }
     one = joined(scene, leaves);
   }
-  if (!one) {
-    one.emplace();
-    one->sets.whole = {{0, static_cast<std::uint32_t>(scene.boxes.objects.size())}};
-    one->reason = StopReason::kMerged;
-    one->level = static_cast<std::uint8_t>(leaves[0].level - 1);
-  }
-  return std::move(*one);
+  return one ? std::move(*one) : allObjectsIn(scene, leaves);
 }
 
 Choice choiceOf(const BakeScene& scene, const BakedCell& cell) {

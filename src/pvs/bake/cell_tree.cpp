@@ -195,35 +195,49 @@ StepBox stepsOf(const ViewerBounds& viewers, std::uint32_t child) {
   return box;
 }
 
-// The viewers of all children that count, if their boxes fill a box of whole steps of the cell. No two of
-// them overlap, so they do if their volumes add up to that of the box around them.
-std::optional<ViewerBounds> viewersOfAll(std::span<const BakedCell> children, const Counts& counts) {
+// The box around the viewers of all children that count; nothing if none does.
+std::optional<StepBox> stepsAround(std::span<const BakedCell> children, const Counts& counts) {
   std::optional<StepBox> around;
-  std::uint64_t volume = 0;
   for (std::uint32_t i = 0; i < children.size(); ++i) {
     if (!counts[i]) {
       continue;
     }
     const StepBox box = stepsOf(children[i].viewers, i);
-    volume += box.volume();
     around = around.value_or(box);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       around->begin[axis] = std::min(around->begin[axis], box.begin[axis]);
       around->end[axis] = std::max(around->end[axis], box.end[axis]);
     }
   }
-  if (!around || around->volume() != volume) {
-    return std::nullopt;
-  }
+  return around;
+}
+
+// The least viewers of the cell that hold the box.
+ViewerBounds boundsOf(const StepBox& box) {
   ViewerBounds viewers;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (around->begin[axis] % 2 != 0 || around->end[axis] % 2 != 0) {
-      return std::nullopt;
-    }
-    viewers.first[axis] = static_cast<std::uint8_t>(around->begin[axis] / 2);
-    viewers.last[axis] = static_cast<std::uint8_t>(around->end[axis] / 2 - 1);
+    viewers.first[axis] = static_cast<std::uint8_t>(box.begin[axis] / 2);
+    viewers.last[axis] = static_cast<std::uint8_t>((box.end[axis] - 1) / 2);
   }
   return viewers;
+}
+
+// The viewers of all children that count, if their boxes fill a box of whole steps of the cell. No two of
+// them overlap, so they do if their volumes add up to that of the box around them.
+std::optional<ViewerBounds> viewersOfAll(std::span<const BakedCell> children, const Counts& counts) {
+  const std::optional<StepBox> around = stepsAround(children, counts);
+  if (!around) {
+    return std::nullopt;
+  }
+  std::uint64_t volume = 0;
+  for (std::uint32_t i = 0; i < children.size(); ++i) {
+    volume += counts[i] ? stepsOf(children[i].viewers, i).volume() : 0;
+  }
+  bool whole_steps = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    whole_steps = whole_steps && around->begin[axis] % 2 == 0 && around->end[axis] % 2 == 0;
+  }
+  return whole_steps && volume == around->volume() ? std::optional(boundsOf(*around)) : std::nullopt;
 }
 
 }  // namespace
@@ -240,6 +254,17 @@ std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCel
   cell.viewers = *viewers;
   cell.reason = StopReason::kMerged;
   cell.level = static_cast<std::uint8_t>(children[0].level - 1);
+  return cell;
+}
+
+BakedCell allObjectsIn(const BakeScene& scene, std::span<const BakedCell> children) {
+  BakedCell cell;
+  cell.sets.whole = {{0, static_cast<std::uint32_t>(scene.boxes.objects.size())}};
+  cell.reason = StopReason::kMerged;
+  cell.level = static_cast<std::uint8_t>(children[0].level - 1);
+  if (const std::optional<StepBox> around = stepsAround(children, countsOf(scene, children))) {
+    cell.viewers = boundsOf(*around);
+  }
   return cell;
 }
 
@@ -287,7 +312,7 @@ bool readDoors(base::ByteReader& bytes, const BakeScene& scene, DoorRuns& doors)
   for (std::size_t i = 0; i < doors.size(); ++i) {
     doors[i].group = bytes.read<std::uint32_t>();
     if ((i > 0 && doors[i].group <= doors[i - 1].group) || doors[i].group >= scene.doors.groups.size() ||
-        !readRuns(bytes, object_count, doors[i].hidden)) {
+        !readRuns(bytes, object_count, doors[i].hidden) || doors[i].hidden.empty()) {
       return false;
     }
   }

@@ -47,6 +47,9 @@ BakedCell bakeBelow(CellBaker& baker, const BakeScene& scene, const OctreeCell& 
 // around their viewers holds more than these.
 std::optional<BakedCell> joined(const BakeScene& scene, std::span<const BakedCell> children);
 
+// A leaf in place of the children that holds all objects, with the least box around their viewers.
+BakedCell allObjectsIn(const BakeScene& scene, std::span<const BakedCell> children);
+
 // Turns a cell whose children are leaves with similar sets into the leaf that they become together.
 void mergeChildren(const BakeScene& scene, BakedCell& cell);
 

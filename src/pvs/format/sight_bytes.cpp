@@ -93,10 +93,7 @@ void writeStructure(flatbuffers::FlatBufferBuilder& builder, const SightView& vi
   const auto sets = writeArray<sight::SetPlace>(builder, view.sets);
   const auto objects = writeArray<std::uint32_t>(builder, view.boxes.objects);
   const auto boxes = writeArray<sight::BoxNode>(builder, view.boxes.nodes);
-  flatbuffers::Offset<flatbuffers::Vector<const sight::ViewerBounds*>> viewers;
-  if (!view.octree.viewers.empty()) {
-    viewers = writeArray<sight::ViewerBounds>(builder, view.octree.viewers);
-  }
+  const auto viewers = writeOptionalArray<sight::ViewerBounds>(builder, view.octree.viewers);
   const auto planes = writeArray<sight::CellPlane>(builder, view.octree.planes);
   const auto reasons = writeArray<std::uint8_t>(builder, view.octree.reasons);
   const auto depths = writeArray<std::uint8_t>(builder, view.octree.depths);
@@ -216,10 +213,8 @@ bool readArrays(const sight::File& file, SightView& view) {
   return readArray(file.boxes(), view.boxes.nodes) && readArray(file.objects(), view.boxes.objects) &&
          readArray(file.nodes(), octree.nodes) && readArray(file.leaves(), octree.leaves) &&
          readArray(file.depths(), octree.depths) && readArray(file.reasons(), octree.reasons) &&
-         readArray(file.planes(), octree.planes) &&
-         (file.viewers() == nullptr || readArray(file.viewers(), octree.viewers)) &&
+         readArray(file.planes(), octree.planes) && readArray(file.viewers(), octree.viewers) &&
          readArray(file.sets(), view.sets) && readArray(file.chunks(), view.chunks) &&
-
          readArray(file.doors(), view.doors.doors) &&
          readArray(file.door_group_ends(), view.doors.group_ends) &&
          readArray(file.door_hidden(), view.doors.hidden) &&

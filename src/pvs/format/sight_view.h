@@ -18,7 +18,7 @@
 namespace sightline::pvs {
 
 inline constexpr std::uint32_t kVersion = 2;
-inline constexpr std::uint64_t kMaxStructureBytes = 0x7fffffffu;  // the limit of a FlatBuffer
+inline constexpr std::uint64_t kMaxStructureBytes = 0x7ffffffeu;  // a FlatBuffer is smaller than 2^31 - 1
 
 // Chunks of sets are about kSetChunkBytes long before compression, so that one is decompressed in a few
 // microseconds. None is longer than kMaxSetChunkBytes, except for a single set that is longer itself.

@@ -57,6 +57,12 @@ void appendLeft(std::span<const std::uint32_t> set, std::span<const std::uint32_
   }
 }
 
+// Ascending, each once.
+void sortOnce(std::vector<std::uint32_t>& nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+}
+
 }  // namespace
 
 struct SetQuery::Impl {
@@ -134,6 +140,7 @@ VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32
     return left;
   }
   left_of.reset();
+  last = everything();  // its nodes may leave the cache below; fetch() sets it again
   hidden_nodes.clear();
   for (const DoorSet& door : view.doors.hiddenOf(set)) {
     if (is_closed[door.group] == 0) {
@@ -142,6 +149,10 @@ VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32
     // What cannot be decoded counts as seen.
     if (const auto nodes = nodesOf(view, door.hidden)) {
       hidden_nodes.insert(hidden_nodes.end(), nodes->begin(), nodes->end());
+      // Many groups may hide the same nodes.
+      if (hidden_nodes.size() > 2 * view.boxes.nodes.size()) {
+        sortOnce(hidden_nodes);
+      }
     }
   }
   // The set comes last, so that it stays in the cache as the last one.
@@ -153,7 +164,7 @@ VisibleSet SetQuery::Impl::withoutHidden(const pvs::SightView& view, std::uint32
   if (hidden_nodes.empty() || next_id == VisibleSet::kEverything) {
     return left = open;  // or there are no more numbers for sets
   }
-  std::sort(hidden_nodes.begin(), hidden_nodes.end());
+  sortOnce(hidden_nodes);
   left_nodes.clear();
   appendLeft(open.nodes, hidden_nodes, view.ends, left_nodes);
   return left = {next_id++, left_nodes};

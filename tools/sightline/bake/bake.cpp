@@ -247,9 +247,7 @@ Result<ExitCode> finish(const BakeOptions& options, const Planned& planned, Bake
   std::optional<Scene> open;  // with all doors open, if there are any
   if (!baked->doors.doors.empty()) {
     open = planned.scene;
-    for (const ObjectId door : baked->doors.doors) {
-      open->objects[door.value].mark = OccluderMark::kNever;
-    }
+    openOtherDoors(baked->doors.view(), {}, *open);
   }
   baked->databases = buildDatabases(open ? *open : planned.scene,
                                     {*databaseNames(options), options.viewpoints, planned.viewpoints},

@@ -30,7 +30,7 @@ enum Tag : int {
   kReady,   // the number and error given to agree()
   kGo,      // a number: 1 to go on, 0 to give up
   kWant,    // two numbers: how many threads have nothing to do, and how many more parts are wanted ahead
-  kParts,   // the parts' ids and search distances; if there are none, no more will come
+  kParts,   // the parts' ids, search distances and what is seen; if there are none, no more will come
   kDone,    // a part's id and its bytes
   kTotals,  // stats and peak memory, sent at the end
   kFailed,  // a text: the reason
@@ -277,7 +277,7 @@ class FirstBaker {
 
   void count(const BakedPart& part) {
     const PartSummary summary = bake_.summaryOf(part);
-    open_ += bake_.partsBelow(part).size();
+    open_ += summary.leaves == 0 ? 8 : 0;  // a part without leaves was divided
     open_ -= 1;
     leaves_ += summary.leaves;
     triangles_ += summary.mean_triangles * summary.leaves;
@@ -368,8 +368,8 @@ void bakeAsOther(const Bake& bake, MpiWorld& world, std::uint32_t threads) {
   // Each thread has a part to begin when it has finished one, since asking takes some milliseconds.
   const std::uint32_t wanted = 2 * threads;
   std::uint32_t out = 0;  // parts that this process has received and not sent back
-  std::optional<std::uint32_t>
-      told;  // how many these were when it asked for more; none since the last answer
+  // How many these were when it asked for more; none since the last answer.
+  std::optional<std::uint32_t> told;
   bool more = true;
   while (more || out > 0) {
     for (const FinishedPart& finished : queue.finished(kLook)) {

@@ -206,19 +206,6 @@ Spread spreadOf(const std::vector<double>& values) {
   return spread;
 }
 
-namespace {
-
-// The fraction of a cell where viewers are expected.
-double volumeOf(const ViewerBounds& viewers) {
-  double volume = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    volume *= std::ldexp(viewers.last[axis] - viewers.first[axis] + 1, -static_cast<int>(kViewerLevels));
-  }
-  return volume;
-}
-
-}  // namespace
-
 Result<SightFacts> factsOf(const SightFile& file, std::span<const ObjectId> closed) {
   const Result<std::vector<SetSize>> sets = sizesOfSets(file, closed);
   if (!sets) {

@@ -130,8 +130,8 @@ Result<std::vector<ObjectId>> closedDoors(const std::string& text, const SightFi
   return closed;
 }
 
-void openOtherDoors(const SightFile& baked, std::span<const ObjectId> closed, Scene& scene) {
-  for (const ObjectId door : baked.doors().doors) {
+void openOtherDoors(const DoorsView& doors, std::span<const ObjectId> closed, Scene& scene) {
+  for (const ObjectId door : doors.doors) {
     if (!std::binary_search(closed.begin(), closed.end(), door)) {
       scene.objects[door.value].mark = OccluderMark::kNever;
     }

@@ -31,7 +31,7 @@ Result<std::vector<ObjectId>> closedDoors(const std::string& text, const SightFi
                                           const std::string& name);
 
 // Makes all other doors of the file open: in the scene, nothing is hidden by them any more.
-void openOtherDoors(const SightFile& baked, std::span<const ObjectId> closed, Scene& scene);
+void openOtherDoors(const DoorsView& doors, std::span<const ObjectId> closed, Scene& scene);
 
 // Says for each place in BoxTree::objects, with 1, that its object is in the set while exactly these doors
 // are closed, ascending. Error if a set is corrupt.

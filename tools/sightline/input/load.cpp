@@ -127,7 +127,7 @@ Result<std::vector<ObjectId>> closeDoors(const std::string& closed, const std::s
   }
   Result<std::vector<ObjectId>> doors = closedDoors(closed, *baked, name);
   if (doors) {
-    openOtherDoors(*baked, *doors, scene);
+    openOtherDoors(baked->doors(), *doors, scene);
   }
   return doors;
 }

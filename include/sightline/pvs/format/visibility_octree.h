@@ -28,7 +28,6 @@ inline constexpr std::uint32_t kStopReasons = 5;
 // A plane that divides a cell, with the solid that it stands for. Eyes with dot(normal, eye) >= front are in
 // front of it and those with dot(normal, eye) <= back behind it. The others are inside the solid or so close
 // to it that they may look through it. back <= front.
-// through it. back <= front.
 //
 // The look-up computes the dot product in double precision, x, then y, then z, with an error below 2^-50 of
 // the coordinates' magnitude (the largest absolute value in the octree's box). To allow for this, the sets of
@@ -74,6 +73,15 @@ struct ViewerBounds {
 };
 inline constexpr std::uint32_t kViewerLevels = 8;  // a step is a cell's edge, halved so often
 static_assert(sizeof(ViewerBounds) == 6);
+
+// The part of the cell that they take, from 0 to 1.
+inline double volumeOf(const ViewerBounds& viewers) {
+  double steps = 1.0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    steps *= viewers.last[axis] - viewers.first[axis] + 1;
+  }
+  return steps * 0x1p-24;
+}
 
 // An inner node has the index of the first of its eight children, which are consecutive. Child i is in the
 // upper half in x, y, z if bit 0, 1, 2 of i is set. A leaf has kOctreeLeaf plus the index of the leaf.
