@@ -131,16 +131,25 @@ TEST_F(Check, ClaimsAreThoseOfWhereViewersAreInACell) {
     EXPECT_GT(info["partial_cells"], fused ? 1 : 10) << occlusion;
     const Outcome pairs = runTool({"verify", kCheckScene, "--baked", file_, "--proof", "--pairs", "60"});
     EXPECT_EQ(pairs.code, 0) << pairs.out << pairs.err;
-    // Fewer and larger cells rest on the same witnesses.
-    const auto bytes = std::filesystem::file_size(file_);
-    bake(file_,
-         {"--witnesses", witnesses_, "--occlusion", occlusion, "--merge-tolerance", "0.5", "--region",
-          region({0.07, 0.1, 0.1}, {0.43, 0.83, 0.77}), "--region", region({0.4, 0.3, 0.2}, {0.61, 0.9, 0.9}),
-          "--byte-budget", std::to_string(bytes - bytes / 10)},
-         fused ? "2" : "4");
-    const Outcome fitted = check({"--json", "-"});
-    EXPECT_EQ(fitted.code, 0) << fitted.out << fitted.err;
-    EXPECT_EQ(parse(fitted.out)["contradicted"], 0) << occlusion;
+  }
+}
+
+// Fewer and larger cells rest on the same witnesses.
+TEST_F(Check, ABudgetInBytesLeavesWitnessesTrue) {
+  const std::vector<std::string> regions{
+      "--region=3.9,2.1,-12.7,61.2,9.4,-1.3", "--region=55.1,0.4,-3.2,112.6,6.8,9.9",
+      "--region=20.3,7.7,1.1,80.8,19.5,14.2", "--region=101.4,11.3,-14.1,171.9,22.2,-4.4"};
+  bake(file_, regions, "0");
+  const auto fewest = static_cast<double>(std::filesystem::file_size(file_));
+  bake(file_, regions, "4");
+  const auto most = static_cast<double>(std::filesystem::file_size(file_));
+  for (const double part : {0.9, 0.6, 0.3}) {
+    const auto budget = static_cast<std::uintmax_t>(fewest + part * (most - fewest));
+    bake(file_, joined({"--witnesses", witnesses_, "--byte-budget", std::to_string(budget)}, regions), "4");
+    const Outcome outcome = check({"--json", "-"});
+    ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+    EXPECT_GT(parse(outcome.out)["claims"], 100);
+    EXPECT_EQ(parse(outcome.out)["contradicted"], 0);
   }
 }
 
