@@ -222,7 +222,8 @@ TEST(ViewerBounds, OfAChildLieWithinItsParents) {
   for (std::uint32_t seed = 1; seed <= 100; ++seed) {
     std::mt19937 random(seed);
     const auto place = [&] {
-      const std::uint32_t levels = random() % 5, at = random() % ((1u << levels) + 1);
+      const auto levels = static_cast<std::uint32_t>(random() % 5),
+                 at = static_cast<std::uint32_t>(random() % ((1u << levels) + 1));
       const double border = std::min(edge * at / (1u << levels), 16.0);
       return random() % 2 == 0 ? static_cast<float>(border) : static_cast<float>(random() % 1600) / 100.0f;
     };
