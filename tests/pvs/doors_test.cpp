@@ -523,7 +523,8 @@ TEST(SetQuery, HandsOutNoSetThatLeftItsCacheForThoseOfDoors) {
   const auto eye = [&] {
     Vec3d at = baked.octree.min;
     for (int axis = 0; axis < 3; ++axis) {
-      at[axis] += (baked.octree.max[axis] - baked.octree.min[axis]) * (random() % 1000) / 999.0;
+      at[axis] +=
+          (baked.octree.max[axis] - baked.octree.min[axis]) * static_cast<double>(random() % 1000) / 999.0;
     }
     return at;
   };
