@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "fuzz/readers/forged_bytes.h"
 #include "fuzz/readers/fuzz_input.h"
 #include "src/base/byte_stream.h"
 #include "src/pvs/bake/answers.h"
 #include "src/pvs/bake/earlier_bake.h"
 #include "src/pvs/bake/packed_bytes.h"
-
-#define XXH_INLINE_ALL
-#include "src/pvs/format/checksum.h"
 
 using namespace sightline;
 using namespace sightline::fuzz;
@@ -54,16 +52,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text = textOf(data, size);
   readFile(bytesOf(text));
   readAnswers(text);
-  // All but the checksum at the end, which the seeds have.
+  // The seeds have all but the checksum at the end.
   static const std::vector<std::byte> kEmpty = pvs::earlierBakeBytes({}, {}, {});
   const std::size_t head = sizeof(std::uint64_t) + sizeof(std::uint32_t);  // magic and version
-  std::vector<std::byte> forged(kEmpty.begin(), kEmpty.begin() + static_cast<std::ptrdiff_t>(head));
-  const std::span<const std::byte> given = bytesOf(text);
-  forged.insert(forged.end(), given.begin(), given.end());
-  const std::uint64_t sum = pvs::checksumOf(forged);
-  for (int shift = 0; shift < 64; shift += 8) {
-    forged.push_back(static_cast<std::byte>(sum >> shift & 0xff));
-  }
-  readFile(forged);
+  readFile(withChecksum(std::span(kEmpty).first(head), text));
   return 0;
 }

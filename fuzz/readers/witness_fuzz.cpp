@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "fuzz/readers/forged_bytes.h"
 #include "fuzz/readers/fuzz_input.h"
 #include "sightline/pvs/format/witness.h"
-
-#define XXH_INLINE_ALL
-#include "src/pvs/format/checksum.h"
 
 using namespace sightline;
 using namespace sightline::fuzz;
@@ -32,13 +30,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text = textOf(data, size);
   readWitnessFile(bytesOf(text));
   static const std::vector<std::byte> kEmpty = witnessBytes({});
-  std::vector<std::byte> forged(kEmpty.begin(), kEmpty.begin() + 8);
-  const std::span<const std::byte> given = bytesOf(text);
-  forged.insert(forged.end(), given.begin(), given.end());
-  const std::uint64_t sum = pvs::checksumOf(forged);
-  for (int shift = 0; shift < 64; shift += 8) {
-    forged.push_back(static_cast<std::byte>(sum >> shift & 0xff));
-  }
-  readWitnessFile(forged);
+  readWitnessFile(withChecksum(std::span(kEmpty).first(8), text));
   return 0;
 }

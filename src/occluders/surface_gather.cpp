@@ -116,7 +116,7 @@ struct Chunk {
   }
 };
 
-// The same in a PartStore.
+// A PartStore keeps these copies of a chunk's arrays.
 struct KeptChunk {
   std::span<SurfacePatch> patches;
   std::span<const SurfaceCluster> clusters;

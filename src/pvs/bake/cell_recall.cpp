@@ -9,7 +9,7 @@
 namespace sightline::pvs {
 namespace {
 
-// In units of the coordinates: far more than rounding moves a line of sight.
+// Rounding moves a line of sight by far less than this, in units of the coordinates.
 constexpr double kLineMargin = 0x1p-36;
 // If more boxes differ, the earlier answers help little.
 constexpr std::size_t kMostDiffering = 256;

@@ -15,7 +15,7 @@
 
 namespace sightline::pvs {
 
-// For one thread.
+// Only one thread at a time may use it.
 class CellRecall {
  public:
   // recall: the earlier bake; none if null. Both must outlive this.

@@ -64,8 +64,7 @@ void ClosedDoors::hideFrom(const Region& region, const CellBox& search, Runs& se
       know(before[next++].hidden);
     }
     for (const HiddenByDoors& part : doors) {
-      const std::vector<ObjectId>& of_part = scene_.doors.groups[part.group];
-      if (std::includes(members.begin(), members.end(), of_part.begin(), of_part.end())) {
+      if (scene_.doors.isWithin(part.group, group)) {
         know(part.hidden);
       }
     }

@@ -8,6 +8,10 @@ bool DoorGroups::isDoor(ObjectId object) const {
   return std::binary_search(all.begin(), all.end(), object);
 }
 
+bool DoorGroups::isWithin(std::uint32_t part, std::uint32_t whole) const {
+  return std::includes(groups[whole].begin(), groups[whole].end(), groups[part].begin(), groups[part].end());
+}
+
 DoorGroups doorGroupsOf(std::span<const std::vector<ObjectId>> given) {
   DoorGroups doors;
   const auto makeSet = [](auto& items, const auto& before) {

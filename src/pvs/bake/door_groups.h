@@ -19,6 +19,8 @@ struct DoorGroups {
   std::vector<std::vector<ObjectId>> groups{};
 
   bool isDoor(ObjectId object) const;
+  // Whether all doors of the group `part` belong to the group `whole` as well.
+  bool isWithin(std::uint32_t part, std::uint32_t whole) const;
 };
 
 // given: BakeSettings::doors.

@@ -55,12 +55,9 @@ class Flattener {
     hidden_.clear();
     for (const HiddenByDoors& all : doors) {
       // What a group within this one hides is stored with that.
-      const std::vector<ObjectId>& members = scene_.doors.groups[all.group];
       Runs own = without(all.hidden, scene_.door_runs);
       for (const HiddenByDoors& part : doors) {
-        const std::vector<ObjectId>& of_part = scene_.doors.groups[part.group];
-        if (part.group != all.group &&
-            std::includes(members.begin(), members.end(), of_part.begin(), of_part.end())) {
+        if (part.group != all.group && scene_.doors.isWithin(part.group, all.group)) {
           own = without(own, part.hidden);
         }
       }

@@ -16,7 +16,7 @@ struct HiddenByDoors {
   std::uint32_t group = 0;  // into DoorGroups::groups
   Runs hidden{};            // not empty
 };
-// By ascending group; groups that hide nothing are left out.
+// They are sorted by group; groups that hide nothing are left out.
 using DoorRuns = std::vector<HiddenByDoors>;
 
 struct CellSets {

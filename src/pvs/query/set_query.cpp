@@ -57,7 +57,7 @@ void appendLeft(std::span<const std::uint32_t> set, std::span<const std::uint32_
   }
 }
 
-// Ascending, each once.
+// Sorts the nodes and leaves out those that are there twice.
 void sortOnce(std::vector<std::uint32_t>& nodes) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
