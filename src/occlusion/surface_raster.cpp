@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace sightline::occlusion {
 namespace {
@@ -47,8 +46,8 @@ PixelRectangle join(const PixelRectangle& a, const PixelRectangle& b) {
 
 void SurfaceRaster::reserve(const SurfaceSet& set) {
   const auto makeRoom = [](auto& list, std::size_t size) { list.resize(std::max(list.size(), size)); };
-  makeRoom(members_, set.clusters.size());
-  makeRoom(last_groups_, set.chains.size());
+  makeRoom(sums_, set.chains.size());
+  makeRoom(facings_, set.patches.size());
   makeRoom(patch_rests_, set.patches.size());
   makeRoom(part_rests_, set.parts.size());
   makeRoom(drawn_in_, set.parts.size());
@@ -99,6 +98,7 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
   if (view_number_ == 0xffffffffu) {
     std::fill(patch_rests_.begin(), patch_rests_.end(), Rest{});
     std::fill(part_rests_.begin(), part_rests_.end(), Rest{});
+    std::fill(facings_.begin(), facings_.end(), Facing{});
     std::fill(drawn_in_.begin(), drawn_in_.end(), 0u);
     view_number_ = 0;
     step = ViewStep::kJump;
@@ -122,6 +122,16 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
   return rectangle.area() >= drawing_.pixels_per_edge * edges;
 }
 
+// Which side of a patch shows, as SurfaceView::sideOf() tells; found again only when the eye has moved.
+std::int32_t SurfaceRaster::sideOf(std::uint32_t patch) {
+  Facing& facing = facings_[patch];
+  if (facing.side == 0 || facing.since < first_view_ || !(travel_ < facing.travel)) {
+    const PatchSide side = view_.sideOf(patch);
+    facing = {view_number_, side.side, travel_ + side.travel};
+  }
+  return facing.side;
+}
+
 // Adds the large patches of a part, each alone, and all of them together.
 void SurfaceRaster::addPart(const PartImage& image) {
   const SurfacePart& part = set_->parts[image.part];
@@ -130,20 +140,18 @@ void SurfaceRaster::addPart(const PartImage& image) {
       drawing_.seams ? set_->adjoiningOf(image.part) : std::span<const std::uint32_t>();
   const bool together = part.patch_count + adjoining.size() > 1 && pays(image.rectangle, part.edge_count) &&
                         !rests(part_rests_[image.part]);
+  listPatches(part, together);
   const std::size_t first_cluster = view_.clusters().size();
   PixelRectangle rectangle = kNoPixels;
   std::uint32_t shown = 0;
   patches_.clear();
-  view_.beginPart(part);
-  for (std::uint32_t number = part.first_patch; number < part.first_patch + part.patch_count; ++number) {
-    const SurfacePatch& source = set_->patches[number];
-    const bool resting = rests(patch_rests_[number]);
-    PatchImage patch;
-    if ((resting && !together) || !view_.imageOf(number, together ? 0.0 : drawing_.min_patch_pixels, patch) ||
-        map_.hides(patch.rectangle, patch.nearest)) {
+  for (PatchImage& patch : shown_) {
+    const SurfacePatch& source = set_->patches[patch.patch];
+    if (map_.hides(patch.rectangle, patch.nearest)) {
       continue;
     }
     if (patch.sign != 0) {
+      view_.setDepth(patch);
       patches_.push_back(patch);
     } else {
       view_.addClusters(source, patch);
@@ -153,9 +161,9 @@ void SurfaceRaster::addPart(const PartImage& image) {
     }
     ++shown;
     rectangle = join(rectangle, patch.rectangle);
-    if (!resting && patch.rectangle.area() >= drawing_.min_patch_pixels &&
+    if (!rests(patch_rests_[patch.patch]) && patch.rectangle.area() >= drawing_.min_patch_pixels &&
         pays(patch.rectangle, source.edge_count) && withinBudget()) {
-      addPatch(patch, patch_rests_[number]);
+      addPatch(patch, patch_rests_[patch.patch]);
     }
   }
   stats_.patches += shown;
@@ -172,6 +180,21 @@ void SurfaceRaster::addPart(const PartImage& image) {
   }
 }
 
+// Sets shown_ to the patches of a part that may be drawn. together: all of them, however small, as one group.
+void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
+  sides_.clear();
+  for (std::uint32_t patch = part.first_patch; patch < part.first_patch + part.patch_count; ++patch) {
+    if (together || !rests(patch_rests_[patch])) {
+      const std::int32_t side = sideOf(patch);
+      if (side >= 0 || set_->patches[patch].double_sided) {
+        sides_.push_back({patch, side});
+      }
+    }
+  }
+  view_.imagesOf(sides_, together ? 0.0 : drawing_.min_patch_pixels, shown_);
+}
+
+// A patch alone.
 void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
   const std::span<const ClusterImage> clusters = view_.clusters().subspan(patch.first, patch.count);
   if (!patch.flat) {
@@ -180,7 +203,7 @@ void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
   }
   beginGroup();
   if (patch.sign == 0) {
-    addBoundary(clusters);
+    addBoundary(clusters, {});
   } else {
     for (const PatchChain& chain : set_->chainsOf(set_->patches[patch.patch])) {
       addEdges(chain.chain, chain.value * patch.sign);
@@ -193,17 +216,8 @@ void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
 void SurfaceRaster::addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
                                 const PixelRectangle& rectangle, Rest& rest) {
   beginGroup();
+  addBoundary(clusters, patches);
   for (const PatchImage& image : patches) {
-    const SurfacePatch& patch = set_->patches[image.patch];
-    for (std::uint32_t i = 0; i < patch.cluster_count; ++i) {
-      addMember(patch.first_cluster + i, image.sign);
-    }
-  }
-  addBoundary(clusters);
-  for (const PatchImage& image : patches) {
-    for (const PatchChain& chain : set_->chainsOf(set_->patches[image.patch])) {
-      addChain(chain.chain);
-    }
     depths_.push_back({image.rectangle, image.depth});
   }
   for (const ClusterImage& image : clusters) {
@@ -214,8 +228,7 @@ void SurfaceRaster::addTogether(std::span<const ClusterImage> clusters, std::spa
 
 void SurfaceRaster::beginGroup() {
   if (++group_ == 0) {
-    std::fill(members_.begin(), members_.end(), Membership{});
-    std::fill(last_groups_.begin(), last_groups_.end(), 0u);
+    std::fill(sums_.begin(), sums_.end(), ChainSum{});
     group_ = 1;
   }
   Group group;
@@ -271,35 +284,40 @@ void SurfaceRaster::drawGroups() {
   depths_.clear();
 }
 
-// Adds clusters to the group, and the chains at which they end to its boundary. Patches have been added
-// before them.
-void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters) {
-  for (const ClusterImage& image : clusters) {
-    addMember(image.cluster, image.sign);
-  }
+// Adds the boundary of clusters and whole patches: chains with what is left over of all that end at them.
+void SurfaceRaster::addBoundary(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches) {
+  summed_.clear();
   for (const ClusterImage& image : clusters) {
     for (const std::uint32_t chain : set_->chainsOf(set_->clusters[image.cluster])) {
-      addChain(chain);
+      for (const ChainUse& use : set_->usesOf(set_->chains[chain])) {
+        if (use.cluster == image.cluster) {
+          addToSum(chain, use.value * image.sign);
+        }
+      }
     }
     if (image.cut) {
       addCuts(image);
     }
   }
+  for (const PatchImage& image : patches) {
+    for (const PatchChain& chain : set_->chainsOf(set_->patches[image.patch])) {
+      addToSum(chain.chain, chain.value * image.sign);
+    }
+  }
+  for (const std::uint32_t chain : summed_) {
+    if (sums_[chain].value != 0) {
+      addEdges(chain, sums_[chain].value);
+    }
+  }
 }
 
-// Adds a chain with what is left over of the group's clusters that end at it, once.
-void SurfaceRaster::addChain(std::uint32_t number) {
-  if (std::exchange(last_groups_[number], group_) == group_) {
-    return;
+void SurfaceRaster::addToSum(std::uint32_t chain, std::int32_t value) {
+  ChainSum& sum = sums_[chain];
+  if (sum.group != group_) {
+    sum = {group_, 0};
+    summed_.push_back(chain);
   }
-  std::int32_t value = 0;
-  for (const ChainUse& use : set_->usesOf(set_->chains[number])) {
-    const Membership& member = members_[use.cluster];
-    value += member.group == group_ ? use.value * member.sign : 0;
-  }
-  if (value != 0) {
-    addEdges(number, value);
-  }
+  sum.value += value;
 }
 
 // Adds the lines along which the near plane cuts the cluster's triangles.

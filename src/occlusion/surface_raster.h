@@ -26,10 +26,18 @@ class SurfaceRaster {
   const SurfaceStats& stats() const { return stats_; }
 
  private:
-  // The group that a cluster was in most recently.
-  struct Membership {
+  // How often the clusters of the group that a chain was in most recently run along it, less how often they
+  // run back.
+  struct ChainSum {
     std::uint32_t group = 0;
-    std::int32_t sign = 0;  // 1, or -1 with its other side
+    std::int32_t value = 0;
+  };
+
+  // The side of a patch that the eye is on, as it was found in a view.
+  struct Facing {
+    std::uint32_t since = 0;  // number of the view
+    std::int32_t side = 0;    // 1: its front; -1: its back
+    double travel = 0.0;      // it is the same at least until travel_ is that much
   };
 
   // What is not worth its cost is left out for some views.
@@ -53,15 +61,16 @@ class SurfaceRaster {
   void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
   bool rests(const Rest& rest) const;
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
+  std::int32_t sideOf(std::uint32_t patch);
   void addPart(const PartImage& part);
+  void listPatches(const SurfacePart& part, bool together);
   void addPatch(const PatchImage& patch, Rest& rest);
   void addTogether(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches,
                    const PixelRectangle& rectangle, Rest& rest);
   void beginGroup();
   void endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest);
-  void addMember(std::uint32_t cluster, std::int32_t sign) { members_[cluster] = {group_, sign}; }
-  void addBoundary(std::span<const ClusterImage> clusters);
-  void addChain(std::uint32_t chain);
+  void addBoundary(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches);
+  void addToSum(std::uint32_t chain, std::int32_t value);
   void addEdges(std::uint32_t chain, std::int32_t value) { chains_.add(chain, value * winding_, boundary_); }
   void addCuts(const ClusterImage& image);
   bool withinBudget();
@@ -80,8 +89,8 @@ class SurfaceRaster {
   // What was drawn in this view, and about what waits for it, as SurfaceDrawing::budget counts it.
   std::uint64_t work_ = 0, waiting_work_ = 0;
   // These have a place for each item of the largest set that was drawn:
-  std::vector<Membership> members_;             // by cluster
-  std::vector<std::uint32_t> last_groups_;      // by chain: the group that it was added to most recently
+  std::vector<ChainSum> sums_;                  // by chain
+  std::vector<Facing> facings_;                 // by patch
   std::vector<Rest> patch_rests_, part_rests_;  // by patch and by part
   std::vector<std::uint32_t> drawn_in_;         // by part: number of the view in which it was drawn last
   std::uint32_t group_ = 0;                     // number of the last group
@@ -92,7 +101,11 @@ class SurfaceRaster {
   // Scratch for one drawGroups():
   std::vector<WindingGroup> drawn_;
   std::vector<WindingGain> gains_;
-  std::vector<PatchImage> patches_;  // scratch for one addPart(): patches that are drawn as a whole
+  std::vector<std::uint32_t> summed_;  // scratch for one addBoundary(): chains
+  // Scratch for one addPart(): patches that do not face away, those that may be seen, and those of these that
+  // are drawn as a whole.
+  std::vector<ShownPatch> sides_;
+  std::vector<PatchImage> shown_, patches_;
   std::uint32_t view_number_ = 0;
   std::uint32_t first_view_ = 0;  // number of the first one since a jump
   std::uint32_t rested_ = 0;      // groups that began to rest in this view

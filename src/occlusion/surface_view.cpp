@@ -133,12 +133,11 @@ float SurfaceView::nearestOf(const BoxExtent& extent) const {
   return static_cast<float>(value + 1e-6 * std::abs(value));
 }
 
-// 1: all of a patch shows its front; -1: its back; 0: neither is sure.
-std::int32_t SurfaceView::shownSide(std::uint32_t number) const {
+PatchSide SurfaceView::sideOf(std::uint32_t number) const {
   const SurfacePatch& patch = set_->patches[number];
   const double cone = patch.cone_cosine;
   if (!(cone > 0.0)) {
-    return 0;
+    return {};
   }
   // On which side of the patch's slab the eye is, and how far from it; and how far away the patch is along
   // it.
@@ -150,36 +149,42 @@ std::int32_t SurfaceView::shownSide(std::uint32_t number) const {
   const double above = std::max(height - thickness, -height);
   const double radius = view_.orthographic ? 0.0 : 0.5 * length(Vec3d(bounds.extent()));
   const double beside = std::sqrt(std::max(0.0, dot(middle, middle) - along * along)) + radius;
-  const bool whole = above * cone > beside * std::sqrt(std::max(0.0, 1.0 - cone * cone)) && above > 0.0;
-  return whole ? (height > 0.0 ? 1 : -1) : 0;
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cone * cone));
+  const double slack = above * cone - beside * sine;
+  if (!(slack > 0.0 && above > 0.0)) {
+    return {};
+  }
+  // When the eye moves by a metre, `above` and `beside` change by at most one.
+  return {height > 0.0 ? 1 : -1, view_.orthographic ? 0.0 : 0.999 * slack / (cone + sine)};
 }
 
-void SurfaceView::beginPart(const SurfacePart& part) {
-  first_patch_ = part.first_patch;
-  project(std::span(set_->patch_bounds).subspan(part.first_patch, part.patch_count), patch_images_);
+void SurfaceView::imagesOf(std::span<const ShownPatch> patches, double min_pixels,
+                           std::vector<PatchImage>& images) {
+  boxes_.clear();
+  for (const ShownPatch& shown : patches) {
+    boxes_.push_back(set_->patch_bounds[shown.patch]);
+  }
+  project(boxes_, images_);
+  images.clear();
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    BoxExtent extent;
+    if (!extentOf(boxes_[i], images_[i], extent) || extent.rectangle.area() < min_pixels) {
+      continue;
+    }
+    PatchImage image;
+    image.patch = patches[i].patch;
+    image.rectangle = extent.rectangle;
+    image.nearest = nearestOf(extent);
+    image.flat = set_->patches[image.patch].thickness <= kFlat * std::max(extent.nearest, clip_depth_);
+    image.sign = image.flat && !extent.cut ? patches[i].side : 0;
+    image.farthest = extent.farthest;
+    images.push_back(image);
+  }
 }
 
-bool SurfaceView::imageOf(std::uint32_t number, double min_pixels, PatchImage& image) const {
-  BoxExtent extent;
-  if (!extentOf(set_->patch_bounds[number], patch_images_[number - first_patch_], extent) ||
-      extent.rectangle.area() < min_pixels) {
-    return false;
-  }
-  const SurfacePatch& patch = set_->patches[number];
-  const std::int32_t side = shownSide(number);
-  if (side < 0 && !patch.double_sided) {
-    return false;
-  }
-  image = {};
-  image.patch = number;
-  image.rectangle = extent.rectangle;
-  image.nearest = nearestOf(extent);
-  image.flat = patch.thickness <= kFlat * std::max(extent.nearest, clip_depth_);
-  image.sign = image.flat && !extent.cut ? side : 0;
-  if (image.sign != 0) {
-    image.depth = boundOf(behind(patch.support, patch.thickness, side), extent.farthest);
-  }
-  return true;
+void SurfaceView::setDepth(PatchImage& image) const {
+  const SurfacePatch& patch = set_->patches[image.patch];
+  image.depth = boundOf(behind(patch.support, patch.thickness, image.sign), image.farthest);
 }
 
 void SurfaceView::addClusters(const SurfacePatch& patch, PatchImage& image) {

@@ -31,6 +31,16 @@ struct ClusterImage {
   DepthBound depth;
 };
 
+// The side of a patch that all of it shows to the eye.
+struct PatchSide {
+  std::int32_t side = 0;  // 1: its front; -1: its back; 0: neither is sure
+  double travel = 0.0;    // it stays so until the eye has moved so far, metres
+};
+struct ShownPatch {
+  std::uint32_t patch = 0;  // into SurfaceSet::patches
+  std::int32_t side = 0;    // as in PatchSide
+};
+
 // A patch that may show its front.
 struct PatchImage {
   std::uint32_t first = 0, count = 0;  // of its clusters in SurfaceView::clusters()
@@ -40,7 +50,8 @@ struct PatchImage {
   // Not 0: the patch is flat, not cut by the near plane, and all of it shows its front (1) or its other side
   // (-1). It may be drawn as a whole, without its clusters.
   std::int32_t sign = 0;
-  DepthBound depth;
+  double farthest = 0.0;  // depth, metres
+  DepthBound depth;       // since setDepth() or addClusters()
   std::uint32_t patch = 0;  // into SurfaceSet::patches
 };
 
@@ -62,11 +73,11 @@ class SurfaceView {
              double min_pixels, const DepthTarget& target);
   std::span<const PartImage> parts() const { return parts_; }
 
-  // Projects the patches of a part, for imageOf().
-  void beginPart(const SurfacePart& part);
-  // False: the patch of that part shows its back, or has fewer pixels. The image has no clusters yet, and a
-  // depth only if it may be drawn as a whole.
-  bool imageOf(std::uint32_t patch, double min_pixels, PatchImage& image) const;
+  PatchSide sideOf(std::uint32_t patch) const;
+  // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths yet.
+  void imagesOf(std::span<const ShownPatch> patches, double min_pixels, std::vector<PatchImage>& images);
+  // Of a patch that may be drawn as a whole.
+  void setDepth(PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
   // The same of clusters by their numbers.
@@ -80,7 +91,6 @@ class SurfaceView {
   void listParts(std::span<const ObjectId> candidates);
   double smallestOf(const BoxExtent& object) const;
   void sortParts();
-  std::int32_t shownSide(std::uint32_t patch) const;
   float nearestOf(const BoxExtent& extent) const;
   // Projects boxes, for the other form of extentOf().
   void project(std::span<const Box> boxes, std::vector<PixelBox>& images) const;
@@ -106,8 +116,7 @@ class SurfaceView {
   std::vector<ObjectId> objects_;
   std::vector<bool> listed_;  // by part: it is among candidates_
   std::vector<Box> boxes_;
-  std::vector<PixelBox> images_, patch_images_;
-  std::uint32_t first_patch_ = 0;  // of patch_images_
+  std::vector<PixelBox> images_;
 };
 
 }  // namespace sightline::occlusion
