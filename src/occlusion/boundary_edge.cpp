@@ -3,76 +3,158 @@
 #include <algorithm>
 #include <cmath>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/occlusion/boundary_edge.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion {
-namespace {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// An edge in each lane. Coordinates are whole numbers of less than 2^53, for which doubles are exact.
+using Doubles = hn::CappedTag<double, 8>;
+using DoublesV = hn::Vec<Doubles>;
+inline constexpr Doubles kDoubles;
 
 constexpr double kSteepest = 256.0;  // pixels a row
+constexpr double kPixel = kGridStep, kMargin = BoundaryEdge::kMargin, kBeyond = BoundaryEdge::kBeyond;
 
-// What is not to be used is moved to where it does no harm.
-std::int64_t gridNumber(double v) {
-  return static_cast<std::int64_t>(std::min(std::max(v, -kLargestGrid), kLargestGrid));
-}
+// What was computed of the edges of a vector.
+struct Prepared {
+  static constexpr std::size_t kMost = 8;
 
-// The first row whose middle is not below a point.
-std::int64_t rowAfter(std::int64_t y) {
-  return (y + kGridStep / 2 - 1) >> kGridShift;
-}
+  HWY_ALIGN double x[kMost], slope[kMost];
+  HWY_ALIGN float left[kMost], right[kMost], reach[kMost], doubt[kMost];
+  HWY_ALIGN std::int32_t bottom[kMost], top[kMost], first_row[kMost], last_row[kMost], first_crossed[kMost],
+      end_crossed[kMost], first_tile[kMost], last_tile[kMost], kind[kMost], falls[kMost], rightwards[kMost],
+      matters[kMost];
 
-std::int16_t clamped(std::int64_t v, std::int64_t least, std::int64_t most) {
-  return static_cast<std::int16_t>(std::min(std::max(v, least), most));
-}
-
-}  // namespace
-
-BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer) {
-  constexpr std::int64_t kMargin = BoundaryEdge::kMargin, kBeyond = BoundaryEdge::kBeyond;
-  constexpr std::int32_t kRowOfTiles = kGridShift + kTileHeightShift, kColumn = kGridShift + kTileWidthShift;
-  const std::int64_t x0 = gridNumber(from.x), x1 = gridNumber(to.x), y0 = gridNumber(from.y),
-                     y1 = gridNumber(to.y);
-  const std::int64_t bottom = std::min(y0, y1), top = std::max(y0, y1);
-  const std::int64_t left = std::min(x0, x1) - kMargin, right = std::max(x0, x1) + kMargin;
-  const std::int64_t end_x = std::int64_t{buffer.width} << kGridShift,
-                     end_y = std::int64_t{buffer.height} << kGridShift;
-  BoundaryEdge edge{};
-  edge.matters = top + kMargin >= 0 && bottom - kMargin < end_y && left < end_x;
-  if (!edge.matters) {
-    return edge;
+  BoundaryEdge edge(std::size_t i) const {
+    const auto narrow = [](std::int32_t v) { return static_cast<std::int16_t>(v); };
+    return {.x = x[i],
+            .slope = slope[i],
+            .left = left[i],
+            .right = right[i],
+            .reach = reach[i],
+            .doubt = doubt[i],
+            .bottom = bottom[i],
+            .top = top[i],
+            .first_row = narrow(first_row[i]),
+            .last_row = narrow(last_row[i]),
+            .first_crossed = narrow(first_crossed[i]),
+            .end_crossed = narrow(end_crossed[i]),
+            .first_tile = narrow(first_tile[i]),
+            .last_tile = narrow(last_tile[i]),
+            .kind = static_cast<EdgeSlope>(kind[i]),
+            .falls = falls[i] != 0,
+            .rightwards = rightwards[i] != 0,
+            .matters = matters[i] != 0};
   }
-  edge.bottom = static_cast<std::int32_t>(std::max<std::int64_t>(bottom, 0));
-  edge.top = static_cast<std::int32_t>(std::min(top, end_y));
-  const std::int64_t end_row = buffer.height;
-  edge.first_row = clamped((bottom - kMargin) >> kGridShift, 0, end_row);
-  edge.last_row = clamped((top + kMargin) >> kGridShift, 0, end_row);
-  edge.first_crossed = clamped(rowAfter(bottom), 0, end_row);
-  edge.end_crossed = clamped(rowAfter(top), 0, end_row);
+};
+
+HWY_INLINE DoublesV set(double v) { return hn::Set(kDoubles, v); }
+HWY_INLINE DoublesV clamp(DoublesV v, double least, double most) {
+  return hn::Min(hn::Max(v, set(least)), set(most));
+}
+HWY_INLINE void store(DoublesV v, float* to) {
+  const hn::Rebind<float, Doubles> d;
+  hn::Store(hn::DemoteTo(d, v), d, to);
+}
+// Whole numbers that have been clamped.
+HWY_INLINE void store(DoublesV v, std::int32_t* to) {
+  const hn::Rebind<std::int32_t, Doubles> d;
+  hn::Store(hn::DemoteTo(d, v), d, to);
+}
+HWY_INLINE void store(hn::Mask<Doubles> mask, std::int32_t* to) {
+  store(hn::IfThenElseZero(mask, set(1.0)), to);
+}
+
+HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeBuffer& buffer,
+                             Prepared& out) {
+  constexpr double kRow = kPixel * kTileHeight, kColumn = kPixel * kTileWidth;
+  const double end_x = buffer.width * kPixel, end_y = buffer.height * kPixel, columns = end_x / kColumn;
+  const auto from_x = hn::LoadU(kDoubles, lines.from_x.data() + at),
+             from_y = hn::LoadU(kDoubles, lines.from_y.data() + at),
+             to_x = hn::LoadU(kDoubles, lines.to_x.data() + at),
+             to_y = hn::LoadU(kDoubles, lines.to_y.data() + at);
+  // What is not to be used is moved to where it does no harm.
+  const auto x0 = clamp(from_x, -kLargestGrid, kLargestGrid), x1 = clamp(to_x, -kLargestGrid, kLargestGrid),
+             y0 = clamp(from_y, -kLargestGrid, kLargestGrid), y1 = clamp(to_y, -kLargestGrid, kLargestGrid);
+  const auto bottom = hn::Min(y0, y1), top = hn::Max(y0, y1);
+  const auto left = hn::Sub(hn::Min(x0, x1), set(kMargin)), right = hn::Add(hn::Max(x0, x1), set(kMargin));
+  const auto touched_bottom = hn::Sub(bottom, set(kMargin)), touched_top = hn::Add(top, set(kMargin));
+  store(hn::And(hn::And(hn::Ge(touched_top, set(0.0)), hn::Lt(touched_bottom, set(end_y))),
+                hn::Lt(left, set(end_x))),
+        out.matters);
+  store(clamp(bottom, 0.0, end_y), out.bottom);
+  store(clamp(top, -1.0, end_y), out.top);
+  const auto rowOf = [&](DoublesV y) HWY_ATTR {
+    return clamp(hn::Floor(hn::Mul(y, set(1.0 / kPixel))), 0.0, buffer.height);
+  };
+  // The first row whose middle is not below a point.
+  const auto rowAfter = [&](DoublesV y) HWY_ATTR { return rowOf(hn::Add(y, set(0.5 * kPixel - 1.0))); };
+  const auto first_row = rowOf(touched_bottom);
+  store(first_row, out.first_row);
+  store(rowOf(touched_top), out.last_row);
+  store(rowAfter(bottom), out.first_crossed);
+  store(rowAfter(top), out.end_crossed);
   // What single precision loses of a place is less than two units.
-  const std::int64_t columns = end_x >> kColumn;
-  edge.first_tile = clamped((left - 2) >> kColumn, -1, columns);
-  edge.last_tile = clamped((right + 2) >> kColumn, -1, columns);
-  edge.left = static_cast<float>(std::max(left, -kBeyond));
-  edge.right = static_cast<float>(std::min(std::max(right, -kBeyond), end_x + kBeyond));
-  const double dx = to.x - from.x, dy = to.y - from.y;
-  edge.falls = dy < 0.0;
-  edge.rightwards = dx > 0.0;
-  constexpr double kPixel = kGridStep;
-  const double widest = 2.0 * kBeyond + static_cast<double>(end_x);
-  if (dy == 0.0) {
-    edge.kind = EdgeSlope::kLevel;
-    edge.x = from.y;
-    edge.slope = 0.0;
-    edge.reach = static_cast<float>(widest);
-    edge.doubt = static_cast<float>(kMargin * (1.0 + 4.0 * kPixel / std::max(std::abs(dx), 1.0)));
-    return edge;
+  const auto columnOf = [&](DoublesV x) HWY_ATTR {
+    return clamp(hn::Floor(hn::Mul(x, set(1.0 / kColumn))), -1.0, std::floor(columns));
+  };
+  store(columnOf(hn::Sub(left, set(2.0))), out.first_tile);
+  store(columnOf(hn::Add(right, set(2.0))), out.last_tile);
+  store(hn::Max(left, set(-kBeyond)), out.left);
+  store(clamp(right, -kBeyond, end_x + kBeyond), out.right);
+
+  const auto dx = hn::Sub(to_x, from_x), dy = hn::Sub(to_y, from_y);
+  const auto level = hn::Eq(dy, set(0.0));
+  store(hn::Lt(dy, set(0.0)), out.falls);
+  store(hn::Gt(dx, set(0.0)), out.rightwards);
+  const auto slope = hn::IfThenZeroElse(level, hn::Div(dx, dy)), steepness = hn::Abs(slope);
+  const auto kind = hn::IfThenElse(hn::Le(steepness, set(kSteepest)), set(static_cast<double>(EdgeSlope::kSteep)),
+                                   set(static_cast<double>(EdgeSlope::kFlat)));
+  store(hn::IfThenElse(level, set(static_cast<double>(EdgeSlope::kLevel)), kind), out.kind);
+  const auto tiles_y = hn::Mul(hn::Floor(hn::Mul(first_row, set(1.0 / kTileHeight))), set(kRow));
+  const auto x = hn::Add(from_x, hn::Mul(hn::Sub(tiles_y, from_y), slope));
+  hn::Store(hn::IfThenElse(level, from_y, x), kDoubles, out.x);
+  hn::Store(slope, kDoubles, out.slope);
+  const auto widest = set(2.0 * kBeyond + end_x), margin = set(kMargin);
+  const auto reach = hn::Min(widest, hn::Mul(hn::Add(steepness, set(3.0)), margin));
+  store(hn::IfThenElse(level, widest, reach), out.reach);
+  const auto over = [](DoublesV length) HWY_ATTR { return hn::Div(set(4.0 * kPixel), length); };
+  const auto beside = hn::Mul(hn::Add(hn::Add(steepness, set(1.0)), over(hn::Abs(dy))), margin);
+  const auto along = hn::Mul(margin, hn::Add(set(1.0), over(hn::Max(hn::Abs(dx), set(1.0)))));
+  store(hn::IfThenElse(level, along, hn::Min(widest, hn::Add(beside, set(2.0)))), out.doubt);
+}
+
+void prepareAll(const GridLines& lines, const EdgeBuffer& buffer, std::span<BoundaryEdge> edges) {
+  const std::size_t lanes = hn::Lanes(kDoubles);
+  Prepared prepared;
+  for (std::size_t first = 0; first < edges.size(); first += lanes) {
+    prepareLanes(lines, first, buffer, prepared);
+    const std::size_t count = std::min(lanes, edges.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      edges[first + i] = prepared.edge(i);
+    }
   }
-  edge.slope = dx / dy;
-  const double steepness = std::abs(edge.slope);
-  edge.kind = steepness <= kSteepest ? EdgeSlope::kSteep : EdgeSlope::kFlat;
-  const auto tiles_y = static_cast<double>((edge.first_row >> kTileHeightShift) << kRowOfTiles);
-  edge.x = from.x + (tiles_y - from.y) * edge.slope;
-  edge.reach = static_cast<float>(std::min(widest, (steepness + 3.0) * kMargin));
-  edge.doubt =
-      static_cast<float>(std::min(widest, (steepness + 1.0 + 4.0 * kPixel / std::abs(dy)) * kMargin + 2.0));
-  return edge;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::occlusion
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sightline::occlusion {
+
+HWY_EXPORT(prepareAll);
+
+void prepareEdges(const GridLines& lines, const EdgeBuffer& buffer, std::span<BoundaryEdge> edges) {
+  HWY_DYNAMIC_DISPATCH(prepareAll)(lines, buffer, edges);
 }
 
 }  // namespace sightline::occlusion
+#endif

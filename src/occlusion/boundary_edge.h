@@ -2,7 +2,10 @@
 
 // Edges of the boundary of a surface in a depth buffer, prepared once a view for being drawn several times.
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace sightline::occlusion {
 
@@ -11,6 +14,8 @@ struct GridPoint {
   double x = 0.0, y = 0.0;  // whole numbers
 };
 inline constexpr std::int32_t kGridShift = 8, kGridStep = 1 << kGridShift;
+// Added to a number and taken away again it leaves the nearest whole one; halves go to the even one.
+inline constexpr double kToWhole = 0x1.8p52;
 inline constexpr double kLargestGrid = 0x1p36;  // coordinates beyond it must not be used
 
 // Edges are drawn a tile at a time, with a vector lane for each of its rows.
@@ -69,6 +74,28 @@ struct BoundaryChain {
   std::int32_t value = 0;              // not 0
 };
 
-BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer);
+// Lines from one point to another, by coordinate. Vectors of doubles may be read from any of them on.
+struct GridLines {
+  std::vector<double> from_x{}, from_y{}, to_x{}, to_y{};  // as in GridPoint
+
+  // Makes room for so many.
+  void reserve(std::size_t count) {
+    constexpr std::size_t kVector = 8;
+    if (from_x.size() < count + kVector) {
+      for (std::vector<double>* list : {&from_x, &from_y, &to_x, &to_y}) {
+        list->resize(2 * count + kVector);
+      }
+    }
+  }
+  void set(std::size_t i, const GridPoint& from, const GridPoint& to) {
+    from_x[i] = from.x;
+    from_y[i] = from.y;
+    to_x[i] = to.x;
+    to_y[i] = to.y;
+  }
+};
+
+// Prepares the first lines, one for each of `edges`. Every instruction set gives the same bits.
+void prepareEdges(const GridLines& lines, const EdgeBuffer& buffer, std::span<BoundaryEdge> edges);
 
 }  // namespace sightline::occlusion

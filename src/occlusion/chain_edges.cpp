@@ -3,37 +3,122 @@
 #include <algorithm>
 #include <tuple>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "src/occlusion/chain_edges.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace sightline::occlusion {
-namespace {
+namespace HWY_NAMESPACE {
 
-// The nearest whole number; halves go to the even one.
-double nearestWhole(double v) {
-  constexpr double kWhole = 0x1.8p52;  // so large numbers have no places after the point
-  return (v + kWhole) - kWhole;
+namespace hn = hwy::HWY_NAMESPACE;
+
+// As PixelView and ChainEdges::pixelOf() do it, with the same bits, and a point in each lane.
+class PointProjection {
+ public:
+  using Doubles = hn::CappedTag<double, 8>;
+  using DoublesV = hn::Vec<Doubles>;
+
+  HWY_INLINE PointProjection(const PixelView& view, double clip_depth)
+      : view_(view), clip_depth_(clip_depth) {}
+
+  // Returns whether none of the points is nearer than the clip depth.
+  HWY_INLINE bool project(const float* x, const float* y, const float* z, std::size_t count, double* pixel_x,
+                          double* pixel_y) const {
+    const DoublesV from_eye[3] = {load(x, view_.eye.x), load(y, view_.eye.y), load(z, view_.eye.z)};
+    const DoublesV depth = along(view_.forward, from_eye);
+    const DoublesV inverse = view_.orthographic ? set(1.0) : hn::Div(set(1.0), depth);
+    hn::StoreU(place(along(view_.right, from_eye), inverse, view_.scale_x, view_.middle_x), d_, pixel_x);
+    hn::StoreU(place(along(view_.up, from_eye), inverse, view_.scale_y, view_.middle_y), d_, pixel_y);
+    return hn::AllTrue(d_, hn::Or(hn::Ge(depth, set(clip_depth_)), hn::Not(hn::FirstN(d_, count))));
+  }
+
+ private:
+  static HWY_INLINE DoublesV set(double v) { return hn::Set(d_, v); }
+  static HWY_INLINE DoublesV load(const float* from, double eye) {
+    const hn::Rebind<float, Doubles> floats;
+    return hn::Sub(hn::PromoteTo(d_, hn::LoadU(floats, from)), set(eye));
+  }
+  static HWY_INLINE DoublesV along(const Vec3d& axis, const DoublesV (&v)[3]) {
+    return hn::Add(hn::Add(hn::Mul(set(axis.x), v[0]), hn::Mul(set(axis.y), v[1])),
+                   hn::Mul(set(axis.z), v[2]));
+  }
+  static HWY_INLINE DoublesV place(DoublesV camera, DoublesV inverse, double scale, double middle) {
+    const DoublesV pixel = hn::Add(set(middle), hn::Mul(hn::Mul(set(scale), camera), inverse));
+    const DoublesV whole = set(kToWhole);
+    return hn::Sub(hn::Add(hn::Mul(pixel, set(kGridStep)), whole), whole);
+  }
+
+  static constexpr Doubles d_{};
+  const PixelView& view_;
+  double clip_depth_;
+};
+
+// ends: as ChainEdges has them. Returns whether none of them is nearer than the clip depth; those that are have
+// no line yet.
+bool projectEnds(const PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
+                 GridLines& lines) {
+  const PointProjection projection(view, clip_depth);
+  const std::size_t lanes = hn::Lanes(PointProjection::Doubles());
+  bool all = true;
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const std::size_t used = std::min(lanes, count - i);
+    all &= projection.project(ends[0] + i, ends[1] + i, ends[2] + i, used, lines.from_x.data() + i,
+                              lines.from_y.data() + i);
+    all &= projection.project(ends[3] + i, ends[4] + i, ends[5] + i, used, lines.to_x.data() + i,
+                              lines.to_y.data() + i);
+  }
+  return all;
 }
 
-}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace sightline::occlusion
+HWY_AFTER_NAMESPACE();
 
-void ChainEdges::reserve(const SurfaceSet& set) {
-  images_.resize(std::max<std::size_t>(images_.size(), set.chains.size()));
-}
+#if HWY_ONCE
+namespace sightline::occlusion {
+
+HWY_EXPORT(projectEnds);
 
 void ChainEdges::begin(const SurfaceSet& set, const PixelView& view, double clip_depth,
                        const EdgeBuffer& buffer) {
+  set_ = &set;
   view_ = view;
   clip_depth_ = clip_depth;
   buffer_ = buffer;
-  edges_.clear();
-  set_ = &set;
-  reserve(set);
-  if (++number_ == 0) {
-    std::fill(images_.begin(), images_.end(), Image{});
-    number_ = 1;
+  chains_.clear();
+  cuts_.clear();
+  count_ = 0;
+  forget();
+}
+
+void ChainEdges::makeRoom(std::size_t more) {
+  constexpr std::size_t kVector = 8;
+  if (ends_[0].size() < count_ + more + kVector) {
+    for (std::vector<float>& list : ends_) {
+      list.resize(2 * (count_ + more) + kVector);
+    }
   }
+}
+
+void ChainEdges::add(std::uint32_t chain, std::int32_t value) {
+  const std::span<const Vec3f> vertices = set_->verticesOf(set_->chains[chain]);
+  makeRoom(vertices.size());
+  const std::uint32_t first = count_;
+  for (std::size_t i = 1; i < vertices.size(); ++i, ++count_) {
+    const Vec3f &from = vertices[i - 1], &to = vertices[i];
+    const std::array<float, kCoordinates> coordinates{from.x, from.y, from.z, to.x, to.y, to.z};
+    for (std::size_t k = 0; k < kCoordinates; ++k) {
+      ends_[k][count_] = coordinates[k];
+    }
+  }
+  chains_.push_back({first, count_ - first, value});
 }
 
 GridPoint ChainEdges::pixelOf(const Vec3d& camera) const {
   const double inverse = view_.inverseDepth(camera);
+  const auto nearestWhole = [](double v) { return (v + kToWhole) - kToWhole; };
   return {nearestWhole(view_.pixelX(camera, inverse) * kGridStep),
           nearestWhole(view_.pixelY(camera, inverse) * kGridStep)};
 }
@@ -48,36 +133,7 @@ GridPoint ChainEdges::cutPoint(const Vec3f& a, const Vec3f& b) const {
   return pixelOf(point);
 }
 
-void ChainEdges::addEdge(const GridPoint& from, const GridPoint& to) {
-  const BoundaryEdge edge = prepareEdge(from, to, buffer_);
-  if (edge.matters) {
-    edges_.push_back(edge);
-  }
-}
-
-void ChainEdges::prepare(std::uint32_t chain, Image& image) {
-  const std::span<const Vec3f> vertices = set_->verticesOf(set_->chains[chain]);
-  image = {number_, static_cast<std::uint32_t>(edges_.size()), 0};
-  Vec3d from = toCamera(vertices[0]);
-  GridPoint from_pixel = from.z >= clip_depth_ ? pixelOf(from) : GridPoint{};
-  for (std::size_t i = 1; i < vertices.size(); ++i) {
-    const Vec3d to = toCamera(vertices[i]);
-    const bool from_shows = from.z >= clip_depth_, to_shows = to.z >= clip_depth_;
-    const GridPoint to_pixel = to_shows ? pixelOf(to) : GridPoint{};
-    if (from_shows && to_shows) {
-      addEdge(from_pixel, to_pixel);
-    } else if (from_shows || to_shows) {
-      const GridPoint cut = cutPoint(vertices[i - 1], vertices[i]);
-      addEdge(from_shows ? from_pixel : cut, to_shows ? to_pixel : cut);
-    }
-    from = to;
-    from_pixel = to_pixel;
-  }
-  image.count = static_cast<std::uint32_t>(edges_.size()) - image.first;
-}
-
-void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value,
-                        std::vector<BoundaryChain>& boundary) {
+void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value) {
   bool shows[3];
   for (std::size_t k = 0; k < 3; ++k) {
     shows[k] = toCamera(set_->vertices[triangle[k]]).z >= clip_depth_;
@@ -93,11 +149,57 @@ void ChainEdges::addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t
       (shows[k] ? from : to) = cutPoint(set_->vertices[triangle[k]], set_->vertices[triangle[next]]);
     }
   }
-  const auto first = static_cast<std::uint32_t>(edges_.size());
-  addEdge(from, to);
-  if (edges_.size() > first) {
-    boundary.push_back({first, 1, value});
+  makeRoom(1);
+  chains_.push_back({count_, 1, value});
+  cuts_.push_back({count_++, from, to});
+}
+
+// Sets an edge's line to what is left of it beyond the clip depth.
+void ChainEdges::clip(std::uint32_t edge) {
+  const Vec3f a(ends_[0][edge], ends_[1][edge], ends_[2][edge]),
+      b(ends_[3][edge], ends_[4][edge], ends_[5][edge]);
+  const Vec3d from = toCamera(a), to = toCamera(b);
+  const bool from_shows = from.z >= clip_depth_, to_shows = to.z >= clip_depth_;
+  if (from_shows || to_shows) {
+    lines_.set(edge, from_shows ? pixelOf(from) : cutPoint(a, b), to_shows ? pixelOf(to) : cutPoint(a, b));
+  } else {
+    // To the right of the buffer, where no edge matters.
+    constexpr GridPoint kNowhere{kLargestGrid, 0.0};
+    lines_.set(edge, kNowhere, kNowhere);
   }
 }
 
+std::uint32_t ChainEdges::endGroup(std::vector<BoundaryChain>& boundary) {
+  lines_.reserve(count_);
+  const std::array<const float*, kCoordinates> ends{ends_[0].data(), ends_[1].data(), ends_[2].data(),
+                                                    ends_[3].data(), ends_[4].data(), ends_[5].data()};
+  if (!HWY_DYNAMIC_DISPATCH(projectEnds)(view_, clip_depth_, ends.data(), count_, lines_)) {
+    for (std::uint32_t edge = 0; edge < count_; ++edge) {
+      clip(edge);
+    }
+  }
+  for (const Cut& cut : cuts_) {
+    lines_.set(cut.edge, cut.from, cut.to);
+  }
+  prepared_.resize(std::max<std::size_t>(prepared_.size(), count_));
+  prepareEdges(lines_, buffer_, std::span(prepared_).first(count_));
+  const auto before = static_cast<std::uint32_t>(edges_.size());
+  for (const BoundaryChain& chain : chains_) {
+    const auto first = static_cast<std::uint32_t>(edges_.size());
+    for (std::uint32_t edge = chain.first; edge < chain.first + chain.count; ++edge) {
+      if (prepared_[edge].matters) {
+        edges_.push_back(prepared_[edge]);
+      }
+    }
+    if (edges_.size() > first) {
+      boundary.push_back({first, static_cast<std::uint32_t>(edges_.size()) - first, chain.value});
+    }
+  }
+  chains_.clear();
+  cuts_.clear();
+  count_ = 0;
+  return static_cast<std::uint32_t>(edges_.size()) - before;
+}
+
 }  // namespace sightline::occlusion
+#endif

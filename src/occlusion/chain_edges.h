@@ -2,6 +2,7 @@
 
 // The chains of surfaces as edges in a depth buffer.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,39 +13,36 @@
 
 namespace sightline::occlusion {
 
-// Prepares each chain when it is first asked for in a view. Equal points of the scene have equal images.
+// Projects the boundaries of groups, many edges at once. Equal points of the scene have equal images.
 class ChainEdges {
  public:
-  // Makes room for the chains of a set, so that begin() need not.
-  void reserve(const SurfaceSet& set);
   // clip_depth: camera space; what is nearer is left out.
   void begin(const SurfaceSet& set, const PixelView& view, double clip_depth, const EdgeBuffer& buffer);
 
-  // Appends a chain to a group's boundary: those of its edges that matter to the buffer, or what is left of
-  // them beyond the clip depth.
-  void add(std::uint32_t chain, std::int32_t value, std::vector<BoundaryChain>& boundary) {
-    Image& image = images_[chain];
-    if (image.view != number_) {
-      prepare(chain, image);
-    }
-    if (image.count > 0) {
-      boundary.push_back({image.first, image.count, value});
-    }
-  }
+  // Adds a chain to the boundary of the group that the next endGroup() ends.
+  void add(std::uint32_t chain, std::int32_t value);
   // The same for the line along which the clip plane cuts a triangle of the set, if it does. The part of the
   // triangle beyond the plane is the surface.
-  void addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value,
-              std::vector<BoundaryChain>& boundary);
-  // What was added since begin().
+  void addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value);
+  // Appends the group's boundary: those of its edges that matter to the buffer, or what is left of them beyond
+  // the clip depth. Returns their number.
+  std::uint32_t endGroup(std::vector<BoundaryChain>& boundary);
+
+  // Those of the groups since begin() or forget().
   std::span<const BoundaryEdge> edges() const { return edges_; }
+  void forget() { edges_.clear(); }
 
  private:
-  struct Image {
-    std::uint32_t view = 0;              // number of the view for which it holds
-    std::uint32_t first = 0, count = 0;  // into edges_
+  // Edges of the scene, by coordinate: x, y and z of where they begin, then of where they end.
+  static constexpr std::size_t kCoordinates = 6;
+  // The line along which a triangle is cut, in place of one of these.
+  struct Cut {
+    std::uint32_t edge = 0;
+    GridPoint from, to;
   };
-  void prepare(std::uint32_t chain, Image& image);
-  void addEdge(const GridPoint& from, const GridPoint& to);
+
+  void makeRoom(std::size_t more);
+  void clip(std::uint32_t edge);
   Vec3d toCamera(const Vec3f& point) const { return view_.toCamera(Vec3d(point) - view_.eye); }
   GridPoint pixelOf(const Vec3d& camera) const;
   GridPoint cutPoint(const Vec3f& a, const Vec3f& b) const;
@@ -53,8 +51,14 @@ class ChainEdges {
   PixelView view_;
   double clip_depth_ = 0.0;
   EdgeBuffer buffer_;
-  std::uint32_t number_ = 0;
-  std::vector<Image> images_;  // by chain of the largest set
+  // Of the group:
+  std::vector<BoundaryChain> chains_;  // into ends_
+  std::array<std::vector<float>, kCoordinates> ends_;
+  std::uint32_t count_ = 0;  // of ends_ that are used
+  std::vector<Cut> cuts_;
+  GridLines lines_;
+  std::vector<BoundaryEdge> prepared_;
+
   std::vector<BoundaryEdge> edges_;
 };
 

@@ -51,7 +51,6 @@ void SurfaceRaster::reserve(const SurfaceSet& set) {
   makeRoom(patch_rests_, set.patches.size());
   makeRoom(part_rests_, set.parts.size());
   makeRoom(drawn_in_, set.parts.size());
-  chains_.reserve(set);
 }
 
 void SurfaceRaster::draw(const SurfaceSet& set, const PixelView& view, std::span<const ObjectId> candidates,
@@ -239,15 +238,13 @@ void SurfaceRaster::beginGroup() {
 
 void SurfaceRaster::endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest) {
   Group& group = groups_.back();
+  group.edges = chains_.endGroup(boundary_);
   group.chain_count = static_cast<std::uint32_t>(boundary_.size()) - group.first_chain;
   group.depth_count = static_cast<std::uint32_t>(depths_.size()) - group.first_depth;
   group.rectangle = rectangle;
   group.flat = flat;
   group.distance = part_distance_;
   group.rest = &rest;
-  for (std::uint32_t i = 0; i < group.chain_count; ++i) {
-    group.edges += boundary_[group.first_chain + i].count;
-  }
   waiting_work_ += workOf(group.edges, tilesIn(rectangle));
 }
 
@@ -282,6 +279,7 @@ void SurfaceRaster::drawGroups() {
   groups_.clear();
   boundary_.clear();
   depths_.clear();
+  chains_.forget();
 }
 
 // Adds the boundary of clusters and whole patches: chains with what is left over of all that end at them.
@@ -324,7 +322,7 @@ void SurfaceRaster::addToSum(std::uint32_t chain, std::int32_t value) {
 void SurfaceRaster::addCuts(const ClusterImage& image) {
   const std::span<const std::uint32_t> corners = set_->trianglesOf(set_->clusters[image.cluster]);
   for (std::size_t i = 0; i < corners.size(); i += 3) {
-    chains_.addCut(corners.subspan(i).first<3>(), image.sign * winding_, boundary_);
+    chains_.addCut(corners.subspan(i).first<3>(), image.sign * winding_);
   }
 }
 

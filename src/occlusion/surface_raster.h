@@ -71,7 +71,7 @@ class SurfaceRaster {
   void endGroup(const PixelRectangle& rectangle, bool flat, Rest& rest);
   void addBoundary(std::span<const ClusterImage> clusters, std::span<const PatchImage> patches);
   void addToSum(std::uint32_t chain, std::int32_t value);
-  void addEdges(std::uint32_t chain, std::int32_t value) { chains_.add(chain, value * winding_, boundary_); }
+  void addEdges(std::uint32_t chain, std::int32_t value) { chains_.add(chain, value * winding_); }
   void addCuts(const ClusterImage& image);
   bool withinBudget();
   void drawGroups();
