@@ -55,7 +55,9 @@ struct Prepared {
   }
 };
 
-HWY_INLINE DoublesV set(double v) { return hn::Set(kDoubles, v); }
+HWY_INLINE DoublesV set(double v) {
+  return hn::Set(kDoubles, v);
+}
 HWY_INLINE DoublesV clamp(DoublesV v, double least, double most) {
   return hn::Min(hn::Max(v, set(least)), set(most));
 }
@@ -115,8 +117,9 @@ HWY_INLINE void prepareLanes(const GridLines& lines, std::size_t at, const EdgeB
   store(hn::Lt(dy, set(0.0)), out.falls);
   store(hn::Gt(dx, set(0.0)), out.rightwards);
   const auto slope = hn::IfThenZeroElse(level, hn::Div(dx, dy)), steepness = hn::Abs(slope);
-  const auto kind = hn::IfThenElse(hn::Le(steepness, set(kSteepest)), set(static_cast<double>(EdgeSlope::kSteep)),
-                                   set(static_cast<double>(EdgeSlope::kFlat)));
+  const auto kind =
+      hn::IfThenElse(hn::Le(steepness, set(kSteepest)), set(static_cast<double>(EdgeSlope::kSteep)),
+                     set(static_cast<double>(EdgeSlope::kFlat)));
   store(hn::IfThenElse(level, set(static_cast<double>(EdgeSlope::kLevel)), kind), out.kind);
   const auto tiles_y = hn::Mul(hn::Floor(hn::Mul(first_row, set(1.0 / kTileHeight))), set(kRow));
   const auto x = hn::Add(from_x, hn::Mul(hn::Sub(tiles_y, from_y), slope));

@@ -55,8 +55,8 @@ class PointProjection {
   double clip_depth_;
 };
 
-// ends: as ChainEdges has them. Returns whether none of them is nearer than the clip depth; those that are have
-// no line yet.
+// ends: as ChainEdges has them. Returns whether none of them is nearer than the clip depth; those that are
+// have no line yet.
 bool projectEnds(const PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
                  GridLines& lines) {
   const PointProjection projection(view, clip_depth);

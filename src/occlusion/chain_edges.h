@@ -24,8 +24,8 @@ class ChainEdges {
   // The same for the line along which the clip plane cuts a triangle of the set, if it does. The part of the
   // triangle beyond the plane is the surface.
   void addCut(std::span<const std::uint32_t, 3> triangle, std::int32_t value);
-  // Appends the group's boundary: those of its edges that matter to the buffer, or what is left of them beyond
-  // the clip depth. Returns their number.
+  // Appends the group's boundary: those of its edges that matter to the buffer, or what is left of them
+  // beyond the clip depth. Returns their number.
   std::uint32_t endGroup(std::vector<BoundaryChain>& boundary);
 
   // Those of the groups since begin() or forget().

@@ -121,14 +121,15 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
   return rectangle.area() >= drawing_.pixels_per_edge * edges;
 }
 
-// Which side of a patch shows, as SurfaceView::sideOf() tells; found again only when the eye has moved.
-std::int32_t SurfaceRaster::sideOf(std::uint32_t patch) {
+// What is known of a patch is found again only when the eye has moved.
+const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
   Facing& facing = facings_[patch];
   if (facing.side == 0 || facing.since < first_view_ || !(travel_ < facing.travel)) {
-    const PatchSide side = view_.sideOf(patch);
-    facing = {view_number_, side.side, travel_ + side.travel};
+    const PatchSide found = view_.sideOf(patch);
+    facing = {view_number_, found.side < 0 && !set_->patches[patch].double_sided,
+              static_cast<std::int8_t>(found.side), travel_ + found.travel};
   }
-  return facing.side;
+  return facing;
 }
 
 // Adds the large patches of a part, each alone, and all of them together.
@@ -184,9 +185,9 @@ void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
   sides_.clear();
   for (std::uint32_t patch = part.first_patch; patch < part.first_patch + part.patch_count; ++patch) {
     if (together || !rests(patch_rests_[patch])) {
-      const std::int32_t side = sideOf(patch);
-      if (side >= 0 || set_->patches[patch].double_sided) {
-        sides_.push_back({patch, side});
+      const Facing& facing = facingOf(patch);
+      if (!facing.away) {
+        sides_.push_back({patch, facing.side});
       }
     }
   }

@@ -36,7 +36,8 @@ class SurfaceRaster {
   // The side of a patch that the eye is on, as it was found in a view.
   struct Facing {
     std::uint32_t since = 0;  // number of the view
-    std::int32_t side = 0;    // 1: its front; -1: its back
+    bool away = false;        // what shows is a back, and nothing is drawn of it
+    std::int8_t side = 0;     // as in PatchSide
     double travel = 0.0;      // it is the same at least until travel_ is that much
   };
 
@@ -61,7 +62,7 @@ class SurfaceRaster {
   void start(const SurfaceSet& set, const Vec3d& eye, ViewStep step);
   bool rests(const Rest& rest) const;
   bool pays(const PixelRectangle& rectangle, std::uint32_t edges) const;
-  std::int32_t sideOf(std::uint32_t patch);
+  const Facing& facingOf(std::uint32_t patch);
   void addPart(const PartImage& part);
   void listPatches(const SurfacePart& part, bool together);
   void addPatch(const PatchImage& patch, Rest& rest);

@@ -50,8 +50,8 @@ struct PatchImage {
   // Not 0: the patch is flat, not cut by the near plane, and all of it shows its front (1) or its other side
   // (-1). It may be drawn as a whole, without its clusters.
   std::int32_t sign = 0;
-  double farthest = 0.0;  // depth, metres
-  DepthBound depth;       // since setDepth() or addClusters()
+  double farthest = 0.0;    // depth, metres
+  DepthBound depth;         // since setDepth() or addClusters()
   std::uint32_t patch = 0;  // into SurfaceSet::patches
 };
 
@@ -74,7 +74,8 @@ class SurfaceView {
   std::span<const PartImage> parts() const { return parts_; }
 
   PatchSide sideOf(std::uint32_t patch) const;
-  // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths yet.
+  // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths
+  // yet.
   void imagesOf(std::span<const ShownPatch> patches, double min_pixels, std::vector<PatchImage>& images);
   // Of a patch that may be drawn as a whole.
   void setDepth(PatchImage& image) const;

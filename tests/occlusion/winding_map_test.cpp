@@ -26,6 +26,15 @@ struct Polygon {
   std::int32_t value = 1;
 };
 
+BoundaryEdge prepareEdge(const GridPoint& from, const GridPoint& to, const EdgeBuffer& buffer) {
+  GridLines lines;
+  lines.reserve(1);
+  lines.set(0, from, to);
+  std::array<BoundaryEdge, 1> edges;
+  prepareEdges(lines, buffer, edges);
+  return edges[0];
+}
+
 // Draws polygons as one group that has one depth.
 void drawGroup(WindingMap& map, std::span<const Polygon> polygons, const DepthBound& depth) {
   const EdgeBuffer buffer = map.buffer();
