@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace sightline::occlusion {
 namespace {
@@ -102,10 +103,18 @@ void SurfaceRaster::start(const SurfaceSet& set, const Vec3d& eye, ViewStep step
     view_number_ = 0;
     step = ViewStep::kJump;
   }
+  const double moved = length(eye - eye_);
+  if (!std::isfinite(travel_ + moved)) {
+    step = ViewStep::kJump;
+  }
   view_number_ += step == ViewStep::kSame ? 0 : 1;
   first_view_ = step == ViewStep::kJump ? view_number_ : first_view_;
-  const double travel = travel_ + length(eye - eye_);
-  travel_ = step == ViewStep::kJump || !std::isfinite(travel) ? 0.0 : travel;
+  if (step == ViewStep::kJump) {
+    travel_ = 0.0;
+  } else if (moved > 0.0) {
+    // Rounded up: however short the steps are, none is lost.
+    travel_ = std::nextafter(travel_ + moved, std::numeric_limits<double>::infinity());
+  }
   eye_ = eye;
 }
 
@@ -121,13 +130,15 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
   return rectangle.area() >= drawing_.pixels_per_edge * edges;
 }
 
-// What is known of a patch is found again only when the eye has moved.
+// What is known of a patch is found again only when the eye has moved. In an orthographic view it depends on
+// the direction instead.
 const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
   Facing& facing = facings_[patch];
-  if (facing.side == 0 || facing.since < first_view_ || !(travel_ < facing.travel)) {
+  if (view_.view().orthographic || facing.side == 0 || facing.since < first_view_ ||
+      !(travel_ < facing.travel)) {
     const PatchSide found = view_.sideOf(patch);
     facing = {view_number_, found.side < 0 && !set_->patches[patch].double_sided,
-              static_cast<std::int8_t>(found.side), travel_ + found.travel};
+              static_cast<std::int8_t>(found.side), std::nextafter(travel_ + found.travel, 0.0)};
   }
   return facing;
 }

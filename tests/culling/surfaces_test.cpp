@@ -609,6 +609,61 @@ TEST(SurfaceProbes, WhatRestsIsDrawnWhereThatIsAskedFor) {
   }
 }
 
+// What is kept from view to view of which side of a surface shows changes nothing.
+TEST(SurfaceProbes, ViewsThatFollowEachOtherAreDrawnAsTheyAreAlone) {
+  test::Random random(5);
+  std::size_t covered = 0;
+  for (int n = 0; n < 60; ++n) {
+    const double bend = random.in(0.0, 4.0);
+    const Scene scene = sheet(
+        12, 40.0f, 10.0f,
+        [bend](float x, float y) {
+          return static_cast<float>(bend) * std::sin(0.6f * x) * std::cos(0.9f * y);
+        },
+        [](std::uint32_t t) { return t % 41 == 0; }, n % 5 == 4);
+    const SurfaceSet surfaces = findSurfaces(scene.view(), {.patch_triangles = 12, .cluster_triangles = 4});
+    Rasteriser raster({.width = 48, .height = 40});
+    SurfaceDrawing drawing = kEverything;
+    drawing.draw_resting = true;
+    View view = frontView();
+    // Along the sheet, through it, and around it; sometimes by less than a coordinate's last place.
+    const double step = n % 4 == 3 ? 1e-17 : random.in(0.01, 3.0);
+    Vec3d velocity = random.point(step);
+    view.eye = random.point(12.0);
+    for (int i = 0; i < 25; ++i) {
+      if (random.below(8) == 0) {
+        velocity = random.point(step);
+      }
+      if (n % 4 == 3 && i == 12) {
+        view.eye = view.eye * -1.0 + Vec3d(0, 0, -20);
+      } else if (n % 7 == 6 && i == 9) {
+        view.eye.x = std::numeric_limits<double>::quiet_NaN();
+      } else if (n % 7 == 6 && i == 10) {
+        view.eye = random.point(30.0);
+      } else {
+        view.eye = view.eye + velocity;
+      }
+      setOrientation(view, Vec3d(0, 0, -10) - view.eye + random.point(4.0), {0, 1, 0});
+      view.orthographic = n % 3 == 2 && random.below(3) == 0;
+      view.ortho_height = 30.0;
+      drawing.step = i == 0 || random.below(12) == 0 ? ViewStep::kJump : ViewStep::kNext;
+      raster.begin(view);
+      raster.draw(surfaces, surfaces.objects, drawing);
+      Rasteriser fresh({.width = 48, .height = 40});
+      fresh.begin(view);
+      fresh.draw(surfaces, surfaces.objects, drawing);
+      for (std::uint32_t y = 0; y < 40; ++y) {
+        ASSERT_TRUE(std::ranges::equal(raster.depthBuffer().row(y), fresh.depthBuffer().row(y)))
+            << "walk " << n << ", view " << i << ", row " << y;
+        for (std::uint32_t x = 0; x < 48; ++x) {
+          covered += fresh.depthBuffer().covered(x, y) ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(covered, 300'000u);
+}
+
 TEST(SurfaceProbes, ASetMadeAnewInTheSamePlaceIsAnotherSet) {
   const SurfaceSettings settings{.cluster_triangles = 1};
   const Scene small = pairs(1e-3f, 0.0f), large = pairs(1.8f, 1.5f);
