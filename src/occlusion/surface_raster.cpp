@@ -134,8 +134,7 @@ bool SurfaceRaster::pays(const PixelRectangle& rectangle, std::uint32_t edges) c
 // the direction instead.
 const SurfaceRaster::Facing& SurfaceRaster::facingOf(std::uint32_t patch) {
   Facing& facing = facings_[patch];
-  if (view_.view().orthographic || facing.side == 0 || facing.since < first_view_ ||
-      !(travel_ < facing.travel)) {
+  if (view_.view().orthographic || facing.since < first_view_ || !(travel_ < facing.travel)) {
     const PatchSide found = view_.sideOf(patch);
     facing = {view_number_, found.side < 0 && !set_->patches[patch].double_sided,
               static_cast<std::int8_t>(found.side), std::nextafter(travel_ + found.travel, 0.0)};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace sightline::occlusion {
@@ -137,7 +138,7 @@ PatchSide SurfaceView::sideOf(std::uint32_t number) const {
   const SurfacePatch& patch = set_->patches[number];
   const double cone = patch.cone_cosine;
   if (!(cone > 0.0)) {
-    return {};
+    return {.side = 0, .travel = std::numeric_limits<double>::infinity()};
   }
   // On which side of the patch's slab the eye is, and how far from it; and how far away the patch is along
   // it.
@@ -151,11 +152,12 @@ PatchSide SurfaceView::sideOf(std::uint32_t number) const {
   const double beside = std::sqrt(std::max(0.0, dot(middle, middle) - along * along)) + radius;
   const double sine = std::sqrt(std::max(0.0, 1.0 - cone * cone));
   const double slack = above * cone - beside * sine;
-  if (!(slack > 0.0 && above > 0.0)) {
-    return {};
-  }
+  const bool sure = slack > 0.0 && above > 0.0;
   // When the eye moves by a metre, `above` and `beside` change by at most one.
-  return {height > 0.0 ? 1 : -1, view_.orthographic ? 0.0 : 0.999 * slack / (cone + sine)};
+  return {.side = !sure          ? 0
+                  : height > 0.0 ? 1
+                                 : -1,
+          .travel = view_.orthographic ? 0.0 : 0.999 * std::abs(slack) / (cone + sine)};
 }
 
 void SurfaceView::imagesOf(std::span<const ShownPatch> patches, double min_pixels,
