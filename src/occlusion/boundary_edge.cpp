@@ -32,8 +32,8 @@ struct Prepared {
       end_crossed[kMost], first_tile[kMost], last_tile[kMost], kind[kMost], falls[kMost], rightwards[kMost],
       matters[kMost];
 
+  static std::int16_t narrow(std::int32_t v) { return static_cast<std::int16_t>(v); }
   BoundaryEdge edge(std::size_t i) const {
-    const auto narrow = [](std::int32_t v) { return static_cast<std::int16_t>(v); };
     return {.x = x[i],
             .slope = slope[i],
             .left = left[i],
