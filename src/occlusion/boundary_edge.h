@@ -1,6 +1,6 @@
 #pragma once
 
-// Edges of the boundary of a surface in a depth buffer, prepared once a view for being drawn several times.
+// Edges of the boundary of a surface in a depth buffer, prepared for being drawn tile by tile.
 
 #include <cstddef>
 #include <cstdint>
@@ -74,7 +74,8 @@ struct BoundaryChain {
   std::int32_t value = 0;              // not 0
 };
 
-// Lines from one point to another, by coordinate. Vectors of doubles may be read from any of them on.
+// Lines from one point to another, by coordinate. Vectors of up to eight doubles may be read from any line
+// on.
 struct GridLines {
   std::vector<double> from_x{}, from_y{}, to_x{}, to_y{};  // as in GridPoint
 

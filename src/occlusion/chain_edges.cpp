@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// As PixelView and ChainEdges::pixelOf() do it, with the same bits, and a point in each lane.
+// Does what PixelView and ChainEdges::pixelOf() do, with the same bits, and a point in each lane.
 class PointProjection {
  public:
   using Doubles = hn::CappedTag<double, 8>;
@@ -55,8 +55,8 @@ class PointProjection {
   double clip_depth_;
 };
 
-// ends: as ChainEdges has them. Returns whether none of them is nearer than the clip depth; those that are
-// have no line yet.
+// ends: as in ChainEdges. Returns whether none of them is nearer than the clip depth; the lines of those that
+// are have no meaning.
 bool projectEnds(const PixelView& view, double clip_depth, const float* const* ends, std::size_t count,
                  GridLines& lines) {
   const PointProjection projection(view, clip_depth);

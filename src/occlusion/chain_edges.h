@@ -28,7 +28,7 @@ class ChainEdges {
   // beyond the clip depth. Returns their number.
   std::uint32_t endGroup(std::vector<BoundaryChain>& boundary);
 
-  // Those of the groups since begin() or forget().
+  // The edges of the groups since begin() or forget().
   std::span<const BoundaryEdge> edges() const { return edges_; }
   void forget() { edges_.clear(); }
 
@@ -51,7 +51,7 @@ class ChainEdges {
   PixelView view_;
   double clip_depth_ = 0.0;
   EdgeBuffer buffer_;
-  // Of the group:
+  // These are of the group that was begun:
   std::vector<BoundaryChain> chains_;  // into ends_
   std::array<std::vector<float>, kCoordinates> ends_;
   std::uint32_t count_ = 0;  // of ends_ that are used

@@ -204,7 +204,7 @@ void SurfaceRaster::listPatches(const SurfacePart& part, bool together) {
   view_.imagesOf(sides_, together ? 0.0 : drawing_.min_patch_pixels, shown_);
 }
 
-// A patch alone.
+// Adds a patch alone, as one group.
 void SurfaceRaster::addPatch(const PatchImage& patch, Rest& rest) {
   const std::span<const ClusterImage> clusters = view_.clusters().subspan(patch.first, patch.count);
   if (!patch.flat) {

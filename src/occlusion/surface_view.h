@@ -77,7 +77,7 @@ class SurfaceView {
   // Sets `images` to those of the patches that have so many pixels. They have neither clusters nor depths
   // yet.
   void imagesOf(std::span<const ShownPatch> patches, double min_pixels, std::vector<PatchImage>& images);
-  // Of a patch that may be drawn as a whole.
+  // Finds how far away a patch is that may be drawn as a whole.
   void setDepth(PatchImage& image) const;
   // Appends the clusters of a patch that may show their fronts to clusters().
   void addClusters(const SurfacePatch& patch, PatchImage& image);
