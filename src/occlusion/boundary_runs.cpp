@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "src/occlusion/depth_target.h"
 #include "src/occlusion/edge_rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,30 +27,28 @@ HWY_INLINE void clearRuns(TileRowRuns& runs) {
 }
 
 HWY_INLINE void drawEdge(const RunRows& target, const BoundaryEdge& edge, bool begins) {
-  const EdgeRows rows(edge, target.end_x, begins, false);
-  rows.forTileRows(target.first_row, target.last_row, [&](std::int32_t row, double x) HWY_ATTR {
-    TileRowRuns& runs = target.runs[row];
-    rows.forRows(
-        row, x,
-        [&](std::int32_t lane, PlacesV from, PlacesV to, PlacesM touched, PlacesM crossed, PlacesV,
-            PlacesV) HWY_ATTR {
-          if (begins) {
-            const auto after = hn::Load(kPlaces, runs.after + lane);
-            hn::Store(hn::IfThenElse(touched, hn::Max(after, to), after), kPlaces, runs.after + lane);
-            const auto bits = hn::VecFromMask(kBits, hn::RebindMask(kBits, crossed));
-            hn::Store(hn::Or(hn::Load(kBits, runs.crossed + lane), bits), kBits, runs.crossed + lane);
-          } else {
-            const auto before = hn::Load(kPlaces, runs.before + lane);
-            hn::Store(hn::IfThenElse(touched, hn::Min(before, from), before), kPlaces, runs.before + lane);
-          }
-        });
-  });
+  const EdgeRows rows(edge, target.buffer, begins, false);
+  // Edges begin and end a group in turn, so a branch would often be predicted wrong.
+  const auto beginning = hn::Ne(hn::Set(kPlaces, begins ? 1.0f : 0.0f), hn::Zero(kPlaces));
+  rows.forRows(target.tiles.first_row, target.tiles.last_row,
+               [&](std::int32_t row, std::int32_t lane, PlacesV from, PlacesV to, PlacesM touched,
+                   PlacesM crossed, PlacesV, PlacesV) HWY_ATTR {
+                 TileRowRuns& runs = target.runs[row];
+                 const auto after = hn::Load(kPlaces, runs.after + lane),
+                            before = hn::Load(kPlaces, runs.before + lane);
+                 const auto begin = hn::And(touched, beginning), end = hn::AndNot(beginning, touched);
+                 hn::Store(hn::IfThenElse(begin, hn::Max(after, to), after), kPlaces, runs.after + lane);
+                 hn::Store(hn::IfThenElse(end, hn::Min(before, from), before), kPlaces, runs.before + lane);
+                 const auto bits = hn::VecFromMask(kBits, hn::RebindMask(kBits, hn::And(crossed, beginning)));
+                 hn::Store(hn::Or(hn::Load(kBits, runs.crossed + lane), bits), kBits, runs.crossed + lane);
+               });
 }
 
 // Takes the pixels of a level edge out of the runs, and with them the shorter piece beside them.
 HWY_INLINE void drawLevelEdge(const RunRows& target, const BoundaryEdge& edge) {
-  for (std::int32_t row = std::max<std::int32_t>(edge.first_row, target.first_row * kTileHeight);
-       row <= std::min<std::int32_t>(edge.last_row, target.last_row * kTileHeight + kTileHeight - 1); ++row) {
+  const TileRange& tiles = target.tiles;
+  for (std::int32_t row = std::max<std::int32_t>(edge.first_row, tiles.first_row * kTileHeight);
+       row <= std::min<std::int32_t>(edge.last_row, tiles.last_row * kTileHeight + kTileHeight - 1); ++row) {
     TileRowRuns& runs = target.runs[row >> kTileHeightShift];
     float &after = runs.after[row % kTileHeight], &before = runs.before[row % kTileHeight];
     if (edge.right - after < before - edge.left) {
@@ -60,16 +59,47 @@ HWY_INLINE void drawLevelEdge(const RunRows& target, const BoundaryEdge& edge) {
   }
 }
 
-void drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edges,
+// Finds the pixels of the runs in a row of tiles from the places between which they lie.
+HWY_INLINE void finishRuns(const RunRows& target, std::int32_t tile_row) {
+  TileRowRuns& runs = target.runs[tile_row];
+  const std::int32_t rows = target.buffer.height - tile_row * kTileHeight;
+  const auto lowest = static_cast<float>(target.tiles.first_column * kTileWidth),
+             highest = static_cast<float>(
+                 std::min((target.tiles.last_column + 1) * kTileWidth, drawnWidth(target.buffer.width)));
+  const auto pixel = hn::Set(kPlaces, 1.0f / kGridStep);
+  const auto within = [&](PlacesV v) HWY_ATTR {
+    return hn::Min(hn::Max(hn::Floor(v), hn::Set(kPlaces, lowest)), hn::Set(kPlaces, highest));
+  };
+  auto least = hn::Set(kPlaces, highest), greatest = hn::Set(kPlaces, lowest);
+  for (std::int32_t lane = 0; lane < kTileHeight; lane += static_cast<std::int32_t>(hn::Lanes(kPlaces))) {
+    const auto after = hn::Mul(hn::Load(kPlaces, runs.after + lane), pixel),
+               before = hn::Mul(hn::Load(kPlaces, runs.before + lane), pixel);
+    const auto crossed = hn::MaskFromVec(hn::BitCast(kPlaces, hn::Load(kBits, runs.crossed + lane)));
+    const auto begin = within(hn::Add(after, hn::Set(kPlaces, 1.0f))),
+               end = hn::IfThenElse(crossed, within(before), hn::Set(kPlaces, lowest));
+    hn::Store(wholeOf(begin), kNumbers, runs.begin + lane);
+    hn::Store(wholeOf(end), kNumbers, runs.end + lane);
+    const auto row = hn::Iota(kPlaces, static_cast<float>(lane));
+    const auto some = hn::And(hn::Lt(begin, end), hn::Lt(row, hn::Set(kPlaces, static_cast<float>(rows))));
+    least = hn::IfThenElse(some, hn::Min(least, begin), least);
+    greatest = hn::IfThenElse(some, hn::Max(greatest, end), greatest);
+  }
+  const auto first = static_cast<std::int32_t>(hn::GetLane(hn::MinOfLanes(kPlaces, least))),
+             end = static_cast<std::int32_t>(hn::GetLane(hn::MaxOfLanes(kPlaces, greatest)));
+  runs.extent = {first / kTileWidth, (end - 1) >> kTileWidthShift};
+}
+
+void drawRunsOf(const RunRows& target, std::span<const BoundaryEdge> edges,
                 std::span<const BoundaryChain> chains) {
-  for (std::int32_t row = rows.first_row; row <= rows.last_row; ++row) {
-    clearRuns(rows.runs[row]);
+  const TileRange& tiles = target.tiles;
+  for (std::int32_t row = tiles.first_row; row <= tiles.last_row; ++row) {
+    clearRuns(target.runs[row]);
   }
   std::uint32_t level = 0;
   const auto forEdges = [&](auto&& use) HWY_ATTR {
     for (const BoundaryChain& chain : chains) {
       for (const BoundaryEdge& edge : edges.subspan(chain.first, chain.count)) {
-        if (edge.touches(rows.first_row, rows.last_row)) {
+        if (edge.touches(tiles.first_row, tiles.last_row)) {
           use(edge, chain.value);
         }
       }
@@ -79,15 +109,18 @@ void drawRunsOf(const RunRows& rows, std::span<const BoundaryEdge> edges,
     if (edge.kind == EdgeSlope::kLevel) {
       ++level;
     } else {
-      drawEdge(rows, edge, edge.rises(value));
+      drawEdge(target, edge, edge.rises(value));
     }
   });
   if (level > 0) {  // the others have to be known before
     forEdges([&](const BoundaryEdge& edge, std::int32_t) HWY_ATTR {
       if (edge.kind == EdgeSlope::kLevel) {
-        drawLevelEdge(rows, edge);
+        drawLevelEdge(target, edge);
       }
     });
+  }
+  for (std::int32_t row = tiles.first_row; row <= tiles.last_row; ++row) {
+    finishRuns(target, row);
   }
 }
 
@@ -101,29 +134,22 @@ namespace {
 
 HWY_EXPORT(drawRunsOf);
 
-// The heights of edges that begin a group, in ascending order.
+// The heights of edges that begin a group, in ascending order; no two edges are at the same height.
 class Beginnings {
  public:
-  // False: there are too many.
+  // False: one is at the height of another, or there are too many.
   bool add(const BoundaryEdge& edge) {
     if (count_ == heights_.size()) {
       return false;
     }
-    std::size_t at = count_++;
+    std::size_t at = count_;
     for (; at > 0 && heights_[at - 1].bottom > edge.bottom; --at) {
       heights_[at] = heights_[at - 1];
     }
     heights_[at] = {edge.bottom, edge.top};
-    return true;
-  }
-  // Whether there is at most one of them at each height.
-  bool follow() const {
-    for (std::size_t i = 1; i < count_; ++i) {
-      if (heights_[i].bottom < heights_[i - 1].top) {
-        return false;
-      }
-    }
-    return true;
+    ++count_;
+    return (at == 0 || heights_[at - 1].top <= edge.bottom) &&
+           (at + 1 == count_ || edge.top <= heights_[at + 1].bottom);
   }
 
  private:
@@ -153,15 +179,14 @@ bool hasRuns(std::span<const BoundaryEdge> edges, std::span<const BoundaryChain>
     return edge.kind == EdgeSlope::kLevel || !edge.rises(value) || beginnings.add(edge);
   });
   // A level edge between bottom and top is a step or a slit.
-  return few && beginnings.follow() && (level == 0 || all([&](const BoundaryEdge& edge, std::int32_t) {
-                                          return edge.kind != EdgeSlope::kLevel || edge.bottom <= bottom ||
-                                                 edge.top >= top;
-                                        }));
+  return few && (level == 0 || all([&](const BoundaryEdge& edge, std::int32_t) {
+                   return edge.kind != EdgeSlope::kLevel || edge.bottom <= bottom || edge.top >= top;
+                 }));
 }
 
-void drawRuns(const RunRows& rows, std::span<const BoundaryEdge> edges,
+void drawRuns(const RunRows& target, std::span<const BoundaryEdge> edges,
               std::span<const BoundaryChain> chains) {
-  HWY_DYNAMIC_DISPATCH(drawRunsOf)(rows, edges, chains);
+  HWY_DYNAMIC_DISPATCH(drawRunsOf)(target, edges, chains);
 }
 
 }  // namespace sightline::occlusion

@@ -33,16 +33,60 @@ inline constexpr Bits kBits;
 inline constexpr Places kPlaces;
 inline constexpr Numbers kNumbers;
 
+// Converts whole numbers from -2^22 to 2^22. hn::ConvertTo() takes three times as many steps, for the sake of
+// numbers that do not fit.
+HWY_INLINE NumbersV wholeOf(PlacesV v) {
+  // Adding this leaves no room for places after the point, so that the last bits are the number.
+  const auto large = hn::Set(kPlaces, 0x1.8p23f);
+  return hn::Sub(hn::BitCast(kNumbers, hn::Add(v, large)), hn::BitCast(kNumbers, large));
+}
+
+// The pixels of a row of a tile from number `from` on.
+HWY_INLINE BitsV bitsFrom(NumbersV from) {
+  const auto all = hn::Set(kBits, ~0u);
+  const auto shift = hn::Max(from, hn::Zero(kNumbers));
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+  return hn::Shl(all, hn::BitCast(kBits, shift));  // here a shift by 32 or more leaves no bits
+#else
+  const auto within = hn::Min(shift, hn::Set(kNumbers, kTileWidth - 1));
+  const auto bits = hn::Shl(all, hn::BitCast(kBits, within));
+  return hn::IfThenZeroElse(hn::RebindMask(kBits, hn::Gt(from, within)), bits);
+#endif
+}
+
+// The pixels of a row of a tile from number `first` up to `end`; none if first >= end.
+HWY_INLINE BitsV bitsBetween(NumbersV first, NumbersV end) {
+  return hn::AndNot(bitsFrom(end), bitsFrom(first));
+}
+
 // Where an edge crosses the rows of some tiles. Lengths are in 256ths of a pixel.
 class EdgeRows {
  public:
-  // end_x: the right border of the buffer. rises: to the right of the edge the winding is greater; of a level
+  // rises: to the right of the edge the winding is greater; of a level
   // edge this is a convention. above_inner: of a level edge, the surface lies above it.
-  HWY_INLINE EdgeRows(const BoundaryEdge& edge, double end_x, bool rises, bool above_inner)
-      : edge_(edge), end_x_(end_x), rises_(rises), above_inner_(above_inner) {}
+  HWY_INLINE EdgeRows(const BoundaryEdge& edge, const EdgeBuffer& buffer, bool rises, bool above_inner)
+      : edge_(edge), last_place_(buffer.width * kPixel + kBeyond), rises_(rises), above_inner_(above_inner) {}
 
-  // Calls use(tile_row, x) for the rows of tiles from `first` to `last` that the edge may touch. x: where its
-  // line crosses their lower border.
+  // Calls use(tile_row, lane, from, to, touched, crossed, middle, doubt) for groups of lanes of the rows of
+  // tiles from `first` to `last` that the edge may touch. from, to: the least and the greatest place that the
+  // edge may touch, with its margin. touched, crossed: rows that it may touch, and those whose middle it
+  // crosses. middle: where its line crosses the middle; doubt: so near to that it is unknown on which side a
+  // pixel's centre is.
+  template <typename Use>
+  HWY_INLINE void forRows(std::int32_t first, std::int32_t last, Use&& use) const {
+    if (edge_.kind == EdgeSlope::kSteep) {
+      forSteepRows(first, last, use);
+    } else if (edge_.kind == EdgeSlope::kFlat) {
+      forFlatRows(first, last, use);
+    } else {
+      forLevelRows(first, last, use);
+    }
+  }
+
+ private:
+  static constexpr double kPixel = kGridStep, kBeyond = BoundaryEdge::kBeyond;
+
+  // Calls use(tile_row, x). x: where the edge's line crosses the lower border of the tiles.
   template <typename Use>
   HWY_INLINE void forTileRows(std::int32_t first, std::int32_t last, Use&& use) const {
     const std::int32_t origin = edge_.first_row >> kTileHeightShift;
@@ -53,54 +97,65 @@ class EdgeRows {
     }
   }
 
-  // Calls use(lane, from, to, touched, crossed, middle, doubt) for groups of lanes of the tiles' rows.
-  // from, to: the least and the greatest place that the edge may touch, with its margin. touched, crossed:
-  // rows that it may touch, and those whose middle it crosses. middle: where its line crosses the middle;
-  // doubt: so near to that it is unknown on which side a pixel's centre is.
   template <typename Use>
-  HWY_INLINE void forRows(std::int32_t tile_row, double x, Use&& use) const {
-    if (edge_.kind == EdgeSlope::kSteep) {
-      const auto step = hn::Set(kPlaces, static_cast<float>(edge_.slope * kPixel));
-      const auto base = hn::Set(kPlaces, place(x)), doubt = hn::Set(kPlaces, edge_.doubt);
+  HWY_INLINE void forSteepRows(std::int32_t first, std::int32_t last, Use&& use) const {
+    const auto step = hn::Set(kPlaces, static_cast<float>(edge_.slope * kPixel));
+    const auto doubt = hn::Set(kPlaces, edge_.doubt);
+    forTileRows(first, last, [&](std::int32_t tile_row, double x) HWY_ATTR {
+      const double place = std::min(std::max(x, -kBeyond), last_place_);
+      const auto base = hn::Set(kPlaces, static_cast<float>(place));
       forLanes([&](std::int32_t lane) HWY_ATTR {
-        const auto row = hn::Add(hn::Set(kPlaces, static_cast<float>(lane)), hn::Iota(kPlaces, 0.0f));
+        const auto row = hn::Iota(kPlaces, static_cast<float>(lane));
         const auto below = hn::Add(hn::Mul(row, step), base), above = hn::Add(below, step);
         const auto middle = hn::Mul(hn::Add(below, above), hn::Set(kPlaces, 0.5f));
         useRows(tile_row, lane, below, above, middle, doubt, use);
       });
-      return;
-    }
-    HWY_ALIGN float below[kTileHeight], above[kTileHeight], middle[kTileHeight], doubt[kTileHeight];
-    for (std::int32_t i = 0; i < kTileHeight; ++i) {
-      if (edge_.kind == EdgeSlope::kLevel) {
-        constexpr double kFar = 2.0 * kLargestGrid;
-        const double height = (tile_row * kTileHeight + i + 0.5) * kPixel - edge_.x;
-        const bool inner = (height > 0.0) == above_inner_;
-        below[i] = above[i] = edge_.left;
-        middle[i] = place(inner == rises_ ? -kFar : kFar);
-        doubt[i] = std::abs(height) <= edge_.doubt ? 2.0f * edge_.reach : 0.0f;
-      } else {
-        // Places at which a flat edge crosses the borders may be clamped, so its middle is computed by
-        // itself.
-        const double step = kPixel * edge_.slope, at = x + i * step;
-        below[i] = place(at);
-        above[i] = place(at + step);
-        middle[i] = place(at + 0.5 * step);
-        doubt[i] = edge_.doubt;
-      }
-    }
-    forLanes([&](std::int32_t lane) HWY_ATTR {
-      useRows(tile_row, lane, hn::Load(kPlaces, below + lane), hn::Load(kPlaces, above + lane),
-              hn::Load(kPlaces, middle + lane), hn::Load(kPlaces, doubt + lane), use);
     });
   }
 
- private:
-  static constexpr double kPixel = kGridStep;
+  // Places at which a flat edge crosses the borders of rows may be clamped, so its middle is computed by
+  // itself.
+  template <typename Use>
+  HWY_INLINE void forFlatRows(std::int32_t first, std::int32_t last, Use&& use) const {
+    const hn::CappedTag<double, kTileHeight> d;
+    const hn::Rebind<float, decltype(d)> single;
+    HWY_ALIGN float below[kTileHeight], above[kTileHeight], middle[kTileHeight];
+    const auto step = hn::Set(d, kPixel * edge_.slope);
+    const auto place = [&](hn::Vec<decltype(d)> v) HWY_ATTR {
+      return hn::DemoteTo(single, hn::Min(hn::Max(v, hn::Set(d, -kBeyond)), hn::Set(d, last_place_)));
+    };
+    forTileRows(first, last, [&](std::int32_t tile_row, double x) HWY_ATTR {
+      for (std::int32_t i = 0; i < kTileHeight; i += static_cast<std::int32_t>(hn::Lanes(d))) {
+        const auto at = hn::Add(hn::Set(d, x), hn::Mul(hn::Iota(d, static_cast<double>(i)), step));
+        hn::Store(place(at), single, below + i);
+        hn::Store(place(hn::Add(at, step)), single, above + i);
+        hn::Store(place(hn::Add(at, hn::Mul(hn::Set(d, 0.5), step))), single, middle + i);
+      }
+      forLanes([&](std::int32_t lane) HWY_ATTR {
+        useRows(tile_row, lane, hn::Load(kPlaces, below + lane), hn::Load(kPlaces, above + lane),
+                hn::Load(kPlaces, middle + lane), hn::Set(kPlaces, edge_.doubt), use);
+      });
+    });
+  }
 
-  float place(double x) const {
-    constexpr double kBeyond = BoundaryEdge::kBeyond;
-    return static_cast<float>(std::min(std::max(x, -kBeyond), end_x_ + kBeyond));
+  template <typename Use>
+  HWY_INLINE void forLevelRows(std::int32_t first, std::int32_t last, Use&& use) const {
+    // Heights in a buffer are whole numbers below 2^22, so that single precision is exact.
+    const auto at = hn::Set(kPlaces, static_cast<float>(edge_.x)), left = hn::Set(kPlaces, edge_.left);
+    const float before = static_cast<float>(-kBeyond), behind = static_cast<float>(last_place_);
+    const bool inner_before = above_inner_ == rises_;
+    const auto above = hn::Set(kPlaces, inner_before ? before : behind),
+               below = hn::Set(kPlaces, inner_before ? behind : before);
+    forTileRows(first, last, [&](std::int32_t tile_row, double) HWY_ATTR {
+      forLanes([&](std::int32_t lane) HWY_ATTR {
+        const auto row = hn::Iota(kPlaces, static_cast<float>(tile_row * kTileHeight + lane) + 0.5f);
+        const auto height = hn::Sub(hn::Mul(row, hn::Set(kPlaces, kGridStep)), at);
+        const auto middle = hn::IfThenElse(hn::Gt(height, hn::Zero(kPlaces)), above, below);
+        const auto near = hn::Le(hn::Abs(height), hn::Set(kPlaces, edge_.doubt));
+        useRows(tile_row, lane, left, left, middle,
+                hn::IfThenElseZero(near, hn::Set(kPlaces, 2.0f * edge_.reach)), use);
+      });
+    });
   }
 
   template <typename Use>
@@ -121,12 +176,12 @@ class EdgeRows {
     const auto reach = hn::Set(kPlaces, edge_.reach);
     const auto from = hn::Max(hn::Sub(hn::Min(below, above), reach), hn::Set(kPlaces, edge_.left)),
                to = hn::Min(hn::Add(hn::Max(below, above), reach), hn::Set(kPlaces, edge_.right));
-    use(lane, from, to, among(edge_.first_row, edge_.last_row + 1),
+    use(tile_row, lane, from, to, among(edge_.first_row, edge_.last_row + 1),
         among(edge_.first_crossed, edge_.end_crossed), middle, doubt);
   }
 
   const BoundaryEdge& edge_;
-  double end_x_;
+  double last_place_;  // those beyond it are moved there
   bool rises_, above_inner_;
 };
 

@@ -16,21 +16,28 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight;
-constexpr std::int32_t kLanes = 8;  // most lanes of a vector of pixels
+
+// A lane for each pixel. Vectors begin at multiples of their length, so that they end within the stride.
+using Pixels = hn::CappedTag<float, 16>;
+inline constexpr Pixels kPixels;
 
 // The least value of a rectangle of the target's pixels.
 float leastOf(const DepthTarget& target, const PixelRectangle& r) {
-  const hn::CappedTag<float, kLanes> d;
-  const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
-  auto least = hn::Set(d, std::numeric_limits<float>::infinity());
-  for (std::int32_t y = r.y0; y < r.y1; ++y) {
-    const float* row = target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y);
-    for (std::int32_t x = r.x0; x < r.x1; x += lanes) {
-      const auto valid = hn::FirstN(d, static_cast<std::size_t>(std::min(r.x1 - x, lanes)));
-      least = hn::Min(least, hn::IfThenElse(valid, hn::LoadU(d, row + x), least));
+  const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels));
+  const auto infinite = hn::Set(kPixels, std::numeric_limits<float>::infinity());
+  auto least = infinite;
+  for (std::int32_t x = r.x0 / lanes * lanes; x < r.x1; x += lanes) {
+    const float* pixels = target.reciprocal_depth + x;
+    auto column = infinite;
+    for (std::int32_t y = r.y0; y < r.y1; ++y) {
+      column = hn::Min(
+          column, hn::LoadU(kPixels, pixels + std::size_t{target.stride} * static_cast<std::uint32_t>(y)));
     }
+    const auto before = hn::FirstN(kPixels, static_cast<std::size_t>(std::max(r.x0 - x, 0))),
+               to = hn::FirstN(kPixels, static_cast<std::size_t>(std::min(r.x1 - x, lanes)));
+    least = hn::IfThenElse(hn::AndNot(before, to), hn::Min(least, column), least);
   }
-  return hn::GetLane(hn::MinOfLanes(d, least));
+  return hn::GetLane(hn::MinOfLanes(kPixels, least));
 }
 
 // Whether all pixels of a rectangle have a greater value than this. leasts, stale: by tile, stride for each
@@ -64,24 +71,6 @@ bool allNearer(const DepthTarget& target, float* leasts, bool* stale, std::int32
   return true;
 }
 
-// Tiles from `first` up to `end` are no nearer than max(along * tile + at_row, floor).
-void lowerTiles(float* far, std::int32_t first, std::int32_t end, float along, float at_row, float floor) {
-  const hn::CappedTag<float, kLanes> d;
-  std::int32_t tile = first;
-  const auto lower = [&](auto tag) HWY_ATTR {
-    const auto x = hn::Add(hn::Set(tag, static_cast<float>(tile)), hn::Iota(tag, 0.0f));
-    const auto plane = hn::Add(hn::Mul(x, hn::Set(tag, along)), hn::Set(tag, at_row));
-    hn::StoreU(hn::Min(hn::LoadU(tag, far + tile), hn::Max(plane, hn::Set(tag, floor))), tag, far + tile);
-  };
-  for (; tile + static_cast<std::int32_t>(hn::Lanes(d)) <= end;
-       tile += static_cast<std::int32_t>(hn::Lanes(d))) {
-    lower(d);
-  }
-  for (; tile < end; ++tile) {
-    lower(hn::CappedTag<float, 1>());
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace sightline::occlusion
 HWY_AFTER_NAMESPACE();
@@ -91,12 +80,9 @@ namespace sightline::occlusion {
 namespace {
 
 HWY_EXPORT(allNearer);
-HWY_EXPORT(lowerTiles);
 
-constexpr std::uint64_t kLargestSum = 16000;  // of edges' values in a group: WindingTile::carry is a word
+constexpr std::uint64_t kLargestSum = 1u << 30;  // of edges' values in a group: see WindingTile::carry
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::int32_t kBlocksAcross = kTileWidth / FarDepths::kWidth,
-                       kBlocksUp = kTileHeight / FarDepths::kHeight;
 
 }  // namespace
 
@@ -114,8 +100,8 @@ void WindingMap::resize(const DepthTarget& target) {
     stale_ = std::make_unique<bool[]>(tiles);
     extents_.assign(static_cast<std::size_t>(rows), {});
     runs_.assign(static_cast<std::size_t>(rows), {});
-    far_stride_ = static_cast<std::uint32_t>(columns * kBlocksAcross);
-    far_.assign(tiles * kBlocksAcross * kBlocksUp, kInfinity);
+    far_stride_ = static_cast<std::uint32_t>(columns * FarDepths::kAcross + FarDepths::kSpare);
+    far_.assign(std::size_t{far_stride_} * static_cast<std::uint32_t>(rows * FarDepths::kUp), kInfinity);
   }
   least_.assign(tiles, -kInfinity);
   std::fill_n(stale_.get(), tiles, true);
@@ -150,8 +136,9 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
   const auto drawBand = [&](std::uint32_t begin, std::uint32_t end) {
     for (std::size_t i = 0; i < groups.size(); ++i) {
       const TileRange& tiles = plans_[i].tiles;
-      drawRows(groups[i], plans_[i], edges, std::max(tiles.first_row, static_cast<std::int32_t>(begin)),
-               std::min(tiles.last_row, static_cast<std::int32_t>(end) - 1), gains_.data() + rows * i);
+      gains_[rows * i + begin] =
+          drawRows(groups[i], plans_[i], edges, std::max(tiles.first_row, static_cast<std::int32_t>(begin)),
+                   std::min(tiles.last_row, static_cast<std::int32_t>(end) - 1));
     }
   };
   // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
@@ -166,80 +153,34 @@ void WindingMap::draw(std::span<const WindingGroup> groups, std::span<const Boun
   }
 }
 
-void WindingMap::drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,
-                          std::int32_t first_row, std::int32_t last_row, WindingGain* gains) {
+WindingGain WindingMap::drawRows(const WindingGroup& group, const Plan& plan,
+                                 std::span<const BoundaryEdge> edges, std::int32_t first_row,
+                                 std::int32_t last_row) {
   TileRange tiles = plan.tiles;
   tiles.first_row = first_row;
   tiles.last_row = last_row;
   if (!plan.known || first_row > last_row || tiles.first_column > tiles.last_column) {
-    return;
+    return {};
   }
-  const double end_x = static_cast<double>(target_.width) * kGridStep;
   if (plan.in_runs) {
-    drawRuns({runs_.data(), first_row, last_row, end_x}, edges, group.boundary);
+    drawRuns({runs_.data(), tiles, buffer()}, edges, group.boundary);
   } else {
-    drawTiles({tiles_.data(), extents_.data(), columns_, end_x}, tiles, edges, group.boundary);
+    drawTiles({tiles_.data(), extents_.data(), columns_, buffer()}, tiles, edges, group.boundary);
   }
-  if (!group.flat) {
-    addDepths(group, tiles);
+  const GroupCover cover{.runs = plan.in_runs ? runs_.data() : nullptr,
+                         .tiles = tiles_.data(),
+                         .extents = extents_.data(),
+                         .stale = stale_.get(),
+                         .columns = columns_,
+                         .range = tiles,
+                         .target = target_};
+  if (group.flat) {
+    return resolvePlane(cover, group.depths[0].depth);
   }
-  for (std::int32_t row = first_row; row <= last_row; ++row) {
-    gains[row] = resolve(group, plan, row);
-  }
-}
-
-void WindingMap::addDepths(const WindingGroup& group, const TileRange& tiles) {
-  constexpr std::int32_t kWidth = FarDepths::kWidth, kHeight = FarDepths::kHeight;
-  for (const PartDepth& part : group.depths) {
-    const PixelRectangle r{std::max(part.rectangle.x0, tiles.first_column * kTileWidth),
-                           std::max(part.rectangle.y0, tiles.first_row * kTileHeight),
-                           std::min(part.rectangle.x1, (tiles.last_column + 1) * kTileWidth),
-                           std::min(part.rectangle.y1, (tiles.last_row + 1) * kTileHeight)};
-    if (r.empty()) {
-      continue;
-    }
-    const DepthBound& depth = part.depth;
-    const std::int32_t first = r.x0 / kWidth, end = (r.x1 - 1) / kWidth + 1;
-    const float top = depth.along_y < 0.0f ? kHeight - 1 : 0.0f,
-                right = depth.along_x < 0.0f ? kWidth - 1 : 0.0f;
-    for (std::int32_t y = r.y0 / kHeight; y <= (r.y1 - 1) / kHeight; ++y) {
-      const float at_row =
-          depth.along_y * (static_cast<float>(y * kHeight) + top) + (depth.along_x * right + depth.at_origin);
-      HWY_DYNAMIC_DISPATCH(lowerTiles)
-      (far_.data() + std::size_t{far_stride_} * static_cast<std::uint32_t>(y), first, end,
-       depth.along_x * kWidth, at_row, depth.floor);
-    }
-  }
-}
-
-// Gives the group's depth to what it covers of a row of tiles, and clears what was drawn there.
-WindingGain WindingMap::resolve(const WindingGroup& group, const Plan& plan, std::int32_t row) {
-  const auto at = static_cast<std::size_t>(row);
-  const std::size_t first_tile = static_cast<std::size_t>(columns_) * at;
-  const std::int32_t y = row * kTileHeight;
-  const TileExtent extent = plan.in_runs ? TileExtent{} : extents_[at];
-  WindingGain gain;
-  if (plan.in_runs || extent.first <= extent.last) {
-    const CoveredRow covered{.runs = plan.in_runs ? &runs_[at] : nullptr,
-                             .tiles = tiles_.data() + first_tile,
-                             .stale = stale_.get() + first_tile,
-                             .extent = extent,
-                             .first = plan.tiles.first_column,
-                             .end = plan.tiles.last_column + 1,
-                             .reciprocal_depth = target_.reciprocal_depth +
-                                                 std::size_t{target_.stride} * static_cast<std::uint32_t>(y),
-                             .stride = target_.stride,
-                             .width = (static_cast<std::int32_t>(target_.width) + 7) & ~7,
-                             .rows = std::min(kTileHeight, static_cast<std::int32_t>(target_.height) - y)};
-    const FarDepths depths{
-        far_.data() + std::size_t{far_stride_} * static_cast<std::uint32_t>(row * kBlocksUp), far_stride_};
-    gain = group.flat ? resolvePlane(covered, group.depths[0].depth, y) : resolveFar(covered, depths);
-  }
-  for (std::int32_t block = row * kBlocksUp; !group.flat && block < (row + 1) * kBlocksUp; ++block) {
-    const auto far_row = far_.begin() + static_cast<std::ptrdiff_t>(far_stride_) * block;
-    std::fill(far_row + plan.tiles.first_column * kBlocksAcross,
-              far_row + (plan.tiles.last_column + 1) * kBlocksAcross, kInfinity);
-  }
+  const FarDepths depths{far_.data(), far_stride_};
+  lowerFarDepths(depths, tiles, group.depths);
+  const WindingGain gain = resolveFar(cover, depths);
+  clearFarDepths(depths, tiles);
   return gain;
 }
 

@@ -11,28 +11,11 @@
 #include "sightline/base/parallel_for.h"
 #include "src/occlusion/boundary_edge.h"
 #include "src/occlusion/boundary_runs.h"
+#include "src/occlusion/depth_target.h"
 #include "src/occlusion/winding_resolve.h"
 #include "src/occlusion/winding_tiles.h"
 
 namespace sightline::occlusion {
-
-// What is drawn into; greater values are nearer.
-struct DepthTarget {
-  float* reciprocal_depth = nullptr;
-  std::uint32_t width = 0, height = 0, stride = 0;  // stride: a multiple of 8, 8 or more above the width
-};
-
-struct PixelRectangle {
-  std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;  // first pixel, and the one after the last
-  bool empty() const { return x0 >= x1 || y0 >= y1; }
-  std::int32_t area() const { return (x1 - x0) * (y1 - y0); }
-};
-
-// Some of a group that is no farther away than `depth` may appear in these pixels.
-struct PartDepth {
-  PixelRectangle rectangle;
-  DepthBound depth;
-};
 
 // Surfaces that are drawn together: all of their boundary, and how far away they are.
 struct WindingGroup {
@@ -67,11 +50,9 @@ class WindingMap {
   };
 
   Plan planOf(const WindingGroup& group, std::span<const BoundaryEdge> edges) const;
-  // The rows of tiles from first_row to last_row of a group. gains: by row of tiles.
-  void drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,
-                std::int32_t first_row, std::int32_t last_row, WindingGain* gains);
-  void addDepths(const WindingGroup& group, const TileRange& tiles);
-  WindingGain resolve(const WindingGroup& group, const Plan& plan, std::int32_t row);
+  // The rows of tiles from first_row to last_row of a group.
+  WindingGain drawRows(const WindingGroup& group, const Plan& plan, std::span<const BoundaryEdge> edges,
+                       std::int32_t first_row, std::int32_t last_row);
 
   DepthTarget target_;
   std::int32_t columns_ = 0, rows_ = 0;  // of tiles
@@ -79,11 +60,11 @@ class WindingMap {
   std::vector<TileExtent> extents_;      // by row of tiles
   std::vector<TileRowRuns> runs_;        // by row of tiles
   std::uint32_t far_stride_ = 0;
-  std::vector<float> far_;    // by block: the least reciprocal depth of the group; infinite between groups
-  std::vector<float> least_;  // by tile: of the target's values, or less
+  std::vector<float> far_;          // see FarDepths; all infinite between groups
+  std::vector<float> least_;        // by tile: of the target's values, or less
   std::unique_ptr<bool[]> stale_;   // by tile: it may be less
   std::vector<Plan> plans_;         // of the groups that are drawn
-  std::vector<WindingGain> gains_;  // by group and row of tiles
+  std::vector<WindingGain> gains_;  // by group and first row of the tiles that a thread draws
 };
 
 }  // namespace sightline::occlusion

@@ -1,6 +1,7 @@
 #include "src/occlusion/winding_resolve.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -17,11 +18,122 @@ namespace HWY_NAMESPACE {
 constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight;
 constexpr float kGain = 1.125f;  // a pixel counts as changed if it becomes nearer by this factor
 
-// Sets covered[] to the pixels of a tile in which the winding is surely positive, and clears the tile.
-// outside[]: windings to the left of the tile. Returns whether there are such pixels.
-HWY_INLINE bool coverTile(WindingTile& tile, const std::int32_t* outside, std::uint32_t* covered) {
+// A lane for each pixel of a row of a tile, or of a part of it.
+using Pixels = hn::CappedTag<float, 16>;
+using PixelsV = hn::Vec<Pixels>;
+inline constexpr Pixels kPixels;
+
+// Pixels of the target in a row of tiles.
+struct PixelRows {
+  HWY_INLINE PixelRows(const DepthTarget& target, std::int32_t tile_row)
+      : reciprocal_depth(target.reciprocal_depth +
+                         std::size_t{target.stride} * static_cast<std::uint32_t>(tile_row * kHigh)),
+        stride(target.stride),
+        width(drawnWidth(static_cast<std::int32_t>(target.width))),
+        rows(std::min(kHigh, static_cast<std::int32_t>(target.height) - tile_row * kHigh)) {}
+
+  float* reciprocal_depth;  // of the first pixel of the lowest row
+  std::uint32_t stride;
+  std::int32_t width, rows;
+};
+
+// The depths of a plane in a row of tiles.
+class PlaneDepths {
+ public:
+  static constexpr std::int32_t kRows = kHigh;  // for which ofColumn() holds
+
+  HWY_INLINE PlaneDepths(const DepthBound& depth, std::int32_t tile_row) : depth_(depth) {
+    for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kPlaces))) {
+      const auto y = hn::Iota(kPlaces, static_cast<float>(tile_row * kHigh + lane));
+      hn::Store(hn::Add(hn::Mul(hn::Set(kPlaces, depth.along_y), y), hn::Set(kPlaces, depth.at_origin)),
+                kPlaces, at_rows_ + lane);
+    }
+  }
+  // What the depths of the pixels from x on have in common from row y of the tiles on.
+  HWY_INLINE PixelsV ofColumn(std::int32_t x, std::int32_t) const {
+    return hn::Mul(hn::Iota(kPixels, static_cast<float>(x)), hn::Set(kPixels, depth_.along_x));
+  }
+  // Their depths in row y.
+  HWY_INLINE PixelsV ofRow(PixelsV column, std::int32_t y) const {
+    return hn::Max(hn::Add(column, hn::Set(kPixels, at_rows_[y])), hn::Set(kPixels, depth_.floor));
+  }
+
+ private:
+  DepthBound depth_;
+  HWY_ALIGN float at_rows_[kHigh];
+};
+
+// The depths of blocks in a row of tiles.
+class BlockDepths {
+ public:
+  static constexpr std::int32_t kRows = FarDepths::kHeight;
+
+  HWY_INLINE BlockDepths(const FarDepths& depths, std::int32_t tile_row)
+      : least_(depths.least +
+               std::size_t{depths.stride} * static_cast<std::uint32_t>(tile_row * FarDepths::kUp)),
+        stride_(depths.stride) {}
+
+  HWY_INLINE PixelsV ofColumn(std::int32_t x, std::int32_t y) const {
+    const float* block =
+        least_ + stride_ * static_cast<std::uint32_t>(y / FarDepths::kHeight) + x / FarDepths::kWidth;
+    auto depth = hn::Set(kPixels, block[0]);
+    static_assert(hn::MaxLanes(kPixels) <= 2 * FarDepths::kWidth);
+    if constexpr (hn::MaxLanes(kPixels) > FarDepths::kWidth) {
+      depth = hn::IfThenElse(hn::FirstN(kPixels, FarDepths::kWidth), depth, hn::Set(kPixels, block[1]));
+    }
+    // Where none of the group is, it is behind everything.
+    const auto most = hn::Set(kPixels, std::numeric_limits<float>::max());
+    return hn::IfThenElse(hn::Le(depth, most), depth, hn::Neg(most));
+  }
+  HWY_INLINE PixelsV ofRow(PixelsV column, std::int32_t) const { return column; }
+
+ private:
+  const float* least_;
+  std::uint32_t stride_;
+};
+
+// Sets the pixels of a tile that have bits in covered[] to a depth where that is nearer. Returns how many of
+// them become nearer by kGain. stale: set if there are such pixels.
+template <typename Depths>
+HWY_INLINE std::uint32_t gainTile(const PixelRows& pixels, std::int32_t tile, const std::uint32_t* covered,
+                                  const Depths& depths, bool& stale) {
+  const hn::RebindToUnsigned<Pixels> bits;
+  const auto lanes = static_cast<std::int32_t>(hn::Lanes(kPixels));
+  const std::uint32_t all_lanes = ~0u >> (kWide - lanes);
+  const std::int32_t width = std::min(pixels.width - tile * kWide, kWide);
+  std::uint32_t columns = 0;  // that have covered pixels
+  for (std::int32_t y = 0; y < kHigh; ++y) {
+    columns |= covered[y];
+  }
+  stale = stale || columns != 0;
+  std::size_t nearer = 0;
+  for (std::int32_t x = 0; x < width; x += lanes) {
+    if ((columns >> x & all_lanes) == 0) {
+      continue;
+    }
+    const auto lane_bits =
+        hn::Shl(hn::Set(bits, 1u), hn::Add(hn::Iota(bits, 0u), hn::Set(bits, static_cast<std::uint32_t>(x))));
+    float* out = pixels.reciprocal_depth + tile * kWide + x;
+    for (std::int32_t y = 0; y < pixels.rows;) {
+      const auto column = depths.ofColumn(tile * kWide + x, y);
+      for (const std::int32_t end = std::min(pixels.rows, y + Depths::kRows); y < end;
+           ++y, out += pixels.stride) {
+        const auto mask = hn::RebindMask(kPixels, hn::TestBit(hn::Set(bits, covered[y]), lane_bits));
+        const auto old = hn::LoadU(kPixels, out), depth = depths.ofRow(column, y);
+        const auto gains = hn::And(mask, hn::Gt(depth, old));
+        hn::StoreU(hn::IfThenElse(gains, depth, old), kPixels, out);
+        nearer +=
+            hn::CountTrue(kPixels, hn::And(gains, hn::Gt(depth, hn::Mul(old, hn::Set(kPixels, kGain)))));
+      }
+    }
+  }
+  return static_cast<std::uint32_t>(nearer);
+}
+
+// Clears a tile, and leaves in its first plane the pixels in which the winding is surely positive. outside[]:
+// windings to the left of the tile. valid: pixels of a row that there are.
+HWY_INLINE void coverTile(WindingTile& tile, const std::int32_t* outside, std::uint32_t valid) {
   constexpr std::int32_t kPlanes = WindingTile::kPlanes, kLargest = (1 << (kPlanes - 1)) - 1;
-  bool some = false;
   for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kBits))) {
     const auto added = hn::Min(hn::Max(hn::Load(kNumbers, outside + lane), hn::Set(kNumbers, -kLargest - 1)),
                                hn::Set(kNumbers, kLargest));
@@ -38,141 +150,94 @@ HWY_INLINE bool coverTile(WindingTile& tile, const std::int32_t* outside, std::u
       sign = hn::Xor(differ, carry);  // of the sum, with one more plane that repeats the signs of both
       hn::Store(zero, kBits, row);
     }
-    const auto positive = hn::AndNot(hn::Or(sign, hn::Load(kBits, tile.unknown + lane)), any);
+    const auto unknown = hn::Load(kBits, tile.unknown + lane);
     hn::Store(zero, kBits, tile.unknown + lane);
-    hn::Store(positive, kBits, covered + lane);
-    some = some || !hn::AllTrue(kBits, hn::Eq(positive, zero));
+    const auto positive = hn::AndNot(hn::Or(sign, unknown), any);
+    hn::Store(hn::And(positive, hn::Set(kBits, valid)), kBits, tile.planes[0] + lane);
   }
-  return some;
 }
 
-// Sets pixels to a depth where that is nearer. Returns how many of them become nearer by kGain.
-template <typename D>
-HWY_INLINE std::size_t gainPixels(D d, hn::Mask<D> pixels, hn::Vec<D> depth, float* out) {
-  const auto old = hn::LoadU(d, out);
-  const auto nearer = hn::And(pixels, hn::Gt(depth, old));
-  hn::StoreU(hn::IfThenElse(nearer, depth, old), d, out);
-  return hn::CountTrue(d, hn::And(nearer, hn::Gt(depth, hn::Mul(old, hn::Set(d, kGain)))));
-}
-
-// depth_of(x, y, d): the reciprocal depths of the pixels from x on in row y, counted from the lowest one of
-// the tiles. Returns how many pixels changed.
-template <std::int32_t kMostLanes, typename DepthOf>
-HWY_INLINE std::uint32_t resolveTilesOf(const CoveredRow& target, std::uint32_t& tiles, DepthOf&& depth_of) {
-  const hn::CappedTag<float, kMostLanes> d;
-  const hn::RebindToUnsigned<decltype(d)> d32;
-  const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
-  const std::uint32_t all_lanes = ~0u >> (kWide - lanes);
-  const auto lane_bits = hn::Shl(hn::Set(d32, 1u), hn::Iota(d32, 0u));
+// Clears a row of tiles of a group, and leaves in the first plane of each the pixels that it covers. Returns
+// the last tile. Others are cleared, and it covers none of them.
+HWY_INLINE std::int32_t coverRow(WindingTile* tiles, const TileExtent& extent, std::int32_t last_column,
+                                 std::int32_t width) {
   HWY_ALIGN std::int32_t outside[kHigh] = {};
-  HWY_ALIGN std::uint32_t covered[kHigh];
-  std::size_t nearer = 0;
+  std::int32_t x = extent.first;
   bool inside = false;  // some pixel at the right border of the tile before may be
-  const CoveredRow row = target;
-  for (std::int32_t x = row.extent.first; x < row.end && (x <= row.extent.last || inside); ++x) {
-    WindingTile& tile = row.tiles[x];
+  for (; x <= last_column && (x <= extent.last || inside); ++x) {
+    WindingTile& tile = tiles[x];
     inside = false;
     for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kNumbers))) {
-      const hn::Rebind<std::int16_t, Numbers> d16;
-      const auto sum = hn::Add(hn::Load(kNumbers, outside + lane),
-                               hn::PromoteTo(kNumbers, hn::LoadU(d16, tile.carry + lane)));
+      const auto sum = hn::Add(hn::Load(kNumbers, outside + lane), hn::Load(kNumbers, tile.carry + lane));
       hn::Store(sum, kNumbers, outside + lane);
-      hn::StoreU(hn::Zero(d16), d16, tile.carry + lane);
+      hn::Store(hn::Zero(kNumbers), kNumbers, tile.carry + lane);
       inside = inside || !hn::AllFalse(kNumbers, hn::Gt(sum, hn::Zero(kNumbers)));
     }
-    ++tiles;
-    if (!coverTile(tile, outside, covered)) {
-      continue;
-    }
-    row.stale[x] = true;
-    const std::int32_t width = std::min(row.width - x * kWide, kWide);
-    const std::uint32_t valid = width < kWide ? (1u << width) - 1u : ~0u;
-    for (std::int32_t y = 0; y < row.rows; ++y) {
-      const std::uint32_t bits = covered[y] & valid;
-      if (bits == 0) {
-        continue;
-      }
-      float* out = row.reciprocal_depth + std::size_t{row.stride} * static_cast<std::uint32_t>(y) + x * kWide;
-      for (std::int32_t at = 0; at < kWide; at += lanes) {
-        const std::uint32_t chunk = bits >> at;
-        if ((chunk & all_lanes) == 0) {
-          continue;
-        }
-        const auto mask = hn::RebindMask(d, hn::TestBit(hn::Set(d32, chunk), lane_bits));
-        nearer += gainPixels(d, mask, depth_of(x * kWide + at, y, d), out + at);
-      }
+    const std::int32_t there = width - x * kWide;
+    coverTile(tile, outside, there < kWide ? (1u << there) - 1u : ~0u);
+  }
+  return x - 1;
+}
+
+// A row of tiles of a group that is drawn in tiles. First all of them are covered, and then depths are set:
+// so the processor need not wait for what one tile covers before it begins with the next one.
+template <typename Depths>
+HWY_INLINE void resolveTiles(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
+                             const Depths& depths, WindingGain& gain) {
+  const std::ptrdiff_t first_tile = std::ptrdiff_t{group.columns} * row;
+  WindingTile* tiles = group.tiles + first_tile;
+  const TileExtent& extent = group.extents[row];
+  const std::int32_t last = coverRow(tiles, extent, group.range.last_column, pixels.width);
+  for (std::int32_t x = extent.first; x <= last; ++x) {
+    ++gain.tiles;
+    std::uint32_t* covered = tiles[x].planes[0];
+    gain.nearer += gainTile(pixels, x, covered, depths, group.stale[first_tile + x]);
+    for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kBits))) {
+      hn::Store(hn::Zero(kBits), kBits, covered + lane);
     }
   }
-  return static_cast<std::uint32_t>(nearer);
 }
 
 // The same of a group that is drawn in runs.
-template <std::int32_t kMostLanes, typename DepthOf>
-HWY_INLINE std::uint32_t resolveRunsOf(const CoveredRow& target, std::uint32_t& tiles, DepthOf&& depth_of) {
-  const TileRowRuns& runs = *target.runs;
-  HWY_ALIGN std::int32_t begins[kHigh], ends[kHigh];
-  for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kPlaces))) {
-    const auto pixel = hn::Set(kPlaces, 1.0f / kGridStep);
-    const auto within = [&](PlacesV v) HWY_ATTR {
-      const auto lowest = hn::Set(kPlaces, static_cast<float>(target.first * kWide)),
-                 highest = hn::Set(kPlaces, static_cast<float>(std::min(target.end * kWide, target.width)));
-      return hn::ConvertTo(kNumbers, hn::Min(hn::Max(hn::Floor(v), lowest), highest));
-    };
-    const auto after = hn::Mul(hn::Load(kPlaces, runs.after + lane), pixel),
-               before = hn::Mul(hn::Load(kPlaces, runs.before + lane), pixel);
-    const auto crossed = hn::MaskFromVec(hn::BitCast(kNumbers, hn::Load(kBits, runs.crossed + lane)));
-    hn::Store(within(hn::Add(after, hn::Set(kPlaces, 1.0f))), kNumbers, begins + lane);
-    hn::Store(hn::IfThenElseZero(crossed, within(before)), kNumbers, ends + lane);
-  }
-  const hn::CappedTag<float, kMostLanes> d;
-  const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
-  std::size_t nearer = 0;
-  std::int32_t first = target.width, end = 0;  // pixels between which the runs lie
-  for (std::int32_t y = 0; y < target.rows; ++y) {
-    if (begins[y] >= ends[y]) {
-      continue;
+template <typename Depths>
+HWY_INLINE void resolveRuns(const GroupCover& group, std::int32_t row, const PixelRows& pixels,
+                            const Depths& depths, WindingGain& gain) {
+  const TileRowRuns& runs = group.runs[row];
+  HWY_ALIGN std::uint32_t covered[kHigh];
+  for (std::int32_t x = runs.extent.first; x <= runs.extent.last; ++x) {
+    ++gain.tiles;
+    const auto origin = hn::Set(kNumbers, x * kWide);
+    for (std::int32_t lane = 0; lane < kHigh; lane += static_cast<std::int32_t>(hn::Lanes(kNumbers))) {
+      hn::Store(bitsBetween(hn::Sub(hn::Load(kNumbers, runs.begin + lane), origin),
+                            hn::Sub(hn::Load(kNumbers, runs.end + lane), origin)),
+                kBits, covered + lane);
     }
-    first = std::min(first, begins[y]);
-    end = std::max(end, ends[y]);
-    float* out = target.reciprocal_depth + std::size_t{target.stride} * static_cast<std::uint32_t>(y);
-    for (std::int32_t x = begins[y] / lanes * lanes; x < ends[y]; x += lanes) {
-      const auto to = hn::FirstN(d, static_cast<std::size_t>(std::min(ends[y] - x, lanes))),
-                 before = hn::FirstN(d, static_cast<std::size_t>(std::max(begins[y] - x, 0)));
-      nearer += gainPixels(d, hn::AndNot(before, to), depth_of(x, y, d), out + x);
-    }
+    gain.nearer += gainTile(pixels, x, covered, depths, group.stale[std::ptrdiff_t{group.columns} * row + x]);
   }
-  for (std::int32_t x = first / kWide; x * kWide < end; ++x) {
-    target.stale[x] = true;
-    ++tiles;
-  }
-  return static_cast<std::uint32_t>(nearer);
 }
 
-// Either of them.
-template <std::int32_t kMostLanes, typename DepthOf>
-HWY_INLINE WindingGain resolveRowOf(const CoveredRow& row, DepthOf&& depth_of) {
+// Either of them, in all rows of tiles.
+template <typename Depths, typename Source>
+HWY_INLINE WindingGain resolveRows(const GroupCover& group, const Source& source) {
   WindingGain gain;
-  gain.nearer = row.runs != nullptr ? resolveRunsOf<kMostLanes>(row, gain.tiles, depth_of)
-                                    : resolveTilesOf<kMostLanes>(row, gain.tiles, depth_of);
+  for (std::int32_t row = group.range.first_row; row <= group.range.last_row; ++row) {
+    const PixelRows pixels(group.target, row);
+    const Depths depths(source, row);
+    if (group.runs != nullptr) {
+      resolveRuns(group, row, pixels, depths, gain);
+    } else {
+      resolveTiles(group, row, pixels, depths, gain);
+    }
+  }
   return gain;
 }
 
-WindingGain resolveFarOf(const CoveredRow& row, const FarDepths& depths) {
-  return resolveRowOf<FarDepths::kWidth>(row, [&depths](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
-    constexpr float kMax = std::numeric_limits<float>::max();
-    const float depth = depths.least[depths.stride * static_cast<std::uint32_t>(y / FarDepths::kHeight) +
-                                     static_cast<std::uint32_t>(x / FarDepths::kWidth)];
-    return hn::Set(d, depth <= kMax ? depth : -kMax);
-  });
+WindingGain resolveFarOf(const GroupCover& group, const FarDepths& depths) {
+  return resolveRows<BlockDepths>(group, depths);
 }
 
-WindingGain resolvePlaneOf(const CoveredRow& row, const DepthBound& depth, std::int32_t first_row) {
-  return resolveRowOf<kWide>(row, [&depth, first_row](std::int32_t x, std::int32_t y, auto d) HWY_ATTR {
-    const float at_row = depth.along_y * static_cast<float>(first_row + y) + depth.at_origin;
-    const auto column = hn::Add(hn::Set(d, static_cast<float>(x)), hn::Iota(d, 0.0f));
-    const auto plane = hn::Add(hn::Mul(column, hn::Set(d, depth.along_x)), hn::Set(d, at_row));
-    return hn::Max(plane, hn::Set(d, depth.floor));
-  });
+WindingGain resolvePlaneOf(const GroupCover& group, const DepthBound& depth) {
+  return resolveRows<PlaneDepths>(group, depth);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -186,12 +251,12 @@ HWY_EXPORT(resolveFarOf);
 HWY_EXPORT(resolvePlaneOf);
 }  // namespace
 
-WindingGain resolveFar(const CoveredRow& row, const FarDepths& depths) {
-  return HWY_DYNAMIC_DISPATCH(resolveFarOf)(row, depths);
+WindingGain resolveFar(const GroupCover& group, const FarDepths& depths) {
+  return HWY_DYNAMIC_DISPATCH(resolveFarOf)(group, depths);
 }
 
-WindingGain resolvePlane(const CoveredRow& row, const DepthBound& depth, std::int32_t first_row) {
-  return HWY_DYNAMIC_DISPATCH(resolvePlaneOf)(row, depth, first_row);
+WindingGain resolvePlane(const GroupCover& group, const DepthBound& depth) {
+  return HWY_DYNAMIC_DISPATCH(resolvePlaneOf)(group, depth);
 }
 
 }  // namespace sightline::occlusion

@@ -15,35 +15,25 @@ namespace sightline::occlusion {
 namespace HWY_NAMESPACE {
 
 constexpr std::int32_t kWide = kTileWidth, kHigh = kTileHeight;
+constexpr std::int32_t kNever = 1 << 20;                        // a pixel beyond all buffers
 constexpr std::int32_t kMostSteps = 2 << WindingTile::kPlanes;  // no winding is known after more of them
 
-// Converts whole numbers from 0 to 2^22.
-HWY_INLINE NumbersV wholeOf(PlacesV v) {
-  constexpr float kWhole = 0x1p23f;  // the last digits of so large numbers are whole ones
-  const auto whole = hn::Set(kPlaces, kWhole);
-  return hn::BitCast(kNumbers, hn::Xor(hn::Add(v, whole), whole));
-}
-
-// The pixels of a tile from number `from` on, a whole number.
-HWY_INLINE BitsV bitsFrom(PlacesV from) {
-  const auto shift = hn::Min(hn::Max(from, hn::Zero(kPlaces)), hn::Set(kPlaces, kWide - 1.0f));
-  const auto bits = hn::Shl(hn::Set(kBits, ~0u), hn::BitCast(kBits, wholeOf(shift)));
-  return hn::IfThenZeroElse(hn::RebindMask(kBits, hn::Gt(from, shift)), bits);
-}
-
-// Adds 1 to the windings of some pixels of a tile, or, in rows of which all bits are set in `down`, takes 1
-// away. `lane` is the first of the rows.
-HWY_INLINE void stepBits(WindingTile& tile, std::int32_t lane, BitsV pixels, BitsV down) {
-  BitsV carry = pixels, last_carry = pixels, before = pixels;
+// Adds to the windings of some pixels of a tile: 1 in those that have a bit in `odd` and not in `down`, -1 in
+// those that have one in both, -2 in those that have one in `down` alone. `lane` is the first of the rows.
+HWY_INLINE void addBits(WindingTile& tile, std::int32_t lane, BitsV odd, BitsV down) {
+  // In two's complement the lowest bit of what is added is that of `odd`, and all others are that of `down`.
+  BitsV added = odd, carry = hn::Zero(kBits), before = carry, after = carry;
   for (std::int32_t plane = 0; plane < WindingTile::kPlanes; ++plane) {
     std::uint32_t* row = tile.planes[plane] + lane;
-    before = hn::Xor(hn::Load(kBits, row), down);
-    last_carry = carry;  // what is carried into this plane, the last of which has the sign
-    hn::Store(hn::Xor(hn::Load(kBits, row), carry), kBits, row);
-    carry = hn::And(before, carry);
+    before = hn::Load(kBits, row);
+    const auto differ = hn::Xor(before, added);
+    after = hn::Xor(differ, carry);
+    carry = hn::Or(hn::And(before, added), hn::And(carry, differ));
+    hn::Store(after, kBits, row);
+    added = down;
   }
-  // From the largest number to the smallest one, or back.
-  const auto wrapped = hn::AndNot(before, last_carry);
+  // Both had one sign, and the sum has the other one.
+  const auto wrapped = hn::AndNot(hn::Xor(before, down), hn::Xor(before, after));
   hn::Store(hn::Or(hn::Load(kBits, tile.unknown + lane), wrapped), kBits, tile.unknown + lane);
 }
 
@@ -55,28 +45,27 @@ class TileEdge {
       : target_(target), range_(range), edge_(edge), size_(std::abs(value)), rises_(edge.rises(value)) {}
 
   HWY_INLINE void draw(bool above_inner) const {
-    const EdgeRows rows(edge_, target_.end_x, rises_, above_inner);
-    rows.forTileRows(range_.first_row, range_.last_row, [&](std::int32_t row, double x) HWY_ATTR {
-      std::int32_t first = edge_.first_tile, last = edge_.last_tile;
-      if (first + 1 < last && edge_.kind == EdgeSlope::kSteep) {
-        narrow(x, first, last);
-      }
-      first = std::max(first, range_.first_column);
-      // An edge to the left of the group counts in its first tile.
-      last = std::max(std::min(last, range_.last_column), range_.first_column - 1);
-      if (first > range_.last_column) {
-        return;
-      }
-      TileExtent& extent = target_.extents[row];
-      extent.first = std::min(extent.first, first);
-      extent.last = std::max(extent.last, std::min(last + 1, range_.last_column));
-      WindingTile* tiles = target_.tiles + std::ptrdiff_t{target_.stride} * row;
-      rows.forRows(row, x,
-                   [&](std::int32_t lane, PlacesV from, PlacesV to, PlacesM touched, PlacesM crossed,
-                       PlacesV middle, PlacesV doubt) HWY_ATTR {
-                     drawRows(tiles, first, last, lane, from, to, touched, crossed, middle, doubt);
-                   });
-    });
+    const EdgeRows rows(edge_, target_.buffer, rises_, above_inner);
+    rows.forRows(range_.first_row, range_.last_row,
+                 [&](std::int32_t row, std::int32_t lane, PlacesV from, PlacesV to, PlacesM touched,
+                     PlacesM crossed, PlacesV middle, PlacesV doubt) HWY_ATTR {
+                   std::int32_t first = edge_.first_tile, last = edge_.last_tile;
+                   if (first + 1 < last && edge_.kind == EdgeSlope::kSteep) {
+                     const std::int32_t origin = edge_.first_row >> kTileHeightShift;
+                     narrow(edge_.x + (row - origin) * (kTileHeight * kGridStep * edge_.slope), first, last);
+                   }
+                   first = std::max(first, range_.first_column);
+                   // An edge to the left of the group counts in its first tile.
+                   last = std::max(std::min(last, range_.last_column), range_.first_column - 1);
+                   if (first > range_.last_column) {
+                     return;
+                   }
+                   TileExtent& extent = target_.extents[row];
+                   extent.first = std::min(extent.first, first);
+                   extent.last = std::max(extent.last, std::min(last + 1, range_.last_column));
+                   WindingTile* tiles = target_.tiles + std::ptrdiff_t{target_.stride} * row;
+                   drawRows(tiles, first, last, lane, from, to, touched, crossed, middle, doubt);
+                 });
   }
 
  private:
@@ -94,43 +83,40 @@ class TileEdge {
   HWY_INLINE void drawRows(WindingTile* tiles, std::int32_t first, std::int32_t last, std::int32_t lane,
                            PlacesV from_x, PlacesV to_x, PlacesM touched, PlacesM crossed, PlacesV middle,
                            PlacesV doubt) const {
-    const auto set = [](float v) HWY_ATTR { return hn::Set(kPlaces, v); };
-    const auto pixel = set(1.0f / kGridStep), half = set(0.5f), one = set(1.0f);
+    const auto pixel = hn::Set(kPlaces, 1.0f / kGridStep), half = hn::Set(kPlaces, 0.5f);
     // Pixels that the edge may touch, and those of them whose centres are too near to it.
-    const auto begin = hn::Floor(hn::Mul(from_x, pixel)), end = hn::Add(hn::Floor(hn::Mul(to_x, pixel)), one);
-    const auto doubt_begin = hn::Max(begin, hn::Ceil(hn::Sub(hn::Mul(hn::Sub(middle, doubt), pixel), half))),
-               doubt_end = hn::Min(
-                   end, hn::Add(hn::Floor(hn::Sub(hn::Mul(hn::Add(middle, doubt), pixel), half)), one));
-    const auto doubts = hn::And(touched, hn::Lt(doubt_begin, doubt_end));
-    const bool some_cross = !hn::AllFalse(kPlaces, crossed), some_doubt = !hn::AllFalse(kPlaces, doubts);
+    const auto low = hn::Floor(hn::Mul(from_x, pixel)),
+               high = hn::Add(hn::Floor(hn::Mul(to_x, pixel)), hn::Set(kPlaces, 1.0f));
+    const auto doubt_low = hn::Max(low, hn::Ceil(hn::Sub(hn::Mul(hn::Sub(middle, doubt), pixel), half))),
+               doubt_high =
+                   hn::Min(high, hn::Add(hn::Floor(hn::Sub(hn::Mul(hn::Add(middle, doubt), pixel), half)),
+                                         hn::Set(kPlaces, 1.0f)));
+    const auto begin = wholeOf(low), end = wholeOf(high), doubt_end = wholeOf(doubt_high);
+    const auto rows = hn::RebindMask(kNumbers, touched), crossing = hn::RebindMask(kNumbers, crossed);
+    const auto never = hn::Set(kNumbers, kNever);
+    const auto doubt_begin = hn::IfThenElse(rows, wholeOf(doubt_low), never);
     // Windings change from the pixel `from` on, up to `to`: behind the edge where it crosses the middle of a
-    // row, and else where centres are, or may be, on its inner side.
-    const auto never = set(0x1p20f);
-    const auto turn = rises_ ? end : begin;
-    const auto lost_begin = rises_ ? doubt_begin : begin, lost_end = rises_ ? end : doubt_end;
-    const auto from = hn::IfThenElse(touched, hn::IfThenElse(crossed, turn, lost_begin), never),
-               to = hn::IfThenElse(crossed, never, lost_end);
-    const auto all = hn::Set(kBits, ~0u);
-    const auto down = rises_ ? hn::Not(hn::VecFromMask(kBits, hn::RebindMask(kBits, crossed))) : all;
-    const auto between = [](PlacesV first_pixel, PlacesV end_pixel, PlacesV origin) HWY_ATTR {
-      return hn::AndNot(bitsFrom(hn::Sub(end_pixel, origin)), bitsFrom(hn::Sub(first_pixel, origin)));
-    };
-    for (std::int32_t n = std::min(size_, kMostSteps); n > 0; --n) {
-      for (std::int32_t x = first; x <= last; ++x) {
-        const auto origin = set(static_cast<float>(x * kWide));
-        stepBits(tiles[x], lane, between(from, to, origin), down);
-        if (some_doubt) {
-          const auto bits = between(doubt_begin, doubt_end, origin);
-          stepBits(tiles[x], lane, hn::IfThenElseZero(hn::RebindMask(kBits, doubts), bits), all);
-        }
+    // row, and else where centres are, or may be, on its inner side. Edges rise and fall in turn, so a branch
+    // would often be predicted wrong.
+    const auto rising = hn::Ne(hn::Set(kNumbers, rises_ ? 1 : 0), hn::Zero(kNumbers));
+    const auto from = hn::IfThenElse(
+                   rows, hn::IfThenElse(rising, hn::IfThenElse(crossing, end, doubt_begin), begin), never),
+               to = hn::IfThenElse(crossing, never, hn::IfThenElse(rising, end, doubt_end));
+    const auto rises_there = hn::RebindMask(kBits, hn::And(rising, crossing));
+    for (std::int32_t x = first; x <= last; ++x) {
+      const auto origin = hn::Set(kNumbers, x * kWide);
+      const auto changed = bitsBetween(hn::Sub(from, origin), hn::Sub(to, origin)),
+                 doubts = bitsBetween(hn::Sub(doubt_begin, origin), hn::Sub(doubt_end, origin));
+      // Where windings rise, what is in doubt lies before that; elsewhere it is part of what falls.
+      const auto down = hn::IfThenElse(rises_there, doubts, changed);
+      for (std::int32_t n = std::min(size_, kMostSteps); n > 0; --n) {
+        addBits(tiles[x], lane, hn::Xor(changed, doubts), down);
       }
     }
-    if (some_cross && last < range_.last_column) {
-      const hn::Rebind<std::int16_t, Numbers> d16;
-      std::int16_t* carry = tiles[last + 1].carry + lane;
-      const auto step =
-          hn::IfThenElseZero(hn::RebindMask(kNumbers, crossed), hn::Set(kNumbers, rises_ ? size_ : -size_));
-      hn::StoreU(hn::Add(hn::LoadU(d16, carry), hn::DemoteTo(d16, step)), d16, carry);
+    if (last < range_.last_column) {
+      std::int32_t* carry = tiles[last + 1].carry + lane;
+      const auto step = hn::IfThenElseZero(crossing, hn::Set(kNumbers, rises_ ? size_ : -size_));
+      hn::Store(hn::Add(hn::Load(kNumbers, carry), step), kNumbers, carry);
     }
   }
 

@@ -15,7 +15,7 @@ struct alignas(64) WindingTile {
   // Lower bounds of windings in two's complement, one bit of them after the other, the lowest one first.
   std::uint32_t planes[kPlanes][kTileHeight];
   std::uint32_t unknown[kTileHeight];  // a winding here went beyond what its bits can hold
-  std::int16_t carry[kTileHeight];     // what edges to the left of the tile add to all of a row
+  std::int32_t carry[kTileHeight];     // what edges to the left of the tile add to all of a row
 };
 
 // Which tiles of a row of them edges have changed; last < first: none.
@@ -33,7 +33,7 @@ struct WindingTiles {
   WindingTile* tiles = nullptr;   // all zero before a group is drawn
   TileExtent* extents = nullptr;  // by row of tiles
   std::int32_t stride = 0;        // tiles a row
-  double end_x = 0.0;             // right border of the buffer, 256ths of a pixel
+  EdgeBuffer buffer;
 };
 
 // Draws the boundary of a group into some tiles.

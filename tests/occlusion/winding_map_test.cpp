@@ -237,6 +237,123 @@ TEST(WindingMap, SumsUpEdgesOfAnyValueAsFarAsItCanHold) {
   }
 }
 
+TEST(WindingMap, HandsOnLargeSumsAndCoversNothingWhereTheyMightNotFit) {
+  for (const std::int32_t value : {16'000, 1 << 20, 1 << 27, 1 << 29}) {
+    SmallMap map(100, 24);
+    // The box beside it keeps the other one from being drawn in runs.
+    drawGroup(map.map(), std::array{Polygon{box(3.5, 1.5, 70.5, 20.5), value}, Polygon{box(80, 1, 90, 21)}},
+              {.floor = 1.0f});
+    for (std::uint32_t x = 0; x < 80; ++x) {
+      EXPECT_EQ(map.covered(x, 10), value < 1 << 29 && x >= 32 && x < 70) << value << ", pixel " << x;
+    }
+    // What was not drawn is not left behind.
+    map.draw(std::array{box(3.5, 1.5, 70.5, 20.5), box(80, 1, 90, 21)}, 1, 2.0f);
+    EXPECT_EQ(map.at(10, 10), 2.0f) << value;
+    EXPECT_EQ(map.at(72, 10), kNoDepth) << value;
+  }
+}
+
+// The least value of a bound in the pixels of a block, and whether the part may be in one of them.
+struct BlockBound {
+  bool touched = false;
+  double least = std::numeric_limits<double>::infinity();
+};
+BlockBound blockBound(const PartDepth& part, std::int32_t x0, std::int32_t y0) {
+  BlockBound bound;
+  const PixelRectangle& r = part.rectangle;
+  for (std::int32_t y = y0; y < y0 + FarDepths::kHeight; ++y) {
+    for (std::int32_t x = x0; x < x0 + FarDepths::kWidth; ++x) {
+      bound.touched = bound.touched || (x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1);
+      const DepthBound& depth = part.depth;
+      const double plane = double{depth.along_x} * x + double{depth.along_y} * y + double{depth.at_origin};
+      bound.least = std::min(bound.least, std::max(plane, double{depth.floor}));
+    }
+  }
+  return bound;
+}
+
+TEST(WindingMap, GivesPixelsTheFarthestDepthInTheirBlockAndCountsThoseThatComeNearer) {
+  std::mt19937 random(29);
+  const auto number = test::numbersFrom<float>(random);
+  for (int n = 0; n < 60; ++n) {
+    const auto width = static_cast<std::int32_t>(1 + random() % 40) * 8,
+               height = static_cast<std::int32_t>(1 + random() % 60);
+    const PixelRectangle all{0, 0, width, height};
+    std::array<std::vector<PartDepth>, 3> parts;
+    for (std::vector<PartDepth>& of_group : parts) {
+      for (std::size_t k = 1 + random() % 6; k > 0; --k) {
+        const auto x = static_cast<std::int32_t>(number(-20.0f, static_cast<float>(width))),
+                   y = static_cast<std::int32_t>(number(-20.0f, static_cast<float>(height)));
+        of_group.push_back({{x, y, x + static_cast<std::int32_t>(random() % 300),
+                             y + static_cast<std::int32_t>(random() % 60)},
+                            {number(-0.01f, 0.01f), number(-0.02f, 0.02f), number(1.0f, 3.0f), 0.5f}});
+      }
+    }
+    // The first and the last group are drawn in runs, the second is not: two of its edges begin at one
+    // height.
+    const double far = 4096.0, right = width + 9.0, top = height + 9.0;
+    const std::array polygons{box(-9.0, -9.0, right, top), box(-far, -9.0, 9.0 - far, top)};
+    std::vector<float> first;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+      hwy::SetSupportedTargetsForTest(target);
+      SmallMap map(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
+      std::vector<BoundaryEdge> edges;
+      for (const std::vector<GridPoint>& polygon : polygons) {
+        for (std::size_t i = 1; i < polygon.size(); ++i) {
+          const BoundaryEdge edge = prepareEdge(polygon[i - 1], polygon[i], map.map().buffer());
+          if (edge.matters) {
+            edges.push_back(edge);
+          }
+        }
+      }
+      const auto count = static_cast<std::uint32_t>(edges.size());
+      // The right edge of the first polygon lies beyond the map, so that one edge begins it and none ends it.
+      const std::array both{BoundaryChain{0, count, 1}};
+      const std::array one{BoundaryChain{0, 1, 1}};
+      std::vector<float> values;
+      for (std::size_t group = 0; group < parts.size(); ++group) {
+        std::vector<float> before;
+        for (std::int32_t i = 0; i < width * height; ++i) {
+          before.push_back(
+              map.at(static_cast<std::uint32_t>(i % width), static_cast<std::uint32_t>(i / width)));
+        }
+        const std::span<const BoundaryChain> boundary =
+            group == 1 ? std::span<const BoundaryChain>(both) : std::span<const BoundaryChain>(one);
+        std::array<WindingGain, 1> gains;
+        map.map().draw(std::array{WindingGroup{all, boundary, parts[group], false}}, edges, gains);
+        std::uint32_t nearer = 0;
+        values.clear();
+        for (std::int32_t y = 0; y < height; ++y) {
+          for (std::int32_t x = 0; x < width; ++x) {
+            const float old = before[static_cast<std::size_t>(y * width + x)],
+                        now = map.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+            values.push_back(now);
+            double expected = std::numeric_limits<double>::infinity();
+            bool some = false;
+            for (const PartDepth& part : parts[group]) {
+              const BlockBound bound =
+                  blockBound(part, x & ~(FarDepths::kWidth - 1), y & ~(FarDepths::kHeight - 1));
+              if (bound.touched) {
+                some = true;
+                expected = std::min(expected, bound.least);
+              }
+            }
+            const double nearest = some ? std::max(expected, double{old}) : double{old};
+            ASSERT_NEAR(now, nearest, 1e-5 * std::max(1.0, std::abs(nearest)))
+                << n << ", group " << group << ", pixel " << x << ", " << y << ", "
+                << hwy::TargetName(target);
+            nearer += now > old && now > old * 1.125f ? 1 : 0;
+          }
+        }
+        EXPECT_EQ(gains[0].nearer, nearer) << n << ", " << hwy::TargetName(target);
+      }
+      hwy::SetSupportedTargetsForTest(0);
+      first = first.empty() ? values : first;
+      ASSERT_EQ(values, first) << n << ", " << hwy::TargetName(target);
+    }
+  }
+}
+
 // A triangle or a convex quad of up to a thousand pixels.
 Polygon convexPolygon(std::mt19937& random, double width, double height) {
   const auto number = test::numbersFrom<double>(random);
