@@ -10,14 +10,18 @@ using hierarchy::WideNode;
 namespace {
 // Number of views for which a box is not tested again after it was found not hidden; up to 3 are added.
 constexpr std::uint8_t kMinRetestDelay = 6;
+// Children are tested together from so many on, or when there are no more.
+constexpr std::size_t kBatch = 256;
 }  // namespace
 
+// Tests children in batches, whichever nodes they are of: a vector has a box in each lane.
 class WideTraversal::Task {
  public:
   Task(WideTraversal& traversal, const DepthPyramid& buffer, const TraversalOptions& options, Found& found)
       : hierarchy_(traversal.hierarchy_),
         wide_(traversal.wide_),
         retest_delay_(traversal.retest_delay_),
+        seen_points_(traversal.seen_points_),
         in_set_(traversal.in_set_),
         child_marks_(traversal.child_marks_ ? traversal.child_marks_->marks()
                                             : std::span<const std::uint8_t>()),
@@ -25,25 +29,39 @@ class WideTraversal::Task {
         options_(options),
         found_(found) {}
 
-  // Tests the children of a node: appends the objects to keep to found.kept, and the nodes to visit to
-  // found.stack.
-  void visit(const Entry& entry);
+  // Visits these nodes. Appends the objects to keep to found.kept, and the nodes to visit to found.stack.
+  void visit(std::span<const Entry> entries);
+  // The same for all nodes of found.stack, and those below them.
+  void visitAll();
 
  private:
-  // The functions below are about the node's children `begin` (inclusive) to `end` (exclusive).
-  // Counts those that are in the set.
-  std::uint32_t countInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end) const;
-  // Writes their answers to found.answers: against the occluders, or with view_only against the view's volume
-  // alone. Children that are not in the set count as hidden.
-  void test(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
-  void testInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only);
-  void testBuffer(std::span<const Box> boxes, std::span<const std::uint8_t> retest_delay,
-                  std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers);
+  // Lists the children of a node that are to be tested.
+  void list(const Entry& entry);
+  // The same for the node's children `begin` (inclusive) to `end` (exclusive). Returns how many.
+  std::uint32_t list(const WideNode& node, std::uint32_t begin, std::uint32_t end,
+                     std::vector<Child>& children) const;
+  // Test all children that are listed, and keep what is not hidden.
+  void testNodes();
+  void testObjects();
+
+  // Sets found.points, and found.seen where they are seen.
+  void askPoints(std::span<const Child> children);
+  // Sets found.answers against the occluders, and where the children were seen to found.points, which has
+  // their points. plain_from and not_hidden: see BoxHints.
+  void testBuffer(std::span<const Child> children, std::size_t plain_from,
+                  std::span<const std::uint8_t> not_hidden);
+  // Sets found.answers against the view's volume alone.
+  void testInView(std::span<const Child> children);
+  // Sets found.boxes, and makes room for their answers.
+  void gatherBoxes(std::span<const Child> children);
+  void updateDelay(const Child& child, bool hidden);
+  void keepObject(const Child& child);
   void keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only);
 
   const Hierarchy& hierarchy_;
   const hierarchy::WideHierarchy& wide_;
   std::span<std::uint8_t> retest_delay_;
+  std::span<Vec3f> seen_points_;
   ObjectSet in_set_;
   std::span<const std::uint8_t> child_marks_;  // empty if all objects are in the set
   const DepthPyramid& buffer_;
@@ -60,34 +78,38 @@ void WideTraversal::run(const DepthPyramid& buffer, const TraversalOptions& opti
   }
   // Descend level by level until there are enough entries to distribute to tasks.
   Found& first = found_[0];
-  std::size_t next = 0;
-  while (next < entries_.size() && entries_.size() - next < kMaxRanges - kWideChildren) {
-    Task(*this, buffer, options, first).visit(entries_[next++]);
-    entries_.insert(entries_.end(), first.stack.begin(), first.stack.end());
+  while (!entries_.empty() && entries_.size() < kMaxRanges) {
+    Task(*this, buffer, options, first).visit(entries_);
+    entries_.swap(first.stack);
     first.stack.clear();
   }
   take(first, stats);
-  entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(next));
-  const auto count = static_cast<std::uint32_t>(entries_.size());
+  const std::size_t count = entries_.size();
+  const auto tasks = static_cast<std::uint32_t>(std::min<std::size_t>(count, kMaxRanges));
   // ParallelFor's function captures one reference only: larger captures would be allocated on the heap.
   const auto traverseRange = [&](std::uint32_t begin, std::uint32_t end) {
     Found& found = found_[begin];
-    Task task(*this, buffer, options, found);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      found.stack.push_back(entries_[i]);
-      while (!found.stack.empty()) {
-        const Entry entry = found.stack.back();
-        found.stack.pop_back();
-        task.visit(entry);
-      }
-    }
+    const auto entryOf = [&](std::uint32_t task) {
+      return entries_.begin() + static_cast<std::ptrdiff_t>(count * task / tasks);
+    };
+    found.stack.assign(entryOf(begin), entryOf(end));
+    Task(*this, buffer, options, found).visitAll();
   };
-  parallel_for(count,
+  parallel_for(tasks,
                [&traverseRange](std::uint32_t begin, std::uint32_t end) { traverseRange(begin, end); });
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < tasks; ++i) {
     take(found_[i], stats);
   }
   visible_.drainInto(out);
+}
+
+std::vector<Vec3f> WideTraversal::centresOf(std::span<const Box> boxes) {
+  std::vector<Vec3f> centres;
+  centres.reserve(boxes.size());
+  for (const Box& box : boxes) {
+    centres.push_back(Vec3f(center(box)));
+  }
+  return centres;
 }
 
 TreeMarks WideTraversal::marksOfChildren() const {
@@ -133,7 +155,30 @@ void WideTraversal::take(Found& found, CullStats& stats) {
   found.nodes_visited = found.nodes_tested = found.objects_tested = 0;
 }
 
-void WideTraversal::Task::visit(const Entry& entry) {
+void WideTraversal::Task::visit(std::span<const Entry> entries) {
+  for (const Entry& entry : entries) {
+    list(entry);
+  }
+  testNodes();
+  testObjects();
+}
+
+void WideTraversal::Task::visitAll() {
+  while (!found_.stack.empty()) {
+    while (!found_.stack.empty() && found_.nodes.size() + found_.nodes_in_view.size() < kBatch) {
+      const Entry entry = found_.stack.back();
+      found_.stack.pop_back();
+      list(entry);
+    }
+    testNodes();
+    if (found_.objects.size() + found_.objects_in_view.size() >= kBatch) {
+      testObjects();
+    }
+  }
+  testObjects();
+}
+
+void WideTraversal::Task::list(const Entry& entry) {
   const WideNode& node = wide_.nodes[entry.node];
   const std::uint32_t children = node.child_end - node.first_child;
   // Child nodes are sorted by descending cost, so those to be tested are the first ones.
@@ -142,102 +187,138 @@ void WideTraversal::Task::visit(const Entry& entry) {
     --tested;
   }
   const bool test_objects = !entry.surely_visible && options_.test_objects;
-  found_.answers.resize(std::max<std::size_t>(found_.answers.size(), children));
-  if (tested == node.node_count && test_objects) {
-    test(node, 0, children, false);
+  const std::uint32_t nodes_tested = list(node, 0, tested, found_.nodes);
+  found_.nodes_tested += nodes_tested;
+  found_.nodes_visited += nodes_tested + list(node, tested, node.node_count, found_.nodes_in_view);
+  if (test_objects) {
+    found_.objects_tested += list(node, node.node_count, children, found_.objects);
   } else {
-    test(node, 0, tested, false);
-    test(node, tested, node.node_count, true);
-    test(node, node.node_count, children, !test_objects);
-  }
-  found_.nodes_visited += countInSet(node, 0, node.node_count);
-  found_.nodes_tested += countInSet(node, 0, tested);
-  found_.objects_tested += test_objects ? countInSet(node, node.node_count, children) : 0;
-
-  for (std::uint32_t i = 0; i < node.node_count; ++i) {
-    keepNode(node.first_node + i, found_.answers[i], i >= tested);
-  }
-  for (std::uint32_t i = node.node_count; i < children; ++i) {
-    if (found_.answers[i].visibility != Visibility::kHidden) {
-      found_.kept.push_back(wide_.object[node.first_child + i]);
-    }
+    list(node, node.node_count, children, found_.objects_in_view);
   }
 }
 
-void WideTraversal::Task::test(const WideNode& node, std::uint32_t begin, std::uint32_t end, bool view_only) {
-  if (begin == end) {
-    return;
-  }
-  const std::span<BoxAnswer> answers = std::span(found_.answers).subspan(begin, end - begin);
-  const std::span<std::uint8_t> retest_delay = retest_delay_.subspan(node.first_child + begin, end - begin);
-  if (countInSet(node, begin, end) == end - begin) {
-    const std::span<const Box> boxes = std::span(wide_.boxes).subspan(node.first_child + begin, end - begin);
-    testBuffer(boxes, retest_delay, node.node_count > begin ? node.node_count - begin : 0, view_only,
-               answers);
-  } else {
-    testInSet(node, begin, end, view_only);
-  }
-  if (view_only) {
-    return;
-  }
-  for (std::size_t i = 0; options_.temporal_coherence && i < retest_delay.size(); ++i) {
-    const bool hidden = answers[i].visibility == Visibility::kHidden;
-    // The delays differ so that children that come into view together are not all tested again in one view.
-    std::uint8_t& delay = retest_delay[i];
-    delay = static_cast<std::uint8_t>(hidden ? 0u : delay != 0 ? delay - 1u : kMinRetestDelay + (i & 3));
-  }
-}
-
-void WideTraversal::Task::testBuffer(std::span<const Box> boxes, std::span<const std::uint8_t> retest_delay,
-                                     std::size_t plain_from, bool view_only, std::span<BoxAnswer> answers) {
-  if (view_only) {
-    buffer_.classifyInView(boxes, answers);
-    return;
-  }
-  BoxHints hints;
-  if (options_.temporal_coherence) {
-    hints.seen = retest_delay;
-  }
-  hints.plain_from = plain_from;
-  buffer_.classify(boxes, answers, hints);
-}
-
-std::uint32_t WideTraversal::Task::countInSet(const WideNode& node, std::uint32_t begin,
-                                              std::uint32_t end) const {
-  if (in_set_.everything()) {
-    return end - begin;
-  }
-  std::uint32_t count = 0;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    count += child_marks_[node.first_child + i] != 0 ? 1 : 0;
-  }
-  return count;
-}
-
-void WideTraversal::Task::testInSet(const WideNode& node, std::uint32_t begin, std::uint32_t end,
-                                    bool view_only) {
-  found_.set_boxes.clear();
-  found_.set_retest_delay.clear();
+std::uint32_t WideTraversal::Task::list(const WideNode& node, std::uint32_t begin, std::uint32_t end,
+                                        std::vector<Child>& children) const {
+  const std::size_t before = children.size();
   for (std::uint32_t i = begin; i < end; ++i) {
     const std::uint32_t child = node.first_child + i;
-    if (child_marks_[child] != 0) {
-      found_.set_boxes.push_back(wide_.boxes[child]);
-      found_.set_retest_delay.push_back(retest_delay_[child]);
+    if (in_set_.everything() || child_marks_[child] != 0) {
+      children.push_back({child, i < node.node_count ? node.first_node + i : wide_.object[child].value, i});
     }
   }
-  const std::size_t count = found_.set_boxes.size();
-  found_.set_answers.resize(std::max(found_.set_answers.size(), count));
-  const std::span<BoxAnswer> answers = std::span(found_.set_answers).first(count);
-  if (count > 0) {
-    const std::uint32_t nodes_end = std::clamp<std::uint32_t>(node.node_count, begin, end);
-    testBuffer(found_.set_boxes, found_.set_retest_delay, countInSet(node, begin, nodes_end), view_only,
-               answers);
+  return static_cast<std::uint32_t>(children.size() - before);
+}
+
+void WideTraversal::Task::testNodes() {
+  if (!found_.nodes.empty()) {
+    askPoints(found_.nodes);
+    testBuffer(found_.nodes, found_.nodes.size(), std::span(found_.seen).first(found_.nodes.size()));
+    for (std::size_t i = 0; i < found_.nodes.size(); ++i) {
+      const BoxAnswer& answer = found_.answers[i];
+      updateDelay(found_.nodes[i], answer.visibility == Visibility::kHidden);
+      keepNode(found_.nodes[i].number, answer, false);
+    }
+    found_.nodes.clear();
   }
-  std::size_t next = 0;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const bool in_set = child_marks_[node.first_child + i] != 0;
-    found_.answers[i] = in_set ? answers[next++] : BoxAnswer{.visibility = Visibility::kHidden};
+  if (!found_.nodes_in_view.empty()) {
+    testInView(found_.nodes_in_view);
+    for (std::size_t i = 0; i < found_.nodes_in_view.size(); ++i) {
+      keepNode(found_.nodes_in_view[i].number, found_.answers[i], true);
+    }
+    found_.nodes_in_view.clear();
   }
+}
+
+void WideTraversal::Task::testObjects() {
+  std::vector<Child>& objects = found_.objects;
+  if (!objects.empty()) {
+    askPoints(objects);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (found_.seen[i] != 0) {
+        keepObject(objects[i]);
+        updateDelay(objects[i], false);
+      } else {
+        objects[left] = objects[i];
+        found_.points[left++] = found_.points[i];
+      }
+    }
+    objects.resize(left);
+    testBuffer(objects, 0, {});
+    for (std::size_t i = 0; i < left; ++i) {
+      const bool hidden = found_.answers[i].visibility == Visibility::kHidden;
+      updateDelay(objects[i], hidden);
+      if (!hidden) {
+        keepObject(objects[i]);
+      }
+    }
+    objects.clear();
+  }
+  if (!found_.objects_in_view.empty()) {
+    testInView(found_.objects_in_view);
+    for (std::size_t i = 0; i < found_.objects_in_view.size(); ++i) {
+      if (found_.answers[i].visibility != Visibility::kHidden) {
+        keepObject(found_.objects_in_view[i]);
+      }
+    }
+    found_.objects_in_view.clear();
+  }
+}
+
+void WideTraversal::Task::askPoints(std::span<const Child> children) {
+  found_.points.clear();
+  for (const Child& child : children) {
+    found_.points.push_back(seen_points_[child.index]);
+  }
+  found_.seen.resize(children.size());
+  buffer_.seesPoints(found_.points, found_.seen);
+}
+
+void WideTraversal::Task::testBuffer(std::span<const Child> children, std::size_t plain_from,
+                                     std::span<const std::uint8_t> not_hidden) {
+  gatherBoxes(children);
+  BoxHints hints;
+  if (options_.temporal_coherence) {
+    found_.retest_delay.clear();
+    for (const Child& child : children) {
+      found_.retest_delay.push_back(retest_delay_[child.index]);
+    }
+    hints.seen = found_.retest_delay;
+  }
+  hints.plain_from = plain_from;
+  hints.not_hidden = not_hidden;
+  hints.seen_points = std::span(found_.points).first(children.size());
+  buffer_.classify(found_.boxes, found_.answers, hints);
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    seen_points_[children[i].index] = found_.points[i];
+  }
+}
+
+void WideTraversal::Task::testInView(std::span<const Child> children) {
+  gatherBoxes(children);
+  buffer_.classifyInView(found_.boxes, found_.answers);
+}
+
+void WideTraversal::Task::gatherBoxes(std::span<const Child> children) {
+  found_.boxes.clear();
+  for (const Child& child : children) {
+    found_.boxes.push_back(wide_.boxes[child.index]);
+  }
+  found_.answers.resize(children.size());
+}
+
+void WideTraversal::Task::updateDelay(const Child& child, bool hidden) {
+  if (options_.temporal_coherence) {
+    // The delays differ so that children that come into view together are not all tested again in one view.
+    std::uint8_t& delay = retest_delay_[child.index];
+    delay = static_cast<std::uint8_t>(hidden       ? 0u
+                                      : delay != 0 ? delay - 1u
+                                                   : kMinRetestDelay + (child.place & 3));
+  }
+}
+
+void WideTraversal::Task::keepObject(const Child& child) {
+  found_.kept.push_back(ObjectId(child.number));
 }
 
 void WideTraversal::Task::keepNode(std::uint32_t node, const BoxAnswer& answer, bool view_only) {

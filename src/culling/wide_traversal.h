@@ -27,6 +27,7 @@ class WideTraversal {
         object_count_(object_bounds.size()),
         visible_(object_bounds.size()),
         retest_delay_(wide_.boxes.size(), 0),
+        seen_points_(centresOf(wide_.boxes)),
         found_(kMaxRanges) {}
 
   // Appends the objects that may be visible to out, in ascending order, and adds to the counts of stats. With
@@ -39,7 +40,7 @@ class WideTraversal {
   // whenever it changes.
   void restrictTo(const ObjectSet& objects);
 
-  // Drops the knowledge of earlier views; call this when the camera jumps.
+  // Drops the knowledge of earlier views that the answers depend on; call this when the camera jumps.
   void forget() { std::fill(retest_delay_.begin(), retest_delay_.end(), std::uint8_t{0}); }
 
  private:
@@ -52,19 +53,28 @@ class WideTraversal {
 
   // Traverses a part of the hierarchy; several may work at the same time.
   class Task;
+  // A child of a node, to be tested.
+  struct Child {
+    std::uint32_t index;   // in WideHierarchy::boxes
+    std::uint32_t number;  // of its node, or of its object
+    std::uint32_t place;   // among the children of its node
+  };
   // Scratch and results of one task.
   struct Found {
-    std::vector<Entry> stack;        // nodes to be visited
-    std::vector<BoxAnswer> answers;  // by child of the current node
-    // The children of the current node that are in the set, used if some are not: their boxes, the views
-    // before they are tested again, and their answers.
-    std::vector<Box> set_boxes;
-    std::vector<std::uint8_t> set_retest_delay;
-    std::vector<BoxAnswer> set_answers;
+    std::vector<Entry> stack;  // nodes to be visited
+    // Children of the nodes visited so far, to be tested together: against the occluders, or against the view's
+    // volume alone.
+    std::vector<Child> nodes, objects, nodes_in_view, objects_in_view;
+    // Of the children that are tested in one call, one value each.
+    std::vector<Box> boxes;
+    std::vector<Vec3f> points;  // of seen_points_
+    std::vector<std::uint8_t> seen, retest_delay;
+    std::vector<BoxAnswer> answers;
     std::vector<ObjectId> kept;
     std::uint32_t nodes_visited = 0, nodes_tested = 0, objects_tested = 0;
   };
 
+  static std::vector<Vec3f> centresOf(std::span<const Box> boxes);
   // Adds the results of a task to those of the view, and clears them.
   void take(Found& found, CullStats& stats);
   TreeMarks marksOfChildren() const;
@@ -74,11 +84,14 @@ class WideTraversal {
   std::size_t object_count_;
   ObjectBits visible_;
   std::vector<std::uint8_t> retest_delay_;  // by child: views before it is tested for occlusion again
+  // By child: a point of its box at which it was last seen, first its centre. Where that is still seen, the
+  // child is not hidden, and no more of it is looked at; the answers do not depend on it.
+  std::vector<Vec3f> seen_points_;
   ObjectSet in_set_;
   // By child: an object below it is in the set. Empty until restrictTo() gets a set without some object.
   std::optional<TreeMarks> child_marks_;
   std::vector<Entry> entries_;  // the nodes at which the tasks start
-  std::vector<Found> found_;    // by the first entry of a task
+  std::vector<Found> found_;    // by task, the first entry of its range
 };
 
 }  // namespace sightline::culling

@@ -4,8 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "src/occlusion/box_outline.h"
+#include "src/occlusion/box_point.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/occlusion/box_depth_test.cpp"
@@ -20,9 +22,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes = hn::CappedTag<float, kBlock>;
 
+// The set bit of a number other than 0 that has as many of its bits before it as after it.
+HWY_INLINE std::uint32_t middleBit(std::uint32_t bits) {
+  for (int before = (std::popcount(bits) - 1) / 2; before > 0; --before) {
+    bits &= bits - 1;
+  }
+  return static_cast<std::uint32_t>(std::countr_zero(bits));
+}
+
 // The first and last cells of a range of a level, at most eight along each axis.
 struct CellRange {
   std::uint32_t x0, y0, x1, y1;
+};
+
+struct Cell {
+  std::uint32_t level, x, y;
 };
 
 HWY_INLINE CellRange cellsOf(const PixelBox& image, std::uint32_t level) {
@@ -59,6 +73,29 @@ HWY_INLINE std::uint32_t bitsOf(hn::Mask<Lanes> mask, std::size_t lane) {
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Lanes(), mask, bits);
   return static_cast<std::uint32_t>(bits[0]) << lane;
+}
+
+// Returns a pixel with the least reciprocal depth of the cell.
+BufferPixel farthestPixel(std::span<const DepthLevel> levels, Cell cell) {
+  const Lanes d;
+  while (cell.level > 0) {
+    const float least = levels[cell.level].min[std::size_t{cell.y} * levels[cell.level].stride + cell.x];
+    const DepthLevel& below = levels[--cell.level];
+    const CellRange range{cell.x * kBlock, cell.y * kBlock,
+                          std::min(cell.x * kBlock + kBlock, below.width) - 1,
+                          std::min(cell.y * kBlock + kBlock, below.height) - 1};
+    const std::uint32_t from = readFrom(below, range);
+    std::uint32_t found = 0;
+    for (cell.y = range.y0; found == 0 && cell.y <= range.y1; ++cell.y) {
+      const float* row = below.min + std::size_t{cell.y} * below.stride + from;
+      forLanes(range, from, [&](std::size_t lane, auto in_range, auto) HWY_ATTR {
+        found |= bitsOf(hn::And(in_range, hn::Eq(hn::LoadU(d, row + lane), hn::Set(d, least))), lane);
+      });
+    }
+    cell.y -= 1;
+    cell.x = found != 0 ? from + middleBit(found) : range.x0;
+  }
+  return {static_cast<std::uint16_t>(cell.x), static_cast<std::uint16_t>(cell.y)};
 }
 
 // Whether the reciprocal depth of every cell is greater than `than`.
@@ -108,6 +145,8 @@ struct Refinement {
   const BoxOutline& outline;  // its functions are of pixels from (x0, y0)
   float x0, y0;
   std::uint32_t rows_left = ~0u;  // of eight cells; then what is left counts as open
+  // Set by anyOpen() where it finds one: a cell in whose farthest pixel the box is not surely hidden.
+  std::optional<Cell> open;
 
   Refinement(std::span<const DepthLevel> l, const PixelBox& i, const BoxOutline& o)
       : levels(l), image(i), outline(o), x0(i.x0), y0(i.y0) {}
@@ -115,7 +154,7 @@ struct Refinement {
   // The result for eight cells in a row; bit i is for the cell `from` + i.
   struct Row {
     std::uint32_t open = 0;    // cells where the box is not surely hidden
-    bool surely_open = false;  // in some pixel of these cells the box is surely not hidden
+    std::uint32_t surely = 0;  // among them: in some pixel of the cell the box is surely not hidden
   };
 
   HWY_INLINE Row ask(std::uint32_t level, const CellRange& range, std::uint32_t from, std::uint32_t y) const {
@@ -152,7 +191,7 @@ struct Refinement {
             hn::And(surely, hn::Ge(value, hn::Set(d, (std::abs(f.along_x) + std::abs(f.along_y)) * size)));
       }
       row.open |= bitsOf(intersecting, lane);
-      row.surely_open = row.surely_open || !hn::AllFalse(d, hn::And(intersecting, surely));
+      row.surely |= bitsOf(hn::And(intersecting, surely), lane);
     });
     return row;
   }
@@ -173,7 +212,9 @@ struct Refinement {
         return true;
       }
       Row row = ask(level, range, from, y);
-      if (row.surely_open || (level == 0 && row.open != 0)) {
+      const std::uint32_t settled = level == 0 ? row.open : row.surely;
+      if (settled != 0) {
+        open = {level, from + middleBit(settled), y};
         return true;
       }
       for (; row.open != 0; row.open &= row.open - 1) {
@@ -259,9 +300,21 @@ bool hasOutline(const PixelView& view, const Box& box) {
   return view.sane() && box.wellFormed() && maxComponent(farthestFrom(view.eye, box)) < kLargest;
 }
 
+// Sets *seen_point, unless it is null, to a point of the box in the farthest pixel of the cell, if there are
+// both.
+void setPoint(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+              const std::optional<Cell>& open, Vec3f* seen_point) {
+  if (open && seen_point != nullptr) {
+    pointInPixel(view, box, farthestPixel(levels, *open), *seen_point);
+  }
+}
+
 // Whether the buffer hides all of a box that reaches the near plane. Such a box has no rectangle, but its
 // outline and its faces hold for those points of it that are before the eye.
-bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box) {
+//
+// Where it does not, sets *seen_point as setPoint() does.
+bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
+                    Vec3f* seen_point) {
   constexpr std::uint32_t kMaxRows = 1 << 13;  // of eight cells; a box that takes more of them is kept
   if (!hasOutline(view, box)) {
     return false;
@@ -283,49 +336,75 @@ bool hidesUnbounded(std::span<const DepthLevel> levels, const PixelView& view, c
   // Without faces the eye is in the box or on it, or nothing is known of them.
   Refinement refinement(levels, image, outline);
   refinement.rows_left = kMaxRows;
-  return outline.face_count > 0 && !refinement.anyOpen(level, all);
+  if (outline.face_count == 0) {
+    return false;
+  }
+  const bool open = refinement.anyOpen(level, all);
+  setPoint(levels, view, box, refinement.open, seen_point);
+  return !open;
 }
 
+// What is known of a box before it is tested, and what is asked.
+struct Question {
+  bool plain = false;           // BoxHints::plain_from
+  bool not_hidden = false;      // BoxHints::not_hidden
+  Vec3f* seen_point = nullptr;  // BoxHints::seen_points
+};
+
 Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
-                   const PixelBox& image, bool plain) {
+                   const PixelBox& image, const Question& question) {
   if (image.place == BoxPlace::kOutside) {
     return Visibility::kHidden;
   }
-  if (levels.empty()) {
+  if (levels.empty() || (question.plain && question.not_hidden)) {
     return Visibility::kPartial;
   }
   if (image.place == BoxPlace::kUnbounded) {
-    return hidesUnbounded(levels, view, box) ? Visibility::kHidden : Visibility::kPartial;
+    return !question.not_hidden && hidesUnbounded(levels, view, box, question.seen_point)
+               ? Visibility::kHidden
+               : Visibility::kPartial;
   }
   std::uint32_t level = 0;
   const CellRange range = finestRange(image, level);
-  if (allNearer(levels[level], range, image.nearest)) {
+  if (!question.not_hidden && allNearer(levels[level], range, image.nearest)) {
     return Visibility::kHidden;
   }
-  if (!plain && !anyNearer(levels, level, image, range, image.farthest)) {
+  if (!question.plain && !anyNearer(levels, level, image, range, image.farthest)) {
     return Visibility::kVisible;
   }
+  if (question.not_hidden) {
+    return Visibility::kPartial;
+  }
   if (seenAtCentre(levels[0], view, box, image)) {
+    if (question.seen_point != nullptr) {
+      *question.seen_point = Vec3f(center(box));
+    }
     return Visibility::kPartial;
   }
   const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));
   Refinement refinement(levels, image, outline);
   if (refinement.anyOpen(level, range)) {
+    setPoint(levels, view, box, refinement.open, question.seen_point);
     return Visibility::kPartial;
   }
   // A box of which the buffer hides nothing is kVisible, also for `plain`.
-  return plain && !anyNearer(levels, level, image, range, image.farthest) ? Visibility::kVisible
-                                                                          : Visibility::kHidden;
+  return question.plain && !anyNearer(levels, level, image, range, image.farthest) ? Visibility::kVisible
+                                                                                   : Visibility::kHidden;
 }
 
 void testAll(std::span<const DepthLevel> levels, const PixelView& view, std::span<const Box> boxes,
              std::span<const PixelBox> images, std::span<BoxAnswer> answers, const BoxHints& hints) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const PixelBox& image = images[i];
-    const bool skipped = !hints.seen.empty() && hints.seen[i] != 0;
-    answers[i] = image.answer(!skipped ? testOne(levels, view, boxes[i], image, i >= hints.plain_from)
-                              : image.place == BoxPlace::kOutside ? Visibility::kHidden
-                                                                  : Visibility::kPartial);
+    if (!hints.seen.empty() && hints.seen[i] != 0) {
+      answers[i] =
+          image.answer(image.place == BoxPlace::kOutside ? Visibility::kHidden : Visibility::kPartial);
+      continue;
+    }
+    const Question question{.plain = i >= hints.plain_from,
+                            .not_hidden = !hints.not_hidden.empty() && hints.not_hidden[i] != 0,
+                            .seen_point = hints.seen_points.empty() ? nullptr : &hints.seen_points[i]};
+    answers[i] = image.answer(testOne(levels, view, boxes[i], image, question));
   }
 }
 

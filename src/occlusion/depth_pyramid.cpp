@@ -33,7 +33,7 @@ struct DepthPyramid::Impl {
 namespace {
 
 // Boxes that are projected in one call.
-constexpr std::size_t kGroup = 16;
+constexpr std::size_t kGroup = 64;
 
 template <typename Use>
 void forGroups(std::size_t count, Use&& use) {
@@ -114,6 +114,25 @@ Visibility DepthPyramid::classify(const Box& box) const {
   BoxAnswer answer;
   classify({&box, 1}, {&answer, 1});
   return answer.visibility;
+}
+
+void DepthPyramid::seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const {
+  const std::span<const DepthLevel> levels = impl_->usableLevels();
+  if (levels.empty()) {
+    std::fill_n(seen.begin(), points.size(), std::uint8_t{0});
+    return;
+  }
+  const DepthLevel& buffer = levels.front();
+  PointImage images[kGroup];
+  forGroups(points.size(), [&](std::size_t first, std::size_t count) {
+    projectPoints(impl_->projection, points.subspan(first, count), {images, count});
+    for (std::size_t i = 0; i < count; ++i) {
+      const PointImage& image = images[i];
+      const bool known = image.x != PointImage::kUnknown;
+      const std::size_t at = known ? static_cast<std::size_t>(image.y) * buffer.stride + image.x : 0;
+      seen[first + i] = known && buffer.min[at] <= image.farthest ? 1 : 0;
+    }
+  });
 }
 
 void DepthPyramid::classifyInView(std::span<const Box> boxes, std::span<BoxAnswer> answers) const {

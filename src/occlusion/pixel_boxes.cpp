@@ -1,4 +1,4 @@
-// Images of boxes, in single precision with bounds for all rounding.
+// Images of boxes and points, in single precision with bounds for all rounding.
 //
 // Let u = 2^-24, and S the sum of the largest magnitudes of a box's coordinates relative to the eye.
 //
@@ -11,12 +11,13 @@
 //   X = middle + scale q                off by another 8 u (|middle| + scale |q|)
 //
 // The bound of q grows more slowly than q itself, so that the extremes over the corners give those of the
-// bounds too.
+// bounds too. A point is a box with one corner.
 
 #include "src/occlusion/pixel_boxes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 // Vectors are members here, which those without a fixed size cannot be. Machines with these instruction sets
@@ -228,36 +229,131 @@ HWY_INLINE void project(Lanes d, const BoxProjection& p, const float* floats, Im
   hn::Store(hn::IfThenElseZero(on_buffer, farthest), d, out.farthest);
 }
 
-void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<PixelBox> images) {
-  static_assert(sizeof(Box) == 6 * sizeof(float));
-  const Lanes d;
+HWY_INLINE void store(const Images& from, std::size_t count, PixelBox* to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    PixelBox& image = to[i];
+    image.place = static_cast<BoxPlace>(from.place[i] & 0xff);
+    image.whole = from.place[i] >= kWholeBit;
+    image.x0 = static_cast<std::uint16_t>(from.x0[i]);
+    image.y0 = static_cast<std::uint16_t>(from.y0[i]);
+    image.x1 = static_cast<std::uint16_t>(from.x1[i]);
+    image.y1 = static_cast<std::uint16_t>(from.y1[i]);
+    image.nearest = from.nearest[i];
+    image.farthest = from.farthest[i];
+  }
+}
+
+// Calls use(floats of as many items as there are lanes, the first item, the number of items) for all items of
+// kFloats floats each. Where they are fewer than the lanes, those that are left are zeros; else the last call
+// repeats some items.
+template <std::size_t kFloats, typename Use>
+HWY_INLINE void forGroups(Lanes d, const float* floats, std::size_t count, Use&& use) {
   const std::size_t lanes = hn::Lanes(d);
-  Images out;
-  Box last[16];
-  for (std::size_t first = 0; first < boxes.size(); first += lanes) {
-    const std::size_t count = std::min(lanes, boxes.size() - first);
-    const Box* from = boxes.data() + first;
-    if (count < lanes) {
-      std::copy_n(from, count, last);
-      from = last;
-    }
-    if (p.orthographic) {
-      project<true>(d, p, &from->min.x, out);
-    } else {
-      project<false>(d, p, &from->min.x, out);
+  if (count < lanes) {
+    HWY_ALIGN float few[kFloats * 16];
+    for (std::size_t i = 0; i < kFloats; ++i) {
+      hn::Store(hn::Zero(d), d, few + i * lanes);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      PixelBox& image = images[first + i];
-      image.place = static_cast<BoxPlace>(out.place[i] & 0xff);
-      image.whole = out.place[i] >= kWholeBit;
-      image.x0 = static_cast<std::uint16_t>(out.x0[i]);
-      image.y0 = static_cast<std::uint16_t>(out.y0[i]);
-      image.x1 = static_cast<std::uint16_t>(out.x1[i]);
-      image.y1 = static_cast<std::uint16_t>(out.y1[i]);
-      image.nearest = out.nearest[i];
-      image.farthest = out.farthest[i];
+      std::memcpy(few + i * kFloats, floats + i * kFloats, kFloats * sizeof(float));
     }
+    use(few, std::size_t{0}, count);
+    return;
   }
+  for (std::size_t first = 0; first < count; first += lanes) {
+    const std::size_t from = std::min(first, count - lanes);
+    use(floats + from * kFloats, from, lanes);
+  }
+}
+
+void projectAll(const BoxProjection& p, std::span<const Box> boxes, std::span<PixelBox> images) {
+  static_assert(sizeof(Box) == 6 * sizeof(float));
+  if (boxes.empty()) {
+    return;
+  }
+  const Lanes d;
+  Images out;
+  forGroups<6>(d, &boxes.front().min.x, boxes.size(),
+               [&](const float* floats, std::size_t first, std::size_t count) HWY_ATTR {
+                 if (p.orthographic) {
+                   project<true>(d, p, floats, out);
+                 } else {
+                   project<false>(d, p, floats, out);
+                 }
+                 store(out, count, images.data() + first);
+               });
+}
+
+template <bool orthographic>
+HWY_INLINE void projectPoints(Lanes d, const BoxProjection& p, const float* floats, PointImage* out) {
+  const hn::RebindToSigned<Lanes> di;
+  const Vec zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  Vec x, y, z;
+  hn::LoadInterleaved3(d, floats, x, y, z);
+  const auto toEye = [&](Vec at, float high, float low) HWY_ATTR {
+    return hn::Sub(hn::Sub(at, hn::Set(d, high)), hn::Set(d, low));
+  };
+  x = toEye(x, p.eye_high.x, p.eye_low.x);
+  y = toEye(y, p.eye_high.y, p.eye_low.y);
+  z = toEye(z, p.eye_high.z, p.eye_low.z);
+  const auto along = [&](const BoxProjection::Axis& axis) HWY_ATTR {
+    const Vec xy = hn::Add(hn::Mul(hn::Set(d, axis.x), x), hn::Mul(hn::Set(d, axis.y), y));
+    return hn::Add(xy, hn::Mul(hn::Set(d, axis.z), z));
+  };
+  const Vec reach = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
+  const Vec error = hn::Add(hn::Mul(reach, hn::Set(d, kRounding)), hn::Set(d, p.eye_rounding));
+  const Vec depth = along(p.forward), z_min = hn::Sub(depth, error), z_max = hn::Add(depth, error);
+  Mask known = hn::And(hn::Le(reach, hn::Set(d, kLargest)),
+                       hn::And(hn::Gt(z_min, hn::Set(d, p.near_max)), hn::Lt(z_max, hn::Set(d, p.far_min))));
+  Vec inverse = one, q_error = error;
+  if (!orthographic) {
+    known = hn::And(known, hn::Gt(z_min, hn::Mul(error, hn::Set(d, kWellConditioned))));
+    inverse = hn::Div(one, depth);
+    q_error = hn::Add(hn::Mul(hn::Div(error, z_min), hn::Set(d, kSlackGrowth)), hn::Set(d, kBufferRounding));
+  }
+  // Returns the pixel; `known` stays true where it is the same one at both ends of the error.
+  const auto pixel = [&](Vec c, float scale, float middle, float size) HWY_ATTR {
+    const Vec q = orthographic ? c : hn::Mul(c, inverse);
+    const Vec position = hn::Add(hn::Mul(q, hn::Set(d, scale)), hn::Set(d, middle));
+    const Vec slack = bufferSlack(d, q, q_error, scale, middle, orthographic);
+    const Vec first = hn::Sub(position, slack), last = hn::Add(position, slack);
+    known = hn::And(known, hn::And(hn::Ge(first, zero), hn::Lt(last, hn::Set(d, size))));
+    const auto at = hn::ConvertTo(di, hn::IfThenElseZero(known, first));
+    const auto other = hn::ConvertTo(di, hn::IfThenElseZero(known, last));
+    known = hn::And(known, hn::RebindMask(d, hn::Eq(at, other)));
+    return at;
+  };
+  const auto column = pixel(along(p.right), p.scale_x, p.middle_x, p.width);
+  const auto row = pixel(along(p.up), p.scale_y, p.middle_y, p.height);
+  const auto mask = hn::RebindMask(di, known);
+  const auto unknown = hn::Set(di, PointImage::kUnknown);
+  const Vec farthest = orthographic ? hn::Neg(z_max) : hn::Mul(hn::Div(one, z_max), hn::Set(d, kDown));
+  HWY_ALIGN std::int32_t columns[16], rows[16];
+  HWY_ALIGN float depths[16];
+  hn::Store(hn::IfThenElse(mask, column, unknown), di, columns);
+  hn::Store(hn::IfThenElse(mask, row, unknown), di, rows);
+  hn::Store(hn::IfThenElseZero(known, farthest), d, depths);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+    out[i] = {columns[i], rows[i], depths[i]};
+  }
+}
+
+void projectAllPoints(const BoxProjection& p, std::span<const Vec3f> points, std::span<PointImage> images) {
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+  if (points.empty()) {
+    return;
+  }
+  const Lanes d;
+  PointImage out[16];
+  forGroups<3>(d, &points.front().x, points.size(),
+               [&](const float* floats, std::size_t first, std::size_t count) HWY_ATTR {
+                 if (p.orthographic) {
+                   projectPoints<true>(d, p, floats, out);
+                 } else {
+                   projectPoints<false>(d, p, floats, out);
+                 }
+                 std::copy_n(out, count, images.begin() + static_cast<std::ptrdiff_t>(first));
+               });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -269,6 +365,7 @@ namespace sightline::occlusion {
 namespace {
 
 HWY_EXPORT(projectAll);
+HWY_EXPORT(projectAllPoints);
 
 constexpr float kFloatMax = std::numeric_limits<float>::max();
 BoxProjection::Axis rounded(const Vec3d& v) {
@@ -332,6 +429,15 @@ void projectBoxes(const BoxProjection& projection, std::span<const Box> boxes, s
 void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t height,
                   std::span<const Box> boxes, std::span<PixelBox> images) {
   projectBoxes(BoxProjection(view, width, height), boxes, images);
+}
+
+void projectPoints(const BoxProjection& projection, std::span<const Vec3f> points,
+                   std::span<PointImage> images) {
+  if (!projection.usable) {
+    std::fill_n(images.begin(), points.size(), PointImage{});
+    return;
+  }
+  HWY_DYNAMIC_DISPATCH(projectAllPoints)(projection, points, images);
 }
 
 }  // namespace sightline::occlusion

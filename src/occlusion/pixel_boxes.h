@@ -1,6 +1,6 @@
 #pragma once
 
-// Projects boxes into a depth buffer, many at once.
+// Projects boxes and points into a depth buffer, many at once.
 
 #include <cstdint>
 #include <span>
@@ -33,6 +33,17 @@ struct PixelBox {
   }
 };
 
+// The image of a point.
+struct PointImage {
+  static constexpr std::int32_t kUnknown = -1;
+
+  // The pixel in which it surely lies. Both are kUnknown for a point that may be outside the view, or whose
+  // pixel rounding leaves in doubt.
+  std::int32_t x = kUnknown, y = kUnknown;
+  float farthest = 0.0f;  // at most its reciprocal depth, see PixelView
+  friend bool operator==(const PointImage&, const PointImage&) = default;
+};
+
 // What the projection of boxes needs of a view and the size of a buffer, computed once a view.
 struct BoxProjection {
   // A direction, or the normal of a plane through the eye, rounded to single precision.
@@ -59,5 +70,8 @@ struct BoxProjection {
 void projectBoxes(const BoxProjection& projection, std::span<const Box> boxes, std::span<PixelBox> images);
 void projectBoxes(const PixelView& view, std::uint32_t width, std::uint32_t height,
                   std::span<const Box> boxes, std::span<PixelBox> images);
+// images: as many as points. Every instruction set gives the same bits.
+void projectPoints(const BoxProjection& projection, std::span<const Vec3f> points,
+                   std::span<PointImage> images);
 
 }  // namespace sightline::occlusion

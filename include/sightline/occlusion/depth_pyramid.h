@@ -45,12 +45,20 @@ struct BoxHints {
   std::span<const std::uint8_t> seen{};
   // For boxes from this index on, kVisible and kPartial need not be told apart.
   std::size_t plain_from = static_cast<std::size_t>(-1);
+  // Empty, or one value for each box. Other than 0: the box is surely not hidden, as DepthPyramid::seesPoints()
+  // tells, so that only kVisible and kPartial have to be told apart.
+  std::span<const std::uint8_t> not_hidden{};
+  // Empty, or a point for each box. Where a box is found not to be hidden, this mostly becomes a point of it
+  // that seesPoints() sees, also in the views that follow; else it stays as it is.
+  std::span<Vec3f> seen_points{};
 
   // Returns the hints for `count` boxes from the index `first` on.
   BoxHints from(std::size_t first, std::size_t count) const {
     BoxHints part = *this;
     part.seen = seen.empty() ? seen : seen.subspan(first, count);
     part.plain_from = plain_from > first ? plain_from - first : 0;
+    part.not_hidden = not_hidden.empty() ? not_hidden : not_hidden.subspan(first, count);
+    part.seen_points = seen_points.empty() ? seen_points : seen_points.subspan(first, count);
     return part;
   }
 };
@@ -92,6 +100,9 @@ class DepthPyramid {
   // wholly outside the view are kHidden.
   void classify(std::span<const Box> boxes, std::span<BoxAnswer> answers, const BoxHints& hints = {}) const;
   Visibility classify(const Box& box) const;
+  // Sets seen[i] to 1 where nothing in the depth buffer is before points[i], which surely lies in the view's
+  // volume, else to 0. classify() calls no box hidden that contains such a point. seen: as many as points.
+  void seesPoints(std::span<const Vec3f> points, std::span<std::uint8_t> seen) const;
   // Classifies by the view's volume alone, as if nothing were drawn: kHidden for boxes that are wholly
   // outside, kVisible or kPartial for all others.
   void classifyInView(std::span<const Box> boxes, std::span<BoxAnswer> answers) const;
