@@ -15,10 +15,16 @@ bool areRows(const ObjectBoxes& boxes, std::size_t objects) {
 }  // namespace
 
 SeveralBoxes::SeveralBoxes(const ObjectBoxes& boxes, std::span<const Box> object_bounds)
-    : boxes_(boxes), used_(object_bounds.size(), 0), seen_(object_bounds.size(), 0) {
+    : boxes_(boxes),
+      used_(object_bounds.size(), 0),
+      seen_(object_bounds.size(), 0),
+      seen_points_(object_bounds.size()) {
   const bool rows = areRows(boxes, object_bounds.size());
   for (std::size_t i = 0; rows && i < object_bounds.size(); ++i) {
     used_[i] = areBoxesOf(boxes.of(ObjectId(i)), object_bounds[i]) ? 1 : 0;
+    if (used_[i] != 0) {
+      seen_points_[i] = Vec3f(center(boxes.of(ObjectId(i)).front()));
+    }
   }
 }
 
@@ -35,6 +41,7 @@ void SeveralBoxes::removeHidden(const Frustum& frustum, CullingMethod& method,
   while (!candidates_.empty()) {
     asked_.clear();
     asked_boxes_.clear();
+    asked_points_.clear();
     for (Candidate candidate : candidates_) {
       const ObjectId object = visible[candidate.at];
       const std::span<const Box> boxes = of(object);
@@ -46,9 +53,13 @@ void SeveralBoxes::removeHidden(const Frustum& frustum, CullingMethod& method,
         if (in_view) {
           asked_.push_back(candidate);
           asked_boxes_.push_back({box, cut});
+          asked_points_.push_back(candidate.next == 1 ? seen_points_[object.value] : Vec3f(center(box)));
         }
       }
       hidden_[candidate.at] = in_view ? 0 : 1;
+    }
+    for (std::size_t i = 0; i < asked_boxes_.size(); ++i) {
+      asked_boxes_[i].seen_point = &asked_points_[i];
     }
     answers_.resize(asked_boxes_.size());
     if (!asked_.empty()) {
@@ -62,6 +73,7 @@ void SeveralBoxes::removeHidden(const Frustum& frustum, CullingMethod& method,
         const ObjectId object = visible[asked_[i].at];
         seen_[object.value] =
             static_cast<std::uint8_t>((seen_[object.value] + asked_[i].next - 1) % of(object).size());
+        seen_points_[object.value] = asked_points_[i];
       }
     }
   }

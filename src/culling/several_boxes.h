@@ -34,10 +34,13 @@ class SeveralBoxes {
 
   const ObjectBoxes& boxes_;
   std::vector<std::uint8_t> used_;  // by object: whether its boxes are
-  // By object: the box that was seen last. It is looked at first, which saves time and changes no answer.
+  // By object: the box that was seen last, and a point of it that was seen. They are looked at first, which
+  // saves time and changes no answer.
   std::vector<std::uint8_t> seen_;
+  std::vector<Vec3f> seen_points_;
   std::vector<Candidate> candidates_, asked_;
   std::vector<MovingBox> asked_boxes_;
+  std::vector<Vec3f> asked_points_;
   std::vector<Visibility> answers_;
   std::vector<std::uint8_t> hidden_;  // by place in `visible`
 };

@@ -9,6 +9,8 @@
 #include "src/occlusion/box_outline.h"
 #include "src/occlusion/box_point.h"
 
+// Arrays of vectors are used here, which those without a fixed size cannot be in: see pixel_boxes.cpp.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "src/occlusion/box_depth_test.cpp"
 #include <hwy/foreach_target.h>
@@ -151,49 +153,66 @@ struct Refinement {
   Refinement(std::span<const DepthLevel> l, const PixelBox& i, const BoxOutline& o)
       : levels(l), image(i), outline(o), x0(i.x0), y0(i.y0) {}
 
-  // The result for eight cells in a row; bit i is for the cell `from` + i.
-  struct Row {
-    std::uint32_t open = 0;    // cells where the box is not surely hidden
-    std::uint32_t surely = 0;  // among them: in some pixel of the cell the box is surely not hidden
+  // The result for the cells of a range, row by row; bit i is for the cell `from` + i.
+  struct Cells {
+    std::uint32_t from = 0;
+    std::uint8_t open[kBlock] = {};    // cells where the box is not surely hidden
+    std::uint8_t surely[kBlock] = {};  // among them: in some pixel of the cell the box is surely not hidden
   };
 
-  HWY_INLINE Row ask(std::uint32_t level, const CellRange& range, std::uint32_t from, std::uint32_t y) const {
+  HWY_INLINE Cells ask(std::uint32_t level, const CellRange& range) const {
     const Lanes d;
+    const DepthLevel& cells = levels[level];
     const float size = static_cast<float>(1u << (kBlockShift * level));
-    const float y_px = static_cast<float>(y) * size - y0;
-    const auto x_origin = hn::Set(d, x0);
-    const float* min_row = levels[level].min + std::size_t{y} * levels[level].stride + from;
-    Row row;
-    forLanes(range, from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
+    const auto x_origin = hn::Set(d, x0), nearest = hn::Set(d, image.nearest),
+               farthest = hn::Set(d, image.farthest);
+    Cells result;
+    result.from = readFrom(cells, range);
+    forLanes(range, result.from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
-      // Returns the greatest value over the cell whose lower left corner is at x, y.
-      const auto max = [&](const PixelFunction& f) HWY_ATTR {
+      // A function's greatest value over the cell whose lower left corner is at x_px and y_px.
+      hn::Vec<Lanes> face_along_x[3], edge_along_x[6];
+      for (std::uint32_t i = 0; i < outline.face_count; ++i) {
+        face_along_x[i] = hn::Mul(hn::Set(d, outline.faces[i].along_x), x_px);
+      }
+      for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
+        edge_along_x[i] = hn::Mul(hn::Set(d, outline.edges[i].along_x), x_px);
+      }
+      const auto max = [&](const PixelFunction& f, hn::Vec<Lanes> along_x, float y_px) HWY_ATTR {
         const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
         const float in_row = f.along_y * y_px + (f.at_origin + growth);
-        return hn::Add(hn::Mul(hn::Set(d, f.along_x), x_px), hn::Set(d, in_row));
+        return hn::Add(along_x, hn::Set(d, in_row));
       };
-      auto own = hn::Set(d, image.nearest);
-      for (std::uint32_t i = 0; i < outline.face_count; ++i) {
-        own = hn::Min(own, max(outline.faces[i]));
+      const float* row = cells.min + std::size_t{range.y0} * cells.stride + result.from + lane;
+      for (std::uint32_t y = range.y0; y <= range.y1; ++y, row += cells.stride) {
+        const auto min = hn::LoadU(d, row);
+        auto open = hn::And(in_range, hn::Le(min, nearest));
+        if (hn::AllFalse(d, open)) {
+          continue;
+        }
+        const float y_px = static_cast<float>(y) * size - y0;
+        auto own = nearest;
+        for (std::uint32_t i = 0; i < outline.face_count; ++i) {
+          own = hn::Min(own, max(outline.faces[i], face_along_x[i], y_px));
+        }
+        open = hn::And(open, hn::Le(min, own));
+        if (hn::AllFalse(d, open)) {
+          continue;
+        }
+        // All of the cell lies in the outline, and a pixel of it is not before the box's farthest point.
+        auto surely = hn::Le(min, farthest);
+        for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
+          const PixelFunction& f = outline.edges[i];
+          const auto value = max(f, edge_along_x[i], y_px);
+          open = hn::And(open, hn::Ge(value, hn::Zero(d)));
+          const float across = (std::abs(f.along_x) + std::abs(f.along_y)) * size;
+          surely = hn::And(surely, hn::Ge(value, hn::Set(d, across)));
+        }
+        result.open[y - range.y0] |= static_cast<std::uint8_t>(bitsOf(open, lane));
+        result.surely[y - range.y0] |= static_cast<std::uint8_t>(bitsOf(hn::And(open, surely), lane));
       }
-      const auto min = hn::LoadU(d, min_row + lane);
-      auto intersecting = hn::And(in_range, hn::Le(min, own));
-      if (hn::AllFalse(d, intersecting)) {
-        return;
-      }
-      // All of the cell lies in the outline, and a pixel of it is not before the box's farthest point.
-      auto surely = hn::Le(min, hn::Set(d, image.farthest));
-      for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-        const PixelFunction& f = outline.edges[i];
-        const auto value = max(f);
-        intersecting = hn::And(intersecting, hn::Ge(value, hn::Zero(d)));
-        surely =
-            hn::And(surely, hn::Ge(value, hn::Set(d, (std::abs(f.along_x) + std::abs(f.along_y)) * size)));
-      }
-      row.open |= bitsOf(intersecting, lane);
-      row.surely |= bitsOf(hn::And(intersecting, surely), lane);
     });
-    return row;
+    return result;
   }
 
   // From now on these pixels are compared.
@@ -204,21 +223,29 @@ struct Refinement {
     image.y1 = range.y1;
   }
 
+  // Whether so many more rows of eight cells may be compared.
+  bool mayCompare(std::uint32_t rows) {
+    const bool may = rows <= rows_left;
+    rows_left = may ? rows_left - rows : 0;
+    return may;
+  }
+
   // Whether in some pixel of these cells the box is not surely hidden.
   bool anyOpen(std::uint32_t level, const CellRange& range) {
-    const std::uint32_t from = readFrom(levels[level], range);
+    if (!mayCompare(range.y1 - range.y0 + 1)) {
+      return true;
+    }
+    const Cells cells = ask(level, range);
+    const std::uint8_t* settled = level == 0 ? cells.open : cells.surely;
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-      if (rows_left-- == 0) {
+      if (const std::uint32_t bits = settled[y - range.y0]; bits != 0) {
+        open = {level, cells.from + middleBit(bits), y};
         return true;
       }
-      Row row = ask(level, range, from, y);
-      const std::uint32_t settled = level == 0 ? row.open : row.surely;
-      if (settled != 0) {
-        open = {level, from + middleBit(settled), y};
-        return true;
-      }
-      for (; row.open != 0; row.open &= row.open - 1) {
-        const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(row.open));
+    }
+    for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
+      for (std::uint32_t bits = cells.open[y - range.y0]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t x = cells.from + static_cast<std::uint32_t>(std::countr_zero(bits));
         if (anyOpen(level - 1, cellsWithin(image, level - 1, x, y))) {
           return true;
         }
@@ -231,14 +258,13 @@ struct Refinement {
   // would get more than `max`, or where it takes too many rows.
   bool findOpen(std::uint32_t level, const CellRange& range, std::size_t max,
                 std::vector<BufferPixel>& pixels) {
-    const std::uint32_t from = readFrom(levels[level], range);
+    if (!mayCompare(range.y1 - range.y0 + 1)) {
+      return false;
+    }
+    const Cells cells = ask(level, range);
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-      if (rows_left-- == 0) {
-        rows_left = 0;
-        return false;
-      }
-      for (std::uint32_t open = ask(level, range, from, y).open; open != 0; open &= open - 1) {
-        const std::uint32_t x = from + static_cast<std::uint32_t>(std::countr_zero(open));
+      for (std::uint32_t bits = cells.open[y - range.y0]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t x = cells.from + static_cast<std::uint32_t>(std::countr_zero(bits));
         if (level > 0) {
           if (!findOpen(level - 1, cellsWithin(image, level - 1, x, y), max, pixels)) {
             return false;
@@ -300,12 +326,12 @@ bool hasOutline(const PixelView& view, const Box& box) {
   return view.sane() && box.wellFormed() && maxComponent(farthestFrom(view.eye, box)) < kLargest;
 }
 
-// Sets *seen_point, unless it is null, to a point of the box in the farthest pixel of the cell, if there are
-// both.
+// Sets *seen_point, unless it is null, to a point of the box in the farthest pixel of the cell, if there is
+// one.
 void setPoint(std::span<const DepthLevel> levels, const PixelView& view, const Box& box,
               const std::optional<Cell>& open, Vec3f* seen_point) {
   if (open && seen_point != nullptr) {
-    pointInPixel(view, box, farthestPixel(levels, *open), *seen_point);
+    *seen_point = pointInPixel(view, box, farthestPixel(levels, *open));
   }
 }
 
@@ -372,13 +398,8 @@ Visibility testOne(std::span<const DepthLevel> levels, const PixelView& view, co
   if (!question.plain && !anyNearer(levels, level, image, range, image.farthest)) {
     return Visibility::kVisible;
   }
-  if (question.not_hidden) {
-    return Visibility::kPartial;
-  }
-  if (seenAtCentre(levels[0], view, box, image)) {
-    if (question.seen_point != nullptr) {
-      *question.seen_point = Vec3f(center(box));
-    }
+  // The centre is the first point that seesPoints() is asked about.
+  if (question.not_hidden || (question.seen_point == nullptr && seenAtCentre(levels[0], view, box, image))) {
     return Visibility::kPartial;
   }
   const BoxOutline outline = outlineOf(view, box, image.x0, image.y0, reachOf(image, level));

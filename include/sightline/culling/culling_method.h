@@ -12,6 +12,7 @@
 #include "sightline/hierarchy/hierarchy.h"
 #include "sightline/math/box.h"
 #include "sightline/math/frustum.h"
+#include "sightline/math/vec3.h"
 #include "sightline/occluders/occluder_lists.h"
 #include "sightline/occluders/occluder_set.h"
 #include "sightline/occluders/surface_set.h"
@@ -129,6 +130,9 @@ struct CullingFrame {
 struct MovingBox {
   Box box{};
   std::uint8_t frustum_planes = kAllFrustumPlanes;
+  // Null, or a point of the box at which it was last seen. Where that is still seen a method may look no
+  // further; it may replace the point.
+  Vec3f* seen_point = nullptr;
 };
 
 // Made with its settings by a function of its own (occlusionTree(), depthPyramid(), ...), then owned by one

@@ -85,12 +85,21 @@ class DepthPyramidMethod final : public CullingMethod {
 
   void classify(std::span<const MovingBox> boxes, std::span<Visibility> states) override {
     asked_.clear();
+    seen_points_.clear();
     for (const MovingBox& box : boxes) {
       asked_.push_back(box.box);
+      seen_points_.push_back(box.seen_point != nullptr ? *box.seen_point : Vec3f(center(box.box)));
     }
+    seen_.resize(boxes.size());
+    pyramid_->seesPoints(seen_points_, seen_);
     answers_.resize(std::max(answers_.size(), boxes.size()));
     const std::span<BoxAnswer> answers = std::span(answers_).first(boxes.size());
-    pyramid_->classify(asked_, answers);
+    pyramid_->classify(asked_, answers, {.not_hidden = seen_, .seen_points = seen_points_});
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (boxes[i].seen_point != nullptr) {
+        *boxes[i].seen_point = seen_points_[i];
+      }
+    }
     if (focus_) {
       focus_->classify(*pyramid_, asked_, answers);
     }
@@ -114,8 +123,11 @@ class DepthPyramidMethod final : public CullingMethod {
   std::size_t own_occluders_ = 0;            // occluders in the pyramid that are of the scene's set
   std::optional<culling::FocusMaps> focus_;  // empty if the settings turn finer depth buffers off
   double work_ = 0.0;                        // of drawing them, as SurfaceDrawing::budget counts it
-  // Scratch for one classify() call: all boxes, and their answers.
+  // Scratch for one classify() call: all boxes, the points at which they were last seen and whether they still
+  // are, and their answers.
   std::vector<Box> asked_;
+  std::vector<Vec3f> seen_points_;
+  std::vector<std::uint8_t> seen_;
   std::vector<BoxAnswer> answers_;
   std::array<MethodStatistic, 5> statistics_{{{"map", "occluders_hidden", "occluders behind others"},
                                               {"map", "focused", "finer maps"},
