@@ -100,7 +100,8 @@ BufferPixel farthestPixel(std::span<const DepthLevel> levels, Cell cell) {
   return {static_cast<std::uint16_t>(cell.x), static_cast<std::uint16_t>(cell.y)};
 }
 
-// Whether the reciprocal depth of every cell is greater than `than`.
+// Whether the reciprocal depth of every cell is greater than `than`. Always reads eight rows, the last one
+// several times: branches that depend on the box are mostly foreseen wrongly.
 HWY_INLINE bool allNearer(const DepthLevel& level, const CellRange& range, float than) {
   const Lanes d;
   const std::uint32_t from = readFrom(level, range);
@@ -108,8 +109,8 @@ HWY_INLINE bool allNearer(const DepthLevel& level, const CellRange& range, float
   forLanes(range, from, [&](std::size_t lane, auto in_range, auto) HWY_ATTR {
     const float* row = level.min + std::size_t{range.y0} * level.stride + from + lane;
     auto min = hn::LoadU(d, row);
-    for (std::uint32_t y = range.y0; y < range.y1; ++y) {
-      row += level.stride;
+    for (std::uint32_t i = 1; i < kBlock; ++i) {
+      row += range.y0 + i <= range.y1 ? level.stride : 0;
       min = hn::Min(min, hn::LoadU(d, row));
     }
     all = all && hn::AllFalse(d, hn::And(in_range, hn::Not(hn::Gt(min, hn::Set(d, than)))));
@@ -160,56 +161,73 @@ struct Refinement {
     std::uint8_t surely[kBlock] = {};  // among them: in some pixel of the cell the box is surely not hidden
   };
 
+  // Functions over the cells of a range: the greatest value over a cell is the one at its lower left corner,
+  // the sum of a term of its column and a term of its row.
+  struct Terms {
+    hn::Vec<Lanes> of_column;
+    float of_row[kBlock];
+    float across;  // so much less is the least value over the cell
+
+    HWY_INLINE hn::Vec<Lanes> at(std::uint32_t row) const {
+      return hn::Add(of_column, hn::Set(Lanes(), of_row[row]));
+    }
+  };
+
   HWY_INLINE Cells ask(std::uint32_t level, const CellRange& range) const {
     const Lanes d;
     const DepthLevel& cells = levels[level];
     const float size = static_cast<float>(1u << (kBlockShift * level));
     const auto x_origin = hn::Set(d, x0), nearest = hn::Set(d, image.nearest),
                farthest = hn::Set(d, image.farthest);
+    float y_px[kBlock];
+    for (std::uint32_t i = 0; i < kBlock; ++i) {
+      y_px[i] = static_cast<float>(static_cast<std::int32_t>(range.y0 + i)) * size - y0;
+    }
+    const std::uint32_t rows = range.y1 - range.y0 + 1;
     Cells result;
     result.from = readFrom(cells, range);
     forLanes(range, result.from, [&](std::size_t lane, auto in_range, auto x) HWY_ATTR {
       const auto x_px = hn::Sub(hn::Mul(x, hn::Set(d, size)), x_origin);
-      // A function's greatest value over the cell whose lower left corner is at x_px and y_px.
-      hn::Vec<Lanes> face_along_x[3], edge_along_x[6];
+      const auto find = [&](const PixelFunction& f, Terms& terms) HWY_ATTR {
+        const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
+        const float at_origin = f.at_origin + growth;
+        terms.of_column = hn::Mul(hn::Set(d, f.along_x), x_px);
+        for (std::uint32_t i = 0; i < kBlock; ++i) {
+          terms.of_row[i] = f.along_y * y_px[i] + at_origin;
+        }
+        terms.across = (std::abs(f.along_x) + std::abs(f.along_y)) * size;
+      };
+      Terms faces[3], edges[6];
       for (std::uint32_t i = 0; i < outline.face_count; ++i) {
-        face_along_x[i] = hn::Mul(hn::Set(d, outline.faces[i].along_x), x_px);
+        find(outline.faces[i], faces[i]);
       }
       for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-        edge_along_x[i] = hn::Mul(hn::Set(d, outline.edges[i].along_x), x_px);
+        find(outline.edges[i], edges[i]);
       }
-      const auto max = [&](const PixelFunction& f, hn::Vec<Lanes> along_x, float y_px) HWY_ATTR {
-        const float growth = (std::max(f.along_x, 0.0f) + std::max(f.along_y, 0.0f)) * size;
-        const float in_row = f.along_y * y_px + (f.at_origin + growth);
-        return hn::Add(along_x, hn::Set(d, in_row));
-      };
-      const float* row = cells.min + std::size_t{range.y0} * cells.stride + result.from + lane;
-      for (std::uint32_t y = range.y0; y <= range.y1; ++y, row += cells.stride) {
-        const auto min = hn::LoadU(d, row);
-        auto open = hn::And(in_range, hn::Le(min, nearest));
-        if (hn::AllFalse(d, open)) {
-          continue;
-        }
-        const float y_px = static_cast<float>(y) * size - y0;
+      const float* from = cells.min + std::size_t{range.y0} * cells.stride + result.from + lane;
+      for (std::uint32_t row = 0; row < rows; ++row, from += cells.stride) {
+        const auto min = hn::LoadU(d, from);
         auto own = nearest;
         for (std::uint32_t i = 0; i < outline.face_count; ++i) {
-          own = hn::Min(own, max(outline.faces[i], face_along_x[i], y_px));
+          own = hn::Min(own, faces[i].at(row));
         }
-        open = hn::And(open, hn::Le(min, own));
+        auto open = hn::And(in_range, hn::Le(min, own));
         if (hn::AllFalse(d, open)) {
           continue;
         }
-        // All of the cell lies in the outline, and a pixel of it is not before the box's farthest point.
-        auto surely = hn::Le(min, farthest);
         for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
-          const PixelFunction& f = outline.edges[i];
-          const auto value = max(f, edge_along_x[i], y_px);
-          open = hn::And(open, hn::Ge(value, hn::Zero(d)));
-          const float across = (std::abs(f.along_x) + std::abs(f.along_y)) * size;
-          surely = hn::And(surely, hn::Ge(value, hn::Set(d, across)));
+          open = hn::And(open, hn::Ge(edges[i].at(row), hn::Zero(d)));
         }
-        result.open[y - range.y0] |= static_cast<std::uint8_t>(bitsOf(open, lane));
-        result.surely[y - range.y0] |= static_cast<std::uint8_t>(bitsOf(hn::And(open, surely), lane));
+        // A pixel of the cell is not before the box's farthest point.
+        auto surely = hn::And(open, hn::Le(min, farthest));
+        if (!hn::AllFalse(d, surely)) {
+          // All of the cell lies in the outline.
+          for (std::uint32_t i = 0; i < outline.edge_count; ++i) {
+            surely = hn::And(surely, hn::Ge(edges[i].at(row), hn::Set(d, edges[i].across)));
+          }
+        }
+        result.open[row] |= static_cast<std::uint8_t>(bitsOf(open, lane));
+        result.surely[row] |= static_cast<std::uint8_t>(bitsOf(surely, lane));
       }
     });
     return result;
@@ -230,18 +248,29 @@ struct Refinement {
     return may;
   }
 
+  // Sets `open` to a cell in the middle of those that are marked. False: none is.
+  bool settle(std::uint32_t level, std::uint32_t y0, std::uint32_t from, const std::uint8_t (&marks)[kBlock]) {
+    std::uint32_t rows = 0;
+    for (std::uint32_t i = 0; i < kBlock; ++i) {
+      rows |= (marks[i] != 0 ? 1u : 0u) << i;
+    }
+    if (rows == 0) {
+      return false;
+    }
+    const std::uint32_t row = middleBit(rows);
+    open = {level, from + middleBit(marks[row]), y0 + row};
+    return true;
+  }
+
   // Whether in some pixel of these cells the box is not surely hidden.
   bool anyOpen(std::uint32_t level, const CellRange& range) {
     if (!mayCompare(range.y1 - range.y0 + 1)) {
       return true;
     }
     const Cells cells = ask(level, range);
-    const std::uint8_t* settled = level == 0 ? cells.open : cells.surely;
-    for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
-      if (const std::uint32_t bits = settled[y - range.y0]; bits != 0) {
-        open = {level, cells.from + middleBit(bits), y};
-        return true;
-      }
+    if (settle(level, range.y0, cells.from, cells.surely) ||
+        (level == 0 && settle(level, range.y0, cells.from, cells.open))) {
+      return true;
     }
     for (std::uint32_t y = range.y0; y <= range.y1; ++y) {
       for (std::uint32_t bits = cells.open[y - range.y0]; bits != 0; bits &= bits - 1) {
@@ -282,12 +311,15 @@ struct Refinement {
 
 // The cells of the finest level on which the image has at most eight cells along each side.
 HWY_INLINE CellRange finestRange(const PixelBox& image, std::uint32_t& level) {
+  const auto isTooFine = [&](std::uint32_t at) {
+    const CellRange cells = cellsOf(image, at);
+    return cells.x1 - cells.x0 >= kBlock || cells.y1 - cells.y0 >= kBlock ? 1u : 0u;
+  };
   level = 0;
-  CellRange range = cellsOf(image, 0);
-  while (range.x1 - range.x0 >= kBlock || range.y1 - range.y0 >= kBlock) {
-    range = cellsOf(image, ++level);
+  for (std::uint32_t at = 0; at + 1 < DepthLevels::kMaxLevels; ++at) {
+    level += isTooFine(at);
   }
-  return range;
+  return cellsOf(image, level);
 }
 
 // How far from the image's first pixel its cells of a level reach, pixels: they may begin before it and end
